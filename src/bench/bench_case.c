@@ -160,7 +160,7 @@ void mf_bench_case_result(const struct bench_case *bench, const char *scene,
         .particle_steps_per_second = particles * steps,
         .pairs_per_second = pairs * steps,
         .ns_per_pair = 1e9 / (pairs * steps),
-        .cycles_per_pair = (double)bench->ticks_total / bench->seconds / (pairs * steps),
+        .ticks_per_pair = (double)bench->ticks_total / bench->seconds / (pairs * steps),
         .list_efficiency = bench->in_range / bench->listed,
         .row_filling = bench->listed / bench->places,
         // a list that was never built again has lasted for all steps at least

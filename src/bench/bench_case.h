@@ -44,7 +44,7 @@ struct bench_result {
     double steps_per_second, steps_per_second_best, steps_per_second_spread;
     double particle_steps_per_second, pairs_per_second; ///< of the median, like all below
     double ns_per_pair;
-    double cycles_per_pair; ///< of the time-stamp counter, whatever the clock of the core
+    double ticks_per_pair; ///< of the time-stamp counter, whatever the clock of the core
     double phase_share[SIMULATION_PHASES];
     double list_efficiency; ///< pairs in range / pairs on the list
     double row_filling;     ///< pairs on the list / places in its rows

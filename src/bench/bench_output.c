@@ -40,7 +40,7 @@ static const struct column columns[] = {
      "particle-steps", "M/s", 1e-6, 3},
     {"pairs_per_second", "1/s", MEMBER(pairs_per_second), SHOWN_ENGINE, "pairs", "M/s", 1e-6, 3},
     {"ns_per_pair", "ns", MEMBER(ns_per_pair), SHOWN_ENGINE, "per pair", "ns", 1, 3},
-    {"cycles_per_pair", "1", MEMBER(cycles_per_pair), SHOWN_ENGINE, "per pair", "cycles", 1, 3},
+    {"ticks_per_pair", "1", MEMBER(ticks_per_pair), SHOWN_ENGINE, "per pair", "ticks", 1, 3},
     {"list_share", "1", SHARE(SIMULATION_LIST), SHOWN_ENGINE, "list", "%", 100, 2},
     {"forces_share", "1", SHARE(SIMULATION_FORCES), SHOWN_ENGINE, "forces", "%", 100, 2},
     {"motion_share", "1", SHARE(SIMULATION_MOTION), SHOWN_ENGINE, "motion", "%", 100, 2},

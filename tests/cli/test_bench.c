@@ -26,7 +26,7 @@ static void test_bench_prints_json_and_writes_a_table(void **state) {
                                           "particle_steps_per_second",
                                           "pairs_per_second",
                                           "ns_per_pair",
-                                          "cycles_per_pair",
+                                          "ticks_per_pair",
                                           "list_share",
                                           "forces_share",
                                           "motion_share",

@@ -49,7 +49,7 @@ static void test_bench_case_result_is_what_the_sums_say(void **state) {
     assert_identical(result.particle_steps_per_second, 16000);
     assert_identical(result.pairs_per_second, 80000);
     assert_close(result.ns_per_pair, 12500, 1e-9);
-    assert_close(result.cycles_per_pair, 25000, 1e-9); // at 2 GHz
+    assert_close(result.ticks_per_pair, 25000, 1e-9); // at 2 GHz
     assert_close(result.phase_share[SIMULATION_FORCES], 0.6, 1e-12);
     assert_close(result.list_efficiency, 0.625, 1e-12);
     assert_close(result.row_filling, 0.8, 1e-12);

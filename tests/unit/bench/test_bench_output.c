@@ -20,7 +20,7 @@ static const struct bench_result fast = {
     .particle_steps_per_second = 33876326.4,
     .pairs_per_second = 2308627200,
     .ns_per_pair = 0.43316,
-    .cycles_per_pair = 10,
+    .ticks_per_pair = 10,
     .phase_share = {0.05, 0.2, 0.75},
     .list_efficiency = 0.7,
     .row_filling = 1,
@@ -63,7 +63,7 @@ static void test_bench_output_table_is_aligned_and_rounded(void **state) {
         "water: 2744 particles with 136 neighbours in range, 1 thread\n"
         "  isa       precision   median     best  spread  particle-steps  pairs  per pair  per pair"
         "  list  forces  motion  in range  rows full  rebuild\n"
-        "                       steps/s  steps/s       %             M/s    M/s        ns    cycles"
+        "                       steps/s  steps/s       %             M/s    M/s        ns     ticks"
         "     %       %       %         %          %    steps\n"
         "  avx2      mixed        12346    12400     1.2            33.9   2309     0.433      10.0"
         "    20      75     5.0      70.0        100     0.00\n"
