@@ -214,7 +214,7 @@ enum status mf_thermodynamics_judge_fit(const struct thermodynamics_summary *sum
         return STATUS_OK;
     return mf_status_fail(
         STATUS_UNSTABLE,
-        "the temperature by the positions is %.3f(%.0f), %.1f %% off: the time step "
+        "the configurational temperature is %.3f(%.0f), %.1f %% off: the time step "
         "is coarse for this potential, or its force ends abruptly; a shorter "
         "\"verification.time_step\" tells which",
         s->temperature_configurational, ceil(1e3 * s->temperature_configurational_error),

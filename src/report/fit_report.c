@@ -103,10 +103,11 @@ static void say_changes(struct progress *to, const struct units *units,
 /// A target that is off by more than so many statistical errors is not met by what was fitted.
 static const double missed = 20;
 
-/// Values of a target that are known.
+/// Values of a target that are known, without the first row of a matrix: E at time 0 is 1 by
+/// nature.
 static size_t values_of(const struct target *target) {
     size_t known = 0;
-    for (size_t k = 0; k < target->count; k++)
+    for (size_t k = target->columns; k < target->count; k++)
         known += isfinite(target->value[k]);
     return known;
 }

@@ -18,7 +18,7 @@ static const char *find_cause(const struct thermodynamics_summary *found, double
         return "a liquid under tension tears: g(r) leaves the pressure open, so give it as a "
                "second target";
     if (off > fmax(cold * temperature, 3 * found->temperature_configurational_error))
-        return "the temperature by the positions is off, too: set a shorter "
+        return "the configurational temperature is off, too: set a shorter "
                "\"verification.time_step\"";
     return "longer \"equilibration\" of either, or more \"particles\", may tell why";
 }

@@ -33,7 +33,7 @@ static void test_fit_verdict_names_the_cause_when_g_is_off(void **state) {
                               other = make(0.157, 1.5, 2.2);
     struct verification coarse = other;
     coarse.thermodynamics.temperature_configurational = 1.48;
-    assert_says(&coarse, "the temperature by the positions is off");
+    assert_says(&coarse, "the configurational temperature is off");
     assert_says(&heated, "verification.time_step");
     assert_says(&torn, "off by 0.16 (0.002 by statistics) at T = 1.53, pressure -2.19: a liquid "
                        "under tension tears");
