@@ -12,7 +12,7 @@ import { Files } from "/files.js";
 const at = (id) => document.getElementById(id);
 const panels = [new Curves(at("panels")), new Population(at("panels")), new Maps(at("panels"))];
 const tables = new Tables();
-const particles = new Particles(at("particles"), { scene: at("scene"), frames: at("frames") });
+const particles = new Particles(at("particles"), { scene: at("scene"), frames: at("frames"), colours: at("colour") });
 const settings = new Settings(at("settings"));
 const files = new Files(at("files"), { fail: showMessage, settings: () => settings.text,
   open: async (path) => { await post("open", { path }); select("view"); } });

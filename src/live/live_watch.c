@@ -52,14 +52,23 @@ static void publish_progress(struct live_watch *watch, const struct watcher_prog
 // A simulation ------------------------------------------------------------------------------------
 
 static void publish_particles(struct live_watch *watch, bool forced) {
+    struct live_feed *feed = &watch->view->feed;
     const double begun = clock_thread_seconds();
-    if (!mf_live_feed_wants_particles(&watch->view->feed) ||
-        (!forced && !is_due(&watch->particles)))
+    if (!mf_live_feed_wants_particles(feed) || (!forced && !is_due(&watch->particles)))
         return;
-    mf_live_particles_write(watch->run.simulation, &watch->bytes);
+    watch->frame_step = watch->run.simulation->step;
+    watch->frame_energies = mf_live_feed_wants_energies(feed);
+    mf_live_particles_write(watch->run.simulation, watch->frame_energies, &watch->bytes);
     if (watch->bytes.size > 0)
-        mf_live_feed_put_particles(&watch->view->feed, &watch->bytes);
+        mf_live_feed_put_particles(feed, &watch->bytes);
     set_pace(&watch->particles, begun, particles_interval);
+}
+
+/// Who comes while the run is paused, or asks for energies then, gets the particles as they are.
+static void show_held_particles(struct live_watch *watch) {
+    const bool energies = mf_live_feed_wants_energies(&watch->view->feed);
+    if (watch->frame_step != watch->run.simulation->step || (energies && !watch->frame_energies))
+        publish_particles(watch, true);
 }
 
 static void put_number(struct json_writer *writer, const struct live_watch *watch, const char *name,
@@ -194,8 +203,10 @@ static struct live_pause obey(struct live_watch *watch) {
         if (watch->run.simulation && !watch->paused)
             publish_simulation(watch, true);
         show_pause(watch, true);
-        if (watch->run.simulation)
+        if (watch->run.simulation) {
             review_change(watch);
+            show_held_particles(watch);
+        }
         watch->last_clock = clock_seconds();
     }
     if (!pause.stepping)
@@ -212,6 +223,7 @@ static void begin(void *context, const struct watcher_run *run) {
     watch->run = *run;
     watch->last_clock = clock_seconds();
     watch->last_step = 0;
+    watch->frame_step = UINT64_MAX;
     watch->paused = watch->changes = false;
     if (run->simulation) {
         const char *place = getenv("TMPDIR");

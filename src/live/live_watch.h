@@ -18,6 +18,8 @@ struct live_watch {
     struct watcher_run run;
     struct live_pace progress, particles, numbers, tables;
     struct live_bytes bytes;    ///< of particles
+    uint64_t frame_step;        ///< of the particles that were published last
+    bool frame_energies;        ///< with their energies
     char now[OUTPUT_PATH_SIZE]; ///< folder of its own for tables of a simulation, or ""
     char *log;                  ///< the last lines
     bool paused;                ///< as the page was told
