@@ -25,6 +25,7 @@ enum {
 /// What a run writes beside used.json; with * the tables about the pair types of a mixture.
 static const char *const results[] = {
     "summary.json",
+    PROGRESS_FILE,
     "target.json",
     "history.tsv",
     "timing.tsv",
