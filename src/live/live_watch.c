@@ -7,12 +7,10 @@
 #include "live/live_particles.h"
 #include "observe/thermodynamics.h"
 
-#include <dirent.h>
 #include <fcntl.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 enum { LONGEST_LOG = 32768 };
 
@@ -131,8 +129,8 @@ static void publish_tables(struct live_watch *watch) {
     const struct observable_results results = {.setup = &run->simulation->setup,
                                                .plan = run->plan,
                                                .units = run->units,
-                                               .folder = watch->now};
-    if (watch->now[0] == '\0' || sampled < 2 * run->plan->every || !is_due(&watch->tables))
+                                               .folder = watch->now.path};
+    if (watch->now.path[0] == '\0' || sampled < 2 * run->plan->every || !is_due(&watch->tables))
         return;
     for (const struct observable_use *use = run->observables; use->observable; use++)
         if (use->observable->write && use->observable->write(use->state, &results) != STATUS_OK)
@@ -226,13 +224,10 @@ static void begin(void *context, const struct watcher_run *run) {
     watch->frame_step = UINT64_MAX;
     watch->paused = watch->changes = false;
     if (run->simulation) {
-        const char *place = getenv("TMPDIR");
-        snprintf(watch->now, sizeof watch->now, "%s/mesofit-live-XXXXXX", place ? place : "/tmp");
-        if (mkdtemp(watch->now) == NULL)
-            watch->now[0] = '\0';
-        else
+        mf_live_scratch_make(&watch->now);
+        if (watch->now.path[0])
             mf_live_view_set_root(watch->view, LIVE_NOW,
-                                  open(watch->now, O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+                                  open(watch->now.path, O_RDONLY | O_DIRECTORY | O_CLOEXEC));
     }
     if (mf_live_view_show_folder(watch->view, run->folder, LIVE_RUNNING) != STATUS_OK)
         mf_live_view_set_phase(watch->view, LIVE_RUNNING, mf_status_message());
@@ -302,27 +297,12 @@ void mf_live_watch_init(struct live_watch *watch, struct live_view *view) {
     };
 }
 
-static void remove_folder(const char *path) {
-    struct dirent **entries;
-    const int count = scandir(path, &entries, NULL, alphasort);
-    for (int k = 0; k < count; k++) {
-        char file[OUTPUT_PATH_SIZE + 258];
-        snprintf(file, sizeof file, "%s/%s", path, entries[k]->d_name);
-        unlink(file);
-        free(entries[k]);
-    }
-    if (count >= 0)
-        free(entries);
-    rmdir(path);
-}
-
 void mf_live_watch_end(struct live_watch *watch) {
     watch->run = (struct watcher_run){0};
-    if (watch->now[0] == '\0')
+    if (watch->now.path[0] == '\0')
         return;
     mf_live_view_set_root(watch->view, LIVE_NOW, -1);
-    remove_folder(watch->now);
-    watch->now[0] = '\0';
+    mf_live_scratch_remove(&watch->now);
 }
 
 void mf_live_watch_clear(struct live_watch *watch) {
