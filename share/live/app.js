@@ -220,7 +220,7 @@ at("compare-go").addEventListener("click", () => act(async () => {
   const folder = at("other").value.trim().replace(/\/$/, ""), other = new Map();
   if (folder)
     for (const file of await getJson("files", { path: folder }))
-      if (/^(potential|omega|rdf)[^_]*\.tsv$/.test(file.name))
+      if (/^(potential|omega|memory|rdf)(?!.*_(history|flat|now))[^.]*\.tsv$/.test(file.name))
         other.set(file.name, parse(await getText("file", { path: folder + "/" + file.name })));
   panels[0].compare(other);
 }));

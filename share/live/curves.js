@@ -118,10 +118,14 @@ const showColumns = (names) => (plot, table) => {
 const positive = (names) => (table) => names.some((name) => table.has(name) && table.values(name).some((v) => v > 0));
 const hasColumns = (names) => (table) => names.some((name) => table.has(name) && table.values(name).some(Number.isFinite));
 
+// Curves that a fit finds: Φ, ω, that across pairs, those of modes of memory; not their histories and flat directions.
+const unknownFile = /^(?!.*_(history|flat)\.tsv$)(potential(_[^_]+-[^_]+)?|omega(_[^_]+-[^_]+)?|omega_transverse|memory_.+)\.tsv$/;
+const unknownTitle = (name) => name.replace(".tsv", "").replace("potential", "Φ(r)").replace("omega_transverse", "ω(r) across pairs")
+  .replace(/^memory_(.*)/, "ω(r) of the memory \"$1\"").replace(/^omega/, "ω(r)").replace("_", " ");
+
 // file, title, what shows it; `when` says whether the table has it.
 const kinds = [
-  { file: /^(potential|omega)(_[^_]+-[^_]+)?\.tsv$/, title: (n) => n.replace(".tsv", "").replace("potential", "Φ(r)").replace("omega", "ω(r)"),
-    show: showUnknown, range: besideCore },
+  { file: unknownFile, title: unknownTitle, show: showUnknown, range: besideCore },
   { file: /^rdf(_now)?(_[^_]+-[^_]+)?\.tsv$/, title: (n) => "g(r)" + nowOf(n) + pairOf(n), show: showTarget },
   { file: /^rdf(_now)?(_[^_]+-[^_]+)?\.tsv$/, title: (n) => "g(r) less its target" + nowOf(n) + pairOf(n), show: showDifference, when: (t) => t.has("target") },
   { file: /^rdf_now(_[^_]+-[^_]+)?\.tsv$/, title: (n) => "S − S* by bin" + pairOf(n), show: showExcess },
