@@ -69,7 +69,8 @@ export class Particles {
   constructor(canvas, { scene, frames, colours }) {
     Object.assign(this, { canvas, scene, frames, colours, range: "", turn: [1, 0, 0, 0, 1, 0, 0, 0, 1], scale: 1, serial: 0, frame: null, drawn: 0, since: 0, wanted: false });
     this.choice = { colour: "type", slice: 1, sliceAt: 0.5, bead: 1 };
-    this.gl = canvas.getContext("webgl", { antialias: true });
+    // Beads are cut out of squares, whose edges are all that smoothing by the browser would see, at four times the work.
+    this.gl = canvas.getContext("webgl", { antialias: false, alpha: false });
     if (this.gl)
       this.prepare();
     this.listen();
@@ -81,7 +82,8 @@ export class Particles {
     gl.attachShader(program, compile(gl, gl.FRAGMENT_SHADER, fragmentProgram));
     gl.linkProgram(program);
     gl.useProgram(program);
-    this.uniform = (name) => gl.getUniformLocation(program, name);
+    const uniforms = new Map();
+    this.uniform = (name) => uniforms.get(name) || uniforms.set(name, gl.getUniformLocation(program, name)).get(name);
     this.buffers = [["place", 3], ["shade", 1]].map(([name, size]) => {
       const buffer = gl.createBuffer(), at = gl.getAttribLocation(program, name);
       gl.enableVertexAttribArray(at);
@@ -97,6 +99,7 @@ export class Particles {
       return;
     this.wanted = true;
     while (this.wanted) {
+      const begun = performance.now();
       if (!document.hidden && this.gl)
         try {
           const answer = await ask("particles", { after: this.serial, ...(this.choice.colour === "energy" ? { energies: 1 } : {}) });
@@ -106,7 +109,7 @@ export class Particles {
             this.take(parse(buffer));
           }
         } catch { this.wanted = false; }
-      await new Promise((done) => setTimeout(done, document.hidden ? 500 : 40));
+      await new Promise((done) => setTimeout(done, document.hidden ? 500 : Math.max(5, 30 - (performance.now() - begun))));
     }
   }
 

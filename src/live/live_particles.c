@@ -68,13 +68,16 @@ static unsigned char *put_head(const struct simulation *simulation, unsigned par
     return to + sizeof head + sizeof counts;
 }
 
-/// Between two sorts particles may have left the box.
+/// Between two sorts particles may have left the box. By truncation a frame of 10,125 beads takes
+/// 64 µs, by floor 84: at a five-hundredth of the time, 31 or 24 of them a second.
 static void put_places(const struct particles *particles, float *to) {
     for (int d = 0; d < particles->box.dimensions; d++) {
         const double length = particles->box.length[d];
         for (size_t k = 0; k < particles->count; k++) {
-            const double x = particles->position[d][k];
-            to[3 * (size_t)particles->id[k] + (size_t)d] = (float)(x - length * floor(x / length));
+            const double boxes = particles->position[d][k] / length;
+            const double part = boxes - (double)(int64_t)boxes;
+            to[3 * (size_t)particles->id[k] + (size_t)d] =
+                (float)(length * (part < 0 ? part + 1 : part));
         }
     }
     for (size_t k = 0; particles->box.dimensions < 3 && k < particles->count; k++)

@@ -15,11 +15,11 @@
 enum { LONGEST_LOG = 32768 };
 
 /// Least time between news of a kind [s], and the part of the time that they may take.
-static const double progress_interval = 0.2, particles_interval = 0.05, numbers_interval = 0.2,
+static const double progress_interval = 0.2, particles_interval = 0.02, numbers_interval = 0.2,
                     tables_interval = 1.5, part_of_time = 1.0 / 500;
 
 /// Time between words of a simulation while somebody draws its particles, or looks at all [s].
-static const double drawn_interval = 0.03, looked_interval = 0.25;
+static const double drawn_interval = 0.015, looked_interval = 0.25;
 
 static bool is_due(const struct live_pace *pace) {
     return clock_seconds() >= pace->next;
