@@ -43,6 +43,46 @@ class Panels(PageTest):
         self.shoot("singular")
         self.check_console()
 
+    def test_results_are_compared_with_those_of_another_folder(self):
+        self.run_file("one.json", water_fit(1), "one")
+        self.run_file("other.json", {**water_fit(1), "seed": 9}, "other")
+        self.begin("live", "one")
+        self.wait(lambda: {"potential.tsv", "rdf.tsv"} <= set(self.panels()))
+        self.assertNotIn("other run", [label for label, _ in self.chart("potential.tsv")])
+        self.at("other").send_keys("other/")
+        self.at("compare-go").click()
+        for table, column in (("potential.tsv", 1), ("rdf.tsv", 3)):
+            self.wait(lambda table=table: "other run" in [label for label, _ in self.chart(table)])
+            last = float([row for row in self.rows("other", table) if row[column] != "nan"][-1][column])
+            self.assertEqual(self.browser.execute_script(
+                "return Chart.getChart(document.querySelector(`[data-table='${arguments[0]}'] canvas`)).data.datasets"
+                ".find((s) => s.label === 'other run').data.at(-1).y", table), last)
+        self.check_console()
+
+    def test_front_of_several_targets_shows_the_curves_of_a_member(self):
+        fluid = {"box": [3, 3, 3], "particles": {"count": 81}, "time_step": 0.02, "dissipative": {"law": "power", "sigma": 3}}
+        self.run_file("fluid.json", {**fluid, "seed": 5, "conservative": {"law": "soft-repulsion", "a": 25},
+                                     "rdf": {"range": 1, "bins": 20}}, "fluid")
+        self.run_file("front.json", {
+            "seed": 3, "scene": fluid, "target": {"rdf": {"file": "fluid/rdf.tsv"}, "pressure": {"value": 20, "error": 0.5}},
+            "unknowns": {"potential": {"coefficients": 4, "maximum": 30}},
+            "method": {"name": "pareto", "population": 8, "generations": 3, "equilibration": 20, "samples": 4, "every": 8,
+                       "temperature_tolerance": 0.5},
+            "verification": {"replicas": 2, "equilibration": 20, "samples": 5, "every": 8}}, "front")
+        self.begin("live", "front")
+        front = self.wait(lambda: next(iter(self.browser.find_elements("css selector", "[data-population=front] canvas")), None))
+        self.browser.execute_script("arguments[0].scrollIntoView({ block: 'center' })", front)
+        x, y, member = self.browser.execute_script("""
+            const chart = Chart.getChart(arguments[0]), n = chart.data.datasets.findIndex((s) => s.label === "front");
+            const point = chart.getDatasetMeta(n).data[0], box = arguments[0].getBoundingClientRect();
+            return [point.x - box.width / 2, point.y - box.height / 2, chart.data.datasets[n].rows[0] + 1];""", front)
+        ActionChains(self.browser).move_to_element_with_offset(front, int(x), int(y)).click().perform()
+        shown = "[data-population='pareto_potential.tsv'] canvas"
+        labels = self.wait(lambda: self.browser.execute_script("const c = document.querySelector(arguments[0]);"
+            "return c && Chart.getChart(c).data.datasets.map((s) => s.label).filter(Boolean)", shown), 20)
+        self.assertEqual(labels, [f"member {member}"])
+        self.check_console()
+
     def test_friction_with_memory_and_across_pairs_has_curves_and_genes(self):
         fluid = {"box": [3, 3, 3], "particles": {"count": 81}, "time_step": 0.02, "conservative": {"law": "soft-repulsion", "a": 25}}
         etd = {"r_minimum": 0.4, "r_maximum": 0.9}
