@@ -168,6 +168,30 @@ class Page(PageTest):
         self.shoot("family")
         self.check_console()
 
+    def delay_answers(self, name, seconds):
+        """As through a slow tunnel: the answer comes when what it tells of is long over."""
+        self.browser.execute_script(
+            "const whole = window.fetch; window.fetch = async (url, how) => { const answer = await whole(url, how);"
+            "if (url.startsWith('/api/' + arguments[0])) await new Promise((done) => setTimeout(done, 1000 * arguments[1])); return answer; };",
+            name, seconds)
+
+    def test_tab_that_was_chosen_stays_when_an_answer_comes_late(self):
+        self.begin("live")
+        self.at("tab-files").click()
+        row = self.wait(lambda: next((r for r in self.at("files").find_elements("tag name", "tr") if "scene.json" in r.text), None))
+        self.delay_answers("open", 1)
+        self.delay_answers("start", 2)
+        row.find_element("xpath", ".//button[text()='open']").click()
+        self.wait(lambda: self.phase() == "ready")
+        self.at("tab-settings").click()
+        time.sleep(1.5)
+        self.assertTrue(self.at("settings").is_displayed())
+        self.press("start")
+        self.wait(lambda: self.phase() in ("running", "ended"))
+        self.at("tab-files").click()
+        time.sleep(2.5)
+        self.assertTrue(self.at("files").is_displayed())
+
     def test_another_file_is_chosen_edited_refused_and_saved(self):
         self.begin("live")
         self.assertEqual(self.phase(), "choosing")
