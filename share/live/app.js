@@ -12,10 +12,10 @@ import { Files } from "/files.js";
 const at = (id) => document.getElementById(id);
 const panels = [new Curves(at("panels")), new Population(at("panels")), new Maps(at("panels"))];
 const tables = new Tables();
-const particles = new Particles(at("particles"), { scene: at("scene"), frames: at("frames") });
+const particles = new Particles(at("particles"), { scene: at("scene"), frames: at("frames"), colours: at("colour") });
 const settings = new Settings(at("settings"));
 const files = new Files(at("files"), { fail: showMessage, settings: () => settings.text,
-  open: async (path) => { await post("open", { path }); select("view"); } });
+  open: (path) => thenView(() => post("open", { path })) });
 let state = { phase: "", file: "" };
 
 function showMessage(text) {
@@ -36,8 +36,10 @@ async function act(what) {
 // Tabs --------------------------------------------------------------------------------------------
 
 const tabs = ["view", "settings", "files", "log"];
+let chosenTimes = 0;
 
 function select(name, focus = false) {
+  chosenTimes++;
   for (const tab of tabs) {
     const chosen = tab === name, button = at("tab-" + tab);
     button.setAttribute("aria-selected", chosen);
@@ -48,6 +50,14 @@ function select(name, focus = false) {
   }
   if (name === "files")
     files.show();
+}
+
+// Do something, and see it, unless a tab was chosen meanwhile.
+async function thenView(what) {
+  const before = chosenTimes;
+  await what();
+  if (chosenTimes === before)
+    select("view");
 }
 
 for (const tab of tabs) {
@@ -188,7 +198,7 @@ const stopListening = listen(take, (error, failures) => {
 // What the buttons ask for ------------------------------------------------------------------------
 
 const wish = (body) => post("wish", {}, JSON.stringify(body));
-at("start").addEventListener("click", () => act(async () => { await post("start", settings.query(), settings.text); select("view"); }));
+at("start").addEventListener("click", () => act(() => thenView(() => post("start", settings.query(), settings.text))));
 at("resume").addEventListener("click", () => act(() => (state.phase === "paused" ? wish({ wish: "go" })
   : post("start", { ...settings.query(), resume: "1" }, settings.text))));
 at("pause").addEventListener("click", () => act(() => wish({ wish: "pause" })));
@@ -220,7 +230,7 @@ at("compare-go").addEventListener("click", () => act(async () => {
   const folder = at("other").value.trim().replace(/\/$/, ""), other = new Map();
   if (folder)
     for (const file of await getJson("files", { path: folder }))
-      if (/^(potential|omega|rdf)[^_]*\.tsv$/.test(file.name))
+      if (/^(potential|omega|memory|rdf)(?!.*_(history|flat|now))[^.]*\.tsv$/.test(file.name))
         other.set(file.name, parse(await getText("file", { path: folder + "/" + file.name })));
   panels[0].compare(other);
 }));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Panels of curves: one for each table that is known, whatever run has written it.
 import { keep, symbol } from "/tables.js";
-import { Plot, band, colour, curve, translucent } from "/plots.js";
+import { Plot, band, colour, curve, points, translucent } from "/plots.js";
 
 const most = 60; // faint lines of a history
 
@@ -26,17 +26,21 @@ function pairs(table, x, names) {
   });
 }
 
+// Earlier iterations of a curve, faint: the columns of its history but the last.
+function earlier(history) {
+  if (!history)
+    return [];
+  const sets = [], count = history.columns.length - 1, first = Math.max(1, count - most + 1);
+  for (let k = first; k < count; k++)
+    sets.push(curve("", history.column(0), history.column(k), 7,
+      { borderWidth: 1, borderColor: translucent(colour(7), 0.3 + 0.4 * (k - first) / (count - first + 1)) }));
+  return sets;
+}
+
 // An unknown: its curve with a band, earlier iterations, the truth, another run's.
 function showUnknown(plot, table, name, context) {
   const x = table.column(0), value = table.columns[1].name;
-  const sets = [];
-  const history = context.tables.get(name.replace(".tsv", "_history.tsv"));
-  if (history) {
-    const count = history.columns.length - 1, first = Math.max(1, count - most + 1);
-    for (let k = first; k < count; k++)
-      sets.push(curve("", history.column(0), history.column(k), 7,
-        { borderWidth: 1, borderColor: translucent(colour(7), 0.15 + 0.35 * (k - first) / (count - first + 1)) }));
-  }
+  const history = context.tables.get(name.replace(".tsv", "_history.tsv")), sets = earlier(history);
   const y = table.values(value);
   if (table.has(value + "_error"))
     sets.push(...band(x, y, table.values(value + "_error"), 0));
@@ -87,6 +91,24 @@ function showDifference(plot, table) {
   plot.say(known ? "The band is what statistical errors alone would give, 1.96 standard errors." : "");
 }
 
+// S − S* of the last iteration over those before it.
+function showExcess(plot, table, name, context) {
+  const history = context.tables.get(name.replace("rdf_now", "excess").replace(".tsv", "_history.tsv"));
+  plot.show([...earlier(history), curve("S − S*", table.column(0), table.values("excess"), 1)], { x: table.label(0), y: "pairs" });
+  plot.say("Pairs in each bin of the sampled system, less those of the target. Grey: earlier iterations.");
+}
+
+// Singular values of the last step by what it took of them, over those before it.
+function showSingular(plot, table, name, context) {
+  const x = table.column(0), used = table.values("used"), values = table.values("singular_value");
+  const part = (label, test, k) => ({ label, data: points(x, values.map((v, n) => (test(used[n]) && v > 0 ? v : NaN))), showLine: false,
+    pointRadius: 3, borderColor: colour(k), backgroundColor: colour(k) });
+  const sets = [part("used", (u) => u >= 0.5, 0), part("left out, or less than half used", (u) => u < 0.5, 1)];
+  plot.show([...earlier(context.tables.get("singular_values_history.tsv")), ...sets.filter((set) => set.data.length)],
+    { x: "number", y: "singular value" });
+  plot.say(`The last step took ${used.reduce((sum, u) => sum + u, 0).toFixed(1)} of ${used.length}. Grey: earlier iterations.`);
+}
+
 // Columns of a history, each against the first one.
 const showColumns = (names) => (plot, table) => {
   plot.show(pairs(table, table.column(0), names).map((set) => ({ ...set, pointRadius: set.label && table.length < 40 ? 3 : 0 })),
@@ -96,15 +118,22 @@ const showColumns = (names) => (plot, table) => {
 const positive = (names) => (table) => names.some((name) => table.has(name) && table.values(name).some((v) => v > 0));
 const hasColumns = (names) => (table) => names.some((name) => table.has(name) && table.values(name).some(Number.isFinite));
 
+// Curves that a fit finds: Φ, ω, that across pairs, those of modes of memory; not their histories and flat directions.
+const unknownFile = /^(?!.*_(history|flat)\.tsv$)(potential(_[^_]+-[^_]+)?|omega(_[^_]+-[^_]+)?|omega_transverse|memory_.+)\.tsv$/;
+const unknownTitle = (name) => name.replace(".tsv", "").replace("potential", "Φ(r)").replace("omega_transverse", "ω(r) across pairs")
+  .replace(/^memory_(.*)/, "ω(r) of the memory \"$1\"").replace(/^omega/, "ω(r)").replace("_", " ");
+
 // file, title, what shows it; `when` says whether the table has it.
 const kinds = [
-  { file: /^(potential|omega)(_[^_]+-[^_]+)?\.tsv$/, title: (n) => n.replace(".tsv", "").replace("potential", "Φ(r)").replace("omega", "ω(r)"),
-    show: showUnknown, range: besideCore },
+  { file: unknownFile, title: unknownTitle, show: showUnknown, range: besideCore },
   { file: /^rdf(_now)?(_[^_]+-[^_]+)?\.tsv$/, title: (n) => "g(r)" + nowOf(n) + pairOf(n), show: showTarget },
   { file: /^rdf(_now)?(_[^_]+-[^_]+)?\.tsv$/, title: (n) => "g(r) less its target" + nowOf(n) + pairOf(n), show: showDifference, when: (t) => t.has("target") },
-  { file: /^rdf_now(_[^_]+-[^_]+)?\.tsv$/, title: (n) => "S − S* by bin" + pairOf(n), show: showColumns(["excess"]) },
+  { file: /^rdf_now(_[^_]+-[^_]+)?\.tsv$/, title: (n) => "S − S* by bin" + pairOf(n), show: showExcess },
+  { file: /^singular_values\.tsv$/, title: () => "singular values of the step", show: showSingular, logarithmic: true },
   { file: /^history\.tsv$/, title: () => "error of the fit", show: showColumns(["error", "noise", "least", "mean"]), logarithmic: true, when: positive(["error"]) },
   { file: /^history\.tsv$/, title: () => "pressure", show: showColumns(["pressure"]), when: hasColumns(["pressure"]) },
+  { file: /^history\.tsv$/, title: () => "potential energy of a bead in the fit's samples", show: showColumns(["potential_energy"]),
+    when: hasColumns(["potential_energy"]) },
   { file: /^history\.tsv$/, title: () => "directions of Φ that follow the data", show: showColumns(["directions"]), when: hasColumns(["directions"]) },
   { file: /^history\.tsv$/, title: () => "step and samples", show: showColumns(["damping", "disagreement", "acceptance"]), when: hasColumns(["damping"]) },
   { file: /^history\.tsv$/, title: () => "diversity of the population", show: showColumns(["diversity"]), when: hasColumns(["diversity"]) },

@@ -47,6 +47,13 @@ function compile(gl, kind, text) {
   return shader;
 }
 
+// The number below which so large a part of them lies, by some hundreds of them.
+function percentile(numbers, part) {
+  const stride = Math.max(1, Math.floor(numbers.length / 500));
+  const some = Float32Array.from({ length: Math.ceil(numbers.length / stride) }, (_, k) => numbers[k * stride]).sort();
+  return some[Math.floor(part * (some.length - 1))];
+}
+
 function parse(buffer) {
   const view = new DataView(buffer), little = true;
   const count = view.getUint32(4, little), parts = view.getUint32(12, little);
@@ -55,14 +62,15 @@ function parse(buffer) {
   const take = (numbers) => { const list = new Float32Array(buffer, at, numbers); at += 4 * numbers; return list; };
   return { count, dimensions: view.getUint32(8, little), types, step: view.getFloat64(24, little), time: view.getFloat64(32, little),
     box: [40, 44, 48].map((k) => view.getFloat32(k, little)), places: take(3 * count), speeds: take(count),
-    polarities: parts & 1 ? take(2 * count) : null };
+    polarities: parts & 1 ? take(2 * count) : null, energies: parts & 2 ? take(count) : null, hasPotential: (parts & 4) !== 0 };
 }
 
 export class Particles {
-  constructor(canvas, { scene, frames }) {
-    Object.assign(this, { canvas, scene, frames, turn: [1, 0, 0, 0, 1, 0, 0, 0, 1], scale: 1, serial: 0, frame: null, drawn: 0, since: 0, wanted: false });
+  constructor(canvas, { scene, frames, colours }) {
+    Object.assign(this, { canvas, scene, frames, colours, range: "", turn: [1, 0, 0, 0, 1, 0, 0, 0, 1], scale: 1, serial: 0, frame: null, drawn: 0, since: 0, wanted: false });
     this.choice = { colour: "type", slice: 1, sliceAt: 0.5, bead: 1 };
-    this.gl = canvas.getContext("webgl", { antialias: true });
+    // Beads are cut out of squares, whose edges are all that smoothing by the browser would see, at four times the work.
+    this.gl = canvas.getContext("webgl", { antialias: false, alpha: false });
     if (this.gl)
       this.prepare();
     this.listen();
@@ -74,7 +82,8 @@ export class Particles {
     gl.attachShader(program, compile(gl, gl.FRAGMENT_SHADER, fragmentProgram));
     gl.linkProgram(program);
     gl.useProgram(program);
-    this.uniform = (name) => gl.getUniformLocation(program, name);
+    const uniforms = new Map();
+    this.uniform = (name) => uniforms.get(name) || uniforms.set(name, gl.getUniformLocation(program, name)).get(name);
     this.buffers = [["place", 3], ["shade", 1]].map(([name, size]) => {
       const buffer = gl.createBuffer(), at = gl.getAttribLocation(program, name);
       gl.enableVertexAttribArray(at);
@@ -90,16 +99,17 @@ export class Particles {
       return;
     this.wanted = true;
     while (this.wanted) {
+      const begun = performance.now();
       if (!document.hidden && this.gl)
         try {
-          const answer = await ask("particles", { after: this.serial });
+          const answer = await ask("particles", { after: this.serial, ...(this.choice.colour === "energy" ? { energies: 1 } : {}) });
           const buffer = await answer.arrayBuffer();
           if (buffer.byteLength > head) {
             this.serial = Number(answer.headers.get("X-Mesofit-Serial"));
             this.take(parse(buffer));
           }
         } catch { this.wanted = false; }
-      await new Promise((done) => setTimeout(done, document.hidden ? 500 : 40));
+      await new Promise((done) => setTimeout(done, document.hidden ? 500 : Math.max(5, 30 - (performance.now() - begun))));
     }
   }
 
@@ -109,6 +119,7 @@ export class Particles {
       return;
     this.frame = frame;
     this.shades = null;
+    this.offer();
     this.show();
   }
 
@@ -126,15 +137,21 @@ export class Particles {
   }
 
   findShades() {
-    const { count, types, speeds, polarities, places, box } = this.frame, shades = new Float32Array(count);
+    const { count, types, speeds, polarities, energies, places, box } = this.frame, shades = new Float32Array(count);
     const choice = this.choice.colour;
+    this.range = "";
     if (choice === "type") {
       let id = 0;
       types.forEach((number, type) => { for (let k = 0; k < number && id < count; k++) shades[id++] = type; });
     } else if (choice === "speed") {
-      const sorted = Float32Array.from(speeds).sort(), most = sorted[Math.floor(0.98 * (count - 1))] || 1;
+      const most = percentile(speeds, 0.98) || 1;
       for (let k = 0; k < count; k++)
         shades[k] = speeds[k] / most;
+    } else if (choice === "energy" && energies) {
+      const low = percentile(energies, 0.02), high = percentile(energies, 0.98);
+      for (let k = 0; k < count; k++)
+        shades[k] = (energies[k] - low) / (high - low || 1);
+      this.range = `, energy ${low.toPrecision(3)} (blue) to ${high.toPrecision(3)} (yellow) k_B T_0`;
     } else if (choice === "polarity" && polarities) {
       for (let k = 0; k < count; k++)
         shades[k] = 0.5 + Math.atan2(polarities[2 * k + 1], polarities[2 * k]) / (2 * Math.PI);
@@ -144,6 +161,16 @@ export class Particles {
     }
     this.coloured = choice === "type" ? 0 : choice === "polarity" && polarities ? 2 : 1;
     return shades;
+  }
+
+  // Colours that this simulation has.
+  offer() {
+    const { polarities, speeds, hasPotential } = this.frame;
+    const has = { type: true, depth: true, speed: Number.isFinite(speeds[0]), energy: hasPotential, polarity: polarities !== null };
+    for (const option of this.colours.options)
+      option.disabled = !has[option.value];
+    if (!has[this.choice.colour])
+      this.choice.colour = this.colours.value = "type";
   }
 
   draw() {
@@ -178,12 +205,18 @@ export class Particles {
     return this.choice.bead * 0.9 * Math.pow(volume / Math.max(1, count), 1 / dimensions);
   }
 
+  // Told twice a second, and also of a frame after which none comes.
   countFrame() {
-    const now = performance.now();
     this.drawn++;
-    if (now - this.since < 1000)
+    this.telling = this.telling || setTimeout(() => this.tellFrames(), 500);
+  }
+
+  tellFrames() {
+    const now = performance.now();
+    this.telling = null;
+    if (!this.frame)
       return;
-    this.frames.textContent = `${this.frame.count} beads, step ${this.frame.step}, ${(1000 * this.drawn / (now - this.since)).toFixed(0)} frames/s`;
+    this.frames.textContent = `${this.frame.count} beads, step ${this.frame.step}, ${(1000 * this.drawn / (now - this.since)).toFixed(0)} frames/s${this.range}`;
     this.drawn = 0;
     this.since = now;
   }

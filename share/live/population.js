@@ -71,9 +71,9 @@ export class Population {
         borderColor: k - 1 === chosen ? colour(3) : k === 1 ? colour(1) : translucent(colour(0), 0.35) }));
     if (chosen > 0 && chosen < count)
       sets[chosen].label = "chosen";
-    const values = sets[0].data.map((p) => p.y), low = Math.min(...values);
-    plot.chart.options.scales.y.min = low - 0.3 * Math.abs(low) - 0.1;
-    plot.chart.options.scales.y.max = Math.max(3 * Math.abs(low), 1);
+    const values = sets[0].data.map((p) => p.y), low = Math.min(...values), hasCore = /^population_potential/.test(name);
+    plot.chart.options.scales.y.min = hasCore ? low - 0.3 * Math.abs(low) - 0.1 : undefined;
+    plot.chart.options.scales.y.max = hasCore ? Math.max(3 * Math.abs(low), 1) : undefined;
     plot.show(sets, { x: table.label(0) });
     plot.say(chosen >= 0 && chosen < count
       ? `Candidate ${chosen + 1} of ${count}: error ${table.columns[chosen + 1].name}. Click another curve.`

@@ -203,8 +203,10 @@ static enum status run_trajectory(struct hybrid *hybrid) {
     // Written so that a NaN is refused.
     const double share = exp(-(after - before) / simulation->setup.temperature);
     hybrid->accepted = share > 0 ? fmin(1, share) : 0;
+    hybrid->tried++;
     if (!(mf_rng_uniform(random.word[0], 0) < hybrid->accepted))
         return turn_round(hybrid, list_builds);
+    hybrid->taken++;
     keep_sample(hybrid);
     return STATUS_OK;
 }
@@ -223,5 +225,6 @@ enum status mf_hybrid_equilibrate(struct hybrid *hybrid, uint64_t trajectories) 
         setup->time_step *= exp(gain * (hybrid->accepted - wanted_acceptance));
         setup->time_step = fmin(setup->time_step, longest);
     }
+    hybrid->taken = hybrid->tried = 0;
     return STATUS_OK;
 }

@@ -20,6 +20,7 @@ struct hybrid {
     double *velocity[3];         ///< the same
     uint32_t *id;                ///< the same
     double accepted;             ///< probability to be, of the last trajectory
+    uint64_t taken, tried;       ///< trajectories since mf_hybrid_equilibrate
     struct pair_sums sums;       ///< of the present configuration
     const uint32_t *counts;      ///< its pairs, shape [bins + 1]
     struct pair_histogram trial; ///< of the end of a trajectory, shape [parts, bins + 1]

@@ -70,6 +70,25 @@ void mf_reference_forces(const struct pair_law *law, struct particles *particles
         *sums = total;
 }
 
+void mf_reference_energies(const struct table *potential, const struct composition *composition,
+                           const struct particles *particles, const struct neighbours *neighbours,
+                           float *energy) {
+    memset(energy, 0, particles->count * sizeof *energy);
+    for (size_t i = 0; i < particles->count; i++)
+        for (size_t k = neighbours->start[i]; k < neighbours->stop[i]; k++) {
+            const size_t j = (size_t)neighbours->list[k];
+            const uint32_t a = particles->id[i], b = particles->id[j];
+            double r_ij[3], phi;
+            const double r = separation(particles, i, j, r_ij);
+            const int pair = mf_composition_pair_of_ids(composition, a, b);
+            if (j == i || r >= table_cutoff(potential, pair)) // j = i is what is left of a row
+                continue;
+            mf_table_evaluate_pair(potential, pair, r, &phi, NULL, NULL);
+            energy[a] += (float)(0.5 * phi);
+            energy[b] += (float)(0.5 * phi);
+        }
+}
+
 /// Thickness of the shell inside the cutoff in which pairs are counted, relative to the cutoff.
 static const double shell = 0.01;
 

@@ -11,6 +11,14 @@
 void mf_reference_forces(const struct pair_law *law, struct particles *particles, uint64_t step,
                          struct pair_sums *sums);
 
+/// Energy that each particle has of its pairs: half of Φ of each of them.
+/// @param[in] neighbours  half list, complete for the cutoff of the potential
+/// @param[out] energy     by id, shape [count] [k_B T_0]
+/// Tested: test_pair_energies.
+void mf_reference_energies(const struct table *potential, const struct composition *composition,
+                           const struct particles *particles, const struct neighbours *neighbours,
+                           float *energy);
+
 /// Configurational temperature Σ_i |F_i|² / Σ_i ∇_i² U [k_B T_0] from the potential alone.
 ///   Σ_i ∇_i² U = 2 Σ_pairs [Φ''(r) + (d − 1) Φ'(r)/r]
 /// and, where the force of a pair type ends abruptly at its cutoff, the jump of the slope

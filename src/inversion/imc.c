@@ -47,6 +47,7 @@ enum status mf_imc_step(struct inversion *inversion, const struct imc_parameters
     struct imc_solution solution;
     double *x = NULL;
     struct imc_system system = mf_inversion_system(inversion);
+    mf_inversion_trail_take(&inversion->trail, &system);
     if (constrained) {
         system.constraint = inversion->pressure.slope;
         system.wanted = *pressure->value - inversion->pressure.value;

@@ -20,6 +20,9 @@ struct imc_system {
     double spacing;           ///< of the bins [λ]
     const double *constraint; ///< p, shape [size]: x is to meet p·x = wanted exactly; or NULL
     double wanted;
+    /// Where a solver that has them puts its singular values, falling, and the part of each that x
+    /// takes, shape [size]; or NULL.
+    double *singular, *used;
 };
 
 struct imc_solution {

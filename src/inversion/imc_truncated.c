@@ -107,6 +107,10 @@ enum status mf_imc_truncated(const struct imc_system *system, double strength, d
         solution->strength = strength;
     else
         solve(&w, system, most, mf_imc_solve_discrepancy(solution->misfit), x, solution);
+    for (size_t k = 0; system->singular && k < system->size; k++) {
+        system->singular[k] = gsl_vector_get(w.values, k);
+        system->used[k] = (double)k < solution->directions;
+    }
 done:
     workspace_free(&w);
     return status;

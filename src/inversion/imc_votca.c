@@ -89,6 +89,10 @@ enum status mf_imc_votca(const struct imc_system *system, double strength, doubl
             x[k] += system->temperature * gsl_matrix_get(w.inverse, k, a) * system->excess[a];
         solution->directions += gsl_vector_get(w.share, k);
     }
+    for (size_t k = 0; system->singular && k < system->size; k++) {
+        system->singular[k] = gsl_vector_get(w.values, k);
+        system->used[k] = gsl_vector_get(w.share, k);
+    }
     if (system->constraint)
         CHECK(meet(&w, system, x));
     solution->misfit = mf_imc_solve_misfit(system, x);

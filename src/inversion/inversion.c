@@ -312,6 +312,9 @@ static void describe(const struct inversion *inversion, const double *own, bool 
     const struct inversion_progress *progress = &inversion->progress;
     const struct inversion_parameters *p = &inversion->settings.common;
     const bool stuck = progress->damping < mf_inversion_least_damping * p->damping;
+    const double particles = (double)mf_composition_particles(&inversion->composition);
+    const struct replicas_mean energy =
+        mf_replicas_mean(&inversion->replicas, SAMPLER_ENERGY, inversion->inefficiency);
     *step = (struct inverse_step){
         .iteration = progress->iteration,
         .evaluations = progress->evaluations,
@@ -320,7 +323,8 @@ static void describe(const struct inversion *inversion, const double *own, bool 
         .noise = mf_targets_noise(&inversion->problem->targets, progress->best),
         .extra = {progress->damping, inversion->own_noise, inversion->disagreement,
                   inversion->distance[TARGET_RDF].rms, inversion->pressure.value,
-                  inversion->pressure.error},
+                  inversion->pressure.error, mf_replicas_acceptance(&inversion->replicas),
+                  energy.mean / particles, energy.error / particles},
         .curve = {inversion->best},
         .curve_error = {inversion->band.error},
         .curve_flat = {inversion->band.flat},
@@ -347,6 +351,8 @@ enum status mf_inversion_iterate(void *memory, struct inverse_step *step,
     const struct inversion_rule *rule = inversion->method->own;
     inversion->has_other = inversion->settling = false;
     TRY(rule->update(inversion, own));
+    mf_inversion_trail_add(&inversion->trail, inversion->replicas.counts.mean,
+                           inversion->target_counts);
     mf_inversion_drift_add(&progress->drift, find_ramp(inversion),
                            inversion->distance[TARGET_RDF].rms);
     TRY(judge(inversion, &kept));

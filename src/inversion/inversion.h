@@ -19,6 +19,7 @@
 #include "inversion/inversion_band.h"
 #include "inversion/inversion_drift.h"
 #include "inversion/inversion_pressure.h"
+#include "inversion/inversion_trail.h"
 #include "problem/potential_grid.h"
 #include "inversion/replicas.h"
 
@@ -88,8 +89,9 @@ struct inversion {
     double *other_step; ///< what to do if the step makes it worse
     bool has_other;     ///< else: half of it
     double *best, *best_step, *best_other;
-    double *best_counts;        ///< ⟨S⟩ of the best, shape [bins]
-    struct inversion_band band; ///< of the best
+    double *best_counts;          ///< ⟨S⟩ of the best, shape [bins]
+    struct inversion_band band;   ///< of the best
+    struct inversion_trail trail; ///< of all iterations
     // What a checkpoint keeps besides phi, best, … and the samplers:
     struct inversion_progress {
         uint32_t iteration;
@@ -133,8 +135,9 @@ enum status mf_inversion_write(const void *inversion, const struct inverse_folde
 
 /// The first of a method's columns; the others may be its own.
 #define INVERSION_COLUMNS                                                                          \
-    "damping[1]", "own_noise[1]", "disagreement[1]", "rdf_rms[1]", "pressure", "pressure_error"
-enum { INVERSION_SHARED_COLUMNS = 6, INVERSION_OWN_COLUMNS = INVERSE_EXTRA - 6 };
+    "damping[1]", "own_noise[1]", "disagreement[1]", "rdf_rms[1]", "pressure", "pressure_error",   \
+        "acceptance[1]", "potential_energy", "potential_energy_error"
+enum { INVERSION_SHARED_COLUMNS = 9, INVERSION_OWN_COLUMNS = INVERSE_EXTRA - 9 };
 
 /// g of the samples in a bin, and of the target in the same system.
 double mf_inversion_g(const struct inversion *inversion, size_t bin);

@@ -56,6 +56,7 @@ void mf_inversion_destroy(void *memory) {
     mf_table_clear(&inversion->table);
     mf_potential_grid_clear(&inversion->grid);
     mf_inversion_band_clear(&inversion->band);
+    mf_inversion_trail_clear(&inversion->trail);
     double *arrays[] = {inversion->ideal,      inversion->target_counts, inversion->excess,
                         inversion->variance,   inversion->covariance,    inversion->pressure.slope,
                         inversion->phi,        inversion->step,          inversion->other_step,
@@ -83,6 +84,8 @@ static enum status allocate(struct inversion *inversion) {
     NEW_ARRAY(inversion->best_other, points);
     NEW_ARRAY(inversion->best_counts, bins);
     CHECK(mf_inversion_band_init(&inversion->band, known, points));
+    CHECK(mf_inversion_trail_init(&inversion->trail, (size_t)inversion->settings.common.iterations,
+                                  bins, inversion->settings.imc.regularisation == 0 ? 0 : known));
 done:
     return status;
 }
@@ -239,5 +242,6 @@ size_t mf_inversion_spans(void *memory, struct memory_span *span) {
     const size_t known = inversion->grid.known;
     span[n++] = (struct memory_span){inversion->covariance, known * known * sizeof(double)};
     n += mf_inversion_band_spans(&inversion->band, inversion->grid.points, span + n);
+    n += mf_inversion_trail_spans(&inversion->trail, span + n);
     return n + mf_replicas_spans(&inversion->replicas, span + n);
 }

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "inversion/inversion.h"
 
-#include "base/statistics.h"
-
 #include <math.h>
 
 /// d V of the Monte Carlo system.
@@ -13,24 +11,14 @@ static double virial_unit(const struct inversion *inversion) {
     return volume;
 }
 
-/// Scatter of the virial's mean.
-static double virial_error(const struct replicas *replicas, double inefficiency) {
-    const size_t virial = replicas->bins;
-    struct running_mean chains = {0};
-    for (size_t k = 0; k < replicas->count; k++)
-        mf_statistics_add(&chains, replicas->member[k].counts.mean[virial]);
-    const double sampled = mf_comoments_covariance(&replicas->counts, virial, virial) *
-                           inefficiency / replicas->counts.count;
-    return fmax(mf_statistics_standard_error(&chains), sqrt(sampled));
-}
-
 void mf_inversion_pressure_measure(struct inversion *inversion) {
-    const struct replicas *replicas = &inversion->replicas;
-    const double unit = virial_unit(inversion), mean = replicas->counts.mean[replicas->bins];
+    const struct replicas_mean virial =
+        mf_replicas_mean(&inversion->replicas, SAMPLER_VIRIAL, inversion->inefficiency);
+    const double unit = virial_unit(inversion);
     const double ideal = (double)mf_composition_particles(&inversion->composition) *
                          inversion->problem->scene.temperature;
-    inversion->pressure.value = (inversion->box.dimensions * ideal + mean) / unit;
-    inversion->pressure.error = virial_error(replicas, inversion->inefficiency) / unit;
+    inversion->pressure.value = (inversion->box.dimensions * ideal + virial.mean) / unit;
+    inversion->pressure.error = virial.error / unit;
 }
 
 enum status mf_inversion_pressure_slopes(struct inversion *inversion) {
@@ -42,8 +30,9 @@ enum status mf_inversion_pressure_slopes(struct inversion *inversion) {
     CHECK(mf_potential_grid_virials(grid, &inversion->problem->targets.bins,
                                     inversion->box.dimensions, inversion->phi, virial));
     for (size_t b = 0; b < grid->known; b++) {
-        double slope = -mf_comoments_covariance(counts, inversion->bins, grid->known_bin[b]) /
-                       inversion->problem->scene.temperature;
+        double slope =
+            -mf_comoments_covariance(counts, inversion->bins + SAMPLER_VIRIAL, grid->known_bin[b]) /
+            inversion->problem->scene.temperature;
         for (size_t a = 0; a < inversion->bins; a++)
             slope += counts->mean[a] * virial[a * grid->known + b];
         inversion->pressure.slope[b] = slope / virial_unit(inversion);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// g(r) of the last iteration's samples beside its target, so that a fit can be seen while it works.
+// g(r) of the last iteration's samples beside its target, so that a fit can be seen while it works;
+// S − S* and singular values of all iterations.
 #include "inversion/inversion.h"
 
 #include "base/memory.h"
@@ -28,22 +29,21 @@ static void fill(const struct inversion *inversion, size_t first, size_t bins,
     }
 }
 
-static void find_path(const struct inversion *inversion, size_t pair,
-                      const struct inverse_folder *folder, char *path) {
-    char kind[COMPOSITION_PAIR_NAME_SIZE], name[COMPOSITION_PAIR_NAME_SIZE + 16];
+/// Of a pair type: "rdf_now_A-B.tsv", "excess_A-B_history.tsv".
+static void find_path(const struct inversion *inversion, size_t pair, const char *name,
+                      const char *end, const struct inverse_folder *folder, char *path) {
+    char kind[COMPOSITION_PAIR_NAME_SIZE], file[COMPOSITION_PAIR_NAME_SIZE + 32];
     mf_composition_pair_name(&inversion->composition, (int)pair, kind);
-    snprintf(name, sizeof name, "rdf_now%s%s.tsv", kind[0] ? "_" : "", kind);
-    folder->file(folder->context, name, path);
+    snprintf(file, sizeof file, "%s%s%s%s", name, kind[0] ? "_" : "", kind, end);
+    folder->file(folder->context, file, path);
 }
 
-enum status mf_inversion_write(const void *state, const struct inverse_folder *folder) {
-    const struct inversion *inversion = state;
+static enum status write_now(const struct inversion *inversion,
+                             const struct inverse_folder *folder) {
     const size_t bins = inversion->grid.bins;
     enum status status = STATUS_OK;
     double *memory = NULL, *column[COLUMNS];
     char path[OUTPUT_PATH_SIZE];
-    if (!(inversion->replicas.counts.count > 0))
-        return STATUS_OK;
     NEW_ARRAY(memory, COLUMNS * bins);
     for (size_t c = 0; c < COLUMNS; c++)
         column[c] = memory + c * bins;
@@ -54,10 +54,82 @@ enum status mf_inversion_write(const void *state, const struct inverse_folder *f
                                                  {"excess[1]", column[4], "%.6g"}};
     for (size_t pair = 0; pair < inversion->grid.pairs; pair++) {
         fill(inversion, pair * bins, bins, column);
-        find_path(inversion, pair, folder, path);
+        find_path(inversion, pair, "rdf_now", ".tsv", folder, path);
         CHECK(mf_data_table_write_in(path, folder->units, NULL, columns, COLUMNS, bins));
     }
 done:
     mf_memory_free(memory);
     return status;
+}
+
+/// A first column and behind it a column an iteration, named by its number.
+/// @param[in] values  of the first iteration, the others `stride` numbers apart
+static enum status write_iterations(const char *path, const struct units *units,
+                                    struct data_column first, const double *values, size_t stride,
+                                    size_t iterations, size_t rows) {
+    enum { NAME_SIZE = 24 };
+    enum status status = STATUS_OK;
+    struct data_column *columns = NULL;
+    char *names = NULL;
+    NEW_ARRAY(columns, iterations + 1);
+    NEW_ARRAY(names, iterations * NAME_SIZE);
+    columns[0] = first;
+    for (size_t k = 0; k < iterations; k++) {
+        snprintf(names + k * NAME_SIZE, NAME_SIZE, "%zu", k);
+        columns[k + 1] = (struct data_column){names + k * NAME_SIZE, values + k * stride, "%.6g"};
+    }
+    CHECK(mf_data_table_write_in(path, units, NULL, columns, iterations + 1, rows));
+done:
+    mf_memory_free(columns);
+    mf_memory_free(names);
+    return status;
+}
+
+static enum status write_excess(const struct inversion *inversion,
+                                const struct inverse_folder *folder) {
+    const struct inversion_trail *trail = &inversion->trail;
+    const size_t bins = inversion->grid.bins;
+    char path[OUTPUT_PATH_SIZE];
+    for (size_t pair = 0; pair < inversion->grid.pairs; pair++) {
+        const struct data_column r = {
+            "r[lambda]", inversion->grid.r + mf_potential_grid_block(&inversion->grid, pair), NULL};
+        find_path(inversion, pair, "excess", "_history.tsv", folder, path);
+        TRY(write_iterations(path, folder->units, r, trail->excess + pair * bins, trail->bins,
+                             trail->iterations, bins));
+    }
+    return STATUS_OK;
+}
+
+/// Those of the last step with the part of each that was taken, and those of all.
+static enum status write_singular(const struct inversion *inversion,
+                                  const struct inverse_folder *folder) {
+    const struct inversion_trail *trail = &inversion->trail;
+    const size_t size = trail->singular_values;
+    enum status status = STATUS_OK;
+    double *number = NULL;
+    char path[OUTPUT_PATH_SIZE];
+    NEW_ARRAY(number, size);
+    for (size_t k = 0; k < size; k++)
+        number[k] = (double)(k + 1);
+    const struct data_column columns[] = {
+        {"number", number, NULL},
+        {"singular_value", trail->singular + (trail->iterations - 1) * size, "%.6g"},
+        {"used[1]", trail->used, "%.6g"}};
+    folder->file(folder->context, "singular_values.tsv", path);
+    CHECK(mf_data_table_write(path, NULL, columns, 3, size));
+    folder->file(folder->context, "singular_values_history.tsv", path);
+    CHECK(write_iterations(path, folder->units, columns[0], trail->singular, size,
+                           trail->iterations, size));
+done:
+    mf_memory_free(number);
+    return status;
+}
+
+enum status mf_inversion_write(const void *state, const struct inverse_folder *folder) {
+    const struct inversion *inversion = state;
+    if (!(inversion->replicas.counts.count > 0))
+        return STATUS_OK;
+    TRY(write_now(inversion, folder));
+    TRY(write_excess(inversion, folder));
+    return inversion->trail.singular_values > 0 ? write_singular(inversion, folder) : STATUS_OK;
 }

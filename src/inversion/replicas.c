@@ -14,12 +14,12 @@ enum status mf_replicas_init(struct replicas *replicas, size_t count, enum sampl
     const size_t bins = (size_t)mf_composition_pairs(system->composition) * system->bins;
     struct sampler_system own = *system;
     *replicas = (struct replicas){.bins = bins, .count = count};
-    CHECK(mf_comoments_init(&replicas->counts, bins + 1));
+    CHECK(mf_comoments_init(&replicas->counts, bins + SAMPLER_SUMS));
     for (size_t k = 0; k < count; k++) {
         struct replica *replica = &replicas->member[k];
-        NEW_ARRAY(replica->sample, bins + 1);
+        NEW_ARRAY(replica->sample, bins + SAMPLER_SUMS);
         NEW_ARRAY(replica->block, REPLICAS_BLOCKS * bins);
-        CHECK(mf_comoments_init(&replica->counts, bins + 1));
+        CHECK(mf_comoments_init(&replica->counts, bins + SAMPLER_SUMS));
         own.seed = mf_rng_child_seed(system->seed, RNG_EVALUATION, (uint32_t)k, 0);
         CHECK(mf_sampler_init(&replica->sampler, kind, &own));
     }
@@ -170,6 +170,25 @@ double mf_replicas_disagreement(const struct replicas *replicas, const double *i
     if (!(within > 0))
         return between > 0 ? INFINITY : 1;
     return REPLICAS_BLOCKS * between / within;
+}
+
+struct replicas_mean mf_replicas_mean(const struct replicas *replicas, enum sampler_sum sum,
+                                      double inefficiency) {
+    const size_t at = replicas->bins + sum;
+    struct running_mean chains = {0};
+    for (size_t k = 0; k < replicas->count; k++)
+        mf_statistics_add(&chains, replicas->member[k].counts.mean[at]);
+    const double sampled =
+        mf_comoments_covariance(&replicas->counts, at, at) * inefficiency / replicas->counts.count;
+    return (struct replicas_mean){replicas->counts.mean[at],
+                                  fmax(mf_statistics_standard_error(&chains), sqrt(sampled))};
+}
+
+double mf_replicas_acceptance(const struct replicas *replicas) {
+    double sum = 0;
+    for (size_t k = 0; k < replicas->count; k++)
+        sum += mf_sampler_acceptance(&replicas->member[k].sampler);
+    return sum / (double)replicas->count;
 }
 
 size_t mf_replicas_spans(struct replicas *replicas, struct memory_span *span) {

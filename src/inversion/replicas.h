@@ -17,10 +17,10 @@ struct replicas {
     struct replica {
         struct sampler sampler;
         struct comoments counts; ///< of the samples
-        double *sample;          ///< shape [bins + 1]: S, then the virial Σ r·F [k_B T_0]
+        double *sample;          ///< shape [bins + SAMPLER_SUMS]: S, then enum sampler_sum
         double *block;           ///< shape [REPLICAS_BLOCKS, bins]: mean S of each block
     } member[REPLICAS_MOST];
-    struct comoments counts; ///< of all: S of the bins, then the virial
+    struct comoments counts; ///< of all: S of the bins, then enum sampler_sum
 };
 
 struct replicas_plan {
@@ -48,6 +48,19 @@ enum status mf_replicas_run(struct replicas *replicas, const struct replicas_pla
 enum status mf_replicas_double(struct replicas *replicas, struct replicas_plan *plan, int threads,
                                const struct inverse_progress *progress,
                                const struct inverse_listener *listener) MUST_USE;
+
+struct replicas_mean {
+    double mean, error;
+};
+
+/// A sum over the pairs, with the standard error that is the larger of two: by the scatter of the
+/// replicas, and by that of all samples.
+/// @param[in] inefficiency  of mf_replicas_inefficiency
+struct replicas_mean mf_replicas_mean(const struct replicas *replicas, enum sampler_sum sum,
+                                      double inefficiency);
+
+/// Part of the moves that were taken, the mean over the samplers.
+double mf_replicas_acceptance(const struct replicas *replicas);
 
 /// How many samples count as one independent, from the scatter of the block means, averaged over
 /// `count` bins, the numbers of which are in `seen`, because that of one bin is noisy.

@@ -69,8 +69,16 @@ enum status mf_sampler_sample(struct sampler *sampler, uint64_t sweeps, double *
     }
     for (size_t a = 0; a < bins; a++)
         sample[a] = counts[a];
-    sample[bins] = sums.virial;
+    sample[bins + SAMPLER_VIRIAL] = sums.virial;
+    sample[bins + SAMPLER_ENERGY] = sums.energy;
     return STATUS_OK;
+}
+
+double mf_sampler_acceptance(const struct sampler *sampler) {
+    const struct metropolis *chain = &sampler->chain;
+    const struct hybrid *hybrid = &sampler->hybrid;
+    return sampler->kind == SAMPLER_DYNAMICS ? (double)hybrid->taken / (double)hybrid->tried
+                                             : (double)chain->accepted / (double)chain->tried;
 }
 
 /// Positions and ids of the particles, in their order.

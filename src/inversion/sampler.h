@@ -50,11 +50,21 @@ enum status mf_sampler_begin(struct sampler *sampler) MUST_USE;
 /// INTERRUPTED.
 enum status mf_sampler_equilibrate(struct sampler *sampler, uint64_t sweeps) MUST_USE;
 
-/// Sweeps, then a sample: S of each bin of each pair type, and behind them the virial Σ r·F
-/// [k_B T_0].
-/// @param[out] sample  shape [pairs · bins + 1]
+/// What stands behind the pairs in the bins of a sample.
+enum sampler_sum {
+    SAMPLER_VIRIAL, ///< Σ r·F [k_B T_0]
+    SAMPLER_ENERGY, ///< Σ Φ [k_B T_0]
+    SAMPLER_SUMS,
+};
+
+/// Sweeps, then a sample: S of each bin of each pair type, and behind them the sums.
+/// @param[out] sample  shape [pairs · bins + SAMPLER_SUMS]
 /// Fails: NO_MEMORY, INTERRUPTED. Tested: test_monte_carlo_mixture.
 enum status mf_sampler_sample(struct sampler *sampler, uint64_t sweeps, double *sample) MUST_USE;
+
+/// Part of the moves, or of the trajectories, that were taken since mf_sampler_equilibrate; NaN
+/// without any. Tested: test_replicas.
+double mf_sampler_acceptance(const struct sampler *sampler);
 
 /// What a checkpoint keeps between runs; returns the number of spans.
 size_t mf_sampler_spans(struct sampler *sampler, struct memory_span *span);

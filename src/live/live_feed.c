@@ -15,7 +15,8 @@ static const double particles_patience = 1;
 
 enum status mf_live_feed_init(struct live_feed *feed) {
     pthread_condattr_t monotonic;
-    *feed = (struct live_feed){.particles_asked = -particles_patience};
+    *feed = (struct live_feed){.particles_asked = -particles_patience,
+                               .energies_asked = -particles_patience};
     if (pthread_mutex_init(&feed->lock, NULL) != 0 || pthread_condattr_init(&monotonic) != 0)
         return mf_status_fail(STATUS_NO_MEMORY, "no lock for the live view");
     pthread_condattr_setclock(&monotonic, CLOCK_MONOTONIC);
@@ -133,11 +134,13 @@ void mf_live_feed_put_particles(struct live_feed *feed, struct live_bytes *bytes
     *bytes = old;
 }
 
-struct live_bytes mf_live_feed_get_particles(struct live_feed *feed, uint64_t seen) {
+struct live_bytes mf_live_feed_get_particles(struct live_feed *feed, uint64_t seen, bool energies) {
     struct live_bytes copy = {0};
     pthread_mutex_lock(&feed->lock);
     const struct live_bytes *now = &feed->particles;
     feed->particles_asked = clock_seconds();
+    if (energies)
+        feed->energies_asked = feed->particles_asked;
     if (now->serial > seen && (copy.bytes = malloc(now->size))) {
         memcpy(copy.bytes, now->bytes, now->size);
         copy.size = now->size;
@@ -147,9 +150,17 @@ struct live_bytes mf_live_feed_get_particles(struct live_feed *feed, uint64_t se
     return copy;
 }
 
-bool mf_live_feed_wants_particles(struct live_feed *feed) {
+static bool is_recent(struct live_feed *feed, const double *asked) {
     pthread_mutex_lock(&feed->lock);
-    const bool wants = clock_seconds() - feed->particles_asked < particles_patience;
+    const bool recent = clock_seconds() - *asked < particles_patience;
     pthread_mutex_unlock(&feed->lock);
-    return wants;
+    return recent;
+}
+
+bool mf_live_feed_wants_particles(struct live_feed *feed) {
+    return is_recent(feed, &feed->particles_asked);
+}
+
+bool mf_live_feed_wants_energies(struct live_feed *feed) {
+    return is_recent(feed, &feed->energies_asked);
 }

@@ -38,6 +38,7 @@ struct live_feed {
     } slot[LIVE_SLOTS];
     struct live_bytes particles;
     double particles_asked; ///< clock of the last request for them [s]
+    double energies_asked;  ///< the same, with their energies
     int streams;            ///< that are open
     bool closed;
 };
@@ -68,9 +69,10 @@ int mf_live_feed_streams(struct live_feed *feed);
 /// memory of the old ones.
 void mf_live_feed_put_particles(struct live_feed *feed, struct live_bytes *bytes);
 
-/// A copy of the particles newer than `seen`, which notes that somebody wants them; size 0 if there
-/// are none. `bytes` is to be freed with free().
-struct live_bytes mf_live_feed_get_particles(struct live_feed *feed, uint64_t seen);
+/// A copy of the particles newer than `seen`, which notes that somebody wants them, perhaps with
+/// their energies; size 0 if there are none. `bytes` is to be freed with free().
+struct live_bytes mf_live_feed_get_particles(struct live_feed *feed, uint64_t seen, bool energies);
 
-/// Whether somebody has asked for them within the last second.
+/// Whether somebody has asked for them, or for their energies, within the last second.
 bool mf_live_feed_wants_particles(struct live_feed *feed);
+bool mf_live_feed_wants_energies(struct live_feed *feed);

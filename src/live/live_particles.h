@@ -6,7 +6,11 @@
 #include "live/live_feed.h"
 
 /// What is told of each particle beside its place.
-enum live_particles_parts { LIVE_PARTICLES_POLARITY = 1 };
+enum live_particles_parts {
+    LIVE_PARTICLES_POLARITY = 1,
+    LIVE_PARTICLES_ENERGY = 2,
+    LIVE_PARTICLES_POTENTIAL = 4, ///< not told, but there are energies for who asks
+};
 
 enum { LIVE_PARTICLES_HEAD = 64 };
 
@@ -15,7 +19,10 @@ enum { LIVE_PARTICLES_HEAD = 64 };
 ///   head: "MFP1"; count, dimensions, parts, types, four words of 32 bits; step and time, doubles;
 ///   box, three numbers; and zeros up to LIVE_PARTICLES_HEAD;
 ///   counts of the types, COMPOSITION_MOST_TYPES words; places, shape [count, 3] within the box;
-///   speeds [count], NaN without velocities; with LIVE_PARTICLES_POLARITY polarities [count, 2].
-/// @param[in,out] bytes  grows as needed; afterwards of size 0 if there is no memory
-/// Tested: tests/live/test_live.py, by the colours of the page.
-void mf_live_particles_write(const struct simulation *simulation, struct live_bytes *bytes);
+///   speeds [count], NaN without velocities; with LIVE_PARTICLES_POLARITY polarities [count, 2];
+///   with LIVE_PARTICLES_ENERGY energies [count] of mf_reference_energies [k_B T_0].
+/// @param[in]     energies  tell them if there is a potential of pairs
+/// @param[in,out] bytes     grows as needed; afterwards of size 0 if there is no memory
+/// Tested: tests/live/test_live.py, by the colours of the page; test_particles.py.
+void mf_live_particles_write(const struct simulation *simulation, bool energies,
+                             struct live_bytes *bytes);

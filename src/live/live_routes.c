@@ -29,6 +29,12 @@ enum status mf_live_routes_give(struct live_answer *answer, const char *type, ch
     return STATUS_OK;
 }
 
+/// Whether an argument is 1.
+static bool has(const struct live_request *request, const char *name) {
+    const char *value = mf_live_server_argument(request, name);
+    return value && strcmp(value, "1") == 0;
+}
+
 // What is published -------------------------------------------------------------------------------
 
 static enum status give_state(struct live_view *view, const struct live_request *request,
@@ -87,8 +93,8 @@ static enum status give_events(struct live_view *view, const struct live_request
 static enum status give_particles(struct live_view *view, const struct live_request *request,
                                   struct live_answer *answer) {
     const char *after = mf_live_server_argument(request, "after");
-    const struct live_bytes bytes =
-        mf_live_feed_get_particles(&view->feed, after ? strtoull(after, NULL, 10) : 0);
+    const struct live_bytes bytes = mf_live_feed_get_particles(
+        &view->feed, after ? strtoull(after, NULL, 10) : 0, has(request, "energies"));
     answer->type = "application/octet-stream";
     answer->bytes = bytes.bytes;
     answer->size = bytes.size;
@@ -121,11 +127,6 @@ static enum status open_path(struct live_view *view, const struct live_request *
     TRY(folder < 0 ? mf_live_view_show_file(view, path)
                    : mf_live_view_show_folder(view, path, LIVE_LOOKING));
     return give_state(view, request, answer);
-}
-
-static bool has(const struct live_request *request, const char *name) {
-    const char *value = mf_live_server_argument(request, name);
-    return value && strcmp(value, "1") == 0;
 }
 
 /// The body is the text to be run in the place of the file that is shown; without a body that is.

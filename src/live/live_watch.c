@@ -7,21 +7,19 @@
 #include "live/live_particles.h"
 #include "observe/thermodynamics.h"
 
-#include <dirent.h>
 #include <fcntl.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 enum { LONGEST_LOG = 32768 };
 
 /// Least time between news of a kind [s], and the part of the time that they may take.
-static const double progress_interval = 0.2, particles_interval = 0.05, numbers_interval = 0.2,
+static const double progress_interval = 0.2, particles_interval = 0.02, numbers_interval = 0.2,
                     tables_interval = 1.5, part_of_time = 1.0 / 500;
 
 /// Time between words of a simulation while somebody draws its particles, or looks at all [s].
-static const double drawn_interval = 0.03, looked_interval = 0.25;
+static const double drawn_interval = 0.015, looked_interval = 0.25;
 
 static bool is_due(const struct live_pace *pace) {
     return clock_seconds() >= pace->next;
@@ -52,14 +50,23 @@ static void publish_progress(struct live_watch *watch, const struct watcher_prog
 // A simulation ------------------------------------------------------------------------------------
 
 static void publish_particles(struct live_watch *watch, bool forced) {
+    struct live_feed *feed = &watch->view->feed;
     const double begun = clock_thread_seconds();
-    if (!mf_live_feed_wants_particles(&watch->view->feed) ||
-        (!forced && !is_due(&watch->particles)))
+    if (!mf_live_feed_wants_particles(feed) || (!forced && !is_due(&watch->particles)))
         return;
-    mf_live_particles_write(watch->run.simulation, &watch->bytes);
+    watch->frame_step = watch->run.simulation->step;
+    watch->frame_energies = mf_live_feed_wants_energies(feed);
+    mf_live_particles_write(watch->run.simulation, watch->frame_energies, &watch->bytes);
     if (watch->bytes.size > 0)
-        mf_live_feed_put_particles(&watch->view->feed, &watch->bytes);
+        mf_live_feed_put_particles(feed, &watch->bytes);
     set_pace(&watch->particles, begun, particles_interval);
+}
+
+/// Who comes while the run is paused, or asks for energies then, gets the particles as they are.
+static void show_held_particles(struct live_watch *watch) {
+    const bool energies = mf_live_feed_wants_energies(&watch->view->feed);
+    if (watch->frame_step != watch->run.simulation->step || (energies && !watch->frame_energies))
+        publish_particles(watch, true);
 }
 
 static void put_number(struct json_writer *writer, const struct live_watch *watch, const char *name,
@@ -122,8 +129,8 @@ static void publish_tables(struct live_watch *watch) {
     const struct observable_results results = {.setup = &run->simulation->setup,
                                                .plan = run->plan,
                                                .units = run->units,
-                                               .folder = watch->now};
-    if (watch->now[0] == '\0' || sampled < 2 * run->plan->every || !is_due(&watch->tables))
+                                               .folder = watch->now.path};
+    if (watch->now.path[0] == '\0' || sampled < 2 * run->plan->every || !is_due(&watch->tables))
         return;
     for (const struct observable_use *use = run->observables; use->observable; use++)
         if (use->observable->write && use->observable->write(use->state, &results) != STATUS_OK)
@@ -194,8 +201,10 @@ static struct live_pause obey(struct live_watch *watch) {
         if (watch->run.simulation && !watch->paused)
             publish_simulation(watch, true);
         show_pause(watch, true);
-        if (watch->run.simulation)
+        if (watch->run.simulation) {
             review_change(watch);
+            show_held_particles(watch);
+        }
         watch->last_clock = clock_seconds();
     }
     if (!pause.stepping)
@@ -212,15 +221,13 @@ static void begin(void *context, const struct watcher_run *run) {
     watch->run = *run;
     watch->last_clock = clock_seconds();
     watch->last_step = 0;
+    watch->frame_step = UINT64_MAX;
     watch->paused = watch->changes = false;
     if (run->simulation) {
-        const char *place = getenv("TMPDIR");
-        snprintf(watch->now, sizeof watch->now, "%s/mesofit-live-XXXXXX", place ? place : "/tmp");
-        if (mkdtemp(watch->now) == NULL)
-            watch->now[0] = '\0';
-        else
+        mf_live_scratch_make(&watch->now);
+        if (watch->now.path[0])
             mf_live_view_set_root(watch->view, LIVE_NOW,
-                                  open(watch->now, O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+                                  open(watch->now.path, O_RDONLY | O_DIRECTORY | O_CLOEXEC));
     }
     if (mf_live_view_show_folder(watch->view, run->folder, LIVE_RUNNING) != STATUS_OK)
         mf_live_view_set_phase(watch->view, LIVE_RUNNING, mf_status_message());
@@ -290,27 +297,12 @@ void mf_live_watch_init(struct live_watch *watch, struct live_view *view) {
     };
 }
 
-static void remove_folder(const char *path) {
-    struct dirent **entries;
-    const int count = scandir(path, &entries, NULL, alphasort);
-    for (int k = 0; k < count; k++) {
-        char file[OUTPUT_PATH_SIZE + 258];
-        snprintf(file, sizeof file, "%s/%s", path, entries[k]->d_name);
-        unlink(file);
-        free(entries[k]);
-    }
-    if (count >= 0)
-        free(entries);
-    rmdir(path);
-}
-
 void mf_live_watch_end(struct live_watch *watch) {
     watch->run = (struct watcher_run){0};
-    if (watch->now[0] == '\0')
+    if (watch->now.path[0] == '\0')
         return;
     mf_live_view_set_root(watch->view, LIVE_NOW, -1);
-    remove_folder(watch->now);
-    watch->now[0] = '\0';
+    mf_live_scratch_remove(&watch->now);
 }
 
 void mf_live_watch_clear(struct live_watch *watch) {

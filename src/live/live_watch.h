@@ -5,6 +5,7 @@
 /// of news: what took long comes less often. The run's results are the same bits with it.
 #pragma once
 
+#include "live/live_scratch.h"
 #include "live/live_view.h"
 #include "report/watcher.h"
 
@@ -17,11 +18,13 @@ struct live_watch {
     struct watcher watcher; ///< to be given to a run
     struct watcher_run run;
     struct live_pace progress, particles, numbers, tables;
-    struct live_bytes bytes;    ///< of particles
-    char now[OUTPUT_PATH_SIZE]; ///< folder of its own for tables of a simulation, or ""
-    char *log;                  ///< the last lines
-    bool paused;                ///< as the page was told
-    bool changes;               ///< the page has wished for what follows, and it can be
+    struct live_bytes bytes; ///< of particles
+    uint64_t frame_step;     ///< of the particles that were published last
+    bool frame_energies;     ///< with their energies
+    struct live_scratch now; ///< for tables of a simulation
+    char *log;               ///< the last lines
+    bool paused;             ///< as the page was told
+    bool changes;            ///< the page has wished for what follows, and it can be
     struct simulation_change change;
     double last_clock; ///< of the last word of a simulation [s]
     uint64_t last_step;

@@ -87,17 +87,27 @@ done:
     return status;
 }
 
+/// Unit of a method's column that physical files have in theirs, or NULL.
+static const char *find_unit(const char *name) {
+    static const char *const units[][2] = {{"pressure", "k_B.T_0/lambda^d"},
+                                           {"potential_energy", "k_B.T_0"}};
+    for (size_t k = 0; k < sizeof units / sizeof *units; k++)
+        if (strncmp(name, units[k][0], strlen(units[k][0])) == 0)
+            return units[k][1];
+    return NULL;
+}
+
 static enum status write_history(const struct history *history, const struct inverse_method *method,
                                  const struct units *units, const struct run_folder *folder) {
     const char *names[MOST_COLUMNS] = {"iteration", "evaluations", "engine_steps", "error[1]",
                                        "noise[1]"};
     char path[OUTPUT_PATH_SIZE], headings[INVERSE_EXTRA][48];
     for (size_t k = 0; k < history->extra; k++) {
+        const char *unit = find_unit(method->columns[k]);
         names[COMMON + k] = method->columns[k];
-        if (strncmp(method->columns[k], "pressure", strlen("pressure")) != 0)
+        if (unit == NULL)
             continue;
-        mf_data_table_name(units, method->columns[k], "k_B.T_0/lambda^d", headings[k],
-                           sizeof headings[k]);
+        mf_data_table_name(units, method->columns[k], unit, headings[k], sizeof headings[k]);
         names[COMMON + k] = headings[k];
     }
     mf_run_folder_file(folder, "history.tsv", path);

@@ -2,18 +2,24 @@
 #include "report/progress.h"
 
 #include "base/clock.h"
+#include "io/json_write.h"
 
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <unistd.h>
 
-/// Least time between two lines [s].
-static const double terminal_interval = 0.2, pipe_interval = 5;
+/// Least time between two lines, and between two files [s].
+static const double terminal_interval = 0.2, pipe_interval = 5, file_interval = 5;
+
+/// Part of the time that files may take: a disk of a cluster may be slow.
+static const double file_share = 1.0 / 1000;
 
 struct progress mf_progress_begin(bool quiet, const struct watcher *watcher) {
     return (struct progress){.quiet = quiet,
                              .terminal = isatty(STDERR_FILENO),
                              .started = clock_seconds(),
+                             .next = clock_seconds() + file_interval,
                              .watcher = watcher};
 }
 
@@ -30,24 +36,61 @@ static void format_duration(double seconds, char text[32]) {
         snprintf(text, 32, "%.1f h", seconds / 3600);
 }
 
+static void find_file(const struct progress *progress, char path[OUTPUT_PATH_SIZE]) {
+    snprintf(path, OUTPUT_PATH_SIZE, "%s/" PROGRESS_FILE, progress->folder);
+}
+
+/// Now and then. Where it cannot be written, it is tried no more: the run has more to say than
+/// this.
+static void write_file(struct progress *progress, const struct watcher_progress *now,
+                       const char *left) {
+    const double begun = clock_seconds();
+    char path[OUTPUT_PATH_SIZE];
+    if (progress->folder == NULL || begun < progress->next)
+        return;
+    struct json_writer *writer = mf_json_writer_create();
+    mf_json_put_integer(writer, "done", (int64_t)now->done);
+    mf_json_put_integer(writer, "total", (int64_t)now->total);
+    mf_json_put_text(writer, "unit", now->unit);
+    mf_json_put_number(writer, "rate", now->rate);
+    mf_json_put_text(writer, "left", left);
+    mf_json_put_text(writer, "text", now->text);
+    find_file(progress, path);
+    const bool written = mf_json_write(writer, path) == STATUS_OK;
+    mf_json_writer_free(writer);
+    const double ended = clock_seconds();
+    progress->next = written ? ended + fmax(file_interval, (ended - begun) / file_share) : INFINITY;
+}
+
+void mf_progress_end(const struct progress *progress) {
+    char path[OUTPUT_PATH_SIZE];
+    if (progress->folder == NULL)
+        return;
+    find_file(progress, path);
+    unlink(path);
+}
+
 void mf_progress_tell(struct progress *progress, uint64_t done, uint64_t total, const char *unit,
                       const char *text) {
     const double now = clock_seconds(), elapsed = now - progress->started;
     const double fresh = (double)(done - progress->done_before);
     const double rate = elapsed > 0 ? fresh / elapsed : 0;
     const struct watcher *watcher = progress->watcher;
+    const struct watcher_progress told = {done, total, unit, text, rate};
+    char time[32] = "?", left[48];
+    if (fresh > 0)
+        format_duration(elapsed * (double)(total - done) / fresh, time);
+    snprintf(left, sizeof left, "%s%s", progress->may_end_early ? "at most " : "", time);
+    write_file(progress, &told, left);
     if (watcher)
-        watcher->tell(watcher->context, &(struct watcher_progress){done, total, unit, text, rate});
+        watcher->tell(watcher->context, &told);
     const double interval = progress->terminal ? terminal_interval : pipe_interval;
     if (progress->quiet || (now - progress->last < interval && done < total))
         return;
     progress->last = now;
-    char left[32] = "?";
-    if (fresh > 0)
-        format_duration(elapsed * (double)(total - done) / fresh, left);
-    fprintf(stderr, "%s%s  %3.0f %%  %.3g %s/s  %s%s left%s", progress->terminal ? "\r\033[K" : "",
-            text, 100 * (double)done / (double)total, rate, unit,
-            progress->may_end_early ? "at most " : "", left, progress->terminal ? "" : "\n");
+    fprintf(stderr, "%s%s  %3.0f %%  %.3g %s/s  %s left%s", progress->terminal ? "\r\033[K" : "",
+            text, 100 * (double)done / (double)total, rate, unit, left,
+            progress->terminal ? "" : "\n");
     fflush(stderr);
     progress->open_line = progress->terminal;
 }
@@ -69,7 +112,8 @@ void mf_progress_say(struct progress *progress, const char *format, ...) {
     fprintf(stderr, "%s\n", line);
 }
 
-void mf_progress_tell_run(const struct progress *progress, const struct watcher_run *run) {
+void mf_progress_tell_run(struct progress *progress, const struct watcher_run *run) {
+    progress->folder = run->folder;
     if (progress->watcher)
         progress->watcher->begin(progress->watcher->context, run);
 }

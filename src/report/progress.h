@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// @file Progress of long work: one updating line on a terminal, a line every few seconds at most
-/// in a pipe, nothing with --quiet. Always on stderr.
+/// in a pipe, nothing with --quiet, always on stderr; and while a run works for longer than that,
+/// progress.json in its folder, for `mesofit watch`.
 #pragma once
 
 #include "io/units_scale.h"
@@ -13,6 +14,8 @@ struct progress {
     bool quiet, terminal;
     double started;                ///< clock at the begin [s]
     double last;                   ///< clock of the last line [s]
+    const char *folder;            ///< where progress.json is to be, or NULL; borrowed
+    double next;                   ///< clock of the next one [s]
     uint64_t done_before;          ///< parts that a run before a restart had done
     bool open_line;                ///< the terminal's line has no end yet
     bool may_end_early;            ///< the time left is the most that it may take
@@ -29,12 +32,16 @@ double mf_progress_seconds(const struct progress *progress);
 void mf_progress_tell(struct progress *progress, uint64_t done, uint64_t total, const char *unit,
                       const char *text);
 
+/// Remove progress.json, if there is a folder for it: nothing works there any more.
+void mf_progress_end(const struct progress *progress);
+
 /// End the updating line, if there is one, and print a line of its own unless quiet.
 void mf_progress_say(struct progress *progress, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
-/// Tell who watches, if anybody does, what has begun, and that tables of the folder are new.
-void mf_progress_tell_run(const struct progress *progress, const struct watcher_run *run);
+/// Tell who watches, if anybody does, what has begun, and that tables of the folder are new. From
+/// now on there is progress.json in the folder.
+void mf_progress_tell_run(struct progress *progress, const struct watcher_run *run);
 void mf_progress_tell_written(const struct progress *progress);
 
 /// Whether who watches wants a simulation to go on with another temperature or time step.

@@ -25,11 +25,16 @@ enum {
 /// What a run writes beside used.json; with * the tables about the pair types of a mixture.
 static const char *const results[] = {
     "summary.json",
+    PROGRESS_FILE,
     "target.json",
     "history.tsv",
     "timing.tsv",
     "rdf_now.tsv",
     "rdf_now_*-*.tsv",
+    "excess_history.tsv",
+    "excess_*-*.tsv",
+    "singular_values.tsv",
+    "singular_values_history.tsv",
     "potential.tsv",
     "potential_*-*.tsv",
     "potential_history.tsv",

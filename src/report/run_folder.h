@@ -11,6 +11,9 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+/// How far a run is, while it works: report/progress.h.
+#define PROGRESS_FILE "progress.json"
+
 /// A simulation or a measurement may replace an earlier one of its kind, a fit nothing without
 /// --force.
 enum run_kind { RUN_SIMULATION, RUN_FIT, RUN_MEASUREMENT };

@@ -11,7 +11,9 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <float.h>
 #include <stdbool.h>
+#include <stddef.h>
 #include <string.h>
 #include <sys/file.h>
 #include <time.h>
@@ -108,10 +110,9 @@ static bool is_running(const char *folder) {
 }
 
 /// "status" of the summary, or what can be said without one.
-static void find_state(const char *folder, char *text, size_t size) {
+static void find_state(const char *folder, bool running, char *text, size_t size) {
     char path[OUTPUT_PATH_SIZE];
     struct json_document *document;
-    const bool running = is_running(folder);
     snprintf(text, size, "%s", running ? "running" : "no run has ended here");
     if (running || snprintf(path, sizeof path, "%s/summary.json", folder) >= (int)sizeof path ||
         access(path, R_OK) != 0 || mf_json_open(&document, path) != STATUS_OK)
@@ -124,15 +125,54 @@ static void find_state(const char *folder, char *text, size_t size) {
 }
 
 /// When something was last written.
-static void put_heading(const char *folder, int columns, const char *end, FILE *stream) {
+static void put_heading(const char *folder, bool running, int columns, const char *end,
+                        FILE *stream) {
     char state[80], text[512], when[32] = "?";
     struct stat about;
     struct tm local;
-    find_state(folder, state, sizeof state);
+    find_state(folder, running, state, sizeof state);
     if (stat(folder, &about) == 0 && localtime_r(&about.st_mtime, &local))
         strftime(when, sizeof when, "%H:%M:%S", &local);
     snprintf(text, sizeof text, "%.300s: %s; last change %s; q quits", folder, state, when);
     fprintf(stream, "%-*.*s%s", columns, columns, text, end);
+}
+
+/// What progress.json (report/progress.h) says.
+struct progress {
+    int64_t done, total;
+    double rate;
+    char unit[FIELD_TEXT_SIZE], left[FIELD_TEXT_SIZE], text[FIELD_TEXT_SIZE];
+};
+
+#define MEMBER(name) .offset = offsetof(struct progress, name)
+static const struct field progress_fields[] = {
+    {"done", FIELD_INTEGER, MEMBER(done), .required = true, .maximum = 9e18, .unit = ""},
+    {"total", FIELD_INTEGER, MEMBER(total), .required = true, .maximum = 9e18, .unit = ""},
+    {"rate", FIELD_NUMBER, MEMBER(rate), .required = true, .maximum = DBL_MAX, .unit = ""},
+    {"unit", FIELD_TEXT, MEMBER(unit), .required = true, .unit = ""},
+    {"left", FIELD_TEXT, MEMBER(left), .required = true, .unit = ""},
+    {"text", FIELD_TEXT, MEMBER(text), .required = true, .unit = ""},
+    FIELD_END,
+};
+
+/// How far the run is, in a line; none, and 0, as long as it has not told.
+static int put_progress(const char *folder, int columns, const char *end, FILE *stream) {
+    char path[OUTPUT_PATH_SIZE], line[512];
+    struct json_document *document;
+    struct progress progress = {0};
+    if (snprintf(path, sizeof path, "%s/progress.json", folder) >= (int)sizeof path ||
+        access(path, R_OK) != 0 || mf_json_open(&document, path) != STATUS_OK)
+        return 0;
+    struct json_object root = mf_json_root(document);
+    mf_json_fields(&root, progress_fields, &progress);
+    if (mf_json_close(document, STATUS_OK) != STATUS_OK || progress.total == 0)
+        return 0;
+    snprintf(line, sizeof line, "%lld of %lld %.40s (%.0f %%), %.3g a second, %.60s left; %.160s",
+             (long long)progress.done, (long long)progress.total, progress.unit,
+             100 * (double)progress.done / (double)progress.total, progress.rate, progress.left,
+             progress.text);
+    fprintf(stream, "%-*.*s%s", columns, columns, line, end);
+    return 1;
 }
 
 /// Plots side by side, `across` of them in a row.
@@ -177,13 +217,15 @@ enum status mf_watch_write(const char *folder, int columns, int rows, const char
                            FILE *stream) {
     struct shown shown = {0};
     enum status status = STATUS_OK;
-    put_heading(folder, columns, end, stream);
+    const bool running = is_running(folder);
+    put_heading(folder, running, columns, end, stream);
+    const int told = running ? put_progress(folder, columns, end, stream) : 0;
     for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++)
         add(&shown, folder, &kinds[k]);
     if (shown.count == 0)
         fprintf(stream, "there are no tables yet%s", end);
     else
-        status = put_plots(&shown, columns, rows - 2, end, stream);
+        status = put_plots(&shown, columns, rows - 2 - told, end, stream);
     clear(&shown);
     return status;
 }

@@ -360,6 +360,7 @@ static enum status verify_and_write(struct run *run) {
     double number[INVERSE_MOST_NUMBERS];
     struct verification verification = {0};
     struct progress progress = mf_progress_begin(run->progress.quiet, run->progress.watcher);
+    progress.folder = run->progress.folder;
     const struct inverse_listener listener = {tell_verification, &progress};
     enum status status = STATUS_OK;
     for (int n = 0; n < INVERSE_MOST_NUMBERS; n++)
@@ -429,6 +430,7 @@ done:
         }
         mf_memory_free(run->without_ramp);
         mf_fit_file_clear(&run->fit);
+        mf_progress_end(&run->progress);
         mf_run_folder_close(&run->folder);
     }
     mf_memory_free(run);

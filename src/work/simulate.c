@@ -262,6 +262,7 @@ static void clear(struct run *run) {
     mf_simulate_observables_clear(&run->observables);
     mf_scene_clear(&run->scene);
     mf_input_files_clear(&run->inputs);
+    mf_progress_end(&run->progress);
     mf_run_folder_close(&run->folder);
     mf_memory_free(run);
 }

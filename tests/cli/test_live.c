@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // --live, live and watch from the command line; tests/live has what a page does with them.
-#include "io/data_table.h"
 #include "shared/run_program.h"
 #include "shared/small_inputs.h"
 #include "shared/testing.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -39,31 +37,6 @@ static void test_simulation_with_a_page_that_nobody_opens_has_the_same_tables(vo
         free(plain);
         free(live);
     }
-}
-
-/// The rms of g − g* stands in the history, too, where the method has summed it by itself.
-static void test_samples_of_the_last_iteration_have_the_rms_of_the_history(void **state) {
-    struct temporary_folder *folder = *state;
-    struct data_table now, history;
-    small_inputs_write(folder, "run.json", small_inputs_run, NULL, NULL);
-    small_inputs_write(folder, "target.tsv", small_inputs_target, NULL, NULL);
-    RUN_PROGRAM(&result, "fit", "run.json", "--quiet");
-    assert_ok(mf_data_table_read(&now, "out/rdf_now.tsv", 5));
-    assert_ok(mf_data_table_read(&history, "out/history.tsv", 5));
-    double sum = 0, errors = 0;
-    for (size_t k = 0; k < now.rows; k++) {
-        const double *row = now.values + k * now.columns;
-        sum += pow(row[2] - row[1], 2);
-        errors += row[3] * row[3];
-        assert_true(row[4] * (row[2] - row[1]) >= 0);
-    }
-    const size_t column = mf_data_table_find(&history, "rdf_rms") - 1;
-    const double rms = history.values[(history.rows - 1) * history.columns + column];
-    assert_true(rms > 0);
-    assert_true(fabs(sqrt(sum / (double)now.rows) - rms) < 1e-6 * rms);
-    assert_true(errors > 0 && sqrt(errors / (double)now.rows) < 1);
-    mf_data_table_clear(&now);
-    mf_data_table_clear(&history);
 }
 
 static void test_what_cannot_be_shown_is_refused_in_one_line(void **state) {
@@ -107,9 +80,6 @@ static void test_page_without_a_run_ends_well_with_ctrl_c(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(
-            test_samples_of_the_last_iteration_have_the_rms_of_the_history,
-            small_inputs_enter_without_gnuplot, small_inputs_leave),
         cmocka_unit_test_setup_teardown(
             test_simulation_with_a_page_that_nobody_opens_has_the_same_tables,
             small_inputs_enter_without_gnuplot, small_inputs_leave),

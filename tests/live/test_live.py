@@ -1,100 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The page in a real browser: Debian's chromium by python3-selenium.
-
-With LIVE_SHOTS=FOLDER screenshots are left there, to be looked at."""
+"""The page in a real browser: what a person does with it."""
 import glob
 import json
 import os
-import shutil
-import tempfile
 import time
 import unittest
 import zipfile
 
-from served import Served, differences, make_folder, run_plain, water_fit
-
-try:
-    from selenium import webdriver
-    from selenium.webdriver import ActionChains
-    from selenium.webdriver.chrome.service import Service
-    from selenium.webdriver.common.keys import Keys
-    from selenium.webdriver.support.ui import WebDriverWait
-    MISSING = next((name for name in ("chromium", "chromedriver") if not shutil.which(name)), "")
-except ImportError:
-    MISSING = "python3-selenium"
-
-SHOTS = os.environ.get("LIVE_SHOTS", "")
-PATIENCE = 120
+from page import ActionChains, Keys, PageTest
+from served import differences, run_plain, water_fit
 
 
-def open_browser(profile, downloads, width=1280, height=800, dark=False):
-    options = webdriver.ChromeOptions()
-    for word in ("--headless=new", "--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-background-networking",
-                 "--disable-component-update", "--disable-sync", "--disable-quic", "--enable-unsafe-swiftshader",
-                 f"--user-data-dir={profile}", f"--window-size={width},{height}"):
-        options.add_argument(word)
-    if dark:
-        options.add_argument("--blink-settings=preferredColorScheme=0")
-    options.add_experimental_option("prefs", {"download.default_directory": downloads})
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-    return webdriver.Chrome(service=Service(shutil.which("chromedriver")), options=options)
-
-
-@unittest.skipIf(MISSING, f"{MISSING} is missing: the page is not tested in a browser")
-class Page(unittest.TestCase):
-    def setUp(self):
-        self.place = tempfile.TemporaryDirectory()
-        self.folder = os.path.join(self.place.name, "work")
-        self.downloads = os.path.join(self.place.name, "downloads")
-        os.mkdir(self.folder)
-        os.mkdir(self.downloads)
-        make_folder(self.folder)
-        self.served = self.browser = None
-
-    def tearDown(self):
-        if self.browser:
-            self.browser.quit()
-        if self.served:
-            self.served.end()
-        self.place.cleanup()
-
-    def begin(self, *words, **how):
-        self.served = Served(self.folder, *words)
-        self.browser = open_browser(os.path.join(self.place.name, "profile"), self.downloads, **how)
-        self.browser.get(self.served.address)
-        self.wait(lambda: self.text("phase") != "connecting")
-
-    def wait(self, condition, seconds=PATIENCE):
-        return WebDriverWait(self.browser, seconds, 0.1).until(lambda _: condition())
-
-    def at(self, name):
-        return self.browser.find_element("id", name)
-
-    def text(self, name):
-        return self.at(name).text
-
-    def phase(self):
-        return self.at("phase").get_attribute("data-phase")
-
-    def press(self, name):
-        self.wait(lambda: self.at(name).is_enabled())
-        self.at(name).click()
-
-    def panels(self):
-        return [panel.get_attribute("data-table") for panel in self.browser.find_elements("css selector", "#panels .panel")]
-
-    def button(self, text, within="files"):
-        return self.wait(lambda: next((b for b in self.at(within).find_elements("tag name", "button")
-                                       if b.text == text and b.is_displayed()), None))
-
-    def shoot(self, name):
-        if SHOTS:
-            self.browser.save_screenshot(os.path.join(SHOTS, name + ".png"))
-
-    def check_console(self):
-        faults = [entry["message"] for entry in self.browser.get_log("browser") if entry["level"] == "SEVERE"]
-        self.assertEqual(faults, [])
-
+class Page(PageTest):
     def iterations(self):
         path = os.path.join(self.folder, "out", "history.tsv")
         if not os.path.exists(path):
@@ -156,6 +73,15 @@ class Page(unittest.TestCase):
         before = self.step()
         self.press("step")
         self.wait(lambda: self.step() == before + 1, 10)
+        colours = self.at("colour")
+        offered = [o.get_attribute("value") for o in colours.find_elements("tag name", "option") if o.is_enabled()]
+        self.assertEqual(offered, ["type", "speed", "energy", "depth"])
+        colours.send_keys("energy")
+        self.browser.execute_script("arguments[0].scrollIntoView({ block: 'center' })", canvas)
+        self.press("step")
+        self.wait(lambda: "k_B T_0" in self.text("frames"), 20)
+        self.shoot("energy")
+        colours.send_keys("type")
         self.served.wish(wish="speed", speed=0)
         self.press("resume")
         self.wait(lambda: {"rdf_A-B.tsv", "motion.tsv", "thermodynamics.tsv"} <= set(self.panels()))
@@ -241,6 +167,30 @@ class Page(unittest.TestCase):
         self.assertTrue(any(label.startswith("parent ") for label in labels))
         self.shoot("family")
         self.check_console()
+
+    def delay_answers(self, name, seconds):
+        """As through a slow tunnel: the answer comes when what it tells of is long over."""
+        self.browser.execute_script(
+            "const whole = window.fetch; window.fetch = async (url, how) => { const answer = await whole(url, how);"
+            "if (url.startsWith('/api/' + arguments[0])) await new Promise((done) => setTimeout(done, 1000 * arguments[1])); return answer; };",
+            name, seconds)
+
+    def test_tab_that_was_chosen_stays_when_an_answer_comes_late(self):
+        self.begin("live")
+        self.at("tab-files").click()
+        row = self.wait(lambda: next((r for r in self.at("files").find_elements("tag name", "tr") if "scene.json" in r.text), None))
+        self.delay_answers("open", 1)
+        self.delay_answers("start", 2)
+        row.find_element("xpath", ".//button[text()='open']").click()
+        self.wait(lambda: self.phase() == "ready")
+        self.at("tab-settings").click()
+        time.sleep(1.5)
+        self.assertTrue(self.at("settings").is_displayed())
+        self.press("start")
+        self.wait(lambda: self.phase() in ("running", "ended"))
+        self.at("tab-files").click()
+        time.sleep(2.5)
+        self.assertTrue(self.at("files").is_displayed())
 
     def test_another_file_is_chosen_edited_refused_and_saved(self):
         self.begin("live")

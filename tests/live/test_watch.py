@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """`mesofit watch` on a terminal of its own."""
 import fcntl
+import json
 import os
 import pty
+import re
 import select
+import signal
 import struct
 import subprocess
 import tempfile
@@ -11,7 +14,7 @@ import termios
 import time
 import unittest
 
-from served import PROGRAM, make_folder, run_plain
+from served import PROGRAM, SCENE, make_folder, run_plain
 
 
 class Watch(unittest.TestCase):
@@ -24,6 +27,39 @@ class Watch(unittest.TestCase):
                 except OSError:
                     break
         return text.decode("utf-8", "replace")
+
+    def test_simulation_that_runs_tells_how_far_it_is(self):
+        """Steps, rate and time left agree with each other and with what is left to do; later nothing is left behind."""
+        with tempfile.TemporaryDirectory() as folder:
+            make_folder(folder)
+            measure = {"equilibration": 200, "samples": 1000000, "every": 20}
+            with open(os.path.join(folder, "long.json"), "w", encoding="utf-8") as file:
+                json.dump({**SCENE, "measure": measure}, file)
+            run = subprocess.Popen([PROGRAM, "simulate", "long.json", "-o", "out", "--quiet"], cwd=folder, stderr=subprocess.DEVNULL)
+            until = time.time() + 60
+            while not os.path.exists(os.path.join(folder, "out", "progress.json")):
+                self.assertLess(time.time(), until)
+                time.sleep(0.2)
+            master, slave = pty.openpty()
+            fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 120, 0, 0))
+            watch = subprocess.Popen([PROGRAM, "watch", "out"], cwd=folder, stdin=slave, stdout=slave, stderr=subprocess.PIPE)
+            text = self.read(master, 1)
+            self.assertIn("out: running; last change", text)
+            found = re.search(r"(\d+) of (\d+) steps \((\d+) %\), ([\d.e+]+) a second, ([\d.]+) (s|min|h) left; step \1  T ", text)
+            self.assertIsNotNone(found, text)
+            done, total, rate = int(found[1]), int(found[2]), float(found[4])
+            left = float(found[5]) * {"s": 1, "min": 60, "h": 3600}[found[6]]
+            self.assertEqual(total, measure["equilibration"] + measure["samples"] * measure["every"])
+            self.assertAlmostEqual(left / ((total - done) / rate), 1, delta=0.05)
+            run.send_signal(signal.SIGINT)
+            self.assertEqual(run.wait(60), 130)
+            self.assertNotIn(" a second", self.read(master, 2.2).split("\x1b[H")[-1])
+            self.assertFalse(os.path.exists(os.path.join(folder, "out", "progress.json")))
+            os.write(master, b"q")
+            self.assertEqual(watch.wait(10), 0)
+            watch.stderr.close()
+            os.close(master)
+            os.close(slave)
 
     def test_screen_is_drawn_follows_the_size_and_quits_with_q(self):
         with tempfile.TemporaryDirectory() as folder:

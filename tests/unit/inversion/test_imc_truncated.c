@@ -73,6 +73,23 @@ static void test_imc_truncated_keeps_the_directions_above_the_strength(void **st
     assert_close_relative(solution.misfit, left / SIZE, 1e-9);
 }
 
+static void test_imc_truncated_tells_its_singular_values(void **state) {
+    (void)state;
+    double covariance[SIZE][SIZE], omega[SIZE], excess[SIZE], variance[SIZE], x[SIZE];
+    double singular[SIZE], used[SIZE];
+    struct imc_solution solution;
+    for (int k = 0; k < SIZE; k++)
+        omega[k] = 1 + k;
+    struct imc_system system = make_system(covariance, omega, excess, variance);
+    system.singular = singular;
+    system.used = used;
+    assert_ok(mf_imc_truncated(&system, 0.05, x, &solution));
+    for (int k = 0; k < SIZE; k++) {
+        assert_close_relative(singular[k], eigenvalue(k) / temperature, 1e-9);
+        assert_identical(used[k], k < 4);
+    }
+}
+
 static void test_imc_truncated_keeps_no_more_than_the_noise_asks(void **state) {
     (void)state;
     // Excess in three directions, and noise of one standard error in all but one: χ² 11/12.
@@ -131,6 +148,7 @@ static void test_imc_truncated_meets_a_constraint_by_the_directions_it_keeps(voi
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_imc_truncated_keeps_the_directions_above_the_strength),
+        cmocka_unit_test(test_imc_truncated_tells_its_singular_values),
         cmocka_unit_test(test_imc_truncated_keeps_no_more_than_the_noise_asks),
         cmocka_unit_test(test_imc_truncated_changes_nothing_when_the_excess_is_noise),
         cmocka_unit_test(test_imc_truncated_meets_a_constraint_by_the_directions_it_keeps),

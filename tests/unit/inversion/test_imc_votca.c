@@ -77,18 +77,24 @@ static void test_imc_votca_leaves_out_what_is_singular(void **state) {
     (void)state;
     // C sees (1, 1) alone; the step is C's pseudo-inverse, and the misfit what it cannot remove.
     static const double covariance[] = {2, 2, 2, 2}, excess[] = {3, 1}, variance[] = {0.25, 0.25};
+    double x[2], singular[2], used[2];
     const struct imc_system system = {.size = 2,
                                       .covariance = covariance,
                                       .excess = excess,
                                       .variance = variance,
                                       .temperature = 1.5,
-                                      .spacing = 1};
+                                      .spacing = 1,
+                                      .singular = singular,
+                                      .used = used};
     struct imc_solution solution;
-    double x[2];
     assert_ok(mf_imc_votca(&system, 0, x, &solution));
     for (int k = 0; k < 2; k++)
         assert_close(x[k], 1.5 * 0.5, 1e-12);
     assert_close(solution.directions, 1, 1e-12);
+    assert_close(singular[0], 4, 1e-12);
+    assert_close(singular[1], 0, 1e-12);
+    assert_close(used[0], 1, 1e-12);
+    assert_close(used[1], 0, 1e-12);
     assert_close(solution.misfit, 4, 1e-12);
 }
 

@@ -92,10 +92,49 @@ static void test_replicas_scatter_their_particles_when_the_plan_says_so(void **s
     fluid_clear(&fluid);
 }
 
+/// Equilibration tunes moves to 40 % (mf_metropolis_equilibrate) and trajectories to 90 %
+/// (mf_hybrid_equilibrate); a gas without a potential takes all. Of 8 · 4 · 216 moves and 8 · 40
+/// trajectories; the tuning itself scatters by some hundredths.
+static void test_replicas_take_as_many_moves_as_their_sampler_is_tuned_to(void **state) {
+    (void)state;
+    static const double wanted[] = {0.4, 0.9}, tolerance[] = {0.03, 0.08};
+    const struct inverse_listener listener = {ignore, NULL};
+    const struct inverse_progress progress = {0};
+    struct replicas_plan plan = {.equilibration = 200, .block_samples = 2, .every = 1};
+    for (int ideal = 0; ideal < 2; ideal++) {
+        struct fluid fluid;
+        if (ideal)
+            fluid_ideal_gas(&fluid, 3, 216, 0.02);
+        else
+            fluid_lennard_jones(&fluid, 216, 0.004);
+        for (enum sampler_kind kind = SAMPLER_MONTE_CARLO; kind <= SAMPLER_DYNAMICS; kind++) {
+            struct replicas replicas;
+            assert_ok(
+                mf_replicas_init(&replicas, 8, kind,
+                                 &(struct sampler_system){.box = &fluid.setup.box,
+                                                          .composition = &fluid.setup.composition,
+                                                          .potential = &fluid.potential,
+                                                          .temperature = 1,
+                                                          .width = 0.02,
+                                                          .bins = 50,
+                                                          .seed = 3}));
+            plan.every = kind == SAMPLER_DYNAMICS ? 5 : 1;
+            assert_ok(mf_replicas_run(&replicas, &plan, 1, &progress, &listener));
+            const double acceptance = mf_replicas_acceptance(&replicas);
+            print_message("%s: %.4f\n", mf_sampler_kinds[kind], acceptance);
+            assert_true(fabs(acceptance - (ideal ? 1 : wanted[kind])) <=
+                        (ideal ? 0 : tolerance[kind]));
+            mf_replicas_clear(&replicas);
+        }
+        fluid_clear(&fluid);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_replicas_disagree_as_their_means_do),
         cmocka_unit_test(test_replicas_scatter_their_particles_when_the_plan_says_so),
+        cmocka_unit_test(test_replicas_take_as_many_moves_as_their_sampler_is_tuned_to),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -68,16 +68,18 @@ static void test_particles_are_wanted_for_a_second_and_given_once(void **state) 
     struct live_bytes bytes = {.bytes = malloc(4), .size = 4, .room = 4};
     (void)state;
     assert_false(mf_live_feed_wants_particles(&feed));
-    struct live_bytes got = mf_live_feed_get_particles(&feed, 0);
+    struct live_bytes got = mf_live_feed_get_particles(&feed, 0, false);
     assert_int_equal(got.size, 0);
     assert_true(mf_live_feed_wants_particles(&feed));
+    assert_false(mf_live_feed_wants_energies(&feed));
     memcpy(bytes.bytes, "abc", 4);
     mf_live_feed_put_particles(&feed, &bytes);
     assert_null(bytes.bytes);
-    got = mf_live_feed_get_particles(&feed, 0);
+    got = mf_live_feed_get_particles(&feed, 0, false);
     assert_string_equal((const char *)got.bytes, "abc");
     free(got.bytes);
-    assert_int_equal(mf_live_feed_get_particles(&feed, got.serial).size, 0);
+    assert_int_equal(mf_live_feed_get_particles(&feed, got.serial, true).size, 0);
+    assert_true(mf_live_feed_wants_energies(&feed));
 }
 
 static void test_pause_steps_and_stop_are_obeyed(void **state) {

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What an inversion writes of each of its iterations: energy, acceptance, S − S*, singular values.
+#include "io/data_table.h"
+#include "shared/results.h"
+#include "shared/run_program.h"
+#include "shared/small_inputs.h"
+#include "shared/testing.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+static const char *const tables[] = {"history.tsv",
+                                     "rdf_now.tsv",
+                                     "excess_history.tsv",
+                                     "singular_values.tsv",
+                                     "potential.tsv",
+                                     "singular_values_history.tsv",
+                                     NULL};
+
+static struct run_program_result result;
+
+/// Write and run a fit whose method is `method`, as JSON.
+static void run_fit(struct temporary_folder *folder, const char *method, const char *words[3]) {
+    static const char old[] = "\"method\": {\"name\": \"imc\", \"replicas\": 2, "
+                              "\"equilibration\": 1, \"samples\": 8,\n"
+                              "             \"every\": 1, \"iterations\": 1}";
+    small_inputs_write(folder, "run.json", small_inputs_run, old, method);
+    char *text = temporary_folder_read("run.json");
+    small_inputs_write(folder, "run.json", text,
+                       "{\"replicas\": 1, \"equilibration\": 1, \"samples\": 2",
+                       "{\"replicas\": 4, \"equilibration\": 500, \"samples\": 200");
+    free(text);
+    small_inputs_write(folder, "target.tsv", small_inputs_target, NULL, NULL);
+    RUN_PROGRAM(&result, "fit", "run.json", "--quiet", "--force", "-o", words[0], words[1],
+                words[2]);
+    assert_in_range(result.code, 0, 1);
+}
+
+static void read_table(struct data_table *table, const char *file) {
+    assert_ok(mf_data_table_read(table, file, 1));
+}
+
+/// The number of a column in a row that counts from the last, 0.
+static double last(const struct data_table *table, const char *column, size_t before) {
+    const size_t k = mf_data_table_find(table, column);
+    assert_true(k > 0 && before < table->rows);
+    return table->values[(table->rows - 1 - before) * table->columns + k - 1];
+}
+
+/// The rms of g − g* stands in the history, too, where the method has summed it by itself.
+static void test_samples_of_the_last_iteration_have_the_rms_of_the_history(void **state) {
+    struct data_table now, history;
+    run_fit(*state, "\"method\": {\"name\": \"imc\", \"replicas\": 2, \"iterations\": 1}",
+            (const char *[]){"out", "--threads", "1"});
+    read_table(&now, "out/rdf_now.tsv");
+    read_table(&history, "out/history.tsv");
+    double sum = 0, errors = 0;
+    for (size_t k = 0; k < now.rows; k++) {
+        const double *row = now.values + k * now.columns;
+        sum += pow(row[2] - row[1], 2);
+        errors += row[3] * row[3];
+        assert_true(row[4] * (row[2] - row[1]) >= 0);
+    }
+    const double rms = last(&history, "rdf_rms", 0);
+    assert_true(rms > 0);
+    assert_true(fabs(sqrt(sum / (double)now.rows) - rms) < 1e-6 * rms);
+    assert_true(errors > 0 && sqrt(errors / (double)now.rows) < 1);
+    mf_data_table_clear(&now);
+    mf_data_table_clear(&history);
+}
+
+/// After one iteration the best potential is the one that was sampled, and the verification moves
+/// the particles of the scene by dynamics: the same energy of a particle within 5 standard errors,
+/// false alarms below 1 in 10^6.
+static void test_energy_is_that_of_the_verification(void **state) {
+    static const char *const samplers[] = {"monte-carlo", "dynamics"};
+    for (size_t k = 0; k < 2; k++) {
+        struct data_table history;
+        char method[160];
+        snprintf(method, sizeof method,
+                 "\"method\": {\"name\": \"imc\", \"iterations\": 1, \"replicas\": 4, "
+                 "\"sampler\": \"%s\"}",
+                 samplers[k]);
+        run_fit(*state, method, (const char *[]){"out", "--threads", "2"});
+        read_table(&history, "out/history.tsv");
+        const double energy = last(&history, "potential_energy", 0);
+        const double error = last(&history, "potential_energy_error", 0);
+        const double beside = results_number("out/summary.json", "potential_energy");
+        const double noise = results_number("out/summary.json", "potential_energy_error");
+        print_message("energy %g ± %g, of the verification %g ± %g\n", energy, error, beside,
+                      noise);
+        assert_true(error > 0 && error < 0.05 * fabs(energy));
+        assert_true(fabs(energy - beside) < 5 * hypot(error, noise));
+        const double acceptance = last(&history, "acceptance", 0);
+        assert_true(acceptance > 0 && acceptance < 1);
+        mf_data_table_clear(&history);
+    }
+}
+
+/// Each iteration has a column; the last is what rdf_now.tsv has.
+static void check_excess(const char *folder, size_t iterations) {
+    char path[64];
+    struct data_table now, excess;
+    snprintf(path, sizeof path, "%s/rdf_now.tsv", folder);
+    read_table(&now, path);
+    snprintf(path, sizeof path, "%s/excess_history.tsv", folder);
+    read_table(&excess, path);
+    assert_int_equal(excess.columns, iterations + 1);
+    assert_int_equal(excess.rows, now.rows);
+    for (size_t k = 0; k < now.rows; k++) {
+        assert_true(now.values[k * now.columns] == excess.values[k * excess.columns]);
+        assert_true(now.values[k * now.columns + 4] ==
+                    excess.values[k * excess.columns + iterations]);
+    }
+    mf_data_table_clear(&now);
+    mf_data_table_clear(&excess);
+}
+
+/// They fall, and as many are used as the history says: 1 or 0 each if they are cut.
+static void check_singular_values(const char *file, const char *beside, bool cut) {
+    struct data_table values, history;
+    double used = 0;
+    read_table(&values, file);
+    read_table(&history, beside);
+    assert_int_equal(values.columns, 3);
+    for (size_t k = 0; k < values.rows; k++) {
+        const double *row = values.values + 3 * k;
+        assert_true(row[0] == (double)(k + 1));
+        assert_true(row[1] >= 0 && (k == 0 || row[1] <= row[-2]));
+        assert_true(row[2] >= 0 && row[2] <= 1 && (!cut || row[2] == 0 || row[2] == 1));
+        used += row[2];
+    }
+    assert_true(fabs(used - last(&history, "directions", 0)) < 1e-4);
+    mf_data_table_clear(&values);
+    mf_data_table_clear(&history);
+}
+
+static void test_singular_values_are_those_that_the_step_has_used(void **state) {
+    run_fit(*state,
+            "\"method\": {\"name\": \"imc\", \"regularisation\": \"truncated\", \"replicas\": 2, "
+            "\"iterations\": 3, \"precision\": 0.0001, \"samples\": 20}",
+            (const char *[]){"cut", "--threads", "1"});
+    check_singular_values("cut/singular_values.tsv", "cut/history.tsv", true);
+    check_excess("cut", 3);
+    results_assert_table("cut/singular_values_history.tsv", 4, 5);
+    run_fit(*state,
+            "\"method\": {\"name\": \"imc\", \"regularisation\": \"votca\", \"strength\": 10, "
+            "\"replicas\": 2, \"iterations\": 2, \"precision\": 0.0001, \"samples\": 20}",
+            (const char *[]){"votca", "--threads", "1"});
+    check_singular_values("votca/singular_values.tsv", "votca/history.tsv", false);
+    // Without them there is no table, also where one was before.
+    run_fit(*state, "\"method\": {\"name\": \"ibi\", \"replicas\": 2, \"iterations\": 1}",
+            (const char *[]){"cut", "--threads", "1"});
+    assert_false(temporary_folder_exists("cut/singular_values.tsv"));
+    assert_false(temporary_folder_exists("cut/singular_values_history.tsv"));
+    assert_true(temporary_folder_exists("cut/excess_history.tsv"));
+}
+
+/// Stopped after some iterations and gone on with, by other threads.
+static void test_tables_are_the_same_bits_after_a_restart(void **state) {
+    const char *method =
+        "\"method\": {\"name\": \"imc\", \"regularisation\": \"truncated\", \"replicas\": 4, "
+        "\"iterations\": 6, \"precision\": 0.0001, \"samples\": 2000}";
+    run_fit(*state, method, (const char *[]){"whole", "--threads", "1"});
+    run_program_in_pieces(result.code, (const char *const[]){"fit", "run.json", "-o", "parts",
+                                                             "--threads", "2", NULL});
+    results_assert_same("whole", "parts", tables);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(
+            test_samples_of_the_last_iteration_have_the_rms_of_the_history,
+            small_inputs_enter_without_gnuplot, small_inputs_leave),
+        cmocka_unit_test_setup_teardown(test_energy_is_that_of_the_verification,
+                                        small_inputs_enter_without_gnuplot, small_inputs_leave),
+        cmocka_unit_test_setup_teardown(test_singular_values_are_those_that_the_step_has_used,
+                                        small_inputs_enter_without_gnuplot, small_inputs_leave),
+        cmocka_unit_test_setup_teardown(test_tables_are_the_same_bits_after_a_restart,
+                                        small_inputs_enter_without_gnuplot, small_inputs_leave),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
