@@ -22,7 +22,8 @@ enum {
     LONGEST_PLACE = OUTPUT_PATH_SIZE - 258
 };
 
-/// What a run writes beside used.json; with * the tables about the pair types of a mixture.
+/// What a run writes beside used.json; with *-* the tables about the pair types of a mixture, with
+/// * those about the modes of a memory.
 static const char *const results[] = {
     "summary.json",
     PROGRESS_FILE,
@@ -44,20 +45,31 @@ static const char *const results[] = {
     "omega_flat.tsv",
     "omega_history.tsv",
     "omega.tsv",
+    "omega_transverse.tsv",
+    "omega_transverse_flat.tsv",
+    "omega_transverse_history.tsv",
+    "memory_*.tsv",
+    "numbers_history.tsv",
     "etd_cells.tsv",
     "population_potential.tsv",
     "population_potential_*-*.tsv",
     "population_omega.tsv",
+    "population_omega_transverse.tsv",
+    "population_memory_*.tsv",
     "individuals.tsv",
     "genes_potential.tsv",
     "genes_potential_*-*.tsv",
     "genes_omega.tsv",
+    "genes_omega_transverse.tsv",
+    "genes_memory_*.tsv",
     "formulas.tsv",
     "formulas.tex",
     "formulas.h",
     "pareto.tsv",
     "pareto_history.tsv",
     "pareto_omega.tsv",
+    "pareto_omega_transverse.tsv",
+    "pareto_memory_*.tsv",
     "pareto_potential.tsv",
     "pareto_potential_*-*.tsv",
     "checkpoint.bin",
@@ -66,7 +78,7 @@ static const char *const results[] = {
     "pareto_weight.tsv",
 };
 
-/// Whether a pattern is a file's name, the two * being names of types: a date is none.
+/// Whether a pattern is a file's name, each * being a name of a type or a mode: a date is none.
 static bool fits(const char *pattern, const char *name) {
     static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_";
     const char *star = strchr(pattern, '*');
@@ -75,6 +87,8 @@ static bool fits(const char *pattern, const char *name) {
     if (star == NULL)
         return true;
     const char *first = name + (star - pattern), *end = first + strspn(first, letters);
+    if (end > first && star[1] != '-')
+        return strcmp(end, star + 1) == 0;
     if (end == first || *end != '-')
         return false;
     const char *second = end + 1, *dot = second + strspn(second, letters);

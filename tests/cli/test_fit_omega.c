@@ -235,6 +235,31 @@ static void test_fit_of_omega_ends_and_says_so_when_no_candidate_survives(void *
     }
 }
 
+/// What a fit with memory has written goes with it, when another replaces it; the user's own stays.
+static void test_force_leaves_no_table_of_the_memory_before(void **state) {
+    write_fit(*state, memory_fit, GAUSS_NEWTON);
+    char *text = temporary_folder_read("run.json");
+    small_inputs_write(*state, "run.json", text, "\"iterations\": 12", "\"iterations\": 1");
+    free(text);
+    run_fit("run.json", "out", "2", UNCONVERGED);
+    for (const char *const *table = memory_tables; *table; table++) {
+        char path[64];
+        snprintf(path, sizeof path, "out/%s", *table);
+        assert_true(temporary_folder_exists(path));
+    }
+    temporary_folder_write(*state, "out/memory-2026-11-23.tsv", "mine", 4);
+    small_inputs_write(*state, "omega.json", omega_fit, METHOD, CMAES);
+    static struct run_program_result result;
+    RUN_PROGRAM(&result, "fit", "omega.json", "-o", "out", "--quiet", "--force");
+    assert_in_range(result.code, CONVERGED, UNCONVERGED);
+    assert_true(temporary_folder_exists("out/omega.tsv"));
+    assert_false(temporary_folder_exists("out/omega_transverse.tsv"));
+    assert_false(temporary_folder_exists("out/memory_slow.tsv"));
+    assert_false(temporary_folder_exists("out/memory_slow_history.tsv"));
+    assert_false(temporary_folder_exists("out/numbers_history.tsv"));
+    assert_true(temporary_folder_exists("out/memory-2026-11-23.tsv"));
+}
+
 #define TEST_WITHOUT_FIGURES(name)                                                                 \
     cmocka_unit_test_setup_teardown(name, small_inputs_enter_without_gnuplot, small_inputs_leave)
 
@@ -250,6 +275,7 @@ int main(void) {
         TEST_WITHOUT_FIGURES(test_explain_and_describe_know_omega_and_its_targets),
         TEST_WITHOUT_FIGURES(test_fit_of_omega_ends_and_says_so_when_no_candidate_survives),
         TEST_WITHOUT_FIGURES(test_gauss_newton_has_finished_at_a_standstill_above_its_noise),
+        TEST_WITHOUT_FIGURES(test_force_leaves_no_table_of_the_memory_before),
         TEST_WITHOUT_FIGURES(test_unstable_candidates_lose_and_never_stop_a_fit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
