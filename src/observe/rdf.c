@@ -167,6 +167,7 @@ static enum status make_own_list(struct rdf *rdf, const struct particles *partic
         memcpy(rdf->own_particles.position[d], particles->position[d],
                particles->count * sizeof *particles->position[d]);
     memcpy(rdf->own_particles.id, particles->id, particles->count * sizeof *particles->id);
+    TRY(mf_particles_join(&rdf->own_particles, particles->topology));
     return mf_neighbours_sort_and_build(&rdf->own_list, &rdf->own_particles);
 }
 
