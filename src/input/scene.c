@@ -276,6 +276,9 @@ enum status mf_scene_read(struct scene *scene, struct json_object *object, int u
                              unknown & SCENE_FITS_MEMORY));
     scene->setup.memory = mf_scene_memory_law(&scene->memory);
     TRY(mf_scene_interactions_read(&scene->interactions, object, &scene->setup));
+    if (scene_has_molecules(&scene->molecules))
+        scene->setup.interaction[scene->setup.interactions++] =
+            (struct interaction_choice){&mf_molecules, &scene->molecules.molecules};
     TRY(read_dynamics(scene, object, unknown));
     scene->setup.potential = scene->potential.curves ? &scene->potential.table : NULL;
     scene->setup.omega = scene->omega.curves ? &scene->omega.table : NULL;
@@ -289,6 +292,7 @@ void mf_scene_clear(struct scene *scene) {
     mf_memory_free(scene->start_values);
     mf_memory_free(scene->integrator_parameters);
     mf_scene_interactions_clear(&scene->interactions);
+    mf_scene_molecules_clear(&scene->molecules);
     *scene = (struct scene){0};
 }
 
@@ -297,6 +301,8 @@ const char *mf_scene_warning(const struct scene *scene) {
     const char *own = integrator->warning ? integrator->warning(&scene->setup) : NULL;
     if (own)
         return own;
+    if (scene->molecules.warning[0])
+        return scene->molecules.warning;
     if (mf_pair_memory_is_coarse(&scene->setup.memory, scene->setup.time_step))
         return "\"time_step\" is too long for \"memory\": beyond half of a \"time\" or of "
                "1/\"frequency\", or where a pair's friction is strong, what acts is another "
@@ -321,6 +327,7 @@ void mf_scene_write(const struct scene *scene, struct json_writer *writer) {
         top.box[d] = setup->box.length[d];
     mf_json_put_fields(writer, mf_scene_fields, &top);
     mf_scene_particles_write(scene, writer);
+    mf_scene_molecules_write(&scene->molecules, &setup->composition, writer);
     if (scene->potential.curves || finds_friction_alone(scene->unknown))
         mf_scene_law_write(&scene->potential, &setup->composition, writer, "conservative");
     if (scene->omega.curves)
@@ -342,5 +349,6 @@ void mf_scene_digest(const struct scene *scene, uint64_t *digest) {
     mf_scene_law_digest(&scene->potential, digest);
     mf_scene_law_digest(&scene->omega, digest);
     mf_scene_memory_digest(&scene->memory, digest);
+    mf_scene_molecules_digest(&scene->molecules, digest);
     mf_scene_particles_digest(scene, digest);
 }

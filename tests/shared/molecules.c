@@ -40,3 +40,29 @@ struct composition molecules_topology(struct topology *topology, struct topology
     assert_ok(mf_topology_complete(topology, &composition));
     return composition;
 }
+
+void molecules_add_group(struct molecules *molecules, int order, const struct bonded_law *law,
+                         const struct molecules_number *numbers) {
+    struct molecules_group *group = &molecules->group[order][molecules->groups[order]++];
+    snprintf(group->name, sizeof group->name, "%s", law->name);
+    assert_ok(mf_bonded_create(&group->curve, law));
+    for (; numbers && numbers->name; numbers++) {
+        const struct field *field = law->fields;
+        while (field->name && strcmp(field->name, numbers->name) != 0)
+            field++;
+        assert_non_null(field->name);
+        const int64_t integer = (int64_t)numbers->value;
+        memcpy((char *)group->curve.parameters + field->offset,
+               field->type == FIELD_INTEGER ? (const void *)&integer
+                                            : (const void *)&numbers->value,
+               8);
+    }
+}
+
+void molecules_enter(struct simulation_setup *setup, const struct molecules *molecules,
+                     const struct composition *composition) {
+    setup->composition = *composition;
+    setup->placement.count = mf_composition_particles(composition);
+    setup->interaction[setup->interactions++] =
+        (struct interaction_choice){&mf_molecules, molecules};
+}
