@@ -51,9 +51,9 @@ struct fene {
     double k, longest;
 };
 
-/// 1 − (r/R)² from which on U is a straight line, so that it is finite for all r: a bond gets there
-/// while molecules that were placed upon each other are parted, and nowhere else.
-static const double straight = 0.01;
+/// 1 − (r/R)² from which on U is a straight line, so that it is finite for all r, and so steep that
+/// a ring that was placed open is closed (mf_relax_overlaps). No bond gets there later.
+static const double straight = 1e-4;
 
 static void fene_evaluate(const void *parameters, size_t count, const double *r, double *energy,
                           double *slope) {

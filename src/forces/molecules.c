@@ -46,8 +46,7 @@ const struct molecules *mf_molecules_find(const struct interaction_choice *inter
 
 // Begin -------------------------------------------------------------------------------------------
 
-/// A term sees the nearest images of its beads: a bond at rest is shorter than half the box.
-static enum status check_box(const struct molecules *molecules, const struct box *box) {
+enum status mf_molecules_check(const struct molecules *molecules, const struct box *box) {
     for (int g = 0; g < molecules->groups[TOPOLOGY_BOND]; g++) {
         const struct molecules_group *group = &molecules->group[TOPOLOGY_BOND][g];
         const double longest = mf_bonded_longest(&group->curve);
@@ -84,7 +83,7 @@ static enum status begin(const void *parameters, void *own, const struct particl
     struct state *state = own;
     const struct molecules *molecules = parameters;
     const struct topology *topology = &molecules->topology;
-    TRY(check_box(molecules, &particles->box));
+    TRY(mf_molecules_check(molecules, &particles->box));
     state->molecules = molecules;
     state->orders = particles->orders - 1; // not this one: places are not known
     const int64_t blocks = topology->molecules / FEWEST_IN_BLOCK;

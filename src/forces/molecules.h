@@ -30,6 +30,11 @@ struct molecules {
 
 void mf_molecules_clear(struct molecules *molecules);
 
+/// Whether molecules go into a box: a term sees the nearest images of its beads, so that a bond, at
+/// rest or as long as it can be, is shorter than half of it; dihedrals need three dimensions.
+/// Fails: BAD_INPUT, naming the group.
+enum status mf_molecules_check(const struct molecules *molecules, const struct box *box) MUST_USE;
+
 /// The molecules among the interactions of a scene, or NULL.
 const struct molecules *mf_molecules_find(const struct interaction_choice *interactions, int count);
 

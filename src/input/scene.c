@@ -248,6 +248,19 @@ static void check_units(const struct scene *scene, struct json_object *object) {
             mass, atomic_mass, density);
 }
 
+/// Molecules act, if there are any and the box is large enough for them.
+static void enter_molecules(struct scene *scene, struct json_object *object) {
+    const struct molecules *molecules = &scene->molecules.molecules;
+    struct simulation_setup *setup = &scene->setup;
+    if (!scene_has_molecules(&scene->molecules))
+        return;
+    if (mf_json_fault_count(object->document) == 0 &&
+        mf_molecules_check(molecules, &setup->box) != STATUS_OK)
+        mf_json_fault(object, NULL, "%s", mf_status_message());
+    setup->interaction[setup->interactions++] =
+        (struct interaction_choice){&mf_molecules, molecules};
+}
+
 /// Friction, of pairs whose potential is known.
 static bool finds_friction_alone(int unknown) {
     return unknown && !(unknown & SCENE_FITS_POTENTIAL);
@@ -276,9 +289,7 @@ enum status mf_scene_read(struct scene *scene, struct json_object *object, int u
                              unknown & SCENE_FITS_MEMORY));
     scene->setup.memory = mf_scene_memory_law(&scene->memory);
     TRY(mf_scene_interactions_read(&scene->interactions, object, &scene->setup));
-    if (scene_has_molecules(&scene->molecules))
-        scene->setup.interaction[scene->setup.interactions++] =
-            (struct interaction_choice){&mf_molecules, &scene->molecules.molecules};
+    enter_molecules(scene, object);
     TRY(read_dynamics(scene, object, unknown));
     scene->setup.potential = scene->potential.curves ? &scene->potential.table : NULL;
     scene->setup.omega = scene->omega.curves ? &scene->omega.table : NULL;

@@ -61,8 +61,8 @@ enum status mf_scene_groups_read(struct molecules *molecules, int order, struct 
         if (n >= MOLECULES_MOST_GROUPS) {
             mf_json_fault(&groups, name, "there are more than %d groups", MOLECULES_MOST_GROUPS);
             mf_json_has(&groups, name);
-        } else if (strlen(name) >= TOPOLOGY_NAME_SIZE) {
-            mf_json_fault(&groups, name, "a group is called by up to %d letters",
+        } else if (!mf_topology_is_name(name)) {
+            mf_json_fault(&groups, name, "a group is called by up to %d letters, digits, _ and -",
                           TOPOLOGY_NAME_SIZE - 1);
             mf_json_has(&groups, name);
         } else {

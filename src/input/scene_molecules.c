@@ -312,10 +312,13 @@ enum status mf_scene_molecules_read(struct scene_molecules *molecules, struct js
     const char *name;
     for (int order = 0; order < TOPOLOGY_ORDERS; order++)
         TRY(mf_scene_groups_read(&molecules->molecules, order, scene, units));
+    if (mf_json_fault_count(scene->document) > faults)
+        return STATUS_OK; // that kinds lack such a group would mislead
     struct json_object object = mf_json_child(scene, "molecules", false);
     for (size_t n = 0; (name = mf_json_key(&object, n)); n++) {
-        if (n >= TOPOLOGY_MOST_KINDS || strlen(name) >= TOPOLOGY_NAME_SIZE) {
-            mf_json_fault(&object, name, "there are at most %d kinds, called by up to %d letters",
+        if (n >= TOPOLOGY_MOST_KINDS || !mf_topology_is_name(name)) {
+            mf_json_fault(&object, name,
+                          "there are at most %d kinds, called by up to %d letters, digits, _ and -",
                           TOPOLOGY_MOST_KINDS, TOPOLOGY_NAME_SIZE - 1);
             mf_json_has(&object, name);
         } else {

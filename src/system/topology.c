@@ -3,10 +3,19 @@
 
 #include "base/memory.h"
 
+#include <ctype.h>
 #include <stdio.h>
 #include <string.h>
 
 const char *const mf_topology_order_names[TOPOLOGY_ORDERS] = {"bond", "angle", "dihedral"};
+
+bool mf_topology_is_name(const char *name) {
+    const size_t length = strlen(name);
+    for (size_t k = 0; k < length; k++)
+        if (!isalnum((unsigned char)name[k]) && name[k] != '_' && name[k] != '-')
+            return false;
+    return length > 0 && length < TOPOLOGY_NAME_SIZE;
+}
 
 // Checks ------------------------------------------------------------------------------------------
 

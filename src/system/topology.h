@@ -64,6 +64,9 @@ struct topology {
                             ///< excluded_start[i + 1])
 };
 
+/// Whether a kind or a group can be called so: letters, digits, _ and -, not too many.
+bool mf_topology_is_name(const char *name);
+
 /// Whether a kind's terms are of its beads and stand there once.
 /// Fails: BAD_INPUT, naming the beads from 1 on: a bead that is not there or twice in a term, a
 /// bond that stands there twice, another term twice in a group. Tested: test_topology.
