@@ -8,12 +8,12 @@
 
 NAMED_RECORD(struct bonded_law);
 
-static const struct bonded_law *const bonds[] = {&mf_bond_harmonic, &mf_bond_fene, &mf_bond_table,
-                                                 NULL};
-static const struct bonded_law *const angles[] = {&mf_angle_harmonic, &mf_angle_cosine,
-                                                  &mf_angle_cosine_squared, &mf_angle_table, NULL};
+static const struct bonded_law *const bonds[] = {&mf_bond_harmonic, &mf_bond_fene,
+                                                 &mf_bonded_table_bond, NULL};
+static const struct bonded_law *const angles[] = {
+    &mf_angle_harmonic, &mf_angle_cosine, &mf_angle_cosine_squared, &mf_bonded_table_angle, NULL};
 static const struct bonded_law *const dihedrals[] = {
-    &mf_dihedral_ryckaert_bellemans, &mf_dihedral_periodic, &mf_dihedral_table, NULL};
+    &mf_dihedral_ryckaert_bellemans, &mf_dihedral_periodic, &mf_bonded_table_dihedral, NULL};
 
 const struct bonded_law *const *const mf_bonded_laws[BONDED_KINDS] = {bonds, angles, dihedrals};
 

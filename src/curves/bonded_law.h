@@ -50,8 +50,8 @@ double mf_bonded_longest(const struct bonded_curve *curve);
 
 #define BONDED_RADIANS (M_PI / 180) ///< of a degree
 
-extern const struct bonded_law mf_bond_harmonic, mf_bond_fene, mf_bond_table;
+extern const struct bonded_law mf_bond_harmonic, mf_bond_fene, mf_bonded_table_bond;
 extern const struct bonded_law mf_angle_harmonic, mf_angle_cosine, mf_angle_cosine_squared,
-    mf_angle_table;
+    mf_bonded_table_angle;
 extern const struct bonded_law mf_dihedral_ryckaert_bellemans, mf_dihedral_periodic,
-    mf_dihedral_table;
+    mf_bonded_table_dihedral;

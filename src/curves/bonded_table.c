@@ -47,20 +47,21 @@ static enum status check_points(const struct bonded_curve *curve, const double *
             return mf_status_fail(STATUS_BAD_INPUT, "the first column does not grow at point %zu",
                                   k + 1);
     const double span = q[count - 1] - q[0];
-    if (curve->law == &mf_dihedral_table && fabs(span - 360) > 360 * rounding)
+    if (curve->law == &mf_bonded_table_dihedral && fabs(span - 360) > 360 * rounding)
         return mf_status_fail(STATUS_BAD_INPUT, "a dihedral's table spans 360 degrees, not %g",
                               span);
-    if (curve->law == &mf_dihedral_table &&
+    if (curve->law == &mf_bonded_table_dihedral &&
         fabs(energy[count - 1] - energy[0]) > rounding * (1 + fabs(energy[0])))
         return mf_status_fail(STATUS_BAD_INPUT,
                               "the ends of a dihedral's table are the same angle and have the "
                               "energies %g and %g",
                               energy[0], energy[count - 1]);
-    if (curve->law == &mf_angle_table && q[count - 1] < 7) // 2 pi, and no angle of a molecule
+    if (curve->law == &mf_bonded_table_angle &&
+        q[count - 1] < 7) // 2 pi, and no angle of a molecule
         return mf_status_fail(STATUS_BAD_INPUT,
                               "the angles end at %g, as if in radians; they are in degrees",
                               q[count - 1]);
-    if (curve->law == &mf_angle_table && (q[0] < 0 || q[count - 1] > 180 * (1 + rounding)))
+    if (curve->law == &mf_bonded_table_angle && (q[0] < 0 || q[count - 1] > 180 * (1 + rounding)))
         return mf_status_fail(STATUS_BAD_INPUT, "angles are 0 to 180 degrees, not %g to %g", q[0],
                               q[count - 1]);
     return STATUS_OK;
@@ -90,7 +91,7 @@ enum status mf_bonded_table_set_points(struct bonded_curve *curve, const double 
     gsl_spline *spline = NULL;
     double *values = NULL;
     TRY(check_points(curve, q, energy, count));
-    p->periodic = curve->law == &mf_dihedral_table;
+    p->periodic = curve->law == &mf_bonded_table_dihedral;
     NEW_ARRAY(values, count);
     for (size_t k = 0; k < count; k++)
         values[k] = p->periodic && k + 1 == count ? energy[0] : energy[k];
@@ -99,7 +100,7 @@ enum status mf_bonded_table_set_points(struct bonded_curve *curve, const double 
         gsl_spline_alloc(p->periodic ? gsl_interp_cspline_periodic : gsl_interp_cspline, count);
     if (spline == NULL || gsl_spline_init(spline, q, values, count) != 0)
         CHECK(mf_status_fail(STATUS_NO_MEMORY, "no memory for a table of %zu points", count));
-    fill_grid(p, spline, curve->law == &mf_bond_table ? 1 : BONDED_RADIANS);
+    fill_grid(p, spline, curve->law == &mf_bonded_table_bond ? 1 : BONDED_RADIANS);
 done:
     gsl_spline_free(spline);
     mf_memory_free(values);
@@ -124,8 +125,9 @@ TABLE_FIELDS(dihedral_fields,
                                       .evaluate = evaluate,                                        \
                                       .rest = rest,                                                \
                                       .clear = clear}
-TABLE(mf_bond_table, bond_fields,
+TABLE(mf_bonded_table_bond, bond_fields,
       "cubic spline through the points of a file, straight lines beyond its ends");
-TABLE(mf_angle_table, angle_fields,
+TABLE(mf_bonded_table_angle, angle_fields,
       "cubic spline through the points of a file, straight lines beyond its ends");
-TABLE(mf_dihedral_table, dihedral_fields, "periodic cubic spline through the points of a file");
+TABLE(mf_bonded_table_dihedral, dihedral_fields,
+      "periodic cubic spline through the points of a file");

@@ -14,7 +14,8 @@ struct bonded_table {
 };
 
 static inline bool bonded_is_table(const struct bonded_law *law) {
-    return law == &mf_bond_table || law == &mf_angle_table || law == &mf_dihedral_table;
+    return law == &mf_bonded_table_bond || law == &mf_bonded_table_angle ||
+           law == &mf_bonded_table_dihedral;
 }
 
 /// Give a curve of such a law its points: a cubic spline through them, natural or, of a dihedral,

@@ -49,7 +49,7 @@ const struct field mf_scene_chain_fields[] = {
 struct reading {
     struct scene_molecules *molecules;
     struct composition *composition;
-    struct json_object *object;
+    struct json_object object;
     struct topology_kind kind;
     struct scene_molecule told;
     bool used[TOPOLOGY_ORDERS][MOLECULES_MOST_GROUPS];
@@ -151,7 +151,7 @@ done:
 }
 
 static enum status read_chain(struct reading *reading) {
-    struct json_object object = mf_json_child(reading->object, "chain", true);
+    struct json_object object = mf_json_child(&reading->object, "chain", true);
     struct told_chain chain;
     if (object.item == NULL)
         return STATUS_OK;
@@ -180,7 +180,7 @@ static enum status read_terms(struct reading *reading, int order) {
     enum status status = STATUS_OK;
     const struct molecules *molecules = &reading->molecules->molecules;
     struct topology_kind *kind = &reading->kind;
-    struct json_object object = mf_json_child(reading->object, mf_scene_group_keys[order], false);
+    struct json_object object = mf_json_child(&reading->object, mf_scene_group_keys[order], false);
     const size_t beads = (size_t)topology_beads(order);
     int *rows = NULL;
     size_t all = 0;
@@ -243,9 +243,9 @@ static int reach_of(const struct topology_kind *kind) {
 static void enter_kind(struct reading *reading, size_t faults) {
     struct topology *topology = &reading->molecules->molecules.topology;
     struct topology_kind *kind = &reading->kind;
-    const struct json_document *document = reading->object->document;
+    const struct json_document *document = reading->object.document;
     if (mf_json_fault_count(document) == faults && mf_topology_check(kind) != STATUS_OK)
-        mf_json_fault(reading->object, NULL, "%s", mf_status_message());
+        mf_json_fault(&reading->object, NULL, "%s", mf_status_message());
     if (mf_json_fault_count(document) > faults) {
         mf_topology_kind_clear(kind);
         return;
@@ -259,28 +259,28 @@ static void enter_kind(struct reading *reading, size_t faults) {
 
 static enum status read_kind(struct reading *reading, struct json_object *molecules,
                              const char *name) {
-    struct json_object object = mf_json_child(molecules, name, true);
+    struct json_object *object = &reading->object;
     const size_t faults = mf_json_fault_count(molecules->document);
+    enum status status = STATUS_OK;
     struct told told;
-    if (object.item == NULL)
+    *object = mf_json_child(molecules, name, true);
+    if (object->item == NULL)
         return STATUS_OK;
-    reading->object = &object;
     reading->kind = (struct topology_kind){0};
     reading->told = (struct scene_molecule){.group = {-1, -1, -1}};
-    mf_json_fields(&object, mf_scene_molecule_fields, &told);
+    mf_json_fields(object, mf_scene_molecule_fields, &told);
     snprintf(reading->kind.name, sizeof reading->kind.name, "%s", name);
     reading->kind.count = told.count;
-    enum status status = STATUS_OK;
-    if (mf_json_has(&object, "chain")) {
+    if (mf_json_has(object, "chain")) {
         status = read_chain(reading);
     } else {
-        status = read_beads(reading, &object);
+        status = read_beads(reading, object);
         for (int order = 0; order < TOPOLOGY_ORDERS && status == STATUS_OK; order++)
             status = read_terms(reading, order);
     }
     reading->kind.exclude =
         told.exclude == AS_FAR_AS_TERMS ? reach_of(&reading->kind) : (int)told.exclude;
-    mf_json_finish(&object);
+    mf_json_finish(object);
     enter_kind(reading, faults);
     return status;
 }

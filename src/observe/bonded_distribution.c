@@ -252,7 +252,7 @@ static void explain(const struct simulation_setup *setup, int order, const char 
         .figure = OBSERVABLE_FIGURE_OF_GROUPS,                                                     \
     }
 
-DISTRIBUTION(mf_bond_lengths, TOPOLOGY_BOND, "bond_lengths", "bond lengths", "bond_lengths.tsv");
-DISTRIBUTION(mf_bond_angles, TOPOLOGY_ANGLE, "bond_angles", "bond angles", "bond_angles.tsv");
-DISTRIBUTION(mf_dihedral_angles, TOPOLOGY_DIHEDRAL, "dihedral_angles", "dihedral angles",
+DISTRIBUTION(mf_bonded_lengths, TOPOLOGY_BOND, "bond_lengths", "bond lengths", "bond_lengths.tsv");
+DISTRIBUTION(mf_bonded_angles, TOPOLOGY_ANGLE, "bond_angles", "bond angles", "bond_angles.tsv");
+DISTRIBUTION(mf_bonded_dihedrals, TOPOLOGY_DIHEDRAL, "dihedral_angles", "dihedral angles",
              "dihedral_angles.tsv");

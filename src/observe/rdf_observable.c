@@ -316,7 +316,7 @@ static const struct field apart_fields[] = {
 static const char *const apart_files[] = {"intermolecular_rdf.tsv", "intermolecular_rdf_*-*.tsv",
                                           NULL};
 
-const struct observable mf_intermolecular_rdf = {
+const struct observable mf_rdf_intermolecular = {
     .name = "intermolecular_rdf",
     .summary = "g(r) of beads of different molecules alone, normalised as that of all",
     .fields = apart_fields,

@@ -109,6 +109,14 @@ static void test_distributions_are_normalised_and_lie_where_the_laws_are(void **
         assert_close(sum, 1, 1e-6);
         assert_close(mean, expected[n].rest, expected[n].tolerance);
     }
+    // Without its Jacobian the distribution is as symmetric about 120 degrees as the law: bins of 6
+    // degrees around 96 and 144, with some 600 counts each. With it they differ by ln 1.7.
+    double boltzmann[30];
+    assert_int_equal(read_column("out/bond_angles.tsv", 3, boltzmann, 30), 30);
+    const double below = boltzmann[15] + boltzmann[16] + boltzmann[17];
+    const double above = boltzmann[22] + boltzmann[23] + boltzmann[24];
+    print_message("angles below and above 120 degrees: %g and %g\n", below, above);
+    assert_close(log(below / above), 0, 0.3);
     // The rings' first and last bead are bonded: their distance is a bond length, below 1.5.
     double ring[60];
     assert_int_equal(read_column("out/molecule_sizes.tsv", 4, ring, 60), 60);
