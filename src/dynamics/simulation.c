@@ -5,6 +5,7 @@
 #include "base/interrupt.h"
 #include "base/visible.h"
 #include "dynamics/relax.h"
+#include "dynamics/relax_soft.h"
 #include "dynamics/simulation_place.h"
 #include "dynamics/unstable.h"
 #include "forces/molecules.h"
@@ -163,6 +164,8 @@ enum status mf_simulation_init(struct simulation *simulation, const struct simul
     CHECK(mf_simulation_place(simulation, start));
     CHECK(add_interactions(simulation));
     CHECK(mf_neighbours_sort_and_build(&simulation->neighbours, &simulation->particles));
+    if (molecules && setup->placement.kind != PLACEMENT_FILE)
+        CHECK(mf_relax_soft(simulation));
     if (molecules ? setup->placement.kind != PLACEMENT_FILE
                   : setup->placement.kind == PLACEMENT_RANDOM && setup->potential)
         CHECK(mf_relax_overlaps(simulation));
