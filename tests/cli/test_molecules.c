@@ -109,14 +109,6 @@ static void test_distributions_are_normalised_and_lie_where_the_laws_are(void **
         assert_close(sum, 1, 1e-6);
         assert_close(mean, expected[n].rest, expected[n].tolerance);
     }
-    // Without its Jacobian the distribution is as symmetric about 120 degrees as the law: bins of 6
-    // degrees around 96 and 144, with some 600 counts each. With it they differ by ln 1.7.
-    double boltzmann[30];
-    assert_int_equal(read_column("out/bond_angles.tsv", 3, boltzmann, 30), 30);
-    const double below = boltzmann[15] + boltzmann[16] + boltzmann[17];
-    const double above = boltzmann[22] + boltzmann[23] + boltzmann[24];
-    print_message("angles below and above 120 degrees: %g and %g\n", below, above);
-    assert_close(log(below / above), 0, 0.3);
     // The rings' first and last bead are bonded: their distance is a bond length, below 1.5.
     double ring[60];
     assert_int_equal(read_column("out/molecule_sizes.tsv", 4, ring, 60), 60);
@@ -125,6 +117,35 @@ static void test_distributions_are_normalised_and_lie_where_the_laws_are(void **
     RUN_PROGRAM(&result, "simulate", "scene.json", "--explain");
     assert_contains(result.out, "molecules                          on ");
     assert_contains(result.out, "bond angles                        on ");
+}
+
+/// A free joint prefers no direction: p(theta) is sin(theta)/2 a radian, and flat without its
+/// Jacobian. 400 trimers of 40 samples leave an error of 3 % in the two rarest of nine bins, of 6 %
+/// of the angles each.
+static void test_a_free_joint_has_the_distribution_of_a_sphere(void **state) {
+    static struct run_program_result result;
+    small_inputs_write(
+        *state, "joint.json",
+        "{\"density\": 1, \"time_step\": 0.002, \"bonds\": {" BACKBONE "},\n"
+        "\"angles\": {\"free\": {\"law\": \"harmonic\", \"k\": 0}}, \"molecules\": {\"trimer\":\n"
+        "{\"count\": 400, \"chain\": {\"type\": \"A\", \"length\": 3, \"bond\": \"backbone\",\n"
+        "\"angle\": \"free\"}}}, \"dynamics\": {\"integrator\": \"brownian\"}, \"rdf\":\n"
+        "{\"range\": 2}, \"bond_angles\": {\"bins\": 9},\n"
+        "\"measure\": {\"equilibration\": 2000, \"samples\": 40, \"every\": 200}}\n",
+        NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "joint.json", "-o", "joint");
+    run_program_assert_code(&result, 0);
+    double theta[9], p[9], flat[9], mean = 0;
+    assert_int_equal(read_column("joint/bond_angles.tsv", 0, theta, 9), 9);
+    assert_int_equal(read_column("joint/bond_angles.tsv", 1, p, 9), 9);
+    assert_int_equal(read_column("joint/bond_angles.tsv", 3, flat, 9), 9);
+    for (int k = 0; k < 9; k++)
+        mean += flat[k] / 9;
+    for (int k = 0; k < 9; k++) {
+        const double exact = 0.5 * sin(theta[k] * M_PI / 180) * M_PI / 180;
+        assert_close_relative(p[k], exact, 0.15);
+        assert_close_relative(flat[k], mean, 0.15);
+    }
 }
 
 /// Snapshots tell the molecules, and a run can begin where another ended.
@@ -290,6 +311,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(test_molecules_go_on_with_the_same_bits),
         TEST(test_distributions_are_normalised_and_lie_where_the_laws_are),
+        TEST(test_a_free_joint_has_the_distribution_of_a_sphere),
         TEST(test_configurations_carry_molecules_on),
         TEST(test_sizes_of_a_rod_are_those_of_geometry),
         TEST(test_molecules_that_cannot_be_are_refused_in_one_line),
