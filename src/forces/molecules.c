@@ -21,6 +21,10 @@ struct state {
     uint32_t *first_of; ///< shape [particles], by id: the molecule whose first bead that is
     uint32_t *sequence; ///< shape [molecules]: in the order of the places of their first beads
     int blocks;
+    size_t most_beads; ///< of a molecule
+    uint32_t *whole;   ///< shape [blocks, most_beads]: places of the beads of one molecule
+    /// Terms of each group in a molecule of each kind.
+    size_t terms[TOPOLOGY_MOST_KINDS][TOPOLOGY_ORDERS][MOLECULES_MOST_GROUPS];
     int32_t *place[TOPOLOGY_ORDERS]; ///< shape [terms, beads], of one group after the other
     /// Where terms of a group and block begin; they end where the next block's begin.
     size_t start[TOPOLOGY_ORDERS][MOLECULES_MOST_GROUPS][MOST_BLOCKS + 1];
@@ -64,11 +68,11 @@ enum status mf_molecules_check(const struct molecules *molecules, const struct b
     return STATUS_OK;
 }
 
-static const struct topology_kind *kind_of(const struct topology *topology, uint32_t molecule) {
+static int kind_of(const struct topology *topology, uint32_t molecule) {
     int k = 0;
     while (k + 1 < topology->kinds && molecule >= topology->kind[k + 1].first)
         k++;
-    return &topology->kind[k];
+    return k;
 }
 
 static size_t all_terms(const struct topology *topology, int order) {
@@ -76,6 +80,17 @@ static size_t all_terms(const struct topology *topology, int order) {
     for (int k = 0; k < topology->kinds; k++)
         terms += (size_t)topology->kind[k].terms[order] * (size_t)topology->kind[k].count;
     return terms;
+}
+
+static void count_terms(struct state *state, const struct topology *topology) {
+    for (int k = 0; k < topology->kinds; k++) {
+        const struct topology_kind *kind = &topology->kind[k];
+        if ((size_t)kind->beads > state->most_beads)
+            state->most_beads = (size_t)kind->beads;
+        for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+            for (int t = 0; t < kind->terms[order]; t++)
+                state->terms[k][order][kind->term[order][t].group]++;
+    }
 }
 
 static enum status begin(const void *parameters, void *own, const struct particles *particles) {
@@ -88,6 +103,8 @@ static enum status begin(const void *parameters, void *own, const struct particl
     state->orders = particles->orders - 1; // not this one: places are not known
     const int64_t blocks = topology->molecules / FEWEST_IN_BLOCK;
     state->blocks = blocks < 1 ? 1 : blocks < MOST_BLOCKS ? (int)blocks : MOST_BLOCKS;
+    count_terms(state, topology);
+    NEW_ARRAY(state->whole, (size_t)state->blocks * state->most_beads);
     NEW_ARRAY(state->first_of, topology->particles);
     NEW_ARRAY(state->sequence, topology->molecules);
     for (int order = 0; order < TOPOLOGY_ORDERS; order++)
@@ -106,6 +123,7 @@ static void clear(void *own) {
     struct state *state = own;
     mf_memory_free(state->first_of);
     mf_memory_free(state->sequence);
+    mf_memory_free(state->whole);
     for (int order = 0; order < TOPOLOGY_ORDERS; order++)
         mf_memory_free(state->place[order]);
 }
@@ -118,12 +136,12 @@ static size_t first_in_block(const struct state *state, int block) {
 
 /// How many terms of each group a block has, at the place behind its own.
 static void count_block(struct state *state, int block) {
-    const struct topology *topology = &state->molecules->topology;
+    const struct molecules *molecules = state->molecules;
     for (size_t n = first_in_block(state, block); n < first_in_block(state, block + 1); n++) {
-        const struct topology_kind *kind = kind_of(topology, state->sequence[n]);
+        const int k = kind_of(&molecules->topology, state->sequence[n]);
         for (int order = 0; order < TOPOLOGY_ORDERS; order++)
-            for (int t = 0; t < kind->terms[order]; t++)
-                state->start[order][kind->term[order][t].group][block + 1]++;
+            for (int g = 0; g < molecules->groups[order]; g++)
+                state->start[order][g][block + 1] += state->terms[k][order][g];
     }
 }
 
@@ -156,28 +174,38 @@ struct sweep {
     struct bonded_sums sums[MOST_BLOCKS];
 };
 
-/// Write down the places of a block's terms.
+/// Write down the places of a molecule's terms, each group's from `next` on.
+static void place_molecule(const struct state *state, const struct topology_kind *kind,
+                           const uint32_t *whole,
+                           size_t next[TOPOLOGY_ORDERS][MOLECULES_MOST_GROUPS]) {
+    for (int order = 0; order < TOPOLOGY_ORDERS; order++) {
+        const int beads = topology_beads(order);
+        for (int t = 0; t < kind->terms[order]; t++) {
+            const struct topology_term *term = &kind->term[order][t];
+            int32_t *to = state->place[order] + next[order][term->group]++ * (size_t)beads;
+            for (int k = 0; k < beads; k++)
+                to[k] = (int32_t)whole[term->bead[k]];
+        }
+    }
+}
+
 static void place_blocks(void *context, size_t begin_block, size_t end_block) {
     const struct sweep *sweep = context;
     const struct state *state = sweep->state;
+    const struct topology *topology = &state->molecules->topology;
     const uint32_t *place = sweep->pass->particles->place;
     for (int block = (int)begin_block; block < (int)end_block; block++) {
+        uint32_t *whole = state->whole + (size_t)block * state->most_beads;
         size_t next[TOPOLOGY_ORDERS][MOLECULES_MOST_GROUPS];
         for (int order = 0; order < TOPOLOGY_ORDERS; order++)
             for (int g = 0; g < state->molecules->groups[order]; g++)
                 next[order][g] = state->start[order][g][block];
         for (size_t n = first_in_block(state, block); n < first_in_block(state, block + 1); n++) {
             const struct topology_kind *kind =
-                kind_of(&state->molecules->topology, state->sequence[n]);
-            const int64_t m = state->sequence[n] - kind->first;
-            for (int order = 0; order < TOPOLOGY_ORDERS; order++)
-                for (int t = 0; t < kind->terms[order]; t++) {
-                    const struct topology_term *term = &kind->term[order][t];
-                    const int beads = topology_beads(order);
-                    int32_t *to = state->place[order] + next[order][term->group]++ * (size_t)beads;
-                    for (int k = 0; k < beads; k++)
-                        to[k] = (int32_t)place[topology_id(kind, m, term->bead[k])];
-                }
+                &topology->kind[kind_of(topology, state->sequence[n])];
+            for (int bead = 0; bead < kind->beads; bead++)
+                whole[bead] = place[topology_id(kind, state->sequence[n] - kind->first, bead)];
+            place_molecule(state, kind, whole, next);
         }
     }
 }
