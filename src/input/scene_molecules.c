@@ -296,7 +296,7 @@ static void check_use(const struct reading *reading, struct json_object *scene) 
                               mf_topology_order_names[order]);
     }
     const struct composition *composition = reading->composition;
-    for (int type = 0; type < composition->types; type++)
+    for (int type = 0; type < composition->types && molecules->topology.kinds > 0; type++)
         if (composition->count[type] < 2)
             mf_json_fault(scene, "molecules",
                           "a type has at least 2 beads in all molecules and alone, and \"%s\" has "
