@@ -71,6 +71,10 @@ static const struct inner scene_objects[] = {
     {"dissipative_transverse", "{\"law\": …}, the friction weight across pairs; likewise",
      "dissipative"},
     {"memory", "{\"slow\": {…}, …}: friction that remembers, modes under names of yours", "memory"},
+    {"molecules", "{\"hexane\": {…}, …}: kinds of molecules under names of yours", "molecule"},
+    {"bonds", "{\"backbone\": {\"law\": …}, …}: groups of bonds under names of yours", "bonds"},
+    {"angles", "the same of angles", "angles"},
+    {"dihedrals", "the same of dihedrals", "dihedrals"},
     {"interactions", "what acts beside the pairs: {\"harmonic-trap\": {…}, …}", "interactions"},
     {"dynamics",
      "{\"integrator\": …} and its numbers; without it \"aboba\" if there is friction, else "
@@ -78,6 +82,15 @@ static const struct inner scene_objects[] = {
      "dynamics"},
     {"units", "of a scene in reduced units: physical ones for the results beside", "scale"},
     {"measure", "when to sample; this and observables in a scene file only", "measure"},
+    {NULL, NULL, NULL},
+};
+
+static const struct inner molecule_objects[] = {
+    {"chain", "the beads one after the other; in its place \"beads\": [\"A\", \"B\", …] and",
+     "chain"},
+    {"bonds", "{\"backbone\": [[1, 2], …], …}: the beads of each bond, from 1 on", "bonds"},
+    {"angles", "the same of angles, [[1, 2, 3], …]", "angles"},
+    {"dihedrals", "the same of dihedrals, [[1, 2, 3, 4], …]", "dihedrals"},
     {NULL, NULL, NULL},
 };
 
@@ -100,7 +113,7 @@ static const struct {
     {"run", run_objects},           {"scene", scene_objects},
     {"unknowns", unknowns_objects}, {"potential", potential_objects},
     {"omega", omega_objects},       {"map", map_objects},
-    {"memory", memory_objects},
+    {"memory", memory_objects},     {"molecule", molecule_objects},
 };
 
 static const struct topic fixed_topics[] = {
@@ -117,6 +130,8 @@ static const struct topic fixed_topics[] = {
      "memory",
      "a mode of \"memory\" of a scene: friction that remembers",
      {mf_scene_memory_fields}},
+    {"files", "molecule", "a kind of \"molecules\" of a scene", {mf_scene_molecule_fields}},
+    {"files", "chain", "\"chain\" of a molecule", {mf_scene_chain_fields}},
     {"files", "measure", "\"measure\" of a scene file: when to sample", {mf_measure_plan_fields}},
     {"files",
      "units",
@@ -192,6 +207,12 @@ size_t mf_describe_topics(struct topic topics[DESCRIBE_MOST_TOPICS]) {
                                          {mf_observables[k]->fields}};
     n = add_curves(topics, n, "conservative", mf_curve_potentials);
     n = add_curves(topics, n, "dissipative", mf_curve_omegas);
+    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+        for (size_t k = 0; mf_bonded_laws[order][k]; k++)
+            topics[n++] = (struct topic){mf_scene_group_keys[order],
+                                         mf_bonded_laws[order][k]->name,
+                                         mf_bonded_laws[order][k]->summary,
+                                         {mf_bonded_laws[order][k]->fields}};
     for (size_t k = 0; mf_interaction_list[k]; k++)
         topics[n++] = (struct topic){"interactions",
                                      mf_interaction_list[k]->name,

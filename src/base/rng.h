@@ -22,7 +22,8 @@ enum rng_stream {
     RNG_VERIFICATION,  ///< seeds of the verification simulations
     RNG_MEAN_VELOCITY, ///< of a test of velocities; counters: step
     RNG_REMEASUREMENT, ///< seeds of fresh measurements in a fit: candidate, number
-    RNG_MIXING,        ///< which sites of a lattice get which type
+    RNG_MIXING,        ///< which sites of a lattice get which type; of molecules that grow:
+                       ///< counters: molecule + 1, bead
     RNG_COLLISIONS,    ///< with a heat bath; counters: trajectory, particle id
     RNG_BROWNIAN,      ///< kicks of an integrator without velocities; counters: step, particle id
     RNG_SOLVENT,       ///< of collision dynamics; counters: step, cell or number, what it is for

@@ -29,7 +29,7 @@ static const char *const precisions[MOST_PRECISIONS] = {"mixed", "double"};
 /// The scenes that ship with the program.
 static const char scenes_folder[] = "tests/bench/scenes";
 static const char *const shipped[] = {"thesis", "thesis-conservative", "standard-dpd",
-                                      "lennard-jones"};
+                                      "lennard-jones", "chains"};
 enum { SHIPPED = sizeof shipped / sizeof *shipped };
 
 struct run {

@@ -106,6 +106,9 @@ static enum status time_all(const struct simulation_setup *setup, int threads) {
 enum status mf_bench_samplers(const char *file, const struct run_options *common) {
     struct bench_scene scene = {0};
     enum status status = mf_bench_scene_read(&scene, file, NULL, common);
+    if (status == STATUS_OK && scene.scene.setup.interactions > 0)
+        status = mf_status_fail(STATUS_BAD_INPUT, "%s: samplers know pairs alone, not \"%s\"", file,
+                                scene.scene.setup.interaction[0].kind->name);
     if (status == STATUS_OK)
         status = time_all(&scene.scene.setup, common->has_threads ? common->threads : 1);
     mf_scene_clear(&scene.scene);

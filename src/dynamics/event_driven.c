@@ -3,6 +3,7 @@
 
 #include "base/clock.h"
 #include "dynamics/hard_start.h"
+#include "forces/molecules.h"
 
 static const struct event_driven_parameters *parameters_of(const struct simulation *simulation) {
     return simulation->setup.integrator_parameters;
@@ -24,6 +25,8 @@ static enum status check(const struct simulation_setup *setup, int walls) {
         return refuse("conservative");
     if (setup->omega)
         return refuse("dissipative");
+    if (mf_molecules_find(setup->interaction, setup->interactions))
+        return refuse("molecules");
     if (setup->interactions > 0)
         return refuse("interactions");
     if (walls >> setup->box.dimensions)

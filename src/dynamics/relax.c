@@ -37,13 +37,10 @@ static void shift(struct particles *particles, double enough, double cap) {
     }
 }
 
-enum status mf_relax_overlaps(struct simulation *simulation) {
+enum status mf_relax_downhill(struct simulation *simulation, double enough) {
     struct particles *particles = &simulation->particles;
-    const double enough = thermal_force(&simulation->setup);
     const double spacing = pow(mf_particles_density(particles), -1.0 / particles->box.dimensions);
     TRY(mf_simulation_compute_potential(simulation));
-    if (!(mf_particles_largest_force(particles) > overlap * enough))
-        return STATUS_OK;
     for (int step = 0; step < MOST_STEPS; step++) {
         shift(particles, enough, first_shift * spacing * (1 - (double)step / MOST_STEPS));
         TRY(mf_simulation_compute_potential(simulation));
@@ -51,4 +48,12 @@ enum status mf_relax_overlaps(struct simulation *simulation) {
             break;
     }
     return STATUS_OK;
+}
+
+enum status mf_relax_overlaps(struct simulation *simulation) {
+    const double enough = thermal_force(&simulation->setup);
+    TRY(mf_simulation_compute_potential(simulation));
+    if (!(mf_particles_largest_force(&simulation->particles) > overlap * enough))
+        return STATUS_OK;
+    return mf_relax_downhill(simulation, enough);
 }

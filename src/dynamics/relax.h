@@ -11,3 +11,7 @@
 /// number of threads. The forces are then those of the potential alone. Fails: NO_MEMORY, as
 /// mf_simulation_compute_potential. Tested: test_relax.
 enum status mf_relax_overlaps(struct simulation *simulation) MUST_USE;
+
+/// Shift all particles along their forces, by a few hundredths of their mean spacing at most, until
+/// none is above `enough` [k_B T_0/λ], or 500 times. Fails: as above.
+enum status mf_relax_downhill(struct simulation *simulation, double enough) MUST_USE;

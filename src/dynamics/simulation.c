@@ -5,57 +5,11 @@
 #include "base/interrupt.h"
 #include "base/visible.h"
 #include "dynamics/relax.h"
+#include "dynamics/relax_soft.h"
+#include "dynamics/simulation_place.h"
 #include "dynamics/unstable.h"
+#include "forces/molecules.h"
 #include "system/orientation.h"
-
-/// Orientations, if an interaction is about them.
-static enum status give_orientations(struct simulation *simulation) {
-    const struct simulation_setup *setup = &simulation->setup;
-    const struct interaction *oriented = mf_simulation_oriented(setup);
-    if (oriented == NULL)
-        return STATUS_OK;
-    if (setup->box.dimensions != 2)
-        return mf_status_fail(STATUS_BAD_INPUT,
-                              "interactions.%s: orientations are of two dimensions, not %d",
-                              oriented->name, setup->box.dimensions);
-    if (setup->integrator->orientation_mobility == NULL)
-        return mf_status_fail(STATUS_BAD_INPUT,
-                              "interactions.%s: \"%s\" turns no orientations; use \"brownian\"",
-                              oriented->name, setup->integrator->name);
-    return mf_orientation_give(&simulation->particles, setup->seed);
-}
-
-static enum status place(struct simulation *simulation, const struct simulation_start *start) {
-    const struct simulation_setup *setup = &simulation->setup;
-    struct particles *particles = &simulation->particles;
-    switch ((enum placement_kind)setup->placement.kind) {
-    case PLACEMENT_LATTICE:
-        mf_placement_lattice(particles, setup->placement.jitter, setup->seed);
-        if (composition_is_mixed(&setup->composition))
-            mf_placement_mix(particles, setup->seed);
-        break;
-    case PLACEMENT_RANDOM:
-        TRY(mf_placement_random(particles, setup->placement.separation, setup->seed));
-        break;
-    case PLACEMENT_FILE:
-        for (int d = 0; d < setup->box.dimensions; d++)
-            memcpy(particles->position[d], start->position[d],
-                   particles->count * sizeof *particles->position[d]);
-        break;
-    }
-    TRY(mf_attributes_give(particles, setup->attribute, &setup->composition, setup->seed));
-    TRY(give_orientations(simulation));
-    simulation->velocities_drawn = start == NULL || start->velocity[0] == NULL;
-    if (simulation->velocities_drawn) {
-        mf_particles_draw_velocities(particles, (enum particles_speeds)setup->placement.speeds,
-                                     setup->temperature, setup->seed);
-        return STATUS_OK;
-    }
-    for (int d = 0; d < setup->box.dimensions; d++)
-        memcpy(particles->velocity[d], start->velocity[d],
-               particles->count * sizeof *particles->velocity[d]);
-    return STATUS_OK;
-}
 
 double mf_simulation_range(const struct simulation_setup *setup) {
     const struct pair_law law = {.potential = setup->potential, .omega = setup->omega};
@@ -192,6 +146,9 @@ enum status mf_simulation_init(struct simulation *simulation, const struct simul
     CHECK(mf_particles_init(&simulation->particles, &setup->box, count));
     if (simulation->law.precision == PAIR_DOUBLE)
         CHECK(mf_particles_keep_precise(&simulation->particles));
+    const struct molecules *molecules = mf_molecules_find(setup->interaction, setup->interactions);
+    if (molecules)
+        CHECK(mf_particles_join(&simulation->particles, &molecules->topology));
     mf_crew_init(&simulation->crew, setup->threads > 1 ? setup->threads : 1);
     simulation->particles.threads = simulation->crew.now;
     CHECK(mf_neighbours_init(&simulation->neighbours, NEIGHBOURS_HALF, &setup->box, count,
@@ -204,10 +161,13 @@ enum status mf_simulation_init(struct simulation *simulation, const struct simul
             mf_pair_memory_init(&simulation->memory, &setup->memory,
                                 &(struct pair_memory_scene){setup->composition, setup->temperature,
                                                             setup->time_step, setup->seed}));
-    CHECK(place(simulation, start));
+    CHECK(mf_simulation_place(simulation, start));
     CHECK(add_interactions(simulation));
     CHECK(mf_neighbours_sort_and_build(&simulation->neighbours, &simulation->particles));
-    if (setup->placement.kind == PLACEMENT_RANDOM && setup->potential)
+    if (molecules && setup->placement.kind != PLACEMENT_FILE)
+        CHECK(mf_relax_soft(simulation));
+    if (molecules ? setup->placement.kind != PLACEMENT_FILE
+                  : setup->placement.kind == PLACEMENT_RANDOM && setup->potential)
         CHECK(mf_relax_overlaps(simulation));
     CHECK(mf_simulation_compute_forces(simulation, 0));
     if (setup->integrator->begin)

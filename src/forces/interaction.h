@@ -70,9 +70,13 @@ extern const struct interaction *const mf_interaction_list[];
 /// every simulation's list. Its numbers are those of the pass.
 extern const struct interaction mf_pairs;
 
-/// How many of a list a scene can name.
+/// Bonds, angles and dihedrals of molecules (forces/molecules.h), of which a scene speaks by
+/// itself.
+extern const struct interaction mf_molecules;
+
+/// How many a scene can have: all that it can name, and molecules.
 #define INTERACTION_COUNT(record) +1
-enum { INTERACTION_MOST = INTERACTIONS(INTERACTION_COUNT) };
+enum { INTERACTION_MOST = INTERACTIONS(INTERACTION_COUNT) + 1 };
 #undef INTERACTION_COUNT
 
 /// An interaction and its numbers.

@@ -50,6 +50,8 @@ void mf_reference_forces(const struct pair_law *law, struct particles *particles
             double r_ij[3];
             const double r = separation(particles, i, j, r_ij);
             double force = 0;
+            if (mf_topology_excludes(particles->topology, particles->id[i], particles->id[j]))
+                continue;
             if (law->potential && r < law->potential->cutoff) {
                 double phi, slope;
                 const int pair = mf_composition_pair_of_ids(&law->composition, particles->id[i],

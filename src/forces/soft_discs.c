@@ -27,6 +27,10 @@ static enum status begin(const void *parameters, void *state, const struct parti
     if (mf_particles_numbers(particles, "radius") == NULL)
         return mf_status_fail(STATUS_BAD_INPUT,
                               "interactions.soft-discs: wants \"radius\" in \"particles\"");
+    if (particles->topology && particles->topology->excludes)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "interactions.soft-discs: knows no pairs that molecules exclude; "
+                              "\"exclude\": 0 leaves none out");
     CHECK(mf_soft_discs_cells_init(&own->cells, particles, particles->precise_place != NULL));
     const double reach = 2 * own->cells.of[own->cells.classes - 1].largest;
     if (mf_box_shortest(&particles->box) < 2 * reach)

@@ -73,6 +73,7 @@ static void refuse_foreign(struct json_object *scene, int unknown) {
         mf_json_refuse(scene, "dissipative_transverse",
                        "it is to be found; \"start\" in \"unknowns.omega_transverse\" takes a law "
                        "to begin with");
+    mf_json_refuse(scene, "molecules", "a fit finds the potentials of single beads alone so far");
     mf_json_refuse(scene, "seed", "it stands at the top of a run file");
     mf_json_refuse(scene, "measure", "\"method\" and \"verification\" say when a fit samples");
     for (size_t k = 0; mf_observables[k]; k++)

@@ -248,6 +248,19 @@ static void check_units(const struct scene *scene, struct json_object *object) {
             mass, atomic_mass, density);
 }
 
+/// Molecules act, if there are any and the box is large enough for them.
+static void enter_molecules(struct scene *scene, struct json_object *object) {
+    const struct molecules *molecules = &scene->molecules.molecules;
+    struct simulation_setup *setup = &scene->setup;
+    if (!scene_has_molecules(&scene->molecules))
+        return;
+    if (mf_json_fault_count(object->document) == 0 &&
+        mf_molecules_check(molecules, &setup->box) != STATUS_OK)
+        mf_json_fault(object, NULL, "%s", mf_status_message());
+    setup->interaction[setup->interactions++] =
+        (struct interaction_choice){&mf_molecules, molecules};
+}
+
 /// Friction, of pairs whose potential is known.
 static bool finds_friction_alone(int unknown) {
     return unknown && !(unknown & SCENE_FITS_POTENTIAL);
@@ -276,6 +289,7 @@ enum status mf_scene_read(struct scene *scene, struct json_object *object, int u
                              unknown & SCENE_FITS_MEMORY));
     scene->setup.memory = mf_scene_memory_law(&scene->memory);
     TRY(mf_scene_interactions_read(&scene->interactions, object, &scene->setup));
+    enter_molecules(scene, object);
     TRY(read_dynamics(scene, object, unknown));
     scene->setup.potential = scene->potential.curves ? &scene->potential.table : NULL;
     scene->setup.omega = scene->omega.curves ? &scene->omega.table : NULL;
@@ -289,6 +303,7 @@ void mf_scene_clear(struct scene *scene) {
     mf_memory_free(scene->start_values);
     mf_memory_free(scene->integrator_parameters);
     mf_scene_interactions_clear(&scene->interactions);
+    mf_scene_molecules_clear(&scene->molecules);
     *scene = (struct scene){0};
 }
 
@@ -297,6 +312,8 @@ const char *mf_scene_warning(const struct scene *scene) {
     const char *own = integrator->warning ? integrator->warning(&scene->setup) : NULL;
     if (own)
         return own;
+    if (scene->molecules.warning[0])
+        return scene->molecules.warning;
     if (mf_pair_memory_is_coarse(&scene->setup.memory, scene->setup.time_step))
         return "\"time_step\" is too long for \"memory\": beyond half of a \"time\" or of "
                "1/\"frequency\", or where a pair's friction is strong, what acts is another "
@@ -321,6 +338,7 @@ void mf_scene_write(const struct scene *scene, struct json_writer *writer) {
         top.box[d] = setup->box.length[d];
     mf_json_put_fields(writer, mf_scene_fields, &top);
     mf_scene_particles_write(scene, writer);
+    mf_scene_molecules_write(&scene->molecules, &setup->composition, writer);
     if (scene->potential.curves || finds_friction_alone(scene->unknown))
         mf_scene_law_write(&scene->potential, &setup->composition, writer, "conservative");
     if (scene->omega.curves)
@@ -342,5 +360,6 @@ void mf_scene_digest(const struct scene *scene, uint64_t *digest) {
     mf_scene_law_digest(&scene->potential, digest);
     mf_scene_law_digest(&scene->omega, digest);
     mf_scene_memory_digest(&scene->memory, digest);
+    mf_scene_molecules_digest(&scene->molecules, digest);
     mf_scene_particles_digest(scene, digest);
 }

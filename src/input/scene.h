@@ -6,6 +6,7 @@
 #include "input/scene_interactions.h"
 #include "input/scene_law.h"
 #include "input/scene_memory.h"
+#include "input/scene_molecules.h"
 
 /// What a fit looks for, and the scene therefore does not say.
 enum scene_unknown {
@@ -22,6 +23,7 @@ struct scene {
     struct scene_law potential, omega;
     struct scene_memory memory;
     struct scene_interactions interactions;
+    struct scene_molecules molecules;
     struct units units;
     struct simulation_start start; ///< arrays of a placement file
     double density;                ///< in the place of a box; 0: there is one [1/λ^d]

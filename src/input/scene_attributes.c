@@ -64,6 +64,8 @@ void mf_scene_attributes_read(struct scene *scene, struct json_object *particles
         struct attributes_source *source = &scene->setup.attribute[k];
         if (!mf_json_has(particles, kind->name))
             continue;
+        if (composition->types == 0 && mf_json_is_object(particles, kind->name))
+            continue; // the fault is one of the types
         if (composition_is_mixed(composition) && mf_json_is_object(particles, kind->name) &&
             is_by_type(particles, kind)) {
             read_types(particles, kind, composition, source);

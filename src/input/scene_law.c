@@ -12,19 +12,19 @@
 
 // One curve ---------------------------------------------------------------------------------------
 
-/// The first two columns of a file as points. Faults go to the document and leave `count` 0.
-static enum status read_columns(const char *file, const char *unit, const struct units *units,
-                                double **r, double **value, size_t *count) {
+enum status mf_scene_read_columns(const char *file, const char *const unit[2], double least,
+                                  const struct units *units, double **x, double **value,
+                                  size_t *count) {
     struct data_table table = {0};
     enum status status = STATUS_OK;
     CHECK(mf_data_table_read(&table, file, 2));
-    CHECK(mf_data_table_check_increasing(&table, file, 0, 0));
-    CHECK(mf_data_table_convert(&table, file, 0, "lambda", units));
-    CHECK(mf_data_table_convert(&table, file, 1, unit, units));
-    NEW_ARRAY(*r, table.rows);
+    CHECK(mf_data_table_check_increasing(&table, file, 0, least));
+    CHECK(mf_data_table_convert(&table, file, 0, unit[0], units));
+    CHECK(mf_data_table_convert(&table, file, 1, unit[1], units));
+    NEW_ARRAY(*x, table.rows);
     NEW_ARRAY(*value, table.rows);
     for (size_t k = 0; k < table.rows; k++) {
-        (*r)[k] = table.values[k * table.columns];
+        (*x)[k] = table.values[k * table.columns];
         (*value)[k] = table.values[k * table.columns + 1];
     }
     *count = table.rows;
@@ -69,7 +69,8 @@ static enum status load_points(struct curve *curve, const char *unit, struct jso
     }
     status = parameters->format == SAMPLED_VOTCA
                  ? read_votca(parameters->file, units, &r, &value, &count)
-                 : read_columns(parameters->file, unit, units, &r, &value, &count);
+                 : mf_scene_read_columns(parameters->file, (const char *[]){"lambda", unit}, 0,
+                                         units, &r, &value, &count);
     if (status != STATUS_OK)
         mf_json_fault(object, "file", "%s", mf_status_message());
     else if (mf_sampled_set_points(curve, r, value, count) != STATUS_OK)

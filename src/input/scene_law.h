@@ -48,3 +48,11 @@ enum status mf_scene_read_curve(struct curve *curve, struct json_object *parent,
                                 const struct curve_family *const *list,
                                 const struct units *units) MUST_USE;
 void mf_scene_write_curve(const struct curve *curve, struct json_writer *writer, const char *key);
+
+/// The first two columns of a file, of these reduced units, as points whose x grows from `least`
+/// or above.
+/// @param[out] x, value  shape [count], which the caller frees, also after a failure
+/// Fails: BAD_INPUT, IO, NO_MEMORY.
+enum status mf_scene_read_columns(const char *file, const char *const unit[2], double least,
+                                  const struct units *units, double **x, double **value,
+                                  size_t *count) MUST_USE;

@@ -117,13 +117,15 @@ static void read_count(struct scene *scene, struct json_object *particles) {
     scene->setup.composition = mf_composition_of_one(scene->setup.placement.count);
 }
 
-/// One type of a mixture and how many beads there are of it, after those that were read before.
-static void read_type(struct scene *scene, struct json_object *types, const char *name) {
+/// One type of a mixture and how many beads there are of it, `least` or more, after those that were
+/// read before.
+static void read_type(struct scene *scene, struct json_object *types, const char *name,
+                      double least) {
     struct composition *composition = &scene->setup.composition;
     struct field fields[] = {mf_placement_count_fields[0], FIELD_END};
     int64_t *count = &composition->count[composition->types];
     fields[0].name = name;
-    fields[0].minimum = 2;
+    fields[0].minimum = least;
     fields[0].offset = 0;
     mf_json_fields(types, fields, count);
     scene->setup.placement.count += *count;
@@ -133,17 +135,19 @@ static void read_type(struct scene *scene, struct json_object *types, const char
     snprintf(composition->name[composition->types++], COMPOSITION_NAME_SIZE, "%s", name);
 }
 
-/// "types": {"A": 500, "B": 300} in the place of "count".
-static void read_types(struct scene *scene, struct json_object *particles) {
+/// "types": {"A": 500, "B": 300} in the place of "count"; beside molecules they are single beads,
+/// of any number of types.
+static void read_types(struct scene *scene, struct json_object *particles, bool beside) {
     struct json_object types = mf_json_child(particles, "types", true);
+    const size_t fewest = beside ? 1 : 2;
     const size_t faults = mf_json_fault_count(types.document);
     size_t n = 0;
     for (const char *name; (name = mf_json_key(&types, n)); n++)
         if (n < COMPOSITION_MOST_TYPES)
-            read_type(scene, &types, name);
-    if (types.item && (n < 2 || n > COMPOSITION_MOST_TYPES))
+            read_type(scene, &types, name, (double)fewest);
+    if (types.item && (n < fewest || n > COMPOSITION_MOST_TYPES))
         mf_json_fault(particles, "types",
-                      "a mixture has 2 to %d types, not %zu; \"count\" is for one",
+                      "a mixture has %zu to %d types, not %zu; \"count\" is for one", fewest,
                       COMPOSITION_MOST_TYPES, n);
     if (types.item == NULL || mf_json_fault_count(types.document) > faults)
         scene->setup.composition.types = 0; // not known
@@ -157,13 +161,32 @@ static void make_box(struct scene *scene) {
         box->length[d] = pow(volume, 1.0 / box->dimensions);
 }
 
+/// How many there are, of which types: single beads, then those of molecules.
+static enum status read_beads(struct scene *scene, struct json_object *object,
+                              struct json_object *particles) {
+    const size_t faults = mf_json_fault_count(object->document);
+    const bool beside = mf_json_has(object, "molecules");
+    struct composition *composition = &scene->setup.composition;
+    if (beside && mf_json_has(particles, "count"))
+        mf_json_fault(particles, "count",
+                      "beside molecules single beads have types, as in \"types\": {\"A\": 100}");
+    else if (mf_json_has(particles, "types"))
+        read_types(scene, particles, beside);
+    else if (!beside)
+        read_count(scene, particles);
+    TRY(mf_scene_molecules_read(&scene->molecules, object, composition, &scene->units));
+    if (scene_has_molecules(&scene->molecules))
+        scene->setup.placement.count = mf_composition_particles(composition);
+    if (beside && mf_json_fault_count(object->document) > faults)
+        composition->types = 0; // not known
+    return STATUS_OK;
+}
+
 enum status mf_scene_particles_read(struct scene *scene, struct json_object *object) {
-    struct json_object particles = mf_json_child(object, "particles", true);
+    const bool required = !mf_json_has(object, "molecules");
+    struct json_object particles = mf_json_child(object, "particles", required);
     struct placement *placement = &scene->setup.placement;
-    if (mf_json_has(&particles, "types"))
-        read_types(scene, &particles);
-    else
-        read_count(scene, &particles);
+    TRY(read_beads(scene, object, &particles));
     make_box(scene);
     mf_json_fields(&particles, mf_placement_fields, placement);
     mf_scene_attributes_read(scene, &particles);
@@ -177,6 +200,26 @@ enum status mf_scene_particles_read(struct scene *scene, struct json_object *obj
         return STATUS_OK;
     }
     return read_positions(scene, &particles);
+}
+
+/// Single beads beside molecules, if there are any.
+static void write_single(const struct scene *scene, struct json_writer *writer) {
+    const struct composition *composition = &scene->setup.composition;
+    const struct topology *topology = &scene->molecules.molecules.topology;
+    int64_t single[COMPOSITION_MOST_TYPES], all = 0;
+    memcpy(single, composition->count, sizeof single);
+    for (int k = 0; k < topology->kinds; k++)
+        for (int bead = 0; bead < topology->kind[k].beads; bead++)
+            single[topology->kind[k].type[bead]] -= topology->kind[k].count;
+    for (int type = 0; type < composition->types; type++)
+        all += single[type];
+    if (all == 0)
+        return;
+    mf_json_begin(writer, "types");
+    for (int type = 0; type < composition->types; type++)
+        if (single[type] > 0)
+            mf_json_put_integer(writer, composition->name[type], single[type]);
+    mf_json_end(writer);
 }
 
 static void write_count(const struct simulation_setup *setup, struct json_writer *writer) {
@@ -193,7 +236,10 @@ static void write_count(const struct simulation_setup *setup, struct json_writer
 
 void mf_scene_particles_write(const struct scene *scene, struct json_writer *writer) {
     mf_json_begin(writer, "particles");
-    write_count(&scene->setup, writer);
+    if (scene_has_molecules(&scene->molecules))
+        write_single(scene, writer);
+    else
+        write_count(&scene->setup, writer);
     mf_json_put_fields(writer, mf_placement_fields, &scene->setup.placement);
     mf_scene_attributes_write(scene, writer);
     mf_json_end(writer);

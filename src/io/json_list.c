@@ -71,3 +71,36 @@ bool mf_json_list_texts(struct json_object *object, const char *key, const char 
     mf_json_fault(object, key, "a list of %zu texts is required", count);
     return false;
 }
+
+/// A whole number that an int holds.
+static bool read_whole(const cJSON *item, int *value) {
+    static const double largest = 1e9;
+    if (!cJSON_IsNumber(item) || !(fabs(item->valuedouble) <= largest) ||
+        item->valuedouble != floor(item->valuedouble))
+        return false;
+    *value = (int)item->valuedouble;
+    return true;
+}
+
+bool mf_json_list_rows(struct json_object *object, const char *key, int *values, size_t rows,
+                       size_t width) {
+    const cJSON *list = cJSON_GetObjectItemCaseSensitive(object->item, key), *row, *element;
+    size_t n = 0;
+    mf_json_has(object, key);
+    cJSON_ArrayForEach(row, list) {
+        size_t found = 0;
+        cJSON_ArrayForEach(element, row) {
+            if (n < rows && found < width && read_whole(element, &values[n * width + found]))
+                found++;
+        }
+        if (!cJSON_IsArray(row) || found != width || (size_t)cJSON_GetArraySize(row) != width)
+            break;
+        n++;
+    }
+    if (cJSON_IsArray(list) && n == rows && (size_t)cJSON_GetArraySize(list) == rows)
+        return true;
+    mf_json_fault(object, key,
+                  "a list of lists of %zu whole numbers is required; number %zu is none", width,
+                  n + 1);
+    return false;
+}

@@ -17,3 +17,9 @@ bool mf_json_list_numbers(struct json_object *object, const char *key, double *v
 /// @param[out] texts  shape [count], borrowed from the document
 bool mf_json_list_texts(struct json_object *object, const char *key, const char **texts,
                         size_t count);
+
+/// The list of `rows` lists of `width` whole numbers each at `key`; false and a fault if there is
+/// none.
+/// @param[out] values  shape [rows, width]
+bool mf_json_list_rows(struct json_object *object, const char *key, int *values, size_t rows,
+                       size_t width);

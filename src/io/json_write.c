@@ -168,6 +168,24 @@ void mf_json_put_quantities(struct json_writer *writer, const char *key, const c
     put(writer, key, array);
 }
 
+void mf_json_put_texts(struct json_writer *writer, const char *key, const char *const *texts,
+                       size_t count) {
+    cJSON *array = cJSON_CreateArray();
+    for (size_t k = 0; array && k < count; k++)
+        if (!cJSON_AddItemToArray(array, cJSON_CreateString(texts[k])))
+            note_problem(writer, key, "does not fit into the memory");
+    put(writer, key, array);
+}
+
+void mf_json_put_rows(struct json_writer *writer, const char *key, const int *values, size_t rows,
+                      size_t width) {
+    cJSON *array = cJSON_CreateArray();
+    for (size_t k = 0; array && k < rows; k++)
+        if (!cJSON_AddItemToArray(array, cJSON_CreateIntArray(values + k * width, (int)width)))
+            note_problem(writer, key, "does not fit into the memory");
+    put(writer, key, array);
+}
+
 static void put_file(struct json_writer *writer, const char *key, const char *file) {
     char folder[OUTPUT_PATH_SIZE], path[OUTPUT_PATH_SIZE + FIELD_TEXT_SIZE];
     if (file[0] == '/') {

@@ -43,6 +43,11 @@ void mf_json_put_numbers(struct json_writer *writer, const char *key, const doub
                          size_t count);
 void mf_json_put_quantities(struct json_writer *writer, const char *key, const char *unit,
                             const double *values, size_t count);
+void mf_json_put_texts(struct json_writer *writer, const char *key, const char *const *texts,
+                       size_t count);
+/// A list of `rows` lists of `width` whole numbers each. @param[in] values  shape [rows, width]
+void mf_json_put_rows(struct json_writer *writer, const char *key, const int *values, size_t rows,
+                      size_t width);
 
 /// Write every member that `fields` describes; FIELD_TEXT and FIELD_FILE that are empty, and
 /// FIELD_LENGTHS that are all 0 and not required, are left out. Reading the result back gives the

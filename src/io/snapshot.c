@@ -80,6 +80,13 @@ static void copy_attribute(struct snapshot *snapshot, const struct particles *pa
         }
 }
 
+static void copy_molecules(struct snapshot *snapshot, const struct topology *topology,
+                           size_t *used) {
+    double *to = add_column(snapshot, "molecule", 1, false, true, used);
+    for (size_t id = 0; id < snapshot->own; id++)
+        to[id] = (double)topology->molecule[id] + 1;
+}
+
 /// Behind the others, into the columns that are about them.
 static void copy_companions(struct snapshot *snapshot,
                             const struct snapshot_companions *companions) {
@@ -117,6 +124,7 @@ enum status mf_snapshot_take(struct snapshot *snapshot, const struct particles *
                                   .time = time};
     for (int k = 0; k < particles->attributes; k++)
         components += (size_t)particles->attribute[k].components;
+    components += particles->topology != NULL;
     snapshot->numbers = components * snapshot->count;
     snapshot->memory = mf_memory_zeroed(snapshot->numbers, sizeof(double));
     if (snapshot->memory == NULL)
@@ -126,6 +134,8 @@ enum status mf_snapshot_take(struct snapshot *snapshot, const struct particles *
     copy_axes(snapshot, particles, "force", particles->force, &used);
     for (int k = 0; k < particles->attributes; k++)
         copy_attribute(snapshot, particles, &particles->attribute[k], &used);
+    if (particles->topology)
+        copy_molecules(snapshot, particles->topology, &used);
     if (companions)
         copy_companions(snapshot, companions);
     return STATUS_OK;

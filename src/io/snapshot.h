@@ -22,8 +22,8 @@ struct snapshot_column {
     const double *values; ///< shape [components, count], by particle id
 };
 
-/// Position, velocity, force and image, and the attributes.
-enum { SNAPSHOT_MOST_COLUMNS = 5 + PARTICLES_MOST_ATTRIBUTES };
+/// Position, velocity, force and image, the attributes, and the molecule.
+enum { SNAPSHOT_MOST_COLUMNS = 6 + PARTICLES_MOST_ATTRIBUTES };
 
 /// Particles that belong to an integrator, as a solvent does.
 struct snapshot_companions {
@@ -42,7 +42,7 @@ struct snapshot {
     uint64_t step;
     double time; ///< [τ]
     /// position [λ] in the box, velocity [λ/τ], force [k_B T_0/λ], image [boxes crossed], then all
-    /// attributes by their names.
+    /// attributes by their names, then the number of the molecule, from 1 on, if there are any.
     struct snapshot_column column[SNAPSHOT_MOST_COLUMNS];
     int columns;
     double *memory; ///< shape [numbers]: all values

@@ -31,16 +31,21 @@ static void print_heading(const struct snapshot *snapshot, FILE *stream) {
         fprintf(stream, "0 %.10g\n", box->length[d]);
     if (box->dimensions == 2) // as LAMMPS has two
         fprintf(stream, "-0.5 0.5\n");
-    fprintf(stream, "ITEM: ATOMS id type x y z ix iy iz vx vy vz\n");
+    fprintf(stream, "ITEM: ATOMS id%s type x y z ix iy iz vx vy vz\n",
+            find(snapshot, "molecule") ? " mol" : "");
 }
 
 static void print(const struct snapshot *snapshot, FILE *stream) {
     const struct snapshot_column *position = find(snapshot, "position"),
                                  *image = find(snapshot, "image"),
-                                 *velocity = find(snapshot, "velocity");
+                                 *velocity = find(snapshot, "velocity"),
+                                 *molecule = find(snapshot, "molecule");
     print_heading(snapshot, stream);
     for (size_t k = 0; k < snapshot->count; k++) {
-        fprintf(stream, "%zu %d", k + 1, mf_snapshot_type(snapshot, k) + 1);
+        fprintf(stream, "%zu", k + 1);
+        if (molecule)
+            fprintf(stream, " %.0f", molecule->values[k]);
+        fprintf(stream, " %d", mf_snapshot_type(snapshot, k) + 1);
         print_vector(snapshot, position, k, stream);
         print_vector(snapshot, image, k, stream);
         print_vector(snapshot, velocity, k, stream);

@@ -45,6 +45,10 @@ static enum status begin(void *state, const void *settings, const struct simulat
                               "clusters.distance: %g is beyond %g, the range of the interactions, "
                               "for which pairs are known",
                               s->settings.distance, range);
+    if (simulation->particles.topology && simulation->particles.topology->excludes)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "clusters: pairs that molecules exclude would join none; "
+                              "\"exclude\": 0 leaves none out");
     NEW_ARRAY(s->root, s->count);
     NEW_ARRAY(s->size, s->count);
     NEW_ARRAY(s->members, s->count + 1);

@@ -309,6 +309,7 @@ static enum status search_own_list(struct etd *etd, size_t slot,
     for (int d = 0; d < particles->box.dimensions; d++)
         for (size_t k = 0; k < own->count; k++)
             own->position[d][k] = particles->position[d][order[own->id[k]]];
+    TRY(mf_particles_join(own, particles->topology));
     TRY(mf_neighbours_sort_and_build(&etd->own_list, own));
     return search_list(etd, slot, &etd->own_list, own->id);
 }

@@ -20,8 +20,10 @@ struct observable_use;
 
 /// The script that draws x, values and errors of the first file, and a target of that name.
 #define OBSERVABLE_FIGURE_OF_CURVE "curve"
+/// The script that draws all columns of the first file but errors, and what ends with _boltzmann.
+#define OBSERVABLE_FIGURE_OF_GROUPS "groups"
 
-enum { OBSERVABLES_MOST = 16, OBSERVABLE_MOST_SPANS = 8 };
+enum { OBSERVABLES_MOST = 24, OBSERVABLE_MOST_SPANS = 8 };
 
 /// Where and of what results are written.
 struct observable_results {

@@ -40,6 +40,7 @@ struct counting {
     const struct rdf_bins *bins;
     const struct composition *composition; ///< of a mixture
     double *histogram;
+    const struct topology *apart; ///< of which pairs in a molecule are left out, or NULL
 };
 
 static void count_batch(void *context, const float *squared_distances, size_t count) {
@@ -55,7 +56,7 @@ static void count_batch(void *context, const float *squared_distances, size_t co
 
 void mf_rdf_count_pairs(const struct rdf_bins *bins, const struct particles *particles,
                         const struct neighbours *neighbours, double *histogram) {
-    struct counting counting = {bins, NULL, histogram};
+    struct counting counting = {bins, NULL, histogram, NULL};
     mf_neighbours_visit_distances(neighbours, particles, mf_rdf_bins_range(bins), count_batch,
                                   &counting);
 }
@@ -68,6 +69,9 @@ static void count_batch_of(void *context, const struct neighbours_batch *batch) 
         const double place = (sqrt((double)batch->squared[k]) - bins->low) * inverse_width;
         const int pair =
             mf_composition_pair_of_ids(counting->composition, batch->id_i[k], batch->id_j[k]);
+        if (counting->apart &&
+            counting->apart->molecule[batch->id_i[k]] == counting->apart->molecule[batch->id_j[k]])
+            continue;
         if (place >= 0 && place < (double)bins->count)
             counting->histogram[(size_t)pair * bins->count + (size_t)place] += 1;
     }
@@ -76,7 +80,7 @@ static void count_batch_of(void *context, const struct neighbours_batch *batch) 
 void mf_rdf_count_pairs_of(const struct rdf_bins *bins, const struct composition *composition,
                            const struct particles *particles, const struct neighbours *neighbours,
                            double *histogram) {
-    struct counting counting = {bins, composition, histogram};
+    struct counting counting = {bins, composition, histogram, NULL};
     if (composition_is_mixed(composition))
         mf_neighbours_visit_pairs(neighbours, particles, mf_rdf_bins_range(bins), count_batch_of,
                                   &counting);
@@ -167,6 +171,7 @@ static enum status make_own_list(struct rdf *rdf, const struct particles *partic
         memcpy(rdf->own_particles.position[d], particles->position[d],
                particles->count * sizeof *particles->position[d]);
     memcpy(rdf->own_particles.id, particles->id, particles->count * sizeof *particles->id);
+    TRY(mf_particles_join(&rdf->own_particles, particles->topology));
     return mf_neighbours_sort_and_build(&rdf->own_list, &rdf->own_particles);
 }
 
@@ -203,7 +208,7 @@ static double *next_block(struct rdf *rdf) {
 }
 
 const struct pair_histogram *mf_rdf_histogram(struct rdf *rdf) {
-    if (rdf->needs_own_list)
+    if (rdf->needs_own_list || rdf->apart)
         return NULL;
     memset(rdf->counted.counts, 0,
            NEIGHBOURS_MOST_PARTS * pair_histogram_size(&rdf->counted) *
@@ -218,16 +223,25 @@ void mf_rdf_sample_counted(struct rdf *rdf) {
             histogram[k] += rdf->counted.counts[part * pair_histogram_size(&rdf->counted) + k];
 }
 
+static void count_apart(const struct rdf *rdf, const struct particles *particles,
+                        const struct neighbours *neighbours, double *histogram) {
+    struct counting counting = {&rdf->bins, &rdf->composition, histogram, rdf->apart};
+    mf_neighbours_visit_pairs(neighbours, particles, mf_rdf_bins_range(&rdf->bins), count_batch_of,
+                              &counting);
+}
+
 enum status mf_rdf_sample(struct rdf *rdf, const struct particles *particles,
                           const struct neighbours *neighbours) {
     double *histogram = next_block(rdf);
     if (rdf->needs_own_list) {
         TRY(make_own_list(rdf, particles));
-        mf_rdf_count_pairs_of(&rdf->bins, &rdf->composition, &rdf->own_particles, &rdf->own_list,
-                              histogram);
-    } else {
-        mf_rdf_count_pairs_of(&rdf->bins, &rdf->composition, particles, neighbours, histogram);
+        particles = &rdf->own_particles;
+        neighbours = &rdf->own_list;
     }
+    if (rdf->apart)
+        count_apart(rdf, particles, neighbours, histogram);
+    else
+        mf_rdf_count_pairs_of(&rdf->bins, &rdf->composition, particles, neighbours, histogram);
     return STATUS_OK;
 }
 

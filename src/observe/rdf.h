@@ -55,6 +55,7 @@ struct rdf {
     double *histogram;             ///< shape [blocks, pairs, bins.count]
     double *block_samples;         ///< shape [blocks]
     bool needs_own_list;           ///< the range exceeds that of the simulation's list
+    const struct topology *apart;  ///< count pairs of different molecules alone; NULL: all
     struct pair_histogram counted; ///< by the force pass
     struct particles own_particles;
     struct neighbours own_list;

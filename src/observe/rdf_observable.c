@@ -84,6 +84,20 @@ static enum status begin(void *state, const void *settings, const struct simulat
                              setup->potential, setup->temperature, cutoff, samples);
 }
 
+/// Of beads of different molecules, and of single ones.
+static enum status begin_apart(void *state, const void *settings,
+                               const struct simulation *simulation,
+                               const struct measure_plan *plan) {
+    struct rdf_observed *observed = state;
+    struct rdf_settings counted = *(const struct rdf_settings *)settings;
+    counted.estimator = RDF_FORCE_NOT_USED;
+    if (simulation->particles.topology == NULL)
+        return mf_status_fail(STATUS_BAD_INPUT, "intermolecular_rdf: the scene has no molecules");
+    TRY(begin(state, &counted, simulation, plan));
+    observed->counted.apart = simulation->particles.topology;
+    return STATUS_OK;
+}
+
 static void clear(void *state) {
     struct rdf_observed *observed = state;
     mf_rdf_clear(&observed->counted);
@@ -124,12 +138,19 @@ static size_t spans(void *state, struct memory_span *spans) {
     return n;
 }
 
-void mf_rdf_observable_file(const char *folder, const struct composition *composition, int pair,
-                            char *path) {
+/// Path of a table of that name, or of it and a pair type.
+static void file_of(const char *folder, const char *name, const struct composition *composition,
+                    int pair, char *path) {
     char kind[COMPOSITION_PAIR_NAME_SIZE];
     mf_composition_pair_name(composition, pair, kind);
-    snprintf(path, OUTPUT_PATH_SIZE, "%.*s/rdf%s%s.tsv",
-             OUTPUT_PATH_SIZE - COMPOSITION_PAIR_NAME_SIZE - 16, folder, kind[0] ? "_" : "", kind);
+    snprintf(path, OUTPUT_PATH_SIZE, "%.*s/%.20s%s%s.tsv",
+             OUTPUT_PATH_SIZE - COMPOSITION_PAIR_NAME_SIZE - 32, folder, name, kind[0] ? "_" : "",
+             kind);
+}
+
+void mf_rdf_observable_file(const char *folder, const struct composition *composition, int pair,
+                            char *path) {
+    file_of(folder, "rdf", composition, pair, path);
 }
 
 /// rdf.tsv, or in a mixture rdf_A-A.tsv, rdf_A-B.tsv and so on: r, g as the estimator tells it, g
@@ -170,7 +191,8 @@ static enum status write(const void *state, const struct observable_results *res
             {"g_histogram_error[1]", counted_error + first, "%.3g"}};
         if (mf_units_beside(units))
             columns[count++] = (struct data_column){"r[nm]", nanometres, NULL};
-        mf_rdf_observable_file(results->folder, &rdf->composition, (int)pair, path);
+        file_of(results->folder, rdf->apart ? "intermolecular_rdf" : "rdf", &rdf->composition,
+                (int)pair, path);
         CHECK(mf_data_table_write_in(path, results->units, NULL, columns, count, bins->count));
     }
 done:
@@ -270,4 +292,42 @@ const struct observable mf_rdf_observable = {
     .targets = targets,
     .result = result,
     .files = files,
+};
+
+/// Nanoseconds of a pair and sample, one by one.
+static const double visit_cost = 6;
+
+static void explain_apart(const void *settings, const struct simulation_setup *setup, double every,
+                          struct stages *stages) {
+    const double range = range_of(settings, setup);
+    mf_stages_add(stages, "g(r) between molecules", true,
+                  visit_cost * mf_stages_pairs_within(setup, range) / every,
+                  "visits all pairs, one step in %.0f", every);
+}
+
+static const struct field apart_fields[] = {
+    {"range", FIELD_NUMBER, MEMBER(range), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
+     .unit = "lambda", .help = "of g(r); 0 means the cutoff of the forces, if there are any"},
+    {"bins", FIELD_INTEGER, MEMBER(bins), .initial = 100, .minimum = 1, .maximum = 100000,
+     .unit = "", .help = "of g(r)"},
+    FIELD_END,
+};
+
+static const char *const apart_files[] = {"intermolecular_rdf.tsv", "intermolecular_rdf_*-*.tsv",
+                                          NULL};
+
+const struct observable mf_rdf_intermolecular = {
+    .name = "intermolecular_rdf",
+    .summary = "g(r) of beads of different molecules alone, normalised as that of all",
+    .fields = apart_fields,
+    .settings_size = sizeof(struct rdf_settings),
+    .state_size = sizeof(struct rdf_observed),
+    .begin = begin_apart,
+    .clear = clear,
+    .sample = sample,
+    .spans = spans,
+    .write = write,
+    .explain = explain_apart,
+    .stage = "g(r) between molecules",
+    .files = apart_files,
 };

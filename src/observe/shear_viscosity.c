@@ -53,6 +53,10 @@ static const struct field fields[] = {
 
 // Sampling ----------------------------------------------------------------------------------------
 
+static bool conserves_momentum(const struct interaction *kind) {
+    return kind == &mf_shear_wave || kind == &mf_molecules;
+}
+
 static enum status check(const struct simulation *simulation, bool driven) {
     const struct simulation_setup *setup = &simulation->setup;
     const char *name = setup->integrator->name;
@@ -61,10 +65,10 @@ static enum status check(const struct simulation *simulation, bool driven) {
             STATUS_BAD_INPUT,
             "shear_viscosity: in two dimensions it grows with the box, and has no "
             "value");
-    if (simulation->interactions > (driven ? 2 : 1))
-        return mf_status_fail(STATUS_BAD_INPUT,
-                              "shear_viscosity: \"interactions\" other than \"shear-wave\" do not "
-                              "conserve momentum");
+    for (int k = 0; k < setup->interactions; k++)
+        if (!conserves_momentum(setup->interaction[k].kind))
+            return mf_status_fail(STATUS_BAD_INPUT, "shear_viscosity: \"interactions\" other than "
+                                                    "\"shear-wave\" do not conserve momentum");
     if (driven && (setup->integrator->companions || simulation_is_overdamped(setup) ||
                    !simulation_holds_temperature(setup)))
         return mf_status_fail(STATUS_BAD_INPUT,

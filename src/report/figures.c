@@ -235,7 +235,8 @@ static enum status draw_observable(const char *folder, const char *plots,
     if (observable->figure == NULL || !has_files(folder, observable->files))
         return STATUS_OK;
     ++*count;
-    if (strcmp(observable->figure, OBSERVABLE_FIGURE_OF_CURVE) != 0)
+    if (strcmp(observable->figure, OBSERVABLE_FIGURE_OF_CURVE) != 0 &&
+        strcmp(observable->figure, OBSERVABLE_FIGURE_OF_GROUPS) != 0)
         return draw(folder, plots, observable->figure, "");
     if (setenv("MESOFIT_TABLE", observable->files[0], 1) != 0 ||
         setenv("MESOFIT_FIGURE", observable->name, 1) != 0)

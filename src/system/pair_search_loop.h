@@ -107,6 +107,24 @@ LANES_INLINE int32_t *search_around(const struct pair_search search,
     return list;
 }
 
+/// Take those out of the neighbours of particle k that molecules exclude: the last one takes the
+/// place of each.
+/// @return the end of what is left
+static int32_t *search_exclude(const struct particles *particles, size_t k, int32_t *list,
+                               int32_t *end) {
+    const struct topology *topology = particles->topology;
+    const uint32_t id = particles->id[k];
+    for (size_t n = topology->excluded_start[id]; n < topology->excluded_start[id + 1]; n++) {
+        const int32_t excluded = (int32_t)particles->place[topology->excluded[n]];
+        int32_t *found = list;
+        while (found < end && *found != excluded)
+            found++;
+        if (found < end)
+            *found = *--end;
+    }
+    return end;
+}
+
 LANES_INLINE struct pair_search search_prepare(const struct neighbours *neighbours,
                                                const struct box *box) {
     const double range = neighbours->range + wider * mf_box_longest(box);
@@ -126,6 +144,7 @@ LANES_INLINE size_t pair_search_loop(struct neighbours *neighbours,
                                      const int dim, const bool wrap, const bool half) {
     const struct pair_search search = search_prepare(neighbours, &particles->box);
     const uint32_t *const start = rows->row[0].start;
+    const bool excludes = particles->topology && particles->topology->excludes;
     int32_t *const list = neighbours->list;
     struct pair_search_runs runs;
     size_t k = rows->first;
@@ -135,8 +154,9 @@ LANES_INLINE size_t pair_search_loop(struct neighbours *neighbours,
             if (used + runs.places + PAIR_SEARCH_BEYOND > limit)
                 return SIZE_MAX;
             neighbours->start[k] = used;
-            const int32_t *end =
-                search_around(search, rows, &runs, self, list + used, dim, wrap, half);
+            int32_t *end = search_around(search, rows, &runs, self, list + used, dim, wrap, half);
+            if (excludes)
+                end = search_exclude(particles, k, list + used, end);
             used = (size_t)(end - list);
             if (half)
                 used = search_fill_rows(neighbours, k, neighbours->start[k], used);

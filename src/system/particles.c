@@ -11,6 +11,7 @@ enum {
     SORTED = 1,  ///< permuted with the particles
     SAVED = 2,   ///< kept by a checkpoint
     PRECISE = 4, ///< of the kernels in double precision: there if they are asked for
+    JOINED = 8,  ///< of molecules: likewise
 };
 
 /// An array of the struct: where its pointers are, how many for the axes, the size of an element.
@@ -40,6 +41,7 @@ static const struct array arrays[] = {
     {offsetof(struct particles, spare_words), 1, sizeof(uint32_t), 0, 0},
     {ARRAY(spare_motion), 0, 0},
     {ARRAY(spare_precise_motion), PRECISE, 0},
+    {ARRAY(place), JOINED, 0},
 };
 enum { ARRAYS = sizeof arrays / sizeof *arrays };
 
@@ -57,10 +59,11 @@ static void set_array(struct particles *particles, const struct array *array, in
            sizeof pointer);
 }
 
-static enum status allocate(struct particles *particles, int precise) {
+/// The arrays that are asked for by `wanted`: PRECISE, JOINED, or 0 for those always there.
+static enum status allocate(struct particles *particles, int wanted) {
     for (int k = 0; k < ARRAYS; k++)
         for (int axis = 0; axis < arrays[k].axes; axis++) {
-            if ((arrays[k].treatment & PRECISE) != precise)
+            if ((arrays[k].treatment & (PRECISE | JOINED)) != wanted)
                 continue;
             void *memory = mf_memory_zeroed(particles->count + arrays[k].padding, arrays[k].size);
             if (memory == NULL)
@@ -83,6 +86,13 @@ enum status mf_particles_init(struct particles *particles, const struct box *box
 
 enum status mf_particles_keep_precise(struct particles *particles) {
     return allocate(particles, PRECISE);
+}
+
+enum status mf_particles_join(struct particles *particles, const struct topology *topology) {
+    if (topology == particles->topology || topology == NULL)
+        return STATUS_OK;
+    particles->topology = topology;
+    return allocate(particles, JOINED);
 }
 
 void mf_particles_clear(struct particles *particles) {
@@ -200,9 +210,13 @@ static void label_places(void *context, size_t begin, size_t end) {
     if (particles->precise_place)
         for (size_t k = begin; k < end; k++)
             particles->precise_place[k].id = particles->id[k];
+    if (particles->place)
+        for (size_t k = begin; k < end; k++)
+            particles->place[particles->id[k]] = (uint32_t)k;
 }
 
 void mf_particles_label_places(struct particles *particles) {
+    particles->orders++;
     mf_parallel_for(particles->count, particles->threads, label_places, particles);
 }
 

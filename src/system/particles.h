@@ -8,6 +8,7 @@
 
 #include "base/memory.h"
 #include "system/box.h"
+#include "system/topology.h"
 
 #include <stddef.h>
 #include <stdint.h>
@@ -67,6 +68,9 @@ struct particles {
     void *spare_words;                              ///< shape [count]: the same for 32-bit words
     struct particle_motion *spare_motion;           ///< shape [count]
     struct particle_precise_motion *spare_precise_motion; ///< shape [count] or NULL
+    const struct topology *topology; ///< molecules that they are, or NULL; borrowed
+    uint32_t *place;                 ///< shape [count], of molecules: where each id stands, or NULL
+    uint64_t orders;                 ///< changes whenever the order of the particles does
     struct particles_attribute attribute[PARTICLES_MOST_ATTRIBUTES];
     int attributes;
 };
@@ -77,6 +81,13 @@ void mf_particles_clear(struct particles *particles);
 
 /// Keep also what the kernels read in double precision, from the next updates on. Fails: NO_MEMORY.
 enum status mf_particles_keep_precise(struct particles *particles) MUST_USE;
+
+/// Let the particles be molecules: from the next order on `place` is known, and excluded pairs are
+/// on no list. NULL, or the topology that they have already, changes nothing.
+/// @param[in] topology  of as many particles; lives as long as they do
+/// Fails: NO_MEMORY. Tested: test_topology.
+enum status mf_particles_join(struct particles *particles,
+                              const struct topology *topology) MUST_USE;
 
 /// Give the particles one attribute more, all 0: from now on it is sorted and saved with the rest.
 /// @param[in]  attribute  name, type and components; the name lives as long as the particles
@@ -106,7 +117,8 @@ void mf_particles_wrap(struct particles *particles);
 /// Refresh `fraction`, `kernel_place` and `precise_place` from `position`.
 void mf_particles_update_fractions(struct particles *particles);
 
-/// Write the ids into `kernel_place` and `precise_place`, after the order has changed.
+/// Write the ids into `kernel_place` and `precise_place`, and the places of molecules' beads, after
+/// the order has changed.
 void mf_particles_label_places(struct particles *particles);
 
 /// Refresh `kernel_motion` and `precise_motion`, with velocities predicted by a time `ahead` [τ]:

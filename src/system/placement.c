@@ -19,7 +19,7 @@ const struct field mf_placement_fields[] = {
     {"placement", FIELD_CHOICE, MEMBER(kind), .initial = PLACEMENT_LATTICE, .choices = kinds,
      .unit = "",
      .help = "simple cubic lattice with jitter, random without overlap, or a file of "
-             "coordinates"},
+             "coordinates; molecules grow from there along their bonds"},
     {"jitter", FIELD_NUMBER, MEMBER(jitter), .initial = 0.05, .minimum = 0, .maximum = 0.5,
      .unit = "lattice spacings", .help = "lattice: largest random shift along an axis"},
     {"separation", FIELD_NUMBER, MEMBER(separation), .initial = 0.5, .minimum = 0,
@@ -27,7 +27,8 @@ const struct field mf_placement_fields[] = {
     {"file", FIELD_FILE, MEMBER(file), .unit = "",
      .help = "file: columns x, y (, z), if wanted the velocities, and attributes by their names, "
              "in rows "
-             "in the order of \"types\"; or a snapshot in JSON"},
+             "in the order of \"types\" and, in a type, of molecules, single beads last; or a "
+             "snapshot in JSON"},
     {"velocities", FIELD_CHOICE, MEMBER(speeds), .initial = PARTICLES_MAXWELL, .choices = speeds,
      .unit = "",
      .help = "the first ones: maxwell is equilibrium; normal, uniform and signs (equal but for the "

@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Curves of several groups or kinds of molecules in one panel, each with its 95 % band.
+# Reads the table that MESOFIT_TABLE names: x, then columns of each group, those that end with
+# _error behind what they belong to; what ends with _boltzmann is left out.
+
+load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
+
+table = "./" . system("printf %s \"$MESOFIT_TABLE\"")
+figure = system("printf %s \"$MESOFIT_FIGURE\"")
+# The names of columns without their units, and the numbers of those that are drawn.
+heads = system("awk -F '\t' '/^#/ { sub(/^# */, \"\"); for (n = 1; n <= NF; n++) { sub(/\\[.*/, \"\", $n); printf \"%s \", $n } exit }'" . from(table))
+drawn = system("awk -F '\t' '/^#/ { sub(/^# */, \"\"); for (n = 2; n <= NF; n++) if ($n !~ /(_error|_boltzmann)\\[/) printf \"%d \", n; exit }'" . from(table))
+unit = system("awk -F '\t' '/^#/ { h = $1; sub(/^[^[]*\\[/, \"\", h); sub(/\\].*/, \"\", h); gsub(/lambda/, \"λ\", h); gsub(/tau/, \"τ\", h); print h; exit }'" . from(table))
+first = word(heads, 1)
+symbol = first eq "theta" ? "{/:Italic θ}" : first eq "phi" ? "{/:Italic φ}" : first eq "time" ? "{/:Italic t}" : "{/:Italic r}"
+
+stats table using 1 name "X" nooutput
+highest = 0
+lowest = 0
+do for [k = 1:words(drawn)] {
+    stats table using int(word(drawn, k)) name "Y" nooutput
+    highest = high(highest, Y_max)
+    lowest = low(lowest, Y_min)
+}
+
+do for [kind in kinds] {
+    eval open(kind, figure, 720, 440)
+    set xrange [low(0, X_min):X_max]
+    set yrange [1.04 * lowest:end_of(highest)]
+    set xlabel symbol . " / " . unit
+    set ylabel first eq "time" ? "⟨{/:Bold R}({/:Italic t})·{/:Bold R}(0)⟩ / ⟨{/:Italic R}²⟩" : "{/:Italic p}(" . symbol . ")"
+    set key right top vertical
+    plot for [k = 1:words(drawn)] table using 1:(band_low(int(word(drawn, k)), int(word(drawn, k)) + 1)):(band_high(int(word(drawn, k)), int(word(drawn, k)) + 1)) \
+            with filledcurves @band linecolor rgb colour_of(k - 1), \
+        for [k = 1:words(drawn)] table using 1:int(word(drawn, k)) with lines \
+            title word(heads, int(word(drawn, k))) linewidth 2.2 linecolor rgb colour_of(k - 1)
+    eval close
+}

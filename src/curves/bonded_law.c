@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "curves/bonded_law.h"
+
+#include "base/memory.h"
+#include "base/names.h"
+
+#include <math.h>
+
+NAMED_RECORD(struct bonded_law);
+
+static const struct bonded_law *const bonds[] = {&mf_bond_harmonic, &mf_bond_fene,
+                                                 &mf_bonded_table_bond, NULL};
+static const struct bonded_law *const angles[] = {
+    &mf_angle_harmonic, &mf_angle_cosine, &mf_angle_cosine_squared, &mf_bonded_table_angle, NULL};
+static const struct bonded_law *const dihedrals[] = {
+    &mf_dihedral_ryckaert_bellemans, &mf_dihedral_periodic, &mf_bonded_table_dihedral, NULL};
+
+const struct bonded_law *const *const mf_bonded_laws[BONDED_KINDS] = {bonds, angles, dihedrals};
+
+enum status mf_bonded_create(struct bonded_curve *curve, const struct bonded_law *law) {
+    *curve = (struct bonded_curve){law, mf_memory_zeroed(1, law->size)};
+    if (curve->parameters == NULL)
+        return STATUS_NO_MEMORY;
+    mf_fields_set_defaults(law->fields, curve->parameters);
+    return STATUS_OK;
+}
+
+void mf_bonded_clear(struct bonded_curve *curve) {
+    if (curve->parameters && curve->law->clear)
+        curve->law->clear(curve->parameters);
+    mf_memory_free(curve->parameters);
+    *curve = (struct bonded_curve){0};
+}
+
+void mf_bonded_value(const struct bonded_curve *curve, double q, double *energy, double *slope) {
+    double value, derivative;
+    curve->law->evaluate(curve->parameters, 1, &q, &value, &derivative);
+    if (energy)
+        *energy = value;
+    if (slope)
+        *slope = derivative;
+}
+
+double mf_bonded_rest(const struct bonded_curve *curve) {
+    return curve->law->rest(curve->parameters);
+}
+
+double mf_bonded_longest(const struct bonded_curve *curve) {
+    return curve->law->longest ? curve->law->longest(curve->parameters) : INFINITY;
+}

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file The energy U(q) of a bond, an angle or a dihedral, and the record of its law.
+///
+/// q is the length of a bond [λ], an angle from 0 to π, or a dihedral from −π to π [rad], 0 where
+/// the outer beads are on the same side (cis) and π where they are on opposite ones (trans), as
+/// IUPAC has it. A law is one record: name, parameters, energy and slope. To add one, write the
+/// record and add it to a list in bonded_law.c.
+#pragma once
+
+#include "base/fields.h"
+#include "base/status.h"
+
+enum bonded_kind { BONDED_BOND, BONDED_ANGLE, BONDED_DIHEDRAL, BONDED_KINDS };
+
+struct bonded_law {
+    const char *name;           ///< value of "law" in a scene
+    const char *summary;        ///< the formula with its factor and its source, one line
+    const struct field *fields; ///< of the parameters
+    size_t size;                ///< of their struct
+    /// Energies U [k_B T_0] and slopes dU/dq at `count` values of q. Finite for all q.
+    void (*evaluate)(const void *parameters, size_t count, const double *q, double *energy,
+                     double *slope);
+    double (*rest)(const void *parameters); ///< q at which a molecule begins
+    /// Length at which a bond tears [λ]; NULL: it never does.
+    double (*longest)(const void *parameters);
+    void (*clear)(void *parameters); ///< frees what the parameters own; NULL: nothing
+};
+
+/// A law and its numbers, which it owns. A zeroed one is none.
+struct bonded_curve {
+    const struct bonded_law *law;
+    void *parameters;
+};
+
+/// Laws that a scene can name, of each kind, NULL-terminated.
+extern const struct bonded_law *const *const mf_bonded_laws[BONDED_KINDS];
+
+/// Start a curve with the law's default parameters. Fails: NO_MEMORY.
+enum status mf_bonded_create(struct bonded_curve *curve, const struct bonded_law *law) MUST_USE;
+void mf_bonded_clear(struct bonded_curve *curve);
+
+/// Energy and slope at one q; each may be NULL. Tested: test_bonded_law.
+void mf_bonded_value(const struct bonded_curve *curve, double q, double *energy, double *slope);
+
+/// Where a molecule begins: a length [λ] or an angle [rad].
+double mf_bonded_rest(const struct bonded_curve *curve);
+
+/// Length at which a bond tears [λ], or infinite.
+double mf_bonded_longest(const struct bonded_curve *curve);
+
+#define BONDED_RADIANS (M_PI / 180) ///< of a degree
+
+extern const struct bonded_law mf_bond_harmonic, mf_bond_fene, mf_bonded_table_bond;
+extern const struct bonded_law mf_angle_harmonic, mf_angle_cosine, mf_angle_cosine_squared,
+    mf_bonded_table_angle;
+extern const struct bonded_law mf_dihedral_ryckaert_bellemans, mf_dihedral_periodic,
+    mf_bonded_table_dihedral;

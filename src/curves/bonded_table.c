@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "curves/bonded_table.h"
+
+#include "base/memory.h"
+
+#include <gsl/gsl_spline.h>
+#include <math.h>
+
+/// Of the grid that is read in the place of the points: more than tables have.
+enum { INTERVALS = 2048 };
+
+/// Hermite's cubic between two points of the grid, where t goes from 0 to 1.
+static void evaluate(const void *parameters, size_t count, const double *q, double *energy,
+                     double *slope) {
+    const struct bonded_table *p = parameters;
+    const double last = p->intervals;
+    for (size_t n = 0; n < count; n++) {
+        double place = (q[n] - p->first) / p->spacing;
+        if (p->periodic)
+            place -= last * floor(place / last);
+        const double inside = fmin(fmax(place, 0), last), beyond = place - inside;
+        const int k = (int)fmin(inside, last - 1);
+        const double t = inside - k, u = 1 - t;
+        const double a = p->point[k][0], b = p->point[k + 1][0];
+        const double da = p->point[k][1], db = p->point[k + 1][1];
+        const double rise = 6 * t * u * (b - a) + u * (1 - 3 * t) * da + t * (1 - 3 * u) * db;
+        energy[n] = a + t * t * (3 - 2 * t) * (b - a) + t * u * (u * da - t * db) + rise * beyond;
+        slope[n] = rise / p->spacing;
+    }
+}
+
+static double rest(const void *parameters) {
+    return ((const struct bonded_table *)parameters)->rest;
+}
+
+static void clear(void *parameters) {
+    mf_memory_free(((struct bonded_table *)parameters)->point);
+}
+
+static enum status check_points(const struct bonded_curve *curve, const double *q,
+                                const double *energy, size_t count) {
+    static const double rounding = 1e-6;
+    if (count < 4)
+        return mf_status_fail(STATUS_BAD_INPUT, "a table needs at least 4 points, not %zu", count);
+    for (size_t k = 1; k < count; k++)
+        if (!(q[k] > q[k - 1]))
+            return mf_status_fail(STATUS_BAD_INPUT, "the first column does not grow at point %zu",
+                                  k + 1);
+    const double span = q[count - 1] - q[0];
+    if (curve->law == &mf_bonded_table_dihedral && fabs(span - 360) > 360 * rounding)
+        return mf_status_fail(STATUS_BAD_INPUT, "a dihedral's table spans 360 degrees, not %g",
+                              span);
+    if (curve->law == &mf_bonded_table_dihedral &&
+        fabs(energy[count - 1] - energy[0]) > rounding * (1 + fabs(energy[0])))
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "the ends of a dihedral's table are the same angle and have the "
+                              "energies %g and %g",
+                              energy[0], energy[count - 1]);
+    if (curve->law == &mf_bonded_table_angle &&
+        q[count - 1] < 7) // 2 pi, and no angle of a molecule
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "the angles end at %g, as if in radians; they are in degrees",
+                              q[count - 1]);
+    if (curve->law == &mf_bonded_table_angle && (q[0] < 0 || q[count - 1] > 180 * (1 + rounding)))
+        return mf_status_fail(STATUS_BAD_INPUT, "angles are 0 to 180 degrees, not %g to %g", q[0],
+                              q[count - 1]);
+    return STATUS_OK;
+}
+
+/// The grid of a spline whose q is in `unit` of the curve's.
+static void fill_grid(struct bonded_table *p, const gsl_spline *spline, double unit) {
+    const double first = spline->x[0], last = spline->x[spline->size - 1];
+    double least = INFINITY;
+    p->first = unit * first;
+    p->spacing = unit * (last - first) / INTERVALS;
+    p->intervals = INTERVALS;
+    for (int k = 0; k <= INTERVALS; k++) {
+        const double q = fmin(first + (last - first) * k / INTERVALS, last);
+        p->point[k][0] = gsl_spline_eval(spline, q, NULL);
+        p->point[k][1] = gsl_spline_eval_deriv(spline, q, NULL) * (last - first) / INTERVALS;
+        if (p->point[k][0] < least)
+            p->rest = unit * q;
+        least = fmin(least, p->point[k][0]);
+    }
+}
+
+enum status mf_bonded_table_set_points(struct bonded_curve *curve, const double *q,
+                                       const double *energy, size_t count) {
+    enum status status = STATUS_OK;
+    struct bonded_table *p = curve->parameters;
+    gsl_spline *spline = NULL;
+    double *values = NULL;
+    TRY(check_points(curve, q, energy, count));
+    p->periodic = curve->law == &mf_bonded_table_dihedral;
+    NEW_ARRAY(values, count);
+    for (size_t k = 0; k < count; k++)
+        values[k] = p->periodic && k + 1 == count ? energy[0] : energy[k];
+    NEW_ARRAY(p->point, INTERVALS + 1);
+    spline =
+        gsl_spline_alloc(p->periodic ? gsl_interp_cspline_periodic : gsl_interp_cspline, count);
+    if (spline == NULL || gsl_spline_init(spline, q, values, count) != 0)
+        CHECK(mf_status_fail(STATUS_NO_MEMORY, "no memory for a table of %zu points", count));
+    fill_grid(p, spline, curve->law == &mf_bonded_table_bond ? 1 : BONDED_RADIANS);
+done:
+    gsl_spline_free(spline);
+    mf_memory_free(values);
+    return status;
+}
+
+#define TABLE_FIELDS(name, text)                                                                   \
+    static const struct field name[] = {{"file", FIELD_FILE,                                       \
+                                         .offset = offsetof(struct bonded_table, file),            \
+                                         .required = true, .unit = "", .help = text},              \
+                                        FIELD_END}
+TABLE_FIELDS(bond_fields, "columns r, U");
+TABLE_FIELDS(angle_fields, "columns theta in degrees, U");
+TABLE_FIELDS(dihedral_fields,
+             "columns phi in degrees, U: 360 of them; 0 is cis and 180 trans (IUPAC)");
+
+#define TABLE(record, table_fields, text)                                                          \
+    const struct bonded_law record = {.name = "table",                                             \
+                                      .summary = text,                                             \
+                                      .fields = table_fields,                                      \
+                                      .size = sizeof(struct bonded_table),                         \
+                                      .evaluate = evaluate,                                        \
+                                      .rest = rest,                                                \
+                                      .clear = clear}
+TABLE(mf_bonded_table_bond, bond_fields,
+      "cubic spline through the points of a file, straight lines beyond its ends");
+TABLE(mf_bonded_table_angle, angle_fields,
+      "cubic spline through the points of a file, straight lines beyond its ends");
+TABLE(mf_bonded_table_dihedral, dihedral_fields,
+      "periodic cubic spline through the points of a file");

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "curves/bonded_law.h"
+
+#include <math.h>
+
+#define ANY_NUMBER .minimum = -DBL_MAX, .maximum = DBL_MAX
+
+static double trans_rest(const void *parameters) {
+    (void)parameters;
+    return M_PI;
+}
+
+// Ryckaert and Bellemans --------------------------------------------------------------------------
+
+enum { TERMS = 6 };
+struct cosines {
+    double c[TERMS];
+};
+
+/// x = cos(φ − 180°) = −cos φ, dx/dφ = sin φ.
+static void cosines_evaluate(const void *parameters, size_t count, const double *phi,
+                             double *energy, double *slope) {
+    const double *c = ((const struct cosines *)parameters)->c;
+    for (size_t n = 0; n < count; n++) {
+        const double x = -cos(phi[n]);
+        double value = c[TERMS - 1], derivative = 0;
+        for (int power = TERMS - 2; power >= 0; power--) {
+            derivative = derivative * x + value;
+            value = value * x + c[power];
+        }
+        energy[n] = value;
+        slope[n] = derivative * sin(phi[n]);
+    }
+}
+
+#define COSINE(n, text)                                                                            \
+    {                                                                                              \
+        "c" #n, FIELD_NUMBER, .offset = offsetof(struct cosines, c) + n * sizeof(double),          \
+                              .initial = 0, ANY_NUMBER, .unit = "k_B T_0", .help = text            \
+    }
+static const struct field cosines_fields[] = {
+    COSINE(0, "C_0; psi is 0 for trans, 180 degrees from the phi of \"periodic\""),
+    COSINE(1, "C_1 cos psi"),
+    COSINE(2, "C_2 (cos psi)^2"),
+    COSINE(3, "C_3 (cos psi)^3"),
+    COSINE(4, "C_4 (cos psi)^4"),
+    COSINE(5, "C_5 (cos psi)^5"),
+    FIELD_END,
+};
+
+const struct bonded_law mf_dihedral_ryckaert_bellemans = {
+    .name = "ryckaert-bellemans",
+    .summary = "U = sum_n C_n (cos psi)^n, psi = 0 for trans, as GROMACS has it; J.-P. Ryckaert "
+               "and A. Bellemans, Chem. Phys. Lett. 30, 123 (1975)",
+    .fields = cosines_fields,
+    .size = sizeof(struct cosines),
+    .evaluate = cosines_evaluate,
+    .rest = trans_rest,
+};
+
+// Periodic ----------------------------------------------------------------------------------------
+
+struct periodic {
+    double k, phase; ///< [k_B T_0], [degrees]
+    int64_t multiplicity;
+};
+
+static void periodic_evaluate(const void *parameters, size_t count, const double *phi,
+                              double *energy, double *slope) {
+    const struct periodic *p = parameters;
+    const double times = (double)p->multiplicity, phase = BONDED_RADIANS * p->phase;
+    for (size_t n = 0; n < count; n++) {
+        energy[n] = p->k * (1 + cos(times * phi[n] - phase));
+        slope[n] = -p->k * times * sin(times * phi[n] - phase);
+    }
+}
+
+static double periodic_rest(const void *parameters) {
+    const struct periodic *p = parameters;
+    const double top = BONDED_RADIANS * p->phase + (p->k >= 0 ? M_PI : 0);
+    return remainder(top / (double)p->multiplicity, 2 * M_PI);
+}
+
+#define PERIODIC(member) .offset = offsetof(struct periodic, member)
+static const struct field periodic_fields[] = {
+    {"k", FIELD_NUMBER, PERIODIC(k), .required = true, ANY_NUMBER, .unit = "k_B T_0",
+     .help =
+         "in U = k [1 + cos(n phi - phase)]; phi is 0 for cis and 180 degrees for trans (IUPAC)"},
+    {"multiplicity", FIELD_INTEGER, PERIODIC(multiplicity), .initial = 1, .minimum = 1,
+     .maximum = 12, .unit = "", .help = "n, the number of minima"},
+    {"phase", FIELD_NUMBER, PERIODIC(phase), .initial = 0, .minimum = -360, .maximum = 360,
+     .unit = "degrees", .help = "at which n phi has its maximum, if k is above 0"},
+    FIELD_END,
+};
+
+const struct bonded_law mf_dihedral_periodic = {
+    .name = "periodic",
+    .summary = "U = k [1 + cos(n phi - phase)], phi = 0 for cis, as GROMACS and CHARMM have it",
+    .fields = periodic_fields,
+    .size = sizeof(struct periodic),
+    .evaluate = periodic_evaluate,
+    .rest = periodic_rest,
+};

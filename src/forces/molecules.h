@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file Bonds, angles and dihedrals of molecules: one more interaction beside the pairs.
+///
+/// A simulation has molecules if the interaction `mf_molecules` is in its list: its parameters are
+/// a struct molecules. Terms are grouped, and each group has a law (curves/bonded_law.h). Angles
+/// and dihedrals stay what they are when all lengths grow alike, so the virial is that of the
+/// bonds.
+#pragma once
+
+#include "curves/bonded_law.h"
+#include "forces/interaction.h"
+#include "system/placement.h"
+#include "system/topology.h"
+
+enum { MOLECULES_MOST_GROUPS = 16 }; ///< of bonds, of angles, of dihedrals
+
+_Static_assert((int)BONDED_KINDS == (int)TOPOLOGY_ORDERS, "a law for each order of terms");
+
+struct molecules_group {
+    char name[TOPOLOGY_NAME_SIZE];
+    struct bonded_curve curve;
+};
+
+/// Owns the topology and the laws. A zeroed one has none.
+struct molecules {
+    struct topology topology;
+    struct molecules_group group[TOPOLOGY_ORDERS][MOLECULES_MOST_GROUPS];
+    int groups[TOPOLOGY_ORDERS];
+};
+
+void mf_molecules_clear(struct molecules *molecules);
+
+/// Whether molecules go into a box: a term sees the nearest images of its beads, so that a bond, at
+/// rest or as long as it can be, is shorter than half of it; dihedrals need three dimensions.
+/// Fails: BAD_INPUT, naming the group.
+enum status mf_molecules_check(const struct molecules *molecules, const struct box *box) MUST_USE;
+
+/// The molecules among the interactions of a scene, or NULL.
+const struct molecules *mf_molecules_find(const struct interaction_choice *interactions, int count);
+
+/// Place all beads: the first one of each molecule, and single beads, as `placement` says of
+/// particles, on a lattice or at random; the others one after the other along the bonds, at the
+/// lengths and angles at which these rest, and at least 1.05 lengths from the bead before the last
+/// (R. Auhl, R. Everaers, G. S. Grest, K. Kremer and S. J. Plimpton, J. Chem. Phys. 119, 12718
+/// (2003), section II). Beads of different molecules may overlap: mf_relax_overlaps parts them.
+/// Fails: NO_MEMORY, BAD_INPUT as mf_placement_random. Tested: test_molecules_placement.
+enum status mf_molecules_place(const struct molecules *molecules, struct particles *particles,
+                               const struct placement *placement, uint64_t seed) MUST_USE;

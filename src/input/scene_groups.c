@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/digest.h"
+#include "base/memory.h"
+#include "base/names.h"
+#include "curves/bonded_table.h"
+#include "input/scene_molecules.h"
+
+#include <string.h>
+
+const char *const mf_scene_group_keys[TOPOLOGY_ORDERS] = {"bonds", "angles", "dihedrals"};
+
+/// Points of the law "table".
+static enum status load_points(struct bonded_curve *curve, int order, struct json_object *object,
+                               const struct units *units) {
+    const char *const unit[2] = {order == TOPOLOGY_BOND ? "lambda" : "degrees", "k_B T_0"};
+    const struct bonded_table *table = curve->parameters;
+    double *q = NULL, *energy = NULL;
+    size_t count = 0;
+    enum status status = mf_scene_read_columns(
+        table->file, unit, order == TOPOLOGY_DIHEDRAL ? -DBL_MAX : 0, units, &q, &energy, &count);
+    if (status != STATUS_OK)
+        mf_json_fault(object, "file", "%s", mf_status_message());
+    else if ((status = mf_bonded_table_set_points(curve, q, energy, count)) != STATUS_OK)
+        mf_json_fault(object, "file", "%s: %s", table->file, mf_status_message());
+    mf_memory_free(q);
+    mf_memory_free(energy);
+    return status == STATUS_NO_MEMORY ? status : STATUS_OK;
+}
+
+static enum status read_group(struct molecules *molecules, int order, struct json_object *groups,
+                              const char *name, const struct units *units) {
+    const char **names;
+    struct molecules_group *group = &molecules->group[order][molecules->groups[order]];
+    struct json_object object = mf_json_child_of(groups, name, true, "law");
+    if (object.item == NULL)
+        return STATUS_OK;
+    TRY(mf_names_collect(mf_bonded_laws[order], NULL, &names));
+    const char *chosen = mf_json_choice(&object, "law", names, NULL);
+    mf_memory_free(names);
+    if (chosen == NULL)
+        return STATUS_OK;
+    const struct bonded_law *law = mf_names_find(mf_bonded_laws[order], chosen);
+    const size_t faults = mf_json_fault_count(object.document);
+    TRY(mf_bonded_create(&group->curve, law));
+    snprintf(group->name, sizeof group->name, "%s", name);
+    molecules->groups[order]++;
+    mf_json_fields(&object, law->fields, group->curve.parameters);
+    if (bonded_is_table(law) && mf_json_fault_count(object.document) == faults)
+        TRY(load_points(&group->curve, order, &object, units));
+    mf_json_finish(&object);
+    return STATUS_OK;
+}
+
+enum status mf_scene_groups_read(struct molecules *molecules, int order, struct json_object *scene,
+                                 const struct units *units) {
+    const char *name;
+    struct json_object groups = mf_json_child(scene, mf_scene_group_keys[order], false);
+    if (groups.item == NULL)
+        return STATUS_OK;
+    for (size_t n = 0; (name = mf_json_key(&groups, n)); n++) {
+        if (n >= MOLECULES_MOST_GROUPS) {
+            mf_json_fault(&groups, name, "there are more than %d groups", MOLECULES_MOST_GROUPS);
+            mf_json_has(&groups, name);
+        } else if (!mf_topology_is_name(name)) {
+            mf_json_fault(&groups, name, "a group is called by up to %d letters, digits, _ and -",
+                          TOPOLOGY_NAME_SIZE - 1);
+            mf_json_has(&groups, name);
+        } else {
+            TRY(read_group(molecules, order, &groups, name, units));
+        }
+    }
+    mf_json_finish(&groups);
+    return STATUS_OK;
+}
+
+void mf_scene_groups_write(const struct molecules *molecules, int order,
+                           struct json_writer *writer) {
+    if (molecules->groups[order] == 0)
+        return;
+    mf_json_begin(writer, mf_scene_group_keys[order]);
+    for (int g = 0; g < molecules->groups[order]; g++) {
+        const struct molecules_group *group = &molecules->group[order][g];
+        mf_json_begin(writer, group->name);
+        mf_json_put_text(writer, "law", group->curve.law->name);
+        mf_json_put_fields(writer, group->curve.law->fields, group->curve.parameters);
+        mf_json_end(writer);
+    }
+    mf_json_end(writer);
+}
+
+void mf_scene_molecules_digest(const struct scene_molecules *molecules, uint64_t *digest) {
+    const struct molecules *own = &molecules->molecules;
+    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+        for (int g = 0; g < own->groups[order]; g++) {
+            const struct bonded_curve *curve = &own->group[order][g].curve;
+            const struct bonded_table *table = curve->parameters;
+            if (bonded_is_table(curve->law))
+                mf_digest_add(digest, table->point,
+                              (size_t)(table->intervals + 1) * sizeof *table->point);
+        }
+}

@@ -1,0 +1,419 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "input/scene_molecules.h"
+
+#include "base/memory.h"
+#include "base/nearest.h"
+#include "io/json_list.h"
+
+#include <string.h>
+
+enum { AS_FAR_AS_TERMS = -1 }; ///< of "exclude"
+
+struct told {
+    int64_t count, exclude;
+};
+struct told_chain {
+    char type[FIELD_TEXT_SIZE];
+    int64_t length;
+    char group[TOPOLOGY_ORDERS][FIELD_TEXT_SIZE];
+};
+
+#define MOLECULE(member) .offset = offsetof(struct told, member)
+const struct field mf_scene_molecule_fields[] = {
+    {"count", FIELD_INTEGER, MOLECULE(count), .required = true, .minimum = 1, .maximum = 1e8,
+     .unit = "", .help = "number of molecules of this kind"},
+    {"exclude", FIELD_INTEGER, MOLECULE(exclude), .initial = AS_FAR_AS_TERMS,
+     .minimum = AS_FAR_AS_TERMS, .maximum = TOPOLOGY_MOST_EXCLUDE, .unit = "",
+     .help = "pairs of beads at most so many bonds apart have no pair potential and no friction; "
+             "-1: as far as the terms of the molecule reach, 1 with bonds alone, 2 with angles, 3 "
+             "with dihedrals, as VOTCA does"},
+    FIELD_END,
+};
+
+#define CHAIN(member) .offset = offsetof(struct told_chain, member)
+const struct field mf_scene_chain_fields[] = {
+    {"type", FIELD_TEXT, CHAIN(type), .unit = "",
+     .help = "of all beads; a chain of several types has \"beads\": [\"A\", \"B\", …] for it"},
+    {"length", FIELD_INTEGER, CHAIN(length), .initial = 0, .minimum = 2, .maximum = 10000,
+     .unit = "", .help = "number of beads, with \"type\""},
+    {"bond", FIELD_TEXT, CHAIN(group[TOPOLOGY_BOND]), .required = true, .unit = "",
+     .help = "group of all bonds"},
+    {"angle", FIELD_TEXT, CHAIN(group[TOPOLOGY_ANGLE]), .unit = "",
+     .help = "group of all angles; none without"},
+    {"dihedral", FIELD_TEXT, CHAIN(group[TOPOLOGY_DIHEDRAL]), .unit = "",
+     .help = "group of all dihedrals; none without"},
+    FIELD_END,
+};
+
+/// What is being read: a kind's view of the file and all that it may name.
+struct reading {
+    struct scene_molecules *molecules;
+    struct composition *composition;
+    struct json_object object;
+    struct topology_kind kind;
+    struct scene_molecule told;
+    bool used[TOPOLOGY_ORDERS][MOLECULES_MOST_GROUPS];
+};
+
+// Names -------------------------------------------------------------------------------------------
+
+/// The number of a group, or −1 and a fault.
+static int find_group(struct reading *reading, struct json_object *object, const char *key,
+                      int order, const char *name) {
+    const struct molecules *molecules = &reading->molecules->molecules;
+    const char *known[MOLECULES_MOST_GROUPS];
+    char hint[1024];
+    for (int g = 0; g < molecules->groups[order]; g++) {
+        known[g] = molecules->group[order][g].name;
+        if (strcmp(known[g], name) == 0) {
+            reading->used[order][g] = true;
+            return g;
+        }
+    }
+    mf_nearest_hint(name, known, (size_t)molecules->groups[order], hint, sizeof hint);
+    mf_json_fault(object, key, "\"%.60s\" is no group of \"%s\"%s%s", name,
+                  mf_scene_group_keys[order], molecules->groups[order] ? "; " : "",
+                  molecules->groups[order] ? hint : "");
+    return -1;
+}
+
+/// The number of a type, which is added if it is new; −1 and a fault if it cannot be.
+static int find_type(struct reading *reading, struct json_object *object, const char *key,
+                     const char *name) {
+    struct composition *composition = reading->composition;
+    for (int type = 0; type < composition->types; type++)
+        if (strcmp(composition->name[type], name) == 0)
+            return type;
+    if (!mf_composition_is_name(name))
+        mf_json_fault(object, key, "\"%.60s\": a type is called by up to %d letters, digits and _",
+                      name, COMPOSITION_NAME_SIZE - 1);
+    else if (composition->types == COMPOSITION_MOST_TYPES)
+        mf_json_fault(object, key, "\"%s\" would be a type more than %d", name,
+                      COMPOSITION_MOST_TYPES);
+    else {
+        strcpy(composition->name[composition->types], name);
+        return composition->types++;
+    }
+    return -1;
+}
+
+// Beads and terms ---------------------------------------------------------------------------------
+
+/// "beads": the type of each.
+static enum status read_beads(struct reading *reading, struct json_object *object) {
+    enum status status = STATUS_OK;
+    const char **names = NULL;
+    const int count = mf_json_count(object, "beads");
+    NEW_ARRAY(names, count);
+    NEW_ARRAY(reading->kind.type, count);
+    if (count < 1)
+        mf_json_fault(object, "beads", "missing: a list of the types of the beads is required");
+    else if (mf_json_list_texts(object, "beads", names, (size_t)count))
+        for (int k = 0; k < count; k++)
+            reading->kind.type[k] = find_type(reading, object, "beads", names[k]);
+    mf_json_has(object, "beads");
+    reading->kind.beads = count;
+done:
+    mf_memory_free(names);
+    return status;
+}
+
+static enum status read_chain_of_one(struct reading *reading, struct json_object *object,
+                                     const struct told_chain *chain) {
+    enum status status = STATUS_OK;
+    if (chain->type[0] == '\0' || chain->length == 0) {
+        mf_json_fault(object, chain->type[0] ? "length" : "type",
+                      "missing: a chain has \"type\" and \"length\", or \"beads\"");
+        return STATUS_OK;
+    }
+    const int type = find_type(reading, object, "type", chain->type);
+    NEW_ARRAY(reading->kind.type, chain->length);
+    for (int k = 0; k < chain->length; k++)
+        reading->kind.type[k] = type;
+    reading->kind.beads = (int)chain->length;
+done:
+    return status;
+}
+
+/// The terms of a chain: all that follow each other.
+static enum status link_chain(struct topology_kind *kind, int order, int group) {
+    enum status status = STATUS_OK;
+    const int beads = topology_beads(order);
+    kind->terms[order] = kind->beads >= beads ? kind->beads - beads + 1 : 0;
+    NEW_ARRAY(kind->term[order], kind->terms[order]);
+    for (int n = 0; n < kind->terms[order]; n++) {
+        kind->term[order][n].group = group;
+        for (int k = 0; k < beads; k++)
+            kind->term[order][n].bead[k] = n + k;
+    }
+done:
+    return status;
+}
+
+static enum status read_chain(struct reading *reading) {
+    struct json_object object = mf_json_child(&reading->object, "chain", true);
+    struct told_chain chain;
+    if (object.item == NULL)
+        return STATUS_OK;
+    mf_json_fields(&object, mf_scene_chain_fields, &chain);
+    reading->told.is_chain = true;
+    reading->told.of_one_type = !mf_json_has(&object, "beads");
+    if (reading->told.of_one_type)
+        TRY(read_chain_of_one(reading, &object, &chain));
+    else
+        TRY(read_beads(reading, &object));
+    for (int order = 0; order < TOPOLOGY_ORDERS; order++) {
+        const char *name = chain.group[order];
+        reading->told.group[order] =
+            name[0] ? find_group(reading, &object, mf_topology_order_names[order], order, name)
+                    : -1;
+        if (reading->told.group[order] >= 0)
+            TRY(link_chain(&reading->kind, order, reading->told.group[order]));
+    }
+    mf_json_finish(&object);
+    return STATUS_OK;
+}
+
+/// "bonds": {"backbone": [[1, 2], [2, 3]], …}, likewise "angles" and "dihedrals": in the order of
+/// the groups, in which they are written.
+static enum status read_terms(struct reading *reading, int order) {
+    enum status status = STATUS_OK;
+    const struct molecules *molecules = &reading->molecules->molecules;
+    struct topology_kind *kind = &reading->kind;
+    struct json_object object = mf_json_child(&reading->object, mf_scene_group_keys[order], false);
+    const size_t beads = (size_t)topology_beads(order);
+    int *rows = NULL;
+    size_t all = 0;
+    for (int g = 0; g < molecules->groups[order]; g++)
+        all += (size_t)mf_json_count(&object, molecules->group[order][g].name);
+    NEW_ARRAY(kind->term[order], all);
+    NEW_ARRAY(rows, all * beads);
+    for (int g = 0; g < molecules->groups[order]; g++) {
+        const char *name = molecules->group[order][g].name;
+        const size_t count = (size_t)mf_json_count(&object, name);
+        if (!mf_json_has(&object, name) || !mf_json_list_rows(&object, name, rows, count, beads))
+            continue;
+        reading->used[order][g] = true;
+        for (size_t k = 0; k < count; k++) {
+            struct topology_term *term = &kind->term[order][kind->terms[order]++];
+            term->group = g;
+            for (size_t bead = 0; bead < beads; bead++)
+                term->bead[bead] = rows[k * beads + bead] - 1;
+        }
+    }
+    if (object.item)
+        mf_json_finish(&object);
+done:
+    mf_memory_free(rows);
+    return status;
+}
+
+// Kinds -------------------------------------------------------------------------------------------
+
+static void warn_of(struct reading *reading) {
+    char *warning = reading->molecules->warning;
+    const struct topology_kind *kind = &reading->kind;
+    int order;
+    const struct topology_term *term = mf_topology_unbonded(kind, &order);
+    if (term)
+        snprintf(warning, SCENE_MOLECULES_WARNING_SIZE,
+                 "molecules.%s: no bonds join the beads of the %s %d-%d-%d…", kind->name,
+                 mf_topology_order_names[order], term->bead[0] + 1, term->bead[1] + 1,
+                 term->bead[2] + 1);
+    for (int n = 0; n < kind->terms[TOPOLOGY_BOND] && kind->exclude > 0; n++) {
+        const int group = kind->term[TOPOLOGY_BOND][n].group;
+        if (reading->molecules->molecules.group[TOPOLOGY_BOND][group].curve.law == &mf_bond_fene)
+            snprintf(
+                warning, SCENE_MOLECULES_WARNING_SIZE,
+                "molecules.%s: \"fene\" only pulls, and \"exclude\": %d takes the repulsion of "
+                "its beads away; 0 leaves it",
+                kind->name, kind->exclude);
+    }
+}
+
+/// Number of the highest order of terms that there are: what "exclude" is without a number.
+static int reach_of(const struct topology_kind *kind) {
+    int reach = 0;
+    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+        reach = kind->terms[order] > 0 ? order + 1 : reach;
+    return reach;
+}
+
+/// Check a kind and hand it over to the topology, or forget it if there was a fault.
+static void enter_kind(struct reading *reading, size_t faults) {
+    struct topology *topology = &reading->molecules->molecules.topology;
+    struct topology_kind *kind = &reading->kind;
+    const struct json_document *document = reading->object.document;
+    if (mf_json_fault_count(document) == faults && mf_topology_check(kind) != STATUS_OK)
+        mf_json_fault(&reading->object, NULL, "%s", mf_status_message());
+    if (mf_json_fault_count(document) > faults) {
+        mf_topology_kind_clear(kind);
+        return;
+    }
+    warn_of(reading);
+    for (int k = 0; k < kind->beads; k++)
+        reading->composition->count[kind->type[k]] += kind->count;
+    reading->molecules->told[topology->kinds] = reading->told;
+    topology->kind[topology->kinds++] = *kind;
+}
+
+static enum status read_kind(struct reading *reading, struct json_object *molecules,
+                             const char *name) {
+    struct json_object *object = &reading->object;
+    const size_t faults = mf_json_fault_count(molecules->document);
+    enum status status = STATUS_OK;
+    struct told told;
+    *object = mf_json_child(molecules, name, true);
+    if (object->item == NULL)
+        return STATUS_OK;
+    reading->kind = (struct topology_kind){0};
+    reading->told = (struct scene_molecule){.group = {-1, -1, -1}};
+    mf_json_fields(object, mf_scene_molecule_fields, &told);
+    snprintf(reading->kind.name, sizeof reading->kind.name, "%s", name);
+    reading->kind.count = told.count;
+    if (mf_json_has(object, "chain")) {
+        status = read_chain(reading);
+    } else {
+        status = read_beads(reading, object);
+        for (int order = 0; order < TOPOLOGY_ORDERS && status == STATUS_OK; order++)
+            status = read_terms(reading, order);
+    }
+    reading->kind.exclude =
+        told.exclude == AS_FAR_AS_TERMS ? reach_of(&reading->kind) : (int)told.exclude;
+    mf_json_finish(object);
+    enter_kind(reading, faults);
+    return status;
+}
+
+/// Groups that no molecule has, and types of one bead: a pair of it there is not.
+static void check_use(const struct reading *reading, struct json_object *scene) {
+    const struct molecules *molecules = &reading->molecules->molecules;
+    for (int order = 0; order < TOPOLOGY_ORDERS; order++) {
+        struct json_object groups = mf_json_child(scene, mf_scene_group_keys[order], false);
+        for (int g = 0; g < molecules->groups[order]; g++)
+            if (!reading->used[order][g])
+                mf_json_fault(&groups, molecules->group[order][g].name, "no molecule has such a %s",
+                              mf_topology_order_names[order]);
+    }
+    const struct composition *composition = reading->composition;
+    for (int type = 0; type < composition->types && molecules->topology.kinds > 0; type++)
+        if (composition->count[type] < 2)
+            mf_json_fault(scene, "molecules",
+                          "a type has at least 2 beads in all molecules and alone, and \"%s\" has "
+                          "%lld",
+                          composition->name[type], (long long)composition->count[type]);
+}
+
+enum status mf_scene_molecules_read(struct scene_molecules *molecules, struct json_object *scene,
+                                    struct composition *composition, const struct units *units) {
+    static const double most = 1e8;
+    struct reading reading = {.molecules = molecules, .composition = composition};
+    const size_t faults = mf_json_fault_count(scene->document);
+    const char *name;
+    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+        TRY(mf_scene_groups_read(&molecules->molecules, order, scene, units));
+    if (mf_json_fault_count(scene->document) > faults)
+        return STATUS_OK; // that kinds lack such a group would mislead
+    struct json_object object = mf_json_child(scene, "molecules", false);
+    for (size_t n = 0; (name = mf_json_key(&object, n)); n++) {
+        if (n >= TOPOLOGY_MOST_KINDS || !mf_topology_is_name(name)) {
+            mf_json_fault(&object, name,
+                          "there are at most %d kinds, called by up to %d letters, digits, _ and -",
+                          TOPOLOGY_MOST_KINDS, TOPOLOGY_NAME_SIZE - 1);
+            mf_json_has(&object, name);
+        } else {
+            TRY(read_kind(&reading, &object, name));
+        }
+    }
+    if (object.item)
+        mf_json_finish(&object);
+    if (mf_json_fault_count(scene->document) == faults)
+        check_use(&reading, scene);
+    if (mf_json_fault_count(scene->document) == faults &&
+        (double)mf_composition_particles(composition) > most)
+        mf_json_fault(scene, "molecules", "they have %g beads; the most are %g",
+                      (double)mf_composition_particles(composition), most);
+    if (mf_json_fault_count(scene->document) > faults || !scene_has_molecules(molecules))
+        return STATUS_OK;
+    return mf_topology_complete(&molecules->molecules.topology, composition);
+}
+
+void mf_scene_molecules_clear(struct scene_molecules *molecules) {
+    mf_molecules_clear(&molecules->molecules);
+    *molecules = (struct scene_molecules){0};
+}
+
+// Writing -----------------------------------------------------------------------------------------
+
+static void write_beads(const struct topology_kind *kind, const struct composition *composition,
+                        struct json_writer *writer) {
+    const char **names = mf_memory_zeroed((size_t)kind->beads, sizeof *names);
+    for (int k = 0; k < kind->beads && names; k++)
+        names[k] = composition->name[kind->type[k]];
+    mf_json_put_texts(writer, "beads", names, names ? (size_t)kind->beads : 0);
+    mf_memory_free(names);
+}
+
+static void write_chain(const struct molecules *molecules, const struct topology_kind *kind,
+                        const struct scene_molecule *told, const struct composition *composition,
+                        struct json_writer *writer) {
+    mf_json_begin(writer, "chain");
+    if (told->of_one_type) {
+        mf_json_put_text(writer, "type", composition->name[kind->type[0]]);
+        mf_json_put_integer(writer, "length", kind->beads);
+    } else {
+        write_beads(kind, composition, writer);
+    }
+    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+        if (told->group[order] >= 0)
+            mf_json_put_text(writer, mf_topology_order_names[order],
+                             molecules->group[order][told->group[order]].name);
+    mf_json_end(writer);
+}
+
+/// The terms of an order by their groups, in the order in which they are there.
+static void write_terms(const struct molecules *molecules, const struct topology_kind *kind,
+                        int order, struct json_writer *writer) {
+    const size_t beads = (size_t)topology_beads(order);
+    int *rows = mf_memory_zeroed((size_t)kind->terms[order] * beads, sizeof *rows);
+    if (kind->terms[order] > 0)
+        mf_json_begin(writer, mf_scene_group_keys[order]);
+    for (int g = 0; g < molecules->groups[order] && kind->terms[order] > 0 && rows; g++) {
+        size_t count = 0;
+        for (int n = 0; n < kind->terms[order]; n++)
+            if (kind->term[order][n].group == g) {
+                for (size_t k = 0; k < beads; k++)
+                    rows[count * beads + k] = kind->term[order][n].bead[k] + 1;
+                count++;
+            }
+        if (count > 0)
+            mf_json_put_rows(writer, molecules->group[order][g].name, rows, count, beads);
+    }
+    if (kind->terms[order] > 0)
+        mf_json_end(writer);
+    mf_memory_free(rows);
+}
+
+void mf_scene_molecules_write(const struct scene_molecules *molecules,
+                              const struct composition *composition, struct json_writer *writer) {
+    const struct molecules *own = &molecules->molecules;
+    if (!scene_has_molecules(molecules))
+        return;
+    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+        mf_scene_groups_write(own, order, writer);
+    mf_json_begin(writer, "molecules");
+    for (int k = 0; k < own->topology.kinds; k++) {
+        const struct topology_kind *kind = &own->topology.kind[k];
+        mf_json_begin(writer, kind->name);
+        mf_json_put_fields(writer, mf_scene_molecule_fields,
+                           &(struct told){kind->count, kind->exclude});
+        if (molecules->told[k].is_chain)
+            write_chain(own, kind, &molecules->told[k], composition, writer);
+        else
+            write_beads(kind, composition, writer);
+        for (int order = 0; order < TOPOLOGY_ORDERS && !molecules->told[k].is_chain; order++)
+            write_terms(own, kind, order, writer);
+        mf_json_end(writer);
+    }
+    mf_json_end(writer);
+}

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file "molecules" of a scene, and the "bonds", "angles" and "dihedrals" that hold them together.
+///
+/// "bonds": {"backbone": {"law": "harmonic", …}, …}: groups under names that the file chooses,
+/// each with its law; likewise "angles" and "dihedrals". "molecules": {"hexane": {"count": 300,
+/// "chain": {"type": "A", "length": 3, "bond": "backbone"}}, "ring": {"count": 10, "beads": ["A",
+/// "A", "A"], "bonds": {"backbone": [[1, 2], [2, 3], [3, 1]]}}}: kinds, each a chain or a graph.
+#pragma once
+
+#include "forces/molecules.h"
+#include "input/scene_law.h"
+
+enum { SCENE_MOLECULES_WARNING_SIZE = 256 };
+
+/// How a file tells of a kind, which is written so, too.
+struct scene_molecule {
+    bool is_chain, of_one_type;
+    int group[TOPOLOGY_ORDERS]; ///< of a chain; −1: none
+};
+
+/// Owns the molecules; a scene's interactions borrow them. All zero: there are none.
+struct scene_molecules {
+    struct molecules molecules;
+    struct scene_molecule told[TOPOLOGY_MOST_KINDS];
+    char warning[SCENE_MOLECULES_WARNING_SIZE]; ///< one line; "" if there is nothing to say
+};
+
+/// Fields of a kind, and of its "chain".
+extern const struct field mf_scene_molecule_fields[], mf_scene_chain_fields[];
+
+/// Names of the objects of groups: "bonds", "angles", "dihedrals".
+extern const char *const mf_scene_group_keys[TOPOLOGY_ORDERS];
+
+/// Read groups and kinds from the members of `scene`, and number their beads.
+/// @param[in,out] composition  single beads; the molecules' beads and their types are added
+/// Faults go to the document. Fails: NO_MEMORY.
+enum status mf_scene_molecules_read(struct scene_molecules *molecules, struct json_object *scene,
+                                    struct composition *composition,
+                                    const struct units *units) MUST_USE;
+void mf_scene_molecules_clear(struct scene_molecules *molecules);
+
+/// Whether there are any.
+static inline bool scene_has_molecules(const struct scene_molecules *molecules) {
+    return molecules->molecules.topology.kinds > 0;
+}
+
+void mf_scene_molecules_write(const struct scene_molecules *molecules,
+                              const struct composition *composition, struct json_writer *writer);
+
+/// Add the tables to the digest of a checkpoint.
+void mf_scene_molecules_digest(const struct scene_molecules *molecules, uint64_t *digest);
+
+/// Read the groups of one order of terms: {"backbone": {"law": …}, …}.
+/// Faults go to the document. Fails: NO_MEMORY.
+enum status mf_scene_groups_read(struct molecules *molecules, int order, struct json_object *scene,
+                                 const struct units *units) MUST_USE;
+
+void mf_scene_groups_write(const struct molecules *molecules, int order,
+                           struct json_writer *writer);

@@ -1,0 +1,379 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file Sizes of molecules, by kind:
+///   ⟨R_g²⟩ = ⟨Σ_i m_i |r_i − r_cm|²⟩/Σ m,   ⟨R_e²⟩ = ⟨|r_N − r_1|²⟩ of the last and the first
+///   bead,
+/// and the correlation of the end-to-end vector, ⟨R_e(t) · R_e(0)⟩/⟨R_e²⟩. Molecules are made whole
+/// along their bonds. Errors of the means see the correlation of the samples; those of the
+/// correlation are of 20 blocks of time. Tested: test_molecule_sizes, physics/test_molecules.
+#include "base/memory.h"
+#include "base/number_text.h"
+#include "base/statistics.h"
+#include "forces/molecules.h"
+#include "io/data_table.h"
+#include "observe/measure.h"
+
+#include <math.h>
+
+enum { BLOCKS = 20 };
+
+struct settings {
+    int64_t lags;
+};
+
+struct state {
+    const struct molecules *molecules;
+    size_t planned, samples, blocks, lags, every;
+    size_t most_beads;
+    double begin, time_step; ///< step of the first sample, Δt
+    double *gyration, *end;  ///< shape [kinds, planned]: means over the molecules [λ²]
+    double *ends;            ///< shape [lags + 1, molecules, 3]: the last end-to-end vectors [λ]
+    double *products;        ///< shape [blocks, kinds, lags + 1]: sums of R(t)·R(0) [λ²]
+    double *origins;         ///< shape [blocks, lags + 1]: samples in them
+    double (*place)[3];      ///< shape [beads] of one molecule, whole
+    int *parent;             ///< shape [kinds, beads]: placed before it and bonded to it, or −1
+    int *order;              ///< shape [kinds, beads]: bead that is placed as number n
+};
+
+static const struct field fields[] = {
+    {"lags", FIELD_INTEGER, .offset = offsetof(struct settings, lags), .initial = 100, .minimum = 0,
+     .maximum = 100000, .unit = "samples",
+     .help = "as far as the correlation of the end-to-end vector goes"},
+    FIELD_END,
+};
+
+// Whole molecules ---------------------------------------------------------------------------------
+
+/// An order in which each bead follows one that it is bonded to, if there is one.
+static void plan_walk(const struct topology_kind *kind, int *order, int *parent) {
+    int placed = 0;
+    for (int bead = 0; bead < kind->beads; bead++)
+        parent[bead] = -2; // not yet
+    while (placed < kind->beads) {
+        int next = -1, from = -1;
+        for (int n = 0; n < kind->terms[TOPOLOGY_BOND] && next < 0; n++) {
+            const int *pair = kind->term[TOPOLOGY_BOND][n].bead;
+            for (int k = 0; k < 2 && next < 0; k++)
+                if (parent[pair[k]] > -2 && parent[pair[1 - k]] == -2) {
+                    from = pair[k];
+                    next = pair[1 - k];
+                }
+        }
+        for (int bead = 0; bead < kind->beads && next < 0; bead++)
+            next = parent[bead] == -2 ? bead : -1;
+        parent[next] = from;
+        order[placed++] = next;
+    }
+}
+
+/// Places of a molecule's beads relative to its first, along its bonds.
+static void make_whole(const struct state *s, const struct particles *particles, int k, int64_t m) {
+    const struct topology_kind *kind = &s->molecules->topology.kind[k];
+    const int *order = s->order + (size_t)k * s->most_beads;
+    const int *parent = s->parent + (size_t)k * s->most_beads;
+    for (int n = 0; n < kind->beads; n++) {
+        const int bead = order[n], from = parent[bead] < 0 ? order[0] : parent[bead];
+        const size_t here = particles->place[topology_id(kind, m, bead)];
+        const size_t there = particles->place[topology_id(kind, m, from)];
+        for (int d = 0; d < particles->box.dimensions; d++)
+            s->place[bead][d] =
+                (n > 0 ? s->place[from][d] : 0) +
+                box_nearest(particles->position[d][here] - particles->position[d][there],
+                            particles->box.length[d]);
+    }
+}
+
+/// R_g² of the molecule that was made whole.
+static double find_gyration(const struct state *s, const struct particles *particles,
+                            const struct topology_kind *kind, int64_t m) {
+    const double *mass = particles_masses(particles);
+    double all = 0, gyration = 0, centre[3] = {0};
+    for (int bead = 0; bead < kind->beads; bead++) {
+        const double own = mass ? mass[particles->place[topology_id(kind, m, bead)]] : 1;
+        all += own;
+        for (int d = 0; d < 3; d++) {
+            centre[d] += own * s->place[bead][d];
+            gyration += own * s->place[bead][d] * s->place[bead][d];
+        }
+    }
+    gyration /= all;
+    for (int d = 0; d < 3; d++)
+        gyration -= centre[d] * centre[d] / (all * all);
+    return gyration;
+}
+
+// Sampling ----------------------------------------------------------------------------------------
+
+static enum status begin(void *state, const void *settings, const struct simulation *simulation,
+                         const struct measure_plan *plan) {
+    enum status status = STATUS_OK;
+    struct state *s = state;
+    const struct simulation_setup *setup = &simulation->setup;
+    const struct molecules *molecules = mf_molecules_find(setup->interaction, setup->interactions);
+    if (molecules == NULL)
+        return mf_status_fail(STATUS_BAD_INPUT, "molecule_sizes: the scene has no molecules");
+    const struct topology *topology = &molecules->topology;
+    const size_t kinds = (size_t)topology->kinds, planned = (size_t)plan->samples;
+    const size_t lags = (size_t)((const struct settings *)settings)->lags;
+    *s = (struct state){.molecules = molecules,
+                        .planned = planned,
+                        .blocks = planned < BLOCKS ? planned : BLOCKS,
+                        .lags = lags < planned ? lags : planned - 1,
+                        .every = (size_t)plan->every,
+                        .begin = (double)plan->equilibration,
+                        .time_step = setup->time_step};
+    for (size_t k = 0; k < kinds; k++)
+        if ((size_t)topology->kind[k].beads > s->most_beads)
+            s->most_beads = (size_t)topology->kind[k].beads;
+    NEW_ARRAY(s->gyration, kinds * planned);
+    NEW_ARRAY(s->end, kinds * planned);
+    NEW_ARRAY(s->ends, 3 * (s->lags + 1) * (size_t)topology->molecules);
+    NEW_ARRAY(s->products, s->blocks * kinds * (s->lags + 1));
+    NEW_ARRAY(s->origins, s->blocks * (s->lags + 1));
+    NEW_ARRAY(s->place, s->most_beads);
+    NEW_ARRAY(s->parent, kinds * s->most_beads);
+    NEW_ARRAY(s->order, kinds * s->most_beads);
+    for (size_t k = 0; k < kinds; k++)
+        plan_walk(&topology->kind[k], s->order + k * s->most_beads, s->parent + k * s->most_beads);
+done:
+    return status;
+}
+
+static void clear(void *state) {
+    struct state *s = state;
+    mf_memory_free(s->gyration);
+    mf_memory_free(s->end);
+    mf_memory_free(s->ends);
+    mf_memory_free(s->products);
+    mf_memory_free(s->origins);
+    mf_memory_free(s->place);
+    mf_memory_free(s->parent);
+    mf_memory_free(s->order);
+    *s = (struct state){0};
+}
+
+static double *vectors_of(const struct state *s, size_t sample) {
+    return s->ends + 3 * (sample % (s->lags + 1)) * (size_t)s->molecules->topology.molecules;
+}
+
+/// Products of this sample's end-to-end vectors with those of the samples before.
+static void correlate(struct state *s) {
+    const struct topology *topology = &s->molecules->topology;
+    const size_t block = s->samples * s->blocks / s->planned, row = s->lags + 1;
+    const double *now = vectors_of(s, s->samples);
+    for (size_t lag = 0; lag <= s->lags && lag <= s->samples; lag++) {
+        const double *then = vectors_of(s, s->samples - lag);
+        for (int k = 0; k < topology->kinds; k++) {
+            const struct topology_kind *kind = &topology->kind[k];
+            const size_t first = 3 * (size_t)kind->first, last = first + 3 * (size_t)kind->count;
+            double sum = 0;
+            for (size_t n = first; n < last; n++)
+                sum += now[n] * then[n];
+            s->products[(block * (size_t)topology->kinds + (size_t)k) * row + lag] +=
+                sum / (double)kind->count;
+        }
+        s->origins[block * row + lag] += 1;
+    }
+}
+
+static enum status sample(void *state, struct simulation *simulation) {
+    struct state *s = state;
+    const struct topology *topology = &s->molecules->topology;
+    double *vectors = vectors_of(s, s->samples);
+    for (int k = 0; k < topology->kinds; k++) {
+        const struct topology_kind *kind = &topology->kind[k];
+        double gyration = 0, end = 0;
+        for (int64_t m = 0; m < kind->count; m++) {
+            double *vector = vectors + 3 * (kind->first + m);
+            make_whole(s, &simulation->particles, k, m);
+            gyration += find_gyration(s, &simulation->particles, kind, m);
+            for (int d = 0; d < 3; d++) {
+                vector[d] = s->place[kind->beads - 1][d] - s->place[0][d];
+                end += vector[d] * vector[d];
+            }
+        }
+        s->gyration[(size_t)k * s->planned + s->samples] = gyration / (double)kind->count;
+        s->end[(size_t)k * s->planned + s->samples] = end / (double)kind->count;
+    }
+    correlate(s);
+    s->samples++;
+    return STATUS_OK;
+}
+
+static size_t spans(void *state, struct memory_span *spans) {
+    struct state *s = state;
+    const size_t kinds = (size_t)s->molecules->topology.kinds, row = s->lags + 1;
+    const size_t vectors = 3 * row * (size_t)s->molecules->topology.molecules;
+    spans[0] = (struct memory_span){&s->samples, sizeof s->samples};
+    spans[1] = (struct memory_span){s->gyration, kinds * s->planned * sizeof *s->gyration};
+    spans[2] = (struct memory_span){s->end, kinds * s->planned * sizeof *s->end};
+    spans[3] = (struct memory_span){s->ends, vectors * sizeof *s->ends};
+    spans[4] = (struct memory_span){s->products, s->blocks * kinds * row * sizeof *s->products};
+    spans[5] = (struct memory_span){s->origins, s->blocks * row * sizeof *s->origins};
+    return 6;
+}
+
+// Results -----------------------------------------------------------------------------------------
+
+enum { MOST_COLUMNS = 1 + 2 * TOPOLOGY_MOST_KINDS, HEAD_SIZE = TOPOLOGY_NAME_SIZE + 32 };
+
+/// molecule_sizes.tsv: time, and means over the molecules of each kind.
+static enum status write_sizes(const struct state *s, const struct observable_results *results) {
+    enum status status = STATUS_OK;
+    const struct topology *topology = &s->molecules->topology;
+    struct data_column columns[MOST_COLUMNS];
+    char names[MOST_COLUMNS][HEAD_SIZE], path[OUTPUT_PATH_SIZE];
+    double *time = NULL;
+    size_t n = 0;
+    NEW_ARRAY(time, s->samples);
+    for (size_t k = 0; k < s->samples; k++)
+        time[k] = (s->begin + (double)((k + 1) * s->every)) * s->time_step;
+    columns[n++] = (struct data_column){"time[tau]", time, NULL};
+    for (int k = 0; k < topology->kinds; k++)
+        for (int which = 0; which < 2; which++) {
+            const double *series = which == 0 ? s->gyration : s->end;
+            snprintf(names[n], HEAD_SIZE, "%s_%s[lambda^2]", which == 0 ? "gyration" : "end",
+                     topology->kind[k].name);
+            columns[n] = (struct data_column){names[n], series + (size_t)k * s->planned, "%.8g"};
+            n++;
+        }
+    mf_observable_file(results, "molecule_sizes.tsv", path);
+    CHECK(mf_data_table_write_in(path, results->units, NULL, columns, n, s->samples));
+done:
+    mf_memory_free(time);
+    return status;
+}
+
+/// The normalised correlation of a kind and its error by blocks; shape [2, lags + 1].
+static void find_correlation(const struct state *s, int k, double *values) {
+    const size_t kinds = (size_t)s->molecules->topology.kinds, row = s->lags + 1;
+    double square = 0, samples = 0;
+    for (size_t block = 0; block < s->blocks; block++) {
+        square += s->products[(block * kinds + (size_t)k) * row];
+        samples += s->origins[block * row];
+    }
+    square /= samples;
+    for (size_t lag = 0; lag < row; lag++) {
+        struct running_mean mean = {0};
+        for (size_t block = 0; block < s->blocks; block++) {
+            const double origins = s->origins[block * row + lag];
+            if (origins > 0)
+                mf_statistics_add(&mean, s->products[(block * kinds + (size_t)k) * row + lag] /
+                                             (origins * square));
+        }
+        values[lag] = mean.mean;
+        values[row + lag] = mf_statistics_standard_error(&mean);
+    }
+    mf_statistics_forget_errors(values + row, row);
+}
+
+/// end_to_end.tsv: time, correlation and error of each kind.
+static enum status write_correlation(const struct state *s,
+                                     const struct observable_results *results) {
+    enum status status = STATUS_OK;
+    const struct topology *topology = &s->molecules->topology;
+    const size_t row = s->lags + 1;
+    struct data_column columns[MOST_COLUMNS];
+    char names[MOST_COLUMNS][HEAD_SIZE], path[OUTPUT_PATH_SIZE];
+    double *values = NULL;
+    size_t n = 0;
+    NEW_ARRAY(values, (1 + 2 * (size_t)topology->kinds) * row);
+    for (size_t lag = 0; lag < row; lag++)
+        values[lag] = (double)(lag * s->every) * s->time_step;
+    columns[n++] = (struct data_column){"time[tau]", values, NULL};
+    for (int k = 0; k < topology->kinds; k++) {
+        double *own = values + (1 + 2 * (size_t)k) * row;
+        find_correlation(s, k, own);
+        for (int which = 0; which < 2; which++) {
+            snprintf(names[n], HEAD_SIZE, "%s%s[1]", topology->kind[k].name,
+                     which == 0 ? "" : "_error");
+            columns[n] = (struct data_column){names[n], own + (size_t)which * row,
+                                              which == 0 ? "%.8g" : "%.3g"};
+            n++;
+        }
+    }
+    mf_observable_file(results, "end_to_end.tsv", path);
+    CHECK(mf_data_table_write_in(path, results->units, NULL, columns, n, row));
+done:
+    mf_memory_free(values);
+    return status;
+}
+
+static enum status write(const void *state, const struct observable_results *results) {
+    TRY(write_correlation(state, results));
+    return write_sizes(state, results);
+}
+
+static double mean_of(const struct state *s, const double *series, int k, double *error) {
+    const double *own = series + (size_t)k * s->planned;
+    double sum = 0;
+    for (size_t n = 0; n < s->samples; n++)
+        sum += own[n];
+    *error = mf_statistics_correlated_error(own, s->samples, 1);
+    return sum / (double)s->samples;
+}
+
+static void put(const void *state, const struct observable_results *results,
+                struct json_writer *writer) {
+    const struct state *s = state;
+    (void)results;
+    mf_json_begin(writer, "molecule_sizes");
+    for (int k = 0; k < s->molecules->topology.kinds; k++) {
+        double error, mean = mean_of(s, s->gyration, k, &error);
+        mf_json_begin(writer, s->molecules->topology.kind[k].name);
+        mf_json_put_quantity(writer, "gyration_squared", "lambda^2", mean);
+        mf_json_put_quantity(writer, "gyration_squared_error", "lambda^2", error);
+        mean = mean_of(s, s->end, k, &error);
+        mf_json_put_quantity(writer, "end_to_end_squared", "lambda^2", mean);
+        mf_json_put_quantity(writer, "end_to_end_squared_error", "lambda^2", error);
+        mf_json_end(writer);
+    }
+    mf_json_end(writer);
+}
+
+/// The sizes of the first kind.
+static void say(const void *state, const struct observable_results *results, char *line,
+                size_t size) {
+    const struct state *s = state;
+    const double factor = mf_units_factor(results->units, "lambda^2");
+    char end[NUMBER_TEXT_SIZE], gyration[NUMBER_TEXT_SIZE], unit[UNITS_NAME_SIZE];
+    double error, mean = mean_of(s, s->end, 0, &error);
+    mf_number_text(factor * mean, factor * error, end);
+    mean = mean_of(s, s->gyration, 0, &error);
+    mf_number_text(factor * mean, factor * error, gyration);
+    snprintf(line, size, "%s: R_e^2 %s, R_g^2 %s%s", s->molecules->topology.kind[0].name, end,
+             gyration, mf_units_suffix(results->units, "lambda^2", unit));
+}
+
+/// Nanoseconds of a bead in a molecule and sample, and of a molecule and lag.
+static const double walk_cost = 30, product_cost = 1.5;
+
+static void explain(const void *settings, const struct simulation_setup *setup, double every,
+                    struct stages *stages) {
+    const struct molecules *molecules = mf_molecules_find(setup->interaction, setup->interactions);
+    const double count = fmax(1, (double)setup->placement.count);
+    const double share = molecules ? (double)molecules->topology.molecules / count : 0;
+    const double lags = (double)((const struct settings *)settings)->lags;
+    mf_stages_add(stages, "sizes of molecules", true,
+                  (walk_cost + product_cost * lags * share) / every, "one step in %.0f", every);
+}
+
+static const char *const files[] = {"end_to_end.tsv", "molecule_sizes.tsv", NULL};
+
+const struct observable mf_molecule_sizes = {
+    .name = "molecule_sizes",
+    .summary = "radius of gyration, end-to-end distance and how long its vector lives",
+    .fields = fields,
+    .settings_size = sizeof(struct settings),
+    .state_size = sizeof(struct state),
+    .begin = begin,
+    .clear = clear,
+    .sample = sample,
+    .spans = spans,
+    .write = write,
+    .put = put,
+    .say = say,
+    .explain = explain,
+    .stage = "sizes of molecules",
+    .files = files,
+    .figure = OBSERVABLE_FIGURE_OF_GROUPS,
+};

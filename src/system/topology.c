@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "system/topology.h"
+
+#include "base/memory.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <string.h>
+
+const char *const mf_topology_order_names[TOPOLOGY_ORDERS] = {"bond", "angle", "dihedral"};
+
+bool mf_topology_is_name(const char *name) {
+    const size_t length = strlen(name);
+    for (size_t k = 0; k < length; k++)
+        if (!isalnum((unsigned char)name[k]) && name[k] != '_' && name[k] != '-')
+            return false;
+    return length > 0 && length < TOPOLOGY_NAME_SIZE;
+}
+
+// Checks ------------------------------------------------------------------------------------------
+
+/// Whether two terms are of the same beads, in either direction.
+static bool are_same(const struct topology_term *a, const struct topology_term *b, int beads) {
+    bool forward = true, backward = true;
+    for (int k = 0; k < beads; k++) {
+        forward &= a->bead[k] == b->bead[k];
+        backward &= a->bead[k] == b->bead[beads - 1 - k];
+    }
+    return forward || backward;
+}
+
+/// "1-2-3", beads from 1 on.
+static void name_term(const struct topology_term *term, int beads, char *text, size_t size) {
+    size_t length = 0;
+    for (int k = 0; k < beads && length < size; k++)
+        length +=
+            (size_t)snprintf(text + length, size - length, "%s%d", k ? "-" : "", term->bead[k] + 1);
+}
+
+static enum status check_beads(const struct topology_kind *kind, int order,
+                               const struct topology_term *term, const char *name) {
+    const int beads = topology_beads(order);
+    for (int k = 0; k < beads; k++) {
+        if (term->bead[k] < 0 || term->bead[k] >= kind->beads)
+            return mf_status_fail(
+                STATUS_BAD_INPUT, "the %s %s has a bead %d, which is not there: beads are 1 to %d",
+                mf_topology_order_names[order], name, term->bead[k] + 1, kind->beads);
+        for (int other = 0; other < k; other++)
+            if (term->bead[other] == term->bead[k])
+                return mf_status_fail(STATUS_BAD_INPUT, "the %s %s has a bead twice",
+                                      mf_topology_order_names[order], name);
+    }
+    return STATUS_OK;
+}
+
+enum status mf_topology_check(const struct topology_kind *kind) {
+    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+        for (int n = 0; n < kind->terms[order]; n++) {
+            const struct topology_term *term = &kind->term[order][n];
+            const int beads = topology_beads(order);
+            char name[64];
+            name_term(term, beads, name, sizeof name);
+            TRY(check_beads(kind, order, term, name));
+            for (int m = 0; m < n; m++) {
+                const struct topology_term *other = &kind->term[order][m];
+                if (are_same(term, other, beads) &&
+                    (order == TOPOLOGY_BOND || term->group == other->group))
+                    return mf_status_fail(STATUS_BAD_INPUT, "the %s %s stands there twice",
+                                          mf_topology_order_names[order], name);
+            }
+        }
+    return STATUS_OK;
+}
+
+static bool are_bonded(const struct topology_kind *kind, int a, int b) {
+    const struct topology_term wanted = {.bead = {a, b}};
+    for (int n = 0; n < kind->terms[TOPOLOGY_BOND]; n++)
+        if (are_same(&kind->term[TOPOLOGY_BOND][n], &wanted, 2))
+            return true;
+    return false;
+}
+
+const struct topology_term *mf_topology_unbonded(const struct topology_kind *kind, int *order) {
+    for (*order = TOPOLOGY_ANGLE; *order < TOPOLOGY_ORDERS; ++*order)
+        for (int n = 0; n < kind->terms[*order]; n++) {
+            const struct topology_term *term = &kind->term[*order][n];
+            for (int k = 0; k + 1 < topology_beads(*order); k++)
+                if (!are_bonded(kind, term->bead[k], term->bead[k + 1]))
+                    return term;
+        }
+    return NULL;
+}
+
+// What is excluded --------------------------------------------------------------------------------
+
+/// Mark the beads bonded to those marked with `distance` with one more.
+static void mark_next(const struct topology_kind *kind, int *marked, int distance) {
+    for (int n = 0; n < kind->terms[TOPOLOGY_BOND]; n++) {
+        const int *bead = kind->term[TOPOLOGY_BOND][n].bead;
+        for (int k = 0; k < 2; k++)
+            if (marked[bead[k]] == distance && marked[bead[1 - k]] < 0)
+                marked[bead[1 - k]] = distance + 1;
+    }
+}
+
+/// The beads at most `exclude` bonds from each.
+static enum status find_near(struct topology_kind *kind) {
+    enum status status = STATUS_OK;
+    int *marked = NULL;
+    NEW_ARRAY(marked, kind->beads);
+    NEW_ARRAY(kind->near_start, kind->beads + 1);
+    for (int pass = 0; pass < 2; pass++) {
+        int found = 0;
+        for (int bead = 0; bead < kind->beads; bead++) {
+            for (int k = 0; k < kind->beads; k++)
+                marked[k] = k == bead ? 0 : -1;
+            for (int distance = 0; distance < kind->exclude; distance++)
+                mark_next(kind, marked, distance);
+            for (int k = 0; k < kind->beads; k++) {
+                if (pass == 1 && marked[k] > 0)
+                    kind->near[found] = k;
+                found += marked[k] > 0;
+            }
+            kind->near_start[bead + 1] = found;
+        }
+        if (pass == 0)
+            NEW_ARRAY(kind->near, found);
+    }
+done:
+    mf_memory_free(marked);
+    return status;
+}
+
+// Numbers of beads --------------------------------------------------------------------------------
+
+/// Ids of a kind's beads, given the next one of each type, which go on.
+static enum status number_beads(struct topology_kind *kind, int64_t next[COMPOSITION_MOST_TYPES]) {
+    enum status status = STATUS_OK;
+    int64_t of_type[COMPOSITION_MOST_TYPES] = {0};
+    NEW_ARRAY(kind->id, kind->beads);
+    NEW_ARRAY(kind->step, kind->beads);
+    for (int bead = 0; bead < kind->beads; bead++)
+        kind->id[bead] = (uint32_t)(next[kind->type[bead]] + of_type[kind->type[bead]]++);
+    for (int bead = 0; bead < kind->beads; bead++)
+        kind->step[bead] = (uint32_t)of_type[kind->type[bead]];
+    for (int type = 0; type < COMPOSITION_MOST_TYPES; type++)
+        next[type] += of_type[type] * kind->count;
+done:
+    return status;
+}
+
+/// By id: molecules, and how many pairs each bead is excluded from.
+static void enter_molecules(struct topology *topology) {
+    for (int k = 0; k < topology->kinds; k++) {
+        const struct topology_kind *kind = &topology->kind[k];
+        for (int64_t m = 0; m < kind->count; m++)
+            for (int bead = 0; bead < kind->beads; bead++) {
+                const uint32_t id = topology_id(kind, m, bead);
+                topology->molecule[id] = (uint32_t)(kind->first + m);
+                topology->excluded_start[id + 1] =
+                    (size_t)(kind->near_start[bead + 1] - kind->near_start[bead]);
+            }
+    }
+    uint32_t next = (uint32_t)topology->molecules;
+    for (size_t id = 0; id < topology->particles; id++) {
+        if (topology->molecule[id] == UINT32_MAX)
+            topology->molecule[id] = next++;
+        topology->excluded_start[id + 1] += topology->excluded_start[id];
+    }
+}
+
+static void enter_excluded(struct topology *topology) {
+    for (int k = 0; k < topology->kinds; k++) {
+        const struct topology_kind *kind = &topology->kind[k];
+        for (int64_t m = 0; m < kind->count; m++)
+            for (int bead = 0; bead < kind->beads; bead++) {
+                size_t at = topology->excluded_start[topology_id(kind, m, bead)];
+                for (int n = kind->near_start[bead]; n < kind->near_start[bead + 1]; n++)
+                    topology->excluded[at++] = topology_id(kind, m, kind->near[n]);
+            }
+    }
+}
+
+enum status mf_topology_complete(struct topology *topology, const struct composition *composition) {
+    enum status status = STATUS_OK;
+    int64_t next[COMPOSITION_MOST_TYPES] = {0};
+    for (int type = 1; type < composition->types; type++)
+        next[type] = next[type - 1] + composition->count[type - 1];
+    topology->particles = (size_t)mf_composition_particles(composition);
+    for (int k = 0; k < topology->kinds; k++) {
+        topology->kind[k].first = topology->molecules;
+        topology->molecules += topology->kind[k].count;
+        CHECK(number_beads(&topology->kind[k], next));
+        CHECK(find_near(&topology->kind[k]));
+    }
+    NEW_ARRAY(topology->molecule, topology->particles);
+    memset(topology->molecule, 0xff, topology->particles * sizeof *topology->molecule);
+    NEW_ARRAY(topology->excluded_start, topology->particles + 1);
+    enter_molecules(topology);
+    const size_t excluded = topology->excluded_start[topology->particles];
+    NEW_ARRAY(topology->excluded, excluded);
+    topology->excludes = excluded > 0;
+    enter_excluded(topology);
+done:
+    return status;
+}
+
+void mf_topology_kind_clear(struct topology_kind *kind) {
+    mf_memory_free(kind->type);
+    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+        mf_memory_free(kind->term[order]);
+    mf_memory_free(kind->id);
+    mf_memory_free(kind->step);
+    mf_memory_free(kind->near_start);
+    mf_memory_free(kind->near);
+    *kind = (struct topology_kind){0};
+}
+
+void mf_topology_clear(struct topology *topology) {
+    for (int k = 0; k < topology->kinds; k++)
+        mf_topology_kind_clear(&topology->kind[k]);
+    mf_memory_free(topology->molecule);
+    mf_memory_free(topology->excluded_start);
+    mf_memory_free(topology->excluded);
+    *topology = (struct topology){0};
+}
+
+bool mf_topology_excludes(const struct topology *topology, uint32_t i, uint32_t j) {
+    if (topology == NULL)
+        return false;
+    for (size_t n = topology->excluded_start[i]; n < topology->excluded_start[i + 1]; n++)
+        if (topology->excluded[n] == j)
+            return true;
+    return false;
+}

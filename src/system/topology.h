@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file Molecules: which beads they are made of, what binds these, and which pairs are left to the
+/// bonds alone.
+///
+/// Kinds of molecules are repeated. The ids of their beads follow from the composition: the beads
+/// of a type stand molecule after molecule, kind after kind, single beads behind them, so that
+/// nothing is stored, sorted or saved. A term is a bond, an angle or a dihedral, of two, three or
+/// four beads, and belongs to a group, which has a law (forces/bonded.h).
+#pragma once
+
+#include "base/status.h"
+#include "system/composition.h"
+
+#include <stddef.h>
+
+enum topology_order { TOPOLOGY_BOND, TOPOLOGY_ANGLE, TOPOLOGY_DIHEDRAL, TOPOLOGY_ORDERS };
+enum {
+    TOPOLOGY_MOST_BEADS = 4, ///< of a term
+    TOPOLOGY_MOST_KINDS = 16,
+    TOPOLOGY_MOST_EXCLUDE = 3,
+    TOPOLOGY_NAME_SIZE = 32,
+};
+
+/// Beads of a term: 2, 3 or 4.
+static inline int topology_beads(int order) {
+    return order + 2;
+}
+
+/// "bond", "angle", "dihedral".
+extern const char *const mf_topology_order_names[TOPOLOGY_ORDERS];
+
+struct topology_term {
+    int bead[TOPOLOGY_MOST_BEADS]; ///< of the molecule, from 0
+    int group;
+};
+
+/// A kind of molecule. Owned by the topology once it has been added.
+struct topology_kind {
+    char name[TOPOLOGY_NAME_SIZE];
+    int64_t count; ///< molecules
+    int exclude;   ///< pairs of beads at most so many bonds apart do not act as pairs: 0 to 3
+    int beads;
+    int *type; ///< shape [beads], of the composition
+    int terms[TOPOLOGY_ORDERS];
+    struct topology_term *term[TOPOLOGY_ORDERS]; ///< shape [terms]
+    // Found by mf_topology_complete:
+    int64_t first;   ///< number of its first molecule
+    uint32_t *id;    ///< shape [beads], of the first molecule
+    uint32_t *step;  ///< shape [beads]: from there to the next molecule
+    int *near_start; ///< shape [beads + 1]
+    int *near; ///< beads excluded from pairs with b: near[near_start[b] … near_start[b + 1])
+};
+
+struct topology {
+    int kinds;
+    struct topology_kind kind[TOPOLOGY_MOST_KINDS];
+    int64_t molecules;  ///< of all kinds
+    size_t particles;   ///< with single beads
+    uint32_t *molecule; ///< shape [particles]: number of the molecule by id; a single bead has one
+                        ///< of its own, from `molecules` on
+    bool excludes;      ///< any pair
+    size_t *excluded_start; ///< shape [particles + 1], by id
+    uint32_t *excluded;     ///< ids excluded from pairs with id i: excluded[excluded_start[i] …
+                            ///< excluded_start[i + 1])
+};
+
+/// Whether a kind or a group can be called so: letters, digits, _ and -, not too many.
+bool mf_topology_is_name(const char *name);
+
+/// Whether a kind's terms are of its beads and stand there once.
+/// Fails: BAD_INPUT, naming the beads from 1 on: a bead that is not there or twice in a term, a
+/// bond that stands there twice, another term twice in a group. Tested: test_topology.
+enum status mf_topology_check(const struct topology_kind *kind) MUST_USE;
+
+/// The first angle or dihedral two neighbouring beads of which no bond joins, or NULL.
+/// @param[out] order  of the term
+const struct topology_term *mf_topology_unbonded(const struct topology_kind *kind, int *order);
+
+/// Number the beads of all kinds and find what they exclude. The composition holds all beads, those
+/// of single ones too. Fails: NO_MEMORY. Tested: test_topology.
+enum status mf_topology_complete(struct topology *topology,
+                                 const struct composition *composition) MUST_USE;
+
+/// Free a topology, complete or not; a zeroed one is fine.
+void mf_topology_clear(struct topology *topology);
+void mf_topology_kind_clear(struct topology_kind *kind);
+
+/// Id of a bead of molecule number m of its kind.
+static inline uint32_t topology_id(const struct topology_kind *kind, int64_t m, int bead) {
+    return kind->id[bead] + (uint32_t)m * kind->step[bead];
+}
+
+/// Whether the pair of two ids is excluded. NULL: no molecules.
+bool mf_topology_excludes(const struct topology *topology, uint32_t i, uint32_t j);

@@ -1,0 +1,323 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Molecules from outside: a scene of chains, rings and single beads, its restart and its used.json,
+// what is measured of it, and files that cannot be right.
+#include "shared/is_close.h"
+#include "shared/results.h"
+#include "shared/run_program.h"
+#include "shared/small_inputs.h"
+#include "shared/testing.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#define BACKBONE_OF(length)                                                                        \
+    "\"backbone\": {\"law\": \"harmonic\", \"k\": 100, \"length\": " length "}"
+#define BACKBONE BACKBONE_OF("0.8")
+#define SPRING "\"spring\": {\"law\": \"fene\", \"k\": 5}"
+#define BEND "\"bend\": {\"law\": \"harmonic\", \"k\": 20, \"angle\": 120}"
+#define TWIST "\"twist\": {\"law\": \"table\", \"file\": \"twist.tsv\"}"
+#define CHAIN "\"beads\": [\"A\", \"B\", \"B\", \"A\"]"
+#define RING "[[1, 2], [2, 3], [3, 1]]"
+#define SINGLE "\"particles\": {\"types\": {\"W\": 60}, \"mass\": {\"A\": 2, \"B\": 1, \"W\": 1}}"
+
+static const char scene[] =
+    "{\"seed\": 3, \"box\": [6, 6, 6], \"time_step\": 0.01,\n"
+    "\"bonds\": {" BACKBONE ", " SPRING "},\n"
+    "\"angles\": {" BEND "}, \"dihedrals\": {" TWIST "},\n"
+    "\"molecules\": {\"chain\": {\"count\": 50, \"chain\": {" CHAIN ",\n"
+    "    \"bond\": \"backbone\", \"angle\": \"bend\", \"dihedral\": \"twist\"}},\n"
+    "  \"ring\": {\"count\": 20, \"exclude\": 0, \"beads\": [\"A\", \"A\", \"A\"],\n"
+    "    \"bonds\": {\"spring\": " RING "}}},\n" SINGLE ",\n"
+    "\"conservative\": {\"law\": \"soft-repulsion\"},\n"
+    "\"rdf\": {\"range\": 2, \"bins\": 20}, \"bond_lengths\": {\"bins\": 50},\n"
+    "\"intermolecular_rdf\": {\"range\": 2, \"bins\": 20},\n"
+    "\"bond_angles\": {\"bins\": 30}, \"dihedral_angles\": {\"bins\": 36},\n"
+    "\"molecule_sizes\": {\"lags\": 10}, \"snapshots\": {\"every\": 400, \"formats\": [\"json\",\n"
+    "\"lammps-dump\"]},\n"
+    "\"measure\": {\"equilibration\": 400, \"samples\": 60, \"every\": 20}}\n";
+
+static const char *const tables[] = {
+    "thermodynamics.tsv",  "rdf_A-A.tsv",        "rdf_W-A.tsv",
+    "bond_lengths.tsv",    "bond_angles.tsv",    "end_to_end.tsv",
+    "dihedral_angles.tsv", "molecule_sizes.tsv", "intermolecular_rdf_A-A.tsv",
+    "configuration.tsv",   "used.json",          NULL};
+
+static void write_inputs(struct temporary_folder *folder, const char *from, const char *to) {
+    char twist[4096] = "# phi[degrees] U[k_B.T_0]\n";
+    for (int phi = -180; phi <= 180; phi += 10)
+        snprintf(twist + strlen(twist), sizeof twist - strlen(twist), "%d %.10g\n", phi,
+                 2 + 2 * cos(3 * phi * M_PI / 180));
+    small_inputs_write(folder, "twist.tsv", twist, NULL, NULL);
+    small_inputs_write(folder, "scene.json", scene, from, to);
+}
+
+static void test_molecules_go_on_with_the_same_bits(void **state) {
+    static struct run_program_result result;
+    write_inputs(*state, NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "whole");
+    run_program_assert_code(&result, 0);
+    const char *const words[] = {"simulate", "scene.json", "-o", "pieces", NULL};
+    run_program_in_pieces(0, words);
+    results_assert_same("whole", "pieces", tables);
+    RUN_PROGRAM(&result, "simulate", "whole/used.json", "-o", "again", "--threads", "2");
+    run_program_assert_code(&result, 0);
+    results_assert_same("whole", "again", tables);
+}
+
+/// The file's rows without its comments: column `column`, at most `most` of them.
+static size_t read_column(const char *file, int column, double *values, size_t most) {
+    char line[4096];
+    size_t rows = 0;
+    FILE *stream = fopen(file, "r");
+    assert_non_null(stream);
+    while (rows < most && fgets(line, sizeof line, stream)) {
+        char *at = line;
+        if (line[0] == '#')
+            continue;
+        for (int k = 0; k <= column; k++)
+            values[rows] = strtod(at, &at);
+        rows++;
+    }
+    fclose(stream);
+    return rows;
+}
+
+static void test_distributions_are_normalised_and_lie_where_the_laws_are(void **state) {
+    static struct run_program_result result;
+    static const struct {
+        const char *file;
+        int column;
+        double rest, tolerance; ///< of the mean
+    } expected[] = {
+        {"out/bond_lengths.tsv", 1, 0.8, 0.05},
+        {"out/bond_angles.tsv", 1, 117, 4},
+        {"out/dihedral_angles.tsv", 1, 0, 15}, // symmetric
+    };
+    write_inputs(*state, NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    run_program_assert_code(&result, 0);
+    for (size_t n = 0; n < sizeof expected / sizeof *expected; n++) {
+        double q[100], p[100], sum = 0, mean = 0;
+        const size_t rows = read_column(expected[n].file, 0, q, 100);
+        assert_int_equal(read_column(expected[n].file, expected[n].column, p, 100), rows);
+        for (size_t k = 0; k < rows; k++) {
+            sum += p[k] * (q[1] - q[0]);
+            mean += p[k] * q[k] * (q[1] - q[0]);
+        }
+        assert_close(sum, 1, 1e-6);
+        assert_close(mean, expected[n].rest, expected[n].tolerance);
+    }
+    // The rings' first and last bead are bonded: their distance is a bond length, below 1.5.
+    double ring[60];
+    assert_int_equal(read_column("out/molecule_sizes.tsv", 4, ring, 60), 60);
+    for (int k = 0; k < 60; k++)
+        assert_true(ring[k] > 0.01 && ring[k] < 2.25);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "--explain");
+    assert_contains(result.out, "molecules                          on ");
+    assert_contains(result.out, "bond angles                        on ");
+}
+
+/// A free joint prefers no direction: p(theta) is sin(theta)/2 a radian, and flat without its
+/// Jacobian. 400 trimers of 40 samples leave an error of 3 % in the two rarest of nine bins, of 6 %
+/// of the angles each.
+static void test_a_free_joint_has_the_distribution_of_a_sphere(void **state) {
+    static struct run_program_result result;
+    small_inputs_write(
+        *state, "joint.json",
+        "{\"density\": 1, \"time_step\": 0.002, \"bonds\": {" BACKBONE "},\n"
+        "\"angles\": {\"free\": {\"law\": \"harmonic\", \"k\": 0}}, \"molecules\": {\"trimer\":\n"
+        "{\"count\": 400, \"chain\": {\"type\": \"A\", \"length\": 3, \"bond\": \"backbone\",\n"
+        "\"angle\": \"free\"}}}, \"dynamics\": {\"integrator\": \"brownian\"}, \"rdf\":\n"
+        "{\"range\": 2}, \"bond_angles\": {\"bins\": 9},\n"
+        "\"measure\": {\"equilibration\": 2000, \"samples\": 40, \"every\": 200}}\n",
+        NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "joint.json", "-o", "joint");
+    run_program_assert_code(&result, 0);
+    double theta[9], p[9], flat[9], mean = 0;
+    assert_int_equal(read_column("joint/bond_angles.tsv", 0, theta, 9), 9);
+    assert_int_equal(read_column("joint/bond_angles.tsv", 1, p, 9), 9);
+    assert_int_equal(read_column("joint/bond_angles.tsv", 3, flat, 9), 9);
+    for (int k = 0; k < 9; k++)
+        mean += flat[k] / 9;
+    for (int k = 0; k < 9; k++) {
+        const double exact = 0.5 * sin(theta[k] * M_PI / 180) * M_PI / 180;
+        assert_close_relative(p[k], exact, 0.15);
+        assert_close_relative(flat[k], mean, 0.15);
+    }
+}
+
+/// Snapshots tell the molecules, and a run can begin where another ended.
+static void test_configurations_carry_molecules_on(void **state) {
+    static struct run_program_result result;
+    char line[256] = "", first[64] = "";
+    write_inputs(*state, NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    run_program_assert_code(&result, 0);
+    FILE *dump = fopen("out/snapshots/trajectory.lammpstrj", "r");
+    assert_non_null(dump);
+    while (fgets(line, sizeof line, dump) && strncmp(line, "ITEM: ATOMS", 11) != 0)
+        ;
+    assert_string_equal(line, "ITEM: ATOMS id mol type x y z ix iy iz vx vy vz\n");
+    // Types are W, A, B: the first of 60 single beads, behind 70 molecules, is molecule 71.
+    assert_non_null(fgets(first, sizeof first, dump));
+    assert_int_equal(strncmp(first, "1 71 1 ", 7), 0);
+    fclose(dump);
+    write_inputs(*state, SINGLE,
+                 "\"particles\": {\"types\": {\"W\": 60}, \"placement\": \"file\", \"file\": "
+                 "\"out/configuration.tsv\"}");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "next");
+    run_program_assert_code(&result, 0);
+    double length[50], p[50];
+    assert_int_equal(read_column("next/bond_lengths.tsv", 0, length, 50), 50);
+    assert_int_equal(read_column("next/bond_lengths.tsv", 1, p, 50), 50);
+    for (int k = 0; k < 50; k++) // bonds are still what they were
+        if (fabs(length[k] - 0.8) > 0.55)
+            assert_close(p[k], 0, 1e-12);
+}
+
+/// A rod of five beads 0.7 apart along a diagonal of the plane, across corners of the box, at rest.
+static void test_sizes_of_a_rod_are_those_of_geometry(void **state) {
+    static struct run_program_result result;
+    char beads[1024] = "";
+    for (int rod = 0; rod < 2; rod++)
+        for (int k = 0; k < 5; k++)
+            snprintf(beads + strlen(beads), sizeof beads - strlen(beads), "%.15g %.15g %d\n",
+                     fmod(4.5 + 0.7 * k * sqrt(0.5), 6), fmod(4.8 + 0.7 * k * sqrt(0.5), 6),
+                     1 + 3 * rod);
+    small_inputs_write(*state, "beads.tsv", beads, NULL, NULL);
+    small_inputs_write(
+        *state, "rod.json",
+        "{\"box\": [6, 6, 6], \"time_step\": 0.001, \"temperature\": 1e-12,\n"
+        "\"bonds\": {" BACKBONE_OF(
+            "0.7") "}, \"molecules\": {\"rod\": {\"count\": 2, \"chain\":\n"
+                   "{\"type\": \"A\", \"length\": 5, \"bond\": \"backbone\"}}}, \"particles\":\n"
+                   "{\"placement\": \"file\", \"file\": \"beads.tsv\"}, \"rdf\": {\"range\": 2},\n"
+                   "\"molecule_sizes\": {\"lags\": 1},\n"
+                   "\"measure\": {\"equilibration\": 1, \"samples\": 2, \"every\": 1}}\n",
+        NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "rod.json", "-o", "rod");
+    run_program_assert_code(&result, 0);
+    double gyration[2], end[2], correlation[2];
+    assert_int_equal(read_column("rod/molecule_sizes.tsv", 1, gyration, 2), 2);
+    assert_int_equal(read_column("rod/molecule_sizes.tsv", 2, end, 2), 2);
+    assert_int_equal(read_column("rod/end_to_end.tsv", 1, correlation, 2), 2);
+    assert_close(end[0], 16 * 0.49, 1e-5);
+    assert_close(gyration[0], 2 * 0.49, 1e-5); // (N^2 - 1)/12 = 2
+    assert_close(correlation[1], 1, 1e-5);
+}
+
+// What cannot be ----------------------------------------------------------------------------------
+
+static const struct fault {
+    const char *from, *to, *words[4];
+} faults[] = {
+    {RING,
+     "[[1, 2], [2, 4]]",
+     {"scene.json: molecules.ring: the bond 2-4 has a bead 4, which is not there: beads are 1 to "
+      "3"}},
+    {RING, "[[1, 2], [2, 3], [2, 1]]", {"molecules.ring: the bond 2-1 stands there twice"}},
+    {RING, "[[1, 2], [2, 2]]", {"molecules.ring: the bond 2-2 has a bead twice"}},
+    {RING,
+     "[[1, 2], [2]]",
+     {"molecules.ring.bonds.spring: a list of lists of 2 whole numbers is required; number 2 is "
+      "none"}},
+    {RING, "[[1, 2], [2, 2.5]]", {"molecules.ring.bonds.spring: a list of lists of 2 whole"}},
+    {"\"bonds\": {\"spring\": " RING,
+     "\"bonds\": {\"sprong\": " RING,
+     {"molecules.ring.bonds.sprong: unknown key; did you mean \"spring\"?"}},
+    {"\"bond\": \"backbone\"",
+     "\"bond\": \"bakbone\"",
+     {"molecules.chain.chain.bond: \"bakbone\" is no group of \"bonds\"; did you mean "
+      "\"backbone\"?"}},
+    {", \"dihedral\": \"twist\"", "", {"dihedrals.twist: no molecule has such a dihedral"}},
+    {BACKBONE,
+     "\"backbone\": {\"law\": \"harmonic\", \"k\": 100, \"length\": 3}",
+     {"scene.json: bonds.backbone: a bond of 3 is not shorter than half of the box, whose shortest "
+      "edge is 6"}},
+    {BACKBONE,
+     "\"backbone\": {\"law\": \"harmonix\", \"k\": 100, \"length\": 0.8}",
+     {"bonds.backbone.law", "did you mean \"harmonic\"?"}},
+    {"\"k\": 20", "\"k\": -20", {"angles.bend.k: -20 is out of range"}},
+    {"\"exclude\": 0", "\"exclude\": 4", {"molecules.ring.exclude: 4 is out of range"}},
+    {"\"count\": 20", "\"count\": 0", {"molecules.ring.count: 0 is out of range"}},
+    {CHAIN, "\"type\": \"A\"", {"molecules.chain.chain.length: missing"}},
+    {CHAIN, "\"beads\": [\"A\", \"a b\"]", {"molecules.chain.chain.beads: \"a b\": a type is"}},
+    {"\"types\": {\"W\": 60},",
+     "\"count\": 60,",
+     {"particles.count: beside molecules single beads have types"}},
+    {"\"types\": {\"W\": 60},",
+     "\"types\": {\"W\": 1},",
+     {"molecules: a type has at least 2 beads in all molecules and alone, and \"W\" has 1"}},
+    {"\"box\": [6, 6, 6]",
+     "\"dimensions\": 2, \"box\": [6, 6]",
+     {"dihedrals: in two dimensions there are none"}},
+    {"\"seed\": 3,",
+     "\"seed\": 3, \"dynamics\": {\"integrator\": \"event-driven\"},",
+     {"event-driven"}},
+};
+
+static void test_molecules_that_cannot_be_are_refused_in_one_line(void **state) {
+    static struct run_program_result result;
+    for (size_t n = 0; n < sizeof faults / sizeof *faults; n++) {
+        write_inputs(*state, faults[n].from, faults[n].to);
+        RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "bad");
+        run_program_assert_refused(&result, ".", faults[n].to, 1, faults[n].words);
+    }
+}
+
+static void test_tables_of_dihedrals_must_close(void **state) {
+    static struct run_program_result result;
+    static const char *const words[] = {"dihedrals.twist.file: ", "twist.tsv",
+                                        "a dihedral's table spans 360 degrees, not 270", NULL};
+    write_inputs(*state, NULL, NULL);
+    small_inputs_write(*state, "twist.tsv", "# phi U\n-180 0\n-90 1\n0 2\n90 0\n", NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "bad");
+    run_program_assert_refused(&result, ".", "table", 1, words);
+}
+
+static void test_what_looks_wrong_is_warned_of(void **state) {
+    static struct run_program_result result;
+    write_inputs(*state, "\"exclude\": 0,", "\"exclude\": 1,");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "fene");
+    assert_contains(result.err, "molecules.ring: \"fene\" only pulls");
+    write_inputs(*state, "\"bonds\": {\"spring\": " RING,
+                 "\"angles\": {\"bend\": [[1, 2, 3]]}, \"bonds\": {\"spring\": [[1, 2]]");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "loose");
+    assert_contains(result.err, "molecules.ring: no bonds join the beads of the angle 1-2-3");
+}
+
+static void test_a_fit_has_no_molecules_yet(void **state) {
+    static struct run_program_result result;
+    static const char *const words[] = {
+        "scene.molecules: unknown key: a fit finds the potentials of single beads alone so far",
+        NULL};
+    small_inputs_write(*state, "target.tsv", small_inputs_target, NULL, NULL);
+    small_inputs_write(
+        *state, "run.json",
+        "{\"target\": {\"rdf\": {\"file\": \"target.tsv\"}}, \"scene\": {\"box\": "
+        "[5, 5, 5], \"molecules\": {\"dimer\": {\"count\": 50, \"chain\": {\"type\": \"A\", "
+        "\"length\": 2, \"bond\": \"spring\"}}}, \"bonds\": {" SPRING "}}}\n",
+        NULL, NULL);
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "bad");
+    run_program_assert_refused(&result, ".", "fit", 1, words);
+}
+
+#define TEST(test)                                                                                 \
+    cmocka_unit_test_setup_teardown(test, small_inputs_enter_without_gnuplot, small_inputs_leave)
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        TEST(test_molecules_go_on_with_the_same_bits),
+        TEST(test_distributions_are_normalised_and_lie_where_the_laws_are),
+        TEST(test_a_free_joint_has_the_distribution_of_a_sphere),
+        TEST(test_configurations_carry_molecules_on),
+        TEST(test_sizes_of_a_rod_are_those_of_geometry),
+        TEST(test_molecules_that_cannot_be_are_refused_in_one_line),
+        TEST(test_tables_of_dihedrals_must_close),
+        TEST(test_what_looks_wrong_is_warned_of),
+        TEST(test_a_fit_has_no_molecules_yet),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
