@@ -37,11 +37,14 @@ class Page(PageTest):
         self.press("stop")
         self.wait(lambda: self.phase() == "stopped")
         self.assertIn("interrupted", self.text("message"))
+        self.assertIn("\"Go on\"", self.text("message"))
+        self.assertNotIn("left", self.text("progress-text"))
         self.press("resume")
         self.wait(lambda: self.phase() == "ended")
         self.assertGreaterEqual(self.iterations(), 3)
         self.wait(lambda: "rdf.tsv" in self.panels())
         self.assertIn("rdf_now.tsv", self.panels())
+        self.check_verdict()
         self.shoot("fit")
         self.at("tab-files").click()
         self.button("results").click()
@@ -55,6 +58,14 @@ class Page(PageTest):
         self.assertIn(run_plain(self.folder, "fit", "again.json", "-o", "again"), (0, 1))
         self.assertEqual(differences(os.path.join(self.folder, "out"), os.path.join(self.folder, "again")), [])
         self.check_console()
+
+    def check_verdict(self):
+        with open(os.path.join(self.folder, "out", "summary.json"), encoding="utf-8") as file:
+            summary = json.load(file)
+        self.wait(lambda: self.at("verdict").is_displayed())
+        self.assertTrue(self.text("verdict").startswith(summary["status"].replace("_", " ")))
+        shown = float(self.text("verdict").split("target ")[1].split()[0])
+        self.assertAlmostEqual(shown / summary["rdf_rmse"], 1, 2)
 
     def test_simulation_is_drawn_turned_and_stepped(self):
         self.begin("live", "scene.json", "-o", "seen", "--stay", dark=True)
