@@ -127,6 +127,12 @@ function showControls() {
   at("step").hidden = at("speed-label").hidden = at("speed-value").hidden = !simulates;
 }
 
+// So many digits, and no power of ten where people write none.
+function round(value, digits) {
+  const text = value.toPrecision(digits);
+  return text.includes("e+") && Math.abs(value) < 1e9 ? String(Number(text)) : text;
+}
+
 const isActive = () => ["running", "paused"].includes(state.phase);
 const hasRun = () => isActive() || ["stopped", "ended"].includes(state.phase);
 
@@ -146,7 +152,7 @@ function showProgress() {
   }
   const left = progress.rate > 0 ? (progress.total - progress.done) / progress.rate : NaN;
   const text = !Number.isFinite(left) ? "" : left < 100 ? `${left.toFixed(0)} s` : left < 6000 ? `${(left / 60).toFixed(0)} min` : `${(left / 3600).toFixed(1)} h`;
-  const pace = state.phase === "running" ? `, ${progress.rate.toPrecision(3)}/s${text && `, at most ${text} left`}` : "";
+  const pace = state.phase === "running" ? `, ${round(progress.rate, 3)}/s${text && `, at most ${text} left`}` : "";
   at("progress-text").textContent = `${progress.text}  ${progress.done}/${progress.total} ${progress.unit}${pace}`;
 }
 
@@ -155,7 +161,7 @@ function takeNumbers(numbers) {
     return; // of a run before this file was chosen
   const shown = Object.entries(numbers).map(([name, { value, unit }]) => {
     const box = document.createElement("div"), number = document.createElement("b"), label = document.createElement("span");
-    number.textContent = value === null ? "unknown" : Number.isInteger(value) ? String(value) : value.toPrecision(4);
+    number.textContent = value === null ? "unknown" : Number.isInteger(value) ? String(value) : round(value, 4);
     label.textContent = name + (unit && unit !== "1" ? ` [${pretty(unit)}]` : "");
     box.append(number, label);
     return box;

@@ -154,7 +154,7 @@ const kinds = [
   { file: /^history\.tsv$/, title: () => "directions of Φ that follow the data", show: showColumns(["directions"]), when: hasColumns(["directions"]) },
   { file: /^history\.tsv$/, title: () => "step and samples", show: showColumns(["damping", "disagreement", "acceptance"]), when: hasColumns(["damping"]) },
   { file: /^history\.tsv$/, title: () => "diversity of the population", show: showColumns(["diversity"]), when: hasColumns(["diversity"]) },
-  { file: /^history\.tsv$/, title: () => "simulations that failed", show: showColumns(["failures"]), when: hasColumns(["failures"]) },
+  { file: /^history\.tsv$/, title: () => "simulations that failed", show: showColumns(["failures"]), when: positive(["failures"]) },
   { file: /^(vacf|msd|structure_factor|force_covariance)\.tsv$/, title: functionOf, show: showTarget },
   { file: /^motion\.tsv$/, title: () => "mean-square displacement", show: showColumns(["msd"]) },
   { file: /^motion\.tsv$/, title: () => "velocity autocorrelation", show: showColumns(["vacf"]), when: hasColumns(["vacf"]) },
