@@ -18,9 +18,12 @@ const files = new Files(at("files"), { fail: showMessage, settings: () => settin
   open: (path) => thenView(() => post("open", { path })) });
 let state = { phase: "", file: "" };
 
+// Options of the command line, of which this page has its own.
+const here = { "--force": "under Settings, the folder for the results and \"replace\"", "--resume": "\"Go on\"" };
+
 function showMessage(text) {
-  const settings = text?.includes("--force"); // an option of the command line, of which this page has its own
-  at("message").textContent = (text || "") + (settings ? " (here: under Settings, the folder for the results and \"replace\")" : "");
+  const option = Object.keys(here).find((name) => text?.includes(name));
+  at("message").textContent = (text || "") + (option ? ` (here: ${here[option]})` : "");
   at("message").hidden = !text;
 }
 
@@ -85,9 +88,12 @@ async function takeState(next) {
   if (state.message || state.phase !== before.phase)
     showMessage(state.message);
   showControls();
+  showProgress();
+  showVerdict();
+  showEmpty();
   if (state.file !== before.file || (state.phase === "ready" && before.phase !== "ready"))
     await loadSubject();
-  if (state.kind === "simulation" && ["running", "paused"].includes(state.phase))
+  if (state.kind === "simulation" && isActive())
     particles.follow();
   else
     particles.leave();
@@ -121,17 +127,41 @@ function showControls() {
   at("step").hidden = at("speed-label").hidden = at("speed-value").hidden = !simulates;
 }
 
-function takeProgress(progress) {
-  at("bar").value = progress.total > 0 ? progress.done / progress.total : 0;
+// So many digits, and no power of ten where people write none.
+function round(value, digits) {
+  const text = value.toPrecision(digits);
+  return text.includes("e+") && Math.abs(value) < 1e9 ? String(Number(text)) : text;
+}
+
+const isActive = () => ["running", "paused"].includes(state.phase);
+const hasRun = () => isActive() || ["stopped", "ended"].includes(state.phase);
+
+let progress = null;
+function takeProgress(next) {
+  progress = next;
+  showProgress();
+}
+
+// How fast it is and how long it takes is of a run that goes on.
+function showProgress() {
+  const shown = hasRun() ? progress : null;
+  at("bar").value = shown?.total > 0 ? shown.done / shown.total : 0;
+  if (!shown) {
+    at("progress-text").textContent = "";
+    return;
+  }
   const left = progress.rate > 0 ? (progress.total - progress.done) / progress.rate : NaN;
   const text = !Number.isFinite(left) ? "" : left < 100 ? `${left.toFixed(0)} s` : left < 6000 ? `${(left / 60).toFixed(0)} min` : `${(left / 3600).toFixed(1)} h`;
-  at("progress-text").textContent = `${progress.text}  ${progress.done}/${progress.total} ${progress.unit}, ${progress.rate.toPrecision(3)}/s${text && `, at most ${text} left`}`;
+  const pace = state.phase === "running" ? `, ${round(progress.rate, 3)}/s${text && `, at most ${text} left`}` : "";
+  at("progress-text").textContent = `${progress.text}  ${progress.done}/${progress.total} ${progress.unit}${pace}`;
 }
 
 function takeNumbers(numbers) {
+  if (!hasRun())
+    return; // of a run before this file was chosen
   const shown = Object.entries(numbers).map(([name, { value, unit }]) => {
     const box = document.createElement("div"), number = document.createElement("b"), label = document.createElement("span");
-    number.textContent = value === null ? "unknown" : Number.isInteger(value) ? String(value) : value.toPrecision(4);
+    number.textContent = value === null ? "unknown" : Number.isInteger(value) ? String(value) : round(value, 4);
     label.textContent = name + (unit && unit !== "1" ? ` [${pretty(unit)}]` : "");
     box.append(number, label);
     return box;
@@ -144,10 +174,36 @@ function takeNumbers(numbers) {
 
 function showEmpty() {
   const count = panels.reduce((sum, panel) => sum + panel.count, 0);
-  at("empty").textContent = (state.file ? "Nothing has been computed yet. Press Start, or choose another" : "Choose a") +
+  at("empty").textContent = isActive() ? `The run is at work; its curves begin with the ${state.kind === "fit" ? "first iteration" : "second sample"}.`
+    : (state.file ? "Nothing has been computed yet. Press Start, or choose another" : "Choose a") +
     " scene, run file or folder of results under Files.";
   at("empty").hidden = count > 0 || !at("scene").hidden;
   at("compare").hidden = count === 0;
+}
+
+// What a fit's summary says of it as a whole.
+function verdictOf(summary) {
+  if (!(summary.iterations > 0))
+    return "";
+  const digits = (name, count) => (Number.isFinite(summary[name]) ? summary[name].toPrecision(count) : "unknown");
+  const text = `${summary.status.replaceAll("_", " ")}: ${summary.method}, ${summary.iterations} iterations, error ${digits("error", 3)}`;
+  return summary.rdf_rmse > 0 ? `${text}; verification: rms of g(r) − target ${digits("rdf_rmse", 3)} ± ` +
+    `${digits("rdf_rmse_error", 2)}, statistics alone ${digits("rdf_noise", 2)}` : text;
+}
+
+let verdict = "", judged = "";
+async function takeVerdict(listing) {
+  const file = listing.in === "result" && listing.files.find((each) => each.name === "summary.json");
+  const stamp = file ? `${state.folder}/${file.seconds}/${file.size}` : "";
+  if (stamp !== judged)
+    verdict = file ? verdictOf(await getJson("file", { in: "result", path: "summary.json" })) : "";
+  judged = stamp;
+  showVerdict();
+}
+
+function showVerdict() {
+  at("verdict").textContent = verdict;
+  at("verdict").hidden = verdict === "" || isActive() || state.phase === "ready";
 }
 
 // One listing at a time, and then the newest.
@@ -157,14 +213,18 @@ async function takeTables(listing) {
   if (busy)
     return;
   busy = true;
-  while (newest) {
-    const now = newest;
-    newest = null;
-    const changed = await tables.update(now);
-    panels.forEach((panel) => panel.update(changed));
-    showEmpty();
+  try {
+    while (newest) {
+      const now = newest;
+      newest = null;
+      const changed = await tables.update(now);
+      panels.forEach((panel) => panel.update(changed));
+      showEmpty();
+      await takeVerdict(now);
+    }
+  } finally {
+    busy = false;
   }
-  busy = false;
 }
 
 // Events in their order: a new subject clears the panels before its tables come.
@@ -232,7 +292,8 @@ at("compare-go").addEventListener("click", () => act(async () => {
     for (const file of await getJson("files", { path: folder }))
       if (/^(potential|omega|memory|rdf)(?!.*_(history|flat|now))[^.]*\.tsv$/.test(file.name))
         other.set(file.name, parse(await getText("file", { path: folder + "/" + file.name })));
-  panels[0].compare(other);
+  if (panels[0].compare(other) === 0 && folder)
+    showMessage(`${folder} has none of the curves here in the same units`);
 }));
 
 showControls();

@@ -37,6 +37,12 @@ function earlier(history) {
   return sets;
 }
 
+// The same table of another run, if it speaks the same units: nothing is converted here.
+function otherOf(context, name) {
+  const table = context.tables.get(name), other = context.other.get(name);
+  return table && other && [0, 1].every((k) => table.columns[k].unit === other.columns[k]?.unit) ? other : null;
+}
+
 // An unknown: its curve with a band, earlier iterations, the truth, another run's.
 function showUnknown(plot, table, name, context) {
   const x = table.column(0), value = table.columns[1].name;
@@ -47,7 +53,7 @@ function showUnknown(plot, table, name, context) {
   sets.push(curve(symbol(value), x, y, 0));
   if (table.has("truth") && table.values("truth").some(Number.isFinite))
     sets.push(curve("truth", x, table.values("truth"), 1, { borderDash: [6, 4] }));
-  const other = context.other.get(name);
+  const other = otherOf(context, name);
   if (other)
     sets.push(curve("other run", other.column(0), other.column(1), 2, { borderDash: [3, 3] }));
   plot.show(sets, { x: table.label(0), y: table.label(1) });
@@ -73,7 +79,7 @@ function showTarget(plot, table, name, context) {
   } else {
     sets.push(...pairs(table, x, [table.columns[1].name]));
   }
-  const other = context.other.get(name);
+  const other = otherOf(context, name);
   if (other)
     sets.push(curve("other run", other.column(0), other.values(other.has("result") ? "result" : other.columns[1].name), 2,
       { borderDash: [3, 3] }));
@@ -109,10 +115,21 @@ function showSingular(plot, table, name, context) {
   plot.say(`The last step took ${used.reduce((sum, u) => sum + u, 0).toFixed(1)} of ${used.length}. Grey: earlier iterations.`);
 }
 
+// What a history without units is in; with units its head says them.
+const reduced = { pressure: " [k_B T_0/λᵈ]", potential_energy: " [k_B T_0]" };
+
+// The name of one column; of several the unit that they share.
+function labelOf(table, names) {
+  const [k, ...more] = names.map((name) => table.at(name)).filter((at) => at >= 0);
+  if (names.length === 1)
+    return table.label(k) + (table.columns[k].unit ? "" : reduced[names[0]] || "");
+  return more.every((at) => table.unit(at) === table.unit(k)) ? table.unit(k).trim() : "";
+}
+
 // Columns of a history, each against the first one.
 const showColumns = (names) => (plot, table) => {
   plot.show(pairs(table, table.column(0), names).map((set) => ({ ...set, pointRadius: set.label && table.length < 40 ? 3 : 0 })),
-    { x: table.label(0), y: names.length === 1 ? table.label(table.at(names[0])) : "" });
+    { x: table.label(0), y: labelOf(table, names) });
 };
 
 const positive = (names) => (table) => names.some((name) => table.has(name) && table.values(name).some((v) => v > 0));
@@ -137,11 +154,11 @@ const kinds = [
   { file: /^history\.tsv$/, title: () => "directions of Φ that follow the data", show: showColumns(["directions"]), when: hasColumns(["directions"]) },
   { file: /^history\.tsv$/, title: () => "step and samples", show: showColumns(["damping", "disagreement", "acceptance"]), when: hasColumns(["damping"]) },
   { file: /^history\.tsv$/, title: () => "diversity of the population", show: showColumns(["diversity"]), when: hasColumns(["diversity"]) },
-  { file: /^history\.tsv$/, title: () => "simulations that failed", show: showColumns(["failures"]), when: hasColumns(["failures"]) },
+  { file: /^history\.tsv$/, title: () => "simulations that failed", show: showColumns(["failures"]), when: positive(["failures"]) },
   { file: /^(vacf|msd|structure_factor|force_covariance)\.tsv$/, title: functionOf, show: showTarget },
   { file: /^motion\.tsv$/, title: () => "mean-square displacement", show: showColumns(["msd"]) },
   { file: /^motion\.tsv$/, title: () => "velocity autocorrelation", show: showColumns(["vacf"]), when: hasColumns(["vacf"]) },
-  { file: /^thermodynamics\.tsv$/, title: () => "temperatures", show: showColumns(["temperature", "temperature_configurational"]) },
+  { file: /^thermodynamics\.tsv$/, title: () => "temperatures", show: showColumns(["temperature_configurational", "temperature"]) },
   { file: /^thermodynamics\.tsv$/, title: () => "potential energy of a bead", show: showColumns(["potential_energy"]) },
   { file: /^thermodynamics\.tsv$/, title: () => "pressure", show: showColumns(["pressure"]) },
   { file: /^(polarity|polar_order|clusters|local_density|speeds|collisions|flow_profile|pareto_history)\.tsv$/,
@@ -184,6 +201,7 @@ export class Curves {
   compare(tables) {
     this.other = tables;
     this.update(new Map());
+    return [...tables.keys()].filter((name) => otherOf(this, name)).length;
   }
 
   clear() {

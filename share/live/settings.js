@@ -13,6 +13,22 @@ const element = (name, more = {}, ...inside) => {
 
 const isObject = (value) => value !== null && typeof value === "object" && !Array.isArray(value);
 
+// Units of a file that says which it speaks, in the place of the reference's; the longer names first.
+const spoken = {
+  "nm-ps": [["k_B T_0/lambda^d", "bar"], ["k_B T_0", "kJ/mol"], ["T_0", "K"], ["lambda", "nm"], ["tau", "ps"], [/\bmu\b/g, "u"]],
+  "angstrom-fs": [["k_B T_0/lambda^d", "atm"], ["k_B T_0", "kcal/mol"], ["T_0", "K"], ["lambda", "Å"], ["tau", "fs"], [/\bmu\b/g, "g/mol"]],
+};
+
+// A field as that file speaks: its limits and defaults are reduced numbers, of which 0 alone is the same.
+function speak(field, system) {
+  const unit = (spoken[system] || []).reduce((text, [from, to]) => text.replaceAll(from, to), field.unit || "");
+  if (unit === (field.unit || ""))
+    return field;
+  const known = (value, other) => (Math.abs(value) < 1e-300 ? value : other);
+  return { ...field, unit, minimum: known(field.minimum, -Infinity), maximum: known(field.maximum, Infinity),
+    default: known(field.default, null) };
+}
+
 function rangeText(field) {
   const low = field.minimum, high = field.maximum, tiny = low > 0 && low < 1e-300;
   if (field.type !== "number" && field.type !== "integer")
@@ -101,7 +117,8 @@ export class Settings {
     return box;
   }
 
-  line(name, field, value, rebuild = false) {
+  line(name, told, value, rebuild = false) {
+    const field = speak(told, this.value.units);
     const id = "field-" + name + "-" + Math.random().toString(36).slice(2, 8), now = value[name];
     const input = field.choices && field.type === "choice" ? element("select", { id },
       ...(field.required ? [] : [element("option", { value: "", textContent: "—" })]),
@@ -114,7 +131,7 @@ export class Settings {
     input.addEventListener("change", () => {
       this.store(value, name, field, input.value.trim());
       this.change();
-      if (rebuild)
+      if (rebuild || name === "units")
         this.build();
     });
     const range = rangeText(field);

@@ -10,8 +10,8 @@ function parseName(text) {
 
 // Units and names as a page can write them, and a table's head cannot.
 export const pretty = (unit) => unit.replaceAll("lambda", "λ").replaceAll("tau", "τ").replaceAll("k_B.T_0", "k_B T_0")
-  .replaceAll("^2", "²").replaceAll("^3", "³");
-const symbols = { phi: "Φ", omega: "ω", msd: "MSD", vacf: "VACF" };
+  .replaceAll("^2", "²").replaceAll("^3", "³").replaceAll("^d", "ᵈ");
+const symbols = { phi: "Φ", omega: "ω", msd: "MSD", vacf: "VACF", temperature_configurational: "configurational temperature" };
 export const symbol = (name) => symbols[name] || name.replaceAll("_", " ");
 
 export function parse(text) {

@@ -5,6 +5,7 @@
 #include "live/live_session.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 enum { START, STAY, PORT };
 
@@ -34,10 +35,12 @@ static enum status serve(struct live_options *live) {
     return status;
 }
 
+static const struct command_option live_option = CMD_LIVE_OPTION;
+
 enum status mf_cmd_live_run(const char *file, const struct run_options *run_options,
                             const char *port) {
     struct live_options live = {.subject = file, .run = *run_options, .start = true};
-    if (port[0] != '-')
+    if (strcmp(port, live_option.name) != 0)
         TRY(parse_port(port, &live.port));
     return serve(&live);
 }

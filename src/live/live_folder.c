@@ -48,8 +48,8 @@ static int tell_error(const char *path) {
     return -1;
 }
 
-/// Go down the first `length` bytes of a path that is plain, one name at a time.
-static int descend(int root, const char *path, size_t length) {
+/// Go down the first `length` bytes of a path that is plain, one name at a time; −1 with errno.
+static int go_down(int root, const char *path, size_t length) {
     int folder = openat(root, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     for (size_t at = 0; at < length && folder >= 0;) {
         char name[256];
@@ -62,11 +62,30 @@ static int descend(int root, const char *path, size_t length) {
         folder = next;
         at += part + 1;
     }
+    return folder;
+}
+
+static int descend(int root, const char *path, size_t length) {
+    const int folder = go_down(root, path, length);
     return folder >= 0 ? folder : tell_error(path);
 }
 
 int mf_live_folder_enter(int root, const char *path) {
     return mf_live_folder_is_plain(path) ? descend(root, path, strlen(path)) : refuse(path);
+}
+
+enum status mf_live_folder_check_new(int root, const char *path) {
+    if (!mf_live_folder_is_plain(path))
+        return mf_status_fail(STATUS_BAD_INPUT, "\"%.200s\" is no folder of the working folder",
+                              path);
+    const int folder = go_down(root, path, strlen(path));
+    if (folder < 0 && errno != ENOENT)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "\"%.200s\" leads through a file or a link; links are not followed",
+                              path);
+    if (folder >= 0)
+        close(folder);
+    return STATUS_OK;
 }
 
 /// The folder that a path's last name is in; *name points to that.

@@ -22,6 +22,10 @@ bool mf_live_folder_is_plain(const char *path);
 /// @param[in] root  an open folder
 int mf_live_folder_enter(int root, const char *path);
 
+/// Whether a folder is there or can be made without leaving `root`: no part of its path that exists
+/// is a link or a file. Fails: BAD_INPUT.
+enum status mf_live_folder_check_new(int root, const char *path) MUST_USE;
+
 /// Open a regular file for reading; −1 with a message. `size` gets its bytes.
 int mf_live_folder_read(int root, const char *path, size_t *size);
 

@@ -129,15 +129,25 @@ static enum status open_path(struct live_view *view, const struct live_request *
     return give_state(view, request, answer);
 }
 
+/// The folder that a page wishes its results in; without one they are beside the file.
+static enum status check_folder(struct live_view *view, const char *folder) {
+    if (folder == NULL || folder[0] == '\0')
+        return STATUS_OK;
+    const int root = mf_live_view_root(view, NULL);
+    if (root < 0)
+        return STATUS_IO;
+    const enum status status = mf_live_folder_check_new(root, folder);
+    close(root);
+    return status;
+}
+
 /// The body is the text to be run in the place of the file that is shown; without a body that is.
 static enum status start(struct live_view *view, const struct live_request *request,
                          struct live_answer *answer) {
     const char *folder = mf_live_server_argument(request, "folder");
     struct live_order order = {.resume = has(request, "resume"), .force = has(request, "force")};
     TRY(check_idle(view));
-    if (folder && folder[0] && !mf_live_folder_is_plain(folder))
-        return mf_status_fail(STATUS_BAD_INPUT, "\"%.200s\" is no folder of the working folder",
-                              folder);
+    TRY(check_folder(view, folder));
     if (strlen(request->body) != request->size)
         return mf_status_fail(STATUS_BAD_INPUT, "the settings have a NUL byte");
     if (folder)

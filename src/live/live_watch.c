@@ -31,6 +31,12 @@ static void set_pace(struct live_pace *pace, double begun, double interval) {
     pace->next = clock_seconds() + fmax(interval, spent / part_of_time);
 }
 
+/// Steps a second from here on, if the page holds a simulation to fewer than it has made so far.
+static double find_rate_ahead(const struct live_watch *watch, double rate) {
+    const double speed = mf_live_control_speed_now(&watch->view->control);
+    return watch->run.simulation && speed > 0 ? fmin(speed, rate) : rate;
+}
+
 static void publish_progress(struct live_watch *watch, const struct watcher_progress *progress) {
     const double begun = clock_thread_seconds();
     struct json_writer *writer = mf_json_writer_create();
@@ -42,7 +48,7 @@ static void publish_progress(struct live_watch *watch, const struct watcher_prog
     mf_json_put_integer(writer, "total", (int64_t)progress->total);
     mf_json_put_text(writer, "unit", progress->unit);
     mf_json_put_text(writer, "text", progress->text);
-    mf_json_put_number(writer, "rate", progress->rate);
+    mf_json_put_number(writer, "rate", find_rate_ahead(watch, progress->rate));
     mf_live_view_publish(watch->view, LIVE_PROGRESS, writer);
     set_pace(&watch->progress, begun, progress_interval);
 }
@@ -93,7 +99,7 @@ static void put_samples(struct json_writer *writer, const struct live_watch *wat
     const size_t last = samples->samples - 1;
     const double squares = mf_thermodynamics_series(samples, THERMODYNAMICS_FORCE_SQUARES)[last];
     const double laplacian = mf_thermodynamics_series(samples, THERMODYNAMICS_LAPLACIAN)[last];
-    put_number(writer, watch, "potential energy", "k_B T_0",
+    put_number(writer, watch, "potential energy of a bead", "k_B T_0",
                mf_thermodynamics_series(samples, THERMODYNAMICS_POTENTIAL_ENERGY)[last]);
     put_number(writer, watch, "pressure", "k_B T_0/lambda^d",
                mf_thermodynamics_series(samples, THERMODYNAMICS_PRESSURE)[last]);
@@ -114,8 +120,7 @@ static void publish_numbers(struct live_watch *watch, bool forced) {
     put_number(writer, watch, "beads", "", (double)simulation->particles.count);
     put_number(writer, watch, "steps a second", "", watch->rate);
     if (!simulation_is_overdamped(&simulation->setup) && simulation->particles.count > 1)
-        put_number(writer, watch, "temperature", "T_0",
-                   mf_particles_temperature(&simulation->particles));
+        put_number(writer, watch, "temperature", "T_0", mf_simulation_temperature(simulation));
     put_samples(writer, watch);
     mf_live_view_publish(watch->view, LIVE_NUMBERS, writer);
     set_pace(&watch->numbers, begun, numbers_interval);

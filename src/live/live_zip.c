@@ -84,7 +84,7 @@ static enum status add(void *context, int file, size_t size, const char *name) {
     struct zip *zip = context;
     enum status status = STATUS_OK;
     unsigned char *bytes = NULL;
-    if (zip->count == MOST_MEMBERS || size > LARGEST - zip->written)
+    if (zip->count == MOST_MEMBERS || zip->written > LARGEST || size > LARGEST - zip->written)
         return mf_status_fail(STATUS_BAD_INPUT, "the folder is too large to be downloaded");
     NEW_ARRAY(bytes, size + 1);
     CHECK(read_whole(file, bytes, size, name));

@@ -131,7 +131,7 @@ static void tell(void *context, const struct simulation *simulation, uint64_t do
     if (!simulation_is_overdamped(&simulation->setup) && simulation->particles.count > 1)
         snprintf(text, sizeof text, "step %llu  T %.*f%s", (unsigned long long)done,
                  !mf_units_speaks(units) ? 3 : 1,
-                 mf_particles_temperature(&simulation->particles) * mf_units_factor(units, "T_0"),
+                 mf_simulation_temperature(simulation) * mf_units_factor(units, "T_0"),
                  mf_units_suffix(units, "T_0", unit));
     mf_progress_tell(&run->progress, done, total, "steps", text);
     if (mf_progress_seconds(&run->progress) - run->last_checkpoint > checkpoint_interval &&

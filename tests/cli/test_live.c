@@ -51,6 +51,7 @@ static void test_what_cannot_be_shown_is_refused_in_one_line(void **state) {
         {{"live", ".", "--start"}, "nothing to start"},
         {{"simulate", "scene.json", "--live=70000"}, "1 to 65535"},
         {{"simulate", "scene.json", "--live=x"}, "1 to 65535"},
+        {{"simulate", "scene.json", "--live=-1"}, "1 to 65535"},
         {{"simulate", "scene.json", "--lives"}, "--live"},
         {{"watch", "missing"}, "missing"},
         {{"watch", "scene.json"}, "not a folder"},

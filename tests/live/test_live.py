@@ -37,11 +37,14 @@ class Page(PageTest):
         self.press("stop")
         self.wait(lambda: self.phase() == "stopped")
         self.assertIn("interrupted", self.text("message"))
+        self.assertIn("\"Go on\"", self.text("message"))
+        self.assertNotIn("left", self.text("progress-text"))
         self.press("resume")
         self.wait(lambda: self.phase() == "ended")
         self.assertGreaterEqual(self.iterations(), 3)
         self.wait(lambda: "rdf.tsv" in self.panels())
         self.assertIn("rdf_now.tsv", self.panels())
+        self.check_verdict()
         self.shoot("fit")
         self.at("tab-files").click()
         self.button("results").click()
@@ -55,6 +58,14 @@ class Page(PageTest):
         self.assertIn(run_plain(self.folder, "fit", "again.json", "-o", "again"), (0, 1))
         self.assertEqual(differences(os.path.join(self.folder, "out"), os.path.join(self.folder, "again")), [])
         self.check_console()
+
+    def check_verdict(self):
+        with open(os.path.join(self.folder, "out", "summary.json"), encoding="utf-8") as file:
+            summary = json.load(file)
+        self.wait(lambda: self.at("verdict").is_displayed())
+        self.assertTrue(self.text("verdict").startswith(summary["status"].replace("_", " ")))
+        shown = float(self.text("verdict").split("target ")[1].split()[0])
+        self.assertAlmostEqual(shown / summary["rdf_rmse"], 1, 2)
 
     def test_simulation_is_drawn_turned_and_stepped(self):
         self.begin("live", "scene.json", "-o", "seen", "--stay", dark=True)
@@ -85,6 +96,7 @@ class Page(PageTest):
         self.served.wish(wish="speed", speed=0)
         self.press("resume")
         self.wait(lambda: {"rdf_A-B.tsv", "motion.tsv", "thermodynamics.tsv"} <= set(self.panels()))
+        self.browser.execute_script("scrollTo(0, 0)")
         self.shoot("simulation")
         self.check_pixels(canvas)
         self.check_console()
@@ -235,6 +247,21 @@ class Page(PageTest):
         self.assertLessEqual(wide, 0)
         self.shoot("phone")
         self.check_console()
+
+    def test_settings_have_the_units_of_their_file(self):
+        scene = {"units": "nm-ps", "box": [3, 3, 3], "particles": {"count": 300, "mass": 18}, "temperature": 298}
+        with open(os.path.join(self.folder, "nm.json"), "w", encoding="utf-8") as file:
+            json.dump(scene, file)
+        for name, units in (("nm.json", ("box [nm]", "temperature [K]", "time_step [ps]")),
+                            ("scene.json", ("box [lambda]", "temperature [T_0]", "time_step [tau]"))):
+            self.begin("live", name)
+            self.at("tab-settings").click()
+            self.wait(lambda units=units: all(unit in self.text("settings") for unit in units))
+            field = self.browser.find_element("css selector", "#settings input[data-name='time_step']")
+            self.assertEqual(field.get_attribute("placeholder") == "", name == "nm.json")
+            self.browser.quit()
+            self.served.end()
+        self.browser = None
 
     def type(self, key):
         ActionChains(self.browser).send_keys(key).perform()

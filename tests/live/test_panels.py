@@ -59,6 +59,25 @@ class Panels(PageTest):
                 ".find((s) => s.label === 'other run').data.at(-1).y", table), last)
         self.check_console()
 
+    def test_results_in_other_units_are_not_drawn_over_these(self):
+        reduced = {"box": [5, 5, 5], "particles": {"count": 375}, "temperature": 1, "time_step": 0.02,
+                   "conservative": {"law": "soft-repulsion", "a": 25}, "dissipative": {"law": "power", "sigma": 3},
+                   "measure": {"equilibration": 50, "samples": 10, "every": 10}}
+        nm = {**reduced, "units": "nm-ps", "temperature": 298, "particles": {"count": 375, "mass": 18},
+              "conservative": {"law": "soft-repulsion", "a": 25}}
+        self.run_file("reduced.json", reduced, "reduced")
+        self.run_file("again.json", {**reduced, "seed": 8}, "again")
+        self.run_file("nm.json", nm, "nm")
+        self.begin("live", "reduced")
+        self.wait(lambda: "rdf.tsv" in self.panels())
+        for folder, drawn in (("again", True), ("nm", False)):
+            self.at("other").clear()
+            self.at("other").send_keys(folder)
+            self.at("compare-go").click()
+            self.wait(lambda drawn=drawn: ("other run" in [label for label, _ in self.chart("rdf.tsv")]) == drawn)
+            self.assertEqual("same units" in self.text("message"), not drawn)
+        self.check_console()
+
     def test_front_of_several_targets_shows_the_curves_of_a_member(self):
         fluid = {"box": [3, 3, 3], "particles": {"count": 81}, "time_step": 0.02, "dissipative": {"law": "power", "sigma": 3}}
         self.run_file("fluid.json", {**fluid, "seed": 5, "conservative": {"law": "soft-repulsion", "a": 25},

@@ -77,6 +77,17 @@ static void test_links_are_not_followed(void **state) {
     free(secret);
 }
 
+static void test_folder_of_results_may_be_new_but_not_through_a_link(void **state) {
+    (void)state;
+    assert_int_equal(symlinkat("..", root, "up"), 0);
+    assert_ok(mf_live_folder_check_new(root, "deep"));
+    assert_ok(mf_live_folder_check_new(root, "deep/new/out"));
+    assert_fails(mf_live_folder_check_new(root, "up"), STATUS_BAD_INPUT, "links");
+    assert_fails(mf_live_folder_check_new(root, "up/out"), STATUS_BAD_INPUT, "links");
+    assert_fails(mf_live_folder_check_new(root, "run.json/out"), STATUS_BAD_INPUT, "a file");
+    assert_fails(mf_live_folder_check_new(root, "../out"), STATUS_BAD_INPUT, "no folder");
+}
+
 static void test_pipe_is_not_waited_for(void **state) {
     size_t size;
     (void)state;
@@ -131,15 +142,31 @@ static void test_zip_holds_the_files(void **state) {
     assert_int_equal(system(command), 0);
 }
 
+/// A first file at the limit of a zip must not make the limit wrap round for the second.
+static void test_zip_that_is_too_large_is_refused(void **state) {
+    const off_t limit = 256 << 20;
+    FILE *nowhere = fopen("/dev/null", "wb");
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        const int file = openat(root, k ? "b.dat" : "a.dat", O_WRONLY | O_CREAT, 0600);
+        assert_int_equal(ftruncate(file, k ? 1 << 20 : limit), 0);
+        close(file);
+    }
+    assert_fails(mf_live_zip_write(root, "", nowhere), STATUS_BAD_INPUT, "too large");
+    fclose(nowhere);
+}
+
 int main(void) {
 #define IN_FOLDER(test) cmocka_unit_test_setup_teardown(test, enter, leave)
     const struct CMUnitTest tests[] = {
         IN_FOLDER(test_paths_outside_are_refused_by_name),
         IN_FOLDER(test_links_are_not_followed),
+        IN_FOLDER(test_folder_of_results_may_be_new_but_not_through_a_link),
         IN_FOLDER(test_pipe_is_not_waited_for),
         IN_FOLDER(test_file_is_written_whole_and_kept_unless_it_may_be_replaced),
         IN_FOLDER(test_list_has_plain_names_alone),
         IN_FOLDER(test_zip_holds_the_files),
+        IN_FOLDER(test_zip_that_is_too_large_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

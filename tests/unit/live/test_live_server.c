@@ -195,6 +195,8 @@ static void test_file_is_opened_and_ordered(void **state) {
     assert_int_equal(ask("GET /api/text", GOOD, ""), 200);
     assert_contains(answer, "{\"box\": [5, 5, 5]}");
     assert_int_equal(ask("POST /api/start?folder=../up", GOOD, "{}"), 400);
+    assert_int_equal(symlink("/", "root"), 0);
+    assert_int_equal(ask("POST /api/start?folder=root/tmp/out", GOOD, "{}"), 400);
     assert_int_equal(ask("POST /api/start?folder=out&force=1", GOOD, "{\"box\": [6, 6, 6]}"), 200);
     assert_true(mf_live_control_take(&view.control, &order));
     assert_string_equal(order.file, "scene.json");
