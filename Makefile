@@ -7,6 +7,8 @@
 # make test           builds and passes all tests: check, then check-physics
 # make check          unit, reference and command-line tests (about a minute)
 # make check-physics  laws and exact limits (minutes)
+# make MPI=1 …        the program shares a fit among the processes of an MPI job
+# make check-mpi      such fits have the bits of a fit in one process
 # make check-live     the live view, also in a browser (minutes)
 # make check-stress   time steps, friction, tables, sizes and lengths beyond the ordinary (minutes)
 # make asan           the whole test suite under address and undefined-behaviour sanitizers
@@ -48,7 +50,14 @@ HAS_LIVE    := $(if $(wildcard $(CHART)/chart.min.js),$(shell pkg-config --exist
 LIVE_WITHOUT = $(if $(HAS_LIVE),src/live/live_server_none.c,src/live/live_server.c src/live/live_assets.c)
 LIVE_LIBS   := $(if $(HAS_LIVE),$(shell pkg-config --libs libmicrohttpd))
 
-SOURCES  = $(filter-out $(LIVE_WITHOUT) $(if $(HDF5),src/trajectory/format_h5md_without.c,$(H5MD)),$(wildcard src/*/*.c))
+# MPI=1: the program has it, the libraries do not (Debian: libopenmpi-dev).
+MPICC       ?= mpicc
+RANKS        = $(if $(MPI),$(BUILD)/src/base/ranks.o)
+MPI_LIBS    := $(if $(MPI),$(shell $(MPICC) --showme:link 2>/dev/null || $(MPICC) -link_info | cut -d' ' -f2-))
+$(BUILD)/src/base/ranks.o: \
+    override CFLAGS += $(shell $(MPICC) --showme:compile 2>/dev/null || $(MPICC) -compile_info | cut -d' ' -f2-)
+
+SOURCES  = $(filter-out src/base/ranks.c $(LIVE_WITHOUT) $(if $(HDF5),src/trajectory/format_h5md_without.c,$(H5MD)),$(wildcard src/*/*.c))
 OBJECTS  = $(SOURCES:%.c=$(BUILD)/%.o)
 $(H5MD:%.c=$(BUILD)/%.o) $(BUILD)/tests/unit/trajectory/test_trajectory_h5md.o: \
     override CFLAGS += $(if $(HDF5),$(shell pkg-config --cflags $(HDF5)))
@@ -85,9 +94,9 @@ $(SHARED_LIBRARY): $(SHARED_OBJECTS) src/library/exports.map
 	@ln -sf $(@F) $(BUILD)/$(SONAME)
 	@ln -sf $(SONAME) $(BUILD)/libmesofit.so
 
-$(PROGRAM): $(filter $(BUILD)/src/app/%,$(OBJECTS)) $(LIVE) $(LIBRARY)
+$(PROGRAM): $(filter $(BUILD)/src/app/%,$(OBJECTS)) $(RANKS) $(LIVE) $(LIBRARY)
 	@echo "ld $@"
-	$(AT)$(CC) $(LDFLAGS) -o $@ $^ $(LIVE_LIBS) $(LDLIBS)
+	$(AT)$(CC) $(LDFLAGS) -o $@ $^ $(LIVE_LIBS) $(MPI_LIBS) $(LDLIBS)
 
 # The page's files, which the assembler takes from there.
 $(BUILD)/src/live/live_assets.o: CFLAGS += -Wa,-Ishare/live,-I$(CHART)
@@ -238,5 +247,5 @@ bench: $(PROGRAM)
 clean:
 	rm -rf build mesofit
 
--include $(OBJECTS:.o=.d) $(TESTS:=.d) $(STRESS:=.d) $(SHARED:.o=.d) \
+-include $(OBJECTS:.o=.d) $(RANKS:.o=.d) $(TESTS:=.d) $(STRESS:=.d) $(SHARED:.o=.d) \
          $(BUILD)/tests/fuzz/fuzz_readers.d

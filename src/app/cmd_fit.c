@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/cmd_live.h"
 #include "app/command.h"
+#include "base/interrupt.h"
 #include "base/memory.h"
+#include "base/ranks.h"
 #include "io/json_fill.h"
 #include "io/output.h"
 #include "io/text_file.h"
@@ -23,11 +25,29 @@ static const struct command_option options[] = {
     {NULL, NULL, NULL},
 };
 
+static void warn(const char *line) {
+    fprintf(stderr, "mesofit: warning: %s\n", line);
+}
+
+/// The fit, with the other processes of an MPI job if there are some.
+static enum status run_shared(const char *file, const struct command_line *line) {
+    struct run_options own = line->options;
+    TRY(mf_ranks_begin(warn));
+    if (mf_ranks_count() > 1)
+        mf_interrupt_wait_for_all();
+    own.quiet = own.quiet || !ranks_lead();
+    const enum status status =
+        line->own[LIVE] && mf_ranks_count() > 1
+            ? mf_status_fail(STATUS_BAD_INPUT, "--live is for a fit in one process; mesofit watch "
+                                               "looks at the folder of any")
+        : line->own[LIVE] ? mf_cmd_live_run(file, &own, line->own[LIVE])
+                          : mf_fit_run(file, &own);
+    mf_ranks_end();
+    return status;
+}
+
 static enum status run_file(const char *file, const struct command_line *line) {
-    if (line->own[EXPLAIN])
-        return mf_fit_explain(file, &line->options);
-    return line->own[LIVE] ? mf_cmd_live_run(file, &line->options, line->own[LIVE])
-                           : mf_fit_run(file, &line->options);
+    return line->own[EXPLAIN] ? mf_fit_explain(file, &line->options) : run_shared(file, line);
 }
 
 static enum status parse_positive(const char *option, const char *text, double *value) {

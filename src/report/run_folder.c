@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "report/run_folder.h"
 
+#include "base/ranks.h"
 #include "io/json.h"
 #include "io/snapshot.h"
 #include "observe/observable.h"
@@ -283,6 +284,8 @@ enum status mf_run_folder_open(struct run_folder *folder, enum run_kind kind, co
                                const struct input_files *inputs,
                                const struct run_options *options) {
     TRY(choose(folder, kind, input, options));
+    if (!ranks_lead())
+        return STATUS_OK;
     TRY(mf_output_make_folder(folder->path));
     TRY(check_writable(folder));
     TRY(lock(folder));
@@ -310,6 +313,6 @@ void mf_run_folder_file(const struct run_folder *folder, const char *name, char 
 }
 
 void mf_run_folder_draw(const struct run_folder *folder) {
-    if (mf_figures_draw(folder->path) != STATUS_OK)
+    if (ranks_lead() && mf_figures_draw(folder->path) != STATUS_OK)
         fprintf(stderr, "mesofit: warning: %s\n", mf_status_message());
 }

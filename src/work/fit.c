@@ -2,6 +2,8 @@
 #include "work/fit.h"
 
 #include "base/memory.h"
+#include "base/parallel.h"
+#include "base/ranks.h"
 #include "base/visible.h"
 #include "io/checkpoint.h"
 #include "report/fit_output.h"
@@ -10,6 +12,7 @@
 #include "report/history.h"
 #include "report/progress.h"
 #include "input/target_sanity.h"
+#include "work/fit_ranks.h"
 
 #include <math.h>
 #include <string.h>
@@ -70,6 +73,8 @@ static size_t run_spans(struct run *run, struct memory_span *spans) {
 static enum status save(struct run *run) {
     struct memory_span spans[MAX_SPANS];
     char path[OUTPUT_PATH_SIZE];
+    if (!ranks_lead())
+        return STATUS_OK;
     mf_run_folder_file(&run->folder, "checkpoint.bin", path);
     run->last_checkpoint = mf_progress_seconds(&run->progress);
     run->standing.seconds = seconds(run);
@@ -146,18 +151,32 @@ static enum status tell_targets(struct run *run) {
                                  &(struct target_sanity_listener){say_line, &run->progress});
 }
 
-static enum status prepare(struct run *run, const char *file, const struct run_options *options) {
+/// Read what the run needs, and begin its state. On a cluster all ranks read the same files.
+static enum status read_and_create(struct run *run, const char *file,
+                                   const struct run_options *options) {
     TRY(mf_fit_file_read(&run->fit, file, options));
     TRY(mf_run_folder_open(&run->folder, RUN_FIT, file, &run->fit.inputs, options));
     TRY(mf_target_files_normalise(&run->fit.files, &run->fit.scene.setup.box));
     const enum status status = create(run);
-    if (status != STATUS_OK)
-        return mf_status_prefix(mf_units_mark(&run->fit.scene.units, status), "%s", file);
+    return status == STATUS_OK
+               ? STATUS_OK
+               : mf_status_prefix(mf_units_mark(&run->fit.scene.units, status), "%s", file);
+}
+
+static enum status begin_folder(struct run *run, const struct run_options *options) {
     TRY(write_used(run, options->resume));
     // Saved now, so that a run interrupted in its first iteration can be resumed like any other.
     TRY(options->resume ? load(run) : save(run));
     // What an earlier run left is touched once this one has begun.
-    TRY(mf_run_folder_begin(&run->folder, options->resume));
+    return mf_run_folder_begin(&run->folder, options->resume);
+}
+
+static enum status prepare(struct run *run, const char *file, const struct run_options *options) {
+    struct memory_span spans[MAX_SPANS];
+    TRY(mf_parallel_agree(read_and_create(run, file, options), mf_fit_ranks_digest(&run->fit)));
+    TRY(mf_parallel_agree(ranks_lead() ? begin_folder(run, options) : STATUS_OK, 0));
+    if (options->resume)
+        mf_fit_ranks_share(spans, run_spans(run, spans));
     mf_progress_tell_run(&run->progress, &(struct watcher_run){RUN_FIT, run->folder.path,
                                                                .units = &run->fit.scene.units});
     return tell_targets(run);
@@ -280,7 +299,8 @@ static enum status iterate(struct run *run) {
         if (status == STATUS_INTERRUPTED && method->keeps_parts)
             TRY(save(run));
         TRY(status);
-        TRY(record(run, &step));
+        TRY(mf_parallel_agree(record(run, &step),
+                              mf_fit_ranks_digest_curves(&run->unknowns, run->curve)));
     }
     return STATUS_OK;
 }
@@ -432,5 +452,5 @@ done:
         mf_run_folder_close(&run->folder);
     }
     mf_memory_free(run);
-    return status;
+    return mf_parallel_agree(status, 0);
 }

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/ranks.h"
+
+#include "base/memory.h"
+
+#include <limits.h>
+#include <mpi.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <time.h>
+
+enum { HOST_SIZE = MPI_MAX_PROCESSOR_NAME, LINE_SIZE = 9000 };
+
+static struct {
+    int count, number;
+    bool begun;
+    char (*host)[HOST_SIZE]; ///< shape [count]
+    void (*warn)(const char *line);
+} job = {.count = 1};
+
+static enum status learn_hosts(void) {
+    char own[HOST_SIZE] = "";
+    int length;
+    job.host = mf_memory_zeroed((size_t)job.count, HOST_SIZE);
+    if (job.host == NULL)
+        return STATUS_NO_MEMORY;
+    MPI_Get_processor_name(own, &length);
+    MPI_Allgather(own, HOST_SIZE, MPI_CHAR, job.host, HOST_SIZE, MPI_CHAR, MPI_COMM_WORLD);
+    return STATUS_OK;
+}
+
+enum status mf_ranks_begin(void (*warn)(const char *line)) {
+    int provided;
+    // Errors of MPI end the job by its own handler: a rank that is lost cannot be gone on without.
+    if (MPI_Init_thread(NULL, NULL, MPI_THREAD_SERIALIZED, &provided) != MPI_SUCCESS)
+        return mf_status_fail(STATUS_IO, "MPI cannot begin");
+    job.begun = true;
+    job.warn = warn;
+    MPI_Comm_size(MPI_COMM_WORLD, &job.count);
+    MPI_Comm_rank(MPI_COMM_WORLD, &job.number);
+    if (job.count > 1 && provided < MPI_THREAD_SERIALIZED)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "this MPI does not let threads take turns (MPI_THREAD_SERIALIZED)");
+    return learn_hosts();
+}
+
+void mf_ranks_end(void) {
+    if (!job.begun)
+        return;
+    MPI_Request all;
+    int arrived = 0;
+    // MPI_Finalize waits, too, but keeps a processor busy meanwhile.
+    MPI_Ibarrier(MPI_COMM_WORLD, &all);
+    for (MPI_Test(&all, &arrived, MPI_STATUS_IGNORE); !arrived;
+         MPI_Test(&all, &arrived, MPI_STATUS_IGNORE))
+        mf_ranks_rest();
+    MPI_Finalize();
+    mf_memory_free(job.host);
+    job.begun = false;
+}
+
+int mf_ranks_count(void) {
+    return job.count;
+}
+
+int mf_ranks_number(void) {
+    return job.number;
+}
+
+const char *mf_ranks_host(int rank) {
+    return job.host[rank];
+}
+
+void mf_ranks_send(int to, const uint64_t *letter, size_t words) {
+    if (words > INT_MAX)
+        mf_ranks_stop(3, "a task has more to tell than MPI can send: %zu bytes", 8 * words);
+    MPI_Send(letter, (int)words, MPI_UINT64_T, to, 0, MPI_COMM_WORLD);
+}
+
+uint64_t *mf_ranks_receive(int *from, size_t *words) {
+    MPI_Status about;
+    int arrived, count;
+    MPI_Iprobe(MPI_ANY_SOURCE, 0, MPI_COMM_WORLD, &arrived, &about);
+    if (!arrived)
+        return NULL;
+    MPI_Get_count(&about, MPI_UINT64_T, &count);
+    uint64_t *letter = mf_memory_uncleared((size_t)count, sizeof *letter);
+    if (letter == NULL)
+        mf_ranks_stop(3, "%s", mf_status_message());
+    MPI_Recv(letter, count, MPI_UINT64_T, about.MPI_SOURCE, 0, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+    *from = about.MPI_SOURCE;
+    *words = (size_t)count;
+    return letter;
+}
+
+void mf_ranks_share(void *memory, size_t bytes) {
+    enum { PIECE = 1 << 30 };
+    if (job.count == 1)
+        return;
+    for (size_t done = 0; done < bytes; done += PIECE) {
+        const size_t left = bytes - done;
+        MPI_Request all;
+        int arrived = 0;
+        MPI_Ibcast((char *)memory + done, (int)(left < PIECE ? left : PIECE), MPI_BYTE, 0,
+                   MPI_COMM_WORLD, &all);
+        for (MPI_Test(&all, &arrived, MPI_STATUS_IGNORE); !arrived;
+             MPI_Test(&all, &arrived, MPI_STATUS_IGNORE))
+            mf_ranks_rest();
+    }
+}
+
+void mf_ranks_rest(void) {
+    nanosleep(&(struct timespec){.tv_nsec = 300000}, NULL);
+}
+
+static void tell(const char *format, va_list arguments) {
+    char line[LINE_SIZE];
+    vsnprintf(line, sizeof line, format, arguments);
+    if (job.warn)
+        job.warn(line);
+}
+
+void mf_ranks_warn(const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    tell(format, arguments);
+    va_end(arguments);
+}
+
+void mf_ranks_stop(int exit_code, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    tell(format, arguments);
+    va_end(arguments);
+    MPI_Abort(MPI_COMM_WORLD, exit_code);
+    exit(exit_code);
+}
