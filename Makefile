@@ -50,12 +50,12 @@ HAS_LIVE    := $(if $(wildcard $(CHART)/chart.min.js),$(shell pkg-config --exist
 LIVE_WITHOUT = $(if $(HAS_LIVE),src/live/live_server_none.c,src/live/live_server.c src/live/live_assets.c)
 LIVE_LIBS   := $(if $(HAS_LIVE),$(shell pkg-config --libs libmicrohttpd))
 
-# MPI=1: the program has it, the libraries do not (Debian: libopenmpi-dev).
-MPICC       ?= mpicc
-RANKS        = $(if $(MPI),$(BUILD)/src/base/ranks.o)
-MPI_LIBS    := $(if $(MPI),$(shell $(MPICC) --showme:link 2>/dev/null || $(MPICC) -link_info | cut -d' ' -f2-))
-$(BUILD)/src/base/ranks.o: \
-    override CFLAGS += $(shell $(MPICC) --showme:compile 2>/dev/null || $(MPICC) -compile_info | cut -d' ' -f2-)
+# The program has MPI if it is wanted, the libraries never do (Debian: libopenmpi-dev).
+MPICC     ?= mpicc
+MPI_CFLAGS = $(shell $(MPICC) --showme:compile 2>/dev/null || $(MPICC) -compile_info | cut -d' ' -f2-)
+MPI_LIBS   = $(shell $(MPICC) --showme:link 2>/dev/null || $(MPICC) -link_info | cut -d' ' -f2-)
+RANKS      = $(BUILD)/src/base/ranks.o
+$(RANKS): override CFLAGS += $(MPI_CFLAGS)
 
 SOURCES  = $(filter-out src/base/ranks.c $(LIVE_WITHOUT) $(if $(HDF5),src/trajectory/format_h5md_without.c,$(H5MD)),$(wildcard src/*/*.c))
 OBJECTS  = $(SOURCES:%.c=$(BUILD)/%.o)
@@ -94,9 +94,14 @@ $(SHARED_LIBRARY): $(SHARED_OBJECTS) src/library/exports.map
 	@ln -sf $(@F) $(BUILD)/$(SONAME)
 	@ln -sf $(SONAME) $(BUILD)/libmesofit.so
 
-$(PROGRAM): $(filter $(BUILD)/src/app/%,$(OBJECTS)) $(RANKS) $(LIVE) $(LIBRARY)
+OF_PROGRAM = $(filter $(BUILD)/src/app/%,$(OBJECTS)) $(LIVE) $(LIBRARY)
+WITH_MPI   = $(BUILD)/mpi/mesofit
+$(PROGRAM): $(if $(MPI),$(RANKS)) $(OF_PROGRAM)
+$(WITH_MPI): $(RANKS) $(OF_PROGRAM)
+$(PROGRAM) $(WITH_MPI):
+	@mkdir -p $(@D)
 	@echo "ld $@"
-	$(AT)$(CC) $(LDFLAGS) -o $@ $^ $(LIVE_LIBS) $(MPI_LIBS) $(LDLIBS)
+	$(AT)$(CC) $(LDFLAGS) -o $@ $^ $(LIVE_LIBS) $(if $(filter $(RANKS),$^),$(MPI_LIBS)) $(LDLIBS)
 
 # The page's files, which the assembler takes from there.
 $(BUILD)/src/live/live_assets.o: CFLAGS += -Wa,-Ishare/live,-I$(CHART)
@@ -152,6 +157,12 @@ check-physics: all $(PHYSICS)
 .PHONY: check-live
 check-live: all
 	MESOFIT=$(abspath $(PROGRAM)) tests/tools/check_live.sh
+
+# Fits among the processes of an MPI job, where there is one (Debian: libopenmpi-dev, openmpi-bin).
+.PHONY: check-mpi
+KILLS ?= 3
+check-mpi: all $(if $(shell command -v $(MPICC)),$(WITH_MPI))
+	tests/tools/check_mpi.sh $(PROGRAM) $(WITH_MPI) $(KILLS)
 
 # Kills a process at one of its renames: see tests/stress/test_kill.c.
 KILL_HOOK = $(BUILD)/tests/stress/hooks/kill_at.so

@@ -14,10 +14,14 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { EXPLAIN, TARGET, DENSITY, TEMPERATURE, LIVE };
+enum { EXPLAIN, RANKS, TARGET, DENSITY, TEMPERATURE, LIVE };
+
+/// Of --explain.
+enum { MOST_RANKS = 100000 };
 
 static const struct command_option options[] = {
     [EXPLAIN] = {"--explain", NULL, "print what a step will pay for and why; run nothing"},
+    [RANKS] = {"--ranks", "N", "with --explain: how much faster N processes of an MPI job will be"},
     [TARGET] = {"--target", "DIR", "fit DIR/target.json, or with the next two DIR/rdf.tsv alone"},
     [DENSITY] = {"--density", "NUMBER", "beads in a unit of volume, which target.json lacks"},
     [TEMPERATURE] = {"--temperature", "NUMBER", "likewise; without target.json 1"},
@@ -46,16 +50,26 @@ static enum status run_shared(const char *file, const struct command_line *line)
     return status;
 }
 
-static enum status run_file(const char *file, const struct command_line *line) {
-    return line->own[EXPLAIN] ? mf_fit_explain(file, &line->options) : run_shared(file, line);
-}
-
 static enum status parse_positive(const char *option, const char *text, double *value) {
     char *end;
     *value = strtod(text, &end);
     if (end == text || *end != '\0' || !(*value > 0) || isinf(*value))
         return mf_status_fail(STATUS_BAD_INPUT, "%s takes a number above 0", option);
     return STATUS_OK;
+}
+
+static enum status run_file(const char *file, const struct command_line *line) {
+    double ranks = 0;
+    if (line->own[RANKS] && !line->own[EXPLAIN])
+        return mf_status_fail(STATUS_BAD_INPUT, "--ranks is for --explain; mpirun -np says how "
+                                                "many processes a fit has");
+    if (line->own[RANKS])
+        TRY(parse_positive("--ranks", line->own[RANKS], &ranks));
+    if (ranks != floor(ranks) || ranks > MOST_RANKS)
+        return mf_status_fail(STATUS_BAD_INPUT, "--ranks takes a whole number from 1 to %d",
+                              MOST_RANKS);
+    return line->own[EXPLAIN] ? mf_fit_explain(file, &line->options, (int)ranks)
+                              : run_shared(file, line);
 }
 
 /// A run file that nobody wrote: g(r) of the folder, density and temperature.

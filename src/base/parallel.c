@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/parallel.h"
 
+#include "base/clock.h"
 #include "base/memory.h"
 #include "base/parallel_ranks.h"
+#include "base/parallel_times.h"
 #include "base/ranks.h"
 
 /// Where part `number` of `parts` begins, at a multiple of 16: parts share no cache line.
@@ -51,8 +53,11 @@ static void try_one(const struct parallel_tasks *tasks, size_t task,
     enum status status = STATUS_OK;
     if (tasks->result_size > 0 && (result = mf_memory_zeroed(1, tasks->result_size)) == NULL)
         status = STATUS_NO_MEMORY;
+    const double begin = clock_thread_seconds();
     if (status == STATUS_OK)
         status = tasks->run(tasks->context, task, result);
+    if (tasks->spans)
+        mf_parallel_times_add(tasks->count, clock_thread_seconds() - begin);
 #pragma omp critical
     {
         if (status == STATUS_OK && tasks->take) {
@@ -64,9 +69,7 @@ static void try_one(const struct parallel_tasks *tasks, size_t task,
     mf_memory_free(result);
 }
 
-enum status mf_parallel_try(const struct parallel_tasks *tasks) {
-    if (tasks->spans && mf_ranks_count() > 1)
-        return mf_parallel_try_together(tasks);
+static enum status try_alone(const struct parallel_tasks *tasks) {
     struct parallel_failure failure = {.status = STATUS_OK, .task = tasks->count};
     // Threads take the numbers in their order: all below one that failed have begun.
 #pragma omp parallel for schedule(dynamic)                                                         \
@@ -75,4 +78,13 @@ enum status mf_parallel_try(const struct parallel_tasks *tasks) {
         if (may_begin(&failure, task))
             try_one(tasks, task, &failure);
     return parallel_failure_status(&failure);
+}
+
+enum status mf_parallel_try(const struct parallel_tasks *tasks) {
+    const double begin = clock_seconds();
+    const enum status status =
+        tasks->spans && mf_ranks_count() > 1 ? mf_parallel_try_together(tasks) : try_alone(tasks);
+    if (tasks->spans)
+        mf_parallel_times_end(tasks->count, clock_seconds() - begin);
+    return status;
 }

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Rank 0 hands out and collects; see base/letters.h for what is said.
+// Rank 0 hands out and collects; see base/letter.h for what is said.
 #include "base/parallel_ranks.h"
 
+#include "base/clock.h"
 #include "base/interrupt.h"
-#include "base/letters.h"
+#include "base/letter.h"
+#include "base/parallel_times.h"
 #include "base/ranks.h"
 #include "base/ranks_watch.h"
 
@@ -59,6 +61,7 @@ static uint64_t hand_out(struct round *round) {
 /// A task has succeeded, here or elsewhere, or has failed: then the letter has its message.
 static void collect(struct round *round, struct letter *letter, const void *result) {
     pthread_mutex_lock(&round->lock);
+    mf_parallel_times_add(round->tasks->count, letter->seconds);
     if (letter->status == STATUS_OK) {
         if (round->tasks->take)
             round->tasks->take(round->tasks->context, letter->task, result);
@@ -244,12 +247,14 @@ static void *follow(void *memory) {
 
 static void do_task(struct round *round, uint64_t task) {
     const struct parallel_tasks *tasks = round->tasks;
-    const struct letter head = {.kind = LETTER_RESULT, .turn = round->turn, .task = task};
+    struct letter head = {.kind = LETTER_RESULT, .turn = round->turn, .task = task};
     void *result = tasks->result_size > 0 ? or_stop(mf_memory_zeroed(1, tasks->result_size)) : NULL;
-    struct letter failed = head, *letter;
-    failed.status = tasks->run(tasks->context, task, result);
-    letter = failed.status == STATUS_OK ? mf_letter_of_task(&head, tasks, result)
-                                        : mf_letter_of_message(&failed, mf_status_message());
+    const double begin = clock_thread_seconds();
+    head.status = tasks->run(tasks->context, task, result);
+    head.seconds = clock_thread_seconds() - begin;
+    struct letter *letter = head.status == STATUS_OK
+                                ? mf_letter_of_task(&head, tasks, result)
+                                : mf_letter_of_message(&head, mf_status_message());
     mf_memory_free(result);
     if (ranks_lead())
         collect(round, letter, tasks->result_size > 0 ? letter_bytes(letter) : NULL);

@@ -43,7 +43,8 @@ static enum status evaluate(const struct mesofit_fit *fit, const double *coeffic
                                                  .discard_above = HUGE_VAL,
                                                  .threads = 1,
                                                  .seed = seed};
-    status = mf_evaluate(&laws.problem, &candidate, &population->evaluate, NULL, NULL, NULL, &result);
+    status =
+        mf_evaluate(&laws.problem, &candidate, &population->evaluate, NULL, NULL, NULL, &result);
     *error = status == STATUS_OK ? result.error : HUGE_VAL;
     if (variance)
         *variance = status == STATUS_OK ? result.variance : 0;

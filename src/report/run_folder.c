@@ -29,6 +29,7 @@ static const char *const results[] = {
     "target.json",
     "history.tsv",
     "timing.tsv",
+    "tasks.tsv",
     "rdf_now.tsv",
     "rdf_now_*-*.tsv",
     "potential.tsv",
@@ -265,8 +266,8 @@ static enum status lock(struct run_folder *folder) {
                           folder->path);
 }
 
-static enum status choose(struct run_folder *folder, enum run_kind kind, const char *input,
-                          const struct run_options *options) {
+enum status mf_run_folder_choose(struct run_folder *folder, enum run_kind kind, const char *input,
+                                 const struct run_options *options) {
     const char *slash = strrchr(input, '/');
     const char *const given =
         options->folder || kind != RUN_MEASUREMENT ? options->folder : "target";
@@ -283,7 +284,7 @@ static enum status choose(struct run_folder *folder, enum run_kind kind, const c
 enum status mf_run_folder_open(struct run_folder *folder, enum run_kind kind, const char *input,
                                const struct input_files *inputs,
                                const struct run_options *options) {
-    TRY(choose(folder, kind, input, options));
+    TRY(mf_run_folder_choose(folder, kind, input, options));
     if (!ranks_lead())
         return STATUS_OK;
     TRY(mf_output_make_folder(folder->path));

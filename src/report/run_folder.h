@@ -22,6 +22,11 @@ struct run_folder {
     int lock; ///< the folder, open
 };
 
+/// Set the path of the folder of a run of `input`, and nothing else. Fails: BAD_INPUT if it is too
+/// long.
+enum status mf_run_folder_choose(struct run_folder *folder, enum run_kind kind, const char *input,
+                                 const struct run_options *options) MUST_USE;
+
 /// Choose, make and lock the folder of a run of `input`, `out` beside it unless the options say
 /// where, and `target` here for a measurement, in which nothing changes before
 /// mf_run_folder_begin. Of several ranks (base/ranks.h) rank 0 alone does so. Where files cannot be

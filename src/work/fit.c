@@ -11,8 +11,9 @@
 #include "report/fit_verdict.h"
 #include "report/history.h"
 #include "report/progress.h"
-#include "input/target_sanity.h"
 #include "work/fit_ranks.h"
+#include "work/fit_tasks.h"
+#include "work/fit_tell.h"
 
 #include <math.h>
 #include <string.h>
@@ -130,27 +131,6 @@ done:
     return status;
 }
 
-static void say_line(void *progress, const char *line) {
-    mf_progress_say(progress, "%s", line);
-}
-
-/// What is to be fitted, so that a wrong column or unit is seen before the work.
-static enum status tell_targets(struct run *run) {
-    const struct target_etd *etd = &run->fit.files.etd;
-    const char *warning = mf_scene_warning(&run->fit.scene);
-    mf_progress_say_scale(&run->progress, &run->fit.scene.units);
-    if (warning)
-        mf_progress_say(&run->progress, "mesofit: warning: scene: %s", warning);
-    for (size_t k = 0; k < run->fit.choices.count; k++)
-        mf_progress_say(&run->progress, "chosen: %s", run->fit.choices.line[k]);
-    if (etd->left_out > 0)
-        mf_progress_say(&run->progress,
-                        "target.etd: %zu of %zu cells of the target are not known and left out",
-                        etd->left_out, (size_t)(etd->grid.times * etd->grid.bins));
-    return mf_target_sanity_tell(&run->fit.files, &run->fit.scene,
-                                 &(struct target_sanity_listener){say_line, &run->progress});
-}
-
 /// Read what the run needs, and begin its state. On a cluster all ranks read the same files.
 static enum status read_and_create(struct run *run, const char *file,
                                    const struct run_options *options) {
@@ -179,7 +159,7 @@ static enum status prepare(struct run *run, const char *file, const struct run_o
         mf_fit_ranks_share(spans, run_spans(run, spans));
     mf_progress_tell_run(&run->progress, &(struct watcher_run){RUN_FIT, run->folder.path,
                                                                .units = &run->fit.scene.units});
-    return tell_targets(run);
+    return mf_fit_tell_targets(&run->progress, &run->fit);
 }
 
 /// Progress inside an iteration, and a checkpoint now and then.
@@ -283,6 +263,7 @@ static enum status record(struct run *run, const struct inverse_step *step) {
         const struct inverse_folder own = {own_file, &run->folder, &run->fit.scene.units};
         TRY(run->fit.method->write(run->state, &own));
     }
+    TRY(mf_fit_tasks_write(&run->folder, mf_progress_seconds(&run->progress)));
     mf_progress_tell_written(&run->progress);
     mf_progress_say(&run->progress, "iteration %u  error %.4f  noise %.4f  %.1f s", step->iteration,
                     mf_visible_number(step->error), mf_visible_number(step->noise),

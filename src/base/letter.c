@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "base/letters.h"
+#include "base/letter.h"
 
 #include "base/ranks.h"
 
@@ -13,9 +13,10 @@ static size_t words_of(const struct letter *letter) {
 
 struct letter *mf_letter_new(const struct letter *head) {
     struct letter *letter = mf_memory_zeroed(words_of(head), sizeof(uint64_t));
-    if (letter == NULL)
+    if (letter)
+        *letter = *head;
+    else
         mf_ranks_stop(3, "%s", mf_status_message());
-    *letter = *head;
     return letter;
 }
 
@@ -56,12 +57,10 @@ void mf_letter_send(int to, const struct letter *letter) {
 
 struct letter *mf_letter_receive(uint64_t turn, int *from) {
     size_t words;
-    for (;;) {
-        struct letter *letter = (struct letter *)mf_ranks_receive(from, &words);
-        if (letter == NULL || letter->turn >= turn)
-            return letter;
+    struct letter *letter;
+    while ((letter = (struct letter *)mf_ranks_receive(from, &words)) && letter->turn < turn)
         mf_memory_free(letter);
-    }
+    return letter;
 }
 
 /// Lengths may follow from the spans before, so that they are listed anew for each.

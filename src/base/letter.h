@@ -25,6 +25,7 @@ struct letter {
     uint64_t turn; ///< which call of mf_parallel_try or mf_parallel_agree it belongs to
     uint64_t task;
     uint64_t bytes; ///< behind this head
+    double seconds; ///< of processor time that a task took
     uint32_t kind;
     int32_t status;
 };
