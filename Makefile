@@ -161,8 +161,13 @@ check-live: all
 # Fits among the processes of an MPI job, where there is one (Debian: libopenmpi-dev, openmpi-bin).
 .PHONY: check-mpi
 KILLS ?= 3
-check-mpi: all $(if $(shell command -v $(MPICC)),$(WITH_MPI))
-	tests/tools/check_mpi.sh $(PROGRAM) $(WITH_MPI) $(KILLS)
+SHARE = $(BUILD)/mpi/share
+$(SHARE): $(BUILD)/tests/mpi/share.o $(RANKS) $(LIBRARY)
+	@mkdir -p $(@D)
+	@echo "ld $@"
+	$(AT)$(CC) $(LDFLAGS) -o $@ $^ $(MPI_LIBS) $(LDLIBS)
+check-mpi: all $(if $(shell command -v $(MPICC)),$(WITH_MPI) $(SHARE))
+	tests/tools/check_mpi.sh $(PROGRAM) $(WITH_MPI) $(SHARE) $(KILLS)
 
 # Kills a process at one of its renames: see tests/stress/test_kill.c.
 KILL_HOOK = $(BUILD)/tests/stress/hooks/kill_at.so
@@ -258,5 +263,5 @@ bench: $(PROGRAM)
 clean:
 	rm -rf build mesofit
 
--include $(OBJECTS:.o=.d) $(RANKS:.o=.d) $(TESTS:=.d) $(STRESS:=.d) $(SHARED:.o=.d) \
+-include $(OBJECTS:.o=.d) $(RANKS:.o=.d) $(TESTS:=.d) $(STRESS:=.d) $(SHARED:.o=.d) $(BUILD)/tests/mpi/share.d \
          $(BUILD)/tests/fuzz/fuzz_readers.d

@@ -5,6 +5,7 @@
 
 #include <limits.h>
 #include <mpi.h>
+#include <sched.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
@@ -44,16 +45,25 @@ enum status mf_ranks_begin(void (*warn)(const char *line)) {
     return learn_hosts();
 }
 
+/// Wait for what all ranks do together, without keeping a processor busy as MPI_Wait does.
+static void finish(MPI_Request *request) {
+    enum { SHORT = 20 };
+    int arrived = 0;
+    for (int turn = 0; !arrived; turn++) {
+        MPI_Test(request, &arrived, MPI_STATUS_IGNORE);
+        if (!arrived && turn < SHORT)
+            sched_yield();
+        else if (!arrived)
+            mf_ranks_rest();
+    }
+}
+
 void mf_ranks_end(void) {
     if (!job.begun)
         return;
     MPI_Request all;
-    int arrived = 0;
-    // MPI_Finalize waits, too, but keeps a processor busy meanwhile.
-    MPI_Ibarrier(MPI_COMM_WORLD, &all);
-    for (MPI_Test(&all, &arrived, MPI_STATUS_IGNORE); !arrived;
-         MPI_Test(&all, &arrived, MPI_STATUS_IGNORE))
-        mf_ranks_rest();
+    MPI_Ibarrier(MPI_COMM_WORLD, &all); // as MPI_Finalize waits, but resting
+    finish(&all);
     MPI_Finalize();
     mf_memory_free(job.host);
     job.begun = false;
@@ -100,12 +110,9 @@ void mf_ranks_share(void *memory, size_t bytes) {
     for (size_t done = 0; done < bytes; done += PIECE) {
         const size_t left = bytes - done;
         MPI_Request all;
-        int arrived = 0;
         MPI_Ibcast((char *)memory + done, (int)(left < PIECE ? left : PIECE), MPI_BYTE, 0,
                    MPI_COMM_WORLD, &all);
-        for (MPI_Test(&all, &arrived, MPI_STATUS_IGNORE); !arrived;
-             MPI_Test(&all, &arrived, MPI_STATUS_IGNORE))
-            mf_ranks_rest();
+        finish(&all);
     }
 }
 

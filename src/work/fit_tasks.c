@@ -59,26 +59,29 @@ static double take_task(double *free_at, size_t workers, double seconds) {
     return end;
 }
 
+double mf_fit_tasks_schedule(const double *seconds, size_t tasks, int workers) {
+    const size_t busy = tasks < (size_t)workers ? tasks : (size_t)workers;
+    double *free_at = mf_memory_zeroed(busy + 1, sizeof *free_at), last = free_at ? 0 : NAN;
+    for (size_t k = 0; free_at && k < tasks; k++)
+        last = fmax(last, take_task(free_at, busy, seconds[k]));
+    mf_memory_free(free_at);
+    return last;
+}
+
 double mf_fit_tasks_span(size_t tasks, double mean, double spread, int workers) {
     enum { DRAWS = 200 };
-    const size_t busy = tasks < (size_t)workers ? tasks : (size_t)workers;
     const double width = mean > 0 ? sqrt(log1p(spread * spread / (mean * mean))) : 0;
-    double *free_at = mf_memory_zeroed(busy + 1, sizeof *free_at), total = 0;
-    if (free_at == NULL)
-        return NAN;
-    for (uint32_t round = 0; round < DRAWS; round++) {
-        double last = 0, normal[4] = {0};
-        for (size_t k = 0; k < busy; k++)
-            free_at[k] = 0;
+    double *seconds = mf_memory_zeroed(tasks, sizeof *seconds), total = seconds ? 0 : NAN;
+    double normal[4] = {0};
+    for (uint32_t round = 0; seconds && round < DRAWS; round++) {
         for (size_t k = 0; k < tasks; k++) {
             if (k % 4 == 0)
                 mf_rng_normal4(mf_rng_philox(1, RNG_SELECTION, (uint32_t)k, round, 0), normal);
-            const double seconds = mean * exp(width * (normal[k % 4] - width / 2));
-            last = fmax(last, take_task(free_at, busy, seconds));
+            seconds[k] = mean * exp(width * (normal[k % 4] - width / 2));
         }
-        total += last / DRAWS;
+        total += mf_fit_tasks_schedule(seconds, tasks, workers) / DRAWS;
     }
-    mf_memory_free(free_at);
+    mf_memory_free(seconds);
     return total;
 }
 

@@ -13,8 +13,12 @@
 enum status mf_fit_tasks_write(const struct run_folder *folder, double seconds) MUST_USE;
 
 /// Seconds from begin to end of `tasks` that `workers` take one after the other, each when it is
-/// free: the mean over many draws of the tasks' times, which are log-normal. A model by discrete
-/// events; with times that are all alike it is ⌈tasks/workers⌉ of them.
+/// free, as mf_parallel_try hands them out: a model by discrete events. NAN without memory.
+/// @param[in] seconds  shape [tasks]
+/// Tested: test_fit_tasks, and against ranks by tests/mpi/share.c.
+double mf_fit_tasks_schedule(const double *seconds, size_t tasks, int workers);
+
+/// The mean of that over many draws of times that are log-normal.
 /// @param[in] mean, spread  of a task's time [s], and its standard deviation [s]
 /// Tested: test_fit_tasks.
 double mf_fit_tasks_span(size_t tasks, double mean, double spread, int workers);

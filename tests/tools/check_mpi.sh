@@ -1,18 +1,20 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 #
-# check_mpi.sh WITHOUT PROGRAM KILLS: a short fit of each method has the same bits in one process,
+# check_mpi.sh WITHOUT PROGRAM SHARE KILLS: a short fit of each method has the same bits in one process,
 # WITHOUT MPI, and among ranks of PROGRAM; it goes on with another layout after it was stopped or a
-# rank was killed, KILLS times; and what is wrong is said. METHODS="imc genetic" checks these alone.
+# rank was killed, KILLS times; what is wrong is said; and tasks of SHARE take as long as the
+# model says. METHODS="imc genetic" checks these alone.
 set -u
 without=$(realpath "$1")
 program=$2
-kills=$3
+kills=$4
 if ! command -v mpirun >/dev/null || [ ! -x "$program" ]; then
     echo "check_mpi: skipped: there is no MPI (Debian: libopenmpi-dev and openmpi-bin)"
     exit 0
 fi
 program=$(realpath "$program")
+share=$(realpath "$3")
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder" || exit 1
@@ -61,6 +63,11 @@ expect() {
         failed=1
     fi
 }
+
+# Tasks that sleep, against the model of how long they take.
+for number in 1 2 4 8; do
+    mpirun --bind-to none -np "$number" "$share" || failed=1
+done
 
 cat >scene.json <<'SCENE'
 {"seed": 3, "box": [4, 4, 4], "particles": {"count": 192}, "temperature": 1, "time_step": 0.01,
