@@ -15,6 +15,7 @@ enum letter_kind {
     LETTER_STOP,   ///< all stop, as that signal wants it
     LETTER_ALIVE,  ///< and its answer
     LETTER_OVER,   ///< all is done
+    LETTER_READY,  ///< to share what was found
     // between
     LETTER_ARRIVED, ///< at mf_parallel_agree, with a status, its message, and a digest as `task`
 };

@@ -28,6 +28,7 @@ struct round {
     struct parallel_failure failure; ///< of all ranks
     struct letter **left;            ///< shape [tasks]: what each has left; NULL: nothing
     bool over;                       ///< all is done
+    int ready;                       ///< ranks that wait for what was found
     // of another rank, in the order of time
     size_t waiting, asked;  ///< threads without a task; tasks asked for
     size_t received, begun; ///< numbers of tasks that have come, and that threads took
@@ -96,6 +97,13 @@ _Noreturn static void stop_strayed(int rank, const struct letter *letter) {
                          : "does not do the same as rank 0: its program or its input is another");
 }
 
+static bool is_over(struct round *round) {
+    pthread_mutex_lock(&round->lock);
+    const bool over = round->over;
+    pthread_mutex_unlock(&round->lock);
+    return over;
+}
+
 /// Answer a letter, or keep it.
 static void serve(struct round *round, int from, struct letter *letter) {
     struct letter answer = {.turn = round->turn};
@@ -114,8 +122,12 @@ static void serve(struct round *round, int from, struct letter *letter) {
         answer.kind = LETTER_ALIVE;
         mf_letter_send(from, &answer);
         break;
-    case LETTER_WISH:
-        stop_all(round, (int)letter->task);
+    case LETTER_WISH: // who has gone on hears of it in the next round
+        if (!is_over(round))
+            stop_all(round, (int)letter->task);
+        break;
+    case LETTER_READY:
+        round->ready++;
         break;
     default:
         stop_strayed(from, letter);
@@ -123,27 +135,27 @@ static void serve(struct round *round, int from, struct letter *letter) {
     mf_memory_free(letter);
 }
 
-static bool is_over(struct round *round) {
-    pthread_mutex_lock(&round->lock);
-    const bool over = round->over;
-    pthread_mutex_unlock(&round->lock);
-    return over;
+static void listen_once(struct round *round) {
+    int from;
+    struct letter *letter = mf_letter_receive(round->turn, &from);
+    if (letter)
+        serve(round, from, letter);
+    else
+        mf_ranks_rest();
+    mf_ranks_watch_look(&round->watch);
 }
 
 static void *lead(void *memory) {
     struct round *round = memory;
     while (!is_over(round)) {
-        int from;
-        struct letter *letter = mf_letter_receive(round->turn, &from);
-        if (letter)
-            serve(round, from, letter);
-        else
-            mf_ranks_rest();
+        listen_once(round);
         if (mf_interrupt_signal() != 0)
             stop_all(round, mf_interrupt_signal());
-        mf_ranks_watch_look(&round->watch);
     }
     tell_all(&(struct letter){.kind = LETTER_OVER, .turn = round->turn});
+    // What all do together cannot tell who is missing.
+    while (round->ready < mf_ranks_count() - 1)
+        listen_once(round);
     return NULL;
 }
 
@@ -240,6 +252,7 @@ static void *follow(void *memory) {
         mf_memory_free(letter);
         mf_ranks_watch_look(&round->watch);
     }
+    mf_letter_send(0, &(struct letter){.kind = LETTER_READY, .turn = round->turn});
     return NULL;
 }
 

@@ -23,7 +23,7 @@ static struct parallel_size *find(size_t tasks) {
 
 void mf_parallel_times_add(size_t tasks, double seconds) {
 #pragma omp critical
-    mf_statistics_add(&find(tasks)->seconds, seconds);
+    mf_statistics_add(&find(tasks)->now, seconds);
 }
 
 void mf_parallel_times_end(size_t tasks, double waited) {
@@ -32,6 +32,11 @@ void mf_parallel_times_end(size_t tasks, double waited) {
         struct parallel_size *size = find(tasks);
         size->rounds++;
         size->waited += waited;
+        size->done += size->now.count;
+        size->seconds += size->now.count * size->now.mean;
+        if (size->now.mean > 0)
+            size->squares += size->now.squares / (size->now.mean * size->now.mean);
+        size->now = (struct running_mean){0};
     }
 }
 

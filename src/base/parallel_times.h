@@ -12,9 +12,11 @@ struct parallel_times {
     size_t sizes;
     struct parallel_size {
         size_t tasks; ///< of a round; beyond PARALLEL_MOST_SIZES a round counts with its nearest
-        double rounds;
-        struct running_mean seconds; ///< of processor time that a task took
-        double waited;               ///< [s] from begin to end of these rounds
+        double rounds, done;     ///< and tasks of them
+        double seconds;          ///< of processor time that they took
+        double squares;          ///< of each task's deviation from its round's mean, over that
+        double waited;           ///< [s] from begin to end of these rounds
+        struct running_mean now; ///< seconds of the round that is going on
     } size[PARALLEL_MOST_SIZES];
 };
 

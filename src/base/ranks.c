@@ -8,15 +8,24 @@
 #include <sched.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <time.h>
 
-enum { HOST_SIZE = MPI_MAX_PROCESSOR_NAME, LINE_SIZE = 9000 };
+enum { HOST_SIZE = MPI_MAX_PROCESSOR_NAME, LINE_SIZE = 9000, MOST_ARRIVALS = 64 };
 
 static struct {
     int count, number;
     bool begun;
     char (*host)[HOST_SIZE]; ///< shape [count]
     void (*warn)(const char *line);
+    /// Letters of which not all has come, in their order.
+    struct arrival {
+        MPI_Request request;
+        uint64_t *letter;
+        size_t words;
+        int from;
+    } arrival[MOST_ARRIVALS];
+    size_t arrivals;
 } job = {.count = 1};
 
 static enum status learn_hosts(void) {
@@ -87,20 +96,42 @@ void mf_ranks_send(int to, const uint64_t *letter, size_t words) {
     MPI_Send(letter, (int)words, MPI_UINT64_T, to, 0, MPI_COMM_WORLD);
 }
 
-uint64_t *mf_ranks_receive(int *from, size_t *words) {
+/// Begin to receive a letter if one is on its way.
+static void begin_arrival(void) {
+    struct arrival *arrival = &job.arrival[job.arrivals];
+    MPI_Message message;
     MPI_Status about;
-    int arrived, count;
-    MPI_Iprobe(MPI_ANY_SOURCE, 0, MPI_COMM_WORLD, &arrived, &about);
-    if (!arrived)
-        return NULL;
+    int is_there, count;
+    MPI_Improbe(MPI_ANY_SOURCE, 0, MPI_COMM_WORLD, &is_there, &message, &about);
+    if (!is_there)
+        return;
     MPI_Get_count(&about, MPI_UINT64_T, &count);
-    uint64_t *letter = mf_memory_uncleared((size_t)count, sizeof *letter);
-    if (letter == NULL)
+    arrival->from = about.MPI_SOURCE;
+    arrival->words = (size_t)count;
+    arrival->letter = mf_memory_uncleared((size_t)count, sizeof *arrival->letter);
+    if (arrival->letter == NULL)
         mf_ranks_stop(3, "%s", mf_status_message());
-    MPI_Recv(letter, count, MPI_UINT64_T, about.MPI_SOURCE, 0, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
-    *from = about.MPI_SOURCE;
-    *words = (size_t)count;
-    return letter;
+    MPI_Imrecv(arrival->letter, count, MPI_UINT64_T, &message, &arrival->request);
+    job.arrivals++;
+}
+
+uint64_t *mf_ranks_receive(int *from, size_t *words) {
+    // A large letter whose sender hangs in the middle of it must not keep others waiting.
+    if (job.arrivals < MOST_ARRIVALS)
+        begin_arrival();
+    for (size_t k = 0; k < job.arrivals; k++) {
+        const struct arrival arrival = job.arrival[k];
+        int is_whole;
+        MPI_Test(&job.arrival[k].request, &is_whole, MPI_STATUS_IGNORE);
+        if (!is_whole)
+            continue;
+        job.arrivals--;
+        memmove(job.arrival + k, job.arrival + k + 1, (job.arrivals - k) * sizeof *job.arrival);
+        *from = arrival.from;
+        *words = arrival.words;
+        return arrival.letter;
+    }
+    return NULL;
 }
 
 void mf_ranks_share(void *memory, size_t bytes) {

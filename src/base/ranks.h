@@ -31,7 +31,8 @@ static inline bool ranks_lead(void) {
 /// The computer that a rank runs on.
 const char *mf_ranks_host(int rank);
 
-/// Send a letter of `words` to a rank. Letters from one rank to another arrive in their order.
+/// Send a letter of `words` to a rank. Small letters from one rank to another
+/// arrive in their order; one may overtake a large one.
 void mf_ranks_send(int to, const uint64_t *letter, size_t words);
 
 /// Receive a letter if one has arrived; NULL if none has. It is freed by mf_memory_free.

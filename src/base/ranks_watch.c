@@ -8,7 +8,8 @@
 void mf_ranks_watch_init(struct ranks_watch *watch) {
     const size_t count = (size_t)mf_ranks_count();
     *watch = (struct ranks_watch){.one = mf_memory_zeroed(count, sizeof *watch->one),
-                                  .said = clock_seconds()};
+                                  .said = clock_seconds(),
+                                  .looked = clock_seconds()};
     if (watch->one == NULL)
         mf_ranks_stop(3, "%s", mf_status_message());
     for (size_t k = 0; k < count; k++)
@@ -37,6 +38,11 @@ bool mf_ranks_watch_is_due(struct ranks_watch *watch) {
 void mf_ranks_watch_look(struct ranks_watch *watch) {
     const double now = clock_seconds();
     const int own = mf_ranks_number(), count = mf_ranks_count();
+    // Who was away itself has heard nobody.
+    const bool away = now - watch->looked > RANKS_WATCH_WORD;
+    watch->looked = now;
+    for (int rank = 0; away && rank < count; rank++)
+        watch->one[rank].heard = now;
     for (int rank = own == 0; own <= 1 && rank < (own == 0 ? count : 1); rank++) {
         struct ranks_watch_one *one = &watch->one[rank];
         if (one->named || now - one->heard < RANKS_WATCH_PATIENCE)

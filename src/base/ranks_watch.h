@@ -15,8 +15,9 @@ struct ranks_watch {
     struct ranks_watch_one {
         double heard; ///< clock [s]
         bool named;
-    } * one;     ///< shape [ranks]
-    double said; ///< clock of this rank's last word [s]
+    } * one;       ///< shape [ranks]
+    double said;   ///< clock of this rank's last word [s]
+    double looked; ///< clock of the last look at the others [s]
 };
 
 /// All have just been heard of. The job ends where there is no memory.

@@ -376,6 +376,7 @@ static enum status verify_and_write(struct run *run) {
     const bool accepted = run->standing.converged || run->standing.used_up;
     struct fit_result result = result_so_far(run, accepted ? STATUS_OK : STATUS_UNCONVERGED);
     result.verification = &verification;
+    CHECK(mf_fit_tasks_write(&run->folder, mf_progress_seconds(&run->progress)));
     CHECK(mf_fit_output_observables(&run->fit, &result, &run->folder));
     CHECK(mf_fit_output_summary(&run->fit, &run->unknowns, &result, &run->folder));
     mf_run_folder_draw(&run->folder);

@@ -22,9 +22,8 @@ enum status mf_fit_tasks_write(const struct run_folder *folder, double seconds) 
         const struct parallel_size *size = &times.size[k];
         tasks[k + 1] = (double)size->tasks;
         rounds[k + 1] = size->rounds;
-        mean[k + 1] = size->seconds.mean;
-        spread[k + 1] =
-            size->seconds.count > 0 ? sqrt(size->seconds.squares / size->seconds.count) : 0;
+        mean[k + 1] = size->done > 0 ? size->seconds / size->done : 0;
+        spread[k + 1] = size->done > 0 ? mean[k + 1] * sqrt(size->squares / size->done) : 0;
         waited[k + 1] = size->waited;
         waited[0] = fmax(0, waited[0] - size->waited);
     }
@@ -113,15 +112,17 @@ static enum status check(const struct data_table *table, const char *path) {
 /// What more workers cannot make shorter.
 static const char *limit(const struct data_table *table, double seconds, double of_tasks,
                          int workers) {
-    double few = 0;
+    double few = 0, all = 0;
     for (size_t k = 0; k < table->rows; k++) {
         const double *row = table->values + k * table->columns;
-        few += row[0] < 2 * workers ? row[1] * row[0] * row[2] : 0;
+        all += row[0] * row[1] * row[2];
+        few += row[0] < 2 * workers ? row[0] * row[1] * row[2] : 0;
     }
+    if (workers == 1)
+        return "one worker";
     if (seconds > 2 * of_tasks)
         return "what every process does alike";
-    return few > 0.25 * of_tasks * workers ? "tasks are too few for a share each"
-                                           : "tasks that end last";
+    return 2 * few > all ? "tasks are too few for two each" : "tasks that end last";
 }
 
 static void print(FILE *out, const struct data_table *table, int ranks, int threads) {

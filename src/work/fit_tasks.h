@@ -7,8 +7,8 @@
 #include <stdio.h>
 
 /// Write tasks.tsv: for each number of tasks that were done together how often that was, what a
-/// task took, how much that scatters, and how long all were waited for, since this process began;
-/// in the first row, of no tasks, all else, which every rank does itself.
+/// task took, how much that scatters within a round, and how long all were waited for, since this
+/// process began; in the first row, of no tasks, all else, which every rank does itself.
 /// @param[in] seconds  since the process began [s]
 enum status mf_fit_tasks_write(const struct run_folder *folder, double seconds) MUST_USE;
 
