@@ -97,7 +97,8 @@ etd='"etd": {"file": "twin/etd.tsv", "error_file": "twin/etd_error.tsv"}'
 moves='"diffusion": {"fitted": "no", "value": 0.3, "error": 0.1}, "vacf": {"fitted": "no", "file": "twin/motion.tsv"}'
 potential='"potential": {"coefficients": 5, "minimum": -2, "maximum": 15}'
 omega='"omega": {"coefficients": 4, "minimum": 0, "maximum": 8, "cutoff": 1}'
-sampled='"replicas": 5, "equilibration": 20, "samples": 20, "every": 1, "iterations": 4'
+# Long enough that samples are doubled.
+sampled='"replicas": 5, "equilibration": 100, "samples": 8, "every": 1, "iterations": 12'
 simulated='"equilibration": 40, "samples": 10, "every": 10, "temperature_tolerance": 0.5'
 run imc "$rdf" '"potential": {}' "\"name\": \"imc\", $sampled"
 run imc-dynamics "$rdf" '"potential": {}' "\"name\": \"imc\", \"sampler\": \"dynamics\", $sampled"
