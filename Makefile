@@ -7,6 +7,8 @@
 # make test           builds and passes all tests: check, then check-physics
 # make check          unit, reference and command-line tests (about a minute)
 # make check-physics  laws and exact limits (minutes)
+# make MPI=1 …        the program shares a fit among the processes of an MPI job
+# make check-mpi      such fits have the bits of a fit in one process
 # make check-live     the live view, also in a browser (minutes)
 # make check-stress   time steps, friction, tables, sizes and lengths beyond the ordinary (minutes)
 # make asan           the whole test suite under address and undefined-behaviour sanitizers
@@ -48,7 +50,14 @@ HAS_LIVE    := $(if $(wildcard $(CHART)/chart.min.js),$(shell pkg-config --exist
 LIVE_WITHOUT = $(if $(HAS_LIVE),src/live/live_server_none.c,src/live/live_server.c src/live/live_assets.c)
 LIVE_LIBS   := $(if $(HAS_LIVE),$(shell pkg-config --libs libmicrohttpd))
 
-SOURCES  = $(filter-out $(LIVE_WITHOUT) $(if $(HDF5),src/trajectory/format_h5md_without.c,$(H5MD)),$(wildcard src/*/*.c))
+# The program has MPI if it is wanted, the libraries never do (Debian: libopenmpi-dev).
+MPICC     ?= mpicc
+MPI_CFLAGS = $(shell $(MPICC) --showme:compile 2>/dev/null || $(MPICC) -compile_info | cut -d' ' -f2-)
+MPI_LIBS   = $(shell $(MPICC) --showme:link 2>/dev/null || $(MPICC) -link_info | cut -d' ' -f2-)
+RANKS      = $(BUILD)/src/base/ranks.o
+$(RANKS): override CFLAGS += $(MPI_CFLAGS)
+
+SOURCES  = $(filter-out src/base/ranks.c $(LIVE_WITHOUT) $(if $(HDF5),src/trajectory/format_h5md_without.c,$(H5MD)),$(wildcard src/*/*.c))
 OBJECTS  = $(SOURCES:%.c=$(BUILD)/%.o)
 $(H5MD:%.c=$(BUILD)/%.o) $(BUILD)/tests/unit/trajectory/test_trajectory_h5md.o: \
     override CFLAGS += $(if $(HDF5),$(shell pkg-config --cflags $(HDF5)))
@@ -85,9 +94,14 @@ $(SHARED_LIBRARY): $(SHARED_OBJECTS) src/library/exports.map
 	@ln -sf $(@F) $(BUILD)/$(SONAME)
 	@ln -sf $(SONAME) $(BUILD)/libmesofit.so
 
-$(PROGRAM): $(filter $(BUILD)/src/app/%,$(OBJECTS)) $(LIVE) $(LIBRARY)
+OF_PROGRAM = $(filter $(BUILD)/src/app/%,$(OBJECTS)) $(LIVE) $(LIBRARY)
+WITH_MPI   = $(BUILD)/mpi/mesofit
+$(PROGRAM): $(if $(MPI),$(RANKS)) $(OF_PROGRAM)
+$(WITH_MPI): $(RANKS) $(OF_PROGRAM)
+$(PROGRAM) $(WITH_MPI):
+	@mkdir -p $(@D)
 	@echo "ld $@"
-	$(AT)$(CC) $(LDFLAGS) -o $@ $^ $(LIVE_LIBS) $(LDLIBS)
+	$(AT)$(CC) $(LDFLAGS) -o $@ $^ $(LIVE_LIBS) $(if $(filter $(RANKS),$^),$(MPI_LIBS)) $(LDLIBS)
 
 # The page's files, which the assembler takes from there.
 $(BUILD)/src/live/live_assets.o: CFLAGS += -Wa,-Ishare/live,-I$(CHART)
@@ -143,6 +157,17 @@ check-physics: all $(PHYSICS)
 .PHONY: check-live
 check-live: all
 	MESOFIT=$(abspath $(PROGRAM)) tests/tools/check_live.sh
+
+# Fits among the processes of an MPI job, where there is one (Debian: libopenmpi-dev, openmpi-bin).
+.PHONY: check-mpi
+KILLS ?= 3
+SHARE = $(BUILD)/mpi/share
+$(SHARE): $(BUILD)/tests/mpi/share.o $(RANKS) $(LIBRARY)
+	@mkdir -p $(@D)
+	@echo "ld $@"
+	$(AT)$(CC) $(LDFLAGS) -o $@ $^ $(MPI_LIBS) $(LDLIBS)
+check-mpi: all $(if $(shell command -v $(MPICC)),$(WITH_MPI) $(SHARE))
+	tests/tools/check_mpi.sh $(PROGRAM) $(WITH_MPI) $(SHARE) $(KILLS)
 
 # Kills a process at one of its renames: see tests/stress/test_kill.c.
 KILL_HOOK = $(BUILD)/tests/stress/hooks/kill_at.so
@@ -238,5 +263,5 @@ bench: $(PROGRAM)
 clean:
 	rm -rf build mesofit
 
--include $(OBJECTS:.o=.d) $(TESTS:=.d) $(STRESS:=.d) $(SHARED:.o=.d) \
+-include $(OBJECTS:.o=.d) $(RANKS:.o=.d) $(TESTS:=.d) $(STRESS:=.d) $(SHARED:.o=.d) $(BUILD)/tests/mpi/share.d \
          $(BUILD)/tests/fuzz/fuzz_readers.d

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/cmd_live.h"
 #include "app/command.h"
+#include "base/interrupt.h"
 #include "base/memory.h"
+#include "base/ranks.h"
 #include "io/json_fill.h"
 #include "io/output.h"
 #include "io/text_file.h"
@@ -12,10 +14,14 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { EXPLAIN, TARGET, DENSITY, TEMPERATURE, LIVE };
+enum { EXPLAIN, RANKS, TARGET, DENSITY, TEMPERATURE, LIVE };
+
+/// Of --explain.
+enum { MOST_RANKS = 100000 };
 
 static const struct command_option options[] = {
     [EXPLAIN] = {"--explain", NULL, "print what a step will pay for and why; run nothing"},
+    [RANKS] = {"--ranks", "N", "with --explain: how much faster N processes of an MPI job will be"},
     [TARGET] = {"--target", "DIR", "fit DIR/target.json, or with the next two DIR/rdf.tsv alone"},
     [DENSITY] = {"--density", "NUMBER", "beads in a unit of volume, which target.json lacks"},
     [TEMPERATURE] = {"--temperature", "NUMBER", "likewise; without target.json 1"},
@@ -23,11 +29,25 @@ static const struct command_option options[] = {
     {NULL, NULL, NULL},
 };
 
-static enum status run_file(const char *file, const struct command_line *line) {
-    if (line->own[EXPLAIN])
-        return mf_fit_explain(file, &line->options);
-    return line->own[LIVE] ? mf_cmd_live_run(file, &line->options, line->own[LIVE])
-                           : mf_fit_run(file, &line->options);
+static void warn(const char *line) {
+    fprintf(stderr, "mesofit: warning: %s\n", line);
+}
+
+/// The fit, with the other processes of an MPI job if there are some.
+static enum status run_shared(const char *file, const struct command_line *line) {
+    struct run_options own = line->options;
+    TRY(mf_ranks_begin(warn));
+    if (mf_ranks_count() > 1)
+        mf_interrupt_wait_for_all();
+    own.quiet = own.quiet || !ranks_lead();
+    const enum status status =
+        line->own[LIVE] && mf_ranks_count() > 1
+            ? mf_status_fail(STATUS_BAD_INPUT, "--live is for a fit in one process; mesofit watch "
+                                               "looks at the folder of any")
+        : line->own[LIVE] ? mf_cmd_live_run(file, &own, line->own[LIVE])
+                          : mf_fit_run(file, &own);
+    mf_ranks_end();
+    return status;
 }
 
 static enum status parse_positive(const char *option, const char *text, double *value) {
@@ -36,6 +56,20 @@ static enum status parse_positive(const char *option, const char *text, double *
     if (end == text || *end != '\0' || !(*value > 0) || isinf(*value))
         return mf_status_fail(STATUS_BAD_INPUT, "%s takes a number above 0", option);
     return STATUS_OK;
+}
+
+static enum status run_file(const char *file, const struct command_line *line) {
+    double ranks = 0;
+    if (line->own[RANKS] && !line->own[EXPLAIN])
+        return mf_status_fail(STATUS_BAD_INPUT, "--ranks is for --explain; mpirun -np says how "
+                                                "many processes a fit has");
+    if (line->own[RANKS])
+        TRY(parse_positive("--ranks", line->own[RANKS], &ranks));
+    if (ranks != floor(ranks) || ranks > MOST_RANKS)
+        return mf_status_fail(STATUS_BAD_INPUT, "--ranks takes a whole number from 1 to %d",
+                              MOST_RANKS);
+    return line->own[EXPLAIN] ? mf_fit_explain(file, &line->options, (int)ranks)
+                              : run_shared(file, line);
 }
 
 /// A run file that nobody wrote: g(r) of the folder, density and temperature.

@@ -30,8 +30,9 @@ const struct command_option mf_command_common[] = {
 
 const char mf_command_purpose[] = "fit the pair interactions of a coarse liquid to measurements";
 
-const char mf_command_exit_codes[] = "0 done; 1 not converged or unstable; 2 bad input, files or "
-                                     "options; 3 out of memory; 130 interrupted";
+const char mf_command_exit_codes[] =
+    "0 done, or stopped by SIGTERM or SIGUSR1; 1 not converged or unstable; 2 bad input, files or "
+    "options; 3 out of memory; 130 interrupted";
 
 const char *mf_command_option_text(const struct command_option *option,
                                    char text[COMMAND_OPTION_SIZE]) {

@@ -4,6 +4,7 @@
 #include "base/interrupt.h"
 #include "base/memory.h"
 #include "base/nearest.h"
+#include "base/ranks.h"
 #include "base/fields.h"
 #include "mesofit.h"
 #include "report/program.h"
@@ -30,7 +31,7 @@ static int exit_code(enum status status) {
     case STATUS_NO_MEMORY:
         return 3;
     case STATUS_INTERRUPTED:
-        return 130;
+        return mf_interrupt_was_planned() ? 0 : 130;
     }
     return 1;
 }
@@ -232,6 +233,8 @@ int main(int count, char **words) {
     install_handlers();
     mf_memory_keep();
     const enum status status = finish_output(act(count, words));
+    if (!ranks_lead())
+        return 0; // rank 0 speaks for all
     if (status != STATUS_OK)
         fprintf(stderr, "mesofit: %s\n", mf_status_message());
     return exit_code(status);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/comoments.h"
 
-#include "base/memory.h"
-
 #include <string.h>
 
 enum status mf_comoments_init(struct comoments *moments, size_t size) {
@@ -28,6 +26,14 @@ void mf_comoments_reset(struct comoments *moments) {
     moments->count = 0;
     memset(moments->mean, 0, moments->size * sizeof *moments->mean);
     memset(moments->comoment, 0, moments->size * moments->size * sizeof *moments->comoment);
+}
+
+size_t mf_comoments_spans(struct comoments *moments, struct memory_span *spans) {
+    const size_t n = moments->size;
+    spans[0] = (struct memory_span){&moments->count, sizeof moments->count};
+    spans[1] = (struct memory_span){moments->mean, n * sizeof *moments->mean};
+    spans[2] = (struct memory_span){moments->comoment, n * n * sizeof *moments->comoment};
+    return 3;
 }
 
 /// comoment += weight · d dᵀ with d in `scratch`.

@@ -2,7 +2,7 @@
 /// @file Covariance matrices, updated and merged without cancellation.
 #pragma once
 
-#include "base/status.h"
+#include "base/memory.h"
 
 #include <stddef.h>
 
@@ -19,6 +19,9 @@ struct comoments {
 
 enum status mf_comoments_init(struct comoments *moments, size_t size) MUST_USE;
 void mf_comoments_clear(struct comoments *moments);
+
+/// All that it has seen; returns the number of spans, 3.
+size_t mf_comoments_spans(struct comoments *moments, struct memory_span *spans);
 
 /// Forget all samples.
 void mf_comoments_reset(struct comoments *moments);

@@ -4,12 +4,13 @@
 #include <signal.h>
 #include <stddef.h>
 
-static volatile sig_atomic_t requested;
-static atomic_bool wished;
+static volatile sig_atomic_t received; ///< the first signal; 0: none
+static atomic_bool wished, together;
+static atomic_int agreed; ///< the signal by which all stop; 0: none
 
 static void remember(int signal_number) {
-    (void)signal_number;
-    requested = 1;
+    if (received == 0)
+        received = signal_number;
 }
 
 /// What the caller of the program set aside, as nohup does with SIGHUP, stays so.
@@ -26,6 +27,7 @@ void mf_interrupt_install(void) {
         bool once, may_be_ignored;
     } signals[] = {{SIGINT, true, false},
                    {SIGTERM, true, false},
+                   {SIGUSR1, false, true},
                    {SIGHUP, false, true},
                    {SIGPIPE, false, true}};
     for (size_t k = 0; k < sizeof signals / sizeof *signals; k++) {
@@ -41,8 +43,33 @@ void mf_interrupt_wish(bool stop) {
     atomic_store(&wished, stop);
 }
 
+int mf_interrupt_signal(void) {
+    if (received != 0)
+        return received;
+    return atomic_load_explicit(&wished, memory_order_relaxed) ? SIGINT : 0;
+}
+
+void mf_interrupt_wait_for_all(void) {
+    atomic_store(&together, true);
+}
+
+void mf_interrupt_agree(int signal_number) {
+    atomic_store(&agreed, signal_number);
+}
+
+/// The signal by which this process is to stop.
+static int reason(void) {
+    return atomic_load_explicit(&together, memory_order_relaxed)
+               ? atomic_load_explicit(&agreed, memory_order_relaxed)
+               : mf_interrupt_signal();
+}
+
 bool mf_interrupt_requested(void) {
-    return requested != 0 || atomic_load_explicit(&wished, memory_order_relaxed);
+    return reason() != 0;
+}
+
+bool mf_interrupt_was_planned(void) {
+    return reason() == SIGTERM || reason() == SIGUSR1;
 }
 
 bool mf_interrupt_wanted(const atomic_bool *cancel) {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file The wish to stop, seen by every long loop: the user's (Ctrl-C), the machine's (SIGTERM),
-/// or since nobody listens any more (SIGHUP, SIGPIPE).
+/// @file The wish to stop, seen by every long loop: the user's (Ctrl-C), the machine's (SIGTERM,
+/// SIGUSR1), or since nobody listens any more (SIGHUP, SIGPIPE).
 #pragma once
 
 #include <stdatomic.h>
 #include <stdbool.h>
 
-/// Catch SIGINT and SIGTERM from now on, a second one of which ends the program at once, and SIGHUP
-/// and SIGPIPE unless they are ignored. Tested: test_signals.
+/// Catch SIGINT and SIGTERM from now on, a second one of which ends the program at once, and
+/// SIGHUP, SIGPIPE and SIGUSR1 unless they are ignored. Tested: test_signals.
 void mf_interrupt_install(void);
 
 /// Ask to stop as a user does with Ctrl-C, or take that back; what a signal has asked for stays.
@@ -19,3 +19,17 @@ bool mf_interrupt_requested(void);
 
 /// The same, or once who owns the work has set `cancel`, unless that is NULL.
 bool mf_interrupt_wanted(const atomic_bool *cancel);
+
+/// Whether it was the machine that asked, as a batch system does at the end of the time that a job
+/// has: this is no failure.
+bool mf_interrupt_was_planned(void);
+
+/// @name Several processes that must stop at the same place
+/// From now on mf_interrupt_requested waits for mf_interrupt_agree.
+void mf_interrupt_wait_for_all(void);
+
+/// The signal that has asked this process to stop (SIGINT for a wish); 0: none.
+int mf_interrupt_signal(void);
+
+/// All stop, as this signal wants it; 0: not yet.
+void mf_interrupt_agree(int signal_number);

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/parallel.h"
 
+#include "base/clock.h"
 #include "base/memory.h"
-
-#include <stdbool.h>
-#include <stdio.h>
+#include "base/parallel_ranks.h"
+#include "base/parallel_times.h"
+#include "base/ranks.h"
 
 /// Where part `number` of `parts` begins, at a multiple of 16: parts share no cache line.
 static size_t part_begin(size_t count, int number, int parts) {
@@ -38,58 +39,52 @@ double mf_parallel_sum(size_t count, int threads,
     return total;
 }
 
-/// Bytes of the longest message of base/status.c.
-enum { MESSAGE_SIZE = 8192 };
-
-/// The failure that counts so far, with its message, which else belongs to a thread.
-struct failure {
-    enum status status;
-    size_t task; ///< `count` while there is none
-    char message[MESSAGE_SIZE];
-};
-
-static bool comes_before(const struct failure *failure, enum status status, size_t task) {
-    const bool interrupted = status == STATUS_INTERRUPTED,
-               before = failure->status == STATUS_INTERRUPTED;
-    return interrupted != before ? interrupted : task < failure->task;
-}
-
-static bool may_begin(const struct failure *failure, size_t task) {
+static bool may_begin(const struct parallel_failure *failure, size_t task) {
     bool may;
 #pragma omp critical
-    may = failure->status != STATUS_INTERRUPTED && task < failure->task;
+    may = parallel_failure_allows(failure, task);
     return may;
 }
 
 /// Run a task, and take its result or keep its failure.
-static void try_one(const struct parallel_tasks *tasks, size_t task, struct failure *failure) {
+static void try_one(const struct parallel_tasks *tasks, size_t task,
+                    struct parallel_failure *failure) {
     void *result = NULL;
     enum status status = STATUS_OK;
     if (tasks->result_size > 0 && (result = mf_memory_zeroed(1, tasks->result_size)) == NULL)
         status = STATUS_NO_MEMORY;
+    const double begin = clock_thread_seconds();
     if (status == STATUS_OK)
         status = tasks->run(tasks->context, task, result);
+    if (tasks->spans)
+        mf_parallel_times_add(tasks->count, clock_thread_seconds() - begin);
 #pragma omp critical
     {
         if (status == STATUS_OK && tasks->take) {
             tasks->take(tasks->context, task, result);
-        } else if (status != STATUS_OK && comes_before(failure, status, task)) {
-            failure->status = status;
-            failure->task = task;
-            snprintf(failure->message, sizeof failure->message, "%s", mf_status_message());
+        } else if (status != STATUS_OK) {
+            parallel_failure_note(failure, status, task, mf_status_message());
         }
     }
     mf_memory_free(result);
 }
 
-enum status mf_parallel_try(const struct parallel_tasks *tasks) {
-    struct failure failure = {.status = STATUS_OK, .task = tasks->count};
+static enum status try_alone(const struct parallel_tasks *tasks) {
+    struct parallel_failure failure = {.status = STATUS_OK, .task = tasks->count};
     // Threads take the numbers in their order: all below one that failed have begun.
 #pragma omp parallel for schedule(dynamic)                                                         \
     num_threads(tasks->threads) if (tasks->threads > 1 && tasks->count > 1)
     for (size_t task = 0; task < tasks->count; task++)
         if (may_begin(&failure, task))
             try_one(tasks, task, &failure);
-    return failure.status == STATUS_OK ? STATUS_OK
-                                       : mf_status_fail(failure.status, "%s", failure.message);
+    return parallel_failure_status(&failure);
+}
+
+enum status mf_parallel_try(const struct parallel_tasks *tasks) {
+    const double begin = clock_seconds();
+    const enum status status =
+        tasks->spans && mf_ranks_count() > 1 ? mf_parallel_try_together(tasks) : try_alone(tasks);
+    if (tasks->spans)
+        mf_parallel_times_end(tasks->count, clock_seconds() - begin);
+    return status;
 }

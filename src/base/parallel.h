@@ -8,9 +8,11 @@
 /// main begins.
 #pragma once
 
+#include "base/memory.h"
 #include "base/status.h"
 
 #include <stddef.h>
+#include <stdint.h>
 
 /// Call `body` for stretches begin … end − 1 that make up 0 … count − 1, one a thread.
 ///
@@ -25,6 +27,8 @@ double mf_parallel_sum(size_t count, int threads,
                        double (*body)(const void *context, size_t begin, size_t end),
                        const void *context);
 
+enum { PARALLEL_MOST_SPANS = 256 };
+
 /// Independent tasks 0 … count − 1 that may fail. What a task finds is either its own part of
 /// `context`, which no other task touches, or a result of some bytes that is taken over.
 struct parallel_tasks {
@@ -37,6 +41,10 @@ struct parallel_tasks {
     void (*take)(void *context, size_t task, const void *result);
     size_t result_size;
     void *context;
+    /// List the part of `context` that a task has changed, for the ranks that did not do it, at
+    /// most PARALLEL_MOST_SPANS; returns their number. Lengths may follow from the spans before: it
+    /// is asked again after each that has arrived. NULL: every rank does all tasks itself.
+    size_t (*spans)(void *context, size_t task, struct memory_span *spans);
 };
 
 /// Do all tasks, each once.
@@ -45,5 +53,14 @@ struct parallel_tasks {
 /// thread, so that status and message are the same for any number of threads: tasks beyond one
 /// that failed do not begin, those before it are all done. INTERRUPTED comes before other failures:
 /// then no further task begins at all, and what succeeded has been taken.
-/// Fails: as the tasks; NO_MEMORY. Tested: test_parallel.
+///
+/// Ranks (base/ranks.h) share the tasks if these have `spans`: each takes the next one when a
+/// thread of it is free, and all have all results, the same status and message at the end. Rank 0
+/// takes results as they come, the others in the order of the tasks. Fails: as the tasks;
+/// NO_MEMORY. Tested: test_parallel, check_mpi.sh.
 enum status mf_parallel_try(const struct parallel_tasks *tasks) MUST_USE;
+
+/// Go on together: all ranks return the same status and message, rank 0's if it failed, else that
+/// of the lowest rank that did, with its name. Each rank calls it between the same tasks.
+/// @param[in] digest  of what all ranks must have computed alike; BAD_INPUT if one has not
+enum status mf_parallel_agree(enum status status, uint64_t digest) MUST_USE;

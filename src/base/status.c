@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { MESSAGE_SIZE = 8192 };
+enum { MESSAGE_SIZE = STATUS_MESSAGE_SIZE };
 
 static _Thread_local char message[MESSAGE_SIZE];
 

@@ -17,6 +17,9 @@ enum status {
     STATUS_INTERRUPTED, ///< the user asked to stop
 };
 
+/// Bytes of the longest message, with its end.
+enum { STATUS_MESSAGE_SIZE = 8192 };
+
 #define MUST_USE __attribute__((warn_unused_result))
 
 /// Record a message for the calling thread and return `status`.

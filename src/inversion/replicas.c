@@ -66,11 +66,14 @@ static enum status run_one(struct replica *replica, size_t bins, const struct re
     return fill_blocks(replica, bins, 0, REPLICAS_BLOCKS, plan);
 }
 
-/// Two blocks become one, half as many; then as many samples again.
+/// Two blocks become one, half as many; then as many samples again. The sampler begins as after a
+/// restart, since another rank may have taken the samples before.
 static enum status double_one(struct replica *replica, size_t bins,
                               const struct replicas_plan *plan) {
     enum { HALF = REPLICAS_BLOCKS / 2 };
     double *block = replica->block;
+    TRY(mf_sampler_begin(&replica->sampler));
+    TRY(mf_sampler_equilibrate(&replica->sampler, 0));
     for (size_t b = 0; b < HALF; b++)
         for (size_t a = 0; a < bins; a++)
             block[b * bins + a] = 0.5 * (block[2 * b * bins + a] + block[(2 * b + 1) * bins + a]);
@@ -92,6 +95,17 @@ static enum status run_member(void *context, size_t k, void *result) {
     return work->one(&work->replicas->member[k], work->replicas->bins, work->plan);
 }
 
+/// What the samples of a replica leave.
+static size_t list_sampled(void *context, size_t k, struct memory_span *span) {
+    const struct work *work = context;
+    struct replica *replica = &work->replicas->member[k];
+    const size_t block = REPLICAS_BLOCKS * work->replicas->bins * sizeof *replica->block;
+    size_t n = 0;
+    span[n++] = (struct memory_span){replica->block, block};
+    n += mf_comoments_spans(&replica->counts, span + n);
+    return n + mf_sampler_spans(&replica->sampler, span + n);
+}
+
 static void tell_one(void *context, size_t k, const void *result) {
     struct work *work = context;
     (void)k, (void)result;
@@ -111,7 +125,8 @@ run_all(struct replicas *replicas, const struct replicas_plan *plan, int threads
                                                  .threads = threads,
                                                  .run = run_member,
                                                  .take = tell_one,
-                                                 .context = &work}));
+                                                 .context = &work,
+                                                 .spans = list_sampled}));
     mf_comoments_reset(&replicas->counts);
     for (size_t k = 0; k < replicas->count; k++)
         mf_comoments_merge(&replicas->counts, &replicas->member[k].counts);

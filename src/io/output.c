@@ -3,6 +3,8 @@
 
 #include "io/output.h"
 
+#include "base/ranks.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <stdbool.h>
@@ -42,6 +44,11 @@ enum status mf_output_open(struct output *output, const char *path) {
                               OUTPUT_PATH_SIZE - 1);
     snprintf(output->temporary, sizeof output->temporary, "%s.%ld" OUTPUT_PARTIAL, output->path,
              (long)getpid());
+    if (!ranks_lead()) {
+        output->stream = fopen("/dev/null", "wb");
+        return output->stream ? STATUS_OK
+                              : mf_status_fail(STATUS_IO, "/dev/null: %s", strerror(errno));
+    }
     // A file of our own: never one that is there, nor one that a link leads to.
     unlink(output->temporary);
     output->file =
@@ -91,6 +98,10 @@ static void sync_folder(const char *path) {
 }
 
 enum status mf_output_commit(struct output *output) {
+    if (!ranks_lead()) {
+        mf_output_abandon(output);
+        return STATUS_OK;
+    }
     int error = search_stream(output);
     if (error == 0 && rename(output->temporary, output->path) != 0)
         error = errno;
@@ -107,7 +118,8 @@ void mf_output_abandon(struct output *output) {
         return;
     fclose(output->stream);
     output->stream = NULL;
-    remove(output->temporary);
+    if (ranks_lead())
+        remove(output->temporary);
 }
 
 static bool is_folder(const char *path) {
@@ -130,6 +142,8 @@ static enum status make_one_folder(const char *folder, const char *path) {
 
 enum status mf_output_make_folder(const char *path) {
     char folder[OUTPUT_PATH_SIZE];
+    if (!ranks_lead())
+        return STATUS_OK;
     const int length = snprintf(folder, sizeof folder, "%s", path);
     if (length <= 0 || (size_t)length >= sizeof folder)
         return mf_status_fail(STATUS_IO, "cannot make folder \"%.60s\": its length is %d bytes",

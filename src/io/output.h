@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file Files that appear whole or not at all.
+/// @file Files that appear whole or not at all. Of several ranks (base/ranks.h) rank 0 writes; what
+/// the others write goes nowhere.
 #pragma once
 
 #include "base/status.h"

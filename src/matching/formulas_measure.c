@@ -72,6 +72,14 @@ done:
     return status;
 }
 
+static size_t list_measured(void *context, size_t task, struct memory_span *span) {
+    const struct work *work = context;
+    const size_t features = work->state->features;
+    span[0] = (struct memory_span){&work->result[task], sizeof *work->result};
+    span[1] = (struct memory_span){work->features + task * features, features * sizeof(double)};
+    return 2;
+}
+
 static void tell_one(void *context, size_t task, const void *unused) {
     struct work *work = context;
     const struct formulas_state *state = work->state;
@@ -197,7 +205,8 @@ static enum status measure(struct formulas_state *state, const struct inverse_li
                                                    .threads = state->problem->threads,
                                                    .run = measure_one,
                                                    .take = tell_one,
-                                                   .context = work}));
+                                                   .context = work,
+                                                   .spans = list_measured}));
     for (size_t k = 0; k < work->candidates; k++)
         take_mean(work, k);
 done:

@@ -272,6 +272,15 @@ static void take_one(void *context, size_t task, const void *memory) {
     report(work->population, work->round->count, work->listener);
 }
 
+/// Besides its result a simulation leaves its candidate's features.
+static size_t list_features(void *context, size_t task, struct memory_span *span) {
+    const struct work *work = context;
+    const size_t features = work->population->surrogate.features;
+    *span = (struct memory_span){work->population->features + work->index[task] * features,
+                                 features * sizeof *work->population->features};
+    return 1;
+}
+
 /// Threads for the simulation of a candidate alone. Particles too few to share are done before the
 /// threads have met.
 static int threads_inside(const struct inverse_problem *problem) {
@@ -329,7 +338,8 @@ enum status mf_population_measure(struct population *population,
         .take = take_one,
         .result_size =
             sizeof(struct measured) + mf_population_coordinates(population) * sizeof(double),
-        .context = &work}));
+        .context = &work,
+        .spans = list_features}));
     for (size_t k = 0; k < round->count; k++) {
         add(&population->survey, population->errors[k]);
         mf_population_remember(

@@ -59,6 +59,17 @@ static enum status measure_one(void *context, size_t k, void *end) {
     return mf_population_simulate(population, fresh->variables, &task, &fresh->results[k]);
 }
 
+/// What a measurement has left.
+static size_t list_measured(void *context, size_t k, struct memory_span *span) {
+    const struct fresh *fresh = context;
+    const size_t features = fresh->population->surrogate.features;
+    span[0] = (struct memory_span){&fresh->results[k], sizeof *fresh->results};
+    span[1] = (struct memory_span){fresh->features + k * features, features * sizeof(double)};
+    return 2 + mf_measurement_values_spans(
+                   &fresh->observed[k],
+                   &fresh->population->parametrisation->unknowns.problem->targets, span + 2);
+}
+
 static struct target_distance mean_distance(const struct evaluate_result *results, size_t count,
                                             int kind) {
     struct target_distance mean = {.count = results[0].distance[kind].count};
@@ -99,7 +110,8 @@ enum status mf_population_check(struct population *population, const double *var
         .threads = population->parametrisation->unknowns.problem->threads,
         .run = measure_one,
         .result_size = mf_population_coordinates(population) * sizeof(double),
-        .context = &fresh}));
+        .context = &fresh,
+        .spans = list_measured}));
     population->totals.remeasured++;
     for (size_t k = 0; k < count; k++) {
         const struct evaluate_result *result = &fresh.results[k];

@@ -219,6 +219,12 @@ done:
     return status;
 }
 
+static size_t list_island(void *context, size_t task, struct memory_span *span) {
+    const struct programming *programming = context;
+    *span = (struct memory_span){&programming->island[task], sizeof *programming->island};
+    return 1;
+}
+
 // All islands -------------------------------------------------------------------------------------
 
 /// The best of each length over all islands, and now and then to all of them.
@@ -241,7 +247,8 @@ enum status mf_programming_round(struct programming *programming) {
     TRY(mf_parallel_try(&(struct parallel_tasks){.count = (size_t)programming->parameters.islands,
                                                  .threads = programming->threads,
                                                  .run = live,
-                                                 .context = programming}));
+                                                 .context = programming,
+                                                 .spans = list_island}));
     programming->round++;
     mix(programming);
     return STATUS_OK;
@@ -276,7 +283,8 @@ enum status mf_programming_reconsider(struct programming *programming) {
     TRY(mf_parallel_try(&(struct parallel_tasks){.count = (size_t)programming->parameters.islands,
                                                  .threads = programming->threads,
                                                  .run = reconsider,
-                                                 .context = programming}));
+                                                 .context = programming,
+                                                 .spans = list_island}));
     for (int length = 0; length <= PROGRAMMING_MOST_NODES; length++)
         programming->best[length].error = INFINITY;
     mix(programming);

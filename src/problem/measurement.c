@@ -144,6 +144,19 @@ void mf_measurement_clear(struct measurement *measurement) {
     mf_measurement_list_clear(measurement->use);
 }
 
+size_t mf_measurement_spans(struct measurement *measurement, struct memory_span *spans) {
+    struct simulation *simulation = &measurement->simulation;
+    size_t n = 0;
+    spans[n++] = (struct memory_span){&simulation->step, sizeof simulation->step};
+    n += mf_particles_spans(&simulation->particles, spans + n);
+    for (const struct observable_use *use = measurement->use; use->observable; use++) {
+        if (use->observable->make_room && use->observable->make_room(use->state) != STATUS_OK)
+            return 0;
+        n += use->observable->spans(use->state, spans + n);
+    }
+    return n;
+}
+
 const void *mf_measurement_state(const struct measurement *measurement,
                                  const struct observable *observable) {
     for (const struct observable_use *use = measurement->use; use->observable; use++)
@@ -173,6 +186,19 @@ void mf_measurement_values_clear(struct observed *observed) {
         mf_memory_free(observed->error[kind]);
     }
     *observed = (struct observed){0};
+}
+
+size_t mf_measurement_values_spans(const struct observed *observed, const struct targets *targets,
+                                   struct memory_span *spans) {
+    size_t n = 0;
+    for (int kind = 0; kind < TARGETS; kind++) {
+        const size_t bytes = targets->target[kind].count * sizeof(double);
+        if (!targets_ask(targets, kind))
+            continue;
+        spans[n++] = (struct memory_span){observed->value[kind], bytes};
+        spans[n++] = (struct memory_span){observed->error[kind], bytes};
+    }
+    return n;
 }
 
 static void clear_values(struct observed *observed, const struct targets *targets) {

@@ -45,16 +45,24 @@ enum status mf_measurement_init(struct measurement *measurement,
                                 const struct measurement_setup *setup) MUST_USE;
 void mf_measurement_clear(struct measurement *measurement);
 
+/// What the observables have seen, and where the particles are: all of a measurement that results
+/// need, but for the simulation's next step. Room is made for it; 0 if there is no memory.
+/// @return the number of spans
+size_t mf_measurement_spans(struct measurement *measurement, struct memory_span *spans);
+
 /// State of an observable; NULL if it is not measured.
 const void *mf_measurement_state(const struct measurement *measurement,
                                  const struct observable *observable);
 
-/// Values and errors of all targets, one behind the other: shape [targets_values].
+/// Values and errors of all targets, one behind the other: shape [targets_values]. Their spans are
+/// at most 2 × TARGETS.
 struct observed {
     double *value[TARGETS], *error[TARGETS]; ///< shape [target.count], NaN: not measured
 };
 enum status mf_measurement_values_init(struct observed *observed,
                                        const struct targets *targets) MUST_USE;
+size_t mf_measurement_values_spans(const struct observed *observed, const struct targets *targets,
+                                   struct memory_span *spans);
 void mf_measurement_values_clear(struct observed *observed);
 
 /// Results of replicas together. Fails: NO_MEMORY.

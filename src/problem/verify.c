@@ -38,11 +38,9 @@ struct work {
     struct inverse_progress progress;
 };
 
-static enum status run_replica(void *context, size_t number, void *result) {
+static enum status begin_replica(void *context, size_t number, void *result) {
     const struct work *work = context;
     const struct verify_parameters *parameters = work->parameters;
-    struct measurement *replica = &work->replicas[number];
-    double temperature;
     (void)result;
     const struct measurement_setup setup = {
         .targets = &work->problem->compared,
@@ -53,7 +51,15 @@ static enum status run_replica(void *context, size_t number, void *result) {
         .thermodynamics = true,
         .threads = 1,
         .seed = mf_rng_child_seed(work->problem->seed, RNG_VERIFICATION, (uint32_t)number, 0)};
-    TRY(mf_measurement_init(replica, work->problem, &setup));
+    return mf_measurement_init(&work->replicas[number], work->problem, &setup);
+}
+
+static enum status run_replica(void *context, size_t number, void *result) {
+    const struct work *work = context;
+    const struct verify_parameters *parameters = work->parameters;
+    struct measurement *replica = &work->replicas[number];
+    double temperature;
+    (void)result;
     TRY(mf_measure_equilibrate(&replica->simulation, &parameters->plan, &temperature, NULL));
     return mf_measure_sample(&replica->simulation, &parameters->plan, replica->use, NULL);
 }
@@ -65,16 +71,23 @@ static void tell_one(void *context, size_t number, const void *result) {
     work->listener->tell(work->listener->context, &work->progress);
 }
 
-/// All replicas in parallel.
+static size_t list_measured(void *context, size_t number, struct memory_span *spans) {
+    return mf_measurement_spans(&((const struct work *)context)->replicas[number], spans);
+}
+
+/// All replicas in parallel. Every rank begins them all, to have room for what others find.
 static enum status run_replicas(struct work *work) {
     const size_t count = (size_t)work->parameters->replicas;
     work->progress =
         (struct inverse_progress){.total = count, .best = NAN, .least = NAN, .mean = NAN};
+    TRY(mf_parallel_try(&(struct parallel_tasks){
+        .count = count, .threads = work->problem->threads, .run = begin_replica, .context = work}));
     return mf_parallel_try(&(struct parallel_tasks){.count = count,
                                                     .threads = work->problem->threads,
                                                     .run = run_replica,
                                                     .take = tell_one,
-                                                    .context = work});
+                                                    .context = work,
+                                                    .spans = list_measured});
 }
 
 /// Exchange the last replica and that at `k`.

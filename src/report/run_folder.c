@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "report/run_folder.h"
 
+#include "base/ranks.h"
 #include "io/json.h"
 #include "io/snapshot.h"
 #include "observe/observable.h"
@@ -30,6 +31,7 @@ static const char *const results[] = {
     "target.json",
     "history.tsv",
     "timing.tsv",
+    "tasks.tsv",
     "rdf_now.tsv",
     "rdf_now_*-*.tsv",
     "excess_history.tsv",
@@ -283,8 +285,8 @@ static enum status lock(struct run_folder *folder) {
                           folder->path);
 }
 
-static enum status choose(struct run_folder *folder, enum run_kind kind, const char *input,
-                          const struct run_options *options) {
+enum status mf_run_folder_choose(struct run_folder *folder, enum run_kind kind, const char *input,
+                                 const struct run_options *options) {
     const char *slash = strrchr(input, '/');
     const char *const given =
         options->folder || kind != RUN_MEASUREMENT ? options->folder : "target";
@@ -301,7 +303,9 @@ static enum status choose(struct run_folder *folder, enum run_kind kind, const c
 enum status mf_run_folder_open(struct run_folder *folder, enum run_kind kind, const char *input,
                                const struct input_files *inputs,
                                const struct run_options *options) {
-    TRY(choose(folder, kind, input, options));
+    TRY(mf_run_folder_choose(folder, kind, input, options));
+    if (!ranks_lead())
+        return STATUS_OK;
     TRY(mf_output_make_folder(folder->path));
     TRY(check_writable(folder));
     TRY(lock(folder));
@@ -329,6 +333,6 @@ void mf_run_folder_file(const struct run_folder *folder, const char *name, char 
 }
 
 void mf_run_folder_draw(const struct run_folder *folder) {
-    if (mf_figures_draw(folder->path) != STATUS_OK)
+    if (ranks_lead() && mf_figures_draw(folder->path) != STATUS_OK)
         fprintf(stderr, "mesofit: warning: %s\n", mf_status_message());
 }

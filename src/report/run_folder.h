@@ -25,11 +25,17 @@ struct run_folder {
     int lock; ///< the folder, open
 };
 
+/// Set the path of the folder of a run of `input`, and nothing else. Fails: BAD_INPUT if it is too
+/// long.
+enum status mf_run_folder_choose(struct run_folder *folder, enum run_kind kind, const char *input,
+                                 const struct run_options *options) MUST_USE;
+
 /// Choose, make and lock the folder of a run of `input`, `out` beside it unless the options say
 /// where, and `target` here for a measurement, in which nothing changes before
-/// mf_run_folder_begin. Where files cannot be locked, it goes on without.
-/// Fails: BAD_INPUT if the path is too long, another process runs in the folder, a file that the
-/// run reads has the name of a result, there is nothing to resume, or there are results that only
+/// mf_run_folder_begin. Of several ranks (base/ranks.h) rank 0 alone does so. Where files cannot be
+/// locked, it goes on without. Fails: BAD_INPUT if the path is too long, another process runs in
+/// the folder, a file that the run reads has the name of a result, there is nothing to resume, or
+/// there are results that only
 /// --force may replace: those of an earlier fit, of a simulation if this is a fit, and files with
 /// such names that are of no run (there is no used.json); IO. Tested: test_folder.
 enum status mf_run_folder_open(struct run_folder *folder, enum run_kind kind, const char *input,

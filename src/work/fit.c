@@ -2,6 +2,8 @@
 #include "work/fit.h"
 
 #include "base/memory.h"
+#include "base/parallel.h"
+#include "base/ranks.h"
 #include "base/visible.h"
 #include "io/checkpoint.h"
 #include "report/fit_output.h"
@@ -9,7 +11,9 @@
 #include "report/fit_verdict.h"
 #include "report/history.h"
 #include "report/progress.h"
-#include "input/target_sanity.h"
+#include "work/fit_ranks.h"
+#include "work/fit_tasks.h"
+#include "work/fit_tell.h"
 
 #include <math.h>
 #include <string.h>
@@ -70,6 +74,8 @@ static size_t run_spans(struct run *run, struct memory_span *spans) {
 static enum status save(struct run *run) {
     struct memory_span spans[MAX_SPANS];
     char path[OUTPUT_PATH_SIZE];
+    if (!ranks_lead())
+        return STATUS_OK;
     mf_run_folder_file(&run->folder, "checkpoint.bin", path);
     run->last_checkpoint = mf_progress_seconds(&run->progress);
     run->standing.seconds = seconds(run);
@@ -125,42 +131,35 @@ done:
     return status;
 }
 
-static void say_line(void *progress, const char *line) {
-    mf_progress_say(progress, "%s", line);
-}
-
-/// What is to be fitted, so that a wrong column or unit is seen before the work.
-static enum status tell_targets(struct run *run) {
-    const struct target_etd *etd = &run->fit.files.etd;
-    const char *warning = mf_scene_warning(&run->fit.scene);
-    mf_progress_say_scale(&run->progress, &run->fit.scene.units);
-    if (warning)
-        mf_progress_say(&run->progress, "mesofit: warning: scene: %s", warning);
-    for (size_t k = 0; k < run->fit.choices.count; k++)
-        mf_progress_say(&run->progress, "chosen: %s", run->fit.choices.line[k]);
-    if (etd->left_out > 0)
-        mf_progress_say(&run->progress,
-                        "target.etd: %zu of %zu cells of the target are not known and left out",
-                        etd->left_out, (size_t)(etd->grid.times * etd->grid.bins));
-    return mf_target_sanity_tell(&run->fit.files, &run->fit.scene,
-                                 &(struct target_sanity_listener){say_line, &run->progress});
-}
-
-static enum status prepare(struct run *run, const char *file, const struct run_options *options) {
+/// Read what the run needs, and begin its state. On a cluster all ranks read the same files.
+static enum status read_and_create(struct run *run, const char *file,
+                                   const struct run_options *options) {
     TRY(mf_fit_file_read(&run->fit, file, options));
     TRY(mf_run_folder_open(&run->folder, RUN_FIT, file, &run->fit.inputs, options));
     TRY(mf_target_files_normalise(&run->fit.files, &run->fit.scene.setup.box));
     const enum status status = create(run);
-    if (status != STATUS_OK)
-        return mf_status_prefix(mf_units_mark(&run->fit.scene.units, status), "%s", file);
+    return status == STATUS_OK
+               ? STATUS_OK
+               : mf_status_prefix(mf_units_mark(&run->fit.scene.units, status), "%s", file);
+}
+
+static enum status begin_folder(struct run *run, const struct run_options *options) {
     TRY(write_used(run, options->resume));
     // Saved now, so that a run interrupted in its first iteration can be resumed like any other.
     TRY(options->resume ? load(run) : save(run));
     // What an earlier run left is touched once this one has begun.
-    TRY(mf_run_folder_begin(&run->folder, options->resume));
+    return mf_run_folder_begin(&run->folder, options->resume);
+}
+
+static enum status prepare(struct run *run, const char *file, const struct run_options *options) {
+    struct memory_span spans[MAX_SPANS];
+    TRY(mf_parallel_agree(read_and_create(run, file, options), mf_fit_ranks_digest(&run->fit)));
+    TRY(mf_parallel_agree(ranks_lead() ? begin_folder(run, options) : STATUS_OK, 0));
+    if (options->resume)
+        mf_fit_ranks_share(spans, run_spans(run, spans));
     mf_progress_tell_run(&run->progress, &(struct watcher_run){RUN_FIT, run->folder.path,
                                                                .units = &run->fit.scene.units});
-    return tell_targets(run);
+    return mf_fit_tell_targets(&run->progress, &run->fit);
 }
 
 /// Progress inside an iteration, and a checkpoint now and then.
@@ -264,6 +263,7 @@ static enum status record(struct run *run, const struct inverse_step *step) {
         const struct inverse_folder own = {own_file, &run->folder, &run->fit.scene.units};
         TRY(run->fit.method->write(run->state, &own));
     }
+    TRY(mf_fit_tasks_write(&run->folder, mf_progress_seconds(&run->progress)));
     mf_progress_tell_written(&run->progress);
     mf_progress_say(&run->progress, "iteration %u  error %.4f  noise %.4f  %.1f s", step->iteration,
                     mf_visible_number(step->error), mf_visible_number(step->noise),
@@ -280,7 +280,8 @@ static enum status iterate(struct run *run) {
         if (status == STATUS_INTERRUPTED && method->keeps_parts)
             TRY(save(run));
         TRY(status);
-        TRY(record(run, &step));
+        TRY(mf_parallel_agree(record(run, &step),
+                              mf_fit_ranks_digest_curves(&run->unknowns, run->curve)));
     }
     return STATUS_OK;
 }
@@ -376,6 +377,7 @@ static enum status verify_and_write(struct run *run) {
     const bool accepted = run->standing.converged || run->standing.used_up;
     struct fit_result result = result_so_far(run, accepted ? STATUS_OK : STATUS_UNCONVERGED);
     result.verification = &verification;
+    CHECK(mf_fit_tasks_write(&run->folder, mf_progress_seconds(&run->progress)));
     CHECK(mf_fit_output_observables(&run->fit, &result, &run->folder));
     CHECK(mf_fit_output_summary(&run->fit, &run->unknowns, &result, &run->folder));
     mf_run_folder_draw(&run->folder);
@@ -434,5 +436,5 @@ done:
         mf_run_folder_close(&run->folder);
     }
     mf_memory_free(run);
-    return status;
+    return mf_parallel_agree(status, 0);
 }

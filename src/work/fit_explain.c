@@ -5,6 +5,7 @@
 #include "input/target_sanity.h"
 #include "work/fit.h"
 #include "input/fit_file.h"
+#include "work/fit_tasks.h"
 
 static enum status print_simulation(const struct measurement_setup *measured,
                                     const struct simulation_setup *setup,
@@ -72,7 +73,7 @@ static enum status try_method(const struct fit_file *fit) {
 }
 
 /// In the order of the run (fit.c), so that it begins with the same curves.
-enum status mf_fit_explain(const char *file, const struct run_options *options) {
+enum status mf_fit_explain(const char *file, const struct run_options *options, int ranks) {
     enum status status = STATUS_OK;
     struct fit_file fit;
     struct unknowns unknowns = {0};
@@ -91,6 +92,8 @@ enum status mf_fit_explain(const char *file, const struct run_options *options) 
                                 &(struct target_sanity_listener){print_line, stdout}));
     print_numbers(&fit);
     CHECK(print_simulations(&fit, &laws));
+    if (ranks > 0)
+        CHECK(mf_fit_tasks_explain(stdout, file, options, ranks));
 done:
     mf_unknowns_laws_clear(&laws);
     mf_unknowns_clear(&unknowns);

@@ -68,7 +68,7 @@ static int spawn_limited(pid_t *process, long largest_file,
 static void init_attributes(posix_spawnattr_t *attributes) {
     sigset_t signals;
     sigemptyset(&signals);
-    static const int numbers[] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGXFSZ};
+    static const int numbers[] = {SIGINT, SIGTERM, SIGUSR1, SIGHUP, SIGPIPE, SIGXFSZ};
     for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++)
         sigaddset(&signals, numbers[k]);
     posix_spawnattr_init(attributes);

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file How long tasks take that ranks may share: by the number of tasks that are done together.
+#pragma once
+
+#include "base/statistics.h"
+
+#include <stddef.h>
+
+enum { PARALLEL_MOST_SIZES = 16 };
+
+struct parallel_times {
+    size_t sizes;
+    struct parallel_size {
+        size_t tasks; ///< of a round; beyond PARALLEL_MOST_SIZES a round counts with its nearest
+        double rounds, done;     ///< and tasks of them
+        double seconds;          ///< of processor time that they took
+        double squares;          ///< of each task's deviation from its round's mean, over that
+        double waited;           ///< [s] from begin to end of these rounds
+        struct running_mean now; ///< seconds of the round that is going on
+    } size[PARALLEL_MOST_SIZES];
+};
+
+/// What this process has seen since it began.
+struct parallel_times mf_parallel_times(void);
+
+/// @name For mf_parallel_try: one of so many tasks is done; all of them are
+void mf_parallel_times_add(size_t tasks, double seconds);
+void mf_parallel_times_end(size_t tasks, double waited);

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "work/fit_tell.h"
+
+#include "input/target_sanity.h"
+
+static void say_line(void *progress, const char *line) {
+    mf_progress_say(progress, "%s", line);
+}
+
+enum status mf_fit_tell_targets(struct progress *to, const struct fit_file *fit) {
+    const struct target_etd *etd = &fit->files.etd;
+    const char *warning = mf_scene_warning(&fit->scene);
+    mf_progress_say_scale(to, &fit->scene.units);
+    if (warning)
+        mf_progress_say(to, "mesofit: warning: scene: %s", warning);
+    for (size_t k = 0; k < fit->choices.count; k++)
+        mf_progress_say(to, "chosen: %s", fit->choices.line[k]);
+    if (etd->left_out > 0)
+        mf_progress_say(to, "target.etd: %zu of %zu cells of the target are not known and left out",
+                        etd->left_out, (size_t)(etd->grid.times * etd->grid.bins));
+    return mf_target_sanity_tell(&fit->files, &fit->scene,
+                                 &(struct target_sanity_listener){say_line, to});
+}

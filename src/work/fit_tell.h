@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file What a fit says before it begins.
+#pragma once
+
+#include "input/fit_file.h"
+#include "report/progress.h"
+
+/// Say what is to be fitted, so that a wrong column or unit is seen before the work. Fails: as
+/// mf_target_sanity_tell.
+enum status mf_fit_tell_targets(struct progress *to, const struct fit_file *fit) MUST_USE;
