@@ -92,7 +92,10 @@ struct work {
 static enum status run_member(void *context, size_t k, void *result) {
     const struct work *work = context;
     (void)result;
-    return work->one(&work->replicas->member[k], work->replicas->bins, work->plan);
+    struct replica *replica = &work->replicas->member[k];
+    TRY(work->one(replica, work->replicas->bins, work->plan));
+    replica->acceptance = mf_sampler_acceptance(&replica->sampler);
+    return STATUS_OK;
 }
 
 /// What the samples of a replica leave.
@@ -102,6 +105,7 @@ static size_t list_sampled(void *context, size_t k, struct memory_span *span) {
     const size_t block = REPLICAS_BLOCKS * work->replicas->bins * sizeof *replica->block;
     size_t n = 0;
     span[n++] = (struct memory_span){replica->block, block};
+    span[n++] = (struct memory_span){&replica->acceptance, sizeof replica->acceptance};
     n += mf_comoments_spans(&replica->counts, span + n);
     return n + mf_sampler_spans(&replica->sampler, span + n);
 }
@@ -202,7 +206,7 @@ struct replicas_mean mf_replicas_mean(const struct replicas *replicas, enum samp
 double mf_replicas_acceptance(const struct replicas *replicas) {
     double sum = 0;
     for (size_t k = 0; k < replicas->count; k++)
-        sum += mf_sampler_acceptance(&replicas->member[k].sampler);
+        sum += replicas->member[k].acceptance;
     return sum / (double)replicas->count;
 }
 

@@ -19,6 +19,7 @@ struct replicas {
         struct comoments counts; ///< of the samples
         double *sample;          ///< shape [bins + SAMPLER_SUMS]: S, then enum sampler_sum
         double *block;           ///< shape [REPLICAS_BLOCKS, bins]: mean S of each block
+        double acceptance;       ///< part of the moves that were taken, since the last begin
     } member[REPLICAS_MOST];
     struct comoments counts; ///< of all: S of the bins, then enum sampler_sum
 };
