@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "dynamics/relax.h"
 
+#include "base/interrupt.h"
+
 #include <math.h>
 
 enum { MOST_STEPS = 500 };
@@ -42,6 +44,8 @@ enum status mf_relax_downhill(struct simulation *simulation, double enough) {
     const double spacing = pow(mf_particles_density(particles), -1.0 / particles->box.dimensions);
     TRY(mf_simulation_compute_potential(simulation));
     for (int step = 0; step < MOST_STEPS; step++) {
+        if (mf_interrupt_wanted(simulation->setup.cancel))
+            return mf_status_fail(STATUS_INTERRUPTED, "interrupted");
         shift(particles, enough, first_shift * spacing * (1 - (double)step / MOST_STEPS));
         TRY(mf_simulation_compute_potential(simulation));
         if (!(mf_particles_largest_force(particles) > enough)) // NaN ends it, too

@@ -9,7 +9,7 @@
 /// time step (without velocities: moves a particle by more than its free step), or 500 times:
 /// steepest descent with capped displacements. Leaves anything else as it is; the same bits for any
 /// number of threads. The forces are then those of the potential alone. Fails: NO_MEMORY, as
-/// mf_simulation_compute_potential. Tested: test_relax.
+/// mf_simulation_compute_potential; INTERRUPTED. Tested: test_relax.
 enum status mf_relax_overlaps(struct simulation *simulation) MUST_USE;
 
 /// Shift all particles along their forces, by a few hundredths of their mean spacing at most, until

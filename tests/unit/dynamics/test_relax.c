@@ -60,11 +60,26 @@ static void test_relax_moves_nothing_when_there_is_no_overlap(void **state) {
     fluid_clear(&fluid);
 }
 
+/// A heap of many particles takes minutes to part: who stops the run need not wait for that.
+static void test_relax_ends_when_it_is_cancelled(void **state) {
+    (void)state;
+    struct fluid fluid;
+    struct simulation simulation;
+    const atomic_bool cancel = true;
+    make_heap(&fluid);
+    fluid.setup.cancel = &cancel;
+    assert_fails(mf_simulation_init(&simulation, &fluid.setup, NULL), STATUS_INTERRUPTED,
+                 "interrupted");
+    mf_simulation_clear(&simulation);
+    fluid_clear(&fluid);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_simulation_begins_well_when_particles_overlap_at_random),
         cmocka_unit_test(test_relax_gives_the_same_bits_when_there_are_threads),
         cmocka_unit_test(test_relax_moves_nothing_when_there_is_no_overlap),
+        cmocka_unit_test(test_relax_ends_when_it_is_cancelled),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
