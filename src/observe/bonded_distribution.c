@@ -3,7 +3,7 @@
 /// and p over its Jacobian, which is exp(−U/k_B T) up to a factor where a term stands alone:
 ///   r^(d−1) of lengths, (sin θ)^(d−2) of angles, 1 of dihedrals
 /// (V. Rühle et al., J. Chem. Theory Comput. 5, 3211 (2009), eqs. 5 to 8). Jacobians are integrated
-/// over the bins. Errors by the scatter of 20 blocks of time. Tested: test_bonded_distribution.
+/// over the bins. Errors by the scatter of 20 blocks of time. Tested: test_molecules.
 #include "base/memory.h"
 #include "base/statistics.h"
 #include "forces/bonded.h"
