@@ -39,21 +39,70 @@ function showCells(panel, table) {
   panel.note.textContent = `E(t, r₀) of the target (left) and the result (right). Upwards: ${table.label(table.at("time"))} to ${times[times.length - 1]}.`;
 }
 
+const arrowsAcross = 24, pixelsAcross = 1200;
+
+// Velocities of blocks of cells, as arrows on a canvas of `size` pixels a cell; `most` is as long as a block. Returns their number.
+function drawArrows(canvas, size, columns, rows, velocity, most) {
+  const context = canvas.getContext("2d"), block = Math.ceil(Math.max(columns, rows) / arrowsAcross);
+  let arrows = 0;
+  for (let j = 0; j < rows; j += block)
+    for (let i = 0; i < columns; i += block) {
+      const right = Math.min(i + block, columns), high = Math.min(j + block, rows), scale = 0.5 * block * size / most;
+      const mean = meanVelocity(velocity, [i, right], [j, high]);
+      if (!mean || Math.hypot(...mean) * scale < 1)
+        continue;
+      drawArrow(context, [0.5 * (i + right) * size, (rows - 0.5 * (j + high)) * size], [mean[0] * scale, -mean[1] * scale]);
+      arrows++;
+    }
+  return arrows;
+}
+
+// About its middle, half of it being (x, y): white with a dark edge.
+function drawArrow(context, [middleX, middleY], [x, y]) {
+  const tip = [middleX + x, middleY + y];
+  context.lineCap = context.lineJoin = "round";
+  for (const [colour, width] of [["#0008", 5], ["#fff", 2]]) {
+    Object.assign(context, { strokeStyle: colour, lineWidth: width });
+    context.beginPath();
+    context.moveTo(middleX - x, middleY - y);
+    context.lineTo(...tip);
+    context.moveTo(tip[0] - 0.6 * x + 0.35 * y, tip[1] - 0.6 * y - 0.35 * x);
+    context.lineTo(...tip);
+    context.lineTo(tip[0] - 0.6 * x - 0.35 * y, tip[1] - 0.6 * y + 0.35 * x);
+    context.stroke();
+  }
+}
+
+// Of the cells of a block where there is a flow.
+function meanVelocity(velocity, [left, right], [low, high]) {
+  let x = 0, y = 0, cells = 0;
+  for (let j = low; j < high; j++)
+    for (let i = left; i < right; i++) {
+      const v = velocity(i, j);
+      if (v && v.every(Number.isFinite))
+        [x, y, cells] = [x + v[0], y + v[1], cells + 1];
+    }
+  return cells ? [x / cells, y / cells] : null;
+}
+
 // Cells of a solvent: colour by the speed, arrows along the velocity.
 function showFlow(panel, table) {
-  const names = table.columns.map((c) => c.name);
-  const vx = names.findIndex((n) => /^v(elocity)?_x$/.test(n)), vy = names.findIndex((n) => /^v(elocity)?_y$/.test(n));
-  if (vx < 0 || vy < 0)
-    return;
+  const [vx, vy] = ["v_x", "v_y"].map((name) => table.at(name));
   const xs = axis(table.column(0)), ys = axis(table.column(1));
-  const at = new Map(table.rows.map((row) => [row[0] + "/" + row[1], row]));
-  const speed = (row) => Math.hypot(row[vx], row[vy]);
-  const most = Math.max(...table.rows.map(speed).filter(Number.isFinite), 1e-30);
-  paint(panel.canvas, xs.length, ys.length, (i, j) => {
-    const row = at.get(xs[i] + "/" + ys[j]);
-    return row ? speed(row) / most : NaN;
-  });
-  panel.note.textContent = `speed of the flow, from 0 (dark) to ${most.toPrecision(3)} (bright)`;
+  const at = new Map(table.rows.map((row) => [row[0] + "/" + row[1], [row[vx], row[vy]]]));
+  const velocity = (i, j) => at.get(xs[i] + "/" + ys[j]);
+  const speed = (v) => v ? Math.hypot(...v) : NaN;
+  const most = Math.max(...[...at.values()].map(speed).filter(Number.isFinite), 1e-30);
+  const cells = document.createElement("canvas"), { canvas } = panel;
+  paint(cells, xs.length, ys.length, (i, j) => speed(velocity(i, j)) / most);
+  const size = Math.ceil(pixelsAcross / xs.length);
+  Object.assign(canvas, { width: size * xs.length, height: size * ys.length });
+  canvas.style.height = "auto";
+  const context = canvas.getContext("2d");
+  context.imageSmoothingEnabled = false;
+  context.drawImage(cells, 0, 0, canvas.width, canvas.height);
+  canvas.dataset.arrows = drawArrows(canvas, size, xs.length, ys.length, velocity, most);
+  panel.note.textContent = `Speed of the flow, from 0 (dark) to ${most.toPrecision(3)} (bright), and its direction. Across: x. Upwards: y.`;
 }
 
 const kinds = { "etd.tsv": ["escape of pairs", showEscape], "etd_cells.tsv": ["escape of pairs", showCells],

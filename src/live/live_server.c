@@ -156,6 +156,23 @@ static bool has_token(const struct live_server *server, struct MHD_Connection *c
     return mf_live_guard_is_token(server->token, given);
 }
 
+static int find_socket(struct MHD_Connection *connection) {
+    const union MHD_ConnectionInfo *info =
+        MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD);
+    return info ? info->connect_fd : -1;
+}
+
+/// A connection begins or is about to be closed.
+static void note_guest(void *context, struct MHD_Connection *connection, void **memory,
+                       enum MHD_ConnectionNotificationCode what) {
+    struct live_server *server = context;
+    (void)memory;
+    if (what == MHD_CONNECTION_NOTIFY_STARTED)
+        mf_live_guests_enter(&server->guests, find_socket(connection));
+    else
+        mf_live_guests_leave(&server->guests, find_socket(connection));
+}
+
 /// Why a request is refused before anything of it is read, and its code; NULL: it is not.
 static const char *find_fault(const struct live_server *server, struct MHD_Connection *connection,
                               const char *method, const struct live_request *request,
@@ -224,6 +241,8 @@ static enum MHD_Result take(void *context, struct MHD_Connection *connection, co
         const char *fault = find_fault(server, connection, method, &request, &code);
         if (fault)
             return refuse(connection, code, fault);
+        if (!server->answerer.open(server->answerer.context, &request))
+            mf_live_guests_know(&server->guests, find_socket(connection));
         *memory = calloc(1, sizeof(struct exchange));
         return *memory ? MHD_YES : MHD_NO;
     }
@@ -258,14 +277,16 @@ enum status mf_live_server_start(struct live_server *server, int port) {
     const struct sockaddr_in address = {.sin_family = AF_INET,
                                         .sin_port = htons((uint16_t)port),
                                         .sin_addr = {htonl(INADDR_LOOPBACK)}};
+    mf_live_guests_init(&server->guests);
     errno = 0;
     struct MHD_Daemon *daemon = MHD_start_daemon(
         MHD_USE_INTERNAL_POLLING_THREAD | MHD_USE_THREAD_PER_CONNECTION | MHD_USE_POLL |
             MHD_USE_ERROR_LOG,
         0, NULL, NULL, take, server, MHD_OPTION_EXTERNAL_LOGGER, say_nothing, NULL,
         MHD_OPTION_SOCK_ADDR, (const struct sockaddr *)&address, MHD_OPTION_CONNECTION_LIMIT,
-        (unsigned)LIVE_SERVER_CONNECTIONS, MHD_OPTION_CONNECTION_TIMEOUT,
-        (unsigned)LIVE_SERVER_PATIENCE, MHD_OPTION_NOTIFY_COMPLETED, forget, NULL, MHD_OPTION_END);
+        (unsigned)LIVE_GUESTS_ROOM, MHD_OPTION_CONNECTION_TIMEOUT, (unsigned)LIVE_SERVER_PATIENCE,
+        MHD_OPTION_NOTIFY_COMPLETED, forget, NULL, MHD_OPTION_NOTIFY_CONNECTION, note_guest, server,
+        MHD_OPTION_END);
     if (daemon == NULL)
         return mf_status_fail(STATUS_IO, "port %d of 127.0.0.1: %s", port,
                               errno ? strerror(errno) : "no server can be started");
@@ -276,7 +297,9 @@ enum status mf_live_server_start(struct live_server *server, int port) {
 }
 
 void mf_live_server_stop(struct live_server *server) {
-    if (server->daemon)
+    if (server->daemon) {
         MHD_stop_daemon(server->daemon);
+        mf_live_guests_clear(&server->guests);
+    }
     server->daemon = NULL;
 }

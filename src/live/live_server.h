@@ -8,13 +8,14 @@
 
 #include "base/status.h"
 #include "live/live_guard.h"
+#include "live/live_guests.h"
 
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
-/// Bytes of a request's body, connections at one time, seconds of silence until one is dropped.
-enum { LIVE_SERVER_LARGEST = 16 << 20, LIVE_SERVER_CONNECTIONS = 48, LIVE_SERVER_PATIENCE = 30 };
+/// Bytes of a request's body, and seconds of silence until a connection is dropped.
+enum { LIVE_SERVER_LARGEST = 16 << 20, LIVE_SERVER_PATIENCE = 30 };
 
 /// A request that may be answered.
 struct live_request {
@@ -59,7 +60,8 @@ struct live_answerer {
 struct live_server {
     const char *token;
     struct live_answerer answerer;
-    int port;     ///< that it listens on
+    int port; ///< that it listens on
+    struct live_guests guests;
     void *daemon; ///< of libmicrohttpd
 };
 

@@ -242,6 +242,41 @@ static void test_too_large_and_broken_requests_end_alone(void **state) {
     assert_int_equal(ask("GET /api/state", GOOD, ""), 200);
 }
 
+static void test_connections_that_say_little_do_not_keep_the_page_out(void **state) {
+    enum { SILENT = 3 * LIVE_GUESTS_ROOM };
+    static const char events[] = "GET /api/events HTTP/1.1\r\n" GOOD "\r\n";
+    int silent[SILENT];
+    char byte;
+    (void)state;
+    const int page = connect_to_server();
+    assert_true(send(page, events, sizeof events - 1, MSG_NOSIGNAL) > 0);
+    assert_int_equal(recv(page, &byte, 1, 0), 1);
+    for (int k = 0; k < SILENT; k++) {
+        silent[k] = connect_to_server();
+        send(silent[k], "GET / HT", 8, MSG_NOSIGNAL);
+        if (k % 8 == 0)
+            assert_int_equal(ask("GET /api/state", GOOD, ""), 200);
+    }
+    assert_int_equal(ask("GET /api/state", GOOD, ""), 200);
+    // The oldest have been ended, the youngest and who has shown the token have not.
+    assert_true(recv(silent[0], &byte, 1, 0) <= 0);
+    setsockopt(silent[SILENT - 1], SOL_SOCKET, SO_RCVTIMEO, &(struct timeval){.tv_usec = 50000},
+               sizeof(struct timeval));
+    assert_true(recv(silent[SILENT - 1], &byte, 1, 0) < 0);
+    mf_live_feed_put(&view.feed, LIVE_LOG, "still here");
+    ssize_t got = 0;
+    for (ssize_t now; (now = recv(page, answer + got, sizeof answer - 1 - (size_t)got, 0)) > 0;) {
+        got += now;
+        answer[got] = '\0';
+        if (strstr(answer, "still here"))
+            break;
+    }
+    assert_contains(answer, "still here");
+    close(page);
+    for (int k = 0; k < SILENT; k++)
+        close(silent[k]);
+}
+
 static void test_second_server_on_the_port_is_refused(void **state) {
     struct live_server second = {.token = token, .answerer = mf_live_routes(&view)};
     char port[32];
@@ -262,6 +297,7 @@ int main(void) {
         SERVED(test_file_is_opened_and_ordered),
         SERVED(test_events_come_while_the_stream_is_open),
         SERVED(test_too_large_and_broken_requests_end_alone),
+        SERVED(test_connections_that_say_little_do_not_keep_the_page_out),
         SERVED(test_second_server_on_the_port_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
