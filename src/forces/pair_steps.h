@@ -84,7 +84,8 @@ INLINE void pair_distances(struct pair_columns *columns, const struct pair_batch
             r2 += dz * dz;
         }
         // Exact root and quotient: an estimate with a Newton step is no faster, since the other
-        // steps leave the divider idle, and differs between makes of processors.
+        // steps leave the divider idle, and differs between makes of processors; an integer start
+        // with three steps does not, and takes 0.98 to 1.03 of the time on Zen 5, AVX-512.
         const lanes_real r = lanes_sqrt(r2);
         lanes_store(columns->r + k, r);
         lanes_store(columns->inverse_r + k, 1 / r);
