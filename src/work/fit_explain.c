@@ -7,6 +7,8 @@
 #include "input/fit_file.h"
 #include "work/fit_tasks.h"
 
+#include <string.h>
+
 static enum status print_simulation(const struct measurement_setup *measured,
                                     const struct simulation_setup *setup,
                                     const struct units *units) {
@@ -72,6 +74,36 @@ static enum status try_method(const struct fit_file *fit) {
     return status;
 }
 
+/// The field that says how many simulations a round hands out at once; NULL if the method has none.
+static const struct field *find_handed_out(const struct fit_file *fit, int64_t *count) {
+    for (const struct inverse_table *table = fit->method->tables; table->fields; table++)
+        for (const struct field *field = table->fields; field->name; field++)
+            if (strcmp(field->name, "population") == 0 || strcmp(field->name, "replicas") == 0) {
+                const char *parameters = fit->method_parameters;
+                memcpy(count, parameters + table->offset + field->offset, sizeof *count);
+                return field;
+            }
+    return NULL;
+}
+
+/// What would keep all workers busy. A default that did so by itself would make results depend on
+/// the machine.
+static void print_advice(const struct fit_file *fit, int workers) {
+    static const double little = 0.1;
+    int64_t count = 0;
+    const struct field *field = find_handed_out(fit, &count);
+    if (field == NULL || count <= 0)
+        return; // none, or chosen by the method
+    const int64_t rounds = (count + workers - 1) / workers;
+    const double idle = 1 - (double)count / (double)(rounds * workers);
+    if (idle > little)
+        printf(
+            "\"%s\" %lld leaves %.0f %% of %d workers idle; a multiple of %d, such as %lld, leaves "
+            "none\n",
+            field->name, (long long)count, 100 * idle, workers, workers,
+            (long long)(rounds * workers));
+}
+
 /// In the order of the run (fit.c), so that it begins with the same curves.
 enum status mf_fit_explain(const char *file, const struct run_options *options, int ranks) {
     enum status status = STATUS_OK;
@@ -92,8 +124,10 @@ enum status mf_fit_explain(const char *file, const struct run_options *options, 
                                 &(struct target_sanity_listener){print_line, stdout}));
     print_numbers(&fit);
     CHECK(print_simulations(&fit, &laws));
-    if (ranks > 0)
+    if (ranks > 0) {
+        print_advice(&fit, ranks * options->threads);
         CHECK(mf_fit_tasks_explain(stdout, file, options, ranks));
+    }
 done:
     mf_unknowns_laws_clear(&laws);
     mf_unknowns_clear(&unknowns);

@@ -250,6 +250,19 @@ static void test_explain_tells_how_an_evaluation_measures_the_rdf(void **state) 
     assert_contains(result.out, "The method \"imc\" samples by a Monte Carlo of its own");
 }
 
+/// Four replicas by 32 workers, and by two.
+static void test_explain_tells_which_number_keeps_all_ranks_busy(void **state) {
+    static struct run_program_result result;
+    write_fit(*state, IMC);
+    RUN_PROGRAM(&result, "fit", "run.json", "--explain", "--ranks", "16", "--threads", "2");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.out, "\"replicas\" 4 leaves 88 % of 32 workers idle; a multiple of 32, "
+                                "such as 32, leaves none");
+    RUN_PROGRAM(&result, "fit", "run.json", "--explain", "--ranks", "1", "--threads", "2");
+    run_program_assert_code(&result, 0);
+    assert_null(strstr(result.out, "leaves"));
+}
+
 static void test_interrupted_genetic_goes_on_with_the_same_bits(void **state) {
     write_fit(*state, GENETIC("0.3"));
     check_interruption(CONVERGED);
@@ -427,6 +440,7 @@ int main(void) {
         TEST_WITHOUT_FIGURES(test_genetic_gives_the_same_bits_from_its_used_settings),
         TEST_WITHOUT_FIGURES(test_genetic_with_forces_gives_the_same_bits_from_its_used_settings),
         TEST_WITHOUT_FIGURES(test_explain_tells_how_an_evaluation_measures_the_rdf),
+        TEST_WITHOUT_FIGURES(test_explain_tells_which_number_keeps_all_ranks_busy),
         TEST_WITHOUT_FIGURES(test_interrupted_imc_goes_on_with_the_same_bits),
         TEST_WITHOUT_FIGURES(test_interrupted_imc_by_dynamics_goes_on_with_the_same_bits),
         TEST_WITHOUT_FIGURES(test_interrupted_genetic_goes_on_with_the_same_bits),
