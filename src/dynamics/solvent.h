@@ -100,7 +100,8 @@ enum solvent_noise {
     SOLVENT_VIRTUAL,
     SOLVENT_PLACE,
     SOLVENT_VELOCITY,
-    SOLVENT_BEAD
+    SOLVENT_BEAD,
+    SOLVENT_ANEW
 };
 
 static inline struct rng_block solvent_noise(const struct solvent *solvent, uint64_t step,
