@@ -131,6 +131,18 @@ done:
     return status;
 }
 
+enum status mf_topology_count_excluded(const struct topology_kind *kind, int exclude,
+                                       size_t *count) {
+    struct topology_kind other = *kind;
+    other.exclude = exclude;
+    other.near = other.near_start = NULL;
+    const enum status status = find_near(&other);
+    *count = status == STATUS_OK ? (size_t)other.near_start[kind->beads] : 0;
+    mf_memory_free(other.near);
+    mf_memory_free(other.near_start);
+    return status;
+}
+
 // Numbers of beads --------------------------------------------------------------------------------
 
 /// Ids of a kind's beads, given the next one of each type, which go on.

@@ -76,6 +76,11 @@ enum status mf_topology_check(const struct topology_kind *kind) MUST_USE;
 /// @param[out] order  of the term
 const struct topology_term *mf_topology_unbonded(const struct topology_kind *kind, int *order);
 
+/// How many beads are excluded from pairs with each bead of a kind, in all, if pairs at most
+/// `exclude` bonds apart are. Fails: NO_MEMORY. Tested: test_topology.
+enum status mf_topology_count_excluded(const struct topology_kind *kind, int exclude,
+                                       size_t *count) MUST_USE;
+
 /// Number the beads of all kinds and find what they exclude. The composition holds all beads, those
 /// of single ones too. Fails: NO_MEMORY. Tested: test_topology.
 enum status mf_topology_complete(struct topology *topology,
