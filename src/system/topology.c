@@ -217,6 +217,27 @@ done:
     return status;
 }
 
+void mf_topology_walk(const struct topology_kind *kind, int *order, int *parent) {
+    int placed = 0;
+    for (int bead = 0; bead < kind->beads; bead++)
+        parent[bead] = -2; // not yet
+    while (placed < kind->beads) {
+        int next = -1, from = -1;
+        for (int n = 0; n < kind->terms[TOPOLOGY_BOND] && next < 0; n++) {
+            const int *pair = kind->term[TOPOLOGY_BOND][n].bead;
+            for (int k = 0; k < 2 && next < 0; k++)
+                if (parent[pair[k]] > -2 && parent[pair[1 - k]] == -2) {
+                    from = pair[k];
+                    next = pair[1 - k];
+                }
+        }
+        for (int bead = 0; bead < kind->beads && next < 0; bead++)
+            next = parent[bead] == -2 ? bead : -1;
+        parent[next] = from;
+        order[placed++] = next;
+    }
+}
+
 void mf_topology_kind_clear(struct topology_kind *kind) {
     mf_memory_free(kind->type);
     for (int order = 0; order < TOPOLOGY_ORDERS; order++)

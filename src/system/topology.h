@@ -86,6 +86,11 @@ enum status mf_topology_count_excluded(const struct topology_kind *kind, int exc
 enum status mf_topology_complete(struct topology *topology,
                                  const struct composition *composition) MUST_USE;
 
+/// An order in which a kind's beads are placed so that each follows one that it is bonded to, if
+/// there is one. @param[out] order, parent  shape [beads]: the bead that is placed as number n; of
+/// each bead the one before it, or −1
+void mf_topology_walk(const struct topology_kind *kind, int *order, int *parent);
+
 /// Free a topology, complete or not; a zeroed one is fine.
 void mf_topology_clear(struct topology *topology);
 void mf_topology_kind_clear(struct topology_kind *kind);
