@@ -246,6 +246,91 @@ static void test_lammps_has_those_of_our_tables(void **state) {
     compare(*state, true, 1e-4, 0.01);
 }
 
+// GROMACS -----------------------------------------------------------------------------------------
+
+/// A field of md.log is of some order of terms, by its name; −1: of none.
+static int order_of(const char *name) {
+    static const struct {
+        const char *name;
+        int order;
+    } known[] = {{"Bond", TOPOLOGY_BOND},
+                 {"FENE Bonds", TOPOLOGY_BOND},
+                 {"Tab. Bonds", TOPOLOGY_BOND},
+                 {"Angle", TOPOLOGY_ANGLE},
+                 {"G96Angle", TOPOLOGY_ANGLE},
+                 {"Tab. Angles", TOPOLOGY_ANGLE},
+                 {"Proper Dih.", TOPOLOGY_DIHEDRAL},
+                 {"Ryckaert-Bell.", TOPOLOGY_DIHEDRAL},
+                 {"Tab. Dih.", TOPOLOGY_DIHEDRAL}};
+    while (*name == ' ')
+        name++;
+    for (size_t k = 0; k < sizeof known / sizeof *known; k++)
+        if (strncmp(name, known[k].name, strlen(known[k].name)) == 0 &&
+            strspn(name + strlen(known[k].name), " \n") == strlen(name + strlen(known[k].name)))
+            return known[k].order;
+    return -1;
+}
+
+/// The first energies of md.log: lines of names and of numbers, fields of 15 letters.
+static void read_log(double energy[TOPOLOGY_ORDERS]) {
+    FILE *stream = fopen("gromacs/md.log", "r");
+    char names[256], values[256];
+    assert_non_null(stream);
+    while (fgets(names, sizeof names, stream) && strstr(names, "Energies (kJ/mol)") == NULL)
+        ;
+    while (fgets(names, sizeof names, stream) && fgets(values, sizeof values, stream) &&
+           strlen(names) > 1)
+        for (size_t at = 0; at + 15 < strlen(names) && at + 15 < strlen(values) + 1; at += 15) {
+            char name[16] = {0}, value[16] = {0};
+            memcpy(name, names + at, 15);
+            memcpy(value, values + at, 15);
+            if (order_of(name) >= 0)
+                energy[order_of(name)] += strtod(value, NULL);
+        }
+    fclose(stream);
+}
+
+/// Debian's GROMACS has no tables of pairs, whose energies are left out: the terms alone.
+static void compare_gromacs(struct temporary_folder *folder, bool with_tables, double per_term) {
+    static struct run_program_result result;
+    static struct ours ours;
+    double energy[TOPOLOGY_ORDERS] = {0};
+    skip_without("gmx");
+    make_result(folder, with_tables);
+    RUN_PROGRAM(&result, "export", "out", "--engine", "gromacs", "-o", "gromacs");
+    run_program_assert_code(&result, 0);
+    small_inputs_write(folder, "gromacs/once.mdp",
+                       "integrator = md\nnsteps = 0\nnstenergy = 1\nnstlog = 1\nrcoulomb = 0.9\n"
+                       "rvdw = 0.9\ncontinuation = yes\n",
+                       NULL, NULL);
+    if (system(
+            "cd gromacs && sed 's/ A 0.0 1.0$/ A 0.0 0.0/' topol.top >once.top && (gmx grompp -f "
+            "once.mdp -p once.top -n index.ndx -o once.tpr -maxwarn 9 && gmx mdrun -nt 1 -s "
+            "once.tpr $(ls table_[bad]?.xvg | sed '1s/^/-tableb /')) >gmx.out 2>&1") != 0)
+        fail_msg("GROMACS failed: see gromacs/gmx.out");
+    find_ours(&ours);
+    read_log(energy);
+    const struct export_units units =
+        mf_export_units(EXPORT_NANOMETRES, &ours.model.scene.units, true);
+    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+        print_message("%ss %.7g %.7g ", mf_topology_order_names[order],
+                      energy[order] / units.energy, ours.bonded[order]);
+    print_message("\n");
+    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+        assert_true(fabs(energy[order] / units.energy - ours.bonded[order]) <
+                    per_term * (double)mf_export_bonded_count(ours.model.molecules, order));
+    clear_ours(&ours);
+}
+
+/// In single precision, of coordinates with seven decimals.
+static void test_gromacs_has_the_energies_of_our_laws(void **state) {
+    compare_gromacs(*state, false, 1e-5);
+}
+
+static void test_gromacs_has_those_of_our_tables(void **state) {
+    compare_gromacs(*state, true, 1e-4);
+}
+
 /// special_bonds is one for all molecules.
 static void test_what_an_engine_has_not_is_refused(void **state) {
     static struct run_program_result result;
@@ -268,6 +353,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(test_lammps_has_the_energies_and_forces_of_our_laws),
         TEST(test_lammps_has_those_of_our_tables),
+        TEST(test_gromacs_has_the_energies_of_our_laws),
+        TEST(test_gromacs_has_those_of_our_tables),
         TEST(test_what_an_engine_has_not_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
