@@ -138,6 +138,39 @@ static void test_beads_without_hydrodynamics_diffuse_by_molecular_chaos(void **s
     assert_true(found[1] > found[0] + 4 * hypot(error[0], error[1]));
 }
 
+#define CHANNEL(length, height)                                                                    \
+    "{\"seed\": 1, \"dimensions\": 2, \"box\": [24, " height "], \"time_step\": 0.02,\n"           \
+    "\"bonds\": {\"spring\": {\"law\": \"harmonic\", \"k\": 100, \"length\": 0.7}},\n"             \
+    "\"molecules\": {\"chain\": {\"count\": 8, \"chain\": {\"type\": \"A\", \"length\": " length   \
+    ",\n"                                                                                          \
+    "\"bond\": \"spring\"}}, \"star\": {\"count\": 4, \"beads\": [\"A\", \"A\", \"A\", \"A\"],\n"  \
+    "\"bonds\": {\"spring\": [[4, 1], [4, 2], [3, 4]]}}},\n"                                       \
+    "\"particles\": {\"types\": {\"W\": 30}},\n"                                                   \
+    "\"dynamics\": {\"integrator\": \"collision-dynamics\", \"interval\": 5, \"thermostat\":\n"    \
+    "\"yes\", \"walls\": \"plates\", \"obstacle_centre\": [8, 6], \"obstacle_radius\": 3},\n"      \
+    "\"snapshots\": {\"every\": 20},\n"                                                            \
+    "\"measure\": {\"equilibration\": 0, \"samples\": 20, \"every\": 1}}\n"
+
+/// Molecules that would begin in the obstacle or through a plate begin elsewhere, whole.
+static void test_molecules_begin_between_plates_and_outside_obstacles(void **state) {
+    enum { SINGLE = 30, CHAINS = 8, LENGTH = 12, STARS = 16 };
+    double rows[200][8];
+    simulate(*state, CHANNEL("12", "12"), "out");
+    assert_int_equal(read_rows("out/configuration.tsv", rows, 200, 2),
+                     SINGLE + CHAINS * LENGTH + STARS);
+    for (size_t k = 0; k < SINGLE + CHAINS * LENGTH + STARS; k++)
+        assert_true(hypot(rows[k][0] - 8, rows[k][1] - 6) >= 3);
+    for (size_t k = SINGLE; k < SINGLE + CHAINS * LENGTH; k++)
+        if ((k - SINGLE) % LENGTH != LENGTH - 1) {
+            const double x = fabs(rows[k][0] - rows[k + 1][0]);
+            assert_true(hypot(fmin(x, 24 - x), rows[k][1] - rows[k + 1][1]) < 1.4);
+        }
+    small_inputs_write(*state, "long.json", CHANNEL("150", "12"), NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "long.json", "-o", "none");
+    run_program_assert_refused(&result, "none", "too long", 1,
+                               (const char *const[]){"no room for a molecule of 150 beads", NULL});
+}
+
 int main(void) {
 #define IN_FOLDER(test)                                                                            \
     cmocka_unit_test_setup_teardown(test, small_inputs_enter_without_gnuplot, small_inputs_leave)
@@ -146,6 +179,7 @@ int main(void) {
         IN_FOLDER(test_centres_are_those_of_mass),
         IN_FOLDER(test_brownian_chains_diffuse_as_rouse_says),
         IN_FOLDER(test_motion_of_molecules_goes_on_with_the_same_bits),
+        IN_FOLDER(test_molecules_begin_between_plates_and_outside_obstacles),
         IN_FOLDER(test_beads_without_hydrodynamics_diffuse_by_molecular_chaos),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
