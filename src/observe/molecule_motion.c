@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// @file How far the centres of mass of molecules go, by kind: ⟨|R(s + t) − R(s)|²⟩ and D, its
 /// slope over 2d. Positions are unwrapped and, where momentum is conserved, relative to the centre
-/// of mass of all particles. Errors as those of observe/motion.h. Tested: test_molecule_motion,
-/// physics/test_polymers.
+/// of mass of all particles. Errors as those of observe/motion.h. Tested: cli/test_molecule_motion.
+
 #include "base/memory.h"
 #include "base/number_text.h"
 #include "base/statistics.h"
