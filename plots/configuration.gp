@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Where the particles are in the last snapshot, seen along z: discs of their size, in the colour of
 # their orientation or of their type, which fades with the distance in three dimensions.
-# Reads configuration.tsv, and of used.json the box, the types, and what the size of those without radii is.
+# Reads configuration.tsv, and of used.json the box, an obstacle, the types, and what the size of those without radii is.
 
 load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
 
@@ -11,6 +11,11 @@ radius = column_of(table, "radius")
 rows = int(system("grep -cv '^#'" . from(table)))
 edge(n) = real(system(sprintf("awk '/\"box\":/ { gsub(/[^0-9.eE, -]/, \"\"); split($0, e, \",\"); \
     print e[%d] + 0; exit }' used.json", n)))
+
+# Radius and centre of an obstacle; 0 without one.
+obstacle(n) = real(system(sprintf("awk '/\"obstacle_centre\":/ { sub(/.*\\[/, \"\"); split($0, centre, \",\") } \
+    /\"obstacle_radius\":/ { gsub(/[^0-9.eE-]/, \"\", $2); radius = $2 } \
+    END { print %d ? centre[%d] + 0 : radius + 0 }' used.json", n, n)))
 
 # How many there are of each type, in the order of their rows, and their names: "large 10 small 20".
 types = system("awk '/\"types\":/ { inside = 1; next } inside && /}/ { exit } \
@@ -71,6 +76,7 @@ do for [kind in kinds] {
     set yrange [-beyond:edge(2) + beyond]
     # The box itself, as a frame.
     set object 1 rectangle from 0, 0 to edge(1), edge(2) front fillstyle empty border rgb ink linewidth 0.8
+    if (obstacle(0) > 0) { set object 2 circle at obstacle(1), obstacle(2) size obstacle(0) behind fillstyle solid 1 border rgb ink fillcolor rgb 0xd9d9d9 }
     set xlabel axis_of(table, "x", "{/:Italic x}", "{/:Italic x} / {/:Italic λ}") . (dimensions == 3 ? "  (pale: far along {/:Italic z})" : "")
     set ylabel axis_of(table, "y", "{/:Italic y}", "{/:Italic y} / {/:Italic λ}")
     set palette model HSV functions gray, 0.75, 0.85

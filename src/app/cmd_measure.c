@@ -9,6 +9,7 @@
 enum {
     STRUCTURE,
     MAP,
+    MOLECULES,
     BEGIN,
     END,
     EVERY,
@@ -31,6 +32,8 @@ enum {
 static const struct command_option options[] = {
     [STRUCTURE] = {"-s", "FILE", "names, residues and masses of the atoms (.gro, .pdb, .data, …)"},
     [MAP] = {"--map", "FILE.json", "atoms to beads (describe map); else a bead a residue"},
+    [MOLECULES] = {"--molecules", "FILE.json",
+                   "bonds of beads (a scene's \"molecules\"); without a map a bead an atom"},
     [BEGIN] = {"--begin", "T", "leave out what is before [ps]"},
     [END] = {"--end", "T", "leave out what is after [ps]"},
     [EVERY] = {"--every", "T", "take frames so far apart [ps]"},
@@ -115,6 +118,7 @@ static enum status run(const struct command_line *line) {
     struct measure_request request = {
         .structure = line->own[STRUCTURE],
         .map = line->own[MAP],
+        .molecules = line->own[MOLECULES],
         .frames = {.file = line->files,
                    .files = line->file_count,
                    .options = {.units = line->own[FILE_UNITS], .group = line->own[FILE_GROUP]},

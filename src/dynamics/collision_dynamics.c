@@ -19,6 +19,10 @@ static bool holds_temperature(const struct simulation_setup *setup) {
     return parameters_of(setup)->thermostat;
 }
 
+static bool has_drift(const struct collision_dynamics_parameters *parameters) {
+    return parameters->drift[0] != 0 || parameters->drift[1] != 0 || parameters->drift[2] != 0;
+}
+
 static const char *warning(const struct simulation_setup *setup) {
     const struct collision_dynamics_parameters *parameters = parameters_of(setup);
     const bool pushed = parameters->acceleration[0] != 0 || parameters->acceleration[1] != 0 ||
@@ -28,6 +32,8 @@ static const char *warning(const struct simulation_setup *setup) {
     if (parameters->particles_per_cell < 3)
         return "dynamics.particles_per_cell: below 3 many cells have nobody to collide with, and "
                "theory is far off";
+    if (!parameters->hydrodynamics && (flows || has_drift(parameters)))
+        return "dynamics.hydrodynamics: without it beads do not feel that the solvent flows";
     if (parameters->walls == COLLISION_PLATES && setup->potential)
         return "dynamics.walls: forces of pairs know no plates: beads nearer to both plates "
                "together than a cutoff feel each other through them";
@@ -199,6 +205,10 @@ static const struct field fields[] = {
              "distribution"},
     {"grid_shift", FIELD_CHOICE, MEMBER(grid_shift), .choices = yes_or_no, .initial = 1, .unit = "",
      .help = "at random before each collision; without it what flows is another fluid"},
+    {"hydrodynamics", FIELD_CHOICE, MEMBER(hydrodynamics), .choices = yes_or_no, .initial = 1,
+     .unit = "",
+     .help = "no: where beads are, velocities of the solvent are drawn anew before each collision: "
+             "beads feel friction and noise and no flow, as in Rouse's model"},
     {"walls", FIELD_CHOICE, MEMBER(walls), .choices = walls, .initial = COLLISION_NO_WALLS,
      .unit = "", .help = "plates where y is 0 and at the edge of the box, at rest; fluid sticks"},
     {"wall_filling", FIELD_NUMBER, MEMBER(wall_filling), .initial = 1.4, .minimum = 0,

@@ -18,6 +18,7 @@ struct collision_dynamics_parameters {
     int64_t interval;          ///< time steps from collision to collision
     int thermostat;            ///< 0 or 1: of every cell
     int grid_shift;            ///< 0 or 1
+    int hydrodynamics;         ///< 0: beads meet a solvent whose velocities are drawn anew
     int walls;                 ///< enum collision_walls
     double wall_filling;       ///< cells that a wall cuts are filled up to so many times M
     double acceleration[3];    ///< g, of all particles                                   [λ/τ²]

@@ -53,8 +53,9 @@ enum status mf_solvent_init(struct solvent *solvent, const struct particles *bea
                             int threads) MUST_USE;
 void mf_solvent_clear(struct solvent *solvent);
 
-/// Beads that begin inside the obstacle get other places, at random, where no other bead is nearer
-/// than the placement's separation, and in which there is some room.
+/// Beads that begin inside the obstacle, and molecules that reach into it or through a plate, get
+/// other places, at random, as a whole, where no other bead is nearer than the placement's
+/// separation, and in which there is some room.
 /// Fails: BAD_INPUT if they are from a file, which also knows of no place beyond a plate, or if
 /// there is no room. Tested: cli/test_simulate_solvent.
 enum status mf_solvent_part_beads(const struct solvent *solvent, struct particles *beads,
@@ -100,7 +101,8 @@ enum solvent_noise {
     SOLVENT_VIRTUAL,
     SOLVENT_PLACE,
     SOLVENT_VELOCITY,
-    SOLVENT_BEAD
+    SOLVENT_BEAD,
+    SOLVENT_ANEW
 };
 
 static inline struct rng_block solvent_noise(const struct solvent *solvent, uint64_t step,

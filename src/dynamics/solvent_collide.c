@@ -54,6 +54,20 @@ INLINE struct sums add_solvent(const struct solvent *solvent, uint32_t begin, ui
     return sums;
 }
 
+/// Maxwell's velocities in place of those that the particles of a bead's cell have: it meets a
+/// random solvent, as that of M. Ripoll, R. G. Winkler and G. Gompper, Eur. Phys. J. E 23, 349
+/// (2007).
+static void draw_anew(const struct pass *pass, uint32_t begin, uint32_t end, int dimensions) {
+    const struct solvent *solvent = pass->solvent;
+    const double sigma = sqrt(solvent->temperature / solvent->parameters.mass);
+    for (uint32_t k = begin; k < end; k++) {
+        double normal[4];
+        mf_rng_normal4(solvent_noise(solvent, pass->step, k, SOLVENT_ANEW, 0), normal);
+        for (int d = 0; d < dimensions; d++)
+            solvent->velocity[d][k] = sigma * normal[d];
+    }
+}
+
 INLINE void add_beads(const struct pass *pass, size_t cell, struct sums *sums,
                       const int dimensions) {
     for (uint32_t bead = pass->solvent->first_bead[cell]; bead != UINT32_MAX;
@@ -233,6 +247,8 @@ INLINE void collide_part(const struct pass *pass, int part, const int dimensions
         const bool beads = solvent->first_bead && solvent->first_bead[cell] != UINT32_MAX;
         if (begin == end && !beads)
             continue;
+        if (beads && !solvent->parameters.hydrodynamics)
+            draw_anew(pass, begin, end, dimensions);
         struct sums sums = add_solvent(solvent, begin, end, thermostat, dimensions);
         if (beads)
             add_beads(pass, cell, &sums, dimensions);

@@ -98,6 +98,11 @@ static enum status check(const struct export_job *job, bool bands) {
         return mf_status_fail(STATUS_BAD_INPUT,
                               "%s: cannot be exported: %s is written for %d types of beads at most",
                               model->folder, engine->title, engine->most_types);
+    if (model->molecules && !engine->molecules)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: cannot be exported: what is written for %s is of single beads, "
+                              "and there are molecules",
+                              model->folder, engine->title);
     return job->projected ? check_friction(job) : STATUS_OK;
 }
 
@@ -216,6 +221,12 @@ static void print_readme(const struct export_job *job, FILE *stream) {
         job->grids.grid[0][0].rows, job->engine->title, job->engine->interpolation->summary,
         error->phi, error->force, export_units_force(units) * error->largest_force,
         units->energy_name, units->length_name, units->length * error->from, units->length_name);
+    if (job->bonded.tables > 0)
+        fprintf(stream,
+                "%d of the laws of bonds, angles and dihedrals are tables of %zu rows, too. Linear "
+                "between the rows they are\nwithin %.2g k_B T and %.2g of the largest slope.\n",
+                job->bonded.tables, job->bonded.rows, job->bonded.energy_error,
+                job->bonded.slope_error);
     if (job->grids.curves > 1)
         fprintf(stream, "\n_lower and _upper are the potential less and plus one standard error at "
                         "each r. Errors at\ndifferent r are correlated; the two are a band, not "
@@ -283,6 +294,9 @@ static enum status run(struct export_job *job, const struct export_request *requ
     job->time_step = safe_step(model);
     TRY(mf_export_grids_make(&job->grids, job->engine->interpolation, model, request->bands,
                              job->engine->one_cutoff ? model->setup.potential->cutoff : 0));
+    CHECK(mf_export_bonded_make(&job->bonded, model, job->engine->has_law));
+    if (job->engine->check)
+        CHECK(job->engine->check(job));
     find_powers(job);
     if (job->projected)
         CHECK(mf_export_project(model, job->power, request->threads, request->listener,
@@ -292,6 +306,7 @@ static enum status run(struct export_job *job, const struct export_request *requ
         say(job);
 done:
     mf_export_grids_clear(&job->grids);
+    mf_export_bonded_clear(&job->bonded);
     return status;
 }
 

@@ -5,6 +5,7 @@
 /// To add one, write a file with its record and put its name into EXPORT_ENGINES below.
 #pragma once
 
+#include "export/export_bonded.h"
 #include "export/export_grid.h"
 #include "export/export_power.h"
 #include "export/export_projection.h"
@@ -26,6 +27,8 @@ struct export_job {
     bool projected;                                    ///< the power laws stand for ω, and
     struct export_projection projection;               ///< what that costs
     double time_step;                                  ///< for this engine [τ]
+    struct export_bonded bonded;                       ///< tables of laws that it has not
+    int exclude; ///< of all molecules, for engines that have one number for all
 };
 
 /// What friction between pairs an engine has: none, A (1 − r/r_c), the same and for beads of one
@@ -39,12 +42,16 @@ struct export_engine {
     enum export_system system;
     bool physical; ///< knows no reduced units: these are then nm, kJ/mol and u
     const struct export_interpolation *interpolation;
+    /// Whether it has a law as it is, so that no table is wanted; with `molecules`.
+    bool (*has_law)(const struct bonded_curve *curve);
     enum export_friction friction;
     const char *commands; ///< that run the folder, a line each
     const char *verified; ///< whether such folders were run: a sentence of the README
     int most_types;       ///< that it is written for
     bool one_cutoff;      ///< all its tables end at the same distance
     bool flat;            ///< also in two dimensions
+    bool molecules;       ///< bonds, angles and dihedrals are written, too
+    enum status (*check)(struct export_job *job); ///< before anything is written; NULL: nothing
     enum status (*write)(const struct export_job *job);
     /// What a person should know of the thermostat, for the README.
     void (*explain)(const struct export_job *job, FILE *stream);

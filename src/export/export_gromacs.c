@@ -2,7 +2,7 @@
 //
 // GROMACS up to 2019: tables of energy groups in the group scheme, cubics between rows of value and
 // −derivative. The potential stands in the column of the repulsion, whose C12 is 1 for all pairs.
-#include "export/export_engine.h"
+#include "export/export_gromacs_molecules.h"
 
 enum { EXTENSION_NM = 1 }; ///< that GROMACS wants behind the cutoff
 
@@ -97,8 +97,12 @@ static void print_settings(const struct export_job *job, FILE *stream) {
 
 static enum status write(const struct export_job *job) {
     TRY(write_tables(job));
-    TRY(mf_export_file(job, "conf.gro", print_conf));
-    TRY(mf_export_file(job, "topol.top", print_topology));
+    if (job->model->molecules) {
+        TRY(mf_export_gromacs_molecules(job));
+    } else {
+        TRY(mf_export_file(job, "conf.gro", print_conf));
+        TRY(mf_export_file(job, "topol.top", print_topology));
+    }
     return mf_export_file(job, "grompp.mdp", print_settings);
 }
 
@@ -108,6 +112,11 @@ static void explain(const struct export_job *job, FILE *stream) {
             "a bath of each particle,\nkeeps g(r), energy and pressure; the dynamics is "
             "not the result's: diffusion and all else that moves differs.\n",
             job->model->setup.omega ? " and so no omega" : "");
+    if (job->model->molecules)
+        fprintf(stream, "With molecules: gmx grompp -n index.ndx%s.\n",
+                job->bonded.tables ? ", and gmx mdrun -tableb with all of table_b*.xvg, "
+                                     "table_a*.xvg and\ntable_d*.xvg"
+                                   : "");
 }
 
 const struct export_engine mf_export_gromacs = {
@@ -122,6 +131,8 @@ const struct export_engine mf_export_gromacs = {
     .verified = "Such folders were checked against the manual of GROMACS, and not run.",
     .most_types = COMPOSITION_MOST_TYPES,
     .one_cutoff = true,
+    .molecules = true,
+    .has_law = mf_export_gromacs_has_law,
     .write = write,
     .explain = explain,
 };

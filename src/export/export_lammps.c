@@ -2,7 +2,7 @@
 //
 // LAMMPS: pair_style table linear reads the rows as they are if its N is that of the file and the
 // rows are RSQ. Friction by dpd/tstat and dpd/ext/tstat, or by mesofit/table (share/lammps).
-#include "export/export_engine.h"
+#include "export/export_lammps_molecules.h"
 
 #include <math.h>
 
@@ -21,13 +21,16 @@ static bool is_real(const struct export_job *job) {
     return job->units.system == EXPORT_REAL;
 }
 
-static void print_data(const struct export_job *job, FILE *stream) {
+static void print_head(const struct export_job *job, FILE *stream) {
     static const char axes[] = "xyz";
     const struct export_model *model = job->model;
     const struct box *box = &model->setup.box;
     const struct export_units *units = &job->units;
-    fprintf(stream, "%s (mesofit)\n\n%zu atoms\n%d atom types\n\n",
+    fprintf(stream, "%s (mesofit)\n\n%zu atoms\n%d atom types\n",
             model->title[0] ? model->title : "beads", model->count, model->types);
+    if (model->molecules)
+        mf_export_lammps_counts(job, stream);
+    fprintf(stream, "\n");
     for (int d = 0; d < 3; d++)
         fprintf(stream, "%.15g %.15g %clo %chi\n", d < box->dimensions ? 0 : -0.5 * units->length,
                 (d < box->dimensions ? box->length[d] : 0.5) * units->length, axes[d], axes[d]);
@@ -35,13 +38,21 @@ static void print_data(const struct export_job *job, FILE *stream) {
     for (int type = 0; type < model->types; type++)
         fprintf(stream, "%d %.12g # %s\n", type + 1, model->mass[type] * units->mass,
                 model->name[type]);
-    fprintf(stream, "\nAtoms # atomic\n\n");
+}
+
+static void print_data(const struct export_job *job, FILE *stream) {
+    const struct export_model *model = job->model;
+    const struct export_units *units = &job->units;
+    print_head(job, stream);
+    fprintf(stream, "\nAtoms # %s\n\n", model->molecules ? "molecular" : "atomic");
     for (size_t k = 0; k < model->count; k++) {
         double x[3] = {0};
-        for (int d = 0; d < box->dimensions; d++)
+        for (int d = 0; d < model->setup.box.dimensions; d++)
             x[d] = mf_export_place(model, d, k) * units->length;
-        fprintf(stream, "%zu %d %.12g %.12g %.12g\n", k + 1, mf_export_type(model, k) + 1, x[0],
-                x[1], x[2]);
+        fprintf(stream, "%zu ", k + 1);
+        if (model->molecules)
+            fprintf(stream, "%zu ", mf_export_lammps_molecule(model, k));
+        fprintf(stream, "%d %.12g %.12g %.12g\n", mf_export_type(model, k) + 1, x[0], x[1], x[2]);
     }
     fprintf(stream, "\nVelocities\n\n");
     for (size_t k = 0; k < model->count; k++)
@@ -49,6 +60,8 @@ static void print_data(const struct export_job *job, FILE *stream) {
                 model->velocity[0][k] * export_units_velocity(units),
                 model->velocity[1][k] * export_units_velocity(units),
                 model->velocity[2][k] * export_units_velocity(units));
+    if (model->molecules)
+        mf_export_lammps_terms(job, stream);
 }
 
 static void print_potential(const struct export_job *job, enum export_curve curve, int pair,
@@ -95,6 +108,8 @@ static void print_table(const struct export_job *job, FILE *stream) {
             print_potential(job, (enum export_curve)curve, pair, stream);
     for (int pair = 0; job->model->setup.omega && pair < job->grids.pairs; pair++)
         print_omega(job, pair, stream);
+    if (job->model->molecules)
+        mf_export_lammps_tables(job, stream);
 }
 
 static void print_names(const struct export_job *job, int pair, FILE *stream) {
@@ -204,10 +219,28 @@ static void print_measurements(const struct export_job *job, FILE *stream) {
                     "id type x y z vx vy vz\"\n");
 }
 
+/// What there is, up to its bonds. Ghosts reach as far as lists, g(r) and terms do.
+static void print_system(const struct export_job *job, FILE *stream) {
+    const struct export_model *model = job->model;
+    const double skin = choose_skin(job);
+    const double reach =
+        fmax(fmax(mf_export_model_cutoff(model), model->rdf_range), mf_export_lammps_reach(model));
+    fprintf(stream,
+            "units %s\ndimension %d\nboundary p p p\natom_style %s\nneighbor %.6g bin\n"
+            "neigh_modify every 1 delay 0 check yes\ncomm_modify vel yes cutoff %.9g\n",
+            is_real(job) ? "real" : "lj", model->setup.box.dimensions,
+            model->molecules ? "molecular" : "atomic", skin * job->units.length,
+            (reach + skin) * job->units.length * (1 + 1e-6));
+    if (model->molecules)
+        mf_export_lammps_styles(job, stream);
+    fprintf(stream, "read_data data.mesofit\n");
+    if (model->molecules)
+        mf_export_lammps_coefficients(job, stream);
+    fprintf(stream, "\n");
+}
+
 static void print_input(const struct export_job *job, FILE *stream) {
     const struct export_model *model = job->model;
-    const double cutoff = mf_export_model_cutoff(model), skin = choose_skin(job);
-    const struct export_units *units = &job->units;
     fprintf(
         stream,
         "# %s: written by mesofit; README tells of it. Variables: lmp -in in.mesofit -var steps "
@@ -225,19 +258,14 @@ static void print_input(const struct export_job *job, FILE *stream) {
             "# in this folder, or where it was written from\n"
             "if \"$(is_file(data.mesofit)) == 0\" then 'shell cd \"%s\"'\n\n",
             job->folder);
-    fprintf(stream,
-            "units %s\ndimension %d\nboundary p p p\natom_style atomic\nneighbor %.6g bin\n"
-            "neigh_modify every 1 delay 0 check yes\ncomm_modify vel yes cutoff %.9g\n"
-            "read_data data.mesofit\n\n",
-            is_real(job) ? "real" : "lj", model->setup.box.dimensions, skin * units->length,
-            (fmax(cutoff, model->rdf_range) + skin) * units->length * (1 + 1e-6));
+    print_system(job, stream);
     print_thermostat(job, stream);
     fprintf(stream,
             "\nfix move all nve\n%stimestep %.9g\nthermo 1000\n"
-            "thermo_style custom step temp press pe\nthermo_modify norm yes\n"
+            "thermo_style custom step temp press pe%s\nthermo_modify norm yes\n"
             "run ${equilibration}\nreset_timestep 0\n\n",
             model->setup.box.dimensions == 2 ? "fix flat all enforce2d\n" : "",
-            job->time_step * units->time);
+            job->time_step * job->units.time, model->molecules ? " evdwl ebond eangle edihed" : "");
     print_measurements(job, stream);
     fprintf(stream, "run ${steps}\n");
 }
@@ -283,6 +311,9 @@ const struct export_engine mf_export_lammps = {
     .verified = "Such folders were run with LAMMPS of 29 Sep 2021 and 6 Jan 2022.",
     .most_types = COMPOSITION_MOST_TYPES,
     .flat = true,
+    .molecules = true,
+    .has_law = mf_export_lammps_has_law,
+    .check = mf_export_lammps_check,
     .write = write,
     .explain = explain,
 };

@@ -151,7 +151,15 @@ static enum status read_summary(struct reading *reading) {
     return mf_json_close(document, STATUS_OK);
 }
 
-/// What pair forces and velocities do not express.
+/// The first interaction beside the pairs that is not of molecules, or NULL.
+static const struct interaction *find_other(const struct simulation_setup *setup) {
+    for (int k = 0; k < setup->interactions; k++)
+        if (setup->interaction[k].kind != &mf_molecules)
+            return setup->interaction[k].kind;
+    return NULL;
+}
+
+/// What forces of pairs and molecules and velocities do not express.
 static enum status check_scene(const struct export_model *model) {
     const struct simulation_setup *setup = &model->setup;
     const char *what = NULL, *why = NULL;
@@ -162,9 +170,9 @@ static enum status check_scene(const struct export_model *model) {
     } else if (setup->integrator->mobility) {
         what = setup->integrator->name;
         why = "moves particles without velocities; only dynamics with velocities are exported";
-    } else if (setup->interactions > 0) {
-        what = setup->interaction[0].kind->name;
-        why = "acts beside the pairs; only pair forces are exported";
+    } else if (find_other(setup)) {
+        what = find_other(setup)->name;
+        why = "acts beside the pairs; only forces of pairs and molecules are exported";
     }
     return what == NULL ? STATUS_OK
                         : mf_status_fail(STATUS_BAD_INPUT, "%s: cannot be exported: \"%s\" %s",
@@ -338,6 +346,7 @@ enum status mf_export_model_read(struct export_model *model, const char *folder)
     TRY(check_scene(model));
     TRY(read_summary(&reading));
     name_types(model);
+    model->molecules = mf_molecules_find(model->setup.interaction, model->setup.interactions);
     TRY(find_laws(&reading));
     TRY(mf_export_start_find(model));
     return find_bins(model);

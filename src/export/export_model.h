@@ -26,6 +26,7 @@ struct export_model {
     struct table potential[EXPORT_CURVES]; ///< of a fitted potential
     bool bands;                            ///< the last two of them are known
     struct table omega;                    ///< of a fitted friction weight
+    const struct molecules *molecules;     ///< of the scene, or NULL
     bool remembers;                        ///< friction has memory, or acts across pairs: left out
     int types;                             ///< at least 1
     char name[COMPOSITION_MOST_TYPES][COMPOSITION_NAME_SIZE];
@@ -42,9 +43,9 @@ struct export_model {
 
 /// Read the folder of a finished fit or simulation.
 /// Fails: IO; BAD_INPUT with one line for a folder that is none, has no potential, or whose scene
-/// is of what pair forces and velocities do not express: hard particles, a solvent, forces beside
-/// the pairs, dynamics without velocities, masses that differ within a type; NO_MEMORY.
-/// Tested: test_export_model.
+/// is of what forces of pairs and molecules and velocities do not express: hard particles, a
+/// solvent, other forces beside the pairs, dynamics without velocities, masses that differ within a
+/// type; NO_MEMORY. Tested: test_export_model.
 enum status mf_export_model_read(struct export_model *model, const char *folder) MUST_USE;
 void mf_export_model_clear(struct export_model *model);
 

@@ -30,6 +30,8 @@ const struct field mf_scene_molecule_fields[] = {
     FIELD_END,
 };
 
+enum { MOLECULE_FIELDS = sizeof mf_scene_molecule_fields / sizeof *mf_scene_molecule_fields };
+
 #define CHAIN(member) .offset = offsetof(struct told_chain, member)
 const struct field mf_scene_chain_fields[] = {
     {"type", FIELD_TEXT, CHAIN(type), .unit = "",
@@ -53,6 +55,7 @@ struct reading {
     struct topology_kind kind;
     struct scene_molecule told;
     bool used[TOPOLOGY_ORDERS][MOLECULES_MOST_GROUPS];
+    bool open; ///< groups are those that kinds name, and counts may be missing
 };
 
 // Names -------------------------------------------------------------------------------------------
@@ -208,6 +211,44 @@ done:
     return status;
 }
 
+// Groups that kinds name
+// ---------------------------------------------------------------------------
+
+/// Add a group without a law of its own: the first one, of strength 0.
+static enum status open_group(struct molecules *molecules, struct json_object *object, int order,
+                              const char *name) {
+    struct molecules_group *group = &molecules->group[order][molecules->groups[order]];
+    for (int g = 0; g < molecules->groups[order]; g++)
+        if (strcmp(molecules->group[order][g].name, name) == 0)
+            return STATUS_OK;
+    if (molecules->groups[order] == MOLECULES_MOST_GROUPS || !mf_topology_is_name(name)) {
+        mf_json_fault(object, name,
+                      "there are at most %d groups, called by up to %d letters, digits, _ and -",
+                      MOLECULES_MOST_GROUPS, TOPOLOGY_NAME_SIZE - 1);
+        return STATUS_OK;
+    }
+    TRY(mf_bonded_create(&group->curve, mf_bonded_laws[order][0]));
+    snprintf(group->name, sizeof group->name, "%s", name);
+    molecules->groups[order]++;
+    return STATUS_OK;
+}
+
+static enum status open_groups(struct reading *reading) {
+    struct molecules *molecules = &reading->molecules->molecules;
+    struct json_object chain = mf_json_child(&reading->object, "chain", false);
+    for (int order = 0; order < TOPOLOGY_ORDERS; order++) {
+        struct json_object terms =
+            mf_json_child(&reading->object, mf_scene_group_keys[order], false);
+        const char *name =
+            chain.item ? mf_json_choice(&chain, mf_topology_order_names[order], NULL, "") : "";
+        if (name && name[0])
+            TRY(open_group(molecules, &chain, order, name));
+        for (size_t n = 0; terms.item && (name = mf_json_key(&terms, n)); n++)
+            TRY(open_group(molecules, &terms, order, name));
+    }
+    return STATUS_OK;
+}
+
 // Kinds -------------------------------------------------------------------------------------------
 
 static void warn_of(struct reading *reading) {
@@ -268,7 +309,12 @@ static enum status read_kind(struct reading *reading, struct json_object *molecu
         return STATUS_OK;
     reading->kind = (struct topology_kind){0};
     reading->told = (struct scene_molecule){.group = {-1, -1, -1}};
-    mf_json_fields(object, mf_scene_molecule_fields, &told);
+    struct field fields[MOLECULE_FIELDS];
+    memcpy(fields, mf_scene_molecule_fields, sizeof fields);
+    fields[0].required = !reading->open;
+    mf_json_fields(object, fields, &told);
+    if (reading->open)
+        TRY(open_groups(reading));
     snprintf(reading->kind.name, sizeof reading->kind.name, "%s", name);
     reading->kind.count = told.count;
     if (mf_json_has(object, "chain")) {
@@ -304,17 +350,9 @@ static void check_use(const struct reading *reading, struct json_object *scene) 
                           composition->name[type], (long long)composition->count[type]);
 }
 
-enum status mf_scene_molecules_read(struct scene_molecules *molecules, struct json_object *scene,
-                                    struct composition *composition, const struct units *units) {
-    static const double most = 1e8;
-    struct reading reading = {.molecules = molecules, .composition = composition};
-    const size_t faults = mf_json_fault_count(scene->document);
+static enum status read_kinds(struct reading *reading, struct json_object *scene, bool required) {
     const char *name;
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
-        TRY(mf_scene_groups_read(&molecules->molecules, order, scene, units));
-    if (mf_json_fault_count(scene->document) > faults)
-        return STATUS_OK; // that kinds lack such a group would mislead
-    struct json_object object = mf_json_child(scene, "molecules", false);
+    struct json_object object = mf_json_child(scene, "molecules", required);
     for (size_t n = 0; (name = mf_json_key(&object, n)); n++) {
         if (n >= TOPOLOGY_MOST_KINDS || !mf_topology_is_name(name)) {
             mf_json_fault(&object, name,
@@ -322,11 +360,30 @@ enum status mf_scene_molecules_read(struct scene_molecules *molecules, struct js
                           TOPOLOGY_MOST_KINDS, TOPOLOGY_NAME_SIZE - 1);
             mf_json_has(&object, name);
         } else {
-            TRY(read_kind(&reading, &object, name));
+            TRY(read_kind(reading, &object, name));
         }
     }
     if (object.item)
         mf_json_finish(&object);
+    return STATUS_OK;
+}
+
+enum status mf_scene_kinds_read(struct scene_molecules *molecules, struct json_object *scene,
+                                struct composition *composition) {
+    struct reading reading = {.molecules = molecules, .composition = composition, .open = true};
+    return read_kinds(&reading, scene, true);
+}
+
+enum status mf_scene_molecules_read(struct scene_molecules *molecules, struct json_object *scene,
+                                    struct composition *composition, const struct units *units) {
+    static const double most = 1e8;
+    struct reading reading = {.molecules = molecules, .composition = composition};
+    const size_t faults = mf_json_fault_count(scene->document);
+    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+        TRY(mf_scene_groups_read(&molecules->molecules, order, scene, units));
+    if (mf_json_fault_count(scene->document) > faults)
+        return STATUS_OK; // that kinds lack such a group would mislead
+    TRY(read_kinds(&reading, scene, false));
     if (mf_json_fault_count(scene->document) == faults)
         check_use(&reading, scene);
     if (mf_json_fault_count(scene->document) == faults &&
@@ -341,79 +398,4 @@ enum status mf_scene_molecules_read(struct scene_molecules *molecules, struct js
 void mf_scene_molecules_clear(struct scene_molecules *molecules) {
     mf_molecules_clear(&molecules->molecules);
     *molecules = (struct scene_molecules){0};
-}
-
-// Writing -----------------------------------------------------------------------------------------
-
-static void write_beads(const struct topology_kind *kind, const struct composition *composition,
-                        struct json_writer *writer) {
-    const char **names = mf_memory_zeroed((size_t)kind->beads, sizeof *names);
-    for (int k = 0; k < kind->beads && names; k++)
-        names[k] = composition->name[kind->type[k]];
-    mf_json_put_texts(writer, "beads", names, names ? (size_t)kind->beads : 0);
-    mf_memory_free(names);
-}
-
-static void write_chain(const struct molecules *molecules, const struct topology_kind *kind,
-                        const struct scene_molecule *told, const struct composition *composition,
-                        struct json_writer *writer) {
-    mf_json_begin(writer, "chain");
-    if (told->of_one_type) {
-        mf_json_put_text(writer, "type", composition->name[kind->type[0]]);
-        mf_json_put_integer(writer, "length", kind->beads);
-    } else {
-        write_beads(kind, composition, writer);
-    }
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
-        if (told->group[order] >= 0)
-            mf_json_put_text(writer, mf_topology_order_names[order],
-                             molecules->group[order][told->group[order]].name);
-    mf_json_end(writer);
-}
-
-/// The terms of an order by their groups, in the order in which they are there.
-static void write_terms(const struct molecules *molecules, const struct topology_kind *kind,
-                        int order, struct json_writer *writer) {
-    const size_t beads = (size_t)topology_beads(order);
-    int *rows = mf_memory_zeroed((size_t)kind->terms[order] * beads, sizeof *rows);
-    if (kind->terms[order] > 0)
-        mf_json_begin(writer, mf_scene_group_keys[order]);
-    for (int g = 0; g < molecules->groups[order] && kind->terms[order] > 0 && rows; g++) {
-        size_t count = 0;
-        for (int n = 0; n < kind->terms[order]; n++)
-            if (kind->term[order][n].group == g) {
-                for (size_t k = 0; k < beads; k++)
-                    rows[count * beads + k] = kind->term[order][n].bead[k] + 1;
-                count++;
-            }
-        if (count > 0)
-            mf_json_put_rows(writer, molecules->group[order][g].name, rows, count, beads);
-    }
-    if (kind->terms[order] > 0)
-        mf_json_end(writer);
-    mf_memory_free(rows);
-}
-
-void mf_scene_molecules_write(const struct scene_molecules *molecules,
-                              const struct composition *composition, struct json_writer *writer) {
-    const struct molecules *own = &molecules->molecules;
-    if (!scene_has_molecules(molecules))
-        return;
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
-        mf_scene_groups_write(own, order, writer);
-    mf_json_begin(writer, "molecules");
-    for (int k = 0; k < own->topology.kinds; k++) {
-        const struct topology_kind *kind = &own->topology.kind[k];
-        mf_json_begin(writer, kind->name);
-        mf_json_put_fields(writer, mf_scene_molecule_fields,
-                           &(struct told){kind->count, kind->exclude});
-        if (molecules->told[k].is_chain)
-            write_chain(own, kind, &molecules->told[k], composition, writer);
-        else
-            write_beads(kind, composition, writer);
-        for (int order = 0; order < TOPOLOGY_ORDERS && !molecules->told[k].is_chain; order++)
-            write_terms(own, kind, order, writer);
-        mf_json_end(writer);
-    }
-    mf_json_end(writer);
 }

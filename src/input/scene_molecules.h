@@ -37,6 +37,13 @@ extern const char *const mf_scene_group_keys[TOPOLOGY_ORDERS];
 enum status mf_scene_molecules_read(struct scene_molecules *molecules, struct json_object *scene,
                                     struct composition *composition,
                                     const struct units *units) MUST_USE;
+
+/// Read the kinds of `scene` alone, for what is measured: groups are those that the kinds name, and
+/// have a law of strength 0; a count may be left out and is then 0. The topology is not completed.
+/// @param[in,out] composition  types that are known; those of the beads are added
+/// Faults go to the document. Fails: NO_MEMORY.
+enum status mf_scene_kinds_read(struct scene_molecules *molecules, struct json_object *scene,
+                                struct composition *composition) MUST_USE;
 void mf_scene_molecules_clear(struct scene_molecules *molecules);
 
 /// Whether there are any.

@@ -15,6 +15,7 @@ void mf_frame_pairs_clear(struct frame_pairs *pairs) {
     mf_memory_free(pairs->type);
     mf_memory_free(pairs->molecule);
     mf_memory_free(pairs->counts);
+    mf_memory_free(pairs->within);
     mf_memory_free(pairs->first);
     mf_memory_free(pairs->second);
     *pairs = (struct frame_pairs){0};
@@ -35,6 +36,8 @@ static enum status reserve(struct frame_pairs *pairs, const struct frame_pairs_p
     NEW_ARRAY(pairs->type, find_beads(plan));
     NEW_ARRAY(pairs->molecule, find_beads(plan));
     NEW_ARRAY(pairs->counts, find_counts(plan));
+    if (plan->within)
+        NEW_ARRAY(pairs->within, find_counts(plan));
 done:
     return status;
 }
@@ -126,9 +129,21 @@ static void list_offsets(const struct work *work, size_t i, size_t offset[COMPOS
                        (work->plan->bins + 1);
 }
 
-/// Pairs of one molecule go where nobody looks.
+/// Where the pairs of two types, of beads in the order of cells, are counted.
+static size_t offset_of(const struct work *work, size_t i, size_t j) {
+    const struct composition *composition = &work->plan->composition;
+    if (!composition_is_mixed(composition))
+        return 0;
+    return (size_t)mf_composition_pair(composition, work->pairs->type[i], work->pairs->type[j]) *
+           (work->plan->bins + 1);
+}
+
+/// Pairs of one molecule go where nobody looks, or are counted apart.
 static void leave_out(const struct work *work, size_t i, size_t begin, size_t count, int32_t *bin) {
     const uint32_t *molecule = work->pairs->molecule + begin, own = work->pairs->molecule[i];
+    for (size_t k = 0; work->pairs->within && k < count; k++)
+        if (molecule[k] == own)
+            work->pairs->within[offset_of(work, i, begin + k) + (size_t)bin[k]]++;
     for (size_t k = 0; k < count; k++)
         bin[k] = molecule[k] == own ? (int32_t)work->plan->bins : bin[k];
 }
@@ -167,8 +182,35 @@ enum status mf_frame_pairs_count(struct frame_pairs *pairs, const struct frame_p
     struct work work = make_work(pairs, plan, plan->range, box);
     const struct frame_visitor visitor = {count_row, &work};
     memset(pairs->counts, 0, find_counts(plan) * sizeof *pairs->counts);
+    if (pairs->within)
+        memset(pairs->within, 0, find_counts(plan) * sizeof *pairs->within);
     mf_frame_grid_visit(&pairs->grid, &visitor);
     return STATUS_OK;
+}
+
+void mf_frame_pairs_exclude(struct frame_pairs *pairs, const struct frame_pairs_plan *plan,
+                            const struct frame_box *box, int32_t *const place[3],
+                            uint32_t (*excluded)[2], size_t count) {
+    const struct composition *composition = &plan->composition;
+    struct work work = make_work(pairs, plan, plan->range, box);
+    for (size_t n = 0; n < count; n++) {
+        const uint32_t i = excluded[n][0], j = excluded[n][1];
+        int32_t bin;
+        size_t offset = 0;
+        for (int d = 0; d < 3; d++) {
+            work.probe.own[d] = place[d][i];
+            work.probe.place[d] = &place[d][j];
+        }
+        find_bins(&work.probe, 1, &bin);
+        if (composition_is_mixed(composition))
+            offset = (size_t)mf_composition_pair(composition, mf_composition_type(composition, i),
+                                                 mf_composition_type(composition, j)) *
+                     (plan->bins + 1);
+        if ((size_t)bin < plan->bins)
+            pairs->within[offset + (size_t)bin]--;
+    }
+    for (size_t n = 0; n < find_counts(plan); n++)
+        pairs->within[n] += pairs->counts[n];
 }
 
 static enum status grow_array(uint32_t **array, size_t count, size_t room) {

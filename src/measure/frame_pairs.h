@@ -12,6 +12,7 @@ struct frame_pairs_plan {
     size_t bins;
     struct composition composition; ///< beads stand in the order of their types
     const uint32_t *molecule; ///< shape [beads]: pairs of one molecule are left out; NULL: none is
+    bool within;              ///< and counted apart
 };
 
 /// Memory of one thread, used again for every frame; all zero is none.
@@ -20,6 +21,7 @@ struct frame_pairs {
     int32_t *type;            ///< shape [beads], in the order of cells: of a mixture
     uint32_t *molecule;       ///< likewise, if there are such pairs
     uint64_t *counts;         ///< shape [pair types, bins + 1]; the last bin is of what is left out
+    uint64_t *within;         ///< the same of pairs of one molecule, if these are counted
     uint32_t *first, *second; ///< shape [near_count]: beads of pairs that are near
     size_t near_count, near_room;
 };
@@ -32,6 +34,13 @@ void mf_frame_pairs_clear(struct frame_pairs *pairs);
 /// Threads: one a struct frame_pairs. Tested: test_frame_pairs, against all images.
 enum status mf_frame_pairs_count(struct frame_pairs *pairs, const struct frame_pairs_plan *plan,
                                  const struct frame_box *box, int32_t *const place[3]) MUST_USE;
+
+/// Take pairs off those within molecules that were counted, and add to these the others: then
+/// pairs->within has all pairs but those. Tested: cli/test_measure_molecules.
+/// @param[in] excluded  shape [count, 2]: beads
+void mf_frame_pairs_exclude(struct frame_pairs *pairs, const struct frame_pairs_plan *plan,
+                            const struct frame_box *box, int32_t *const place[3],
+                            uint32_t (*excluded)[2], size_t count);
 
 /// Find the pairs nearer than `range`, of whatever types, into pairs->first and
 /// second. Fails: NO_MEMORY.

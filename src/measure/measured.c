@@ -64,11 +64,29 @@ done:
     return status;
 }
 
+/// The molecules that a file tells of: their pairs are counted apart.
+static enum status take_molecules(struct measured *measured) {
+    struct measured_molecules *const own = &measured->molecules;
+    if (measured->plan.molecules.molecules == NULL)
+        return STATUS_OK;
+    TRY(mf_measured_molecules_begin(own, &measured->plan.molecules, measured->mapping,
+                                    &measured->pairs.composition));
+    const struct topology *const topology = &own->molecules->topology;
+    for (size_t id = 0; id < topology->particles; id++)
+        measured->molecule[own->match.bead[id]] = topology->molecule[id];
+    measured->pairs.molecule = measured->molecule;
+    measured->pairs.within = true;
+    return STATUS_OK;
+}
+
+/// Which part of a type's pairs is looked at. What a file tells of molecules leaves out is taken as
+/// missing, as simulations have it.
 static enum status find_shares(struct measured *measured) {
     TRY(mf_frame_pairs_possible(&measured->pairs, measured->share));
     for (int pair = 0; pair < mf_composition_pairs(&measured->pairs.composition); pair++) {
         const double all = mf_composition_possible_pairs(&measured->pairs.composition, pair);
-        measured->share[pair] = measured->share[pair] > 0 ? measured->share[pair] / all : 1;
+        const bool counted = measured->share[pair] > 0 && !measured->pairs.within;
+        measured->share[pair] = counted ? measured->share[pair] / all : 1;
     }
     return STATUS_OK;
 }
@@ -113,6 +131,7 @@ enum status mf_measured_begin(struct measured *measured, const struct measured_p
     CHECK(mf_frame_box_find(&box, first));
     CHECK(find_composition(mapping, &measured->pairs.composition));
     CHECK(find_molecules(measured));
+    CHECK(take_molecules(measured));
     CHECK(find_shares(measured));
     CHECK(find_bins(measured, &box, first));
     plan_waves(measured, &box);
@@ -121,6 +140,11 @@ enum status mf_measured_begin(struct measured *measured, const struct measured_p
     const struct rdf_bins bins = {.width = measured->pairs.range / (double)measured->pairs.bins,
                                   .count = measured->pairs.bins};
     CHECK(mf_rdf_init_endless(&measured->rdf.counted, &bins, &cube, &measured->pairs.composition));
+    if (measured->molecules.molecules) {
+        CHECK(mf_rdf_init_endless(&measured->apart.counted, &bins, &cube,
+                                  &measured->pairs.composition));
+        measured->apart.counted.apart = &measured->molecules.molecules->topology;
+    }
 done:
     if (status != STATUS_OK)
         mf_measured_clear(measured);
@@ -144,6 +168,8 @@ void mf_measured_clear(struct measured *measured) {
     clear_slots(measured);
     mf_memory_free(measured->molecule);
     mf_rdf_clear(&measured->rdf.counted);
+    mf_rdf_clear(&measured->apart.counted);
+    mf_measured_molecules_clear(&measured->molecules);
     mf_structure_factor_clear(&measured->factor);
     mf_measured_motion_clear(&measured->motion);
     mf_series_clear(&measured->volume);
@@ -180,7 +206,11 @@ static enum status find_pairs(const struct measured *measured, size_t frame,
         TRY(mf_frame_box_check_range(&slot->box, &slot->beads, near, "the range of escape times"));
         TRY(mf_frame_pairs_find(&slot->pairs, &measured->pairs, near, &slot->box, slot->place));
     }
-    return mf_frame_pairs_count(&slot->pairs, &measured->pairs, &slot->box, slot->place);
+    TRY(mf_frame_pairs_count(&slot->pairs, &measured->pairs, &slot->box, slot->place));
+    if (measured->pairs.within)
+        mf_frame_pairs_exclude(&slot->pairs, &measured->pairs, &slot->box, slot->place,
+                               measured->molecules.excluded, measured->molecules.excluded_count);
+    return STATUS_OK;
 }
 
 static enum status find_waves(const struct measured *measured, struct measured_slot *slot) {
@@ -212,7 +242,11 @@ static void add_pairs(struct measured *measured, const struct measured_slot *slo
     double weight[COMPOSITION_MOST_PAIRS];
     for (size_t pair = 0; pair < rdf->pairs; pair++)
         weight[pair] = slot->box.volume / mf_box_volume(&rdf->box) / measured->share[pair];
-    mf_rdf_add(rdf, slot->pairs.counts, measured->pairs.bins + 1, weight);
+    const bool within = measured->pairs.within;
+    const size_t stride = measured->pairs.bins + 1;
+    mf_rdf_add(rdf, within ? slot->pairs.within : slot->pairs.counts, stride, weight);
+    if (within)
+        mf_rdf_add(&measured->apart.counted, slot->pairs.counts, stride, weight);
 }
 
 static enum status add_one(struct measured *measured, const struct measured_slot *slot) {
@@ -220,6 +254,7 @@ static enum status add_one(struct measured *measured, const struct measured_slot
     if (slot->waves.numbers)
         mf_structure_factor_add(&measured->factor, slot->waves.numbers);
     measured->frames++;
+    TRY(mf_measured_molecules_add(&measured->molecules, &slot->beads));
     TRY(mf_measured_motion_add(&measured->motion, &slot->beads, &slot->box, slot->place,
                                &slot->pairs));
     return mf_series_add(&measured->volume, slot->box.volume);
@@ -232,6 +267,15 @@ static enum status begin_motion(struct measured *measured, const struct trajecto
                                     first, &box);
 }
 
+/// Times are told of what is equally far apart in time.
+static enum status begin_molecules(struct measured *measured, const struct trajectory_frame *frames,
+                                   size_t count) {
+    const bool timed = count > 1 && !measured->plan.motion.leave_out;
+    const double interval = timed ? frames[1].time - frames[0].time : NAN;
+    TRY(mf_mapping_apply(measured->mapping, frames, &measured->slot[0].beads));
+    return mf_measured_molecules_start(&measured->molecules, &measured->slot[0].beads, interval);
+}
+
 enum status mf_measured_add(struct measured *measured, const struct trajectory_frame *frames,
                             size_t count) {
     struct batch batch = {measured, frames};
@@ -240,6 +284,8 @@ enum status mf_measured_add(struct measured *measured, const struct trajectory_f
     TRY(make_slots(measured, count));
     if (measured->frames == 0 && count > 1)
         TRY(begin_motion(measured, frames));
+    if (measured->frames == 0 && measured->molecules.molecules)
+        TRY(begin_molecules(measured, frames, count));
     TRY(mf_parallel_try(&tasks));
     for (size_t k = 0; k < count; k++)
         TRY(add_one(measured, &measured->slot[k]));

@@ -8,6 +8,7 @@
 
 #include "measure/frame_pairs.h"
 #include "measure/frame_waves.h"
+#include "measure/measured_molecules.h"
 #include "measure/measured_motion.h"
 #include "observe/rdf_observable.h"
 #include "trajectory/mapping.h"
@@ -18,6 +19,7 @@ struct measured_plan {
     double q_maximum; ///< of S(q) [1/nm]; NAN: 4π ρ^(1/3); 0: it is not measured
     int64_t waves;    ///< of one of its bins at most; 0: 10
     struct measured_motion_plan motion;
+    struct measured_molecules_plan molecules; ///< all zero: nobody tells of them
     int threads;
 };
 
@@ -35,7 +37,10 @@ struct measured {
         struct frame_waves waves;
     } * slot; ///< one for each frame of a batch
     size_t slots;
-    struct rdf_observed rdf;
+    struct rdf_observed rdf;   ///< with `molecules` of all pairs that they do not exclude, else of
+                               ///< beads of different residues or molecules
+    struct rdf_observed apart; ///< of beads of different molecules, with `molecules`
+    struct measured_molecules molecules;
     struct density_waves_plan waves;
     struct structure_factor factor;
     struct measured_motion motion;

@@ -3,17 +3,18 @@
 /// and p over its Jacobian, which is exp(−U/k_B T) up to a factor where a term stands alone:
 ///   r^(d−1) of lengths, (sin θ)^(d−2) of angles, 1 of dihedrals
 /// (V. Rühle et al., J. Chem. Theory Comput. 5, 3211 (2009), eqs. 5 to 8). Jacobians are integrated
-/// over the bins. Errors by the scatter of 20 blocks of time. Tested: test_molecules.
+/// over the bins. Errors by the scatter of blocks of time. Tested: test_molecules.
 #include "base/memory.h"
 #include "base/statistics.h"
 #include "forces/bonded.h"
 #include "forces/molecules.h"
 #include "io/data_table.h"
 #include "observe/measure.h"
+#include "observe/sample_blocks.h"
 
 #include <math.h>
 
-enum { BLOCKS = 20, COLUMNS = 3 };
+enum { COLUMNS = 3 };
 
 struct settings {
     int64_t bins;
@@ -22,7 +23,8 @@ struct settings {
 struct state {
     const struct molecules *molecules;
     int order, dimensions;
-    size_t bins, planned, samples, blocks;
+    size_t bins;
+    struct sample_blocks blocks;
     double low, width;                   ///< of the bins [λ] or [rad]
     size_t terms[MOLECULES_MOST_GROUPS]; ///< of each group
     double *counts;                      ///< shape [blocks, groups, bins]
@@ -60,18 +62,17 @@ static enum status begin(struct state *s, int order, const char *name,
     *s = (struct state){.molecules = molecules,
                         .order = order,
                         .dimensions = setup->box.dimensions,
-                        .bins = (size_t)settings->bins,
-                        .planned = (size_t)plan->samples};
+                        .bins = (size_t)settings->bins};
     const double high = order == TOPOLOGY_BOND ? longest_of(molecules) : M_PI;
     s->low = order == TOPOLOGY_DIHEDRAL ? -M_PI : 0;
     s->width = (high - s->low) / (double)s->bins;
-    s->blocks = s->planned < BLOCKS ? s->planned : BLOCKS;
+    CHECK(mf_sample_blocks_init(&s->blocks, (size_t)plan->samples));
     for (int k = 0; k < molecules->topology.kinds; k++) {
         const struct topology_kind *kind = &molecules->topology.kind[k];
         for (int t = 0; t < kind->terms[order]; t++)
             s->terms[kind->term[order][t].group] += (size_t)kind->count;
     }
-    NEW_ARRAY(s->counts, s->blocks * (size_t)molecules->groups[order] * s->bins);
+    NEW_ARRAY(s->counts, s->blocks.count * (size_t)molecules->groups[order] * s->bins);
 done:
     return status;
 }
@@ -79,6 +80,7 @@ done:
 static void clear(void *state) {
     struct state *s = state;
     mf_memory_free(s->counts);
+    mf_sample_blocks_clear(&s->blocks);
     *s = (struct state){0};
 }
 
@@ -110,8 +112,12 @@ static void count_term(const struct state *s, const struct particles *particles,
 static enum status sample(void *state, struct simulation *simulation) {
     struct state *s = state;
     const struct topology *topology = &s->molecules->topology;
-    const size_t block = s->samples++ * s->blocks / s->planned;
-    double *counts = s->counts + block * (size_t)s->molecules->groups[s->order] * s->bins;
+    const size_t row = (size_t)s->molecules->groups[s->order] * s->bins;
+    if (mf_sample_blocks_are_full(&s->blocks)) {
+        mf_sample_blocks_join(&s->blocks, s->counts, row);
+        mf_sample_blocks_double(&s->blocks);
+    }
+    double *counts = s->counts + mf_sample_blocks_take(&s->blocks) * row;
     for (int k = 0; k < topology->kinds; k++)
         for (int t = 0; t < topology->kind[k].terms[s->order]; t++) {
             const struct topology_term *term = &topology->kind[k].term[s->order][t];
@@ -123,10 +129,9 @@ static enum status sample(void *state, struct simulation *simulation) {
 
 static size_t spans(void *state, struct memory_span *spans) {
     struct state *s = state;
-    const size_t numbers = s->blocks * (size_t)s->molecules->groups[s->order] * s->bins;
-    spans[0] = (struct memory_span){&s->samples, sizeof s->samples};
-    spans[1] = (struct memory_span){s->counts, numbers * sizeof *s->counts};
-    return 2;
+    const size_t numbers = s->blocks.count * (size_t)s->molecules->groups[s->order] * s->bins;
+    spans[0] = (struct memory_span){s->counts, numbers * sizeof *s->counts};
+    return 1 + mf_sample_blocks_spans(&s->blocks, spans + 1);
 }
 
 // Results -----------------------------------------------------------------------------------------
@@ -142,20 +147,21 @@ static double jacobian(const struct state *s, size_t bin) {
 /// p, its error and p over the Jacobian with a largest value of 1; shape [COLUMNS, bins].
 static void find_columns(const struct state *s, int group, double unit, double *values) {
     const size_t groups = (size_t)s->molecules->groups[s->order];
+    const size_t whole = mf_sample_blocks_whole(&s->blocks);
+    const double terms = (double)s->terms[group];
     double largest = 0;
     for (size_t bin = 0; bin < s->bins; bin++) {
         struct running_mean mean = {0};
-        for (size_t block = 0; block < s->blocks; block++) {
-            // Samples of a block, as `sample` shares them out.
-            const size_t first = (block * s->planned + s->blocks - 1) / s->blocks;
-            const size_t last = ((block + 1) * s->planned + s->blocks - 1) / s->blocks;
-            const double all = (double)(last - first) * (double)s->terms[group];
-            mf_statistics_add(&mean,
-                              s->counts[(block * groups + (size_t)group) * s->bins + bin] / all);
+        double all = 0;
+        for (size_t block = 0; block < s->blocks.count; block++) {
+            const double counted = s->counts[(block * groups + (size_t)group) * s->bins + bin];
+            all += counted / ((double)s->blocks.taken * terms);
+            if (block < whole)
+                mf_statistics_add(&mean, counted / (s->blocks.samples[block] * terms));
         }
-        values[bin] = mean.mean / (unit * s->width);
+        values[bin] = all / (unit * s->width);
         values[s->bins + bin] = mf_statistics_standard_error(&mean) / (unit * s->width);
-        values[2 * s->bins + bin] = mean.mean / jacobian(s, bin);
+        values[2 * s->bins + bin] = all / jacobian(s, bin);
         largest = fmax(largest, values[2 * s->bins + bin]);
     }
     for (size_t bin = 0; bin < s->bins && largest > 0; bin++)

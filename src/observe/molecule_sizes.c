@@ -4,17 +4,19 @@
 ///   bead,
 /// and the correlation of the end-to-end vector, ⟨R_e(t) · R_e(0)⟩/⟨R_e²⟩. Molecules are made whole
 /// along their bonds. Errors of the means see the correlation of the samples; those of the
-/// correlation are of 20 blocks of time. Tested: test_molecule_sizes, physics/test_molecules.
+/// correlation are of blocks of time. Tested: test_molecule_sizes, physics/test_molecules.
 #include "base/memory.h"
 #include "base/number_text.h"
 #include "base/statistics.h"
 #include "forces/molecules.h"
 #include "io/data_table.h"
 #include "observe/measure.h"
+#include "observe/sample_blocks.h"
 
 #include <math.h>
+#include <string.h>
 
-enum { BLOCKS = 20 };
+enum { FIRST_ROOM = 256 }; ///< for samples, if their number is not known
 
 struct settings {
     int64_t lags;
@@ -22,10 +24,11 @@ struct settings {
 
 struct state {
     const struct molecules *molecules;
-    size_t planned, samples, blocks, lags, every;
+    struct sample_blocks blocks;
+    size_t room, lags, every; ///< room: for samples
     size_t most_beads;
     double begin, time_step; ///< step of the first sample, Δt
-    double *gyration, *end;  ///< shape [kinds, planned]: means over the molecules [λ²]
+    double *gyration, *end;  ///< shape [kinds, room]: means over the molecules [λ²]
     double *ends;            ///< shape [lags + 1, molecules, 3]: the last end-to-end vectors [λ]
     double *products;        ///< shape [blocks, kinds, lags + 1]: sums of R(t)·R(0) [λ²]
     double *origins;         ///< shape [blocks, lags + 1]: samples in them
@@ -42,28 +45,6 @@ static const struct field fields[] = {
 };
 
 // Whole molecules ---------------------------------------------------------------------------------
-
-/// An order in which each bead follows one that it is bonded to, if there is one.
-static void plan_walk(const struct topology_kind *kind, int *order, int *parent) {
-    int placed = 0;
-    for (int bead = 0; bead < kind->beads; bead++)
-        parent[bead] = -2; // not yet
-    while (placed < kind->beads) {
-        int next = -1, from = -1;
-        for (int n = 0; n < kind->terms[TOPOLOGY_BOND] && next < 0; n++) {
-            const int *pair = kind->term[TOPOLOGY_BOND][n].bead;
-            for (int k = 0; k < 2 && next < 0; k++)
-                if (parent[pair[k]] > -2 && parent[pair[1 - k]] == -2) {
-                    from = pair[k];
-                    next = pair[1 - k];
-                }
-        }
-        for (int bead = 0; bead < kind->beads && next < 0; bead++)
-            next = parent[bead] == -2 ? bead : -1;
-        parent[next] = from;
-        order[placed++] = next;
-    }
-}
 
 /// Places of a molecule's beads relative to its first, along its bonds.
 static void make_whole(const struct state *s, const struct particles *particles, int k, int64_t m) {
@@ -115,25 +96,26 @@ static enum status begin(void *state, const void *settings, const struct simulat
     const size_t kinds = (size_t)topology->kinds, planned = (size_t)plan->samples;
     const size_t lags = (size_t)((const struct settings *)settings)->lags;
     *s = (struct state){.molecules = molecules,
-                        .planned = planned,
-                        .blocks = planned < BLOCKS ? planned : BLOCKS,
-                        .lags = lags < planned ? lags : planned - 1,
+                        .room = planned > 0 ? planned : FIRST_ROOM,
+                        .lags = planned == 0 || lags < planned ? lags : planned - 1,
                         .every = (size_t)plan->every,
                         .begin = (double)plan->equilibration,
                         .time_step = setup->time_step};
     for (size_t k = 0; k < kinds; k++)
         if ((size_t)topology->kind[k].beads > s->most_beads)
             s->most_beads = (size_t)topology->kind[k].beads;
-    NEW_ARRAY(s->gyration, kinds * planned);
-    NEW_ARRAY(s->end, kinds * planned);
+    CHECK(mf_sample_blocks_init(&s->blocks, planned));
+    NEW_ARRAY(s->gyration, kinds * s->room);
+    NEW_ARRAY(s->end, kinds * s->room);
     NEW_ARRAY(s->ends, 3 * (s->lags + 1) * (size_t)topology->molecules);
-    NEW_ARRAY(s->products, s->blocks * kinds * (s->lags + 1));
-    NEW_ARRAY(s->origins, s->blocks * (s->lags + 1));
+    NEW_ARRAY(s->products, s->blocks.count * kinds * (s->lags + 1));
+    NEW_ARRAY(s->origins, s->blocks.count * (s->lags + 1));
     NEW_ARRAY(s->place, s->most_beads);
     NEW_ARRAY(s->parent, kinds * s->most_beads);
     NEW_ARRAY(s->order, kinds * s->most_beads);
     for (size_t k = 0; k < kinds; k++)
-        plan_walk(&topology->kind[k], s->order + k * s->most_beads, s->parent + k * s->most_beads);
+        mf_topology_walk(&topology->kind[k], s->order + k * s->most_beads,
+                         s->parent + k * s->most_beads);
 done:
     return status;
 }
@@ -148,6 +130,7 @@ static void clear(void *state) {
     mf_memory_free(s->place);
     mf_memory_free(s->parent);
     mf_memory_free(s->order);
+    mf_sample_blocks_clear(&s->blocks);
     *s = (struct state){0};
 }
 
@@ -155,13 +138,44 @@ static double *vectors_of(const struct state *s, size_t sample) {
     return s->ends + 3 * (sample % (s->lags + 1)) * (size_t)s->molecules->topology.molecules;
 }
 
-/// Products of this sample's end-to-end vectors with those of the samples before.
-static void correlate(struct state *s) {
+/// Twice the room for means of samples.
+static enum status grow(struct state *s, double **series) {
+    enum status status = STATUS_OK;
+    double *larger = NULL;
+    NEW_ARRAY(larger, 2 * s->room * (size_t)s->molecules->topology.kinds);
+    for (int k = 0; k < s->molecules->topology.kinds; k++)
+        memcpy(larger + 2 * (size_t)k * s->room, *series + (size_t)k * s->room,
+               s->room * sizeof *larger);
+    mf_memory_free(*series);
+    *series = larger;
+done:
+    return status;
+}
+
+/// Make room for a sample whose number was not planned; returns its block.
+static enum status begin_sample(struct state *s, size_t *block) {
+    const size_t row = s->lags + 1;
+    if (s->blocks.taken == s->room) {
+        TRY(grow(s, &s->gyration));
+        TRY(grow(s, &s->end));
+        s->room *= 2;
+    }
+    if (mf_sample_blocks_are_full(&s->blocks)) {
+        mf_sample_blocks_join(&s->blocks, s->products, (size_t)s->molecules->topology.kinds * row);
+        mf_sample_blocks_join(&s->blocks, s->origins, row);
+        mf_sample_blocks_double(&s->blocks);
+    }
+    *block = mf_sample_blocks_take(&s->blocks);
+    return STATUS_OK;
+}
+
+/// Products of a sample's end-to-end vectors with those of the samples before.
+static void correlate(struct state *s, size_t sample, size_t block) {
     const struct topology *topology = &s->molecules->topology;
-    const size_t block = s->samples * s->blocks / s->planned, row = s->lags + 1;
-    const double *now = vectors_of(s, s->samples);
-    for (size_t lag = 0; lag <= s->lags && lag <= s->samples; lag++) {
-        const double *then = vectors_of(s, s->samples - lag);
+    const size_t row = s->lags + 1;
+    const double *now = vectors_of(s, sample);
+    for (size_t lag = 0; lag <= s->lags && lag <= sample; lag++) {
+        const double *then = vectors_of(s, sample - lag);
         for (int k = 0; k < topology->kinds; k++) {
             const struct topology_kind *kind = &topology->kind[k];
             const size_t first = 3 * (size_t)kind->first, last = first + 3 * (size_t)kind->count;
@@ -178,7 +192,10 @@ static void correlate(struct state *s) {
 static enum status sample(void *state, struct simulation *simulation) {
     struct state *s = state;
     const struct topology *topology = &s->molecules->topology;
-    double *vectors = vectors_of(s, s->samples);
+    const size_t number = s->blocks.taken;
+    double *vectors = vectors_of(s, number);
+    size_t block;
+    TRY(begin_sample(s, &block));
     for (int k = 0; k < topology->kinds; k++) {
         const struct topology_kind *kind = &topology->kind[k];
         double gyration = 0, end = 0;
@@ -191,11 +208,10 @@ static enum status sample(void *state, struct simulation *simulation) {
                 end += vector[d] * vector[d];
             }
         }
-        s->gyration[(size_t)k * s->planned + s->samples] = gyration / (double)kind->count;
-        s->end[(size_t)k * s->planned + s->samples] = end / (double)kind->count;
+        s->gyration[(size_t)k * s->room + number] = gyration / (double)kind->count;
+        s->end[(size_t)k * s->room + number] = end / (double)kind->count;
     }
-    correlate(s);
-    s->samples++;
+    correlate(s, number, block);
     return STATUS_OK;
 }
 
@@ -203,13 +219,13 @@ static size_t spans(void *state, struct memory_span *spans) {
     struct state *s = state;
     const size_t kinds = (size_t)s->molecules->topology.kinds, row = s->lags + 1;
     const size_t vectors = 3 * row * (size_t)s->molecules->topology.molecules;
-    spans[0] = (struct memory_span){&s->samples, sizeof s->samples};
-    spans[1] = (struct memory_span){s->gyration, kinds * s->planned * sizeof *s->gyration};
-    spans[2] = (struct memory_span){s->end, kinds * s->planned * sizeof *s->end};
-    spans[3] = (struct memory_span){s->ends, vectors * sizeof *s->ends};
-    spans[4] = (struct memory_span){s->products, s->blocks * kinds * row * sizeof *s->products};
-    spans[5] = (struct memory_span){s->origins, s->blocks * row * sizeof *s->origins};
-    return 6;
+    const size_t blocks = s->blocks.count;
+    spans[0] = (struct memory_span){s->gyration, kinds * s->room * sizeof *s->gyration};
+    spans[1] = (struct memory_span){s->end, kinds * s->room * sizeof *s->end};
+    spans[2] = (struct memory_span){s->ends, vectors * sizeof *s->ends};
+    spans[3] = (struct memory_span){s->products, blocks * kinds * row * sizeof *s->products};
+    spans[4] = (struct memory_span){s->origins, blocks * row * sizeof *s->origins};
+    return 5 + mf_sample_blocks_spans(&s->blocks, spans + 5);
 }
 
 // Results -----------------------------------------------------------------------------------------
@@ -224,8 +240,8 @@ static enum status write_sizes(const struct state *s, const struct observable_re
     char names[MOST_COLUMNS][HEAD_SIZE], path[OUTPUT_PATH_SIZE];
     double *time = NULL;
     size_t n = 0;
-    NEW_ARRAY(time, s->samples);
-    for (size_t k = 0; k < s->samples; k++)
+    NEW_ARRAY(time, s->blocks.taken);
+    for (size_t k = 0; k < s->blocks.taken; k++)
         time[k] = (s->begin + (double)((k + 1) * s->every)) * s->time_step;
     columns[n++] = (struct data_column){"time[tau]", time, NULL};
     for (int k = 0; k < topology->kinds; k++)
@@ -233,11 +249,11 @@ static enum status write_sizes(const struct state *s, const struct observable_re
             const double *series = which == 0 ? s->gyration : s->end;
             snprintf(names[n], HEAD_SIZE, "%s_%s[lambda^2]", which == 0 ? "gyration" : "end",
                      topology->kind[k].name);
-            columns[n] = (struct data_column){names[n], series + (size_t)k * s->planned, "%.8g"};
+            columns[n] = (struct data_column){names[n], series + (size_t)k * s->room, "%.8g"};
             n++;
         }
     mf_observable_file(results, "molecule_sizes.tsv", path);
-    CHECK(mf_data_table_write_in(path, results->units, NULL, columns, n, s->samples));
+    CHECK(mf_data_table_write_in(path, results->units, NULL, columns, n, s->blocks.taken));
 done:
     mf_memory_free(time);
     return status;
@@ -247,20 +263,23 @@ done:
 static void find_correlation(const struct state *s, int k, double *values) {
     const size_t kinds = (size_t)s->molecules->topology.kinds, row = s->lags + 1;
     double square = 0, samples = 0;
-    for (size_t block = 0; block < s->blocks; block++) {
+    for (size_t block = 0; block < s->blocks.count; block++) {
         square += s->products[(block * kinds + (size_t)k) * row];
         samples += s->origins[block * row];
     }
     square /= samples;
     for (size_t lag = 0; lag < row; lag++) {
         struct running_mean mean = {0};
-        for (size_t block = 0; block < s->blocks; block++) {
+        double all = 0, of_all = 0;
+        for (size_t block = 0; block < s->blocks.count; block++) {
             const double origins = s->origins[block * row + lag];
-            if (origins > 0)
-                mf_statistics_add(&mean, s->products[(block * kinds + (size_t)k) * row + lag] /
-                                             (origins * square));
+            const double sum = s->products[(block * kinds + (size_t)k) * row + lag] / square;
+            all += sum;
+            of_all += origins;
+            if (origins > 0 && block < mf_sample_blocks_whole(&s->blocks))
+                mf_statistics_add(&mean, sum / origins);
         }
-        values[lag] = mean.mean;
+        values[lag] = of_all > 0 ? all / of_all : NAN;
         values[row + lag] = mf_statistics_standard_error(&mean);
     }
     mf_statistics_forget_errors(values + row, row);
@@ -271,7 +290,7 @@ static enum status write_correlation(const struct state *s,
                                      const struct observable_results *results) {
     enum status status = STATUS_OK;
     const struct topology *topology = &s->molecules->topology;
-    const size_t row = s->lags + 1;
+    const size_t row = s->lags + 1, rows = row < s->blocks.taken ? row : s->blocks.taken;
     struct data_column columns[MOST_COLUMNS];
     char names[MOST_COLUMNS][HEAD_SIZE], path[OUTPUT_PATH_SIZE];
     double *values = NULL;
@@ -292,7 +311,7 @@ static enum status write_correlation(const struct state *s,
         }
     }
     mf_observable_file(results, "end_to_end.tsv", path);
-    CHECK(mf_data_table_write_in(path, results->units, NULL, columns, n, row));
+    CHECK(mf_data_table_write_in(path, results->units, NULL, columns, n, rows));
 done:
     mf_memory_free(values);
     return status;
@@ -304,12 +323,12 @@ static enum status write(const void *state, const struct observable_results *res
 }
 
 static double mean_of(const struct state *s, const double *series, int k, double *error) {
-    const double *own = series + (size_t)k * s->planned;
+    const double *own = series + (size_t)k * s->room;
     double sum = 0;
-    for (size_t n = 0; n < s->samples; n++)
+    for (size_t n = 0; n < s->blocks.taken; n++)
         sum += own[n];
-    *error = mf_statistics_correlated_error(own, s->samples, 1);
-    return sum / (double)s->samples;
+    *error = mf_statistics_correlated_error(own, s->blocks.taken, 1);
+    return sum / (double)s->blocks.taken;
 }
 
 static void put(const void *state, const struct observable_results *results,

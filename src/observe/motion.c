@@ -52,13 +52,13 @@ done:
     return status;
 }
 
-enum status mf_motion_init(struct motion *motion, const struct motion_plan *plan,
-                           const struct simulation *simulation, int64_t begin, int64_t steps) {
+enum status mf_motion_init_points(struct motion *motion, const struct motion_plan *plan,
+                                  const struct simulation *simulation, size_t count, int64_t begin,
+                                  int64_t steps) {
     *motion = (struct motion){.plan = *plan,
                               .dimensions = simulation->setup.box.dimensions,
-                              .count = simulation->particles.count,
+                              .count = count,
                               .time_step = simulation->setup.time_step,
-                              .flies = !simulation_is_overdamped(&simulation->setup),
                               .together = keeps_momentum(&simulation->setup),
                               .begin = begin};
     const size_t origins = complete_origins(plan, (size_t)(steps / plan->every));
@@ -72,6 +72,13 @@ enum status mf_motion_init(struct motion *motion, const struct motion_plan *plan
     motion->each = (origins + MOST_BLOCKS - 1) / MOST_BLOCKS;
     motion->blocks = origins / motion->each;
     return allocate(motion);
+}
+
+enum status mf_motion_init(struct motion *motion, const struct motion_plan *plan,
+                           const struct simulation *simulation, int64_t begin, int64_t steps) {
+    TRY(mf_motion_init_points(motion, plan, simulation, simulation->particles.count, begin, steps));
+    motion->flies = !simulation_is_overdamped(&simulation->setup);
+    return STATUS_OK;
 }
 
 enum status mf_motion_init_endless(struct motion *motion, const struct motion_plan *plan,

@@ -59,6 +59,13 @@ enum status mf_motion_init(struct motion *motion, const struct motion_plan *plan
                            const struct simulation *simulation, int64_t begin,
                            int64_t steps) MUST_USE;
 
+/// The same for `count` points whose samples others take (mf_motion_add): they have no velocities.
+/// `together` tells whether their positions are to be relative to the centre of mass of all
+/// particles. Fails: as mf_motion_init.
+enum status mf_motion_init_points(struct motion *motion, const struct motion_plan *plan,
+                                  const struct simulation *simulation, size_t count, int64_t begin,
+                                  int64_t steps) MUST_USE;
+
 /// Prepare for samples that others take (mf_motion_add), `interval` apart, as many as there will
 /// be, of particles in three dimensions; `flies` if they come with velocities. The plan's `every`
 /// is

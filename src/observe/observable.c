@@ -9,7 +9,7 @@
 extern const struct observable mf_structure_factor, mf_snapshots, mf_polarity_observable;
 extern const struct observable mf_clusters, mf_local_density, mf_collisions;
 extern const struct observable mf_bonded_lengths, mf_bonded_angles, mf_bonded_dihedrals;
-extern const struct observable mf_molecule_sizes, mf_rdf_intermolecular;
+extern const struct observable mf_molecule_sizes, mf_molecule_motion, mf_rdf_intermolecular;
 
 const struct observable *const mf_observables[] = {
     &mf_rdf_observable,
@@ -30,6 +30,7 @@ const struct observable *const mf_observables[] = {
     &mf_bonded_angles,
     &mf_bonded_dihedrals,
     &mf_molecule_sizes,
+    &mf_molecule_motion,
     &mf_rdf_intermolecular,
     NULL,
 };

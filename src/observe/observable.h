@@ -23,7 +23,7 @@ struct observable_use;
 /// The script that draws all columns of the first file but errors, and what ends with _boltzmann.
 #define OBSERVABLE_FIGURE_OF_GROUPS "groups"
 
-enum { OBSERVABLES_MOST = 24, OBSERVABLE_MOST_SPANS = 8 };
+enum { OBSERVABLES_MOST = 24, OBSERVABLE_MOST_SPANS = 80 };
 
 /// Where and of what results are written.
 struct observable_results {

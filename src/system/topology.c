@@ -131,6 +131,18 @@ done:
     return status;
 }
 
+enum status mf_topology_count_excluded(const struct topology_kind *kind, int exclude,
+                                       size_t *count) {
+    struct topology_kind other = *kind;
+    other.exclude = exclude;
+    other.near = other.near_start = NULL;
+    const enum status status = find_near(&other);
+    *count = status == STATUS_OK ? (size_t)other.near_start[kind->beads] : 0;
+    mf_memory_free(other.near);
+    mf_memory_free(other.near_start);
+    return status;
+}
+
 // Numbers of beads --------------------------------------------------------------------------------
 
 /// Ids of a kind's beads, given the next one of each type, which go on.
@@ -203,6 +215,27 @@ enum status mf_topology_complete(struct topology *topology, const struct composi
     enter_excluded(topology);
 done:
     return status;
+}
+
+void mf_topology_walk(const struct topology_kind *kind, int *order, int *parent) {
+    int placed = 0;
+    for (int bead = 0; bead < kind->beads; bead++)
+        parent[bead] = -2; // not yet
+    while (placed < kind->beads) {
+        int next = -1, from = -1;
+        for (int n = 0; n < kind->terms[TOPOLOGY_BOND] && next < 0; n++) {
+            const int *pair = kind->term[TOPOLOGY_BOND][n].bead;
+            for (int k = 0; k < 2 && next < 0; k++)
+                if (parent[pair[k]] > -2 && parent[pair[1 - k]] == -2) {
+                    from = pair[k];
+                    next = pair[1 - k];
+                }
+        }
+        for (int bead = 0; bead < kind->beads && next < 0; bead++)
+            next = parent[bead] == -2 ? bead : -1;
+        parent[next] = from;
+        order[placed++] = next;
+    }
 }
 
 void mf_topology_kind_clear(struct topology_kind *kind) {

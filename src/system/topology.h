@@ -76,10 +76,20 @@ enum status mf_topology_check(const struct topology_kind *kind) MUST_USE;
 /// @param[out] order  of the term
 const struct topology_term *mf_topology_unbonded(const struct topology_kind *kind, int *order);
 
+/// How many beads are excluded from pairs with each bead of a kind, in all, if pairs at most
+/// `exclude` bonds apart are. Fails: NO_MEMORY. Tested: test_topology.
+enum status mf_topology_count_excluded(const struct topology_kind *kind, int exclude,
+                                       size_t *count) MUST_USE;
+
 /// Number the beads of all kinds and find what they exclude. The composition holds all beads, those
 /// of single ones too. Fails: NO_MEMORY. Tested: test_topology.
 enum status mf_topology_complete(struct topology *topology,
                                  const struct composition *composition) MUST_USE;
+
+/// An order in which a kind's beads are placed so that each follows one that it is bonded to, if
+/// there is one. @param[out] order, parent  shape [beads]: the bead that is placed as number n; of
+/// each bead the one before it, or −1
+void mf_topology_walk(const struct topology_kind *kind, int *order, int *parent);
 
 /// Free a topology, complete or not; a zeroed one is fine.
 void mf_topology_clear(struct topology *topology);

@@ -97,6 +97,22 @@ void mf_frame_reciprocal(const struct trajectory_frame *frame, double reciprocal
 
 enum { REASON_SIZE = 1024 };
 
+void mf_frame_step_to(const struct trajectory_frame *frame, double reciprocal[3][3],
+                      const double position[3], double place[3]) {
+    double difference[3];
+    for (int d = 0; d < 3; d++)
+        difference[d] = position[d] - place[d];
+    for (int i = 2; i >= 0; i--) {
+        const double *const row = reciprocal[i];
+        const double images =
+            rint(difference[0] * row[0] + difference[1] * row[1] + difference[2] * row[2]);
+        for (int d = 0; images != 0 && d < 3; d++)
+            difference[d] -= images * frame->box[i][d];
+    }
+    for (int d = 0; d < 3; d++)
+        place[d] += difference[d];
+}
+
 enum status mf_frame_fail_line(const struct trajectory_frame *frame, const char *at,
                                const char *format, ...) {
     char reason[REASON_SIZE];

@@ -50,6 +50,11 @@ void mf_frame_set_box(struct trajectory_frame *frame, const double box[3][3]);
 /// its fraction of that vector of the box. 0 for those that are not periodic.
 void mf_frame_reciprocal(const struct trajectory_frame *frame, double reciprocal[3][3]);
 
+/// place = the image of `position` nearest to `place`, given mf_frame_reciprocal: right if it is
+/// nearer than half the least height of the box.
+void mf_frame_step_to(const struct trajectory_frame *frame, double reciprocal[3][3],
+                      const double position[3], double place[3]);
+
 /// BAD_INPUT for a place in a frame of text, whose lines end with NUL: "file:line: frame 3: …".
 enum status mf_frame_fail_line(const struct trajectory_frame *frame, const char *at,
                                const char *format, ...) __attribute__((format(printf, 3, 4)));

@@ -30,6 +30,71 @@ done:
     return status;
 }
 
+/// The type of an atom; `count` if it has none.
+static size_t type_of(const struct structure_atom *atom, const char *const *types, size_t count) {
+    for (size_t type = 0; type < count; type++)
+        if (strcmp(types[type], atom->name) == 0)
+            return type;
+    return atom->type >= 1 && (uint64_t)atom->type <= count ? (size_t)atom->type - 1 : count;
+}
+
+static enum status take_atoms(struct mapping *mapping, const struct structure *structure,
+                              const char *const *types, const char *file) {
+    for (size_t k = 0; k < structure->atoms; k++) {
+        const struct structure_atom *const atom = &structure->atom[k];
+        const size_t type = type_of(atom, types, mapping->types);
+        if (type == mapping->types)
+            return mf_status_fail(STATUS_BAD_INPUT,
+                                  "%s: no type is called as atom %zu, \"%s\"; a map (--map) makes "
+                                  "beads of atoms",
+                                  file, k + 1, atom->name);
+        mapping->atom[k] = k;
+        mapping->weight[k] = 1;
+        mapping->bead[mapping->beads++] =
+            (struct mapping_bead){.first = k,
+                                  .count = 1,
+                                  .type = type,
+                                  .molecule = structure->residues ? atom->residue : k,
+                                  .mass = atom->mass};
+    }
+    return STATUS_OK;
+}
+
+/// Each type has a bead, the beads being in their order.
+static enum status check_types(const struct mapping *mapping, const char *file) {
+    size_t k = 0;
+    for (size_t type = 0; type < mapping->types; type++) {
+        const size_t begin = k;
+        while (k < mapping->beads && mapping->bead[k].type == type)
+            k++;
+        if (k == begin)
+            return mf_status_fail(STATUS_BAD_INPUT, "%s: there is no atom of the type \"%s\"", file,
+                                  mapping->type_name[type]);
+    }
+    return STATUS_OK;
+}
+
+enum status mf_mapping_init_atoms(struct mapping *mapping, const struct structure *structure,
+                                  const char *const *types, size_t count, const char *file) {
+    enum status status = STATUS_OK;
+    *mapping = (struct mapping){.atoms = structure->atoms, .types = count};
+    NEW_ARRAY(mapping->type_name, count);
+    NEW_ARRAY(mapping->bead, structure->atoms);
+    NEW_ARRAY(mapping->atom, structure->atoms);
+    NEW_ARRAY(mapping->weight, structure->atoms);
+    for (size_t type = 0; type < count; type++)
+        snprintf(mapping->type_name[type], STRUCTURE_NAME, "%.*s", STRUCTURE_NAME - 1, types[type]);
+    CHECK(take_atoms(mapping, structure, types, file));
+    qsort(mapping->bead, mapping->beads, sizeof *mapping->bead, by_type);
+    CHECK(check_types(mapping, file));
+    mapping->broken = structure->residues > 0 && structure->residues < structure->atoms;
+    CHECK(mf_mapping_build_notes(mapping));
+done:
+    if (status != STATUS_OK)
+        mf_mapping_clear(mapping);
+    return status;
+}
+
 void mf_mapping_clear(struct mapping *mapping) {
     mf_memory_free(mapping->type_name);
     mf_memory_free(mapping->bead);
@@ -37,23 +102,6 @@ void mf_mapping_clear(struct mapping *mapping) {
     mf_memory_free(mapping->weight);
     mf_source_free(&mapping->notes);
     *mapping = (struct mapping){0};
-}
-
-/// place = the image of `position` nearest to `place`.
-static void step_to(const struct trajectory_frame *frame, double reciprocal[3][3],
-                    const double position[3], double place[3]) {
-    double difference[3];
-    for (int d = 0; d < 3; d++)
-        difference[d] = position[d] - place[d];
-    for (int i = 2; i >= 0; i--) {
-        const double *const row = reciprocal[i];
-        const double images =
-            rint(difference[0] * row[0] + difference[1] * row[1] + difference[2] * row[2]);
-        for (int d = 0; images != 0 && d < 3; d++)
-            difference[d] -= images * frame->box[i][d];
-    }
-    for (int d = 0; d < 3; d++)
-        place[d] += difference[d];
 }
 
 static void copy_surroundings(const struct trajectory_frame *frame,
@@ -83,7 +131,7 @@ enum status mf_mapping_apply(const struct mapping *mapping, const struct traject
         double place[3], centre[3] = {0}, velocity[3] = {0};
         memcpy(place, frame->position[atom[0]], sizeof place);
         for (size_t i = 0; i < bead->count; i++) {
-            step_to(frame, reciprocal, frame->position[atom[i]], place);
+            mf_frame_step_to(frame, reciprocal, frame->position[atom[i]], place);
             for (int d = 0; d < 3; d++) {
                 centre[d] += weight[i] * place[d];
                 velocity[d] += frame->has_velocities ? weight[i] * frame->velocity[atom[i]][d] : 0;

@@ -170,6 +170,14 @@ static void put_masses(const struct measure_result *result, struct json_writer *
     mf_json_end(writer);
 }
 
+static void put_molecules(const struct measure_result *result, struct json_writer *writer) {
+    const struct observable_results results = {.units = &result->units};
+    const struct observable_use *use = result->measured->molecules.use;
+    for (; use->observable; use++)
+        if (use->observable->put)
+            use->observable->put(use->state, &results, writer);
+}
+
 static enum status write_summary(const struct measure_result *result) {
     struct json_writer *writer = mf_json_writer_create();
     mf_json_put_text(writer, "status",
@@ -182,6 +190,7 @@ static enum status write_summary(const struct measure_result *result) {
     put_masses(result, writer);
     put_density(result, writer);
     put_motion(result, writer);
+    put_molecules(result, writer);
     const enum status status = put_kirkwood_buff(result, writer);
     if (status != STATUS_OK) {
         mf_json_writer_free(writer);

@@ -2,6 +2,7 @@
 #include "work/measure_run.h"
 
 #include "base/number_text.h"
+#include "input/molecules_file.h"
 #include "io/units.h"
 #include "report/progress.h"
 #include "work/measure_output.h"
@@ -15,6 +16,8 @@ struct run {
     struct run_folder folder;
     struct input_files inputs;
     struct trajectory structure;
+    struct scene_molecules molecules;
+    struct composition types; ///< of their beads
     struct mapping mapping;
     struct frames frames;
     struct measured measured;
@@ -27,6 +30,8 @@ static enum status collect_inputs(struct run *run) {
         TRY(mf_input_files_add(&run->inputs, request->frames.file[k]));
     if (request->structure)
         TRY(mf_input_files_add(&run->inputs, request->structure));
+    if (request->molecules)
+        TRY(mf_input_files_add(&run->inputs, request->molecules));
     return request->map ? mf_input_files_add(&run->inputs, request->map) : STATUS_OK;
 }
 
@@ -44,17 +49,32 @@ static void say_lines(struct progress *progress, const struct bytes *notes) {
     }
 }
 
-/// What the atoms are, and which of them are beads.
-static enum status find_beads(struct run *run) {
+/// Beads are atoms whose types the molecules' file names.
+static enum status take_atoms(struct run *run) {
+    const char *types[COMPOSITION_MOST_TYPES];
+    for (int type = 0; type < run->types.types; type++)
+        types[type] = run->types.name[type];
+    return mf_mapping_init_atoms(&run->mapping, &run->structure.structure, types,
+                                 (size_t)run->types.types, run->request->molecules);
+}
+
+/// Beads are what a map makes of atoms, or one a residue.
+static enum status map_atoms(struct run *run) {
     struct mapping_plan plan;
     TRY(run->request->map ? mf_mapping_plan_read(&plan, run->request->map)
                           : mf_mapping_plan_default(&plan));
-    enum status status =
-        mf_trajectory_open(&run->structure, structure_file(run), &run->request->frames.options);
-    if (status == STATUS_OK)
-        status = mf_mapping_init(&run->mapping, &plan, &run->structure.structure);
+    const enum status status = mf_mapping_init(&run->mapping, &plan, &run->structure.structure);
     mf_mapping_plan_clear(&plan);
-    TRY(status);
+    return status;
+}
+
+/// What the atoms are, which of them are beads, and what molecules there may be.
+static enum status find_beads(struct run *run) {
+    const struct measure_request *const request = run->request;
+    if (request->molecules)
+        TRY(mf_molecules_file_read(&run->molecules, &run->types, request->molecules));
+    TRY(mf_trajectory_open(&run->structure, structure_file(run), &request->frames.options));
+    TRY(request->molecules && !request->map ? take_atoms(run) : map_atoms(run));
     say_lines(&run->progress, &run->mapping.notes);
     return STATUS_OK;
 }
@@ -89,6 +109,9 @@ static void say_interval(struct run *run, size_t count) {
 static enum status begin_measuring(struct run *run) {
     struct measured_plan plan = run->request->measured;
     plan.motion.expected = mf_frames_expected(&run->frames);
+    if (run->request->molecules)
+        plan.molecules = (struct measured_molecules_plan){&run->molecules.molecules, &run->types,
+                                                          run->request->molecules};
     return mf_measured_begin(&run->measured, &plan, &run->mapping, run->frames.frame);
 }
 
@@ -153,12 +176,26 @@ static void say_motion(struct run *run, const struct units *units) {
                                         "differences makes them of positions)");
 }
 
+static void say_molecules(struct run *run, const struct measure_result *result) {
+    const struct observable_results results = {.units = &result->units};
+    const struct observable_use *use = run->measured.molecules.use;
+    char line[256];
+    for (; use->observable; use++) {
+        if (use->observable->say == NULL)
+            continue;
+        use->observable->say(use->state, &results, line, sizeof line);
+        mf_progress_say(&run->progress, "%s", line);
+    }
+}
+
 /// What a person is to know.
 static void say_results(struct run *run, const struct measure_result *result) {
     const struct measured *const measured = &run->measured;
     mf_progress_say(&run->progress, "g(r) to %.4g nm in %lld bins%s", measured->plan.range,
                     (long long)measured->plan.bins,
-                    measured->pairs.molecule ? ", without pairs of one molecule or residue" : "");
+                    measured->pairs.within     ? ", without pairs that molecules exclude"
+                    : measured->pairs.molecule ? ", without pairs of one molecule or residue"
+                                               : "");
     if (measured->plan.q_maximum > 0)
         mf_progress_say(&run->progress, "S(q) to %.4g 1/nm, of at most %lld waves in a bin",
                         measured->plan.q_maximum, (long long)measured->plan.waves);
@@ -166,6 +203,7 @@ static void say_results(struct run *run, const struct measure_result *result) {
         mf_progress_say(&run->progress,
                         "mesofit: warning: molecules have several beads: a fit knows "
                         "no bonds, its beads go where they like");
+    say_molecules(run, result);
     say_motion(run, &result->units);
     if (measured->motion.begun && mf_measure_output_masses_differ(result))
         mf_progress_say(&run->progress, "masses of beads differ: target.json has motion compared "
@@ -225,6 +263,7 @@ enum status mf_measure_run(const struct measure_request *request,
     struct run run = {.request = request, .progress = mf_progress_begin(options->quiet, NULL)};
     const enum status status = carry_out(&run, options);
     mf_measured_clear(&run.measured);
+    mf_scene_molecules_clear(&run.molecules);
     mf_frames_close(&run.frames);
     mf_mapping_clear(&run.mapping);
     mf_trajectory_close(&run.structure);

@@ -9,6 +9,7 @@
 /// What the command line asks for.
 struct measure_request {
     const char *structure, *map; ///< NULL: the trajectory itself, one bead a residue
+    const char *molecules;       ///< of which beads are bonded to which; NULL: nobody tells
     struct frames_plan frames;
     struct measured_plan measured;
     double temperature; ///< of the target [K]; NAN: that of the velocities

@@ -15,7 +15,7 @@
 #include <stdlib.h>
 
 static const struct collision_dynamics_parameters plain = {
-    .cell = 1, .mass = 1, .interval = 1, .grid_shift = 1, .wall_filling = 1.4};
+    .cell = 1, .mass = 1, .interval = 1, .grid_shift = 1, .hydrodynamics = 1, .wall_filling = 1.4};
 
 static struct simulation_setup setup_of(int dimensions, double width, double height, double dt,
                                         const struct collision_dynamics_parameters *parameters) {

@@ -24,6 +24,7 @@ static void test_drag_on_an_array_of_discs_is_that_of_slow_flow(void **state) {
                                                                     .interval = 1,
                                                                     .thermostat = 1,
                                                                     .grid_shift = 1,
+                                                                    .hydrodynamics = 1,
                                                                     .wall_filling = 1.4,
                                                                     .acceleration = {0.012},
                                                                     .obstacle_centre = {12, 12},

@@ -18,6 +18,7 @@ static const struct collision_dynamics_parameters plain = {.cell = 1,
                                                            .angle = 110,
                                                            .interval = 1,
                                                            .grid_shift = 1,
+                                                           .hydrodynamics = 1,
                                                            .wall_filling = 1.4};
 
 static struct simulation_setup setup_of(int dimensions, int64_t beads,

@@ -74,6 +74,12 @@ static void test_rings_exclude_each_bead_once(void **state) {
     struct topology topology;
     molecules_topology(&topology, ring, (struct topology_kind){0}, 1, NULL);
     assert_int_equal(topology.excluded_start[4], 12);
+    static const size_t expected[] = {0, 8, 12, 12};
+    for (int exclude = 0; exclude <= 3; exclude++) {
+        size_t count;
+        assert_ok(mf_topology_count_excluded(&topology.kind[0], exclude, &count));
+        assert_int_equal(count, expected[exclude]);
+    }
     mf_topology_clear(&topology);
 }
 

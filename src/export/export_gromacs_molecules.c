@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Functions of GROMACS's terms are those of its reference manual, "Topology file", table of
+// interactions: bonds 1, 7 (FENE), 8 (table); angles 1, 2 (G96), 8; dihedrals 1, 3
+// (Ryckaert-Bellemans), 8. Tables are cubics between rows of value and −derivative, of angles in
+// degrees.
+#include "export/export_gromacs_molecules.h"
+
+#include <math.h>
+
+// Laws --------------------------------------------------------------------------------------------
+
+struct function {
+    const struct bonded_law *law;
+    int number;
+    const char *parameter[6]; ///< by their names in a scene
+    enum { OF_LENGTH, OF_BOND, OF_ENERGY, OF_NOTHING } unit[6];
+};
+
+static const struct function functions[] = {
+    {&mf_bond_harmonic, 1, {"length", "k"}, {OF_LENGTH, OF_BOND}},
+    {&mf_bond_fene, 7, {"longest", "k"}, {OF_LENGTH, OF_BOND}},
+    {&mf_angle_harmonic, 1, {"angle", "k"}, {OF_NOTHING, OF_ENERGY}},
+    {&mf_angle_cosine_squared, 2, {"angle", "k"}, {OF_NOTHING, OF_ENERGY}},
+    {&mf_dihedral_periodic, 1, {"phase", "k", "multiplicity"}, {OF_NOTHING, OF_ENERGY, OF_NOTHING}},
+    {&mf_dihedral_ryckaert_bellemans,
+     3,
+     {"c0", "c1", "c2", "c3", "c4", "c5"},
+     {OF_ENERGY, OF_ENERGY, OF_ENERGY, OF_ENERGY, OF_ENERGY, OF_ENERGY}},
+};
+
+static const struct function *find_function(const struct bonded_curve *curve) {
+    for (size_t k = 0; k < sizeof functions / sizeof *functions; k++)
+        if (functions[k].law == curve->law)
+            return &functions[k];
+    return NULL;
+}
+
+bool mf_export_gromacs_has_law(const struct bonded_curve *curve) {
+    return find_function(curve) != NULL;
+}
+
+static void print_law(const struct export_job *job, int order, int group, FILE *stream) {
+    const struct bonded_curve *curve = &job->model->molecules->group[order][group].curve;
+    const struct function *function = find_function(curve);
+    const double length = job->units.length, energy = job->units.energy;
+    const double unit[] = {length, energy / (length * length), energy, 1};
+    if (function == NULL) { // its factor behind the number of the table
+        fprintf(stream, " 8 %d 1", job->bonded.table[order][group].number);
+        return;
+    }
+    fprintf(stream, " %d", function->number);
+    for (int n = 0; n < 6 && function->parameter[n]; n++)
+        fprintf(stream, " %.10g",
+                mf_export_bonded_number(curve, function->parameter[n]) * unit[function->unit[n]]);
+}
+
+// Atoms -------------------------------------------------------------------------------------------
+
+/// An atom in the order of the files.
+struct atom {
+    size_t id, number; ///< the number from 1 on
+    size_t residue;    ///< from 1 on
+    const char *name;  ///< of the residue
+};
+
+typedef void visit_atom(const struct export_job *job, FILE *stream, const struct atom *atom);
+enum { ALL_TYPES = -1 };
+
+/// Visit the atoms of a type, or of all.
+static void visit(const struct export_job *job, FILE *stream, int type, visit_atom *visitor) {
+    const struct export_model *model = job->model;
+    const struct topology *topology = &model->molecules->topology;
+    size_t number = 0, residue = 0;
+    for (int k = 0; k < topology->kinds; k++) {
+        const struct topology_kind *kind = &topology->kind[k];
+        for (int64_t m = 0; m < kind->count; m++) {
+            residue++;
+            for (int bead = 0; bead < kind->beads; bead++) {
+                number++;
+                if (type == ALL_TYPES || kind->type[bead] == type)
+                    visitor(
+                        job, stream,
+                        &(struct atom){topology_id(kind, m, bead), number, residue, kind->name});
+            }
+        }
+    }
+    for (size_t id = 0; id < model->count; id++) {
+        const int own = mf_export_type(model, id);
+        if (topology->molecule[id] < (uint64_t)topology->molecules)
+            continue;
+        number++;
+        residue++;
+        if (type == ALL_TYPES || own == type)
+            visitor(job, stream, &(struct atom){id, number, residue, model->name[own]});
+    }
+}
+
+static void print_atom(const struct export_job *job, FILE *stream, const struct atom *atom) {
+    const struct export_model *model = job->model;
+    const size_t id = atom->id;
+    fprintf(stream, "%5zu%-5.5s%5.5s%5zu", atom->residue % 100000, atom->name,
+            model->name[mf_export_type(model, id)], atom->number % 100000);
+    for (int d = 0; d < 3; d++)
+        fprintf(stream, "%12.7f", mf_export_place(model, d, id) * job->units.length);
+    for (int d = 0; d < 3; d++)
+        fprintf(stream, "%12.8f", model->velocity[d][id] * export_units_velocity(&job->units));
+    fprintf(stream, "\n");
+}
+
+static void print_conf(const struct export_job *job, FILE *stream) {
+    const struct export_model *model = job->model;
+    const double length = job->units.length;
+    fprintf(stream, "%s\n%zu\n", model->title[0] ? model->title : "beads", model->count);
+    visit(job, stream, ALL_TYPES, print_atom);
+    fprintf(stream, "%.9g %.9g %.9g\n", model->setup.box.length[0] * length,
+            model->setup.box.length[1] * length, model->setup.box.length[2] * length);
+}
+
+static void print_number(const struct export_job *job, FILE *stream, const struct atom *atom) {
+    (void)job;
+    fprintf(stream, "%zu\n", atom->number);
+}
+
+/// A group of each type, by which tables are chosen.
+static void print_index(const struct export_job *job, FILE *stream) {
+    const struct export_model *model = job->model;
+    fprintf(stream, "[ System ]\n");
+    visit(job, stream, ALL_TYPES, print_number);
+    for (int type = 0; type < model->types; type++) {
+        fprintf(stream, "[ %s ]\n", model->name[type]);
+        visit(job, stream, type, print_number);
+    }
+}
+
+// Topology ----------------------------------------------------------------------------------------
+
+static void print_kind(const struct export_job *job, const struct topology_kind *kind,
+                       FILE *stream) {
+    static const char *const sections[TOPOLOGY_ORDERS] = {"bonds", "angles", "dihedrals"};
+    const struct export_model *model = job->model;
+    fprintf(stream, "\n[ moleculetype ]\n%s %d\n\n[ atoms ]\n", kind->name, kind->exclude);
+    for (int bead = 0; bead < kind->beads; bead++) {
+        const char *type = model->name[kind->type[bead]];
+        fprintf(stream, "%d %s 1 %.5s %s %d 0.0 %.9g\n", bead + 1, type, kind->name, type, bead + 1,
+                model->mass[kind->type[bead]] * job->units.mass);
+    }
+    for (int order = 0; order < TOPOLOGY_ORDERS; order++) {
+        if (kind->terms[order] > 0)
+            fprintf(stream, "\n[ %s ]\n", sections[order]);
+        for (int n = 0; n < kind->terms[order]; n++) {
+            const struct topology_term *term = &kind->term[order][n];
+            for (int bead = 0; bead < topology_beads(order); bead++)
+                fprintf(stream, "%d ", term->bead[bead] + 1);
+            print_law(job, order, term->group, stream);
+            fprintf(stream, " ; %s\n", job->model->molecules->group[order][term->group].name);
+        }
+    }
+}
+
+/// Beads of a type that no molecule has.
+static int64_t count_single(const struct export_model *model, int type) {
+    const struct topology *topology = &model->molecules->topology;
+    int64_t count = (int64_t)mf_export_count(model, type);
+    for (int k = 0; k < topology->kinds; k++)
+        for (int bead = 0; bead < topology->kind[k].beads; bead++)
+            count -= topology->kind[k].type[bead] == type ? topology->kind[k].count : 0;
+    return count;
+}
+
+/// A single bead is a molecule whose name no kind can have.
+static void print_single(const struct export_job *job, int type, FILE *stream) {
+    const char *name = job->model->name[type];
+    fprintf(stream, "\n[ moleculetype ]\nsingle.%s 0\n\n[ atoms ]\n1 %s 1 %.5s %s 1 0.0 %.9g\n",
+            name, name, name, name, job->model->mass[type] * job->units.mass);
+}
+
+static void print_topology(const struct export_job *job, FILE *stream) {
+    const struct export_model *model = job->model;
+    const struct topology *topology = &model->molecules->topology;
+    fprintf(stream, "[ defaults ]\n1 1 no 1.0 1.0\n\n[ atomtypes ]\n");
+    for (int type = 0; type < model->types; type++)
+        fprintf(stream, "%s %.9g 0.0 A 0.0 1.0\n", model->name[type],
+                model->mass[type] * job->units.mass);
+    for (int k = 0; k < topology->kinds; k++)
+        print_kind(job, &topology->kind[k], stream);
+    for (int type = 0; type < model->types; type++)
+        if (count_single(model, type) > 0)
+            print_single(job, type, stream);
+    fprintf(stream, "\n[ system ]\nmolecules\n\n[ molecules ]\n");
+    for (int k = 0; k < topology->kinds; k++)
+        fprintf(stream, "%s %lld\n", topology->kind[k].name, (long long)topology->kind[k].count);
+    for (int type = 0; type < model->types; type++)
+        if (count_single(model, type) > 0)
+            fprintf(stream, "single.%s %lld\n", model->name[type],
+                    (long long)count_single(model, type));
+}
+
+// Tables ------------------------------------------------------------------------------------------
+
+static enum status write_table(const struct export_job *job, int order,
+                               const struct export_bonded_table *table) {
+    static const char letter[TOPOLOGY_ORDERS] = {'b', 'a', 'd'};
+    const double unit = order == TOPOLOGY_BOND ? job->units.length : 1 / BONDED_RADIANS;
+    struct output output;
+    char path[OUTPUT_PATH_SIZE];
+    snprintf(path, sizeof path, "%.3800s/table_%c%d.xvg", job->folder, letter[order],
+             table->number);
+    TRY(mf_output_open(&output, path));
+    fprintf(output.stream, "# %s, energy [kJ/mol], -derivative\n",
+            order == TOPOLOGY_BOND ? "r [nm]" : "angle [degrees]");
+    for (size_t k = 0; k < job->bonded.rows; k++)
+        fprintf(output.stream, "%.12e %.12e %.12e\n", table->q[k] * unit,
+                table->energy[k] * job->units.energy, -table->slope[k] * job->units.energy / unit);
+    return mf_output_commit(&output);
+}
+
+enum status mf_export_gromacs_molecules(const struct export_job *job) {
+    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+        for (int g = 0; g < job->model->molecules->groups[order]; g++)
+            if (job->bonded.table[order][g].q)
+                TRY(write_table(job, order, &job->bonded.table[order][g]));
+    TRY(mf_export_file(job, "conf.gro", print_conf));
+    TRY(mf_export_file(job, "index.ndx", print_index));
+    return mf_export_file(job, "topol.top", print_topology);
+}

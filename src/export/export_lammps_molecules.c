@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// LAMMPS's styles of terms: K stands for k/2 where ours has a half, "fene" is without its
+// Lennard-Jones part at epsilon 0, and "multi/harmonic" has powers of cos phi, which is −cos psi.
+// Tables are read linearly between as many rows as they have.
+#include "export/export_lammps_molecules.h"
+
+#include <math.h>
+
+static const char *const names[TOPOLOGY_ORDERS] = {"bond", "angle", "dihedral"};
+static const char *const sections[TOPOLOGY_ORDERS] = {"Bonds", "Angles", "Dihedrals"};
+
+// Laws --------------------------------------------------------------------------------------------
+
+/// A law that LAMMPS has: its style, and what follows in the line of coefficients.
+struct style {
+    const struct bonded_law *law;
+    const char *name;
+    void (*print)(const struct export_units *units, const struct bonded_curve *curve, FILE *stream);
+};
+
+static void print_harmonic_bond(const struct export_units *units, const struct bonded_curve *curve,
+                                FILE *stream) {
+    fprintf(stream, "%.12g %.12g",
+            0.5 * mf_export_bonded_number(curve, "k") * units->energy / pow(units->length, 2),
+            mf_export_bonded_number(curve, "length") * units->length);
+}
+
+static void print_fene(const struct export_units *units, const struct bonded_curve *curve,
+                       FILE *stream) {
+    fprintf(stream, "%.12g %.12g 0 0",
+            mf_export_bonded_number(curve, "k") * units->energy / pow(units->length, 2),
+            mf_export_bonded_number(curve, "longest") * units->length);
+}
+
+static void print_angle(const struct export_units *units, const struct bonded_curve *curve,
+                        FILE *stream) {
+    fprintf(stream, "%.12g %.12g", 0.5 * mf_export_bonded_number(curve, "k") * units->energy,
+            mf_export_bonded_number(curve, "angle"));
+}
+
+static void print_cosine(const struct export_units *units, const struct bonded_curve *curve,
+                         FILE *stream) {
+    fprintf(stream, "%.12g", mf_export_bonded_number(curve, "k") * units->energy);
+}
+
+static void print_cosines(const struct export_units *units, const struct bonded_curve *curve,
+                          FILE *stream) {
+    static const char *const c[] = {"c0", "c1", "c2", "c3", "c4"};
+    for (int n = 0; n < 5; n++)
+        fprintf(stream, "%s%.12g", n ? " " : "",
+                (n % 2 ? -1 : 1) * mf_export_bonded_number(curve, c[n]) * units->energy);
+}
+
+/// The last number is the weight of pairs four beads apart.
+static void print_periodic(const struct export_units *units, const struct bonded_curve *curve,
+                           FILE *stream) {
+    fprintf(stream, "%.12g %.0f %.0f 0.0", mf_export_bonded_number(curve, "k") * units->energy,
+            mf_export_bonded_number(curve, "multiplicity"),
+            mf_export_bonded_number(curve, "phase"));
+}
+
+static const struct style styles[] = {
+    {&mf_bond_harmonic, "harmonic", print_harmonic_bond},
+    {&mf_bond_fene, "fene", print_fene},
+    {&mf_angle_harmonic, "harmonic", print_angle},
+    {&mf_angle_cosine, "cosine", print_cosine},
+    {&mf_angle_cosine_squared, "cosine/squared", print_angle},
+    {&mf_dihedral_ryckaert_bellemans, "multi/harmonic", print_cosines},
+    {&mf_dihedral_periodic, "charmm", print_periodic},
+};
+
+static const struct style table_style = {NULL, "table", NULL};
+
+static const struct style *find_style(const struct bonded_curve *curve) {
+    if (curve->law == &mf_dihedral_ryckaert_bellemans && mf_export_bonded_number(curve, "c5") != 0)
+        return &table_style;
+    if (curve->law == &mf_dihedral_periodic) {
+        const double phase = mf_export_bonded_number(curve, "phase");
+        if (phase != rint(phase))
+            return &table_style;
+    }
+    for (size_t k = 0; k < sizeof styles / sizeof *styles; k++)
+        if (styles[k].law == curve->law)
+            return &styles[k];
+    return &table_style;
+}
+
+bool mf_export_lammps_has_law(const struct bonded_curve *curve) {
+    return find_style(curve) != &table_style;
+}
+
+// Exclusions --------------------------------------------------------------------------------------
+
+/// Whether all molecules exclude the same pairs if that number is so large for all.
+static enum status is_right(const struct topology *topology, int exclude, bool *right) {
+    *right = true;
+    for (int k = 0; k < topology->kinds; k++) {
+        const struct topology_kind *kind = &topology->kind[k];
+        size_t count;
+        TRY(mf_topology_count_excluded(kind, exclude, &count));
+        *right = *right && count == (size_t)kind->near_start[kind->beads];
+    }
+    return STATUS_OK;
+}
+
+enum status mf_export_lammps_check(struct export_job *job) {
+    if (job->model->molecules == NULL)
+        return STATUS_OK;
+    for (job->exclude = 0; job->exclude <= TOPOLOGY_MOST_EXCLUDE; job->exclude++) {
+        bool right;
+        TRY(is_right(&job->model->molecules->topology, job->exclude, &right));
+        if (right)
+            return STATUS_OK;
+    }
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "%s: cannot be exported: molecules have different \"exclude\", and "
+                          "special_bonds of LAMMPS is one for all",
+                          job->model->folder);
+}
+
+// Data --------------------------------------------------------------------------------------------
+
+void mf_export_lammps_counts(const struct export_job *job, FILE *stream) {
+    const struct molecules *molecules = job->model->molecules;
+    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+        if (molecules->groups[order] > 0)
+            fprintf(stream, "%zu %ss\n%d %s types\n", mf_export_bonded_count(molecules, order),
+                    names[order], molecules->groups[order], names[order]);
+}
+
+size_t mf_export_lammps_molecule(const struct export_model *model, size_t particle) {
+    const struct topology *topology = &model->molecules->topology;
+    const uint32_t molecule = topology->molecule[particle];
+    return molecule < (uint64_t)topology->molecules ? molecule + (size_t)1 : 0;
+}
+
+static void print_terms(const struct topology *topology, int order, FILE *stream) {
+    size_t number = 0;
+    for (int k = 0; k < topology->kinds; k++) {
+        const struct topology_kind *kind = &topology->kind[k];
+        for (int64_t m = 0; m < kind->count; m++)
+            for (int n = 0; n < kind->terms[order]; n++) {
+                const struct topology_term *term = &kind->term[order][n];
+                fprintf(stream, "%zu %d", ++number, term->group + 1);
+                for (int bead = 0; bead < topology_beads(order); bead++)
+                    fprintf(stream, " %u", topology_id(kind, m, term->bead[bead]) + 1);
+                fprintf(stream, "\n");
+            }
+    }
+}
+
+void mf_export_lammps_terms(const struct export_job *job, FILE *stream) {
+    const struct molecules *molecules = job->model->molecules;
+    for (int order = 0; order < TOPOLOGY_ORDERS; order++) {
+        if (molecules->groups[order] == 0)
+            continue;
+        fprintf(stream, "\n%s\n\n", sections[order]);
+        print_terms(&molecules->topology, order, stream);
+    }
+}
+
+// Tables ------------------------------------------------------------------------------------------
+
+static void print_key(const struct export_job *job, int order, int group, FILE *stream) {
+    static const char *const keys[TOPOLOGY_ORDERS] = {"BOND", "ANGLE", "DIHEDRAL"};
+    fprintf(stream, "%s_%s", keys[order], job->model->molecules->group[order][group].name);
+}
+
+static void print_table(const struct export_job *job, int order, int group, FILE *stream) {
+    const struct export_bonded_table *table = &job->bonded.table[order][group];
+    const struct export_units *units = &job->units;
+    const bool is_length = order == TOPOLOGY_BOND;
+    const double unit = is_length ? units->length : 1 / BONDED_RADIANS;
+    fprintf(stream, "\n");
+    print_key(job, order, group, stream);
+    fprintf(stream, "\nN %zu%s\n\n", export_bonded_rows(&job->bonded, order),
+            order == TOPOLOGY_DIHEDRAL ? " DEGREES" : "");
+    for (size_t k = 0; k < export_bonded_rows(&job->bonded, order); k++)
+        fprintf(stream, "%zu %.15g %.15g %.15g\n", k + 1, table->q[k] * unit,
+                table->energy[k] * units->energy, -table->slope[k] * units->energy / unit);
+}
+
+void mf_export_lammps_tables(const struct export_job *job, FILE *stream) {
+    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+        for (int g = 0; g < job->model->molecules->groups[order]; g++)
+            if (job->bonded.table[order][g].q)
+                print_table(job, order, g, stream);
+}
+
+// Input -------------------------------------------------------------------------------------------
+
+static const struct style *style_of(const struct export_job *job, int order, int group) {
+    return find_style(&job->model->molecules->group[order][group].curve);
+}
+
+/// Whether a group before has the same style.
+static bool was_named(const struct export_job *job, int order, int group) {
+    for (int g = 0; g < group; g++)
+        if (style_of(job, order, g) == style_of(job, order, group))
+            return true;
+    return false;
+}
+
+static bool is_hybrid(const struct export_job *job, int order) {
+    for (int g = 1; g < job->model->molecules->groups[order]; g++)
+        if (!was_named(job, order, g))
+            return true;
+    return false;
+}
+
+void mf_export_lammps_styles(const struct export_job *job, FILE *stream) {
+    const struct molecules *molecules = job->model->molecules;
+    for (int order = 0; order < TOPOLOGY_ORDERS; order++) {
+        if (molecules->groups[order] == 0)
+            continue;
+        fprintf(stream, "%s_style%s", names[order], is_hybrid(job, order) ? " hybrid" : "");
+        for (int g = 0; g < molecules->groups[order]; g++) {
+            const struct style *style = style_of(job, order, g);
+            if (was_named(job, order, g))
+                continue;
+            fprintf(stream, " %s", style->name);
+            if (style == &table_style)
+                fprintf(stream, " linear %zu", export_bonded_rows(&job->bonded, order));
+        }
+        fprintf(stream, "\n");
+    }
+}
+
+static void print_special(int exclude, FILE *stream) {
+    fprintf(stream, "special_bonds lj/coul %d %d %d\n", exclude < 1, exclude < 2, exclude < 3);
+}
+
+void mf_export_lammps_coefficients(const struct export_job *job, FILE *stream) {
+    const struct molecules *molecules = job->model->molecules;
+    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+        for (int g = 0; g < molecules->groups[order]; g++) {
+            const struct style *style = style_of(job, order, g);
+            fprintf(stream, "%s_coeff %d ", names[order], g + 1);
+            if (is_hybrid(job, order))
+                fprintf(stream, "%s ", style->name);
+            if (style == &table_style) {
+                fprintf(stream, "mesofit.table ");
+                print_key(job, order, g, stream);
+            } else {
+                style->print(&job->units, &molecules->group[order][g].curve, stream);
+            }
+            fprintf(stream, " # %s\n", molecules->group[order][g].name);
+        }
+    print_special(job->exclude, stream);
+}
+
+double mf_export_lammps_reach(const struct export_model *model) {
+    static const double stretch = 1.5;
+    if (model->molecules == NULL)
+        return 0;
+    double longest = mf_export_bonded_longest(model);
+    for (int g = 0; g < model->molecules->groups[TOPOLOGY_BOND]; g++)
+        longest = fmax(longest, mf_bonded_rest(&model->molecules->group[TOPOLOGY_BOND][g].curve));
+    return stretch * longest * (model->molecules->groups[TOPOLOGY_DIHEDRAL] > 0 ? 2 : 1);
+}

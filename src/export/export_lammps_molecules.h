@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file The molecules of a result in the files for LAMMPS.
+#pragma once
+
+#include "export/export_engine.h"
+
+/// Whether LAMMPS has a law as it is: all but tables, dihedrals with a C_5, and phases that are no
+/// whole degrees.
+bool mf_export_lammps_has_law(const struct bonded_curve *curve);
+
+/// Find the one number of bonds up to which all molecules exclude pairs, job->exclude: LAMMPS has
+/// one for all. Fails: BAD_INPUT if there is none; NO_MEMORY.
+enum status mf_export_lammps_check(struct export_job *job) MUST_USE;
+
+/// Numbers of terms and of their types, for the head of the data file.
+void mf_export_lammps_counts(const struct export_job *job, FILE *stream);
+
+/// Molecule of a bead, from 1 on; 0: a single one.
+size_t mf_export_lammps_molecule(const struct export_model *model, size_t particle);
+
+/// The sections Bonds, Angles and Dihedrals.
+void mf_export_lammps_terms(const struct export_job *job, FILE *stream);
+
+/// The sections of the table file.
+void mf_export_lammps_tables(const struct export_job *job, FILE *stream);
+
+/// Styles of the terms, which stand before the data is read, and their coefficients, behind.
+void mf_export_lammps_styles(const struct export_job *job, FILE *stream);
+void mf_export_lammps_coefficients(const struct export_job *job, FILE *stream);
+
+/// How far apart beads of one term may be [λ]; 0 without molecules.
+double mf_export_lammps_reach(const struct export_model *model);

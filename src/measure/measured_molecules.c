@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "measure/measured_molecules.h"
+
+#include "base/memory.h"
+#include "forces/bonded.h"
+
+#include <math.h>
+#include <string.h>
+
+/// Edge of the box in which the nearest image of everything is itself [nm].
+static const double without_end = 1e9;
+
+/// Bonds, angles and dihedrals in their order, and sizes.
+static const char *const names[MEASURED_MOLECULES_MOST] = {"bond_lengths", "bond_angles",
+                                                           "dihedral_angles", "molecule_sizes"};
+
+// Preparing ---------------------------------------------------------------------------------------
+
+static enum status plan_walks(struct measured_molecules *measured) {
+    enum status status = STATUS_OK;
+    const struct topology *topology = &measured->molecules->topology;
+    for (int k = 0; k < topology->kinds; k++)
+        if ((size_t)topology->kind[k].beads > measured->most_beads)
+            measured->most_beads = (size_t)topology->kind[k].beads;
+    NEW_ARRAY(measured->order, (size_t)topology->kinds * measured->most_beads);
+    NEW_ARRAY(measured->parent, (size_t)topology->kinds * measured->most_beads);
+    for (int k = 0; k < topology->kinds; k++)
+        mf_topology_walk(&topology->kind[k], measured->order + (size_t)k * measured->most_beads,
+                         measured->parent + (size_t)k * measured->most_beads);
+done:
+    return status;
+}
+
+static enum status list_excluded(struct measured_molecules *measured) {
+    enum status status = STATUS_OK;
+    const struct topology *topology = &measured->molecules->topology;
+    NEW_ARRAY(measured->excluded, topology->excluded_start[topology->particles] / 2);
+    for (uint32_t id = 0; id < topology->particles; id++)
+        for (size_t n = topology->excluded_start[id]; n < topology->excluded_start[id + 1]; n++) {
+            const uint32_t other = topology->excluded[n];
+            if (other < id)
+                continue;
+            uint32_t *pair = measured->excluded[measured->excluded_count++];
+            pair[0] = (uint32_t)measured->match.bead[id];
+            pair[1] = (uint32_t)measured->match.bead[other];
+        }
+done:
+    return status;
+}
+
+enum status mf_measured_molecules_begin(struct measured_molecules *measured,
+                                        const struct measured_molecules_plan *plan,
+                                        const struct mapping *mapping,
+                                        const struct composition *composition) {
+    *measured = (struct measured_molecules){.molecules = plan->molecules, .mapping = mapping};
+    TRY(mf_molecule_match(&measured->match, &plan->molecules->topology, plan->types, mapping,
+                          composition, plan->file));
+    TRY(plan_walks(measured));
+    return list_excluded(measured);
+}
+
+/// The masses of the beads, if all are known.
+static enum status add_masses(struct measured_molecules *measured, struct particles *particles) {
+    const struct mapping *mapping = measured->mapping;
+    const struct particles_attribute mass = {
+        .name = "mass", .type = PARTICLES_DOUBLE, .components = 1};
+    int number;
+    for (size_t k = 0; k < mapping->beads; k++)
+        if (!(mapping->bead[k].mass > 0))
+            return STATUS_OK;
+    TRY(mf_particles_add_attribute(particles, &mass, &number));
+    double *values = particles->attribute[number].value[0];
+    for (size_t k = 0; k < mapping->beads; k++)
+        values[k] = mapping->bead[k].mass;
+    return STATUS_OK;
+}
+
+/// A simulation with the beads where the mapping has them.
+static enum status make_shell(struct measured_molecules *measured, double interval) {
+    enum status status = STATUS_OK;
+    const struct topology *topology = &measured->molecules->topology;
+    const struct box box = {3, {without_end, without_end, without_end}};
+    NEW_ARRAY(measured->shell, 1);
+    struct simulation *shell = measured->shell;
+    shell->setup = (struct simulation_setup){.box = box,
+                                             .placement = {.count = (int64_t)topology->particles},
+                                             .time_step = interval,
+                                             .interaction = {{&mf_molecules, measured->molecules}},
+                                             .interactions = 1};
+    CHECK(mf_particles_init(&shell->particles, &box, topology->particles));
+    CHECK(mf_particles_join(&shell->particles, topology));
+    for (uint32_t id = 0; id < topology->particles; id++)
+        shell->particles.id[measured->match.bead[id]] = id;
+    mf_particles_label_places(&shell->particles);
+    CHECK(add_masses(measured, &shell->particles));
+done:
+    return status;
+}
+
+// Frames ------------------------------------------------------------------------------------------
+
+/// Put one molecule's beads where they are nearest to what they are bonded to.
+static void make_whole(struct measured_molecules *measured, const struct trajectory_frame *beads,
+                       double reciprocal[3][3], int k, int64_t m) {
+    const struct topology_kind *kind = &measured->molecules->topology.kind[k];
+    const int *order = measured->order + (size_t)k * measured->most_beads;
+    const int *parent = measured->parent + (size_t)k * measured->most_beads;
+    double *const *position = measured->shell->particles.position;
+    for (int n = 0; n < kind->beads; n++) {
+        const int from = parent[order[n]] < 0 ? order[0] : parent[order[n]];
+        const size_t here = measured->match.bead[topology_id(kind, m, order[n])];
+        const size_t there = measured->match.bead[topology_id(kind, m, from)];
+        double place[3];
+        for (int d = 0; d < 3; d++)
+            place[d] = n == 0 ? beads->position[here][d] : position[d][there];
+        mf_frame_step_to(beads, reciprocal, beads->position[here], place);
+        for (int d = 0; d < 3; d++)
+            position[d][here] = place[d];
+    }
+}
+
+static void place_beads(struct measured_molecules *measured, const struct trajectory_frame *beads) {
+    const struct topology *topology = &measured->molecules->topology;
+    double reciprocal[3][3];
+    mf_frame_reciprocal(beads, reciprocal);
+    for (int k = 0; k < topology->kinds; k++)
+        for (int64_t m = 0; m < topology->kind[k].count; m++)
+            make_whole(measured, beads, reciprocal, k, m);
+}
+
+enum status mf_measured_molecules_add(struct measured_molecules *measured,
+                                      const struct trajectory_frame *beads) {
+    if (measured->shell == NULL)
+        return STATUS_OK;
+    place_beads(measured, beads);
+    for (const struct observable_use *use = measured->use; use->observable; use++)
+        TRY(use->observable->sample(use->state, measured->shell));
+    return STATUS_OK;
+}
+
+// Beginning ---------------------------------------------------------------------------------------
+
+/// Let each group of bonds rest at its mean length, so that bins go to twice the longest of them.
+static void find_lengths(struct measured_molecules *measured) {
+    struct molecules *molecules = measured->molecules;
+    const struct topology *topology = &molecules->topology;
+    double sum[MOLECULES_MOST_GROUPS] = {0}, count[MOLECULES_MOST_GROUPS] = {0};
+    for (int k = 0; k < topology->kinds; k++) {
+        const struct topology_kind *kind = &topology->kind[k];
+        for (int n = 0; n < kind->terms[TOPOLOGY_BOND]; n++) {
+            const struct topology_term *term = &kind->term[TOPOLOGY_BOND][n];
+            for (int64_t m = 0; m < kind->count; m++) {
+                int32_t place[2];
+                double length;
+                for (int bead = 0; bead < 2; bead++)
+                    place[bead] =
+                        (int32_t)measured->match.bead[topology_id(kind, m, term->bead[bead])];
+                mf_bonded_measure(TOPOLOGY_BOND, 1, place, &measured->shell->particles, &length);
+                sum[term->group] += length;
+                count[term->group]++;
+            }
+        }
+    }
+    for (int g = 0; g < molecules->groups[TOPOLOGY_BOND]; g++) {
+        const struct bonded_curve *curve = &molecules->group[TOPOLOGY_BOND][g].curve;
+        const struct field *field = curve->law->fields;
+        while (field->name && strcmp(field->name, "length") != 0)
+            field++;
+        if (field->name == NULL || count[g] == 0)
+            continue;
+        const double mean = sum[g] / count[g];
+        memcpy((char *)curve->parameters + field->offset, &mean, sizeof mean);
+    }
+}
+
+static const struct observable *find_observable(const char *name) {
+    size_t k = 0;
+    while (strcmp(mf_observables[k]->name, name) != 0)
+        k++;
+    return mf_observables[k];
+}
+
+static enum status add_observable(struct measured_molecules *measured,
+                                  const struct observable *observable, struct observable_use *use) {
+    enum status status = STATUS_OK;
+    const struct measure_plan plan = {.equilibration = -1, .samples = 0, .every = 1};
+    use->observable = observable;
+    use->state = mf_memory_zeroed(1, observable->state_size);
+    use->settings = mf_memory_zeroed(1, observable->settings_size);
+    CHECK(use->state && use->settings ? STATUS_OK : STATUS_NO_MEMORY);
+    mf_fields_set_defaults(observable->fields, use->settings);
+    CHECK(observable->begin(use->state, use->settings, measured->shell, &plan));
+done:
+    return status;
+}
+
+enum status mf_measured_molecules_start(struct measured_molecules *measured,
+                                        const struct trajectory_frame *beads, double interval) {
+    struct observable_use *use = measured->use;
+    if (measured->molecules == NULL)
+        return STATUS_OK;
+    TRY(make_shell(measured, interval));
+    place_beads(measured, beads);
+    find_lengths(measured);
+    for (int n = 0; n < MEASURED_MOLECULES_MOST; n++)
+        if (n >= TOPOLOGY_ORDERS || measured->molecules->groups[n] > 0)
+            TRY(add_observable(measured, find_observable(names[n]), use++));
+    return STATUS_OK;
+}
+
+void mf_measured_molecules_clear(struct measured_molecules *measured) {
+    for (struct observable_use *use = measured->use; use->observable; use++) {
+        if (use->state)
+            use->observable->clear(use->state);
+        mf_memory_free(use->state);
+        mf_memory_free(use->settings);
+    }
+    if (measured->shell)
+        mf_particles_clear(&measured->shell->particles);
+    mf_memory_free(measured->shell);
+    mf_memory_free(measured->order);
+    mf_memory_free(measured->parent);
+    mf_memory_free(measured->excluded);
+    mf_molecule_match_clear(&measured->match);
+    *measured = (struct measured_molecules){0};
+}

@@ -1,0 +1,361 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Molecules in another program: LAMMPS (Debian's lmp; skipped where there is none) has the energies
+// and forces of the configuration that was exported, law by law, and GROMACS those of its bonds.
+#include "base/memory.h"
+#include "export/export_bonded.h"
+#include "export/export_units.h"
+#include "forces/bonded.h"
+#include "shared/is_close.h"
+#include "shared/run_program.h"
+#include "shared/small_inputs.h"
+#include "shared/testing.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/// Chains of all laws that LAMMPS has, dimers that exclude the same pairs, and single beads.
+static const char scene[] =
+    "{\"seed\": 5, \"box\": [8, 8, 8], \"time_step\": 0.002, \"precision\": \"double\",\n"
+    "\"units\": {\"length\": 0.5, \"temperature\": 300, \"mass\": 5e-26},\n"
+    "\"bonds\": {\"spring\": {\"law\": \"harmonic\", \"k\": 120, \"length\": 0.7},\n"
+    "  \"fene\": {\"law\": \"fene\", \"k\": 2, \"longest\": 3},\n"
+    "  \"stiff\": {\"law\": \"harmonic\", \"k\": 300, \"length\": 0.9}},\n"
+    "\"angles\": {\"bend\": {\"law\": \"harmonic\", \"k\": 8, \"angle\": 110},\n"
+    "  \"straight\": {\"law\": \"cosine\", \"k\": 3},\n"
+    "  \"squared\": {\"law\": \"cosine-squared\", \"k\": 30, \"angle\": 120}},\n"
+    "\"dihedrals\": {\"butane\": {\"law\": \"ryckaert-bellemans\", \"c0\": 3.7, \"c1\": 4.9,\n"
+    "    \"c2\": -5.3, \"c3\": -1.1, \"c4\": 1.3},\n"
+    "  \"turn\": {\"law\": \"periodic\", \"k\": 1.7, \"multiplicity\": 3, \"phase\": 60}},\n"
+    "\"molecules\": {\"chain\": {\"count\": 80, \"exclude\": 1,\n"
+    "    \"beads\": [\"A\", \"B\", \"A\", \"B\", \"A\", \"A\"],\n"
+    "    \"bonds\": {\"spring\": [[1, 2], [2, 3]], \"fene\": [[3, 4]], \"stiff\": [[4, 5], [5, "
+    "6]]},\n"
+    "    \"angles\": {\"bend\": [[1, 2, 3]], \"straight\": [[2, 3, 4]],\n"
+    "      \"squared\": [[3, 4, 5], [4, 5, 6]]},\n"
+    "    \"dihedrals\": {\"butane\": [[1, 2, 3, 4]], \"turn\": [[2, 3, 4, 5], [3, 4, 5, 6]]}},\n"
+    "  \"dimer\": {\"count\": 30, \"exclude\": 3, \"chain\": {\"beads\": [\"B\", \"W\"],\n"
+    "    \"bond\": \"stiff\"}}},\n"
+    "\"particles\": {\"types\": {\"W\": 40}, \"mass\": {\"A\": 1, \"B\": 2, \"W\": 1.5}},\n"
+    "\"conservative\": {\"law\": \"soft-repulsion\", \"a\": 1},\n"
+    "\"snapshots\": {\"every\": 300, \"formats\": [\"json\"]},\n"
+    "\"measure\": {\"equilibration\": 300, \"samples\": 2, \"every\": 10}}\n";
+
+/// The same with tables in their place, and with laws of which LAMMPS has but tables.
+static const char *const tables[][2] = {
+    {"{\"law\": \"harmonic\", \"k\": 120, \"length\": 0.7}",
+     "{\"law\": \"table\", \"file\": \"bond.tsv\"}"},
+    {"{\"law\": \"harmonic\", \"k\": 8, \"angle\": 110}",
+     "{\"law\": \"table\", \"file\": \"angle.tsv\"}"},
+    {"\"c4\": 1.3", "\"c4\": 1.3, \"c5\": 0.4"},
+    {"\"phase\": 60", "\"phase\": 70.5"},
+};
+enum { TABLES = sizeof tables / sizeof *tables };
+
+static void replace(char *text, size_t size, const char *from, const char *to) {
+    char rest[8192];
+    char *at = strstr(text, from);
+    assert_non_null(at);
+    snprintf(rest, sizeof rest, "%s", at + strlen(from));
+    snprintf(at, size - (size_t)(at - text), "%s%s", to, rest);
+}
+
+static void write_tables(struct temporary_folder *folder) {
+    char bond[4096] = "# r[lambda] U[k_B.T_0]\n", angle[4096] = "# theta[degrees] U[k_B.T_0]\n";
+    for (int k = 0; k <= 40; k++) {
+        const double r = 0.3 + 0.02 * k, theta = (30 + 3.75 * k) * BONDED_RADIANS;
+        snprintf(bond + strlen(bond), sizeof bond - strlen(bond), "%.4f %.8f\n", r,
+                 60 * pow(r - 0.7, 2) + 40 * pow(r - 0.7, 3));
+        snprintf(angle + strlen(angle), sizeof angle - strlen(angle), "%.4f %.8f\n", 30 + 3.75 * k,
+                 9 * pow(theta - 1.9, 2) - 2 * pow(theta - 1.9, 3));
+    }
+    small_inputs_write(folder, "bond.tsv", bond, NULL, NULL);
+    small_inputs_write(folder, "angle.tsv", angle, NULL, NULL);
+}
+
+static void make_result(struct temporary_folder *folder, bool with_tables) {
+    static struct run_program_result result;
+    char text[8192];
+    snprintf(text, sizeof text, "%s", scene);
+    for (int k = 0; with_tables && k < TABLES; k++)
+        replace(text, sizeof text, tables[k][0], tables[k][1]);
+    write_tables(folder);
+    small_inputs_write(folder, "scene.json", text, NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    run_program_assert_code(&result, 0);
+}
+
+// Ours --------------------------------------------------------------------------------------------
+
+/// Energies of the pairs and of each order of terms, and forces by id, of the exported
+/// configuration, as our engine has them.
+struct ours {
+    struct export_model model;
+    struct simulation simulation;
+    double pairs, bonded[TOPOLOGY_ORDERS];
+};
+
+static double energy_of(const struct ours *ours, int order) {
+    const struct molecules *molecules = ours->model.molecules;
+    double sum = 0;
+    for (int k = 0; k < molecules->topology.kinds; k++) {
+        const struct topology_kind *kind = &molecules->topology.kind[k];
+        for (int64_t m = 0; m < kind->count; m++)
+            for (int n = 0; n < kind->terms[order]; n++) {
+                const struct topology_term *term = &kind->term[order][n];
+                int32_t place[TOPOLOGY_MOST_BEADS];
+                double q, energy;
+                for (int bead = 0; bead < topology_beads(order); bead++)
+                    place[bead] = (int32_t)ours->simulation.particles
+                                      .place[topology_id(kind, m, term->bead[bead])];
+                mf_bonded_measure(order, 1, place, &ours->simulation.particles, &q);
+                mf_bonded_value(&molecules->group[order][term->group].curve, q, &energy, NULL);
+                sum += energy;
+            }
+    }
+    return sum;
+}
+
+static void find_ours(struct ours *ours) {
+    struct simulation_start start = {{0}, {0}};
+    assert_ok(mf_export_model_read(&ours->model, "out"));
+    for (int d = 0; d < 3; d++) {
+        start.position[d] = ours->model.position[d];
+        start.velocity[d] = ours->model.velocity[d];
+    }
+    assert_ok(mf_simulation_init(&ours->simulation, &ours->model.setup, &start));
+    assert_ok(mf_simulation_compute_potential(&ours->simulation));
+    ours->pairs = ours->simulation.sums.energy;
+    for (int order = 0; order < TOPOLOGY_ORDERS; order++) {
+        ours->bonded[order] = energy_of(ours, order);
+        ours->pairs -= ours->bonded[order];
+    }
+}
+
+static void clear_ours(struct ours *ours) {
+    mf_simulation_clear(&ours->simulation);
+    mf_export_model_clear(&ours->model);
+}
+
+// Theirs ------------------------------------------------------------------------------------------
+
+static void skip_without(const char *program) {
+    char command[128];
+    snprintf(command, sizeof command, "command -v %s >/dev/null", program);
+    if (system(command) == 0)
+        return;
+    print_message("%s is not installed and not run\n", program);
+    skip();
+}
+
+/// The exported input up to its integrator, then energies and forces of the start, without the bath
+/// whose noise is a force, too.
+static void run_lammps(void) {
+    FILE *from = fopen("lammps/in.mesofit", "r"), *to = fopen("lammps/in.once", "w");
+    char line[4096];
+    assert_true(from && to);
+    while (fgets(line, sizeof line, from) && strncmp(line, "fix move", 8) != 0)
+        fputs(line, to);
+    fputs("unfix bath\nfix move all nve\n"
+          "thermo_style custom step evdwl ebond eangle edihed\n"
+          "thermo_modify norm no format float %.15g\n"
+          "dump forces all custom 1 forces.txt id fx fy fz\n"
+          "dump_modify forces sort id format float %.15g\nrun 0\n",
+          to);
+    fclose(from);
+    fclose(to);
+    if (system("cd lammps && lmp -in in.once >lmp.out 2>&1") != 0)
+        fail_msg("LAMMPS failed: see lammps/lmp.out");
+}
+
+/// The line of the thermo output.
+static void read_energies(double energy[4]) {
+    FILE *stream = fopen("lammps/log.lammps", "r");
+    char line[1024];
+    bool there = false;
+    assert_non_null(stream);
+    while (!there && fgets(line, sizeof line, stream))
+        there = strstr(line, "E_bond") && fgets(line, sizeof line, stream) &&
+                sscanf(line, "%*d %lf %lf %lf %lf", &energy[0], &energy[1], &energy[2],
+                       &energy[3]) == 4;
+    assert_true(there);
+    fclose(stream);
+}
+
+/// The largest difference of a force from ours, in units of the engine.
+static double compare_forces(const struct ours *ours, double unit) {
+    FILE *stream = fopen("lammps/forces.txt", "r");
+    char line[1024];
+    double worst = 0;
+    size_t rows = 0, id;
+    double f[3];
+    assert_non_null(stream);
+    while (fgets(line, sizeof line, stream))
+        if (sscanf(line, "%zu %lf %lf %lf", &id, &f[0], &f[1], &f[2]) == 4) {
+            const size_t place = ours->simulation.particles.place[id - 1];
+            for (int d = 0; d < 3; d++)
+                worst = fmax(worst, fabs(f[d] / unit - ours->simulation.particles.force[d][place]));
+            rows++;
+        }
+    fclose(stream);
+    assert_int_equal(rows, ours->model.count);
+    return worst;
+}
+
+static void compare(struct temporary_folder *folder, bool with_tables, double per_term,
+                    double force_bound) {
+    static struct run_program_result result;
+    static struct ours ours;
+    double energy[4];
+    skip_without("lmp");
+    make_result(folder, with_tables);
+    RUN_PROGRAM(&result, "export", "out", "--engine", "lammps", "-o", "lammps");
+    run_program_assert_code(&result, 0);
+    run_lammps();
+    find_ours(&ours);
+    read_energies(energy);
+    const struct export_units units = mf_export_units(EXPORT_REAL, &ours.model.scene.units, false);
+    const double force = compare_forces(&ours, export_units_force(&units));
+    print_message("pairs %.9g %.9g", energy[0] / units.energy, ours.pairs);
+    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+        print_message(", %ss %.9g %.9g", mf_topology_order_names[order],
+                      energy[1 + order] / units.energy, ours.bonded[order]);
+    print_message("; forces differ by %.2g at most\n", force);
+    assert_true(fabs(energy[0] / units.energy - ours.pairs) < 1e-5 * (double)ours.model.count);
+    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+        assert_true(fabs(energy[1 + order] / units.energy - ours.bonded[order]) <
+                    per_term * (double)mf_export_bonded_count(ours.model.molecules, order));
+    assert_true(force < force_bound);
+    if (system("cd lammps && lmp -in in.mesofit -var steps 200 -var equilibration 100 >lmp.out "
+               "2>&1") != 0)
+        fail_msg("LAMMPS does not run what was exported: see lammps/lmp.out");
+    clear_ours(&ours);
+}
+
+/// LAMMPS has these laws, so that only digits of the files are lost; pairs are a table of forces up
+/// to 1.
+static void test_lammps_has_the_energies_and_forces_of_our_laws(void **state) {
+    compare(*state, false, 1e-7, 2e-5);
+}
+
+/// Tables are right within 1e-4 k_B T a term, and forces within 1e-3 of the largest slope, which is
+/// some 60; they were 0.001 apart.
+static void test_lammps_has_those_of_our_tables(void **state) {
+    compare(*state, true, 1e-4, 0.01);
+}
+
+// GROMACS -----------------------------------------------------------------------------------------
+
+/// A field of md.log is of some order of terms, by its name; −1: of none.
+static int order_of(const char *name) {
+    static const struct {
+        const char *name;
+        int order;
+    } known[] = {{"Bond", TOPOLOGY_BOND},
+                 {"FENE Bonds", TOPOLOGY_BOND},
+                 {"Tab. Bonds", TOPOLOGY_BOND},
+                 {"Angle", TOPOLOGY_ANGLE},
+                 {"G96Angle", TOPOLOGY_ANGLE},
+                 {"Tab. Angles", TOPOLOGY_ANGLE},
+                 {"Proper Dih.", TOPOLOGY_DIHEDRAL},
+                 {"Ryckaert-Bell.", TOPOLOGY_DIHEDRAL},
+                 {"Tab. Dih.", TOPOLOGY_DIHEDRAL}};
+    while (*name == ' ')
+        name++;
+    for (size_t k = 0; k < sizeof known / sizeof *known; k++)
+        if (strncmp(name, known[k].name, strlen(known[k].name)) == 0 &&
+            strspn(name + strlen(known[k].name), " \n") == strlen(name + strlen(known[k].name)))
+            return known[k].order;
+    return -1;
+}
+
+/// The first energies of md.log: lines of names and of numbers, fields of 15 letters.
+static void read_log(double energy[TOPOLOGY_ORDERS]) {
+    FILE *stream = fopen("gromacs/md.log", "r");
+    char names[256], values[256];
+    assert_non_null(stream);
+    while (fgets(names, sizeof names, stream) && strstr(names, "Energies (kJ/mol)") == NULL)
+        ;
+    while (fgets(names, sizeof names, stream) && fgets(values, sizeof values, stream) &&
+           strlen(names) > 1)
+        for (size_t at = 0; at + 15 < strlen(names) && at + 15 < strlen(values) + 1; at += 15) {
+            char name[16] = {0}, value[16] = {0};
+            memcpy(name, names + at, 15);
+            memcpy(value, values + at, 15);
+            if (order_of(name) >= 0)
+                energy[order_of(name)] += strtod(value, NULL);
+        }
+    fclose(stream);
+}
+
+/// Debian's GROMACS has no tables of pairs, whose energies are left out: the terms alone.
+static void compare_gromacs(struct temporary_folder *folder, bool with_tables, double per_term) {
+    static struct run_program_result result;
+    static struct ours ours;
+    double energy[TOPOLOGY_ORDERS] = {0};
+    skip_without("gmx");
+    make_result(folder, with_tables);
+    RUN_PROGRAM(&result, "export", "out", "--engine", "gromacs", "-o", "gromacs");
+    run_program_assert_code(&result, 0);
+    small_inputs_write(folder, "gromacs/once.mdp",
+                       "integrator = md\nnsteps = 0\nnstenergy = 1\nnstlog = 1\nrcoulomb = 0.9\n"
+                       "rvdw = 0.9\ncontinuation = yes\n",
+                       NULL, NULL);
+    if (system(
+            "cd gromacs && sed 's/ A 0.0 1.0$/ A 0.0 0.0/' topol.top >once.top && (gmx grompp -f "
+            "once.mdp -p once.top -n index.ndx -o once.tpr -maxwarn 9 && gmx mdrun -nt 1 -s "
+            "once.tpr $(ls table_[bad]?.xvg | sed '1s/^/-tableb /')) >gmx.out 2>&1") != 0)
+        fail_msg("GROMACS failed: see gromacs/gmx.out");
+    find_ours(&ours);
+    read_log(energy);
+    const struct export_units units =
+        mf_export_units(EXPORT_NANOMETRES, &ours.model.scene.units, true);
+    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+        print_message("%ss %.7g %.7g ", mf_topology_order_names[order],
+                      energy[order] / units.energy, ours.bonded[order]);
+    print_message("\n");
+    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+        assert_true(fabs(energy[order] / units.energy - ours.bonded[order]) <
+                    per_term * (double)mf_export_bonded_count(ours.model.molecules, order));
+    clear_ours(&ours);
+}
+
+/// In single precision, of coordinates with seven decimals.
+static void test_gromacs_has_the_energies_of_our_laws(void **state) {
+    compare_gromacs(*state, false, 1e-5);
+}
+
+static void test_gromacs_has_those_of_our_tables(void **state) {
+    compare_gromacs(*state, true, 1e-4);
+}
+
+/// special_bonds is one for all molecules.
+static void test_what_an_engine_has_not_is_refused(void **state) {
+    static struct run_program_result result;
+    make_result(*state, false);
+    RUN_PROGRAM(&result, "export", "out", "--engine", "hoomd", "-o", "hoomd");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err, "HOOMD-blue is of single beads, and there are molecules");
+    small_inputs_write(*state, "scene.json", scene, "\"count\": 80, \"exclude\": 1",
+                       "\"count\": 80, \"exclude\": 0");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "other");
+    run_program_assert_code(&result, 0);
+    RUN_PROGRAM(&result, "export", "other", "--engine", "lammps", "-o", "lammps");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err, "different \"exclude\"");
+}
+
+#define TEST(name) cmocka_unit_test_setup_teardown(name, small_inputs_enter, small_inputs_leave)
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        TEST(test_lammps_has_the_energies_and_forces_of_our_laws),
+        TEST(test_lammps_has_those_of_our_tables),
+        TEST(test_gromacs_has_the_energies_of_our_laws),
+        TEST(test_gromacs_has_those_of_our_tables),
+        TEST(test_what_an_engine_has_not_is_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

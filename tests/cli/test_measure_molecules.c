@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// `mesofit measure` with molecules: what a simulation has measured of itself is measured of its
+// trajectory again; a trajectory in a skewed box, whose molecules are cut by its faces, against a
+// count over all images; molecules that the trajectory has not.
+#include "shared/is_close.h"
+#include "shared/run_program.h"
+#include "shared/small_inputs.h"
+#include "shared/testing.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char scene[] =
+    "{\"seed\": 3, \"box\": [6, 6, 6], \"time_step\": 0.01,\n"
+    "\"bonds\": {\"backbone\": {\"law\": \"harmonic\", \"k\": 100, \"length\": 0.8},\n"
+    "  \"spring\": {\"law\": \"harmonic\", \"k\": 50, \"length\": 0.9}},\n"
+    "\"angles\": {\"bend\": {\"law\": \"harmonic\", \"k\": 20, \"angle\": 120}},\n"
+    "\"dihedrals\": {\"twist\": {\"law\": \"periodic\", \"k\": 2, \"multiplicity\": 3}},\n"
+    "\"molecules\": {\"chain\": {\"count\": 50, \"chain\": {\"beads\": [\"A\", \"B\", \"B\", "
+    "\"A\"],\n"
+    "    \"bond\": \"backbone\", \"angle\": \"bend\", \"dihedral\": \"twist\"}},\n"
+    "  \"ring\": {\"count\": 20, \"exclude\": 0, \"beads\": [\"A\", \"A\", \"A\"],\n"
+    "    \"bonds\": {\"spring\": [[1, 2], [2, 3], [3, 1]]}}},\n"
+    "\"particles\": {\"types\": {\"W\": 60}},\n"
+    "\"conservative\": {\"law\": \"soft-repulsion\"}, \"dissipative\": {\"law\": \"power\"},\n"
+    "\"rdf\": {\"range\": 2, \"bins\": 20}, \"intermolecular_rdf\": {\"range\": 2, \"bins\": 20},\n"
+    "\"bond_angles\": {}, \"dihedral_angles\": {}, \"molecule_sizes\": {\"lags\": 10},\n"
+    "\"snapshots\": {\"every\": 20, \"formats\": [\"lammps-dump\"]},\n"
+    "\"measure\": {\"equilibration\": 400, \"samples\": 60, \"every\": 20}}\n";
+
+/// The number in a row, from 0 on without comments, and column of a table; NAN if there is none.
+static double cell(const char *file, int row, int column) {
+    char line[4096];
+    double value = NAN;
+    FILE *stream = fopen(file, "r");
+    if (stream == NULL)
+        fail_msg("%s is not there", file);
+    while (row >= 0 && fgets(line, sizeof line, stream)) {
+        char *at = line;
+        if (line[0] == '#' || row-- > 0)
+            continue;
+        for (int k = 0; k <= column; k++)
+            value = strtod(at, &at);
+    }
+    fclose(stream);
+    return value;
+}
+
+/// A column is the same in both folders to the digits of snapshots; a quarter is not 0.
+static void compare(const char *name, int column, int rows) {
+    char first[64], second[64];
+    int found = 0;
+    snprintf(first, sizeof first, "out/%s", name);
+    snprintf(second, sizeof second, "target/%s", name);
+    for (int row = 0; row < rows; row++) {
+        const double a = cell(first, row, column), b = cell(second, row, column);
+        if (!(fabs(a - b) <= 1e-6 * (1 + fabs(a))))
+            fail_msg("%s, row %d: %.9g of the simulation, %.9g of its trajectory", name, row, a, b);
+        found += a != 0;
+    }
+    assert_true(4 * found > rows);
+}
+
+/// Ids go by types, so that molecules are found by their numbers and types.
+static void test_a_simulation_is_measured_again(void **state) {
+    static struct run_program_result result;
+    small_inputs_write(*state, "scene.json", scene, NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    run_program_assert_code(&result, 0);
+    RUN_PROGRAM(&result, "measure", "out/snapshots/trajectory.lammpstrj", "--file-units", "lj",
+                "--molecules", "out/used.json", "--range", "2", "--bins", "20", "--begin", "4.1",
+                "-o", "target");
+    run_program_assert_code(&result, 0);
+    compare("rdf_A-A.tsv", 1, 20);
+    compare("rdf_A-B.tsv", 1, 20);
+    compare("rdf_W-A.tsv", 1, 20);
+    compare("intermolecular_rdf_A-A.tsv", 1, 20);
+    compare("intermolecular_rdf_A-B.tsv", 1, 20);
+    for (int column = 1; column <= 3; column += 2) {
+        compare("bond_angles.tsv", column, 100);
+        compare("dihedral_angles.tsv", column, 100);
+    }
+    for (int column = 1; column <= 4; column++)
+        compare("molecule_sizes.tsv", column, 60);
+    compare("end_to_end.tsv", 1, 10);
+    compare("end_to_end.tsv", 3, 10);
+}
+
+// All images --------------------------------------------------------------------------------------
+
+enum { FRAMES = 50, CHAINS = 12, BEADS = 3, COUNT = CHAINS * BEADS };
+static const double lattice[3][3] = {{2.2, 0, 0}, {0.7, 2.1, 0}, {-0.5, 0.6, 2.3}};
+static double place[FRAMES][COUNT][3];
+
+static double uniform(void) {
+    return rand() / (RAND_MAX + 1.0);
+}
+
+/// Chains A-B-A that begin anywhere, all beads put into the box by its faces.
+static void make_frames(void) {
+    srand(7);
+    for (int frame = 0; frame < FRAMES; frame++)
+        for (int k = 0; k < COUNT; k++) {
+            double x[3], s[3];
+            for (int d = 0; d < 3; d++)
+                x[d] = k % BEADS ? place[frame][k - 1][d] + 0.6 * (uniform() - 0.5) : 2 * uniform();
+            for (int i = 2; i >= 0; i--) { // lower triangular
+                s[i] = floor(x[i] / lattice[i][i]);
+                for (int d = 0; d < 3; d++)
+                    x[d] -= s[i] * lattice[i][d];
+            }
+            memcpy(place[frame][k], x, sizeof x);
+        }
+}
+
+static void write_frames(void) {
+    FILE *file = fopen("chains.xyz", "w");
+    assert_non_null(file);
+    for (int frame = 0; frame < FRAMES; frame++) {
+        fprintf(file, "%d\nLattice=\"", COUNT);
+        for (int n = 0; n < 9; n++)
+            fprintf(file, "%s%.9g", n ? " " : "", 10 * lattice[n / 3][n % 3]);
+        fprintf(file, "\" Properties=species:S:1:pos:R:3 Time=%d pbc=\"T T T\"\n", 1000 * frame);
+        for (int k = 0; k < COUNT; k++)
+            fprintf(file, "%s %.9f %.9f %.9f\n", k % BEADS == 1 ? "B" : "A",
+                    10 * place[frame][k][0], 10 * place[frame][k][1], 10 * place[frame][k][2]);
+    }
+    fclose(file);
+}
+
+/// The shortest of the separations of two beads over their images.
+static double nearest(int frame, int a, int b, double separation[3]) {
+    double least = INFINITY;
+    for (int n = 0; n < 125; n++) {
+        double x[3], square = 0;
+        for (int d = 0; d < 3; d++) {
+            x[d] = place[frame][a][d] - place[frame][b][d] + (n % 5 - 2) * lattice[0][d] +
+                   (n / 5 % 5 - 2) * lattice[1][d] + (n / 25 - 2) * lattice[2][d];
+            square += x[d] * x[d];
+        }
+        if (square < least * least) {
+            least = sqrt(square);
+            memcpy(separation, x, sizeof x);
+        }
+    }
+    return least;
+}
+
+/// Pairs of A and A in a bin of 0.1 nm: those of different molecules, and all that are not bonded.
+static void count_pairs(int bin, double *apart, double *all) {
+    *apart = *all = 0;
+    for (int frame = 0; frame < FRAMES; frame++)
+        for (int a = 0; a < COUNT; a++)
+            for (int b = a + 1; b < COUNT; b++) {
+                double separation[3];
+                const bool same = a / BEADS == b / BEADS;
+                if (a % BEADS == 1 || b % BEADS == 1)
+                    continue;
+                if ((int)(nearest(frame, a, b, separation) / 0.1) == bin) {
+                    *apart += !same;
+                    *all += 1;
+                }
+            }
+}
+
+static void check_pairs(void) {
+    const double volume = lattice[0][0] * lattice[1][1] * lattice[2][2];
+    const double possible = 0.5 * (2 * CHAINS) * (2 * CHAINS - 1);
+    for (int bin = 1; bin < 6; bin += 2) {
+        double apart, all;
+        count_pairs(bin, &apart, &all);
+        const double shell = 4 * M_PI / 3 * (pow(0.1 * (bin + 1), 3) - pow(0.1 * bin, 3)) / volume;
+        assert_true(all > apart && apart > 0);
+        assert_close_relative(cell("target/intermolecular_rdf_A-A.tsv", bin, 1),
+                              apart / (FRAMES * possible * shell), 1e-6);
+        assert_close_relative(cell("target/rdf_A-A.tsv", bin, 1), all / (FRAMES * possible * shell),
+                              1e-6);
+    }
+}
+
+static double dot(const double a[3], const double b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/// Lengths and angles in the bins that the tables have, and ⟨R_e²⟩.
+static void check_bonds(void) {
+    double lengths[100] = {0}, angles[100] = {0}, end = 0;
+    const double width =
+        cell("target/bond_lengths.tsv", 1, 0) - cell("target/bond_lengths.tsv", 0, 0);
+    for (int frame = 0; frame < FRAMES; frame++)
+        for (int first = 0; first < COUNT; first += BEADS) {
+            double u[3], v[3], across = 0;
+            const double a = nearest(frame, first, first + 1, u);
+            const double b = nearest(frame, first + 2, first + 1, v);
+            const int bins[] = {(int)(a / width), (int)(b / width)};
+            for (int k = 0; k < 2; k++)
+                if (bins[k] < 100)
+                    lengths[bins[k]]++;
+            angles[(int)(acos(dot(u, v) / (a * b)) / M_PI * 100)]++;
+            for (int d = 0; d < 3; d++)
+                across += (u[d] - v[d]) * (u[d] - v[d]);
+            end += across / (CHAINS * FRAMES);
+        }
+    for (int bin = 0; bin < 100; bin++) {
+        assert_close(cell("target/bond_lengths.tsv", bin, 1),
+                     lengths[bin] / (2 * CHAINS * FRAMES * width), 1e-5);
+        assert_close(cell("target/bond_angles.tsv", bin, 1), angles[bin] / (CHAINS * FRAMES * 1.8),
+                     1e-7);
+    }
+    double sum = 0;
+    for (int frame = 0; frame < FRAMES; frame++)
+        sum += cell("target/molecule_sizes.tsv", frame, 2) / FRAMES;
+    assert_close_relative(sum, end, 1e-6);
+    assert_close(cell("target/end_to_end.tsv", 0, 0), 0, 0);
+    assert_close(cell("target/molecule_sizes.tsv", 3, 0), 3, 1e-9); // ps
+}
+
+static const char kinds[] =
+    "{\"molecules\": {\"trimer\": {\"exclude\": 1, \"chain\": {\"beads\": [\"A\", \"B\", \"A\"],\n"
+    "  \"bond\": \"AB\", \"angle\": \"ABA\"}}}}\n";
+
+/// Nothing says which atoms are a molecule: they follow each other.
+static void test_cut_molecules_in_a_skewed_box_are_whole(void **state) {
+    static struct run_program_result result;
+    make_frames();
+    write_frames();
+    small_inputs_write(*state, "kinds.json", kinds, NULL, NULL);
+    RUN_PROGRAM(&result, "measure", "chains.xyz", "--molecules", "kinds.json", "--range", "0.9",
+                "--bins", "9", "-o", "target");
+    run_program_assert_code(&result, 0);
+    check_pairs();
+    check_bonds();
+}
+
+static void test_molecules_that_are_not_there_are_refused(void **state) {
+    static const struct {
+        const char *from, *to, *words[3];
+    } cases[] = {
+        {"\"A\", \"B\", \"A\"",
+         "\"A\", \"A\", \"B\"",
+         {"kinds.json: molecules.trimer", "bead 2 of number 1", "atom 2"}},
+        {"\"exclude\"",
+         "\"count\": 13, \"exclude\"",
+         {"kinds.json: molecules.trimer", "number 13", "ends"}},
+        {"\"A\", \"B\", \"A\"", "\"A\", \"C\", \"A\"", {"kinds.json", "atom 2, \"B\"", "--map"}},
+        {"\"bond\": \"AB\"", "\"bond\": \"A B\"", {"kinds.json", "groups", "letters"}},
+        {"\"molecules\"", "\"mole\"", {"kinds.json", "molecules", "molecules"}},
+    };
+    static struct run_program_result result;
+    make_frames();
+    write_frames();
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        small_inputs_write(*state, "kinds.json", kinds, cases[k].from, cases[k].to);
+        RUN_PROGRAM(&result, "measure", "chains.xyz", "--molecules", "kinds.json", "-o", "target");
+        assert_int_equal(result.code, 2);
+        assert_null(fopen("target/summary.json", "r"));
+        for (int word = 0; word < 3; word++)
+            assert_contains(result.err, cases[k].words[word]);
+    }
+}
+
+#define TEST(name)                                                                                 \
+    cmocka_unit_test_setup_teardown(name, small_inputs_enter_without_gnuplot, small_inputs_leave)
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        TEST(test_a_simulation_is_measured_again),
+        TEST(test_cut_molecules_in_a_skewed_box_are_whole),
+        TEST(test_molecules_that_are_not_there_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
