@@ -25,8 +25,9 @@ struct scene_molecules {
     char warning[SCENE_MOLECULES_WARNING_SIZE]; ///< one line; "" if there is nothing to say
 };
 
-/// Fields of a kind, and of its "chain".
-extern const struct field mf_scene_molecule_fields[], mf_scene_chain_fields[];
+/// Fields of a kind, of its "chain", and of a topology's file.
+extern const struct field mf_scene_molecule_fields[], mf_scene_chain_fields[],
+    mf_scene_file_fields[];
 
 /// Names of the objects of groups: "bonds", "angles", "dihedrals".
 extern const char *const mf_scene_group_keys[TOPOLOGY_ORDERS];
