@@ -152,6 +152,8 @@ static enum status add_count(struct gromacs_reading *reading, const struct groma
         return mf_gromacs_fail(line, "there is no moleculetype %.40s", words->word[0]);
     if (topology->kind[k].beads == 0)
         return mf_gromacs_fail(line, "moleculetype %.40s has no atoms", words->word[0]);
+    for (int behind = k; behind < topology->kinds && count > 0; behind++)
+        reading->note->scattered |= topology->kind[behind].count > 0;
     topology->kind[k].count += count;
     return STATUS_OK;
 }
@@ -232,7 +234,7 @@ enum status mf_gromacs_topology_read(struct molecules *molecules, struct composi
         .length = mf_units_known(units) ? units->length : 1,
         .energy = mf_units_known(units) ? mf_units_energy_kj_per_mol(units) : 1,
         .note = told};
-    *told = (struct gromacs_note){""};
+    *told = (struct gromacs_note){.text = ""};
     NEW_ARRAY(own.terms.type, GROMACS_MOST_TYPES);
     CHECK(mf_gromacs_text_read(file, take, &own));
     CHECK(finish(&own.terms, file));

@@ -9,9 +9,10 @@
 
 enum { GROMACS_NOTE_SIZE = 256 };
 
-/// What of a topology is not taken, one line; "" if nothing.
+/// What is to be known of a topology.
 struct gromacs_note {
-    char text[GROMACS_NOTE_SIZE];
+    char text[GROMACS_NOTE_SIZE]; ///< what is not taken, one line; "" if nothing
+    bool scattered;               ///< [ molecules ] names a kind twice, or in another order
 };
 
 /// Read the molecules of a file. A group is the terms of the same parameters, and is called by the

@@ -381,6 +381,7 @@ static enum status read_file(struct reading *reading, struct json_object *object
         return STATUS_OK;
     }
     snprintf(own->warning, sizeof own->warning, "%s", note.text);
+    own->scattered = note.scattered;
     for (int k = 0; k < topology->kinds; k++) {
         own->told[k] = (struct scene_molecule){.group = {-1, -1, -1}};
         reading->kind = topology->kind[k]; // borrowed

@@ -22,6 +22,7 @@ struct scene_molecule {
 struct scene_molecules {
     struct molecules molecules;
     struct scene_molecule told[TOPOLOGY_MOST_KINDS];
+    bool scattered; ///< a topology's molecules are not in the order of their kinds
     char warning[SCENE_MOLECULES_WARNING_SIZE]; ///< one line; "" if there is nothing to say
 };
 

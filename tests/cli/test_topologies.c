@@ -136,6 +136,70 @@ static void test_topologies_that_cannot_be_are_refused(void **state) {
     }
 }
 
+static const char counts[] = "hexane 20\nW 5\nhexane 10";
+static const char placed[] = "\"topol.top\"}, \"particles\": {\"placement\": \"file\", \"file\": "
+                             "\"conf.gro\"},";
+
+/// All places and velocities are the same but for their last decimals.
+static void compare_coordinates(const char *first, const char *second) {
+    FILE *one = fopen(first, "r"), *other = fopen(second, "r");
+    char a[256], b[256];
+    int rows = 0;
+    assert_true(one && other);
+    while (fgets(a, sizeof a, one) && fgets(b, sizeof b, other)) {
+        double x[6], y[6];
+        if (strlen(a) < 90)
+            continue;
+        for (int k = 0; k < 6; k++) {
+            assert_int_equal(sscanf(a + 20 + 12 * k, "%12lf", &x[k]), 1);
+            assert_int_equal(sscanf(b + 20 + 12 * k, "%12lf", &y[k]), 1);
+            assert_close(x[k], y[k], 3e-7);
+        }
+        assert_memory_equal(a, b, 20);
+        rows++;
+    }
+    fclose(one);
+    fclose(other);
+    assert_int_equal(rows, 125);
+}
+
+/// A start is exported, read with its topology, and exported again.
+static void test_coordinates_come_with_a_topology(void **state) {
+    static struct run_program_result result;
+    write_inputs(*state, counts, "hexane 30\nW 5");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    run_program_assert_code(&result, 0);
+    RUN_PROGRAM(&result, "export", "out", "--engine", "gromacs", "-o", "gromacs");
+    run_program_assert_code(&result, 0);
+    assert_int_equal(rename("gromacs/conf.gro", "conf.gro"), 0);
+    small_inputs_write(*state, "scene.json", scene, "\"topol.top\"},", placed);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "placed");
+    run_program_assert_code(&result, 0);
+    RUN_PROGRAM(&result, "export", "placed", "--engine", "gromacs", "-o", "second");
+    run_program_assert_code(&result, 0);
+    compare_coordinates("conf.gro", "second/conf.gro");
+    static const struct {
+        const char *file, *text, *from, *to, *what;
+    } cases[] = {
+        {"topol.top", topology, NULL, NULL, "each moleculetype once"},
+        {"topol.top", topology, counts, "hexane 29\nW 5", "125 atoms; the scene has 121"},
+        {"topol.top", topology, counts, "hexane 30\nW 5", NULL},
+        {"types.itp", types, "0.38", "0.1", "the bond of atoms 1 and 2, of hexane number 1"},
+        {"types.itp", types, NULL, NULL, NULL},
+        {"conf.gro", "beads\n1\n    1HEX     C1    1   1.000   1.000\n", NULL, NULL, "conf.gro:3"},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        small_inputs_write(*state, cases[k].file, cases[k].text, cases[k].from, cases[k].to);
+        if (cases[k].what == NULL)
+            continue;
+        RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "refused");
+        assert_int_equal(result.code, 2);
+        assert_int_equal(run_program_lines(result.err), 1);
+        assert_contains(result.err, cases[k].what);
+        assert_contains(result.err, "particles.file: conf.gro");
+    }
+}
+
 #define TEST(name)                                                                                 \
     cmocka_unit_test_setup_teardown(name, small_inputs_enter_without_gnuplot, small_inputs_leave)
 
@@ -144,6 +208,7 @@ int main(void) {
         TEST(test_a_topology_says_what_molecules_are),
         TEST(test_what_is_not_taken_is_told),
         TEST(test_our_own_export_is_read_again),
+        TEST(test_coordinates_come_with_a_topology),
         TEST(test_topologies_that_cannot_be_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
