@@ -136,6 +136,19 @@ static void test_topologies_that_cannot_be_are_refused(void **state) {
     }
 }
 
+/// Nothing is allocated for 10^11 pairs: it is told in less time than that would take.
+static void test_what_has_no_room_in_memory_is_refused(void **state) {
+    static struct run_program_result result;
+    write_inputs(*state, "hexane 20", "hexane 900000");
+    small_inputs_write(*state, "scene.json", scene,
+                       "\"units\": {\"length\": 0.5,\n  \"temperature\": 300, \"mass\": 5e-26}, ",
+                       "");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    assert_int_equal(result.code, 2);
+    assert_contains(result.err, "3600045 particles with ");
+    assert_contains(result.err, "is the box too small?");
+}
+
 static const char counts[] = "hexane 20\nW 5\nhexane 10";
 static const char placed[] = "\"topol.top\"}, \"particles\": {\"placement\": \"file\", \"file\": "
                              "\"conf.gro\"},";
@@ -209,6 +222,7 @@ int main(void) {
         TEST(test_what_is_not_taken_is_told),
         TEST(test_our_own_export_is_read_again),
         TEST(test_coordinates_come_with_a_topology),
+        TEST(test_what_has_no_room_in_memory_is_refused),
         TEST(test_topologies_that_cannot_be_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
