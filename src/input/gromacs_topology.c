@@ -203,24 +203,77 @@ static enum status take(void *context, struct gromacs_line *line) {
     return STATUS_OK;
 }
 
-/// Kinds without molecules go, and types and groups that only they had stay.
-static enum status finish(struct gromacs_reading *reading, const char *file) {
-    struct topology *topology = &reading->molecules->topology;
+// What nobody has ---------------------------------------------------------------------------------
+
+static void drop_kinds(struct topology *topology) {
     int left = 0;
     for (int k = 0; k < topology->kinds; k++) {
         struct topology_kind kind = topology->kind[k];
         topology->kind[k] = (struct topology_kind){0};
-        if (kind.count == 0) {
+        if (kind.count == 0)
             mf_topology_kind_clear(&kind);
-            continue;
-        }
-        topology->kind[left++] = kind;
-        for (int bead = 0; bead < kind.beads; bead++)
-            reading->composition->count[kind.type[bead]] += kind.count;
+        else
+            topology->kind[left++] = kind;
     }
     topology->kinds = left;
-    return left > 0 ? STATUS_OK
-                    : mf_status_fail(STATUS_BAD_INPUT, "%s: [ molecules ] has none", file);
+}
+
+/// Count the beads of each type. Types behind the first `known` go if they have none.
+static void drop_types(struct gromacs_reading *reading, int known) {
+    struct composition *composition = reading->composition;
+    struct topology *topology = &reading->molecules->topology;
+    int number[COMPOSITION_MOST_TYPES], left = known;
+    for (int k = 0; k < topology->kinds; k++)
+        for (int bead = 0; bead < topology->kind[k].beads; bead++)
+            composition->count[topology->kind[k].type[bead]] += topology->kind[k].count;
+    for (int type = 0; type < composition->types; type++) {
+        number[type] = type < known ? type : left;
+        if (type < known || composition->count[type] == 0)
+            continue;
+        composition->count[left] = composition->count[type];
+        memmove(composition->name[left++], composition->name[type], COMPOSITION_NAME_SIZE);
+    }
+    for (int type = left; type < composition->types; type++)
+        composition->count[type] = 0;
+    composition->types = left;
+    for (int k = 0; k < topology->kinds; k++)
+        for (int bead = 0; bead < topology->kind[k].beads; bead++)
+            topology->kind[k].type[bead] = number[topology->kind[k].type[bead]];
+}
+
+static void drop_groups(struct molecules *molecules, int order) {
+    struct topology *topology = &molecules->topology;
+    bool used[MOLECULES_MOST_GROUPS] = {false};
+    int number[MOLECULES_MOST_GROUPS], left = 0;
+    for (int k = 0; k < topology->kinds; k++)
+        for (int n = 0; n < topology->kind[k].terms[order]; n++)
+            used[topology->kind[k].term[order][n].group] = true;
+    for (int g = 0; g < molecules->groups[order]; g++) {
+        struct molecules_group group = molecules->group[order][g];
+        number[g] = left;
+        molecules->group[order][g] = (struct molecules_group){{0}, {0}};
+        if (used[g])
+            molecules->group[order][left++] = group;
+        else
+            mf_bonded_clear(&group.curve);
+    }
+    molecules->groups[order] = left;
+    for (int k = 0; k < topology->kinds; k++)
+        for (int n = 0; n < topology->kind[k].terms[order]; n++) {
+            struct topology_term *term = &topology->kind[k].term[order][n];
+            term->group = number[term->group];
+        }
+}
+
+/// Moleculetypes of which there are none go, and what only they had.
+static enum status finish(struct gromacs_reading *reading, int known, const char *file) {
+    drop_kinds(&reading->molecules->topology);
+    drop_types(reading, known);
+    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+        drop_groups(reading->molecules, order);
+    return reading->molecules->topology.kinds > 0
+               ? STATUS_OK
+               : mf_status_fail(STATUS_BAD_INPUT, "%s: [ molecules ] has none", file);
 }
 
 enum status mf_gromacs_topology_read(struct molecules *molecules, struct composition *composition,
@@ -234,10 +287,11 @@ enum status mf_gromacs_topology_read(struct molecules *molecules, struct composi
         .length = mf_units_known(units) ? units->length : 1,
         .energy = mf_units_known(units) ? mf_units_energy_kj_per_mol(units) : 1,
         .note = told};
+    const int known = composition->types;
     *told = (struct gromacs_note){.text = ""};
     NEW_ARRAY(own.terms.type, GROMACS_MOST_TYPES);
     CHECK(mf_gromacs_text_read(file, take, &own));
-    CHECK(finish(&own.terms, file));
+    CHECK(finish(&own.terms, known, file));
 done:
     mf_memory_free(own.terms.type);
     return status;

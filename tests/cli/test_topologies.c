@@ -20,19 +20,22 @@ static const char scene[] =
 /// kJ/mol in k_B T at 300 K, by CODATA's constants.
 static const double energy = 1 / (8.31446261815324e-3 * 300);
 
-static const char topology[] = "; a comment\n"
-                               "#define STIFF 0.4 \\\n  2000.0\n"
-                               "#include \"types.itp\"\n"
-                               "#ifdef FLEXIBLE\n#include \"nowhere.itp\"\n#else\n"
-                               "[ moleculetype ]\nhexane 2 ; nrexcl\n#endif\n"
-                               "[ atoms ]\n; nr type\n1 C1 1 HEX A 1 0.0 42.0\n2 C2 1 HEX B 2\n3 "
-                               "C1 1 HEX A 3\n4 C1 1 HEX A 4\n"
-                               "[ bonds ]\n1 2 1\n2 3 1 STIFF\n3 4 7 0.8 500\n"
-                               "[angles]\n1 2 3 1 110 30.0\n2 3 4 2 120.0 45\n"
-                               "[ dihedrals ]\n1 2 3 4 9 180 2.5 3\n"
-                               "4 3 2 1 3 1 2 3 4 5 6 ; the same beads in another group\n"
-                               "[ moleculetype ]\nW 1\n[ atoms ]\n1 C2 1 W W 1\n"
-                               "[ system ]\nany words\n[ molecules ]\nhexane 20\nW 5\nhexane 10\n";
+static const char topology[] =
+    "; a comment\n"
+    "#define STIFF 0.4 \\\n  2000.0\n"
+    "#include \"types.itp\"\n"
+    "#ifdef FLEXIBLE\n#include \"nowhere.itp\"\n#else\n"
+    "[ moleculetype ]\nhexane 2 ; nrexcl\n#endif\n"
+    "[ atoms ]\n; nr type\n1 C1 1 HEX A 1 0.0 42.0\n2 C2 1 HEX B 2\n3 "
+    "C1 1 HEX A 3\n4 C1 1 HEX A 4\n"
+    "[ bonds ]\n1 2 1\n2 3 1 STIFF\n3 4 7 0.8 500\n"
+    "[angles]\n1 2 3 1 110 30.0\n2 3 4 2 120.0 45\n"
+    "[ dihedrals ]\n1 2 3 4 9 180 2.5 3\n"
+    "4 3 2 1 3 1 2 3 4 5 6 ; the same beads in another group\n"
+    "[ moleculetype ]\nW 1\n[ atoms ]\n1 C2 1 W W 1\n"
+    "[ moleculetype ]\nION 1\n[ atoms ]\n1 Na 1 ION Na 1\n2 Na 1 ION Na 2\n"
+    "[ bonds ]\n1 2 1 0.9 77\n"
+    "[ system ]\nany words\n[ molecules ]\nhexane 20\nW 5\nhexane 10\n";
 static const char types[] = "[ defaults ]\n1 1\n[ atomtypes ]\nC1 42.0 0.0 A 0.0 0.0\n"
                             "[ bondtypes ]\nC2 C1 1 0.38 1500\n[ nonbond_params ]\nC1 C1 1 0 0\n";
 
@@ -53,6 +56,12 @@ static void test_a_topology_says_what_molecules_are(void **state) {
     results_assert_number(used, "molecules.hexane.count", 30);
     results_assert_number(used, "molecules.hexane.exclude", 2);
     results_assert_number(used, "molecules.W.count", 5);
+    FILE *stream = fopen(used, "r"); // nothing is left of what there is none of
+    char line[1024];
+    assert_non_null(stream);
+    while (fgets(line, sizeof line, stream))
+        assert_true(strstr(line, "Na") == NULL && strstr(line, "ION") == NULL);
+    fclose(stream);
     assert_close_relative(results_number(used, "bonds.C1-C2.k"), 1500 * energy * 0.25, 1e-6);
     assert_close_relative(results_number(used, "bonds.C1-C2.length"), 0.76, 1e-12);
     assert_close_relative(results_number(used, "bonds.C2-C1.k"), 2000 * energy * 0.25, 1e-6);
