@@ -222,7 +222,7 @@ static void drop_kinds(struct topology *topology) {
 static void drop_types(struct gromacs_reading *reading, int known) {
     struct composition *composition = reading->composition;
     struct topology *topology = &reading->molecules->topology;
-    int number[COMPOSITION_MOST_TYPES], left = known;
+    int number[COMPOSITION_MOST_TYPES] = {0}, left = known;
     for (int k = 0; k < topology->kinds; k++)
         for (int bead = 0; bead < topology->kind[k].beads; bead++)
             composition->count[topology->kind[k].type[bead]] += topology->kind[k].count;
@@ -244,7 +244,7 @@ static void drop_types(struct gromacs_reading *reading, int known) {
 static void drop_groups(struct molecules *molecules, int order) {
     struct topology *topology = &molecules->topology;
     bool used[MOLECULES_MOST_GROUPS] = {false};
-    int number[MOLECULES_MOST_GROUPS], left = 0;
+    int number[MOLECULES_MOST_GROUPS] = {0}, left = 0;
     for (int k = 0; k < topology->kinds; k++)
         for (int n = 0; n < topology->kind[k].terms[order]; n++)
             used[topology->kind[k].term[order][n].group] = true;
