@@ -32,7 +32,7 @@ enum {
 static const struct command_option options[] = {
     [STRUCTURE] = {"-s", "FILE", "names, residues and masses of the atoms (.gro, .pdb, .data, …)"},
     [MAP] = {"--map", "FILE.json", "atoms to beads (describe map); else a bead a residue"},
-    [MOLECULES] = {"--molecules", "FILE.json",
+    [MOLECULES] = {"--molecules", "FILE",
                    "bonds of beads (a scene's \"molecules\"); without a map a bead an atom"},
     [BEGIN] = {"--begin", "T", "leave out what is before [ps]"},
     [END] = {"--end", "T", "leave out what is after [ps]"},

@@ -11,6 +11,8 @@
 #include "forces/molecules.h"
 #include "system/orientation.h"
 
+#include <unistd.h>
+
 double mf_simulation_range(const struct simulation_setup *setup) {
     const struct pair_law law = {.potential = setup->potential, .omega = setup->omega};
     double range = fmax(mf_pair_cutoff(&law), mf_pair_memory_range(&setup->memory));
@@ -128,6 +130,24 @@ static void clear_interactions(struct simulation *simulation) {
     simulation->interactions = 0;
 }
 
+/// Whether particles and their neighbours go into the memory of this machine: a box that is too
+/// small for its molecules has more of them than any.
+static enum status check_memory(const struct simulation_setup *setup) {
+    static const double bytes_of_particle = 300, bytes_of_pair = 4, giga = 1e9;
+    const double count = (double)setup->placement.count;
+    const double density = count / mf_box_volume(&setup->box);
+    const double neighbours =
+        density * mf_box_shell_volume(&setup->box, 0, mf_simulation_range(setup));
+    const double bytes = count * (bytes_of_particle + 0.5 * bytes_of_pair * neighbours);
+    const double there = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
+    if (!(bytes > there))
+        return STATUS_OK;
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "%.0f particles with %.3g neighbours each would take %.3g GB, and this "
+                          "machine has %.3g: is the box too small?",
+                          count, neighbours, bytes / giga, there / giga);
+}
+
 enum status mf_simulation_init(struct simulation *simulation, const struct simulation_setup *setup,
                                const struct simulation_start *start) {
     enum status status = STATUS_OK;
@@ -143,6 +163,7 @@ enum status mf_simulation_init(struct simulation *simulation, const struct simul
     };
     const size_t count = (size_t)setup->placement.count;
     CHECK(prepare_integrator(simulation));
+    CHECK(check_memory(&simulation->setup));
     CHECK(mf_particles_init(&simulation->particles, &setup->box, count));
     if (simulation->law.precision == PAIR_DOUBLE)
         CHECK(mf_particles_keep_precise(&simulation->particles));

@@ -87,7 +87,8 @@ struct simulation_start {
 /// Place the particles, draw their velocities and compute the first forces. Particles placed at
 /// random are parted where they overlap (mf_relax_overlaps).
 /// @param[in] start  for PLACEMENT_FILE, else NULL
-/// Fails: BAD_INPUT (box below twice the cutoff, no room), NO_MEMORY, UNSTABLE.
+/// Fails: BAD_INPUT (box below twice the cutoff, no room, more neighbours than this machine has
+/// memory for), NO_MEMORY, UNSTABLE.
 enum status mf_simulation_init(struct simulation *simulation, const struct simulation_setup *setup,
                                const struct simulation_start *start) MUST_USE;
 void mf_simulation_clear(struct simulation *simulation);

@@ -1,39 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Functions of GROMACS's terms are those of its reference manual, "Topology file", table of
-// interactions: bonds 1, 7 (FENE), 8 (table); angles 1, 2 (G96), 8; dihedrals 1, 3
-// (Ryckaert-Bellemans), 8. Tables are cubics between rows of value and −derivative, of angles in
-// degrees.
+// Laws that GROMACS has are those of input/gromacs_functions.h, the others its function 8. Tables
+// are cubics between rows of value and −derivative, of angles in degrees.
 #include "export/export_gromacs_molecules.h"
+
+#include "input/gromacs_functions.h"
 
 #include <math.h>
 
 // Laws --------------------------------------------------------------------------------------------
 
-struct function {
-    const struct bonded_law *law;
-    int number;
-    const char *parameter[6]; ///< by their names in a scene
-    enum { OF_LENGTH, OF_BOND, OF_ENERGY, OF_NOTHING } unit[6];
-};
-
-static const struct function functions[] = {
-    {&mf_bond_harmonic, 1, {"length", "k"}, {OF_LENGTH, OF_BOND}},
-    {&mf_bond_fene, 7, {"longest", "k"}, {OF_LENGTH, OF_BOND}},
-    {&mf_angle_harmonic, 1, {"angle", "k"}, {OF_NOTHING, OF_ENERGY}},
-    {&mf_angle_cosine_squared, 2, {"angle", "k"}, {OF_NOTHING, OF_ENERGY}},
-    {&mf_dihedral_periodic, 1, {"phase", "k", "multiplicity"}, {OF_NOTHING, OF_ENERGY, OF_NOTHING}},
-    {&mf_dihedral_ryckaert_bellemans,
-     3,
-     {"c0", "c1", "c2", "c3", "c4", "c5"},
-     {OF_ENERGY, OF_ENERGY, OF_ENERGY, OF_ENERGY, OF_ENERGY, OF_ENERGY}},
-};
-
-static const struct function *find_function(const struct bonded_curve *curve) {
-    for (size_t k = 0; k < sizeof functions / sizeof *functions; k++)
-        if (functions[k].law == curve->law)
-            return &functions[k];
-    return NULL;
+static const struct gromacs_function *find_function(const struct bonded_curve *curve) {
+    const struct gromacs_function *function = mf_gromacs_functions;
+    while (function->law && function->law != curve->law)
+        function++;
+    return function->law ? function : NULL;
 }
 
 bool mf_export_gromacs_has_law(const struct bonded_curve *curve) {
@@ -42,17 +23,16 @@ bool mf_export_gromacs_has_law(const struct bonded_curve *curve) {
 
 static void print_law(const struct export_job *job, int order, int group, FILE *stream) {
     const struct bonded_curve *curve = &job->model->molecules->group[order][group].curve;
-    const struct function *function = find_function(curve);
-    const double length = job->units.length, energy = job->units.energy;
-    const double unit[] = {length, energy / (length * length), energy, 1};
+    const struct gromacs_function *function = find_function(curve);
     if (function == NULL) { // its factor behind the number of the table
         fprintf(stream, " 8 %d 1", job->bonded.table[order][group].number);
         return;
     }
     fprintf(stream, " %d", function->number);
-    for (int n = 0; n < 6 && function->parameter[n]; n++)
+    for (int n = 0; n < GROMACS_MOST_PARAMETERS && function->parameter[n]; n++)
         fprintf(stream, " %.10g",
-                mf_export_bonded_number(curve, function->parameter[n]) * unit[function->unit[n]]);
+                mf_export_bonded_number(curve, function->parameter[n]) *
+                    gromacs_unit(function->unit[n], job->units.length, job->units.energy));
 }
 
 // Atoms -------------------------------------------------------------------------------------------

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "input/molecules_file.h"
 
+#include "input/gromacs_topology.h"
 #include "io/json.h"
 
 #include <string.h>
@@ -19,11 +20,30 @@ static void read_types(struct json_object *root, struct composition *types) {
             strcpy(types->name[types->types++], name);
 }
 
+static bool is_topology(const char *file) {
+    const char *end = strrchr(file, '.');
+    return end && (strcmp(end, ".top") == 0 || strcmp(end, ".itp") == 0);
+}
+
+/// A topology of GROMACS, in nm.
+static enum status read_topology(struct scene_molecules *molecules, struct composition *types,
+                                 const char *file) {
+    static const struct units nanometres = {0};
+    struct gromacs_note note;
+    const enum status status =
+        mf_gromacs_topology_read(&molecules->molecules, types, file, &nanometres, &note);
+    if (status != STATUS_OK)
+        mf_scene_molecules_clear(molecules);
+    return status;
+}
+
 enum status mf_molecules_file_read(struct scene_molecules *molecules, struct composition *types,
                                    const char *file) {
     struct json_document *document;
     *molecules = (struct scene_molecules){0};
     *types = (struct composition){0};
+    if (is_topology(file))
+        return read_topology(molecules, types, file);
     TRY(mf_json_open(&document, file));
     struct json_object root = mf_json_root(document);
     read_types(&root, types);

@@ -3,6 +3,7 @@
 
 #include "base/memory.h"
 #include "base/nearest.h"
+#include "input/gromacs_topology.h"
 #include "io/json_list.h"
 
 #include <string.h>
@@ -27,6 +28,15 @@ const struct field mf_scene_molecule_fields[] = {
      .help = "pairs of beads at most so many bonds apart have no pair potential and no friction; "
              "-1: as far as the terms of the molecule reach, 1 with bonds alone, 2 with angles, 3 "
              "with dihedrals, as VOTCA does"},
+    FIELD_END,
+};
+
+struct told_file {
+    char file[FIELD_TEXT_SIZE];
+};
+const struct field mf_scene_file_fields[] = {
+    {"file", FIELD_FILE, .offset = offsetof(struct told_file, file), .required = true, .unit = "",
+     .help = "a topology of GROMACS in the place of kinds"},
     FIELD_END,
 };
 
@@ -350,9 +360,44 @@ static void check_use(const struct reading *reading, struct json_object *scene) 
                           composition->name[type], (long long)composition->count[type]);
 }
 
-static enum status read_kinds(struct reading *reading, struct json_object *scene, bool required) {
+/// "molecules": {"file": "topol.top"}: kinds and groups of a topology.
+static enum status read_file(struct reading *reading, struct json_object *object,
+                             const struct units *units) {
+    const size_t faults = mf_json_fault_count(object->document);
+    struct scene_molecules *own = reading->molecules;
+    struct topology *topology = &own->molecules.topology;
+    struct told_file told;
+    struct gromacs_note note;
+    mf_json_fields(object, mf_scene_file_fields, &told);
+    mf_json_finish(object);
+    if (mf_json_fault_count(object->document) > faults)
+        return STATUS_OK;
+    const enum status status =
+        mf_gromacs_topology_read(&own->molecules, reading->composition, told.file, units, &note);
+    if (status == STATUS_NO_MEMORY)
+        return status;
+    if (status != STATUS_OK) {
+        mf_json_fault(object, "file", "%s", mf_status_message());
+        return STATUS_OK;
+    }
+    snprintf(own->warning, sizeof own->warning, "%s", note.text);
+    own->scattered = note.scattered;
+    for (int k = 0; k < topology->kinds; k++) {
+        own->told[k] = (struct scene_molecule){.group = {-1, -1, -1}};
+        reading->kind = topology->kind[k]; // borrowed
+        warn_of(reading);
+    }
+    memset(reading->used, 1, sizeof reading->used);
+    return STATUS_OK;
+}
+
+static enum status read_kinds(struct reading *reading, struct json_object *scene, bool required,
+                              const struct units *units) {
     const char *name;
     struct json_object object = mf_json_child(scene, "molecules", required);
+    if (mf_json_key(&object, 0) && !mf_json_is_object(&object, "file") &&
+        mf_json_has(&object, "file"))
+        return read_file(reading, &object, units);
     for (size_t n = 0; (name = mf_json_key(&object, n)); n++) {
         if (n >= TOPOLOGY_MOST_KINDS || !mf_topology_is_name(name)) {
             mf_json_fault(&object, name,
@@ -371,7 +416,7 @@ static enum status read_kinds(struct reading *reading, struct json_object *scene
 enum status mf_scene_kinds_read(struct scene_molecules *molecules, struct json_object *scene,
                                 struct composition *composition) {
     struct reading reading = {.molecules = molecules, .composition = composition, .open = true};
-    return read_kinds(&reading, scene, true);
+    return read_kinds(&reading, scene, true, NULL);
 }
 
 enum status mf_scene_molecules_read(struct scene_molecules *molecules, struct json_object *scene,
@@ -383,7 +428,7 @@ enum status mf_scene_molecules_read(struct scene_molecules *molecules, struct js
         TRY(mf_scene_groups_read(&molecules->molecules, order, scene, units));
     if (mf_json_fault_count(scene->document) > faults)
         return STATUS_OK; // that kinds lack such a group would mislead
-    TRY(read_kinds(&reading, scene, false));
+    TRY(read_kinds(&reading, scene, false, units));
     if (mf_json_fault_count(scene->document) == faults)
         check_use(&reading, scene);
     if (mf_json_fault_count(scene->document) == faults &&

@@ -22,11 +22,13 @@ struct scene_molecule {
 struct scene_molecules {
     struct molecules molecules;
     struct scene_molecule told[TOPOLOGY_MOST_KINDS];
+    bool scattered; ///< a topology's molecules are not in the order of their kinds
     char warning[SCENE_MOLECULES_WARNING_SIZE]; ///< one line; "" if there is nothing to say
 };
 
-/// Fields of a kind, and of its "chain".
-extern const struct field mf_scene_molecule_fields[], mf_scene_chain_fields[];
+/// Fields of a kind, of its "chain", and of a topology's file.
+extern const struct field mf_scene_molecule_fields[], mf_scene_chain_fields[],
+    mf_scene_file_fields[];
 
 /// Names of the objects of groups: "bonds", "angles", "dihedrals".
 extern const char *const mf_scene_group_keys[TOPOLOGY_ORDERS];

@@ -4,6 +4,7 @@
 #include "base/digest.h"
 #include "base/memory.h"
 #include "input/scene_attributes.h"
+#include "input/scene_coordinates.h"
 #include "io/data_table.h"
 #include "io/snapshot.h"
 
@@ -199,7 +200,9 @@ enum status mf_scene_particles_read(struct scene *scene, struct json_object *obj
         mf_json_fault(&particles, "file", "is required with \"placement\": \"file\"");
         return STATUS_OK;
     }
-    return read_positions(scene, &particles);
+    return mf_scene_coordinates_is_gro(placement->file)
+               ? mf_scene_coordinates_read(scene, &particles)
+               : read_positions(scene, &particles);
 }
 
 /// Single beads beside molecules, if there are any.

@@ -318,6 +318,8 @@ done:
 }
 
 static enum status write(const void *state, const struct observable_results *results) {
+    if (isnan(((const struct state *)state)->time_step)) // frames without known times
+        return STATUS_OK;
     TRY(write_correlation(state, results));
     return write_sizes(state, results);
 }

@@ -53,22 +53,25 @@ static enum status check_beads(const struct topology_kind *kind, int order,
     return STATUS_OK;
 }
 
+enum status mf_topology_check_term(const struct topology_kind *kind, int order, int n) {
+    const struct topology_term *term = &kind->term[order][n];
+    const int beads = topology_beads(order);
+    char name[64];
+    name_term(term, beads, name, sizeof name);
+    TRY(check_beads(kind, order, term, name));
+    for (int m = 0; m < n; m++) {
+        const struct topology_term *other = &kind->term[order][m];
+        if (are_same(term, other, beads) && (order == TOPOLOGY_BOND || term->group == other->group))
+            return mf_status_fail(STATUS_BAD_INPUT, "the %s %s stands there twice",
+                                  mf_topology_order_names[order], name);
+    }
+    return STATUS_OK;
+}
+
 enum status mf_topology_check(const struct topology_kind *kind) {
     for (int order = 0; order < TOPOLOGY_ORDERS; order++)
-        for (int n = 0; n < kind->terms[order]; n++) {
-            const struct topology_term *term = &kind->term[order][n];
-            const int beads = topology_beads(order);
-            char name[64];
-            name_term(term, beads, name, sizeof name);
-            TRY(check_beads(kind, order, term, name));
-            for (int m = 0; m < n; m++) {
-                const struct topology_term *other = &kind->term[order][m];
-                if (are_same(term, other, beads) &&
-                    (order == TOPOLOGY_BOND || term->group == other->group))
-                    return mf_status_fail(STATUS_BAD_INPUT, "the %s %s stands there twice",
-                                          mf_topology_order_names[order], name);
-            }
-        }
+        for (int n = 0; n < kind->terms[order]; n++)
+            TRY(mf_topology_check_term(kind, order, n));
     return STATUS_OK;
 }
 

@@ -72,6 +72,9 @@ bool mf_topology_is_name(const char *name);
 /// bond that stands there twice, another term twice in a group. Tested: test_topology.
 enum status mf_topology_check(const struct topology_kind *kind) MUST_USE;
 
+/// The same of one term, and those of its order before it.
+enum status mf_topology_check_term(const struct topology_kind *kind, int order, int n) MUST_USE;
+
 /// The first angle or dihedral two neighbouring beads of which no bond joins, or NULL.
 /// @param[out] order  of the term
 const struct topology_term *mf_topology_unbonded(const struct topology_kind *kind, int *order);

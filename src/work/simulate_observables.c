@@ -12,7 +12,7 @@ static bool is_usual(const struct observable *observable, const struct simulatio
 enum status mf_simulate_observables_read(struct simulate_observables *observables,
                                          struct json_object *root,
                                          const struct simulation_setup *setup) {
-    const bool lonely = setup->placement.count < 2;
+    const bool lonely = setup->placement.count < 2 && mf_json_fault_count(root->document) == 0;
     *observables = (struct simulate_observables){0};
     struct observable_use *use = observables->use;
     for (size_t k = 0; mf_observables[k]; k++) {

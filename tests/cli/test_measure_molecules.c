@@ -222,6 +222,26 @@ static const char kinds[] =
     "{\"molecules\": {\"trimer\": {\"exclude\": 1, \"chain\": {\"beads\": [\"A\", \"B\", \"A\"],\n"
     "  \"bond\": \"AB\", \"angle\": \"ABA\"}}}}\n";
 
+static const char topology[] =
+    "[ moleculetype ]\ntrimer 1\n[ atoms ]\n1 A 1 T A 1\n2 B 1 T B 2\n3 A 1 T A 3\n"
+    "[ bonds ]\n1 2 1 0.3 1\n2 3 1 0.3 1\n[ angles ]\n1 2 3 1 90 1\n[ molecules ]\ntrimer 12\n";
+
+/// The same molecules by a topology of GROMACS.
+static void check_topology(struct temporary_folder *folder) {
+    static struct run_program_result result;
+    small_inputs_write(folder, "kinds.top", topology, NULL, NULL);
+    RUN_PROGRAM(&result, "measure", "chains.xyz", "--molecules", "kinds.top", "--range", "0.9",
+                "--bins", "9", "--static", "-o", "other");
+    run_program_assert_code(&result, 0);
+    assert_null(fopen("other/end_to_end.tsv", "r")); // of known times alone
+    for (int bin = 0; bin < 100; bin++) {
+        assert_close(cell("other/bond_lengths.tsv", bin, 1),
+                     cell("target/bond_lengths.tsv", bin, 1), 0);
+        assert_close(cell("other/bond_angles.tsv", bin, 1), cell("target/bond_angles.tsv", bin, 1),
+                     0);
+    }
+}
+
 /// Nothing says which atoms are a molecule: they follow each other.
 static void test_cut_molecules_in_a_skewed_box_are_whole(void **state) {
     static struct run_program_result result;
@@ -233,6 +253,7 @@ static void test_cut_molecules_in_a_skewed_box_are_whole(void **state) {
     run_program_assert_code(&result, 0);
     check_pairs();
     check_bonds();
+    check_topology(*state);
 }
 
 static void test_molecules_that_are_not_there_are_refused(void **state) {

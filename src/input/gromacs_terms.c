@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "input/gromacs_terms.h"
+
+#include "base/memory.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+bool mf_gromacs_is_integer(const char *word, int64_t least, int64_t most, int64_t *value) {
+    char *end;
+    *value = strtoll(word, &end, 10);
+    return *end == '\0' && end != word && *value >= least && *value <= most;
+}
+
+/// Room for one more item of `size` bytes behind `count`.
+enum status mf_gromacs_reserve(void **array, size_t count, size_t *room, size_t size) {
+    if (count < *room)
+        return STATUS_OK;
+    const size_t larger = *room ? 2 * *room : 16;
+    void *grown = mf_memory_zeroed(larger, size);
+    if (grown == NULL)
+        return STATUS_NO_MEMORY;
+    if (count > 0)
+        memcpy(grown, *array, count * size);
+    mf_memory_free(*array);
+    *array = grown;
+    *room = larger;
+    return STATUS_OK;
+}
+
+struct topology_kind *mf_gromacs_last_kind(const struct gromacs_reading *reading) {
+    struct topology *topology = &reading->molecules->topology;
+    return topology->kinds > 0 ? &topology->kind[topology->kinds - 1] : NULL;
+}
+
+// Parameters --------------------------------------------------------------------------------------
+
+static const struct gromacs_function *find_function(int order, int64_t number) {
+    for (const struct gromacs_function *f = mf_gromacs_functions; f->law; f++)
+        if ((int)f->kind == order && f->number == number)
+            return f;
+    return NULL;
+}
+
+static int parameters_of(const struct gromacs_function *function) {
+    int count = 0;
+    while (count < GROMACS_MOST_PARAMETERS && function->parameter[count])
+        count++;
+    return count;
+}
+
+static enum status read_function(const struct gromacs_line *line, int order, const char *word,
+                                 const struct gromacs_function **function) {
+    static const char *const known[] = {"1 (harmonic) and 7 (FENE)", "1 (harmonic) and 2 (G96)",
+                                        "1, 4, 9 (periodic) and 3 (Ryckaert-Bellemans)"};
+    int64_t number;
+    *function = mf_gromacs_is_integer(word, 1, 100, &number) ? find_function(order, number) : NULL;
+    if (*function)
+        return STATUS_OK;
+    return mf_gromacs_fail(line, "function %.40s of a%s %s is not known, but %s", word,
+                           order == TOPOLOGY_ANGLE ? "n" : "", mf_topology_order_names[order],
+                           known[order]);
+}
+
+/// Numbers behind the function: none, or those of it, perhaps twice as for free energies.
+static enum status read_values(const struct gromacs_line *line, const struct gromacs_words *words,
+                               int first, int wanted, double *values, int *count) {
+    *count = words->count - first;
+    if (*count != 0 && *count != wanted && *count != 2 * wanted)
+        return mf_gromacs_fail(line, "%d numbers stand behind the function, which has %d", *count,
+                               wanted);
+    for (int n = 0; n < *count; n++) {
+        char *end;
+        values[n] = strtod(words->word[first + n], &end);
+        if (*end != '\0' || !isfinite(values[n]))
+            return mf_gromacs_fail(line, "\"%.40s\" is no number", words->word[first + n]);
+    }
+    return STATUS_OK;
+}
+
+enum status mf_gromacs_add_type(struct gromacs_reading *reading, const struct gromacs_line *line,
+                                const struct gromacs_words *words) {
+    const int order = reading->order, beads = topology_beads(order);
+    struct gromacs_term_type *type = &reading->type[reading->types];
+    const struct gromacs_function *function;
+    if (reading->types == GROMACS_MOST_TYPES)
+        return mf_gromacs_fail(line, "more than %d types of terms", GROMACS_MOST_TYPES);
+    if (words->count <= beads)
+        return mf_gromacs_fail(line, "%d types and a function are expected", beads);
+    *type = (struct gromacs_term_type){.order = order};
+    for (int k = 0; k < beads; k++)
+        snprintf(type->bead[k], GROMACS_WORD_SIZE, "%s", words->word[k]);
+    // Of functions that nobody uses nothing need be known.
+    int64_t number;
+    if (!mf_gromacs_is_integer(words->word[beads], 1, 100, &number) ||
+        (function = find_function(order, number)) == NULL)
+        return STATUS_OK;
+    type->number = (int)number;
+    TRY(read_values(line, words, beads + 1, parameters_of(function), type->value, &type->words));
+    reading->types++;
+    return STATUS_OK;
+}
+
+/// Whether the beads of a term are of the types of a line, in either direction.
+static bool is_of(const struct gromacs_reading *reading, const struct topology_term *term,
+                  const struct gromacs_term_type *type) {
+    const struct topology_kind *kind = mf_gromacs_last_kind(reading);
+    const int beads = topology_beads(type->order);
+    bool forward = true, backward = true;
+    for (int k = 0; k < beads; k++) {
+        const char *name = reading->composition->name[kind->type[term->bead[k]]];
+        forward &= strcmp(type->bead[k], name) == 0;
+        backward &= strcmp(type->bead[beads - 1 - k], name) == 0;
+    }
+    return forward || backward;
+}
+
+static enum status find_values(const struct gromacs_reading *reading,
+                               const struct gromacs_line *line,
+                               const struct gromacs_function *function,
+                               const struct topology_term *term, double *values) {
+    for (size_t k = 0; k < reading->types; k++) {
+        const struct gromacs_term_type *type = &reading->type[k];
+        if (type->order != (int)function->kind || type->number != function->number ||
+            type->words == 0 || !is_of(reading, term, type))
+            continue;
+        memcpy(values, type->value, sizeof type->value);
+        return STATUS_OK;
+    }
+    return mf_gromacs_fail(line,
+                           "the %s has no parameters, and there are none of its types and function",
+                           mf_topology_order_names[function->kind]);
+}
+
+// Groups ------------------------------------------------------------------------------------------
+
+/// Set a parameter of a law, which must be in its range.
+static enum status set_number(const struct gromacs_line *line, struct bonded_curve *curve,
+                              const char *name, double value) {
+    const struct field *field = curve->law->fields;
+    while (strcmp(field->name, name) != 0)
+        field++;
+    if (value < field->minimum || value > field->maximum ||
+        (field->type == FIELD_INTEGER && value != rint(value)))
+        return mf_gromacs_fail(line, "%s of the law \"%s\" cannot be %g", name, curve->law->name,
+                               value);
+    const int64_t integer = field->type == FIELD_INTEGER ? (int64_t)value : 0;
+    memcpy((char *)curve->parameters + field->offset,
+           field->type == FIELD_INTEGER ? (const void *)&integer : (const void *)&value,
+           sizeof value);
+    return STATUS_OK;
+}
+
+/// "A-B", of the types of a term; "A-B_2" if another group is called so.
+static void name_group(const struct gromacs_reading *reading, int order,
+                       const struct topology_term *term, char name[TOPOLOGY_NAME_SIZE]) {
+    const struct topology_kind *kind = mf_gromacs_last_kind(reading);
+    const struct molecules *molecules = reading->molecules;
+    char plain[TOPOLOGY_NAME_SIZE - 4] = "";
+    for (int k = 0; k < topology_beads(order); k++) {
+        const size_t length = strlen(plain);
+        snprintf(plain + length, sizeof plain - length, "%s%s", k ? "-" : "",
+                 reading->composition->name[kind->type[term->bead[k]]]);
+    }
+    snprintf(name, TOPOLOGY_NAME_SIZE, "%s", plain);
+    for (int g = 0, number = 2; g < molecules->groups[order]; g++)
+        if (strcmp(molecules->group[order][g].name, name) == 0) {
+            snprintf(name, TOPOLOGY_NAME_SIZE, "%s_%d", plain, number++);
+            g = -1; // from the first on
+        }
+}
+
+/// The group of these parameters, which is new or was there.
+static enum status find_group(struct gromacs_reading *reading, const struct gromacs_line *line,
+                              const struct gromacs_function *function, const double *values,
+                              struct topology_term *term) {
+    const int order = (int)function->kind;
+    struct molecules *molecules = reading->molecules;
+    struct bonded_curve curve;
+    enum status status = STATUS_OK;
+    TRY(mf_bonded_create(&curve, function->law));
+    for (int n = 0; n < parameters_of(function) && status == STATUS_OK; n++)
+        status = set_number(line, &curve, function->parameter[n],
+                            values[n] /
+                                gromacs_unit(function->unit[n], reading->length, reading->energy));
+    for (term->group = 0; status == STATUS_OK && term->group < molecules->groups[order];
+         term->group++) {
+        const struct bonded_curve *known = &molecules->group[order][term->group].curve;
+        if (known->law == curve.law &&
+            memcmp(known->parameters, curve.parameters, curve.law->size) == 0)
+            break;
+    }
+    if (status == STATUS_OK && term->group == MOLECULES_MOST_GROUPS)
+        status = mf_gromacs_fail(line, "there are more than %d groups of %ss of other parameters",
+                                 MOLECULES_MOST_GROUPS, mf_topology_order_names[order]);
+    if (status != STATUS_OK || term->group < molecules->groups[order]) {
+        mf_bonded_clear(&curve);
+        return status;
+    }
+    struct molecules_group *group = &molecules->group[order][term->group];
+    name_group(reading, order, term, group->name);
+    group->curve = curve;
+    molecules->groups[order]++;
+    return STATUS_OK;
+}
+
+// Terms -------------------------------------------------------------------------------------------
+
+enum status mf_gromacs_add_term(struct gromacs_reading *reading, const struct gromacs_line *line,
+                                const struct gromacs_words *words) {
+    const int order = reading->order, beads = topology_beads(order);
+    struct topology_kind *kind = mf_gromacs_last_kind(reading);
+    const struct gromacs_function *function;
+    struct topology_term term = {.group = 0};
+    double values[2 * GROMACS_MOST_PARAMETERS];
+    int count;
+    if (kind && kind->terms[order] == GROMACS_MOST_TERMS)
+        return mf_gromacs_fail(line, "%s has more than %d %ss", kind->name, GROMACS_MOST_TERMS,
+                               mf_topology_order_names[order]);
+    if (kind == NULL || words->count <= beads)
+        return mf_gromacs_fail(line, "%d atoms of a moleculetype and a function are expected",
+                               beads);
+    for (int k = 0; k < beads; k++) {
+        int64_t number;
+        if (!mf_gromacs_is_integer(words->word[k], 1, kind->beads, &number))
+            return mf_gromacs_fail(line, "there is no atom %.40s: %s has 1 to %d", words->word[k],
+                                   kind->name, kind->beads);
+        term.bead[k] = (int)number - 1;
+    }
+    TRY(read_function(line, order, words->word[beads], &function));
+    TRY(read_values(line, words, beads + 1, parameters_of(function), values, &count));
+    if (count == 0)
+        TRY(find_values(reading, line, function, &term, values));
+    TRY(find_group(reading, line, function, values, &term));
+    TRY(mf_gromacs_reserve((void **)&kind->term[order], (size_t)kind->terms[order],
+                           &reading->term_room[order], sizeof term));
+    kind->term[order][kind->terms[order]++] = term;
+    const enum status status = mf_topology_check_term(kind, order, kind->terms[order] - 1);
+    return status == STATUS_BAD_INPUT ? mf_status_prefix(status, "%s:%zu", line->file, line->number)
+                                      : status;
+}

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file "particles": {"placement": "file", "file": "conf.gro"}: where the beads of a topology are.
+#pragma once
+
+#include "input/scene.h"
+
+/// Whether a file of coordinates is one of GROMACS, by its name.
+bool mf_scene_coordinates_is_gro(const char *file);
+
+/// Read the places, and velocities if there are any, of a .gro file into scene->start: molecule
+/// after molecule, kind after kind, then single beads, type after type. With units nm and ps become
+/// λ and τ; without, these are 1 nm and 1 ps.
+/// Faults go to the document, one line: another number of atoms, another box, a bond that is more
+/// than three times as long as at rest or longer than it can be. Fails: NO_MEMORY. Tested:
+/// cli/test_topologies.
+enum status mf_scene_coordinates_read(struct scene *scene, struct json_object *particles) MUST_USE;
