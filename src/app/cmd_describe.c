@@ -37,6 +37,9 @@ static const struct inner run_objects[] = {
 
 static const struct inner unknowns_objects[] = {
     {"potential", "Phi(r)", "potential"},
+    {"bonds", "{\"backbone\": {}, …}: U(r) of groups of molecules", "group"},
+    {"angles", "the same of angles", "group"},
+    {"dihedrals", "the same of dihedrals", "group"},
     {"omega", "omega(r)", "omega"},
     {"omega_transverse", "the same across pairs", "omega"},
     {"memory",
@@ -167,6 +170,10 @@ static const struct topic fixed_topics[] = {
      "\"etd\": escape times of pairs",
      {mf_target_etd_fields, mf_target_files_use_fields}},
     {"target",
+     "distribution-target",
+     "one group of \"bond_lengths\", \"bond_angles\" and \"dihedral_angles\", as \"backbone\"",
+     {mf_target_bonded_fields}},
+    {"target",
      "curve-target",
      "a function of time, as \"vacf\" and \"msd\", with its file",
      {mf_target_curve_time_fields, mf_target_files_use_fields}},
@@ -180,6 +187,11 @@ static const struct topic fixed_topics[] = {
      {mf_target_curve_number_fields, mf_target_files_use_fields}},
     {"target", "diffusion-target", "\"diffusion\" besides", {mf_target_curve_diffusion_fields}},
     {"unknowns", "unknowns", "\"unknowns\" of a run file", {NULL}},
+    {"unknowns",
+     "group",
+     "U of a group of bonds, angles or dihedrals, to be found from its target: an object without "
+     "members",
+     {NULL}},
     {"unknowns", "potential", "Phi(r), to be found", {mf_inverse_potential_fields}},
     {"unknowns", "omega", "a friction weight omega(r), to be found", {mf_inverse_omega_fields}},
     {"unknowns",
@@ -267,8 +279,11 @@ static size_t add_targets(struct topic_object *objects, size_t n) {
     for (int kind = 0; (found = mf_observable_kind(kind)).observable; kind++) {
         const struct observable_target *target = found.target;
         char topic[sizeof objects->topic];
+        const bool of_groups = mf_bonded_distribution_order(kind) < TOPOLOGY_ORDERS;
         snprintf(topic, sizeof topic, "%s-target",
-                 target->form == OBSERVABLE_OWN_FORM ? target->name : forms[target->form]);
+                 of_groups                             ? "distribution"
+                 : target->form == OBSERVABLE_OWN_FORM ? target->name
+                                                       : forms[target->form]);
         n = add_object(objects, n, target->name, target->summary, topic);
     }
     return n;

@@ -24,7 +24,7 @@ static enum status read_file(struct bench_scene *scene, const char *file, struct
     mf_json_fields(&root, mf_heading_fields, heading);
     enum status status = mf_json_collect_files(document, inputs);
     if (status == STATUS_OK)
-        status = mf_scene_read(&scene->scene, &root, SCENE_FITS_NOTHING);
+        status = mf_scene_read(&scene->scene, &root, SCENE_FITS_NOTHING, NULL);
     mf_json_has(&root, "measure");
     mf_json_has(&root, "rdf");
     mf_json_finish(&root);

@@ -2,6 +2,10 @@
 #include "dynamics/hybrid.h"
 
 #include "base/rng.h"
+#include "dynamics/hybrid_step.h"
+#include "dynamics/relax.h"
+#include "dynamics/relax_soft.h"
+#include "dynamics/respa.h"
 
 #include <math.h>
 #include <string.h>
@@ -13,57 +17,33 @@ enum { TURNS = 25 };
 /// all velocities round, which a liquid's own collisions do before ten trajectories are over.
 static const double wanted_acceptance = 0.9, gain = 0.05;
 
-/// The first time step, times ω of the fastest pair that ten k_B T can reach, ω² = 2 Φ''.
-static const double first_share = 0.4, highest = 10;
-
-/// A step goes no further than this share of the cutoff at the thermal velocity, however soft.
-static const double longest_flight = 0.05;
-
-static double longest_step(const struct table *potential, double temperature) {
-    return longest_flight * potential->cutoff / sqrt(temperature);
-}
-
-/// 2 Φ'' where the curve of a pair type bends most, as far up as ten k_B T reach.
-static double fastest_of(const struct table *potential, int pair, double temperature) {
-    const double spacing = 1 / mf_table_inverse_spacing(potential, pair);
-    double lowest = 0, fastest = 0, value, curvature;
-    for (int k = 0; k < TABLE_INTERVALS; k++) {
-        mf_table_evaluate_pair(potential, pair, k * spacing, &value, NULL, NULL);
-        lowest = fmin(lowest, value);
-    }
-    for (int k = 0; k < TABLE_INTERVALS; k++) {
-        mf_table_evaluate_pair(potential, pair, (k + 0.5) * spacing, &value, NULL, &curvature);
-        if (value < lowest + highest * temperature)
-            fastest = fmax(fastest, 2 * curvature);
-    }
-    return fastest;
-}
-
-static double first_step(const struct table *potential, double temperature) {
-    double fastest = 0;
-    for (int curve = 0; curve < potential->curves; curve++)
-        fastest = fmax(fastest, fastest_of(potential, curve, temperature));
-    return fmin(first_share / sqrt(fastest), longest_step(potential, temperature));
-}
-
 enum status mf_hybrid_init(struct hybrid *hybrid, const struct box *box,
                            const struct composition *composition, const struct table *potential,
-                           const struct pair_histogram *bins, double temperature, uint64_t seed) {
+                           const struct molecules *molecules, const struct pair_histogram *bins,
+                           double temperature, uint64_t seed) {
     enum status status = STATUS_OK;
     const size_t count = (size_t)mf_composition_particles(composition);
-    const struct simulation_setup setup = {
+    const struct hybrid_step step = mf_hybrid_step_find(potential, molecules, temperature);
+    const struct respa_parameters respa = {step.inner};
+    struct simulation_setup setup = {
         .box = *box,
         .composition = *composition,
         .placement = {.count = (int64_t)count, .kind = PLACEMENT_LATTICE, .jitter = 0.05},
         .temperature = temperature,
-        .time_step = first_step(potential, temperature),
+        .time_step = step.first,
         .temperature_limit = 1e6,
         .integrator = &mf_velocity_verlet,
         .potential = potential,
         .seed = seed,
         .threads = 1,
     };
-    *hybrid = (struct hybrid){.trial = *bins};
+    if (molecules) {
+        setup.interaction[setup.interactions++] =
+            (struct interaction_choice){&mf_molecules, molecules};
+        setup.integrator = &mf_respa;
+        setup.integrator_parameters = &respa;
+    }
+    *hybrid = (struct hybrid){.trial = *bins, .longest = step.longest};
     NEW_ARRAY(hybrid->trial.counts, NEIGHBOURS_MOST_PARTS * (pair_histogram_size(bins)));
     NEW_ARRAY(hybrid->kept, pair_histogram_size(bins));
     hybrid->counts = hybrid->kept;
@@ -99,7 +79,7 @@ static void count_pairs(struct hybrid *hybrid, bool wanted) {
     if (wanted)
         memset(hybrid->trial.counts, 0,
                (size_t)simulation->neighbours.parts * row * sizeof(uint32_t));
-    simulation->law.histogram = wanted ? &hybrid->trial : NULL;
+    simulation->law.histogram = wanted && hybrid->trial.bins > 0 ? &hybrid->trial : NULL;
     simulation->wants = wanted ? PAIR_FORCES_AND_SUMS : PAIR_FORCES;
 }
 
@@ -124,9 +104,25 @@ enum status mf_hybrid_refresh(struct hybrid *hybrid) {
     return STATUS_OK;
 }
 
+/// Molecules are placed by their ids, and parted.
+static enum status scatter_molecules(struct simulation *simulation,
+                                     const struct molecules *molecules) {
+    struct particles *particles = &simulation->particles;
+    for (size_t k = 0; k < particles->count; k++)
+        particles->id[k] = (uint32_t)k;
+    TRY(mf_molecules_place(molecules, particles, &simulation->setup.placement,
+                           simulation->setup.seed));
+    TRY(mf_neighbours_sort_and_build(&simulation->neighbours, particles));
+    TRY(mf_relax_soft(simulation));
+    return mf_relax_overlaps(simulation);
+}
+
 enum status mf_hybrid_scatter(struct hybrid *hybrid) {
     struct simulation *simulation = &hybrid->simulation;
-    TRY(mf_placement_disordered(&simulation->particles, simulation->setup.seed));
+    const struct simulation_setup *setup = &simulation->setup;
+    const struct molecules *molecules = mf_molecules_find(setup->interaction, setup->interactions);
+    TRY(molecules ? scatter_molecules(simulation, molecules)
+                  : mf_placement_disordered(&simulation->particles, setup->seed));
     return mf_hybrid_refresh(hybrid);
 }
 
@@ -219,11 +215,10 @@ enum status mf_hybrid_run(struct hybrid *hybrid, uint64_t trajectories) {
 
 enum status mf_hybrid_equilibrate(struct hybrid *hybrid, uint64_t trajectories) {
     struct simulation_setup *setup = &hybrid->simulation.setup;
-    const double longest = longest_step(setup->potential, setup->temperature);
     for (uint64_t k = 0; k < trajectories; k++) {
         TRY(run_trajectory(hybrid));
         setup->time_step *= exp(gain * (hybrid->accepted - wanted_acceptance));
-        setup->time_step = fmin(setup->time_step, longest);
+        setup->time_step = fmin(setup->time_step, hybrid->longest);
     }
     hybrid->taken = hybrid->tried = 0;
     return STATUS_OK;

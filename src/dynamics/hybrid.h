@@ -5,16 +5,19 @@
 /// velocities that persist as in A. M. Horowitz, Phys. Lett. B 268, 247 (1991): a few steps of
 /// velocity Verlet are a proposal, taken with probability min(1, exp(−ΔH/k_B T)); if it is not,
 /// the particles go back the way they came. Before each, some of them collide with a heat bath:
-/// they get velocities of Maxwell's distribution.
+/// they get velocities of Maxwell's distribution. Bonds, angles and dihedrals of molecules take
+/// shorter steps of their own (dynamics/respa.h).
 #pragma once
 
 #include "dynamics/simulation.h"
+#include "forces/molecules.h"
 
 /// Time steps of a trajectory.
 enum { HYBRID_STEPS = 4 };
 
 struct hybrid {
     struct simulation simulation;
+    double longest;              ///< time step, however soft the forces are [τ]
     uint32_t trajectory;         ///< so far: the counter of the random numbers
     double *position[3];         ///< at the start of the trajectory, shape [particles]
     double *velocity[3];         ///< the same
@@ -29,15 +32,18 @@ struct hybrid {
 
 /// Particles on a lattice in `box`, mixed at random.
 /// @param[in] potential  borrowed; may be exchanged before mf_hybrid_refresh
-/// @param[in] bins       of the pairs to be counted, within the cutoff; `counts` is not read
+/// @param[in] molecules  borrowed, and so may their laws be; NULL: single particles
+/// @param[in] bins       of the pairs to be counted, within the cutoff; `counts` is not read. None:
+///                       no pairs are
 /// Fails: as mf_simulation_init.
 enum status mf_hybrid_init(struct hybrid *hybrid, const struct box *box,
                            const struct composition *composition, const struct table *potential,
-                           const struct pair_histogram *bins, double temperature,
-                           uint64_t seed) MUST_USE;
+                           const struct molecules *molecules, const struct pair_histogram *bins,
+                           double temperature, uint64_t seed) MUST_USE;
 void mf_hybrid_clear(struct hybrid *hybrid);
 
-/// Place the particles anew, without order. Fails: NO_MEMORY.
+/// Place the particles anew, without order; molecules as a scene does. Fails: NO_MEMORY,
+/// INTERRUPTED.
 enum status mf_hybrid_scatter(struct hybrid *hybrid) MUST_USE;
 
 /// Begin with the potential as it is now, from positions, velocities and ids alone, so that a run

@@ -62,8 +62,10 @@ static enum status read_run(struct reading *reading, struct json_object *root,
                             struct json_object *object) {
     struct scene *scene = &reading->model->scene;
     struct json_object unknowns = mf_json_child(root, "unknowns", true);
-    reading->unknown = mf_fit_unknowns_left_out(&unknowns);
-    TRY(mf_scene_read(scene, object, reading->unknown));
+    struct scene_fitted fitted;
+    reading->unknown = mf_fit_unknowns_left_out(root);
+    mf_fit_unknowns_groups(root, object, &fitted);
+    TRY(mf_scene_read(scene, object, reading->unknown, &fitted));
     return mf_fit_numbers_read(&unknowns, scene, reading->number, &reading->numbers);
 }
 
@@ -92,7 +94,7 @@ static enum status read_used(struct reading *reading) {
         mf_units_speak(&root, &scene);
     const enum status status = reading->fit
                                    ? read_run(reading, &root, &scene)
-                                   : mf_scene_read(&model->scene, &scene, SCENE_FITS_NOTHING);
+                                   : mf_scene_read(&model->scene, &scene, SCENE_FITS_NOTHING, NULL);
     read_time_step(&model->scene.setup, &root);
     TRY(mf_json_close(document, status));
     model->setup = model->scene.setup;

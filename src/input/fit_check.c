@@ -68,6 +68,29 @@ static enum status check_range(const struct fit_file *fit, const char *file, con
                           mf_units_suffix(&fit->scene.units, "lambda", unit));
 }
 
+/// Whether a kind of targets is of bonds, angles or dihedrals some of which are looked for.
+static bool is_inverted(const struct fit_file *fit, int kind) {
+    const enum topology_order order = mf_bonded_distribution_order(kind);
+    for (size_t g = 0; g < fit->problem.bonded; g++)
+        if (fit->problem.group[g].order == order)
+            return true;
+    return false;
+}
+
+/// Molecules are sampled by inversions alone, which find a group from its own distribution.
+static enum status check_molecules(const struct fit_file *fit, const char *file) {
+    if (scene_has_molecules(&fit->scene.molecules) && fit->method->kind != INVERSE_INVERSION)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: scene.molecules: \"%s\" finds the potentials of single beads "
+                              "alone; \"imc\", \"ibi\" and \"auto\" know molecules",
+                              file, fit->method->name);
+    for (int kind = 0; mf_targets_name(kind); kind++)
+        if (is_inverted(fit, kind) && !fit->files.use[kind].fitted)
+            return mf_status_fail(STATUS_BAD_INPUT, "%s: target.%s.fitted: it is all that finds U",
+                                  file, mf_targets_name(kind));
+    return STATUS_OK;
+}
+
 static enum status check_unknowns(const struct fit_file *fit, const char *file) {
     for (int kind = 0; kind < UNKNOWNS; kind++)
         if (fit->unknown[kind].wanted &&
@@ -78,12 +101,12 @@ static enum status check_unknowns(const struct fit_file *fit, const char *file) 
         return mf_status_fail(STATUS_BAD_INPUT, "%s: method.name: \"%s\" does not find numbers",
                               file, fit->method->name);
     for (int kind = 0; kind < TARGETS && fit->method->kind == INVERSE_INVERSION; kind++)
-        if (kind != TARGET_RDF && kind != TARGET_PRESSURE &&
+        if (kind != TARGET_RDF && kind != TARGET_PRESSURE && !is_inverted(fit, kind) &&
             targets_ask(&fit->problem.targets, kind))
             return mf_status_fail(
                 STATUS_BAD_INPUT,
-                "%s: target.%s.fitted: \"%s\" fits g(r) and pressure; \"no\" compares it "
-                "with the result",
+                "%s: target.%s.fitted: \"%s\" fits g(r), pressure and what groups are found from; "
+                "\"no\" compares it with the result",
                 file, mf_targets_name(kind), fit->method->name);
     if (fit->unknown[UNKNOWN_POTENTIAL].wanted && !fit->files.given[TARGET_RDF])
         return mf_status_fail(STATUS_BAD_INPUT, "%s: target.rdf is required to find a potential",
@@ -95,7 +118,9 @@ static enum status check_unknowns(const struct fit_file *fit, const char *file) 
 }
 
 static enum status check_bins(const struct fit_file *fit, const char *file) {
-    const size_t bins = fit->problem.targets.target[TARGET_RDF].count;
+    size_t bins = fit->problem.targets.target[TARGET_RDF].count;
+    for (size_t g = 0; g < fit->problem.bonded; g++)
+        bins += fit->problem.group[g].bins.count;
     if (fit->method->kind != INVERSE_INVERSION || bins <= INVERSION_MOST_BINS)
         return STATUS_OK;
     return mf_status_fail(
@@ -105,14 +130,16 @@ static enum status check_bins(const struct fit_file *fit, const char *file) {
         file, INVERSION_MOST_BINS, bins);
 }
 
-/// An inversion samples the pair potential alone.
+/// An inversion samples pairs and molecules alone.
 static enum status check_interactions(const struct fit_file *fit, const char *file) {
-    if (fit->method->kind != INVERSE_INVERSION || fit->scene.setup.interactions == 0)
+    const int others = fit->scene.setup.interactions - scene_has_molecules(&fit->scene.molecules);
+    if (fit->method->kind != INVERSE_INVERSION || others == 0)
         return STATUS_OK;
-    return mf_status_fail(STATUS_BAD_INPUT,
-                          "%s: scene.interactions: \"%s\" samples pairs alone; the methods that "
-                          "simulate candidates, as \"gauss-newton\", carry them",
-                          file, fit->method->name);
+    return mf_status_fail(
+        STATUS_BAD_INPUT,
+        "%s: scene.interactions: \"%s\" samples pairs and molecules alone; the methods that "
+        "simulate candidates, as \"gauss-newton\", carry them",
+        file, fit->method->name);
 }
 
 /// Without velocities there is no VACF to be measured.
@@ -204,6 +231,7 @@ static enum status check_windows(const struct fit_file *fit, const char *file) {
 
 enum status mf_fit_check(const struct fit_file *fit, const char *file) {
     const struct target_files *files = &fit->files;
+    TRY(check_molecules(fit, file));
     TRY(check_unknowns(fit, file));
     if (files->given[TARGET_RDF])
         TRY(check_range(fit, file, "rdf", mf_rdf_bins_range(&files->rdf[0].bins)));

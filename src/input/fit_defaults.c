@@ -15,7 +15,8 @@ enum status mf_fit_defaults_make_readable(struct json_object *root) {
     enum { ANY_COUNT = 1000 };
     TRY(mf_fit_choice_give_text(root, "method", "name", mf_automatic.name));
     if (mf_fit_choice_lacks(root, "scene", "density") ||
-        !mf_fit_choice_lacks(root, "scene.particles", "types"))
+        !mf_fit_choice_lacks(root, "scene.particles", "types") ||
+        !mf_fit_choice_lacks(root, "scene", "molecules"))
         return STATUS_OK;
     const struct fit_file reduced = {0};
     const struct fit_choice choice = {.read = &reduced, .root = root};
@@ -77,7 +78,8 @@ static enum status choose_count(struct fit_choice *c) {
     static const double least = 1000, margin = 2.2;
     if (mf_fit_choice_lacks(c->root, "scene", "density") ||
         !mf_fit_choice_lacks(c->root, "scene.particles", "count") ||
-        !mf_fit_choice_lacks(c->root, "scene.particles", "types"))
+        !mf_fit_choice_lacks(c->root, "scene.particles", "types") ||
+        !mf_fit_choice_lacks(c->root, "scene", "molecules"))
         return STATUS_OK;
     const double range = fmax(c->range, c->read->files.etd.grid.r_maximum);
     const double needed = c->density * pow(margin * range, c->dimensions);
@@ -122,7 +124,7 @@ static double fit_interval(const struct fit_choice *c, double time_step) {
 /// neighbours.
 static enum status choose_time_step(struct fit_choice *c) {
     static const double allowed = 0.01, way = 0.02;
-    const double free = way * c->crossing;
+    const double stiff = mf_fit_defaults_stiff_step(c), free = fmin(way * c->crossing, stiff);
     const double bound = sqrt(4 * allowed * c->mass / (2 * c->scales.curvature));
     if (!mf_fit_choice_lacks(c->root, "scene", "time_step")) {
         c->time_step = c->read->scene.setup.time_step;
@@ -138,6 +140,11 @@ static enum status choose_time_step(struct fit_choice *c) {
                           "time step %s: the curvature of -k_B T ln g is up to %s, at %s, and the "
                           "configurational temperature is to be right within 1 %%",
                           step, curvature, at);
+    else if (free == stiff)
+        mf_fit_choice_say(c,
+                          "time step %s: the distributions of bonds and angles are to be right "
+                          "within 0.3 %% of their variance",
+                          step);
     else
         mf_fit_choice_say(c, "time step %s: beads move a fiftieth of the way to their neighbours",
                           step);

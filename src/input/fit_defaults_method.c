@@ -9,11 +9,51 @@
 
 /// As exact as the target is, in a system that is large enough for the range.
 static double choose_particles(struct fit_choice *c) {
-    static const double least_precision = 0.001, most_precision = 0.004;
+    // Molecules move slowly: a third of the noise would take ten times as long.
+    const double least_precision = scene_has_molecules(&c->read->scene.molecules) ? 0.003 : 0.001;
+    static const double most_precision = 0.004;
     static const double least = 700, margin = 2.15, distortion = 0.05;
     c->precision = fmin(most_precision, fmax(least_precision, c->scales.noise));
     const double wanted = ceil(fmax(least, c->density * pow(margin * c->range, c->dimensions)));
     return (double)mf_composition_least_particles(c->rdf->composition, (int64_t)wanted, distortion);
+}
+
+/// Mean and variance of a target's q, from its peak on as far as it is above half of that, as of a
+/// normal distribution: the stiffest well of several.
+static void find_well(const struct target_bonded *target, double *mean, double *variance) {
+    const struct bonded_bins *bins = &target->bins;
+    size_t peak = 0, low, high;
+    for (size_t k = 0; k < bins->count; k++)
+        peak = target->value[k] > target->value[peak] ? k : peak;
+    for (low = peak; low > 0 && target->value[low] > 0.5 * target->value[peak]; low--) {
+    }
+    for (high = peak; high + 1 < bins->count && target->value[high] > 0.5 * target->value[peak];
+         high++) {
+    }
+    *mean = bonded_bins_centre(bins, peak);
+    *variance = pow((double)(high - low) * bins->width, 2) / (8 * log(2));
+}
+
+double mf_fit_defaults_stiff_step(const struct fit_choice *c) {
+    static const double allowed = 0.003, bend = 6; // as in dynamics/hybrid_step.c
+    const struct target_files *files = &c->read->files;
+    const double temperature = c->read->scene.setup.temperature;
+    double length = INFINITY, fastest = 0, mean, variance;
+    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+        for (size_t g = 0; g < files->groups[order].groups; g++) {
+            if (files->groups[order].member[g].bins.count == 0)
+                continue;
+            find_well(&files->groups[order].member[g], &mean, &variance);
+            if (order == TOPOLOGY_BOND) {
+                length = fmin(length, mean);
+                fastest = fmax(fastest, 2 * temperature / (c->mass * variance));
+            } else {
+                variance *= BONDED_RADIANS * BONDED_RADIANS;
+                fastest =
+                    fmax(fastest, bend * temperature / (c->mass * variance * length * length));
+            }
+        }
+    return 2 * sqrt(allowed / fastest);
 }
 
 /// How candidates for ω are simulated: from the last configuration, as long as their targets look.
@@ -54,12 +94,14 @@ enum status mf_fit_defaults_method(struct fit_choice *c) {
     if (both || !simulates) {
         const char *of[2] = {both ? "potential_particles" : "particles",
                              both ? "potential_precision" : "precision"};
+        const bool joined = scene_has_molecules(&c->read->scene.molecules);
         mf_fit_choice_say(
             c,
             "method \"%s\": it finds the potential from g(r) by samples of %.0f particles, until "
             "their g is known within %.2g; the target's is within %.2g",
-            method->name, particles, c->precision, c->scales.noise);
-        TRY(mf_fit_choice_give(c, "method", fields_with(method, of[0]), of[0], particles));
+            method->name, joined ? c->count : particles, c->precision, c->scales.noise);
+        if (!joined)
+            TRY(mf_fit_choice_give(c, "method", fields_with(method, of[0]), of[0], particles));
         TRY(mf_fit_choice_give(c, "method", fields_with(method, of[1]), of[1], c->precision));
     }
     if (!simulates)

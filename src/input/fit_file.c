@@ -73,7 +73,6 @@ static void refuse_foreign(struct json_object *scene, int unknown) {
         mf_json_refuse(scene, "dissipative_transverse",
                        "it is to be found; \"start\" in \"unknowns.omega_transverse\" takes a law "
                        "to begin with");
-    mf_json_refuse(scene, "molecules", "a fit finds the potentials of single beads alone so far");
     mf_json_refuse(scene, "seed", "it stands at the top of a run file");
     mf_json_refuse(scene, "measure", "\"method\" and \"verification\" say when a fit samples");
     for (size_t k = 0; mf_observables[k]; k++)
@@ -85,12 +84,10 @@ static enum status read_scene(struct fit_file *fit, struct json_object *root) {
     struct json_object scene = mf_json_child(root, "scene", true);
     if (scene.item == NULL)
         return STATUS_OK;
-    int unknown = SCENE_FITS_POTENTIAL;
-    if (mf_json_has(root, "unknowns")) {
-        struct json_object unknowns = mf_json_child(root, "unknowns", false);
-        unknown = mf_fit_unknowns_left_out(&unknowns);
-    }
-    TRY(mf_scene_read(&fit->scene, &scene, unknown));
+    struct scene_fitted fitted;
+    const int unknown = mf_fit_unknowns_left_out(root);
+    mf_fit_unknowns_groups(root, &scene, &fitted);
+    TRY(mf_scene_read(&fit->scene, &scene, unknown, &fitted));
     refuse_foreign(&scene, unknown);
     mf_json_finish(&scene);
     return STATUS_OK;
@@ -102,8 +99,10 @@ static enum status read_root(struct fit_file *fit, struct json_object *root) {
     mf_units_speak(root, &scene);
     // Before what its units convert.
     TRY(read_scene(fit, root));
-    TRY(mf_target_files_read(&fit->files, root, &fit->scene.setup.box,
-                             &fit->scene.setup.composition, &fit->scene.units));
+    TRY(mf_target_files_read(
+        &fit->files, root, &fit->scene.setup.box, &fit->scene.setup.composition,
+        mf_molecules_find(fit->scene.setup.interaction, fit->scene.setup.interactions),
+        &fit->scene.units));
     TRY(mf_fit_unknowns_read(fit, root));
     TRY(read_method(fit, root));
     struct json_object core = mf_json_child(root, "core", false);
@@ -116,6 +115,31 @@ static enum status read_root(struct fit_file *fit, struct json_object *root) {
         mf_json_finish(&verification);
     mf_json_finish(root);
     return STATUS_OK;
+}
+
+/// The groups that are to be found and have a target, in the order of their targets.
+static void state_groups(struct fit_file *fit) {
+    struct inverse_problem *problem = &fit->problem;
+    const struct molecules *molecules = &fit->scene.molecules.molecules;
+    for (enum topology_order order = 0; order < TOPOLOGY_ORDERS; order++)
+        for (int g = 0; g < molecules->groups[order]; g++) {
+            const struct target_groups *groups = &fit->files.groups[order];
+            if (!mf_scene_groups_are_fitted(&molecules->group[order][g]) ||
+                (size_t)g >= groups->groups || groups->member[g].bins.count == 0)
+                continue;
+            problem->group[problem->bonded++] =
+                (struct bonded_unknown){order, g, groups->member[g].bins, groups->first[g]};
+        }
+}
+
+/// What is known of all groups of an order is compared, as nothing is found from it.
+static void compare_known(struct fit_file *fit) {
+    bool found[TOPOLOGY_ORDERS] = {false};
+    for (size_t g = 0; g < fit->problem.bonded; g++)
+        found[fit->problem.group[g].order] = true;
+    for (enum topology_order order = 0; order < TOPOLOGY_ORDERS; order++)
+        if (!found[order])
+            fit->files.use[mf_bonded_distribution_kind(order)].fitted = 0;
 }
 
 static void state_problem(struct fit_file *fit, const struct run_options *options) {
@@ -131,7 +155,7 @@ static void state_problem(struct fit_file *fit, const struct run_options *option
     };
     problem->numbers = fit->numbers;
     memcpy(problem->number, fit->number, sizeof problem->number);
-    for (int place = 0; place < UNKNOWNS; place++) {
+    for (int place = 0; place < UNKNOWN_BONDED; place++) {
         const struct scene_law *law = mf_fit_numbers_law(&fit->scene, place);
         problem->law[place] = (struct inverse_law){law->curves, law->curve};
     }
@@ -145,8 +169,11 @@ static void state_problem(struct fit_file *fit, const struct run_options *option
     }
     for (int m = 0; m < fit->scene.memory.modes; m++)
         problem->mode[m] = fit->scene.memory.name[m];
-    const size_t others =
-        mf_inverse_unknown_count(problem) - problem->unknown[UNKNOWN_POTENTIAL].wanted;
+    state_groups(fit);
+    compare_known(fit);
+    const size_t others = mf_inverse_unknown_count(problem) -
+                          problem->unknown[UNKNOWN_POTENTIAL].wanted -
+                          problem->unknown[UNKNOWN_BONDED].wanted;
     mf_target_files_targets(&fit->files, others > 0, &problem->targets, &problem->compared);
 }
 

@@ -323,7 +323,7 @@ enum status mf_fit_numbers_read(struct json_object *unknowns, const struct scene
     if (*count == 0 && mf_json_fault_count(unknowns->document) == 0)
         mf_json_fault(unknowns, "numbers", "names none");
     if (mf_json_fault_count(unknowns->document) == 0) {
-        for (int place = 0; place < UNKNOWNS; place++)
+        for (int place = 0; place < UNKNOWN_BONDED; place++)
             CHECK(check_law(&numbers, mf_fit_numbers_law(scene, place), place, number, *count));
     }
     mf_json_finish(&numbers);

@@ -4,17 +4,91 @@
 #include "input/fit_base.h"
 
 #include <math.h>
+#include <string.h>
 
-int mf_fit_unknowns_left_out(const struct json_object *unknowns) {
+/// Without "unknowns": what has a target is unknown, and g(r) always if nothing else is.
+static bool has_potential(struct json_object *root) {
+    const struct json_object target = mf_json_child(root, "target", false);
+    bool groups = false;
+    for (enum topology_order order = 0; order < TOPOLOGY_ORDERS; order++)
+        groups = groups || mf_json_is_object(&target, mf_bonded_distribution_of(order)->name);
+    return !groups || mf_json_is_member(&target, mf_targets_name(TARGET_RDF));
+}
+
+int mf_fit_unknowns_left_out(struct json_object *root) {
     static const int part[UNKNOWNS] = {[UNKNOWN_POTENTIAL] = SCENE_FITS_POTENTIAL,
                                        [UNKNOWN_OMEGA] = SCENE_FITS_OMEGA,
                                        [UNKNOWN_MEMORY] = SCENE_FITS_MEMORY,
                                        [UNKNOWN_TRANSVERSE] = SCENE_FITS_TRANSVERSE};
     int all = 0;
+    if (!mf_json_has(root, "unknowns"))
+        return has_potential(root) ? SCENE_FITS_POTENTIAL : SCENE_FITS_NOTHING;
+    const struct json_object unknowns = mf_json_child(root, "unknowns", false);
     for (int kind = 0; kind < UNKNOWNS; kind++)
-        if (part[kind] && mf_json_is_object(unknowns, mf_inverse_unknown_names[kind]))
+        if (part[kind] && mf_json_is_object(&unknowns, mf_inverse_unknown_names[kind]))
             all |= part[kind];
     return all;
+}
+
+/// A group is looked for, unless the scene knows its law.
+static void enter_group(struct scene_fitted *fitted, enum topology_order order, const char *name,
+                        const struct json_object *known, struct json_object *from, bool told) {
+    const bool has_law = mf_json_is_member(known, name);
+    if (has_law && told)
+        mf_json_fault(from, name, "it is to be found, and \"scene.%s\" has a law for it",
+                      mf_scene_group_keys[order]);
+    if (has_law || fitted->count[order] == MOLECULES_MOST_GROUPS)
+        return;
+    if (!mf_topology_is_name(name)) {
+        mf_json_fault(from, name, "a group is called by up to %d letters, digits, _ and -",
+                      TOPOLOGY_NAME_SIZE - 1);
+        return;
+    }
+    strcpy(fitted->name[order][fitted->count[order]++], name);
+}
+
+void mf_fit_unknowns_groups(struct json_object *root, struct json_object *scene,
+                            struct scene_fitted *fitted) {
+    const bool told = mf_json_has(root, "unknowns");
+    struct json_object parent = mf_json_child(root, told ? "unknowns" : "target", false);
+    *fitted = (struct scene_fitted){0};
+    for (enum topology_order order = 0; order < TOPOLOGY_ORDERS; order++) {
+        const struct json_object known = mf_json_child(scene, mf_scene_group_keys[order], false);
+        const char *key =
+                       told ? mf_scene_group_keys[order] : mf_bonded_distribution_of(order)->name,
+                   *name;
+        if (!mf_json_is_object(&parent, key))
+            continue;
+        struct json_object from = mf_json_child(&parent, key, false);
+        for (size_t n = 0; (name = mf_json_key(&from, n)); n++)
+            if (told || (strcmp(name, "weight") != 0 && strcmp(name, "fitted") != 0))
+                enter_group(fitted, order, name, &known, &from, told);
+    }
+}
+
+/// "bonds": {"backbone": {}}: each needs a target.
+static void read_groups(struct fit_file *fit, struct json_object *root,
+                        struct json_object *unknowns) {
+    const struct molecules *molecules = &fit->scene.molecules.molecules;
+    for (enum topology_order order = 0; order < TOPOLOGY_ORDERS; order++) {
+        const struct target_groups *targets = &fit->files.groups[order];
+        struct json_object groups = mf_json_child(unknowns, mf_scene_group_keys[order], false);
+        for (int g = 0; g < molecules->groups[order]; g++) {
+            const char *name = molecules->group[order][g].name;
+            if (!mf_scene_groups_are_fitted(&molecules->group[order][g]))
+                continue;
+            fit->unknown[UNKNOWN_BONDED].wanted = true;
+            struct json_object group = mf_json_child(&groups, name, false);
+            if (group.item)
+                mf_json_finish(&group);
+            if (mf_json_fault_count(root->document) == 0 &&
+                ((size_t)g >= targets->groups || targets->member[g].bins.count == 0))
+                mf_json_fault(&groups, name, "there is no \"target.%s.%s\" to find it from",
+                              mf_bonded_distribution_of(order)->name, name);
+        }
+        if (groups.item)
+            mf_json_finish(&groups);
+    }
 }
 
 static const struct field *unknown_fields(enum unknown_kind kind) {
@@ -148,6 +222,7 @@ enum status mf_fit_unknowns_read(struct fit_file *fit, struct json_object *root)
     size_t wanted = 0;
     TRY(read_curves(fit, &object));
     TRY(mf_fit_numbers_read(&object, &fit->scene, fit->number, &fit->numbers));
+    read_groups(fit, root, &object);
     for (int kind = 0; kind < UNKNOWNS; kind++)
         wanted += fit->unknown[kind].wanted;
     if (object.item) {
@@ -156,9 +231,11 @@ enum status mf_fit_unknowns_read(struct fit_file *fit, struct json_object *root)
         mf_json_finish(&object);
         if (wanted == 0 && !mf_json_has(&object, "numbers") &&
             mf_json_fault_count(root->document) == faults)
-            mf_json_fault(root, "unknowns", "needs \"potential\", \"omega\" or \"numbers\"");
+            mf_json_fault(root, "unknowns",
+                          "needs \"potential\", \"omega\", \"numbers\", or \"bonds\", "
+                          "\"angles\", \"dihedrals\"");
     } else {
-        fit->unknown[UNKNOWN_POTENTIAL].wanted = true;
+        fit->unknown[UNKNOWN_POTENTIAL].wanted = has_potential(root);
     }
     return STATUS_OK;
 }
@@ -200,11 +277,30 @@ static void write_memory(const struct fit_file *fit, struct json_writer *writer)
     mf_json_end(writer);
 }
 
+static void write_groups(const struct fit_file *fit, struct json_writer *writer) {
+    const struct molecules *molecules = &fit->scene.molecules.molecules;
+    for (enum topology_order order = 0; order < TOPOLOGY_ORDERS; order++) {
+        bool begun = false;
+        for (int g = 0; g < molecules->groups[order]; g++) {
+            if (!mf_scene_groups_are_fitted(&molecules->group[order][g]))
+                continue;
+            if (!begun)
+                mf_json_begin(writer, mf_scene_group_keys[order]);
+            begun = true;
+            mf_json_begin(writer, molecules->group[order][g].name);
+            mf_json_end(writer);
+        }
+        if (begun)
+            mf_json_end(writer);
+    }
+}
+
 void mf_fit_unknowns_write(const struct fit_file *fit, struct json_writer *writer) {
     mf_json_begin(writer, "unknowns");
     for (size_t k = 0; k < ALONE; k++)
         write_unknown(fit, alone[k], mf_inverse_unknown_names[alone[k]], writer);
     write_memory(fit, writer);
+    write_groups(fit, writer);
     mf_fit_numbers_write(fit->number, fit->numbers, writer);
     mf_json_end(writer);
 }

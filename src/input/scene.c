@@ -266,11 +266,12 @@ static bool finds_friction_alone(int unknown) {
     return unknown && !(unknown & SCENE_FITS_POTENTIAL);
 }
 
-enum status mf_scene_read(struct scene *scene, struct json_object *object, int unknown) {
+enum status mf_scene_read(struct scene *scene, struct json_object *object, int unknown,
+                          const struct scene_fitted *fitted) {
     *scene = (struct scene){.unknown = unknown};
     mf_units_read(&scene->units, object);
     read_top(scene, object);
-    TRY(mf_scene_particles_read(scene, object));
+    TRY(mf_scene_particles_read(scene, object, fitted));
     check_units(scene, object);
     if (finds_friction_alone(unknown)) // between what particles, a fit would ask in vain
         mf_json_child(object, "conservative", true);

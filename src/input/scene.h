@@ -35,10 +35,12 @@ struct scene {
 /// Fields of the scene itself, for `mesofit describe`.
 extern const struct field mf_scene_fields[], mf_scene_density_fields[];
 
-/// Read the objects of a scene from `object`, but for what `unknown`, a sum of scene_unknown, says.
-/// With units, a mass density or a temperature that no matter has is a fault.
+/// Read the objects of a scene from `object`, but for what `unknown`, a sum of scene_unknown, says,
+/// and the laws of the groups that are `fitted`, or NULL. With units, a mass density or a
+/// temperature that no matter has is a fault.
 /// Faults go to its document; *scene may then be incomplete but is safe to clear. Fails: NO_MEMORY.
-enum status mf_scene_read(struct scene *scene, struct json_object *object, int unknown) MUST_USE;
+enum status mf_scene_read(struct scene *scene, struct json_object *object, int unknown,
+                          const struct scene_fitted *fitted) MUST_USE;
 void mf_scene_clear(struct scene *scene);
 
 /// Mass of the beads over the volume of the box [g/cm³], for a scene of three dimensions with

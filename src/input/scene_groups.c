@@ -51,8 +51,31 @@ static enum status read_group(struct molecules *molecules, int order, struct jso
     return STATUS_OK;
 }
 
-enum status mf_scene_groups_read(struct molecules *molecules, int order, struct json_object *scene,
-                                 const struct units *units) {
+bool mf_scene_groups_are_fitted(const struct molecules_group *group) {
+    return bonded_is_table(group->curve.law) &&
+           ((const struct bonded_table *)group->curve.parameters)->point == NULL;
+}
+
+/// A table without points.
+static enum status add_fitted(struct molecules *molecules, int order, const char *name,
+                              struct json_object *scene) {
+    static const struct bonded_law *const tables[TOPOLOGY_ORDERS] = {
+        &mf_bonded_table_bond, &mf_bonded_table_angle, &mf_bonded_table_dihedral};
+    struct molecules_group *group = &molecules->group[order][molecules->groups[order]];
+    if (molecules->groups[order] >= MOLECULES_MOST_GROUPS) {
+        mf_json_fault(scene, mf_scene_group_keys[order], "there are more than %d groups",
+                      MOLECULES_MOST_GROUPS);
+        return STATUS_OK;
+    }
+    TRY(mf_bonded_create(&group->curve, tables[order]));
+    snprintf(group->name, sizeof group->name, "%s", name);
+    molecules->groups[order]++;
+    return STATUS_OK;
+}
+
+/// Those that the scene says.
+static enum status read_known(struct molecules *molecules, int order, struct json_object *scene,
+                              const struct units *units) {
     const char *name;
     struct json_object groups = mf_json_child(scene, mf_scene_group_keys[order], false);
     if (groups.item == NULL)
@@ -73,13 +96,26 @@ enum status mf_scene_groups_read(struct molecules *molecules, int order, struct 
     return STATUS_OK;
 }
 
+enum status mf_scene_groups_read(struct molecules *molecules, int order, struct json_object *scene,
+                                 const struct scene_fitted *fitted, const struct units *units) {
+    TRY(read_known(molecules, order, scene, units));
+    for (int n = 0; fitted && n < fitted->count[order]; n++)
+        TRY(add_fitted(molecules, order, fitted->name[order][n], scene));
+    return STATUS_OK;
+}
+
 void mf_scene_groups_write(const struct molecules *molecules, int order,
                            struct json_writer *writer) {
-    if (molecules->groups[order] == 0)
+    int known = 0;
+    for (int g = 0; g < molecules->groups[order]; g++)
+        known += !mf_scene_groups_are_fitted(&molecules->group[order][g]);
+    if (known == 0)
         return;
     mf_json_begin(writer, mf_scene_group_keys[order]);
     for (int g = 0; g < molecules->groups[order]; g++) {
         const struct molecules_group *group = &molecules->group[order][g];
+        if (mf_scene_groups_are_fitted(group))
+            continue;
         mf_json_begin(writer, group->name);
         mf_json_put_text(writer, "law", group->curve.law->name);
         mf_json_put_fields(writer, group->curve.law->fields, group->curve.parameters);
@@ -94,7 +130,7 @@ void mf_scene_molecules_digest(const struct scene_molecules *molecules, uint64_t
         for (int g = 0; g < own->groups[order]; g++) {
             const struct bonded_curve *curve = &own->group[order][g].curve;
             const struct bonded_table *table = curve->parameters;
-            if (bonded_is_table(curve->law))
+            if (bonded_is_table(curve->law) && table->point)
                 mf_digest_add(digest, table->point,
                               (size_t)(table->intervals + 1) * sizeof *table->point);
         }

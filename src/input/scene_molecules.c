@@ -420,12 +420,13 @@ enum status mf_scene_kinds_read(struct scene_molecules *molecules, struct json_o
 }
 
 enum status mf_scene_molecules_read(struct scene_molecules *molecules, struct json_object *scene,
+                                    const struct scene_fitted *fitted,
                                     struct composition *composition, const struct units *units) {
     static const double most = 1e8;
     struct reading reading = {.molecules = molecules, .composition = composition};
     const size_t faults = mf_json_fault_count(scene->document);
     for (int order = 0; order < TOPOLOGY_ORDERS; order++)
-        TRY(mf_scene_groups_read(&molecules->molecules, order, scene, units));
+        TRY(mf_scene_groups_read(&molecules->molecules, order, scene, fitted, units));
     if (mf_json_fault_count(scene->document) > faults)
         return STATUS_OK; // that kinds lack such a group would mislead
     TRY(read_kinds(&reading, scene, false, units));

@@ -18,6 +18,12 @@ struct scene_molecule {
     int group[TOPOLOGY_ORDERS]; ///< of a chain; −1: none
 };
 
+/// Groups whose law a fit looks for, so that the scene does not say it.
+struct scene_fitted {
+    int count[TOPOLOGY_ORDERS];
+    char name[TOPOLOGY_ORDERS][MOLECULES_MOST_GROUPS][TOPOLOGY_NAME_SIZE];
+};
+
 /// Owns the molecules; a scene's interactions borrow them. All zero: there are none.
 struct scene_molecules {
     struct molecules molecules;
@@ -34,9 +40,11 @@ extern const struct field mf_scene_molecule_fields[], mf_scene_chain_fields[],
 extern const char *const mf_scene_group_keys[TOPOLOGY_ORDERS];
 
 /// Read groups and kinds from the members of `scene`, and number their beads.
+/// @param[in]     fitted       groups without a law, or NULL
 /// @param[in,out] composition  single beads; the molecules' beads and their types are added
 /// Faults go to the document. Fails: NO_MEMORY.
 enum status mf_scene_molecules_read(struct scene_molecules *molecules, struct json_object *scene,
+                                    const struct scene_fitted *fitted,
                                     struct composition *composition,
                                     const struct units *units) MUST_USE;
 
@@ -59,10 +67,14 @@ void mf_scene_molecules_write(const struct scene_molecules *molecules,
 /// Add the tables to the digest of a checkpoint.
 void mf_scene_molecules_digest(const struct scene_molecules *molecules, uint64_t *digest);
 
-/// Read the groups of one order of terms: {"backbone": {"law": …}, …}.
-/// Faults go to the document. Fails: NO_MEMORY.
+/// Read the groups of one order of terms: {"backbone": {"law": …}, …}, and add those that are
+/// fitted, which are not written. Faults go to the document. Fails: NO_MEMORY.
 enum status mf_scene_groups_read(struct molecules *molecules, int order, struct json_object *scene,
+                                 const struct scene_fitted *fitted,
                                  const struct units *units) MUST_USE;
+
+/// Whether a group has no law, since a fit looks for it.
+bool mf_scene_groups_are_fitted(const struct molecules_group *group);
 
 void mf_scene_groups_write(const struct molecules *molecules, int order,
                            struct json_writer *writer);

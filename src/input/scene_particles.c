@@ -164,7 +164,7 @@ static void make_box(struct scene *scene) {
 
 /// How many there are, of which types: single beads, then those of molecules.
 static enum status read_beads(struct scene *scene, struct json_object *object,
-                              struct json_object *particles) {
+                              const struct scene_fitted *fitted, struct json_object *particles) {
     const size_t faults = mf_json_fault_count(object->document);
     const bool beside = mf_json_has(object, "molecules");
     struct composition *composition = &scene->setup.composition;
@@ -175,7 +175,7 @@ static enum status read_beads(struct scene *scene, struct json_object *object,
         read_types(scene, particles, beside);
     else if (!beside)
         read_count(scene, particles);
-    TRY(mf_scene_molecules_read(&scene->molecules, object, composition, &scene->units));
+    TRY(mf_scene_molecules_read(&scene->molecules, object, fitted, composition, &scene->units));
     if (scene_has_molecules(&scene->molecules))
         scene->setup.placement.count = mf_composition_particles(composition);
     if (beside && mf_json_fault_count(object->document) > faults)
@@ -183,11 +183,12 @@ static enum status read_beads(struct scene *scene, struct json_object *object,
     return STATUS_OK;
 }
 
-enum status mf_scene_particles_read(struct scene *scene, struct json_object *object) {
+enum status mf_scene_particles_read(struct scene *scene, struct json_object *object,
+                                    const struct scene_fitted *fitted) {
     const bool required = !mf_json_has(object, "molecules");
     struct json_object particles = mf_json_child(object, "particles", required);
     struct placement *placement = &scene->setup.placement;
-    TRY(read_beads(scene, object, &particles));
+    TRY(read_beads(scene, object, fitted, &particles));
     make_box(scene);
     mf_json_fields(&particles, mf_placement_fields, placement);
     mf_scene_attributes_read(scene, &particles);

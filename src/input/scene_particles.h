@@ -6,7 +6,8 @@
 
 /// Read the member "particles" of `object` into the scene, whose box is known, with the file that
 /// it may name. Faults go to the document. Fails: NO_MEMORY.
-enum status mf_scene_particles_read(struct scene *scene, struct json_object *object) MUST_USE;
+enum status mf_scene_particles_read(struct scene *scene, struct json_object *object,
+                                    const struct scene_fitted *fitted) MUST_USE;
 
 /// Write the member.
 void mf_scene_particles_write(const struct scene *scene, struct json_writer *writer);

@@ -25,6 +25,18 @@ const struct field mf_target_files_use_fields[] = {
     FIELD_END,
 };
 
+/// All end with the shortest.
+static void cut_to_shortest(struct target_files *files) {
+    size_t shortest = SIZE_MAX;
+    for (size_t pair = 0; pair < files->pairs; pair++) {
+        const size_t count = files->rdf[pair].bins.count;
+        shortest = count > 0 && count < shortest ? count : shortest;
+    }
+    for (size_t pair = 0; pair < files->pairs; pair++)
+        if (files->rdf[pair].bins.count > shortest)
+            files->rdf[pair].bins.count = shortest;
+}
+
 /// All pair types must have the bins of the first.
 static void check_bins(const struct target_files *files, struct json_object *object) {
     const struct rdf_bins *first = &files->rdf[0].bins;
@@ -90,6 +102,7 @@ static enum status read_rdf(struct target_files *files, struct json_object *obje
             TRY(mf_target_rdf_read(&files->rdf[pair], &child, units, box->dimensions));
     }
     mf_json_finish(object);
+    cut_to_shortest(files);
     check_bins(files, object);
     return collect_rdf(files, box);
 }
@@ -110,10 +123,29 @@ static enum status read_settings(struct target_files *files, const struct observ
     return STATUS_OK;
 }
 
+/// p of each group, and what is to be measured for them.
+static enum status read_groups(struct target_files *files, const struct observable_kind *kind,
+                               enum topology_order order, struct json_object *object,
+                               const struct box *box, const struct molecules *molecules,
+                               const struct units *units) {
+    struct bonded_settings *settings = mf_memory_zeroed(1, sizeof *settings);
+    if (settings == NULL)
+        return STATUS_NO_MEMORY;
+    files->settings[kind->place] = settings;
+    TRY(mf_target_groups_read(&files->groups[order], order, object, molecules, units,
+                              box->dimensions));
+    *settings = mf_target_groups_settings(&files->groups[order]);
+    return STATUS_OK;
+}
+
 static enum status read_kind(struct target_files *files, int number, struct json_object *object,
-                             const struct box *box, const struct units *units) {
+                             const struct box *box, const struct molecules *molecules,
+                             const struct units *units) {
     const struct observable_kind kind = mf_observable_kind(number);
     const enum observable_form form = kind.target->form;
+    const enum topology_order order = mf_bonded_distribution_order(number);
+    if (order < TOPOLOGY_ORDERS)
+        return read_groups(files, &kind, order, object, box, molecules, units);
     if (kind.target->has_settings)
         TRY(read_settings(files, &kind, object));
     if (number == TARGET_RDF)
@@ -151,7 +183,7 @@ static void check_motion(const struct target_files *files, struct json_object *o
 
 enum status mf_target_files_read(struct target_files *files, struct json_object *root,
                                  const struct box *box, const struct composition *composition,
-                                 const struct units *units) {
+                                 const struct molecules *molecules, const struct units *units) {
     *files = (struct target_files){.composition = *composition,
                                    .pairs = (size_t)mf_composition_pairs(composition)};
     struct json_object object = mf_json_child(root, "target", true);
@@ -165,7 +197,7 @@ enum status mf_target_files_read(struct target_files *files, struct json_object 
         mf_json_fields(&child, mf_target_files_use_fields, &files->use[kind]);
         if (!files->given[kind])
             continue;
-        TRY(read_kind(files, kind, &child, box, units));
+        TRY(read_kind(files, kind, &child, box, molecules, units));
     }
     mf_json_finish(&object);
     check_motion(files, &object);
@@ -180,6 +212,8 @@ void mf_target_files_clear(struct target_files *files) {
     mf_memory_free(files->rdf_error);
     mf_memory_free(files->rdf_given);
     mf_target_etd_clear(&files->etd);
+    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+        mf_target_groups_clear(&files->groups[order]);
     for (int kind = 0; kind < TARGETS; kind++)
         mf_target_curve_clear(&files->curve[kind]);
     for (size_t place = 0; place < OBSERVABLES_MOST; place++)
@@ -213,7 +247,10 @@ static void write_kind(const struct target_files *files, int number, struct json
     const enum observable_form form = kind.target->form;
     if (kind.target->has_settings)
         mf_json_put_fields(writer, kind.observable->fields, files->settings[kind.place]);
-    if (number == TARGET_RDF)
+    const enum topology_order order = mf_bonded_distribution_order(number);
+    if (order < TOPOLOGY_ORDERS)
+        mf_target_groups_write(&files->groups[order], writer);
+    else if (number == TARGET_RDF)
         write_rdf(files, writer);
     else if (number == TARGET_ETD)
         mf_json_put_fields(writer, mf_target_etd_fields, &files->etd.parameters);
@@ -250,6 +287,11 @@ void mf_target_files_digest(const struct target_files *files, uint64_t *into) {
     digest(files->rdf_error, files->pairs * files->rdf[0].bins.count, into);
     digest(files->etd.survival, cells, into);
     digest(files->etd.error, cells, into);
+    for (int order = 0; order < TOPOLOGY_ORDERS; order++) {
+        const struct target_groups *groups = &files->groups[order];
+        digest(groups->value, groups->first[groups->groups], into);
+        digest(groups->error, groups->first[groups->groups], into);
+    }
     for (int kind = 0; kind < TARGETS; kind++) {
         const struct target_curve *curve = &files->curve[kind];
         digest(curve->x, curve->points, into);
@@ -286,7 +328,8 @@ static void divide(struct target_files *files, size_t pair, double factor) {
     }
 }
 
-enum status mf_target_files_normalise(struct target_files *files, const struct box *box) {
+enum status mf_target_files_normalise(struct target_files *files, const struct box *box,
+                                      bool joined) {
     size_t given = 0;
     double width = 0;
     files->normalisation = (struct normalisation){.factor = 1};
@@ -300,7 +343,7 @@ enum status mf_target_files_normalise(struct target_files *files, const struct b
         width = fmax(width, p->normalisation_error);
     }
     // What all together say tells nothing of a part of them.
-    if (given > 0)
+    if (given > 0 || joined)
         return STATUS_OK;
     TRY(mf_normalisation_find(&files->rdf[0].bins, box, &files->composition, files->rdf_g,
                               files->rdf_error, width, &files->normalisation));
@@ -313,6 +356,11 @@ static struct target target_of(const struct target_files *files, int kind) {
     const struct target_curve *curve = &files->curve[kind];
     const struct target_number *number = &files->number[kind];
     const enum observable_form form = mf_observable_kind(kind).target->form;
+    const enum topology_order order = mf_bonded_distribution_order(kind);
+    if (order < TOPOLOGY_ORDERS)
+        return (struct target){.count = files->groups[order].first[files->groups[order].groups],
+                               .value = files->groups[order].value,
+                               .error = files->groups[order].error};
     if (kind == TARGET_RDF)
         return (struct target){.count = files->pairs * files->rdf[0].bins.count,
                                .value = files->rdf_g,

@@ -7,6 +7,7 @@
 #include "io/json_write.h"
 #include "input/target_curve.h"
 #include "input/target_etd.h"
+#include "input/target_groups.h"
 #include "input/target_rdf.h"
 
 extern const struct field mf_target_files_use_fields[];
@@ -21,8 +22,9 @@ struct target_files {
     double *rdf_given;                  ///< g before it was divided by its normalisation
     struct normalisation normalisation; ///< by which those that do not say theirs are divided
     struct target_etd etd;
-    struct target_curve curve[TARGETS];   ///< of those that are curves
-    struct target_number number[TARGETS]; ///< of those that are numbers
+    struct target_groups groups[TOPOLOGY_ORDERS]; ///< of bonds, angles and dihedrals
+    struct target_curve curve[TARGETS];           ///< of those that are curves
+    struct target_number number[TARGETS];         ///< of those that are numbers
     /// Of the observables whose targets say them, by their places in the list; else NULL.
     void *settings[OBSERVABLES_MOST];
     struct target_use {
@@ -31,10 +33,11 @@ struct target_files {
     } use[TARGETS];
 };
 
-/// Read the object "target" of a scene of this box and composition; `units` convert VOTCA's tables.
-/// Faults go to the document. Fails: NO_MEMORY.
+/// Read the object "target" of a scene of this box, composition and molecules, or NULL; `units`
+/// convert VOTCA's tables. Faults go to the document. Fails: NO_MEMORY.
 enum status mf_target_files_read(struct target_files *files, struct json_object *root,
                                  const struct box *box, const struct composition *composition,
+                                 const struct molecules *molecules,
                                  const struct units *units) MUST_USE;
 void mf_target_files_clear(struct target_files *files);
 void mf_target_files_write(const struct target_files *files, struct json_writer *writer);
@@ -43,9 +46,11 @@ void mf_target_files_write(const struct target_files *files, struct json_writer 
 void mf_target_files_digest(const struct target_files *files, uint64_t *digest);
 
 /// Divide g(r) by its normalisation: what the file says, else what mf_normalisation_find makes of
-/// the target in this box. If the file says some of a mixture's, the others are 1. Fails:
+/// the target in this box, and 1 of beads that are `joined` to molecules, of which it knows
+/// nothing. If the file says some of a mixture's, the others are 1. Fails:
 /// NO_MEMORY.
-enum status mf_target_files_normalise(struct target_files *files, const struct box *box) MUST_USE;
+enum status mf_target_files_normalise(struct target_files *files, const struct box *box,
+                                      bool joined) MUST_USE;
 
 /// The targets of the scene: those to be fitted, and all. With `moves`, D is among
 /// those to be compared even if no value is given, so that a result knows its own, if another

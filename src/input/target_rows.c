@@ -86,8 +86,7 @@ static int compare(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/// Mean of squares of a normal distribution among which there are some that do not belong.
-static double robust_mean(double *square, size_t count) {
+double mf_target_rows_robust_mean(double *square, size_t count) {
     enum { ROUNDS = 5 };
     qsort(square, count, sizeof *square, compare);
     double variance = square[count / 2] / median_square;
@@ -109,7 +108,7 @@ enum status mf_target_rows_scatter(const struct target_rows *rows, double *error
     const size_t count = differences(rows, square);
     if (count < LEAST_DIFFERENCES)
         goto done;
-    const double variance = robust_mean(square, count);
+    const double variance = mf_target_rows_robust_mean(square, count);
     if (variance > 0)
         *error = sqrt(variance / volume(rows, rows->count - 1, width_of(rows)));
 done:

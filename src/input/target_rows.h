@@ -41,6 +41,10 @@ struct target_tail mf_target_rows_tail(const struct target_rows *rows);
 /// Tested: test_target_rows.
 enum status mf_target_rows_scatter(const struct target_rows *rows, double *error) MUST_USE;
 
+/// The mean of `count` squares of normal numbers, some of which do not belong: without those beyond
+/// three standard deviations. Sorts them.
+double mf_target_rows_robust_mean(double *square, size_t count);
+
 /// Set the errors that follow from `error`, that of the last bin at g = 1: σ_k = error sqrt(g_k
 /// v/v_k), v the volume of the last bin. Tested: test_target_rows.
 void mf_target_rows_set_errors(struct target_rows *rows, double error);

@@ -234,6 +234,8 @@ enum status mf_target_sanity_check(const struct target_files *files, const struc
     for (size_t pair = 0; pair < views(files); pair++) {
         const struct view view = view_of(files, scene, pair);
         TRY(check_tail(&view, file));
+        if (scene_has_molecules(&scene->molecules))
+            continue; // beads of a molecule are no particles of a fluid
         TRY(check_packing(&view, file));
         TRY(check_compressibility(&view, file));
     }
@@ -267,7 +269,8 @@ static void tell_view(const struct view *view, const struct target_sanity_listen
     const char *unit = unit_of(view, &length);
     char density[80], compressibility[80] = "";
     print_density(view, density, sizeof density);
-    if (view->like > 1 && view->scene->setup.box.dimensions == 3)
+    if (view->like > 1 && view->scene->setup.box.dimensions == 3 &&
+        !scene_has_molecules(&view->scene->molecules))
         print_compressibility(view, compressibility, sizeof compressibility);
     say(listener,
         "target %s: g from %.4g to %.4g %s, peak %.3g at %.4g %s, tail %.3f(%.0f); density %s%s%s",
@@ -368,15 +371,41 @@ static void tell_normalisation(const struct normalisation *n,
             n->factor > 1 ? "large" : "small", n->factor, ceil(n->error * 1e4));
 }
 
+/// "target bond_lengths.backbone: 34 bins of 0.001 from 0.1505 to 0.1835, peak 84 at 0.169; …".
+static void tell_group(const struct target_groups *groups, size_t g,
+                       const struct target_sanity_listener *listener) {
+    const struct target_bonded *member = &groups->member[g];
+    const struct bonded_bins *bins = &member->bins;
+    size_t peak = 0;
+    char errors[128] = "";
+    if (bins->count == 0)
+        return;
+    for (size_t k = 0; k < bins->count; k++)
+        peak = member->value[k] > member->value[peak] ? k : peak;
+    if (member->estimated_error > 0)
+        snprintf(errors, sizeof errors, "; no errors given: %.2g of the peak %s",
+                 member->estimated_error,
+                 member->assumed ? "is assumed there" : "there, from the scatter of the rows");
+    say(listener, "target %s.%s: %zu bins of %.4g from %.4g to %.4g, peak at %.4g%s",
+        mf_bonded_distribution_of(groups->order)->name, groups->name[g], bins->count, bins->width,
+        bins->low, bins->low + (double)bins->count * bins->width, bonded_bins_centre(bins, peak),
+        errors);
+}
+
 enum status mf_target_sanity_tell(const struct target_files *files, const struct scene *scene,
                                   const struct target_sanity_listener *listener) {
     for (size_t pair = 0; pair < views(files); pair++) {
         const struct view view = view_of(files, scene, pair);
         tell_view(&view, listener);
         tell_origin(&view, listener);
+        if (scene_has_molecules(&scene->molecules))
+            continue;
         TRY(warn_of_normalisation(&view, listener));
         warn_of_density(&view, listener);
     }
+    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+        for (size_t g = 0; g < files->groups[order].groups; g++)
+            tell_group(&files->groups[order], g, listener);
     tell_normalisation(&files->normalisation, listener);
     char line[SCENE_LINE_SIZE];
     if (mf_scene_is_hot(scene, line))

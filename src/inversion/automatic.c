@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Inverse Monte Carlo where its linear response holds, and before that the steps that need none: by
-// the hypernetted chain, or in two dimensions Boltzmann inversion. A Newton step converges at once
-// near the solution and leads away from far off it (its basin; P. Deuflhard, Newton Methods for
-// Nonlinear Problems (2004), section 2.1, which tests it as here, by what the last step did against
-// what was predicted).
+// the hypernetted chain, or in two dimensions and of molecules Boltzmann inversion. A Newton step
+// converges at once near the solution and leads away from far off it (its basin; P. Deuflhard,
+// Newton Methods for Nonlinear Problems (2004), section 2.1, which tests it as here, by what the
+// last step did against what was predicted).
 #include "inversion/inversion.h"
 
 #include <math.h>
@@ -54,7 +54,9 @@ static bool in_basin(const struct inversion *inversion) {
 }
 
 static enum status careful_step(const struct inversion *inversion, double *step) {
-    if (inversion->box.dimensions == 3)
+    const struct simulation_setup *scene = &inversion->problem->scene;
+    if (inversion->box.dimensions == 3 &&
+        mf_molecules_find(scene->interaction, scene->interactions) == NULL)
         return mf_hnc_step(inversion, ridge, step);
     mf_ibi_step(inversion, step);
     return STATUS_OK;
@@ -77,7 +79,8 @@ static enum status update(struct inversion *inversion, double *extra) {
 
 const struct inverse_method mf_automatic = {
     .name = "auto",
-    .summary = "hypernetted-chain steps (Delbary et al. 2020; in 2-D Boltzmann inversion, Reith et "
+    .summary = "hypernetted-chain steps (Delbary et al. 2020; in 2-D and of molecules Boltzmann "
+               "inversion, Reith et "
                "al. 2003) until their linear response holds, then inverse Monte Carlo (Lyubartsev "
                "and Laaksonen 1995)",
     .own = &(const struct inversion_rule){update},

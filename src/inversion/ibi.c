@@ -10,10 +10,10 @@ static const char *const columns[] = {INVERSION_COLUMNS, NULL};
 
 void mf_ibi_logarithms(const struct inversion *inversion, double *step) {
     const struct potential_grid *grid = &inversion->grid;
-    const double least = inversion->problem->core_threshold;
     for (size_t n = 0; n < grid->known; n++) {
         // An empty bin is as full as one with the threshold's few pairs.
         const size_t bin = grid->known_bin[n];
+        const double least = inversion->least[bin];
         const double g = fmax(mf_inversion_g(inversion, bin), least);
         const double target = fmax(mf_inversion_target_g(inversion, bin), least);
         step[grid->known_point[n]] = inversion->problem->scene.temperature * log(g / target);

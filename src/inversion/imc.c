@@ -4,6 +4,8 @@
 #include "inversion/imc_solve.h"
 #include "inversion/inversion.h"
 
+#include <math.h>
+
 /// How the linear equations are solved, in the order of `regularisations`.
 static enum status (*const solvers[])(const struct imc_system *, double, double *,
                                       struct imc_solution *) = {mf_imc_solve, mf_imc_truncated,
@@ -37,22 +39,59 @@ static double choose_strength(struct inversion *inversion,
     return mf_inversion_band_prior(inversion);
 }
 
+/// Variances of what C predicts. C is itself sampled: of n independent samples C_ab has the
+/// variance (C_aa C_bb + C_ab²)/n (normal S), and so Σ_b C_ab x_b/k_B T has
+///   (C_aa Σ_b C_bb x_b² + (Σ_b C_ab x_b)²)/(n (k_B T)²),
+/// where the last sum is about the excess, and x about the step of Boltzmann inversion. Several
+/// pair types and groups have about as many bins as an iteration has independent samples: a step
+/// that removed the excess as far as its own noise would follow the noise of C, by thousands of k_B
+/// T.
+/// @param[in] logarithms  the step of Boltzmann inversion, shape [points]
+static void doubt_response(struct inversion *inversion, double independent,
+                           const double *logarithms) {
+    const size_t known = inversion->grid.known;
+    const double *covariance = inversion->covariance;
+    const double temperature = inversion->problem->scene.temperature;
+    double squares = 0;
+    for (size_t a = 0; a < known; a++)
+        squares += covariance[a * known + a] *
+                   pow(logarithms[inversion->grid.known_point[a]] / temperature, 2);
+    for (size_t a = 0; a < known; a++)
+        inversion->doubt[a] =
+            inversion->variance[a] +
+            (covariance[a * known + a] * squares + inversion->excess[a] * inversion->excess[a]) /
+                independent;
+}
+
+/// Whether C tells a step: of fewer independent samples than bins it has no inverse, and what it
+/// says of the excess is less than Boltzmann inversion does, unless that is hardly more than noise.
+static bool tells(const struct inversion *inversion, double independent) {
+    return inversion->doubt == NULL || mf_inversion_is_near(inversion) ||
+           independent >= (double)inversion->grid.known;
+}
+
 enum status mf_imc_step(struct inversion *inversion, const struct imc_parameters *parameters,
                         double *step, double extra[3]) {
     const struct inverse_problem *problem = inversion->problem;
-    const struct target *pressure = &problem->targets.target[TARGET_PRESSURE];
-    const bool constrained = targets_ask(&problem->targets, TARGET_PRESSURE);
     const struct potential_grid *grid = &inversion->grid;
     enum status status = STATUS_OK;
     struct imc_solution solution;
+    const double independent = inversion->behind / inversion->inefficiency;
     double *x = NULL;
     struct imc_system system = mf_inversion_system(inversion);
+    mf_ibi_step(inversion, step);
+    if (!tells(inversion, independent))
+        return STATUS_OK;
     mf_inversion_trail_take(&inversion->trail, &system);
-    if (constrained) {
+    if (targets_ask(&problem->targets, TARGET_PRESSURE)) {
         system.constraint = inversion->pressure.slope;
-        system.wanted = *pressure->value - inversion->pressure.value;
+        system.wanted = *problem->targets.target[TARGET_PRESSURE].value - inversion->pressure.value;
     }
     NEW_ARRAY(x, grid->known);
+    if (inversion->doubt) {
+        doubt_response(inversion, independent, step);
+        system.variance = inversion->doubt;
+    }
     CHECK(solvers[parameters->regularisation](&system, choose_strength(inversion, parameters), x,
                                               &solution));
     for (size_t a = 0; a < grid->known; a++)

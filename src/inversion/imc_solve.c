@@ -86,14 +86,31 @@ static void fill_differences(gsl_matrix *rows, size_t begin, size_t end, double 
     gsl_matrix_set(rows, end - 2, end - 1, -4 * scale);
 }
 
-void mf_imc_solve_prior(double spacing, const size_t *block, size_t blocks, gsl_matrix *rows) {
+/// The same of a curve with free ends. Round a circle the last point is beside the first; one of
+/// its differences is left out, as a curve has one row less than points.
+static void fill_free_differences(gsl_matrix *rows, size_t begin, size_t end, double scale,
+                                  bool periodic) {
+    const size_t count = end - begin;
+    for (size_t k = periodic ? 0 : 1; k + 1 < count; k++) {
+        const size_t row = begin + k - !periodic;
+        gsl_matrix_set(rows, row, begin + (k + count - 1) % count, scale);
+        gsl_matrix_set(rows, row, begin + k, -2 * scale);
+        gsl_matrix_set(rows, row, begin + k + 1, scale);
+    }
+}
+
+void mf_imc_solve_prior(const struct imc_system *s, gsl_matrix *rows) {
     const size_t n = rows->size2;
-    const double scale = pow(smooth_length / spacing, 2);
+    const double scale = pow(smooth_length / s->spacing, 2);
     gsl_matrix_set_zero(rows);
-    if (blocks == 0)
+    if (s->blocks == 0)
         fill_differences(rows, 0, n, scale);
-    for (size_t b = 0, begin = 0; block && b < blocks; begin += block[b], b++)
-        fill_differences(rows, begin, begin + block[b], scale);
+    for (size_t b = 0, begin = 0; s->block && b < s->blocks; begin += s->block[b], b++)
+        if (s->shape && s->shape[b].bend > 0)
+            fill_free_differences(rows, begin, begin + s->block[b], pow(s->shape[b].bend, 2),
+                                  s->shape[b].periodic);
+        else
+            fill_differences(rows, begin, begin + s->block[b], scale);
     for (size_t k = 0; k < n; k++)
         gsl_matrix_set(rows, n - 1 + k, k, sqrt(ridge));
 }
@@ -163,9 +180,11 @@ static double solve_at(struct workspace *w, double strength) {
 static double find_strength(struct workspace *w) {
     const size_t n = w->size;
     const double unit = square_rows(w->rows, 0, n) / square_rows(w->rows, n, 3 * n - 1);
+    // Many blocks are slow to solve, and a hundredth of a decade is enough.
+    const int rounds = w->system->shape ? 11 : 40;
     double low = -12, high = 6;
     const double wanted = mf_imc_solve_discrepancy(solve_at(w, unit * pow(10, low)));
-    for (int k = 0; k < 40; k++) {
+    for (int k = 0; k < rounds; k++) {
         const double middle = 0.5 * (low + high);
         if (solve_at(w, unit * pow(10, middle)) > wanted)
             high = middle;
@@ -196,7 +215,7 @@ enum status mf_imc_solve(const struct imc_system *system, double strength, doubl
     CHECK(workspace_allocate(&w, system));
     fill_equations(&w, system);
     gsl_matrix_view prior = gsl_matrix_submatrix(w.rows, n, 0, 2 * n - 1, n);
-    mf_imc_solve_prior(system->spacing, system->block, system->blocks, &prior.matrix);
+    mf_imc_solve_prior(system, &prior.matrix);
     solution->strength = strength > 0 ? strength : find_strength(&w);
     solution->misfit = solve_at(&w, solution->strength);
     solution->directions = count_directions(&w);

@@ -5,20 +5,30 @@
 #include "base/status.h"
 
 #include <gsl/gsl_matrix.h>
+#include <stdbool.h>
 #include <stddef.h>
+
+/// What a curve of x is, for the prior.
+struct imc_shape {
+    /// 0: of pairs, which ends at 0 half a spacing beyond its last bin. Else its ends are free, and
+    /// it may bend by k_B T within so many bins.
+    double bend;
+    bool periodic; ///< it has no ends
+};
 
 /// ⟨S⟩ responds to the potential as ∂⟨S_a⟩/∂Φ_b = −C_ab / k_B T, C the covariance of S.
 /// A. P. Lyubartsev and A. Laaksonen, Phys. Rev. E 52, 3730 (1995), eq. 8.
 struct imc_system {
     size_t size;
-    const size_t *block;      ///< sizes of the curves that x is made of, shape [blocks]
-    size_t blocks;            ///< 0: x is one curve
-    const double *covariance; ///< C, shape [size, size], row-major
-    const double *excess;     ///< ⟨S⟩ − S*, shape [size]
-    const double *variance;   ///< of the excess by statistics alone, shape [size], > 0
-    double temperature;       ///< [k_B T_0]
-    double spacing;           ///< of the bins [λ]
-    const double *constraint; ///< p, shape [size]: x is to meet p·x = wanted exactly; or NULL
+    const size_t *block;           ///< sizes of the curves that x is made of, shape [blocks]
+    size_t blocks;                 ///< 0: x is one curve
+    const struct imc_shape *shape; ///< of each block; NULL: all are of pairs
+    const double *covariance;      ///< C, shape [size, size], row-major
+    const double *excess;          ///< ⟨S⟩ − S*, shape [size]
+    const double *variance;        ///< of the excess by statistics alone, shape [size], > 0
+    double temperature;            ///< [k_B T_0]
+    double spacing;                ///< of the bins [λ]
+    const double *constraint;      ///< p, shape [size]: x is to meet p·x = wanted exactly; or NULL
     double wanted;
     /// Where a solver that has them puts its singular values, falling, and the part of each that x
     /// takes, shape [size]; or NULL.
@@ -80,7 +90,8 @@ void mf_imc_solve_meet(const struct imc_system *system, const double *u, double 
 double mf_imc_solve_discrepancy(double least);
 
 /// Rows of the smoothness prior in `rows`, shape [2 size − 1, size]: D, the second difference over
-/// a tenth of λ, and sqrt(ρ). The curve ends at 0 half a spacing beyond its last bin, at the
-/// cutoff, so that D of the ramp 1 − r/r_c is 0 and the ramp is free but for ρ; below its first bin
-/// it is free: no row reaches there. Each of several curves, `block` as in the system, has its own.
-void mf_imc_solve_prior(double spacing, const size_t *block, size_t blocks, gsl_matrix *rows);
+/// a tenth of λ, or over the bins of a shape, and sqrt(ρ). A curve of pairs ends at 0 half a
+/// spacing beyond its last bin, at the cutoff, so that D of the ramp 1 − r/r_c is 0 and the ramp is
+/// free but for ρ; below its first bin it is free: no row reaches there. Each of several curves has
+/// its own. Of the system `size`, `spacing`, blocks and shapes are read.
+void mf_imc_solve_prior(const struct imc_system *system, gsl_matrix *rows);

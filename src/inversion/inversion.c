@@ -20,61 +20,12 @@ static const double noise_share = 1.0 / 3;
 /// Samples of an iteration double at most so often.
 enum { MOST_DOUBLINGS = 7 };
 
-/// The error of a g that is near to its target, in units of its noise.
-static const double near_noises = 2;
-
 /// The way that is left of the ramp, and of the pressure, in their errors, at which both have
 /// settled.
 static const double settled_way = 0.5;
 
 /// Replicas that are placed anew are equilibrated so many times as long.
 enum { ANEW_EQUILIBRATION = 5 };
-
-double mf_inversion_g(const struct inversion *inversion, size_t bin) {
-    return inversion->replicas.counts.mean[bin] / inversion->ideal[bin];
-}
-
-double mf_inversion_target_g(const struct inversion *inversion, size_t bin) {
-    return inversion->target_counts[bin] / inversion->ideal[bin];
-}
-
-/// Fill excess and variance of S, and the distance of g over all bins, from the present samples.
-static void assess_rdf(struct inversion *inversion) {
-    const struct potential_grid *grid = &inversion->grid;
-    const struct comoments *counts = &inversion->replicas.counts;
-    inversion->inefficiency = mf_replicas_inefficiency(&inversion->replicas, inversion->ideal,
-                                                       grid->known_bin, grid->known);
-    inversion->disagreement = mf_replicas_disagreement(&inversion->replicas, inversion->ideal,
-                                                       grid->known_bin, grid->known);
-    const double independent = counts->count / inversion->inefficiency;
-    double sum = 0, own = 0, both = 0, misfit = 0;
-    for (size_t n = 0; n < inversion->bins; n++)
-        sum += pow(mf_inversion_g(inversion, n) - mf_inversion_target_g(inversion, n), 2);
-    for (size_t a = 0; a < grid->known; a++) {
-        const size_t bin = grid->known_bin[a];
-        const double ideal = inversion->ideal[bin];
-        const double target_error =
-            ideal * inversion->problem->targets.target[TARGET_RDF].error[bin];
-        // An empty bin still has the uncertainty of one pair.
-        const double sampled =
-            fmax(mf_comoments_covariance(counts, bin, bin), 1 / counts->count) / independent;
-        inversion->excess[a] = counts->mean[bin] - inversion->target_counts[bin];
-        inversion->variance[a] = sampled + target_error * target_error;
-        misfit += inversion->excess[a] * inversion->excess[a] / inversion->variance[a];
-        own += sampled / (ideal * ideal);
-        both += inversion->variance[a] / (ideal * ideal);
-    }
-    const double bins = (double)inversion->bins;
-    inversion->distance[TARGET_RDF] =
-        (struct target_distance){.rms = sqrt(sum / bins), .noise = sqrt(both / bins)};
-    inversion->own_noise = sqrt(own / bins);
-    inversion->misfit = misfit / (double)grid->known;
-}
-
-bool mf_inversion_is_near(const struct inversion *inversion) {
-    const struct target_distance *rdf = &inversion->distance[TARGET_RDF];
-    return rdf->rms < near_noises * rdf->noise;
-}
 
 /// C of the present samples, and near the target of all since it was reached. The noise of C leads
 /// from every direction into those that g sees best, so that little seen ones seem better known
@@ -84,8 +35,10 @@ bool mf_inversion_is_near(const struct inversion *inversion) {
 static void assess_covariance(struct inversion *inversion) {
     const struct potential_grid *grid = &inversion->grid;
     const struct comoments *counts = &inversion->replicas.counts;
-    const double before = mf_inversion_is_near(inversion) ? inversion->progress.responses : 0;
+    const bool near = mf_inversion_is_near(inversion);
+    const double before = near ? inversion->progress.responses : 0;
     const double share = counts->count / (before + counts->count);
+    inversion->behind = before + counts->count;
     for (size_t a = 0; a < grid->known; a++)
         for (size_t b = 0; b < grid->known; b++) {
             double *c = &inversion->covariance[a * grid->known + b];
@@ -93,13 +46,14 @@ static void assess_covariance(struct inversion *inversion) {
                 mf_comoments_covariance(counts, grid->known_bin[a], grid->known_bin[b]);
             *c = (1 - share) * *c + share * now;
         }
-    inversion->progress.responses = mf_inversion_is_near(inversion) ? before + counts->count : 0;
+    inversion->progress.responses = near ? inversion->behind : 0;
 }
 
 struct imc_system mf_inversion_system(const struct inversion *inversion) {
     return (struct imc_system){.size = inversion->grid.known,
                                .block = inversion->grid.known_of,
-                               .blocks = inversion->grid.pairs,
+                               .blocks = inversion->grid.blocks,
+                               .shape = inversion->shape,
                                .covariance = inversion->covariance,
                                .excess = inversion->excess,
                                .variance = inversion->variance,
@@ -126,13 +80,13 @@ static void take_step(struct inversion *inversion) {
     const struct potential_grid *grid = &inversion->grid;
     double largest = 0;
     for (size_t a = 0; a < grid->known; a++)
-        if (mf_potential_grid_well_known(inversion->problem, grid->known_bin[a]))
+        if (grid->well_known[a])
             largest = fmax(largest, fabs(inversion->best_step[grid->known_point[a]]));
     const double share = fmin(inversion->progress.damping, largest_change / fmax(largest, 1e-300));
     for (size_t a = 0; a < grid->known; a++) {
         const size_t point = grid->known_point[a];
         double change = share * inversion->best_step[point];
-        if (!mf_potential_grid_well_known(inversion->problem, grid->known_bin[a]))
+        if (!grid->well_known[a])
             change = fmax(-largest_unknown_change, fmin(largest_unknown_change, change));
         inversion->phi[point] = inversion->best[point] + change;
     }
@@ -169,9 +123,13 @@ static struct replicas_plan plan(const struct inversion *inversion) {
 /// Whether more samples would help: their noise is a large part of the error, and not yet what was
 /// asked for. Replicas that are stuck would never be told apart from noise.
 static bool needs_samples(const struct inversion *inversion, int doublings) {
-    return inversion->own_noise > fmax(inversion->settings.common.precision,
-                                       noise_share * inversion->distance[TARGET_RDF].rms) &&
-           doublings < MOST_DOUBLINGS;
+    const double precision = inversion->settings.common.precision;
+    for (int k = 0; k < inversion->sections; k++) {
+        const struct inversion_section *section = &inversion->section[k];
+        if (section->own_noise > fmax(precision, noise_share * section->rms))
+            return doublings < MOST_DOUBLINGS;
+    }
+    return false;
 }
 
 /// Sample the present potential until the noise is small against its error.
@@ -187,14 +145,13 @@ static enum status sample(struct inversion *inversion, const struct inverse_list
         .least = NAN,
         .mean = NAN,
     };
-    mf_table_clear(&inversion->table);
-    TRY(mf_potential_grid_table(&inversion->grid, inversion->phi, &inversion->table));
+    TRY(mf_inversion_tabulate(inversion));
     state->evaluations += replicas;
     TRY(mf_replicas_run(&inversion->replicas, &now, threads, &progress, listener));
-    assess_rdf(inversion);
+    mf_inversion_assess(inversion);
     for (int n = 0; needs_samples(inversion, n); n++) {
         TRY(mf_replicas_double(&inversion->replicas, &now, threads, &progress, listener));
-        assess_rdf(inversion);
+        mf_inversion_assess(inversion);
     }
     state->sweeps +=
         replicas * (uint64_t)(REPLICAS_BLOCKS * now.block_samples * now.every + now.equilibration);
@@ -206,7 +163,7 @@ static double count_noises(const struct inversion *inversion,
                            const struct target_distance distance[TARGETS]) {
     double sum = 0;
     for (int kind = 0; kind < TARGETS; kind++)
-        if (targets_ask(&inversion->problem->targets, kind))
+        if (targets_ask(&inversion->problem->targets, kind) && inversion->distance[kind].noise > 0)
             sum += pow(distance[kind].rms / inversion->distance[kind].noise, 2);
     return sqrt(sum);
 }
@@ -299,12 +256,24 @@ static double find_ramp(const struct inversion *inversion) {
     for (size_t a = 0; a < grid->known; a++) {
         const size_t point = grid->known_point[a];
         const double ramp = mf_potential_grid_ramp(grid, point);
-        if (!mf_potential_grid_well_known(inversion->problem, grid->known_bin[a]))
+        if (!grid->well_known[a])
             continue;
         product += ramp * inversion->phi[point];
         squares += ramp * ramp;
     }
-    return product / squares;
+    return squares > 0 ? product / squares : 0;
+}
+
+/// The curves of groups stand behind those of pairs, of which there may be none.
+static void show_groups(const struct inversion *inversion, struct inverse_step *step) {
+    const struct potential_grid *grid = &inversion->grid;
+    if (grid->pairs == 0)
+        step->curve[UNKNOWN_POTENTIAL] = NULL;
+    if (grid->groups == 0)
+        return;
+    step->curve[UNKNOWN_BONDED] = inversion->best + grid->pair_points;
+    step->curve_error[UNKNOWN_BONDED] = inversion->band.error + grid->pair_points;
+    step->curve_flat[UNKNOWN_BONDED] = inversion->band.flat + INVERSE_FLAT * grid->pair_points;
 }
 
 static void describe(const struct inversion *inversion, const double *own, bool converged,
@@ -335,6 +304,7 @@ static void describe(const struct inversion *inversion, const double *own, bool 
         .finished = converged || stuck || mf_inversion_runs_away(inversion) ||
                     progress->iteration + 1 >= p->iterations,
     };
+    show_groups(inversion, step);
     memcpy(step->extra + INVERSION_SHARED_COLUMNS, own, INVERSION_OWN_COLUMNS * sizeof *own);
     if (step->finished && !converged)
         mf_inversion_reason_tell(inversion, step->reason);

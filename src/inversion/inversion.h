@@ -65,6 +65,17 @@ struct inversion_rule {
     enum status (*update)(struct inversion *inversion, double *extra);
 };
 
+/// Consecutive bins of one kind of targets: those of all pairs, those of all bonds, …
+struct inversion_section {
+    int kind;                  ///< enum target_kind, or of mf_bonded_distribution_kind
+    size_t bin, bins;          ///< the first one among all, and how many there are
+    size_t known, known_count; ///< the same of those that are known
+    double peak;               ///< largest value of a bonded target; of g 1
+    double inefficiency;       ///< samples that count as one independent
+    double rms, own_noise;     ///< of the samples, in peaks
+};
+enum { INVERSION_MOST_SECTIONS = 1 + TOPOLOGY_ORDERS };
+
 struct inversion {
     struct inversion_settings settings;
     const struct inverse_method *method;
@@ -72,18 +83,27 @@ struct inversion {
     struct potential_grid grid;
     struct box box; ///< of the system that is sampled
     struct composition composition;
-    size_t bins; ///< of all pair types
+    size_t bins; ///< of all pair types and groups
+    struct inversion_section section[INVERSION_MOST_SECTIONS];
+    int sections;
+    struct imc_shape *shape;      ///< of each block
+    struct sampler_group *groups; ///< that are counted, shape [grid.groups]
     struct table table;
+    struct molecules molecules; ///< with the present U of the groups
     struct replicas replicas;
-    double *ideal, *target_counts;            ///< shape [bins]
+    /// Shape [bins]: S if g were 1, or p its mean over the known bins; S for a value of 1 of the
+    /// target; S of the target and its error; S/ideal that counts as none.
+    double *ideal, *unit, *target_counts, *target_error, *least;
     double *excess, *variance;                ///< of S in the known bins, shape [known]
     double *covariance;                       ///< C of S in the known bins, shape [known, known]
+    double *doubt;                            ///< variances with those of C, of fits with groups
+    double behind;                            ///< samples behind C
     double misfit;                            ///< χ² of the excess by bin
-    double inefficiency;                      ///< samples that count as one independent
+    double inefficiency;                      ///< of the first section
     double disagreement;                      ///< of the replicas, mf_replicas_disagreement
     struct target_distance distance[TARGETS]; ///< of the samples from what is asked for
-    double own_noise;                         ///< of g by the samples alone, rms
-    bool settling;                            ///< the step is the most probable one, near the noise
+    double own_noise; ///< by the samples alone, rms, of the noisiest section
+    bool settling;    ///< the step is the most probable one, near the noise
     struct inversion_pressure pressure;
     double *phi, *step; ///< present potential and the step from it, shape [points]
     double *other_step; ///< what to do if the step makes it worse
@@ -139,11 +159,17 @@ enum status mf_inversion_write(const void *inversion, const struct inverse_folde
         "acceptance[1]", "potential_energy", "potential_energy_error"
 enum { INVERSION_SHARED_COLUMNS = 9, INVERSION_OWN_COLUMNS = INVERSE_EXTRA - 9 };
 
-/// g of the samples in a bin, and of the target in the same system.
+/// S/ideal of the samples in a bin, g of pairs, and of the target in the same system.
 double mf_inversion_g(const struct inversion *inversion, size_t bin);
 double mf_inversion_target_g(const struct inversion *inversion, size_t bin);
 
-/// The linear equations of the present samples, for g(r) alone.
+/// Fill the sections, the shapes and all that the targets say of the bins.
+void mf_inversion_count_targets(struct inversion *inversion);
+
+/// Make the tables of the present potentials, which the samplers read. Fails: NO_MEMORY.
+enum status mf_inversion_tabulate(struct inversion *inversion) MUST_USE;
+
+/// The linear equations of the present samples, without the pressure.
 struct imc_system mf_inversion_system(const struct inversion *inversion);
 
 /// Whether the present potential is kept: unless it is farther from the targets than the nearest so
@@ -174,7 +200,12 @@ enum status mf_inversion_start_again(struct inversion *inversion) MUST_USE;
 /// Why a fit that has finished did not converge, in words.
 void mf_inversion_reason_tell(const struct inversion *inversion, char reason[INVERSE_REASON_SIZE]);
 
-/// Whether g is so near to its target, by its noise, that C hardly changes any more.
+/// Fill excess, variance and inefficiencies of S, the distances over the bins of each section, and
+/// their noise, from the present samples.
+void mf_inversion_assess(struct inversion *inversion);
+
+/// Whether g, and p of all groups, are so near to their targets, by their noise, that C hardly
+/// changes any more.
 bool mf_inversion_is_near(const struct inversion *inversion);
 
 /// Whether the ramp of the potential grows without end; never with a pressure, which holds it.
@@ -194,7 +225,8 @@ void mf_ibi_step(const struct inversion *inversion, double *step);
 /// The same with the slope of the hypernetted chain. Fails: NO_MEMORY.
 enum status mf_hnc_step(const struct inversion *inversion, double ridge, double *step) MUST_USE;
 
-/// The regularised Newton step; `extra` are strength, misfit and directions. Sets `settling`.
+/// The regularised Newton step, or, with groups, that of Boltzmann inversion where C of few samples
+/// tells less; `extra` are strength, misfit and directions. Sets `settling`.
 /// Fails: NO_MEMORY.
 enum status mf_imc_step(struct inversion *inversion, const struct imc_parameters *parameters,
                         double *step, double extra[3]) MUST_USE;

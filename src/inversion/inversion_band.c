@@ -44,7 +44,7 @@ enum status mf_inversion_band_covariance(const struct imc_system *system, double
     gsl_matrix_view to = gsl_matrix_view_array(covariance, size, size);
     CHECK(prior && response && known ? STATUS_OK : STATUS_NO_MEMORY);
     mf_imc_solve_response(system, response);
-    mf_imc_solve_prior(system->spacing, system->block, system->blocks, prior);
+    mf_imc_solve_prior(system, prior);
     gsl_blas_dsyrk(CblasLower, CblasTrans, 1, response, 0, known);
     gsl_matrix_memcpy(&to.matrix, known);
     gsl_blas_dsyrk(CblasLower, CblasTrans, unit, prior, 1, &to.matrix);
@@ -65,16 +65,38 @@ done:
     return status;
 }
 
+/// U of a group is known but for a constant, which no distribution sees and the prior alone holds:
+/// the errors are those of U less its mean over the target. Σ ← P Σ Pᵀ, P = 1 − 1 wᵀ for w ~ p.
+static void take_constants_off(struct inversion *inversion) {
+    const struct potential_grid *grid = &inversion->grid;
+    const size_t n = grid->known;
+    double *covariance = inversion->band.covariance;
+    size_t first = grid->pairs_known;
+    for (size_t g = 0; g < grid->groups; first += grid->group[g++].own.known) {
+        const struct bonded_grid *own = &grid->group[g].own;
+        const double sum = mf_bonded_grid_mean(own) * (double)own->known;
+        for (int side = 0; side < 2; side++)
+            for (size_t b = 0; b < n; b++) {
+                const size_t along = side ? n : 1, across = side ? 1 : n;
+                double average = 0;
+                for (size_t a = 0; a < own->known; a++)
+                    average += own->target[own->first + a] / sum *
+                               covariance[(first + a) * across + b * along];
+                for (size_t a = 0; a < own->known; a++)
+                    covariance[(first + a) * across + b * along] -= average;
+            }
+    }
+}
+
 /// Weights w of the best ramp, A = Σ w_a Φ_a, over the bins that are well known.
 static void weigh_ramp(const struct inversion *inversion, double *weight) {
     const struct potential_grid *grid = &inversion->grid;
     double squares = 0;
     for (size_t a = 0; a < grid->known; a++) {
-        const bool known = mf_potential_grid_well_known(inversion->problem, grid->known_bin[a]);
-        weight[a] = known ? mf_potential_grid_ramp(grid, grid->known_point[a]) : 0;
+        weight[a] = grid->well_known[a] ? mf_potential_grid_ramp(grid, grid->known_point[a]) : 0;
         squares += weight[a] * weight[a];
     }
-    for (size_t a = 0; a < grid->known; a++)
+    for (size_t a = 0; a < grid->pairs_known; a++)
         weight[a] /= squares;
 }
 
@@ -120,7 +142,8 @@ static enum status add_way(struct inversion *inversion, const struct imc_system 
         ramp->pressure_way += inversion->pressure.slope[a] * step[a];
     }
     const double variance = spread(inversion, weight, scratch);
-    add_square(inversion, pow(ramp->way / variance, 2), scratch);
+    if (variance > 0) // without pairs there is no ramp
+        add_square(inversion, pow(ramp->way / variance, 2), scratch);
 done:
     mf_memory_free(asked);
     mf_memory_free(step);
@@ -145,13 +168,22 @@ static void find_errors(struct inversion *inversion, const double *weight, doubl
     const double ramp_variance = spread(inversion, weight, scratch);
     for (size_t a = 0; a < n; a++) {
         const double variance = band->covariance[a * n + a];
+        const double of_ramp = ramp_variance > 0 ? scratch[a] * scratch[a] / ramp_variance : 0;
         band->error[grid->known_point[a]] = variance >= 0 ? sqrt(variance) : NAN;
-        band->without_ramp[grid->known_point[a]] =
-            sqrt(fmax(0, variance - scratch[a] * scratch[a] / ramp_variance));
+        band->without_ramp[grid->known_point[a]] = sqrt(fmax(0, variance - of_ramp));
     }
     band->ramp.error = sqrt(ramp_variance);
     band->ramp.pressure = mf_inversion_pressure_ramp_slope(inversion);
     band->ramp.bins = (double)n;
+}
+
+/// Place of a flat direction at a point: those of pairs stand first, then those of groups.
+static double *flat_at(const struct potential_grid *grid, const struct inversion_band *band,
+                       size_t k, size_t point) {
+    const size_t pairs = grid->pair_points;
+    return point < pairs
+               ? &band->flat[k * pairs + point]
+               : &band->flat[INVERSE_FLAT * pairs + k * (grid->points - pairs) + (point - pairs)];
 }
 
 /// Widest principal components of the well-known bins, continued to the others.
@@ -166,8 +198,7 @@ static enum status find_flat(struct inversion *inversion) {
     CHECK(part && vectors && values && work ? STATUS_OK : STATUS_NO_MEMORY);
     for (size_t a = 0; a < n; a++)
         for (size_t b = 0; b < n; b++)
-            if (mf_potential_grid_well_known(inversion->problem, grid->known_bin[a]) &&
-                mf_potential_grid_well_known(inversion->problem, grid->known_bin[b]))
+            if (grid->well_known[a] && grid->well_known[b])
                 gsl_matrix_set(part, a, b, band->covariance[a * n + b]);
     gsl_eigen_symmv(part, values, vectors, work);
     gsl_eigen_symmv_sort(values, vectors, GSL_EIGEN_SORT_VAL_DESC);
@@ -175,10 +206,9 @@ static enum status find_flat(struct inversion *inversion) {
         for (size_t a = 0; a < n; a++) {
             double sum = 0;
             for (size_t b = 0; b < n; b++)
-                if (mf_potential_grid_well_known(inversion->problem, grid->known_bin[b]))
+                if (grid->well_known[b])
                     sum += band->covariance[a * n + b] * gsl_matrix_get(vectors, b, k);
-            band->flat[k * grid->points + grid->known_point[a]] =
-                sum / sqrt(gsl_vector_get(values, k));
+            *flat_at(grid, band, k, grid->known_point[a]) = sum / sqrt(gsl_vector_get(values, k));
         }
 done:
     gsl_matrix_free(part);
@@ -211,6 +241,7 @@ enum status mf_inversion_band_find(struct inversion *inversion) {
         variance[a] = birge_factor(inversion) * system.variance[a];
     system.variance = variance;
     CHECK(mf_inversion_band_covariance(&system, band->covariance, &band->ramp.directions));
+    take_constants_off(inversion);
     weigh_ramp(inversion, weight);
     CHECK(add_way(inversion, &system, weight, scratch));
     add_pressure(inversion, scratch);

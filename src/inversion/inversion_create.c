@@ -3,8 +3,6 @@
 // What an inversion is made of: its parameters, its system, its memory.
 #include "inversion/inversion.h"
 
-#include "observe/finite_size.h"
-
 #include <math.h>
 #include <string.h>
 
@@ -16,7 +14,8 @@ const struct field mf_inversion_fields[] = {
      .unit = "", .help = "of the Monte Carlo system, at the scene's density; 0 means the scene's"},
     {"sampler", FIELD_CHOICE, MEMBER(sampler), .choices = mf_sampler_kinds,
      .initial = SAMPLER_MONTE_CARLO, .unit = "",
-     .help = "single moves, or short trajectories of all particles"},
+     .help =
+         "single moves, or short trajectories of all particles, by which molecules always move"},
     {"replicas", FIELD_INTEGER, MEMBER(replicas), .initial = 8, .minimum = 2,
      .maximum = REPLICAS_MOST, .unit = "", .help = "independent samplers"},
     {"equilibration", FIELD_INTEGER, MEMBER(equilibration), .initial = 200, .minimum = 0,
@@ -54,13 +53,18 @@ void mf_inversion_destroy(void *memory) {
     struct inversion *inversion = memory;
     mf_replicas_clear(&inversion->replicas);
     mf_table_clear(&inversion->table);
+    mf_potential_grid_molecules_clear(&inversion->grid, &inversion->molecules);
     mf_potential_grid_clear(&inversion->grid);
     mf_inversion_band_clear(&inversion->band);
     mf_inversion_trail_clear(&inversion->trail);
-    double *arrays[] = {inversion->ideal,      inversion->target_counts, inversion->excess,
-                        inversion->variance,   inversion->covariance,    inversion->pressure.slope,
-                        inversion->phi,        inversion->step,          inversion->other_step,
-                        inversion->best,       inversion->best_step,     inversion->best_other,
+    mf_memory_free(inversion->shape);
+    mf_memory_free(inversion->groups);
+    mf_memory_free(inversion->doubt);
+    double *arrays[] = {inversion->ideal,        inversion->unit,       inversion->target_counts,
+                        inversion->target_error, inversion->least,      inversion->excess,
+                        inversion->variance,     inversion->covariance, inversion->pressure.slope,
+                        inversion->phi,          inversion->step,       inversion->other_step,
+                        inversion->best,         inversion->best_step,  inversion->best_other,
                         inversion->best_counts};
     for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
         mf_memory_free(arrays[k]);
@@ -70,11 +74,18 @@ static enum status allocate(struct inversion *inversion) {
     enum status status = STATUS_OK;
     const size_t bins = inversion->bins, points = inversion->grid.points;
     const size_t known = inversion->grid.known;
+    NEW_ARRAY(inversion->shape, inversion->grid.blocks);
+    NEW_ARRAY(inversion->groups, inversion->grid.groups);
     NEW_ARRAY(inversion->ideal, bins);
+    NEW_ARRAY(inversion->unit, bins);
     NEW_ARRAY(inversion->target_counts, bins);
+    NEW_ARRAY(inversion->target_error, bins);
+    NEW_ARRAY(inversion->least, bins);
     NEW_ARRAY(inversion->excess, known);
     NEW_ARRAY(inversion->variance, known);
     NEW_ARRAY(inversion->covariance, known * known);
+    if (inversion->grid.groups > 0)
+        NEW_ARRAY(inversion->doubt, known);
     NEW_ARRAY(inversion->pressure.slope, known);
     NEW_ARRAY(inversion->phi, points);
     NEW_ARRAY(inversion->step, points);
@@ -98,6 +109,12 @@ static const double most_distortion = 0.2;
 static enum status choose_size(struct inversion *inversion) {
     const struct simulation_setup *scene = &inversion->problem->scene;
     const int64_t wanted = inversion->settings.common.particles;
+    const int64_t count = mf_composition_particles(&scene->composition);
+    if (wanted > 0 && wanted != count && mf_molecules_find(scene->interaction, scene->interactions))
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "method.particles: molecules are sampled in the scene's box, with "
+                              "all of its %lld beads; leave it out",
+                              (long long)count);
     inversion->composition =
         wanted > 0 ? mf_composition_scaled(&scene->composition, wanted) : scene->composition;
     inversion->box =
@@ -115,36 +132,14 @@ static enum status choose_size(struct inversion *inversion) {
         (long long)mf_composition_least_particles(&scene->composition, wanted, most_distortion));
 }
 
-/// S if g were 1, and of the target.
-static void count_target(struct inversion *inversion) {
-    const struct inverse_problem *problem = inversion->problem;
-    const struct simulation_setup *scene = &problem->scene;
-    const struct rdf_bins *bins = &problem->targets.bins;
-    const struct target *target = &problem->targets.target[TARGET_RDF];
-    const double from = (double)mf_composition_particles(&scene->composition);
-    const double to = (double)mf_composition_particles(&inversion->composition);
-    for (size_t first = 0; first < inversion->bins; first += bins->count) {
-        const int pair = (int)(first / bins->count);
-        const double factor =
-            mf_finite_size_factor_of(bins, target->value + first, target->error + first,
-                                     &scene->box, &scene->composition, pair, from, to);
-        for (size_t k = 0; k < bins->count; k++) {
-            inversion->ideal[first + k] =
-                mf_rdf_ideal_pairs_of(bins, k, &inversion->box, &inversion->composition, pair);
-            inversion->target_counts[first + k] =
-                inversion->ideal[first + k] * target->value[first + k] * factor;
-        }
-    }
-}
-
 /// No potential of pairs empties a shell in the midst of a liquid: an empty bin beyond one that is
 /// well known is a fault of the target, and what would be made of it a barrier without an end.
 static enum status refuse_holes(const struct inversion *inversion) {
     const struct inverse_problem *problem = inversion->problem;
     const struct potential_grid *grid = &inversion->grid;
-    for (size_t n = 0; n < grid->known; n++) {
+    for (size_t n = 0; n < grid->pairs_known; n++) {
         const size_t bin = grid->known_bin[n], next = grid->known_bin[n] + 1;
-        if (next % grid->bins == 0 || !mf_potential_grid_well_known(problem, bin) ||
+        if (next % grid->bins == 0 || !grid->well_known[n] ||
             problem->targets.target[TARGET_RDF].value[next] > problem->core_threshold)
             continue;
         const double r = mf_rdf_bins_centre(&problem->targets.bins, next % grid->bins);
@@ -163,12 +158,12 @@ static enum status refuse_holes(const struct inversion *inversion) {
 /// All but the samplers, with phi where it begins.
 static enum status prepare(struct inversion *inversion, const struct inverse_problem *problem) {
     inversion->problem = problem;
-    inversion->bins = problem->targets.target[TARGET_RDF].count;
     TRY(choose_size(inversion));
     TRY(mf_potential_grid_init(&inversion->grid, problem));
+    inversion->bins = inversion->grid.all_bins;
     TRY(refuse_holes(inversion));
     TRY(allocate(inversion));
-    count_target(inversion);
+    mf_inversion_count_targets(inversion);
     return mf_inversion_start(inversion);
 }
 
@@ -180,7 +175,7 @@ static enum status find_pressure(struct inversion *inversion, double *pressure) 
                     inversion->problem->scene.temperature;
     double volume = 1, slope;
     TRY(mf_potential_grid_table(grid, inversion->phi, &inversion->table));
-    for (size_t n = 0; n < grid->known; n++) {
+    for (size_t n = 0; n < grid->pairs_known; n++) {
         const double r = grid->r[grid->known_point[n]];
         const int pair = (int)(grid->known_point[n] / (grid->bins + 1));
         mf_table_evaluate_pair(&inversion->table, pair, r, NULL, &slope, NULL);
@@ -205,6 +200,19 @@ enum status mf_inversion_start_curve(const struct inverse_problem *problem, doub
     return status;
 }
 
+enum status mf_inversion_tabulate(struct inversion *inversion) {
+    const struct simulation_setup *scene = &inversion->problem->scene;
+    const struct potential_grid *grid = &inversion->grid;
+    const struct molecules *molecules = mf_molecules_find(scene->interaction, scene->interactions);
+    mf_table_clear(&inversion->table);
+    mf_potential_grid_molecules_clear(grid, &inversion->molecules);
+    if (grid->pairs > 0)
+        TRY(mf_potential_grid_table(grid, inversion->phi, &inversion->table));
+    return molecules ? mf_potential_grid_molecules(grid, inversion->phi + grid->pair_points,
+                                                   molecules, &inversion->molecules)
+                     : STATUS_OK;
+}
+
 enum status mf_inversion_create(void *memory, const struct inverse_method *method,
                                 const struct inverse_problem *problem, const void *parameters) {
     struct inversion *inversion = memory;
@@ -213,17 +221,24 @@ enum status mf_inversion_create(void *memory, const struct inverse_method *metho
     inversion->method = method;
     const struct inversion_parameters *p = &inversion->settings.common;
     TRY(prepare(inversion, problem));
-    TRY(mf_potential_grid_table(&inversion->grid, inversion->phi, &inversion->table));
-    TRY(mf_replicas_init(&inversion->replicas, (size_t)p->replicas, (enum sampler_kind)p->sampler,
-                         &(struct sampler_system){.cancel = problem->scene.cancel,
-                                                  .box = &inversion->box,
-                                                  .composition = &inversion->composition,
-                                                  .potential = &inversion->table,
-                                                  .temperature = problem->scene.temperature,
-                                                  .low = bins->low,
-                                                  .width = bins->width,
-                                                  .bins = bins->count,
-                                                  .seed = problem->seed}));
+    const struct simulation_setup *scene = &problem->scene;
+    const bool joined = mf_molecules_find(scene->interaction, scene->interactions) != NULL;
+    const bool pairs = inversion->grid.pairs > 0;
+    TRY(mf_inversion_tabulate(inversion));
+    TRY(mf_replicas_init(
+        &inversion->replicas, (size_t)p->replicas, (enum sampler_kind)p->sampler,
+        &(struct sampler_system){.cancel = scene->cancel,
+                                 .box = &inversion->box,
+                                 .composition = &inversion->composition,
+                                 .potential = pairs ? &inversion->table : scene->potential,
+                                 .temperature = scene->temperature,
+                                 .low = bins->low,
+                                 .width = bins->width,
+                                 .bins = pairs ? bins->count : 0,
+                                 .molecules = joined ? &inversion->molecules : NULL,
+                                 .group = inversion->groups,
+                                 .groups = inversion->grid.groups,
+                                 .seed = problem->seed}));
     inversion->progress = (struct inversion_progress){
         .anew = true, .damping = p->damping, .best[TARGET_RDF].rms = INFINITY};
     return STATUS_OK;

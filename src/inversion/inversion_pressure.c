@@ -21,19 +21,41 @@ void mf_inversion_pressure_measure(struct inversion *inversion) {
     inversion->pressure.error = virial.error / unit;
 }
 
+/// Σ_a S_a ∂(−r_a U'(r_a))/∂U_b of bond lengths, U' being a central difference: what the value of
+/// a bin does to the virial of the bins beside it.
+static double bond_virial(const struct inversion *inversion, size_t b) {
+    const struct potential_grid *grid = &inversion->grid;
+    const double *counts = inversion->replicas.counts.mean;
+    const size_t point = grid->known_point[b], bin = grid->known_bin[b];
+    for (size_t g = 0; g < grid->groups; g++) {
+        const struct potential_group *group = &grid->group[g];
+        const struct bonded_bins *bins = &group->own.unknown->bins;
+        if (group->own.unknown->order != TOPOLOGY_BOND || point < group->point ||
+            point >= group->point + group->own.points)
+            continue;
+        const size_t k = bin - group->bin;
+        const double below = k > 0 ? counts[bin - 1] * bonded_bins_centre(bins, k - 1) : 0;
+        const double above =
+            k + 1 < bins->count ? counts[bin + 1] * bonded_bins_centre(bins, k + 1) : 0;
+        return (above - below) / (2 * bins->width);
+    }
+    return 0;
+}
+
 enum status mf_inversion_pressure_slopes(struct inversion *inversion) {
     enum status status = STATUS_OK;
     const struct potential_grid *grid = &inversion->grid;
     const struct comoments *counts = &inversion->replicas.counts;
     double *virial = NULL;
-    NEW_ARRAY(virial, inversion->bins * grid->known);
+    NEW_ARRAY(virial, grid->pair_bins * grid->known);
     CHECK(mf_potential_grid_virials(grid, &inversion->problem->targets.bins,
                                     inversion->box.dimensions, inversion->phi, virial));
     for (size_t b = 0; b < grid->known; b++) {
         double slope =
             -mf_comoments_covariance(counts, inversion->bins + SAMPLER_VIRIAL, grid->known_bin[b]) /
             inversion->problem->scene.temperature;
-        for (size_t a = 0; a < inversion->bins; a++)
+        slope += bond_virial(inversion, b);
+        for (size_t a = 0; a < grid->pair_bins; a++)
             slope += counts->mean[a] * virial[a * grid->known + b];
         inversion->pressure.slope[b] = slope / virial_unit(inversion);
     }
@@ -53,7 +75,7 @@ double mf_inversion_pressure_ramp_slope(const struct inversion *inversion) {
 void mf_inversion_pressure_add_ramp(const struct inversion *inversion, double *step) {
     const struct potential_grid *grid = &inversion->grid;
     const struct targets *targets = &inversion->problem->targets;
-    if (!targets_ask(targets, TARGET_PRESSURE))
+    if (!targets_ask(targets, TARGET_PRESSURE) || grid->pairs == 0)
         return;
     double missing = *targets->target[TARGET_PRESSURE].value - inversion->pressure.value;
     for (size_t b = 0; b < grid->known; b++)

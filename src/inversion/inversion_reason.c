@@ -8,14 +8,31 @@
 /// on, of liquids up to density 0.95; 3 to 9 with potentials that froze them.
 static const double frozen = 4;
 
+/// The kind of a distribution of groups that is off, or −1.
+static int find_missed(const struct inversion *inversion) {
+    for (int k = 0; k < inversion->sections; k++) {
+        const int kind = inversion->section[k].kind;
+        const struct target_distance *distance = &inversion->progress.best[kind];
+        if (kind != TARGET_RDF && distance->rms > mf_inverse_noise_margin * distance->noise)
+            return kind;
+    }
+    return -1;
+}
+
 /// Why a fit whose g agrees has not converged.
 static void tell_what_is_missing(const struct inversion *inversion,
                                  char reason[INVERSE_REASON_SIZE]) {
     const struct inversion_progress *p = &inversion->progress;
     const struct inversion_parameters *settings = &inversion->settings.common;
     const struct target_distance *pressure = &p->best[TARGET_PRESSURE];
-    if (targets_ask(&inversion->problem->targets, TARGET_PRESSURE) &&
-        pressure->rms > mf_inverse_noise_margin * pressure->noise)
+    const int missed = find_missed(inversion);
+    if (missed >= 0)
+        snprintf(reason, INVERSE_REASON_SIZE,
+                 "the error of %s is %.2g, its statistical error %.2g: more \"iterations\" or "
+                 "\"samples\" may help",
+                 mf_targets_name(missed), p->best[missed].rms, p->best[missed].noise);
+    else if (targets_ask(&inversion->problem->targets, TARGET_PRESSURE) &&
+             pressure->rms > mf_inverse_noise_margin * pressure->noise)
         snprintf(reason, INVERSE_REASON_SIZE,
                  "g agrees, but the pressure is %.3g off, with an error of %.2g", pressure->rms,
                  pressure->noise);

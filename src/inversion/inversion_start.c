@@ -23,18 +23,21 @@ static bool has_own(const struct inversion *inversion) {
 }
 
 static bool is_from_hnc(const struct inversion *inversion) {
+    const struct simulation_setup *scene = &inversion->problem->scene;
     return !has_own(inversion) && inversion->box.dimensions == 3 &&
+           mf_molecules_find(scene->interaction, scene->interactions) == NULL &&
            inversion->settings.common.start == INVERSION_FROM_HNC;
 }
 
-/// Variance of −k_B T ln g* in the known bins; false if the target does not say it of all.
+/// Variance of −k_B T ln g*, or ln p*, in the known bins; false if the target does not say it of
+/// all.
 static bool find_variance(const struct inversion *inversion, double *variance) {
     const struct potential_grid *grid = &inversion->grid;
-    const struct target *target = &inversion->problem->targets.target[TARGET_RDF];
     for (size_t a = 0; a < grid->known; a++) {
         const size_t bin = grid->known_bin[a];
-        const double g = fmax(target->value[bin], inversion->problem->core_threshold);
-        variance[a] = pow(inversion->problem->scene.temperature * target->error[bin] / g, 2);
+        const double g = fmax(mf_inversion_target_g(inversion, bin), inversion->least[bin]);
+        const double error = inversion->target_error[bin] / inversion->ideal[bin];
+        variance[a] = pow(inversion->problem->scene.temperature * error / g, 2);
         if (!(variance[a] > 0))
             return false;
     }

@@ -11,7 +11,7 @@
 enum status mf_replicas_init(struct replicas *replicas, size_t count, enum sampler_kind kind,
                              const struct sampler_system *system) {
     enum status status = STATUS_OK;
-    const size_t bins = (size_t)mf_composition_pairs(system->composition) * system->bins;
+    const size_t bins = mf_sampler_bins(system);
     struct sampler_system own = *system;
     *replicas = (struct replicas){.bins = bins, .count = count};
     CHECK(mf_comoments_init(&replicas->counts, bins + SAMPLER_SUMS));

@@ -5,18 +5,29 @@
 
 const char *const mf_sampler_kinds[] = {"monte-carlo", "dynamics", NULL};
 
+size_t mf_sampler_bins(const struct sampler_system *system) {
+    size_t bins = (size_t)mf_composition_pairs(system->composition) * system->bins;
+    for (size_t k = 0; k < system->groups; k++)
+        bins += system->group[k].bins.count;
+    return bins;
+}
+
 enum status mf_sampler_init(struct sampler *sampler, enum sampler_kind kind,
                             const struct sampler_system *system) {
     enum status status = STATUS_OK;
     *sampler =
-        (struct sampler){.kind = kind,
+        (struct sampler){.kind = system->molecules ? SAMPLER_DYNAMICS : kind,
+                         .molecules = system->molecules,
+                         .group = system->group,
+                         .groups = system->groups,
                          .histogram = {.low = system->low,
                                        .width = system->width,
                                        .bins = system->bins,
                                        .pairs = (size_t)mf_composition_pairs(system->composition)}};
-    if (kind == SAMPLER_DYNAMICS) {
+    if (sampler->kind == SAMPLER_DYNAMICS) {
         TRY(mf_hybrid_init(&sampler->hybrid, system->box, system->composition, system->potential,
-                           &sampler->histogram, system->temperature, system->seed));
+                           system->molecules, &sampler->histogram, system->temperature,
+                           system->seed));
         sampler->hybrid.simulation.setup.cancel = system->cancel;
         return STATUS_OK;
     }
@@ -54,6 +65,18 @@ enum status mf_sampler_equilibrate(struct sampler *sampler, uint64_t sweeps) {
     return mf_metropolis_equilibrate(&sampler->chain, (uint32_t)sweeps);
 }
 
+/// S of the groups in the present configuration, from `sample` on; returns their end.
+static double *count_groups(const struct sampler *sampler, double *sample) {
+    for (size_t k = 0; k < sampler->groups; k++) {
+        const struct sampler_group *group = &sampler->group[k];
+        memset(sample, 0, group->bins.count * sizeof *sample);
+        mf_bonded_distribution_count(sampler->molecules, group->order, group->group, &group->bins,
+                                     &sampler->hybrid.simulation.particles, sample);
+        sample += group->bins.count;
+    }
+    return sample;
+}
+
 enum status mf_sampler_sample(struct sampler *sampler, uint64_t sweeps, double *sample) {
     const size_t bins = pair_histogram_size(&sampler->histogram) - 1;
     const uint32_t *counts = sampler->histogram.counts;
@@ -69,8 +92,9 @@ enum status mf_sampler_sample(struct sampler *sampler, uint64_t sweeps, double *
     }
     for (size_t a = 0; a < bins; a++)
         sample[a] = counts[a];
-    sample[bins + SAMPLER_VIRIAL] = sums.virial;
-    sample[bins + SAMPLER_ENERGY] = sums.energy;
+    double *behind = count_groups(sampler, sample + bins);
+    behind[SAMPLER_VIRIAL] = sums.virial;
+    behind[SAMPLER_ENERGY] = sums.energy;
     return STATUS_OK;
 }
 

@@ -2,36 +2,54 @@
 /// @file One source of configurations of the canonical ensemble, by single moves or by dynamics.
 ///
 /// A sweep is a move of every particle (metropolis), or a trajectory of a few time steps (hybrid).
-/// Which of them makes more of a second: docs/results/samplers.md.
+/// Which of them makes more of a second: docs/results/samplers.md. Molecules move by dynamics.
 #pragma once
 
 #include "base/memory.h"
 #include "dynamics/hybrid.h"
 #include "dynamics/metropolis.h"
+#include "observe/bonded_distribution.h"
 
 enum sampler_kind { SAMPLER_MONTE_CARLO, SAMPLER_DYNAMICS };
 
 /// Names in the order of enum sampler_kind, NULL-terminated.
 extern const char *const mf_sampler_kinds[];
 
+/// A group of bonds, angles or dihedrals that is counted, and its bins.
+struct sampler_group {
+    enum topology_order order;
+    int group;
+    struct bonded_bins bins;
+};
+
 struct sampler {
     enum sampler_kind kind;
+    const struct molecules *molecules; ///< NULL: single particles
+    const struct sampler_group *group; ///< shape [groups]
+    size_t groups;
     struct metropolis chain;         ///< of SAMPLER_MONTE_CARLO
     struct hybrid hybrid;            ///< of SAMPLER_DYNAMICS
     struct pair_histogram histogram; ///< of the chain's configuration
 };
 
-/// What is to be sampled. Borrowed: the potential, which may be exchanged before mf_sampler_begin.
+/// What is to be sampled. Borrowed: the potential, which may be exchanged before mf_sampler_begin,
+/// molecules and groups.
 struct sampler_system {
     const struct box *box;
     const struct composition *composition;
     const struct table *potential;
     double temperature;
     double low, width; ///< of the bins that count pairs, within the potential's cutoff [λ]
-    size_t bins;       ///< of each pair type
+    size_t bins;       ///< of each pair type; 0: pairs are not counted
+    const struct molecules *molecules; ///< or NULL; its laws may be exchanged as the potential may
+    const struct sampler_group *group; ///< to be counted behind the pairs, shape [groups]
+    size_t groups;
     uint64_t seed;
     const atomic_bool *cancel; ///< stops the sweeps once it is set, or NULL
 };
+
+/// Bins that are counted: of all pair types, and of the groups.
+size_t mf_sampler_bins(const struct sampler_system *system);
 
 /// Particles on a lattice. Must be cleared. Fails: as mf_metropolis_init and mf_hybrid_init.
 enum status mf_sampler_init(struct sampler *sampler, enum sampler_kind kind,
@@ -50,15 +68,16 @@ enum status mf_sampler_begin(struct sampler *sampler) MUST_USE;
 /// INTERRUPTED.
 enum status mf_sampler_equilibrate(struct sampler *sampler, uint64_t sweeps) MUST_USE;
 
-/// What stands behind the pairs in the bins of a sample.
+/// What stands behind the bins of a sample.
 enum sampler_sum {
     SAMPLER_VIRIAL, ///< Σ r·F [k_B T_0]
-    SAMPLER_ENERGY, ///< Σ Φ [k_B T_0]
+    SAMPLER_ENERGY, ///< Σ Φ, and U of molecules [k_B T_0]
     SAMPLER_SUMS,
 };
 
-/// Sweeps, then a sample: S of each bin of each pair type, and behind them the sums.
-/// @param[out] sample  shape [pairs · bins + SAMPLER_SUMS]
+/// Sweeps, then a sample: S of each bin of each pair type and of each group, and behind them the
+/// sums.
+/// @param[out] sample  shape [mf_sampler_bins + SAMPLER_SUMS]
 /// Fails: NO_MEMORY, INTERRUPTED. Tested: test_monte_carlo_mixture.
 enum status mf_sampler_sample(struct sampler *sampler, uint64_t sweeps, double *sample) MUST_USE;
 

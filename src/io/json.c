@@ -191,6 +191,10 @@ bool mf_json_is_object(const struct json_object *object, const char *key) {
     return cJSON_IsObject(cJSON_GetObjectItemCaseSensitive(object->item, key));
 }
 
+bool mf_json_is_member(const struct json_object *object, const char *key) {
+    return cJSON_GetObjectItemCaseSensitive(object->item, key) != NULL;
+}
+
 int mf_json_count(const struct json_object *object, const char *key) {
     const cJSON *item = cJSON_GetObjectItemCaseSensitive(object->item, key);
     return cJSON_IsArray(item) ? cJSON_GetArraySize(item) : 0;

@@ -65,6 +65,9 @@ bool mf_json_has(struct json_object *object, const char *key);
 /// Whether an object stands at `key`. Counts as nothing. Tested: test_json.
 bool mf_json_is_object(const struct json_object *object, const char *key);
 
+/// Whether anything stands at `key`. Counts as nothing.
+bool mf_json_is_member(const struct json_object *object, const char *key);
+
 /// How many items the array at `key` has; 0 if there is none. Counts as nothing. Tested: test_json.
 int mf_json_count(const struct json_object *object, const char *key);
 

@@ -24,7 +24,8 @@ static void tell(void *context, const struct inverse_progress *p) {
 static enum status begin(struct mesofit_fit *fit) {
     enum status status = STATUS_OK;
     const struct inverse_method *method = fit->file.method;
-    TRY(mf_target_files_normalise(&fit->file.files, &fit->file.scene.setup.box));
+    TRY(mf_target_files_normalise(&fit->file.files, &fit->file.scene.setup.box,
+                                  scene_has_molecules(&fit->file.scene.molecules)));
     fit->file.problem.scene.cancel = &fit->cancel;
     TRY(mf_unknowns_init(&fit->unknowns, &fit->file.problem));
     if (method->kind == INVERSE_MATCHING)

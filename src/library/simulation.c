@@ -30,7 +30,7 @@ static enum status read_scene(struct scene *scene, const char *file) {
     TRY(mf_json_open(&document, file));
     struct json_object root = mf_json_root(document);
     mf_json_fields(&root, mf_heading_fields, &heading);
-    const enum status status = mf_scene_read(scene, &root, SCENE_FITS_NOTHING);
+    const enum status status = mf_scene_read(scene, &root, SCENE_FITS_NOTHING, NULL);
     // What `mesofit simulate` measures is the caller's business here.
     mf_json_has(&root, "measure");
     for (size_t k = 0; mf_observables[k]; k++)

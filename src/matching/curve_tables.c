@@ -15,7 +15,7 @@ static enum status write_curve(const struct parametrisation *parametrisation,
     enum status status = STATUS_OK;
     const struct unknowns *unknowns = &parametrisation->unknowns;
     const size_t points = mf_unknowns_points(unknowns, kind);
-    const size_t each = mf_unknowns_points_each(unknowns, kind), first = curve * each;
+    const size_t each = mf_unknowns_part(unknowns, kind, curve).points, first = curve * each;
     struct data_column *column = NULL;
     double *values = NULL;
     char(*names)[CURVE_TABLES_NAME_SIZE + 24] = NULL;

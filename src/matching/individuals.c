@@ -147,7 +147,7 @@ static enum status write_genes(const struct parametrisation *parametrisation,
     enum status status = STATUS_OK;
     const struct unknowns *unknowns = &parametrisation->unknowns;
     const double *base = unknowns->problem->unknown[kind].base;
-    const size_t points = mf_unknowns_points_each(unknowns, kind), begin = curve * points;
+    const size_t points = mf_unknowns_part(unknowns, kind, curve).points, begin = curve * points;
     const size_t first = mf_parametrisation_first_point(parametrisation, kind, curve);
     char name[UNKNOWNS_NAME_SIZE], file[UNKNOWNS_NAME_SIZE + 16], heading[64];
     char path[OUTPUT_PATH_SIZE];

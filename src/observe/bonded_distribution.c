@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file How bond lengths, angles and dihedrals of each group are distributed: p(q), ∫ p dq = 1,
-/// and p over its Jacobian, which is exp(−U/k_B T) up to a factor where a term stands alone:
-///   r^(d−1) of lengths, (sin θ)^(d−2) of angles, 1 of dihedrals
-/// (V. Rühle et al., J. Chem. Theory Comput. 5, 3211 (2009), eqs. 5 to 8). Jacobians are integrated
-/// over the bins. Errors by the scatter of blocks of time. Tested: test_molecules.
+//
+// Errors by the scatter of blocks of time. Tested: test_molecules, test_bonded_distribution.
+#include "observe/bonded_distribution.h"
+
 #include "base/memory.h"
 #include "base/statistics.h"
 #include "forces/bonded.h"
-#include "forces/molecules.h"
 #include "io/data_table.h"
 #include "observe/measure.h"
 #include "observe/sample_blocks.h"
@@ -16,27 +14,69 @@
 
 enum { COLUMNS = 3 };
 
-struct settings {
-    int64_t bins;
-};
-
 struct state {
     const struct molecules *molecules;
-    int order, dimensions;
-    size_t bins;
+    enum topology_order order;
+    int dimensions;
     struct sample_blocks blocks;
-    double low, width;                   ///< of the bins [λ] or [rad]
-    size_t terms[MOLECULES_MOST_GROUPS]; ///< of each group
-    double *counts;                      ///< shape [blocks, groups, bins]
+    struct bonded_bins bins[MOLECULES_MOST_GROUPS]; ///< of each group
+    size_t first[MOLECULES_MOST_GROUPS + 1];        ///< bin of each group among those of all
+    double *counts;                                 ///< shape [blocks, bins of all groups]
 };
 
 static const struct field fields[] = {
-    {"bins", FIELD_INTEGER, .offset = offsetof(struct settings, bins), .initial = 100, .minimum = 1,
-     .maximum = 100000, .unit = "",
+    {"bins", FIELD_INTEGER, .offset = offsetof(struct bonded_settings, bins), .initial = 100,
+     .minimum = 1, .maximum = 100000, .unit = "",
      .help = "of lengths up to twice those at rest, or to where a bond tears; of angles from 0 to "
              "180 degrees, of dihedrals from -180 to 180"},
     FIELD_END,
 };
+
+const struct observable *mf_bonded_distribution_of(enum topology_order order) {
+    static const struct observable *const of[TOPOLOGY_ORDERS] = {
+        &mf_bonded_lengths, &mf_bonded_angles, &mf_bonded_dihedrals};
+    return of[order];
+}
+
+enum topology_order mf_bonded_distribution_order(int kind) {
+    const struct observable *observable = mf_observable_kind(kind).observable;
+    for (enum topology_order order = 0; order < TOPOLOGY_ORDERS; order++)
+        if (observable && observable == mf_bonded_distribution_of(order))
+            return order;
+    return TOPOLOGY_ORDERS;
+}
+
+int mf_bonded_distribution_kind(enum topology_order order) {
+    int kind = 0;
+    while (mf_bonded_distribution_order(kind) != order)
+        kind++;
+    return kind;
+}
+
+size_t mf_bonded_distribution_terms(const struct molecules *molecules, enum topology_order order,
+                                    int group) {
+    size_t terms = 0;
+    for (int k = 0; k < molecules->topology.kinds; k++) {
+        const struct topology_kind *kind = &molecules->topology.kind[k];
+        for (int t = 0; t < kind->terms[order]; t++)
+            terms += kind->term[order][t].group == group ? (size_t)kind->count : 0;
+    }
+    return terms;
+}
+
+double mf_bonded_distribution_jacobian(enum topology_order order, int dimensions,
+                                       const struct bonded_bins *bins, size_t bin) {
+    const double low = bins->low + (double)bin * bins->width, high = low + bins->width;
+    if (order == TOPOLOGY_DIHEDRAL)
+        return bins->width * BONDED_RADIANS;
+    const double from = fmax(0, low);
+    if (order == TOPOLOGY_BOND)
+        return dimensions == 3 ? (pow(high, 3) - pow(from, 3)) / 3
+                               : (high * high - from * from) / 2;
+    const double to = fmin(180, high);
+    return dimensions == 3 ? cos(from * BONDED_RADIANS) - cos(to * BONDED_RADIANS)
+                           : (to - from) * BONDED_RADIANS;
+}
 
 // Sampling ----------------------------------------------------------------------------------------
 
@@ -50,29 +90,33 @@ static double longest_of(const struct molecules *molecules) {
     return longest;
 }
 
-static enum status begin(struct state *s, int order, const char *name,
-                         const struct settings *settings, const struct simulation *simulation,
-                         const struct measure_plan *plan) {
+static struct bonded_bins choose_bins(const struct molecules *molecules, enum topology_order order,
+                                      int64_t count) {
+    const double low = order == TOPOLOGY_DIHEDRAL ? -180 : 0;
+    const double high = order == TOPOLOGY_BOND ? longest_of(molecules) : 180;
+    return (struct bonded_bins){low, (high - low) / (double)count, (size_t)count};
+}
+
+static enum status begin(struct state *s, enum topology_order order,
+                         const struct bonded_settings *settings,
+                         const struct simulation *simulation, const struct measure_plan *plan) {
     enum status status = STATUS_OK;
     const struct simulation_setup *setup = &simulation->setup;
     const struct molecules *molecules = mf_molecules_find(setup->interaction, setup->interactions);
     if (molecules == NULL || molecules->groups[order] == 0)
-        return mf_status_fail(STATUS_BAD_INPUT, "%s: the scene has no %ss", name,
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: the scene has no %ss",
+                              mf_bonded_distribution_of(order)->name,
                               mf_topology_order_names[order]);
     *s = (struct state){.molecules = molecules,
                         .order = order,
-                        .dimensions = setup->box.dimensions,
-                        .bins = (size_t)settings->bins};
-    const double high = order == TOPOLOGY_BOND ? longest_of(molecules) : M_PI;
-    s->low = order == TOPOLOGY_DIHEDRAL ? -M_PI : 0;
-    s->width = (high - s->low) / (double)s->bins;
+                        .dimensions = setup->box.dimensions};
     CHECK(mf_sample_blocks_init(&s->blocks, (size_t)plan->samples));
-    for (int k = 0; k < molecules->topology.kinds; k++) {
-        const struct topology_kind *kind = &molecules->topology.kind[k];
-        for (int t = 0; t < kind->terms[order]; t++)
-            s->terms[kind->term[order][t].group] += (size_t)kind->count;
+    for (int g = 0; g < molecules->groups[order]; g++) {
+        s->bins[g] = settings->bins > 0 ? choose_bins(molecules, order, settings->bins)
+                                        : settings->target[g];
+        s->first[g + 1] = s->first[g] + s->bins[g].count;
     }
-    NEW_ARRAY(s->counts, s->blocks.count * (size_t)molecules->groups[order] * s->bins);
+    NEW_ARRAY(s->counts, s->blocks.count * s->first[molecules->groups[order]]);
 done:
     return status;
 }
@@ -84,11 +128,23 @@ static void clear(void *state) {
     *s = (struct state){0};
 }
 
-/// Count one term in all molecules of a kind; the longest bonds are beyond all bins.
-static void count_term(const struct state *s, const struct particles *particles,
-                       const struct topology_kind *kind, const struct topology_term *term,
-                       double *counts) {
-    const int beads = topology_beads(s->order);
+/// The bin of q, or −1. The end of the circle may be rounded up.
+static int64_t find_bin(const struct bonded_bins *bins, enum topology_order order, double q) {
+    double place = (q - bins->low) / bins->width;
+    if (order == TOPOLOGY_DIHEDRAL)
+        place -= 360 / bins->width * floor(place * bins->width / 360);
+    const double count = (double)bins->count;
+    if (order != TOPOLOGY_BOND && place >= count && place < count * (1 + 1e-9))
+        return (int64_t)bins->count - 1;
+    return place >= 0 && place < count ? (int64_t)place : -1;
+}
+
+/// Count one term in all molecules of a kind.
+static void count_term(enum topology_order order, const struct bonded_bins *bins,
+                       const struct particles *particles, const struct topology_kind *kind,
+                       const struct topology_term *term, double *counts) {
+    const int beads = topology_beads(order);
+    const double unit = order == TOPOLOGY_BOND ? 1 : 1 / BONDED_RADIANS;
     for (int64_t m = 0; m < kind->count; m += BONDED_BATCH) {
         int32_t place[TOPOLOGY_MOST_BEADS * BONDED_BATCH];
         double q[BONDED_BATCH];
@@ -98,78 +154,94 @@ static void count_term(const struct state *s, const struct particles *particles,
             for (int k = 0; k < beads; k++)
                 place[n * (size_t)beads + (size_t)k] =
                     (int32_t)particles->place[topology_id(kind, m + (int64_t)n, term->bead[k])];
-        mf_bonded_measure(s->order, some, place, particles, q);
+        mf_bonded_measure(order, some, place, particles, q);
         for (size_t n = 0; n < some; n++) {
-            const double bin = (q[n] - s->low) / s->width;
-            if (bin >= 0 && bin < (double)s->bins)
-                counts[(size_t)bin] += 1;
-            else if (s->order != TOPOLOGY_BOND) // the end of the circle, rounded
-                counts[s->bins - 1] += 1;
+            const int64_t bin = find_bin(bins, order, unit * q[n]);
+            if (bin >= 0)
+                counts[bin] += 1;
         }
     }
 }
 
+void mf_bonded_distribution_count(const struct molecules *molecules, enum topology_order order,
+                                  int group, const struct bonded_bins *bins,
+                                  const struct particles *particles, double *counts) {
+    const struct topology *topology = &molecules->topology;
+    for (int k = 0; k < topology->kinds; k++)
+        for (int t = 0; t < topology->kind[k].terms[order]; t++)
+            if (topology->kind[k].term[order][t].group == group)
+                count_term(order, bins, particles, &topology->kind[k],
+                           &topology->kind[k].term[order][t], counts);
+}
+
 static enum status sample(void *state, struct simulation *simulation) {
     struct state *s = state;
-    const struct topology *topology = &s->molecules->topology;
-    const size_t row = (size_t)s->molecules->groups[s->order] * s->bins;
+    const int groups = s->molecules->groups[s->order];
     if (mf_sample_blocks_are_full(&s->blocks)) {
-        mf_sample_blocks_join(&s->blocks, s->counts, row);
+        mf_sample_blocks_join(&s->blocks, s->counts, s->first[groups]);
         mf_sample_blocks_double(&s->blocks);
     }
-    double *counts = s->counts + mf_sample_blocks_take(&s->blocks) * row;
-    for (int k = 0; k < topology->kinds; k++)
-        for (int t = 0; t < topology->kind[k].terms[s->order]; t++) {
-            const struct topology_term *term = &topology->kind[k].term[s->order][t];
-            count_term(s, &simulation->particles, &topology->kind[k], term,
-                       counts + (size_t)term->group * s->bins);
-        }
+    double *counts = s->counts + mf_sample_blocks_take(&s->blocks) * s->first[groups];
+    for (int g = 0; g < groups; g++)
+        if (s->bins[g].count > 0)
+            mf_bonded_distribution_count(s->molecules, s->order, g, &s->bins[g],
+                                         &simulation->particles, counts + s->first[g]);
     return STATUS_OK;
 }
 
 static size_t spans(void *state, struct memory_span *spans) {
     struct state *s = state;
-    const size_t numbers = s->blocks.count * (size_t)s->molecules->groups[s->order] * s->bins;
+    const size_t numbers = s->blocks.count * s->first[s->molecules->groups[s->order]];
     spans[0] = (struct memory_span){s->counts, numbers * sizeof *s->counts};
     return 1 + mf_sample_blocks_spans(&s->blocks, spans + 1);
 }
 
 // Results -----------------------------------------------------------------------------------------
 
-/// ∫ of the Jacobian over a bin.
-static double jacobian(const struct state *s, size_t bin) {
-    const double from = s->low + (double)bin * s->width, to = from + s->width;
-    if (s->order == TOPOLOGY_BOND)
-        return s->dimensions == 3 ? (pow(to, 3) - pow(from, 3)) / 3 : (to * to - from * from) / 2;
-    return s->order == TOPOLOGY_ANGLE && s->dimensions == 3 ? cos(from) - cos(to) : s->width;
+/// Add the p of a group's bin in each block of time to a mean.
+static void add_blocks(const struct state *s, int group, size_t bin, struct running_mean *mean) {
+    const double terms = (double)mf_bonded_distribution_terms(s->molecules, s->order, group);
+    const size_t all = s->first[s->molecules->groups[s->order]];
+    for (size_t block = 0; block < mf_sample_blocks_whole(&s->blocks); block++)
+        mf_statistics_add(mean, s->counts[block * all + s->first[group] + bin] /
+                                    (s->blocks.samples[block] * terms * s->bins[group].width));
 }
 
 /// p, its error and p over the Jacobian with a largest value of 1; shape [COLUMNS, bins].
-static void find_columns(const struct state *s, int group, double unit, double *values) {
-    const size_t groups = (size_t)s->molecules->groups[s->order];
-    const size_t whole = mf_sample_blocks_whole(&s->blocks);
-    const double terms = (double)s->terms[group];
+static void find_columns(const struct state *s, int group, double *values) {
+    const struct bonded_bins *own = &s->bins[group];
     double largest = 0;
-    for (size_t bin = 0; bin < s->bins; bin++) {
+    for (size_t bin = 0; bin < own->count; bin++) {
         struct running_mean mean = {0};
-        double all = 0;
-        for (size_t block = 0; block < s->blocks.count; block++) {
-            const double counted = s->counts[(block * groups + (size_t)group) * s->bins + bin];
-            all += counted / ((double)s->blocks.taken * terms);
-            if (block < whole)
-                mf_statistics_add(&mean, counted / (s->blocks.samples[block] * terms));
-        }
-        values[bin] = all / (unit * s->width);
-        values[s->bins + bin] = mf_statistics_standard_error(&mean) / (unit * s->width);
-        values[2 * s->bins + bin] = all / jacobian(s, bin);
-        largest = fmax(largest, values[2 * s->bins + bin]);
+        add_blocks(s, group, bin, &mean);
+        values[bin] = mean.mean;
+        values[own->count + bin] = mf_statistics_standard_error(&mean);
+        values[2 * own->count + bin] =
+            mean.mean / mf_bonded_distribution_jacobian(s->order, s->dimensions, own, bin);
+        largest = fmax(largest, values[2 * own->count + bin]);
     }
-    for (size_t bin = 0; bin < s->bins && largest > 0; bin++)
-        values[2 * s->bins + bin] /= largest;
-    mf_statistics_forget_errors(values + s->bins, s->bins);
+    for (size_t bin = 0; bin < own->count && largest > 0; bin++)
+        values[2 * own->count + bin] /= largest;
+    mf_statistics_forget_errors(values + own->count, own->count);
 }
 
-/// q, then p, error and p over the Jacobian of each group under its name.
+/// p of the groups that are measured, one behind the other.
+static enum status result(const void *const *states, size_t count,
+                          const struct observable_values *values) {
+    const struct state *first = states[0];
+    size_t n = 0;
+    for (int g = 0; g < first->molecules->groups[first->order]; g++)
+        for (size_t bin = 0; bin < first->bins[g].count; bin++, n++) {
+            struct running_mean mean = {0};
+            for (size_t k = 0; k < count; k++)
+                add_blocks(states[k], g, bin, &mean);
+            values->value[n] = mean.mean;
+            values->error[n] = mf_statistics_standard_error(&mean);
+        }
+    return STATUS_OK;
+}
+
+/// q, then p, error and p over the Jacobian of each group under its name. All have the same bins.
 static enum status write_table(const struct state *s, const char *file,
                                const struct observable_results *results) {
     enum { MOST = 1 + COLUMNS * MOLECULES_MOST_GROUPS };
@@ -178,40 +250,39 @@ static enum status write_table(const struct state *s, const char *file,
                                                        "phi[degrees]"};
     enum status status = STATUS_OK;
     const int groups = s->molecules->groups[s->order];
-    const bool is_length = s->order == TOPOLOGY_BOND;
-    const double unit = is_length ? 1 : 1 / BONDED_RADIANS;
+    const size_t bins = s->bins[0].count;
     struct data_column columns[MOST];
     char names[MOST][TOPOLOGY_NAME_SIZE + 32], path[OUTPUT_PATH_SIZE];
     double *values = NULL;
-    NEW_ARRAY(values, (1 + COLUMNS * (size_t)groups) * s->bins);
-    for (size_t bin = 0; bin < s->bins; bin++)
-        values[bin] = unit * (s->low + ((double)bin + 0.5) * s->width);
+    NEW_ARRAY(values, (1 + COLUMNS * (size_t)groups) * bins);
+    for (size_t bin = 0; bin < bins; bin++)
+        values[bin] = bonded_bins_centre(&s->bins[0], bin);
     columns[0] = (struct data_column){heads[s->order], values, NULL};
     for (int g = 0; g < groups; g++) {
-        double *own = values + (1 + COLUMNS * (size_t)g) * s->bins;
-        find_columns(s, g, unit, own);
+        double *own = values + (1 + COLUMNS * (size_t)g) * bins;
+        find_columns(s, g, own);
         for (int c = 0; c < COLUMNS; c++) {
             const int n = 1 + COLUMNS * g + c;
             snprintf(names[n], sizeof names[n], "%s%s[%s]", s->molecules->group[s->order][g].name,
                      endings[c],
-                     c == 2      ? "1"
-                     : is_length ? "1/lambda"
-                                 : "1/degrees");
+                     c == 2                      ? "1"
+                     : s->order == TOPOLOGY_BOND ? "1/lambda"
+                                                 : "1/degrees");
             columns[n] =
-                (struct data_column){names[n], own + (size_t)c * s->bins, c == 1 ? "%.3g" : "%.8g"};
+                (struct data_column){names[n], own + (size_t)c * bins, c == 1 ? "%.3g" : "%.8g"};
         }
     }
     mf_observable_file(results, file, path);
     CHECK(mf_data_table_write_in(path, results->units, NULL, columns,
-                                 (size_t)(1 + COLUMNS * groups), s->bins));
+                                 (size_t)(1 + COLUMNS * groups), bins));
 done:
     mf_memory_free(values);
     return status;
 }
 
 /// Nanoseconds of a term and sample.
-static void explain(const struct simulation_setup *setup, int order, const char *what, double every,
-                    struct stages *stages) {
+static void explain(const struct simulation_setup *setup, enum topology_order order,
+                    const char *what, double every, struct stages *stages) {
     static const double cost[TOPOLOGY_ORDERS] = {15, 40, 60};
     const struct molecules *molecules = mf_molecules_find(setup->interaction, setup->interactions);
     double terms = 0;
@@ -225,11 +296,11 @@ static void explain(const struct simulation_setup *setup, int order, const char 
 
 // Records -----------------------------------------------------------------------------------------
 
-#define DISTRIBUTION(record, of, key, what, table)                                                 \
+#define DISTRIBUTION(record, of, key, what, table, argument_, unit_)                               \
     static enum status record##_begin(void *state, const void *settings,                           \
                                       const struct simulation *simulation,                         \
                                       const struct measure_plan *plan) {                           \
-        return begin(state, of, key, settings, simulation, plan);                                  \
+        return begin(state, of, settings, simulation, plan);                                       \
     }                                                                                              \
     static enum status record##_write(const void *state,                                           \
                                       const struct observable_results *results) {                  \
@@ -241,11 +312,18 @@ static void explain(const struct simulation_setup *setup, int order, const char 
         explain(setup, of, what, every, stages);                                                   \
     }                                                                                              \
     static const char *const record##_files[] = {table, NULL};                                     \
+    static const struct observable_target record##_targets[] = {                                   \
+        {.name = key,                                                                              \
+         .summary = "p of the " what " of each group: {\"group\": {\"file\": ...}, ...}",          \
+         .form = OBSERVABLE_OWN_FORM,                                                              \
+         .argument = argument_,                                                                    \
+         .unit = unit_},                                                                           \
+        {0}};                                                                                      \
     const struct observable record = {                                                             \
         .name = key,                                                                               \
         .summary = "distribution of the " what " of each group",                                   \
         .fields = fields,                                                                          \
-        .settings_size = sizeof(struct settings),                                                  \
+        .settings_size = sizeof(struct bonded_settings),                                           \
         .state_size = sizeof(struct state),                                                        \
         .begin = record##_begin,                                                                   \
         .clear = clear,                                                                            \
@@ -256,9 +334,13 @@ static void explain(const struct simulation_setup *setup, int order, const char 
         .stage = what,                                                                             \
         .files = record##_files,                                                                   \
         .figure = OBSERVABLE_FIGURE_OF_GROUPS,                                                     \
+        .targets = record##_targets,                                                               \
+        .result = result,                                                                          \
     }
 
-DISTRIBUTION(mf_bonded_lengths, TOPOLOGY_BOND, "bond_lengths", "bond lengths", "bond_lengths.tsv");
-DISTRIBUTION(mf_bonded_angles, TOPOLOGY_ANGLE, "bond_angles", "bond angles", "bond_angles.tsv");
+DISTRIBUTION(mf_bonded_lengths, TOPOLOGY_BOND, "bond_lengths", "bond lengths", "bond_lengths.tsv",
+             "r[lambda]", "1/lambda");
+DISTRIBUTION(mf_bonded_angles, TOPOLOGY_ANGLE, "bond_angles", "bond angles", "bond_angles.tsv",
+             "theta[degrees]", "1/degrees");
 DISTRIBUTION(mf_bonded_dihedrals, TOPOLOGY_DIHEDRAL, "dihedral_angles", "dihedral angles",
-             "dihedral_angles.tsv");
+             "dihedral_angles.tsv", "phi[degrees]", "1/degrees");

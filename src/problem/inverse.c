@@ -12,7 +12,7 @@
 const double mf_inverse_noise_margin = 1.7;
 
 const char *const mf_inverse_unknown_names[UNKNOWNS] = {
-    "potential", "omega", "memory", "memory", "memory", "memory", "omega_transverse"};
+    "potential", "omega", "memory", "memory", "memory", "memory", "omega_transverse", "bonded"};
 
 size_t mf_inverse_unknown_count(const struct inverse_problem *problem) {
     size_t count = problem->numbers;

@@ -9,21 +9,23 @@
 #include "base/memory.h"
 #include "curves/curve.h"
 #include "dynamics/simulation.h"
+#include "observe/bonded_distribution.h"
 #include "optimise/optimiser.h"
 #include "problem/targets.h"
 
 /// Φ, and the friction weights: ω of white friction, those of the modes of memory
-/// (forces/pair_memory.h), and of white friction across pairs.
+/// (forces/pair_memory.h), and of white friction across pairs; U(q) of bonds, angles and dihedrals.
 enum unknown_kind {
     UNKNOWN_POTENTIAL,
     UNKNOWN_OMEGA,
     UNKNOWN_MEMORY, ///< of the first mode; those of the others follow
     UNKNOWN_TRANSVERSE = UNKNOWN_MEMORY + PAIR_MEMORY_MOST_MODES,
+    UNKNOWN_BONDED, ///< of all groups that are to be found, one behind the other
     UNKNOWNS,
 };
 
 static inline bool unknown_is_omega(int kind) {
-    return kind != UNKNOWN_POTENTIAL;
+    return kind != UNKNOWN_POTENTIAL && kind != UNKNOWN_BONDED;
 }
 
 /// Names in run files, shape [UNKNOWNS]; the modes of memory are one object of that name.
@@ -113,6 +115,16 @@ struct inverse_law {
     const struct curve *curve; ///< shape [curves]; family NULL: none
 };
 
+/// A group of bonds, angles or dihedrals whose U(q) is to be found.
+struct bonded_unknown {
+    enum topology_order order;
+    int group;               ///< among those of its order
+    struct bonded_bins bins; ///< of its target
+    size_t first;            ///< its first value in the target of its order
+};
+
+enum { INVERSE_MOST_BONDED = (int)TOPOLOGY_ORDERS * (int)MOLECULES_MOST_GROUPS };
+
 /// What is to be fitted. Borrowed by the methods.
 struct inverse_problem {
     struct targets targets;  ///< to be fitted
@@ -120,7 +132,9 @@ struct inverse_problem {
     struct unknown unknown[UNKNOWNS];
     size_t numbers;
     struct inverse_number number[INVERSE_MOST_NUMBERS];
-    struct inverse_law law[UNKNOWNS];         ///< those of the scene that are known
+    struct inverse_law law[UNKNOWNS]; ///< those of the scene that are known
+    size_t bonded;                    ///< groups of which U(q) is to be found
+    struct bonded_unknown group[INVERSE_MOST_BONDED];
     const char *mode[PAIR_MEMORY_MOST_MODES]; ///< names of the modes of memory; borrowed
     struct simulation_setup scene;            ///< all but the unknowns; its composition is set
     double core_threshold; ///< bins below the first with g* above this are the hard core

@@ -120,7 +120,7 @@ enum status mf_numbers_apply(const struct inverse_problem *problem, const double
     *changed = *problem;
     for (size_t n = 0; n < problem->numbers; n++)
         TRY(put(&problem->number[n], value[n], &changed->scene, own));
-    for (int place = 0; place < UNKNOWNS; place++)
+    for (int place = 0; place < UNKNOWN_BONDED; place++)
         if (concerns(problem, place)) {
             TRY(tabulate(problem, place, value, &own->table[place]));
             *mf_numbers_table_of(&changed->scene, place) = &own->table[place];

@@ -49,7 +49,7 @@ static void add_steepness(const struct parametrisation *parametrisation, size_t 
 
 void mf_parametrisation_places(const struct parametrisation *parametrisation,
                                enum unknown_kind kind, size_t curve, double *place) {
-    const size_t points = mf_unknowns_points_each(&parametrisation->unknowns, kind);
+    const size_t points = mf_unknowns_part(&parametrisation->unknowns, kind, 0).points;
     const size_t first = mf_parametrisation_first_point(parametrisation, kind, curve);
     const double *r = mf_unknowns_r(&parametrisation->unknowns, kind) + curve * points;
     for (size_t k = first; k < points; k++)
@@ -68,7 +68,7 @@ static enum status fill_block(struct parametrisation *parametrisation, enum unkn
     enum status status = STATUS_OK;
     const size_t variables = mf_parametrisation_variables(parametrisation, kind),
                  own = variables_of_curve(parametrisation, kind);
-    const size_t points = mf_unknowns_points_each(&parametrisation->unknowns, kind);
+    const size_t points = mf_unknowns_part(&parametrisation->unknowns, kind, 0).points;
     const size_t first = mf_parametrisation_first_point(parametrisation, kind, curve),
                  moving = points - first;
     double *place = NULL, *block = NULL;
@@ -295,7 +295,7 @@ static enum status start_of_curve(const struct parametrisation *parametrisation,
     const size_t count = variables_of_curve(parametrisation, kind),
                  all = mf_parametrisation_variables(parametrisation, kind);
     const size_t first = mf_parametrisation_first_point(parametrisation, kind, number),
-                 points = mf_unknowns_points_each(&parametrisation->unknowns, kind);
+                 points = mf_unknowns_part(&parametrisation->unknowns, kind, 0).points;
     const double *block = parametrisation->basis[kind] + number * (points * all + count);
     double *place = NULL;
     NEW_ARRAY(place, points);
@@ -338,9 +338,10 @@ static enum status start_of(const struct parametrisation *parametrisation, enum 
     NEW_ARRAY(curve, mf_unknowns_points(&parametrisation->unknowns, kind));
     start_curve(parametrisation, kind, curve);
     for (size_t n = 0; n < mf_unknowns_curve_count(&parametrisation->unknowns, kind); n++)
-        CHECK(start_of_curve(parametrisation, kind, n,
-                             curve + n * mf_unknowns_points_each(&parametrisation->unknowns, kind),
-                             variables + n * variables_of_curve(parametrisation, kind)));
+        CHECK(
+            start_of_curve(parametrisation, kind, n,
+                           curve + n * mf_unknowns_part(&parametrisation->unknowns, kind, 0).points,
+                           variables + n * variables_of_curve(parametrisation, kind)));
 done:
     mf_memory_free(curve);
     return status;

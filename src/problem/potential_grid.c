@@ -25,38 +25,83 @@ static enum status find_core(struct potential_grid *grid, const struct inverse_p
 }
 
 /// Where the known bins are.
-static void index_known(struct potential_grid *grid) {
+static void index_known(struct potential_grid *grid, const struct inverse_problem *problem) {
+    static const double well = 0.1;
     size_t n = 0;
     for (size_t pair = 0; pair < grid->pairs; pair++)
         for (size_t k = grid->core[pair]; k < grid->bins; k++, n++) {
             grid->known_point[n] = mf_potential_grid_block(grid, pair) + k;
             grid->known_bin[n] = pair * grid->bins + k;
+            grid->well_known[n] =
+                problem->targets.target[TARGET_RDF].value[grid->known_bin[n]] > well;
         }
+    for (size_t g = 0; g < grid->groups; g++) {
+        const struct potential_group *group = &grid->group[g];
+        const double *p = group->own.target + group->own.first;
+        double peak = 0;
+        for (size_t k = 0; k < group->own.known; k++)
+            peak = fmax(peak, p[k]);
+        for (size_t k = 0; k < group->own.known; k++, n++) {
+            grid->known_point[n] = group->point + group->own.below + k;
+            grid->known_bin[n] = group->bin + group->own.first + k;
+            grid->well_known[n] = p[k] > well * peak;
+        }
+    }
 }
 
-enum status mf_potential_grid_init(struct potential_grid *grid,
-                                   const struct inverse_problem *problem) {
-    enum status status = STATUS_OK;
-    const struct rdf_bins *bins = &problem->targets.bins;
-    *grid =
-        (struct potential_grid){.pairs = (size_t)mf_composition_pairs(&problem->scene.composition),
-                                .bins = bins->count,
-                                .stiffness = problem->core_stiffness};
-    grid->points = grid->pairs * (bins->count + 1);
-    NEW_ARRAY(grid->core, grid->pairs);
-    NEW_ARRAY(grid->known_of, grid->pairs);
-    for (size_t pair = 0; pair < grid->pairs; pair++)
-        CHECK(find_core(grid, problem, pair));
-    NEW_ARRAY(grid->known_point, grid->known);
-    NEW_ARRAY(grid->known_bin, grid->known);
-    index_known(grid);
-    NEW_ARRAY(grid->r, grid->points);
+/// Blocks of the groups, behind those of pairs.
+static enum status init_groups(struct potential_grid *grid, const struct inverse_problem *problem) {
+    for (size_t g = 0; g < grid->groups; g++) {
+        struct potential_group *group = &grid->group[g];
+        TRY(mf_bonded_grid_init(&group->own, problem, &problem->group[g]));
+        group->point = grid->points;
+        group->bin = grid->all_bins;
+        grid->points += group->own.points;
+        grid->all_bins += group->own.unknown->bins.count;
+        grid->known_of[grid->pairs + g] = group->own.known;
+        grid->known += group->own.known;
+    }
+    return STATUS_OK;
+}
+
+static void place_points(struct potential_grid *grid, const struct rdf_bins *bins) {
     for (size_t pair = 0; pair < grid->pairs; pair++) {
         double *r = grid->r + mf_potential_grid_block(grid, pair);
         for (size_t k = 0; k < bins->count; k++)
             r[k] = mf_rdf_bins_centre(bins, k);
         r[bins->count] = mf_rdf_bins_range(bins);
     }
+    for (size_t g = 0; g < grid->groups; g++)
+        for (size_t k = 0; k < grid->group[g].own.points; k++)
+            grid->r[grid->group[g].point + k] = mf_bonded_grid_place(&grid->group[g].own, k);
+}
+
+enum status mf_potential_grid_init(struct potential_grid *grid,
+                                   const struct inverse_problem *problem) {
+    enum status status = STATUS_OK;
+    const struct rdf_bins *bins = &problem->targets.bins;
+    const bool groups_alone = problem->bonded > 0 && !problem->unknown[UNKNOWN_POTENTIAL].wanted;
+    *grid = (struct potential_grid){
+        .pairs = groups_alone ? 0 : (size_t)mf_composition_pairs(&problem->scene.composition),
+        .bins = bins->count,
+        .groups = problem->bonded,
+        .stiffness = problem->core_stiffness};
+    grid->blocks = grid->pairs + grid->groups;
+    grid->points = grid->pair_points = grid->pairs * (bins->count + 1);
+    grid->all_bins = grid->pair_bins = grid->pairs * bins->count;
+    NEW_ARRAY(grid->core, grid->pairs);
+    NEW_ARRAY(grid->known_of, grid->blocks);
+    NEW_ARRAY(grid->group, grid->groups);
+    for (size_t pair = 0; pair < grid->pairs; pair++)
+        CHECK(find_core(grid, problem, pair));
+    grid->pairs_known = grid->known;
+    CHECK(init_groups(grid, problem));
+    NEW_ARRAY(grid->known_point, grid->known);
+    NEW_ARRAY(grid->known_bin, grid->known);
+    NEW_ARRAY(grid->well_known, grid->known);
+    index_known(grid, problem);
+    NEW_ARRAY(grid->r, grid->points);
+    place_points(grid, bins);
 done:
     if (status != STATUS_OK)
         mf_potential_grid_clear(grid);
@@ -68,7 +113,9 @@ void mf_potential_grid_clear(struct potential_grid *grid) {
     mf_memory_free(grid->known_of);
     mf_memory_free(grid->known_point);
     mf_memory_free(grid->known_bin);
+    mf_memory_free(grid->well_known);
     mf_memory_free(grid->r);
+    mf_memory_free(grid->group);
     *grid = (struct potential_grid){0};
 }
 
@@ -80,7 +127,7 @@ bool mf_potential_grid_in_core(const struct potential_grid *grid, size_t point) 
     return point % (grid->bins + 1) < grid->core[point / (grid->bins + 1)];
 }
 
-void mf_potential_grid_complete(const struct potential_grid *grid, double *phi) {
+static void complete_pairs(const struct potential_grid *grid, double *phi) {
     for (size_t pair = 0; pair < grid->pairs; pair++) {
         const size_t begin = mf_potential_grid_block(grid, pair), first = grid->core[pair];
         const double *r = grid->r + begin;
@@ -89,6 +136,12 @@ void mf_potential_grid_complete(const struct potential_grid *grid, double *phi) 
         mf_core_fill(r, block, first, slope, grid->stiffness);
         block[grid->bins] = 0;
     }
+}
+
+void mf_potential_grid_complete(const struct potential_grid *grid, double *phi) {
+    complete_pairs(grid, phi);
+    for (size_t g = 0; g < grid->groups; g++)
+        mf_bonded_grid_complete(&grid->group[g].own, phi + grid->group[g].point);
 }
 
 /// Of one block.
@@ -117,9 +170,33 @@ done:
     return status;
 }
 
-void mf_potential_grid_start(const struct potential_grid *grid,
-                             const struct inverse_problem *problem, double *phi) {
-    for (size_t n = 0; n < grid->known; n++) {
+enum status mf_potential_grid_molecules(const struct potential_grid *grid, const double *energy,
+                                        const struct molecules *from, struct molecules *to) {
+    *to = *from;
+    for (size_t g = 0; g < grid->groups; g++) {
+        const struct bonded_unknown *unknown = grid->group[g].own.unknown;
+        to->group[unknown->order][unknown->group].curve = (struct bonded_curve){0};
+    }
+    for (size_t g = 0; g < grid->groups; g++) {
+        const struct potential_group *group = &grid->group[g];
+        const struct bonded_unknown *unknown = group->own.unknown;
+        TRY(mf_bonded_grid_curve(&group->own, energy + (group->point - grid->pair_points),
+                                 &to->group[unknown->order][unknown->group].curve));
+    }
+    return STATUS_OK;
+}
+
+void mf_potential_grid_molecules_clear(const struct potential_grid *grid,
+                                       struct molecules *molecules) {
+    for (size_t g = 0; g < grid->groups; g++) {
+        const struct bonded_unknown *unknown = grid->group[g].own.unknown;
+        mf_bonded_clear(&molecules->group[unknown->order][unknown->group].curve);
+    }
+}
+
+void mf_potential_grid_start_pairs(const struct potential_grid *grid,
+                                   const struct inverse_problem *problem, double *phi) {
+    for (size_t n = 0; n < grid->pairs_known; n++) {
         const size_t point = grid->known_point[n], pair = point / (grid->bins + 1);
         const struct curve *start = problem->unknown[UNKNOWN_POTENTIAL].start[pair];
         // A bin without pairs beyond the core is as high as one with the threshold's few.
@@ -128,15 +205,18 @@ void mf_potential_grid_start(const struct potential_grid *grid,
         phi[point] =
             start ? mf_curve_value(start, grid->r[point]) : -problem->scene.temperature * log(g);
     }
-    mf_potential_grid_complete(grid, phi);
+    complete_pairs(grid, phi);
 }
 
-bool mf_potential_grid_well_known(const struct inverse_problem *problem, size_t bin) {
-    return problem->targets.target[TARGET_RDF].value[bin] > 0.1;
+void mf_potential_grid_start(const struct potential_grid *grid,
+                             const struct inverse_problem *problem, double *phi) {
+    mf_potential_grid_start_pairs(grid, problem, phi);
+    for (size_t g = 0; g < grid->groups; g++)
+        mf_bonded_grid_start(&grid->group[g].own, phi + grid->group[g].point);
 }
 
 double mf_potential_grid_ramp(const struct potential_grid *grid, size_t point) {
-    return 1 - grid->r[point] / grid->r[grid->points - 1];
+    return point < grid->pair_points ? 1 - grid->r[point] / grid->r[grid->pair_points - 1] : 0;
 }
 
 /// Places in a bin at which its mean is taken.
@@ -186,7 +266,7 @@ enum status mf_potential_grid_virials(const struct potential_grid *grid,
     NEW_ARRAY(changed, grid->points);
     for (size_t k = 0; k < grid->pairs * bins->count * grid->known; k++)
         virial[k] = 0;
-    for (size_t b = 0; b < grid->known; b++)
+    for (size_t b = 0; b < grid->pairs_known; b++)
         for (int sign = -1; sign <= 1; sign += 2)
             CHECK(add_virials(grid, bins, dimensions, phi, grid->known_point[b], sign * change,
                               sign / (2 * change), changed, virial + b));

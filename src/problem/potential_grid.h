@@ -1,45 +1,75 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file The points at which the fitted potentials are known, one block for each pair of types.
+/// @file The points at which the fitted potentials are known: a block for each pair of types, and
+/// behind them one for each group of bonds, angles or dihedrals (problem/bonded_grid.h).
 ///
-/// In each block the bin centres of the target, in three parts: the core, where the target is 0 and
-/// the potential is continued (mf_core_fill); the known bins; and the cutoff, the upper edge of the
-/// last bin, where the potential is 0. A block has one point more than bins.
+/// In each block of pairs the bin centres of the target, in three parts: the core, where the target
+/// is 0 and the potential is continued (mf_core_fill); the known bins; and the cutoff, the upper
+/// edge of the last bin, where the potential is 0. It has one point more than bins.
 #pragma once
 
-#include "problem/inverse.h"
+#include "problem/bonded_grid.h"
 
 struct potential_grid {
-    size_t pairs;        ///< of types: blocks
-    size_t bins;         ///< of a block
-    size_t points;       ///< of all blocks: pairs · (bins + 1)
+    size_t pairs;        ///< of types whose potential is unknown
+    size_t bins;         ///< of a block of pairs
+    size_t groups;       ///< of bonds, angles and dihedrals
+    size_t blocks;       ///< pairs + groups
+    size_t pair_points;  ///< pairs · (bins + 1)
+    size_t pair_bins;    ///< pairs · bins
+    size_t points;       ///< of all blocks
+    size_t all_bins;     ///< of all blocks
     size_t *core;        ///< shape [pairs]: points in the core = the first known bin
-    size_t *known_of;    ///< shape [pairs]: bins with a value of their own
+    size_t *known_of;    ///< shape [blocks]: bins with a value of their own
     size_t known;        ///< bins with a value of their own, of all blocks
+    size_t pairs_known;  ///< those of pairs
     size_t *known_point; ///< shape [known]: where they are among the points …
-    size_t *known_bin;   ///< … and among the bins of all blocks, pairs · bins
-    double *r;           ///< shape [points] [λ]
+    size_t *known_bin;   ///< … and among the bins of all blocks
+    bool *well_known;    ///< shape [known]: the target tells the potential there: g* > 0.1, or p* >
+                         ///< 0.1 of its peak
+    double *r;           ///< shape [points] [λ], of angles [degrees]
     double stiffness;
+    struct potential_group {
+        struct bonded_grid own;
+        size_t point, bin; ///< where its points and bins begin among all
+    } * group;             ///< shape [groups]
 };
 
-/// Fails: NO_MEMORY; BAD_INPUT if a target is nowhere above the threshold.
+/// Pairs are left out if groups are looked for and the pairs' potential is not. Fails: NO_MEMORY;
+/// BAD_INPUT if a target is nowhere above the threshold, or as mf_bonded_grid_init.
 enum status mf_potential_grid_init(struct potential_grid *grid,
                                    const struct inverse_problem *problem) MUST_USE;
 void mf_potential_grid_clear(struct potential_grid *grid);
 
-/// First point of a block.
+/// First point of a block of pairs.
 size_t mf_potential_grid_block(const struct potential_grid *grid, size_t pair);
 
-/// Whether a point is in the core of its block.
+/// Whether a point of pairs is in the core of its block.
 bool mf_potential_grid_in_core(const struct potential_grid *grid, size_t point);
 
-/// Complete phi, shape [points], from its known values: core below, 0 at the cutoff.
+/// Complete phi, shape [points], from its known values: core below, 0 at the cutoff; U beyond what
+/// the target knows.
 void mf_potential_grid_complete(const struct potential_grid *grid, double *phi);
 
-/// Table for the kernels from a completed phi. Fails: NO_MEMORY.
+/// Table of the pairs for the kernels from a completed phi. Fails: NO_MEMORY.
 enum status mf_potential_grid_table(const struct potential_grid *grid, const double *phi,
                                     struct table *table) MUST_USE;
 
-/// Where a fit begins: the problem's start curves, or the potentials of mean force −k_B T ln g*.
+/// The molecules with the laws that are looked for. What is not is borrowed, and the rest is to be
+/// cleared with mf_potential_grid_molecules_clear, also after a failure.
+/// @param[in] energy  completed, of all groups: from pair_points on of a phi
+/// Fails: NO_MEMORY.
+enum status mf_potential_grid_molecules(const struct potential_grid *grid, const double *energy,
+                                        const struct molecules *from,
+                                        struct molecules *to) MUST_USE;
+void mf_potential_grid_molecules_clear(const struct potential_grid *grid,
+                                       struct molecules *molecules);
+
+/// Where the pairs of a fit begin: the problem's start curves, or the potentials of mean force
+/// −k_B T ln g*; shape [pair_points].
+void mf_potential_grid_start_pairs(const struct potential_grid *grid,
+                                   const struct inverse_problem *problem, double *phi);
+
+/// Where a fit begins: pairs as above, groups as mf_bonded_grid_start.
 void mf_potential_grid_start(const struct potential_grid *grid,
                              const struct inverse_problem *problem, double *phi);
 
@@ -48,14 +78,12 @@ void mf_potential_grid_start(const struct potential_grid *grid,
 /// adds. Through the tables that the kernels read, so that spline and core are those of a
 /// simulation. g(r) counts as constant in a bin.
 /// @param[in]  phi     completed, shape [points]
-/// @param[out] virial  shape [pairs · bins, known], row-major
+/// @param[out] virial  shape [pairs · bins, known], row-major; 0 for groups
 /// Fails: NO_MEMORY. Tested: test_potential_grid, test_inversion_pressure.
 enum status mf_potential_grid_virials(const struct potential_grid *grid,
                                       const struct rdf_bins *bins, int dimensions,
                                       const double *phi, double *virial) MUST_USE;
 
-/// Whether the target has so many pairs in a bin, g* > 0.1, that it tells the potential there.
-bool mf_potential_grid_well_known(const struct inverse_problem *problem, size_t bin);
-
-/// The ramp 1 − r/r_c, which moves the pressure and hardly g(r), at a point of the grid.
+/// The ramp 1 − r/r_c, which moves the pressure and hardly g(r), at a point of the grid; 0 for
+/// groups.
 double mf_potential_grid_ramp(const struct potential_grid *grid, size_t point);

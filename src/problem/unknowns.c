@@ -13,7 +13,7 @@ enum status mf_unknowns_init(struct unknowns *unknowns, const struct inverse_pro
         if (unknown_is_omega(kind))
             mf_omega_grid_init(&unknowns->omega[kind], p->inner_cutoff, p->cutoff);
     }
-    return problem->unknown[UNKNOWN_POTENTIAL].wanted
+    return problem->unknown[UNKNOWN_POTENTIAL].wanted || problem->bonded > 0
                ? mf_potential_grid_init(&unknowns->potential, problem)
                : STATUS_OK;
 }
@@ -24,31 +24,66 @@ void mf_unknowns_clear(struct unknowns *unknowns) {
 }
 
 size_t mf_unknowns_points(const struct unknowns *unknowns, enum unknown_kind kind) {
+    const struct potential_grid *grid = &unknowns->potential;
     if (!unknowns->problem->unknown[kind].wanted)
         return 0;
-    return kind == UNKNOWN_POTENTIAL ? unknowns->potential.points : OMEGA_POINTS;
+    return kind == UNKNOWN_POTENTIAL ? grid->pair_points
+           : kind == UNKNOWN_BONDED  ? grid->points - grid->pair_points
+                                     : OMEGA_POINTS;
 }
 
 const double *mf_unknowns_r(const struct unknowns *unknowns, enum unknown_kind kind) {
-    return kind == UNKNOWN_POTENTIAL ? unknowns->potential.r : unknowns->omega[kind].r;
+    return kind == UNKNOWN_POTENTIAL ? unknowns->potential.r
+           : kind == UNKNOWN_BONDED  ? unknowns->potential.r + unknowns->potential.pair_points
+                                     : unknowns->omega[kind].r;
 }
 
 size_t mf_unknowns_curve_count(const struct unknowns *unknowns, enum unknown_kind kind) {
-    return kind == UNKNOWN_POTENTIAL ? unknowns->potential.pairs : 1;
+    return kind == UNKNOWN_POTENTIAL ? unknowns->potential.pairs
+           : kind == UNKNOWN_BONDED  ? unknowns->potential.groups
+                                     : 1;
 }
 
-size_t mf_unknowns_points_each(const struct unknowns *unknowns, enum unknown_kind kind) {
-    return mf_unknowns_points(unknowns, kind) / mf_unknowns_curve_count(unknowns, kind);
+struct unknowns_part mf_unknowns_part(const struct unknowns *unknowns, enum unknown_kind kind,
+                                      size_t curve) {
+    const struct potential_grid *grid = &unknowns->potential;
+    if (kind == UNKNOWN_BONDED)
+        return (struct unknowns_part){grid->group[curve].point - grid->pair_points,
+                                      grid->group[curve].own.points};
+    const size_t each =
+        mf_unknowns_points(unknowns, kind) / mf_unknowns_curve_count(unknowns, kind);
+    return (struct unknowns_part){curve * each, each};
+}
+
+/// Whether a point of the groups is one of those that a target knows.
+static bool fits_group(const struct potential_grid *grid, size_t point) {
+    for (size_t g = 0; g < grid->groups; g++) {
+        const size_t first = grid->group[g].point + grid->group[g].own.below;
+        if (point >= first && point < first + grid->group[g].own.known)
+            return true;
+    }
+    return false;
 }
 
 bool mf_unknowns_fits(const struct unknowns *unknowns, enum unknown_kind kind, size_t point) {
-    const size_t each = mf_unknowns_points_each(unknowns, kind);
+    const struct potential_grid *grid = &unknowns->potential;
+    if (kind == UNKNOWN_BONDED)
+        return fits_group(grid, grid->pair_points + point);
+    const size_t each = mf_unknowns_part(unknowns, kind, 0).points;
     return point % each + 1 < each &&
-           !(kind == UNKNOWN_POTENTIAL && mf_potential_grid_in_core(&unknowns->potential, point));
+           !(kind == UNKNOWN_POTENTIAL && mf_potential_grid_in_core(grid, point));
+}
+
+const char *mf_unknowns_heading(const struct unknowns *unknowns, enum unknown_kind kind,
+                                size_t curve) {
+    if (kind != UNKNOWN_BONDED)
+        return "r[lambda]";
+    const enum topology_order order = unknowns->potential.group[curve].own.unknown->order;
+    return mf_observable_kind(mf_bonded_distribution_kind(order)).target->argument;
 }
 
 const char *mf_unknowns_unit(enum unknown_kind kind) {
-    return kind == UNKNOWN_POTENTIAL ? "k_B.T_0" : "sqrt(mu/tau)";
+    return unknown_is_omega(kind) ? "sqrt(mu/tau)" : "k_B.T_0";
 }
 
 void mf_unknowns_kind_name(const struct unknowns *unknowns, enum unknown_kind kind,
@@ -62,6 +97,15 @@ void mf_unknowns_kind_name(const struct unknowns *unknowns, enum unknown_kind ki
 void mf_unknowns_curve_name(const struct unknowns *unknowns, enum unknown_kind kind, size_t curve,
                             char name[UNKNOWNS_NAME_SIZE]) {
     char pair[COMPOSITION_PAIR_NAME_SIZE] = "", own[UNKNOWNS_NAME_SIZE];
+    if (kind == UNKNOWN_BONDED) {
+        const struct simulation_setup *scene = &unknowns->problem->scene;
+        const struct molecules *molecules =
+            mf_molecules_find(scene->interaction, scene->interactions);
+        const struct bonded_unknown *group = unknowns->potential.group[curve].own.unknown;
+        snprintf(name, UNKNOWNS_NAME_SIZE, "%ss_%s", mf_topology_order_names[group->order],
+                 molecules->group[group->order][group->group].name);
+        return;
+    }
     mf_unknowns_kind_name(unknowns, kind, own);
     if (kind == UNKNOWN_POTENTIAL)
         mf_composition_pair_name(&unknowns->problem->scene.composition, (int)curve, pair);
@@ -72,7 +116,13 @@ void mf_unknowns_curve_name(const struct unknowns *unknowns, enum unknown_kind k
 void mf_unknowns_start(const struct unknowns *unknowns, enum unknown_kind kind, double *curve) {
     const struct unknown *unknown = &unknowns->problem->unknown[kind];
     if (kind == UNKNOWN_POTENTIAL) {
-        mf_potential_grid_start(&unknowns->potential, unknowns->problem, curve);
+        mf_potential_grid_start_pairs(&unknowns->potential, unknowns->problem, curve);
+        return;
+    }
+    if (kind == UNKNOWN_BONDED) {
+        for (size_t g = 0; g < unknowns->potential.groups; g++)
+            mf_bonded_grid_start(&unknowns->potential.group[g].own,
+                                 curve + mf_unknowns_part(unknowns, kind, g).first);
         return;
     }
     const struct omega_grid *grid = &unknowns->omega[kind];
@@ -89,14 +139,29 @@ bool mf_unknowns_has_start(const struct unknowns *unknowns, enum unknown_kind ki
     return false;
 }
 
+/// The scene's molecules with the curves of the groups.
+static enum status make_molecules(const struct unknowns *unknowns, const double *curve,
+                                  struct unknowns_laws *laws) {
+    struct simulation_setup *scene = &laws->problem.scene;
+    const struct molecules *from = mf_molecules_find(scene->interaction, scene->interactions);
+    laws->grid = &unknowns->potential;
+    TRY(mf_potential_grid_molecules(laws->grid, curve, from, &laws->molecules));
+    for (int k = 0; k < scene->interactions; k++)
+        if (scene->interaction[k].kind == &mf_molecules)
+            scene->interaction[k].parameters = &laws->molecules;
+    return STATUS_OK;
+}
+
 enum status mf_unknowns_laws_make(const struct unknowns *unknowns,
                                   const double *const curve[UNKNOWNS], const double *number,
                                   struct unknowns_laws *laws) {
     *laws = (struct unknowns_laws){0};
     TRY(mf_numbers_apply(unknowns->problem, number, &laws->problem, &laws->own));
-    for (int kind = 0; kind < UNKNOWNS; kind++)
+    for (int kind = 0; kind < UNKNOWN_BONDED; kind++)
         laws->table[kind] = *mf_numbers_table_of(&laws->problem.scene, kind);
-    for (int kind = 0; kind < UNKNOWNS; kind++) {
+    if (curve[UNKNOWN_BONDED])
+        TRY(make_molecules(unknowns, curve[UNKNOWN_BONDED], laws));
+    for (int kind = 0; kind < UNKNOWN_BONDED; kind++) {
         struct table *own = &laws->own.table[kind];
         if (curve[kind] == NULL)
             continue;
@@ -111,6 +176,8 @@ enum status mf_unknowns_laws_make(const struct unknowns *unknowns,
 
 void mf_unknowns_laws_clear(struct unknowns_laws *laws) {
     mf_numbers_own_clear(&laws->own);
+    if (laws->grid)
+        mf_potential_grid_molecules_clear(laws->grid, &laws->molecules);
 }
 
 enum status mf_unknowns_laws_start(const struct unknowns *unknowns, struct unknowns_laws *laws) {

@@ -10,7 +10,7 @@
 
 struct unknowns {
     const struct inverse_problem *problem;
-    struct potential_grid potential;   ///< if it is unknown
+    struct potential_grid potential;   ///< of pairs and groups, if any is unknown
     struct omega_grid omega[UNKNOWNS]; ///< of friction weights that are unknown
 };
 
@@ -19,22 +19,33 @@ enum status mf_unknowns_init(struct unknowns *unknowns,
                              const struct inverse_problem *problem) MUST_USE;
 void mf_unknowns_clear(struct unknowns *unknowns);
 
-/// Points of an unknown's curve; 0 if it is known. And where they are [λ].
+/// Points of an unknown's curve; 0 if it is known. And where they are [λ], of angles [degrees].
 size_t mf_unknowns_points(const struct unknowns *unknowns, enum unknown_kind kind);
 const double *mf_unknowns_r(const struct unknowns *unknowns, enum unknown_kind kind);
 
-/// The curves that an unknown is made of, one behind the other with as many points each: potentials
-/// are one for each pair type. And whether a point of them is fitted: not in a core, and not at
-/// the cutoff.
+/// The curves that an unknown is made of, one behind the other: potentials are one for each pair
+/// type, and one for each group of bonds, angles and dihedrals.
 size_t mf_unknowns_curve_count(const struct unknowns *unknowns, enum unknown_kind kind);
-size_t mf_unknowns_points_each(const struct unknowns *unknowns, enum unknown_kind kind);
+
+/// The points of one of them.
+struct unknowns_part {
+    size_t first, points;
+};
+struct unknowns_part mf_unknowns_part(const struct unknowns *unknowns, enum unknown_kind kind,
+                                      size_t curve);
+
+/// Whether a point is fitted: not in a core, not at the cutoff, and not beyond what a target knows.
 bool mf_unknowns_fits(const struct unknowns *unknowns, enum unknown_kind kind, size_t point);
+
+/// What the first column of a curve's table is called: "r[lambda]", "theta[degrees]".
+const char *mf_unknowns_heading(const struct unknowns *unknowns, enum unknown_kind kind,
+                                size_t curve);
 
 /// Unit of the values, as headings have it.
 const char *mf_unknowns_unit(enum unknown_kind kind);
 
 /// What files call an unknown, "omega" or "memory_slow", and one of its curves, "potential_A-B" in
-/// a mixture.
+/// a mixture, "bonds_backbone" of a group.
 enum { UNKNOWNS_NAME_SIZE = COMPOSITION_PAIR_NAME_SIZE + 48 };
 void mf_unknowns_kind_name(const struct unknowns *unknowns, enum unknown_kind kind,
                            char name[UNKNOWNS_NAME_SIZE]);
@@ -59,6 +70,8 @@ struct unknowns_laws {
     struct inverse_problem problem;
     struct numbers_own own;              ///< zero for what is the scene's
     const struct table *table[UNKNOWNS]; ///< those of memory also stand in the scene of `problem`
+    struct molecules molecules;          ///< with what is fitted, if any group is unknown
+    const struct potential_grid *grid;   ///< of these; borrowed
 };
 enum status mf_unknowns_laws_make(const struct unknowns *unknowns,
                                   const double *const curve[UNKNOWNS], const double *number,

@@ -285,6 +285,48 @@ static enum status draw_measured(const char *folder, const char *plots, size_t *
     return first;
 }
 
+/// The name of an observable of groups whose distribution beside its target a table is, as
+/// "bond_lengths_backbone.tsv", or NULL.
+static const char *observable_of(const char *table) {
+    for (size_t k = 0; mf_observables[k]; k++) {
+        const struct observable *observable = mf_observables[k];
+        const size_t length = strlen(observable->name);
+        if (observable->figure && observable->targets &&
+            strcmp(observable->figure, OBSERVABLE_FIGURE_OF_GROUPS) == 0 &&
+            strncmp(table, observable->name, length) == 0 && table[length] == '_')
+            return observable->name;
+    }
+    return NULL;
+}
+
+/// Draw the distributions of groups beside their targets, and count them; the first failure.
+static enum status draw_groups(const char *folder, const char *plots, size_t *count) {
+    struct dirent **entries;
+    enum status first = STATUS_OK;
+    char path[PATH_SIZE], name[FIELD_TEXT_SIZE];
+    const int files = scandir(folder, &entries, NULL, alphasort);
+    for (int k = 0; k < files; k++) {
+        const char *table = entries[k]->d_name;
+        const char *end = strstr(table, ".tsv");
+        snprintf(path, sizeof path, "%s/%s", folder, table);
+        if (observable_of(table) && end && end[4] == '\0' && is_table(path) &&
+            has_column(path, "target")) {
+            ++*count;
+            snprintf(name, sizeof name, "%.*s", (int)(end - table), table);
+            const bool told =
+                setenv("MESOFIT_TABLE", table, 1) == 0 && setenv("MESOFIT_FIGURE", name, 1) == 0;
+            const enum status status =
+                told ? draw_to(folder, plots, OBSERVABLE_FIGURE_OF_GROUPS, name)
+                     : mf_status_fail(STATUS_NO_MEMORY, "out of memory");
+            first = first == STATUS_OK ? status : first;
+        }
+        free(entries[k]);
+    }
+    if (files >= 0)
+        free(entries);
+    return first;
+}
+
 /// Draw all figures, and count them, also those that fail.
 static enum status draw_all(const char *folder, size_t *count) {
     enum status first = STATUS_OK;
@@ -294,6 +336,7 @@ static enum status draw_all(const char *folder, size_t *count) {
     TRY(find_plots(plots));
     const size_t fixed = sizeof figures / sizeof *figures;
     TRY(draw_measured(folder, plots, count));
+    TRY(draw_groups(folder, plots, count));
     for (size_t k = 0; k < fixed || mf_observables[k - fixed]; k++) {
         const enum status status =
             k < fixed ? draw_figure(folder, plots, &figures[k], count)

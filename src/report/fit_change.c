@@ -6,11 +6,12 @@
 /// Whether the target has enough pairs at a point to tell of the curve there.
 static bool is_determined(const struct unknowns *unknowns, enum unknown_kind kind, size_t point) {
     const struct potential_grid *grid = &unknowns->potential;
+    const size_t among = kind == UNKNOWN_BONDED ? grid->pair_points + point : point;
     if (unknown_is_omega(kind))
         return mf_unknowns_fits(unknowns, kind, point);
     for (size_t n = 0; n < grid->known; n++)
-        if (grid->known_point[n] == point)
-            return mf_potential_grid_well_known(unknowns->problem, grid->known_bin[n]);
+        if (grid->known_point[n] == among)
+            return grid->well_known[n];
     return false;
 }
 
@@ -24,11 +25,10 @@ static void find_lower(double value, double r, double *lowest, double *at) {
 struct fit_change mf_fit_change_find(const struct unknowns *unknowns, enum unknown_kind kind,
                                      size_t curve, const double *first, const double *last) {
     struct fit_change change = {.well = INFINITY, .first_well = INFINITY};
-    const size_t points =
-        mf_unknowns_points(unknowns, kind) / mf_unknowns_curve_count(unknowns, kind);
+    const struct unknowns_part part = mf_unknowns_part(unknowns, kind, curve);
     const double *r = mf_unknowns_r(unknowns, kind);
     double squares = 0, count = 0;
-    for (size_t k = curve * points; k < (curve + 1) * points; k++) {
+    for (size_t k = part.first; k < part.first + part.points; k++) {
         if (!is_determined(unknowns, kind, k))
             continue;
         squares += (last[k] - first[k]) * (last[k] - first[k]);

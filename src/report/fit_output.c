@@ -126,25 +126,52 @@ static enum status write_flat(const struct fit_file *fit, enum unknown_kind kind
                               const struct unknowns *unknowns, const struct fit_result *result,
                               const struct run_folder *folder) {
     const size_t all = mf_unknowns_points(unknowns, kind);
-    const size_t points = all / mf_unknowns_curve_count(unknowns, kind), first = curve * points;
+    const struct unknowns_part part = mf_unknowns_part(unknowns, kind, curve);
     const double *flat = result->curve_flat[kind];
     char path[OUTPUT_PATH_SIZE];
     if (flat == NULL || isnan(flat[all - 1]))
         return STATUS_OK;
     const char *unit = mf_unknowns_unit(kind);
     char names[INVERSE_FLAT][64];
-    struct data_column columns[1 + INVERSE_FLAT] = {
-        {"r[lambda]", mf_unknowns_r(unknowns, kind) + first, NULL}};
+    struct data_column columns[1 + INVERSE_FLAT] = {{mf_unknowns_heading(unknowns, kind, curve),
+                                                     mf_unknowns_r(unknowns, kind) + part.first,
+                                                     NULL}};
     for (size_t n = 0; n < INVERSE_FLAT; n++) {
         snprintf(names[n], sizeof names[n], "flat_%zu[%s]", n + 1, unit);
-        columns[n + 1] = (struct data_column){names[n], flat + n * all + first, "%.5g"};
+        columns[n + 1] = (struct data_column){names[n], flat + n * all + part.first, "%.5g"};
     }
     curve_file(unknowns, kind, curve, "_flat.tsv", folder, path);
     return mf_data_table_write_in(
         path, &fit->scene.units,
         "changes of the curve that the data say least of, widest first; one "
         "standard error each",
-        columns, 1 + INVERSE_FLAT, points);
+        columns, 1 + INVERSE_FLAT, part.points);
+}
+
+/// U of a group: a table that a scene's law "table" reads.
+static enum status write_group(const struct fit_file *fit, const struct unknowns *unknowns,
+                               const struct fit_result *result, size_t group,
+                               const struct run_folder *folder) {
+    enum status status = STATUS_OK;
+    const struct unknowns_part part = mf_unknowns_part(unknowns, UNKNOWN_BONDED, group);
+    const double *energy = result->curve[UNKNOWN_BONDED] + part.first;
+    const double unit =
+        mf_units_beside(&fit->scene.units) ? mf_units_energy_kj_per_mol(&fit->scene.units) : 0;
+    double *beside = mf_units_column(energy, part.points, unit);
+    char path[OUTPUT_PATH_SIZE];
+    const struct data_column columns[] = {
+        {mf_unknowns_heading(unknowns, UNKNOWN_BONDED, group),
+         mf_unknowns_r(unknowns, UNKNOWN_BONDED) + part.first, "%.17g"},
+        {"energy[k_B.T_0]", energy, "%.17g"},
+        {"energy_error[k_B.T_0]", result->curve_error[UNKNOWN_BONDED] + part.first, "%.3g"},
+        {"energy[kJ/mol]", beside, NULL}};
+    CHECK(beside ? STATUS_OK : STATUS_NO_MEMORY);
+    curve_file(unknowns, UNKNOWN_BONDED, group, ".tsv", folder, path);
+    CHECK(mf_data_table_write_in(path, &fit->scene.units, NULL, columns, unit > 0 ? 4 : 3,
+                                 part.points));
+done:
+    mf_memory_free(beside);
+    return status;
 }
 
 enum status mf_fit_output_curves(const struct fit_file *fit, const struct unknowns *unknowns,
@@ -154,6 +181,8 @@ enum status mf_fit_output_curves(const struct fit_file *fit, const struct unknow
             TRY(write_flat(fit, kind, n, unknowns, result, folder));
     if (result->curve[UNKNOWN_POTENTIAL])
         TRY(write_potentials(fit, unknowns, result, folder));
+    for (size_t n = 0; result->curve[UNKNOWN_BONDED] && n < unknowns->potential.groups; n++)
+        TRY(write_group(fit, unknowns, result, n, folder));
     for (int kind = 0; kind < UNKNOWNS; kind++)
         if (unknown_is_omega(kind) && result->curve[kind])
             TRY(write_omega(fit, unknowns, result, kind, folder));
@@ -290,6 +319,38 @@ done:
     return status;
 }
 
+/// p of a group beside its target: bond_lengths_backbone.tsv.
+static enum status write_distribution(const struct fit_file *fit,
+                                      const struct target_groups *groups, size_t g,
+                                      const struct observed *observed,
+                                      const struct run_folder *folder) {
+    enum status status = STATUS_OK;
+    static const char *const words[4] = {"target", "target_error", "result", "result_error"};
+    const int kind = mf_bonded_distribution_kind(groups->order);
+    const struct observable_target *about = mf_observable_kind(kind).target;
+    const struct bonded_bins *bins = &groups->member[g].bins;
+    const size_t first = groups->first[g];
+    const double *const values[4] = {groups->value + first, groups->error + first,
+                                     observed->value[kind] + first, observed->error[kind] + first};
+    double *q = NULL;
+    char path[OUTPUT_PATH_SIZE], name[128], names[4][64];
+    struct data_column columns[5];
+    NEW_ARRAY(q, bins->count);
+    for (size_t k = 0; k < bins->count; k++)
+        q[k] = bonded_bins_centre(bins, k);
+    columns[0] = (struct data_column){about->argument, q, NULL};
+    for (int k = 0; k < 4; k++) {
+        snprintf(names[k], sizeof names[k], "%s[%s]", words[k], about->unit);
+        columns[1 + k] = (struct data_column){names[k], values[k], k % 2 ? "%.3g" : "%.8g"};
+    }
+    snprintf(name, sizeof name, "%s_%s.tsv", about->name, groups->name[g]);
+    mf_run_folder_file(folder, name, path);
+    CHECK(mf_data_table_write_in(path, &fit->scene.units, NULL, columns, 5, bins->count));
+done:
+    mf_memory_free(q);
+    return status;
+}
+
 /// configuration.tsv: where the first simulation of the verification ended, as a placement file
 /// with which a scene or another program can begin.
 static enum status write_configuration(const struct fit_file *fit,
@@ -321,6 +382,10 @@ enum status mf_fit_output_observables(const struct fit_file *fit, const struct f
         TRY(write_rdf(fit, observed, pair, folder));
     if (files->given[TARGET_ETD])
         TRY(write_etd(fit, observed, folder));
+    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+        for (size_t g = 0; g < files->groups[order].groups; g++)
+            if (files->groups[order].member[g].bins.count > 0)
+                TRY(write_distribution(fit, &files->groups[order], g, observed, folder));
     for (int kind = 0; kind < TARGETS; kind++)
         if (files->curve[kind].points > 0)
             TRY(write_curve(fit, kind, observed, folder));

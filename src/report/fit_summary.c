@@ -14,10 +14,9 @@ struct fit_truth mf_fit_output_truth(const struct fit_file *fit, const struct un
     const struct curve *curve =
         mf_scene_law_curve(&fit->unknown[UNKNOWN_POTENTIAL].truth, (int)pair);
     double count = 0, squares = 0, with_ramp = 0, ramp_squares = 0;
-    for (size_t n = 0; n < grid->known; n++) {
+    for (size_t n = 0; n < grid->pairs_known; n++) {
         const size_t point = grid->known_point[n];
-        if (point / (grid->bins + 1) != pair ||
-            !mf_potential_grid_well_known(&fit->problem, grid->known_bin[n]))
+        if (point / (grid->bins + 1) != pair || !grid->well_known[n])
             continue;
         const double difference = phi[point] - mf_curve_value(curve, grid->r[point]);
         const double ramp = mf_potential_grid_ramp(grid, point);
@@ -258,7 +257,8 @@ static void put_kirkwood_buff(struct json_writer *writer, const struct fit_file 
     const struct rdf_bins *bins = &fit->files.rdf[0].bins;
     const size_t count = (size_t)fit->scene.setup.placement.count;
     if (!fit->files.given[TARGET_RDF] || box->dimensions != 3 ||
-        composition_is_mixed(&fit->scene.setup.composition))
+        composition_is_mixed(&fit->scene.setup.composition) ||
+        scene_has_molecules(&fit->scene.molecules))
         return;
     const struct kirkwood_buff target =
         mf_kirkwood_buff_integrate(bins, fit->files.rdf_g, fit->files.rdf_error, box, count);

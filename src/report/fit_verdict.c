@@ -41,6 +41,17 @@ bool mf_fit_verdict_contradicts(const struct verification *verification, bool pr
             bar * found->pressure, unit, bar * pressure->rms, bar * pressure->noise);
         return true;
     }
+    for (enum topology_order order = 0; order < TOPOLOGY_ORDERS; order++) {
+        const int kind = mf_bonded_distribution_kind(order);
+        const struct target_distance *bonded = &verification->distance[kind];
+        if (!(bonded->rms > noise_margin * bonded->noise))
+            continue;
+        snprintf(reason, INVERSE_REASON_SIZE,
+                 "the fit's samples agree with %s, its verification is off by %.2g (%.2g by "
+                 "statistics): its time step may be too long",
+                 mf_targets_name(kind), bonded->rms, bonded->noise);
+        return true;
+    }
     if (!(rdf->rms > noise_margin * rdf->noise))
         return false;
     snprintf(reason, INVERSE_REASON_SIZE,

@@ -171,27 +171,27 @@ static enum status write_curve(const struct history *history, const struct unkno
                                const struct run_folder *folder) {
     enum { NAME_SIZE = 48 };
     enum status status = STATUS_OK;
-    const size_t points = history->points[kind] / mf_unknowns_curve_count(unknowns, kind);
+    const struct unknowns_part part = mf_unknowns_part(unknowns, kind, curve);
     struct data_column *columns = NULL;
     char *names = NULL;
     char path[OUTPUT_PATH_SIZE], name[UNKNOWNS_NAME_SIZE], file[UNKNOWNS_NAME_SIZE + 16];
     NEW_ARRAY(columns, history->iterations + 1);
     NEW_ARRAY(names, history->iterations * NAME_SIZE);
-    columns[0] =
-        (struct data_column){"r[lambda]", mf_unknowns_r(unknowns, kind) + curve * points, NULL};
+    columns[0] = (struct data_column){mf_unknowns_heading(unknowns, kind, curve),
+                                      mf_unknowns_r(unknowns, kind) + part.first, NULL};
     for (size_t k = 0; k < history->iterations; k++) {
         char iteration[24];
         snprintf(iteration, sizeof iteration, "%zu", k);
         mf_data_table_name(units, iteration, mf_unknowns_unit(kind), names + k * NAME_SIZE,
                            NAME_SIZE);
         columns[k + 1] = (struct data_column){
-            names + k * NAME_SIZE,
-            history->curve[kind] + k * history->points[kind] + curve * points, "%.6g"};
+            names + k * NAME_SIZE, history->curve[kind] + k * history->points[kind] + part.first,
+            "%.6g"};
     }
     mf_unknowns_curve_name(unknowns, kind, curve, name);
     snprintf(file, sizeof file, "%s_history.tsv", name);
     mf_run_folder_file(folder, file, path);
-    CHECK(mf_data_table_write_in(path, units, NULL, columns, history->iterations + 1, points));
+    CHECK(mf_data_table_write_in(path, units, NULL, columns, history->iterations + 1, part.points));
 done:
     mf_memory_free(columns);
     mf_memory_free(names);

@@ -136,7 +136,8 @@ static enum status read_and_create(struct run *run, const char *file,
                                    const struct run_options *options) {
     TRY(mf_fit_file_read(&run->fit, file, options));
     TRY(mf_run_folder_open(&run->folder, RUN_FIT, file, &run->fit.inputs, options));
-    TRY(mf_target_files_normalise(&run->fit.files, &run->fit.scene.setup.box));
+    TRY(mf_target_files_normalise(&run->fit.files, &run->fit.scene.setup.box,
+                                  scene_has_molecules(&run->fit.scene.molecules)));
     const enum status status = create(run);
     return status == STATUS_OK
                ? STATUS_OK

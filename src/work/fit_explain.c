@@ -111,7 +111,8 @@ enum status mf_fit_explain(const char *file, const struct run_options *options, 
     struct unknowns unknowns = {0};
     struct unknowns_laws laws = {0};
     CHECK(mf_fit_file_read(&fit, file, options));
-    CHECK(mf_target_files_normalise(&fit.files, &fit.scene.setup.box));
+    CHECK(mf_target_files_normalise(&fit.files, &fit.scene.setup.box,
+                                    scene_has_molecules(&fit.scene.molecules)));
     status = mf_unknowns_init(&unknowns, &fit.problem);
     if (status == STATUS_OK)
         status = try_method(&fit);

@@ -49,7 +49,7 @@ static enum status read_file(struct run *run, const char *file, const struct run
     mf_json_fields(&root, mf_heading_fields, &run->heading);
     status = mf_json_collect_files(document, &run->inputs);
     if (status == STATUS_OK)
-        status = mf_scene_read(&run->scene, &root, SCENE_FITS_NOTHING);
+        status = mf_scene_read(&run->scene, &root, SCENE_FITS_NOTHING, NULL);
     struct json_object measure = mf_json_child(&root, "measure", false);
     mf_json_fields(&measure, mf_measure_plan_fields, &run->plan);
     if (measure.item)

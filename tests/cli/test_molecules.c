@@ -288,22 +288,6 @@ static void test_what_looks_wrong_is_warned_of(void **state) {
     assert_contains(result.err, "molecules.ring: no bonds join the beads of the angle 1-2-3");
 }
 
-static void test_a_fit_has_no_molecules_yet(void **state) {
-    static struct run_program_result result;
-    static const char *const words[] = {
-        "scene.molecules: unknown key: a fit finds the potentials of single beads alone so far",
-        NULL};
-    small_inputs_write(*state, "target.tsv", small_inputs_target, NULL, NULL);
-    small_inputs_write(
-        *state, "run.json",
-        "{\"target\": {\"rdf\": {\"file\": \"target.tsv\"}}, \"scene\": {\"box\": "
-        "[5, 5, 5], \"molecules\": {\"dimer\": {\"count\": 50, \"chain\": {\"type\": \"A\", "
-        "\"length\": 2, \"bond\": \"spring\"}}}, \"bonds\": {" SPRING "}}}\n",
-        NULL, NULL);
-    RUN_PROGRAM(&result, "fit", "run.json", "-o", "bad");
-    run_program_assert_refused(&result, ".", "fit", 1, words);
-}
-
 #define TEST(test)                                                                                 \
     cmocka_unit_test_setup_teardown(test, small_inputs_enter_without_gnuplot, small_inputs_leave)
 
@@ -317,7 +301,6 @@ int main(void) {
         TEST(test_molecules_that_cannot_be_are_refused_in_one_line),
         TEST(test_tables_of_dihedrals_must_close),
         TEST(test_what_looks_wrong_is_warned_of),
-        TEST(test_a_fit_has_no_molecules_yet),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -78,7 +78,7 @@ static void read_scene(const char *file) {
     if (mf_json_open(&document, file) != STATUS_OK)
         return;
     struct json_object root = mf_json_root(document);
-    const enum status status = mf_scene_read(&scene, &root, SCENE_FITS_NOTHING);
+    const enum status status = mf_scene_read(&scene, &root, SCENE_FITS_NOTHING, NULL);
     mf_json_finish(&root);
     if (mf_json_close(document, status) == STATUS_OK && scene.setup.integrator == NULL)
         abort();

@@ -38,8 +38,8 @@ static enum status read(void **state, const char *members, struct target_files *
     assert_ok(
         mf_json_open(&document, temporary_folder_write(*state, "a.json", text, (size_t)length)));
     struct json_object root = mf_json_root(document);
-    assert_ok(mf_target_files_read(targets, &root, &box,
-                                   &(struct composition){.types = 1, .count = {100}}, &units));
+    assert_ok(mf_target_files_read(
+        targets, &root, &box, &(struct composition){.types = 1, .count = {100}}, NULL, &units));
     mf_json_finish(&root);
     return mf_json_close(document, STATUS_OK);
 }

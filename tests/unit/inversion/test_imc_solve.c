@@ -277,7 +277,9 @@ static void test_imc_solve_stays_bounded_when_the_excess_lies_in_an_unseen_direc
 static void test_imc_solve_leaves_the_ramp_free_when_it_is_smooth(void **state) {
     (void)state;
     gsl_matrix *prior = gsl_matrix_alloc(2 * SIZE - 1, SIZE);
-    mf_imc_solve_prior(spacing, (const size_t[]){SIZE}, 1, prior);
+    mf_imc_solve_prior(
+        &(struct imc_system){.spacing = spacing, .block = (const size_t[]){SIZE}, .blocks = 1},
+        prior);
     for (size_t row = 0; row < SIZE - 1; row++) {
         double sum = 0;
         for (size_t k = 0; k < SIZE; k++)

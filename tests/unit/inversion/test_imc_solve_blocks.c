@@ -97,7 +97,8 @@ static void test_imc_solve_prior_leaves_the_ramp_of_each_block_free(void **state
     (void)state;
     gsl_matrix *prior = gsl_matrix_alloc(2 * SIZE - 1, SIZE);
     assert_non_null(prior);
-    mf_imc_solve_prior(spacing, blocks, 2, prior);
+    mf_imc_solve_prior(&(struct imc_system){.spacing = spacing, .block = blocks, .blocks = 2},
+                       prior);
     for (int ramp_of = 0; ramp_of < 2; ramp_of++)
         for (size_t row = 0; row < SIZE - 1; row++) {
             double sum = 0, size = 0;
@@ -139,12 +140,44 @@ static void test_inversion_band_of_two_blocks_is_each_of_them_alone(void **state
     assert_close(directions, sum, 1e-9);
 }
 
+/// A straight line has no bend with free ends, a constant none round a circle, and a wave round a
+/// circle the same wherever it begins.
+static void test_imc_solve_prior_of_groups_is_free_at_the_ends(void **state) {
+    enum { FREE = 7, ROUND = 9, ALL = FREE + ROUND };
+    (void)state;
+    const struct imc_shape shapes[] = {{.bend = 2}, {.bend = 3, .periodic = true}};
+    const struct imc_system system = {
+        .spacing = 0.1, .block = (const size_t[]){FREE, ROUND}, .blocks = 2, .shape = shapes};
+    gsl_matrix *rows = gsl_matrix_alloc(2 * ALL - 1, ALL);
+    mf_imc_solve_prior(&system, rows);
+    for (size_t row = 0; row < ALL - 1; row++) {
+        double line = 0, constant = 0, parabola = 0;
+        for (size_t k = 0; k < FREE; k++) {
+            line += gsl_matrix_get(rows, row, k) * (3 + 2 * (double)k);
+            parabola += gsl_matrix_get(rows, row, k) * (double)(k * k);
+        }
+        for (size_t k = FREE; k < ALL; k++)
+            constant += gsl_matrix_get(rows, row, k) * 5;
+        assert_close(line, 0, 1e-12);
+        assert_close(constant, 0, 1e-12);
+        // Of k² the second difference is 2, and a bend over two bins is four times that.
+        assert_close(parabola, row + 2 < FREE ? 8 : 0, 1e-12);
+    }
+    // A row joins the ends of the circle.
+    double seen = 0;
+    for (size_t row = 0; row < ALL - 1; row++)
+        seen += fabs(gsl_matrix_get(rows, row, FREE) * gsl_matrix_get(rows, row, ALL - 1));
+    assert_true(seen > 0);
+    gsl_matrix_free(rows);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_imc_solve_of_two_blocks_is_each_of_them_alone),
         cmocka_unit_test(test_imc_solve_does_not_smooth_from_one_block_into_the_next),
         cmocka_unit_test(test_imc_solve_prior_leaves_the_ramp_of_each_block_free),
         cmocka_unit_test(test_inversion_band_of_two_blocks_is_each_of_them_alone),
+        cmocka_unit_test(test_imc_solve_prior_of_groups_is_free_at_the_ends),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "dynamics/hybrid_step.h"
+
+#include <math.h>
+
+/// The first time step, times ω of the fastest pair that ten k_B T can reach, ω² = 2 Φ''.
+static const double first_share = 0.4, highest = 10;
+
+/// A step goes no further than this share of the cutoff at the thermal velocity, however soft.
+static const double longest_flight = 0.05;
+
+static double longest_step(const struct table *potential, double temperature) {
+    return longest_flight * potential->cutoff / sqrt(temperature);
+}
+
+/// 2 Φ'' where the curve of a pair type bends most, as far up as ten k_B T reach.
+static double fastest_of(const struct table *potential, int pair, double temperature) {
+    const double spacing = 1 / mf_table_inverse_spacing(potential, pair);
+    double lowest = 0, fastest = 0, value, curvature;
+    for (int k = 0; k < TABLE_INTERVALS; k++) {
+        mf_table_evaluate_pair(potential, pair, k * spacing, &value, NULL, NULL);
+        lowest = fmin(lowest, value);
+    }
+    for (int k = 0; k < TABLE_INTERVALS; k++) {
+        mf_table_evaluate_pair(potential, pair, (k + 0.5) * spacing, &value, NULL, &curvature);
+        if (value < lowest + highest * temperature)
+            fastest = fmax(fastest, 2 * curvature);
+    }
+    return fastest;
+}
+
+static double first_of_pairs(const struct table *potential, double temperature) {
+    double fastest = 0;
+    for (int curve = 0; curve < potential->curves; curve++)
+        fastest = fmax(fastest, fastest_of(potential, curve, temperature));
+    return fmin(first_share / sqrt(fastest), longest_step(potential, temperature));
+}
+
+// Molecules ---------------------------------------------------------------------------------------
+
+/// Half the width of the well about the least U, up to k_B T/2 above it: the thermal width of a
+/// parabola.
+static double width_of(const struct bonded_curve *curve, double low, double high,
+                       double temperature) {
+    enum { PLACES = 4000 };
+    const double spacing = (high - low) / PLACES, rest = mf_bonded_rest(curve);
+    double least, energy, from = rest, to = rest;
+    mf_bonded_value(curve, rest, &least, NULL);
+    for (energy = least; to < high && energy < least + 0.5 * temperature; to += spacing)
+        mf_bonded_value(curve, to + spacing, &energy, NULL);
+    for (energy = least; from > low && energy < least + 0.5 * temperature; from -= spacing)
+        mf_bonded_value(curve, from - spacing, &energy, NULL);
+    return fmax(0.5 * (to - from), spacing);
+}
+
+/// Of mass 1, the beads of a bond oscillate with ω² = 2 U''. To bend an angle between two bonds of
+/// length l moves three beads: ω² = 6 U''/l² where it is straight, and less else.
+static double fastest_of_molecules(const struct molecules *molecules, double temperature) {
+    static const double bend = 6;
+    double length = INFINITY, fastest = 0;
+    for (int g = 0; g < molecules->groups[TOPOLOGY_BOND]; g++)
+        length = fmin(length, mf_bonded_rest(&molecules->group[TOPOLOGY_BOND][g].curve));
+    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+        for (int g = 0; g < molecules->groups[order]; g++) {
+            const struct bonded_curve *curve = &molecules->group[order][g].curve;
+            const bool bond = order == TOPOLOGY_BOND;
+            const double low = order == TOPOLOGY_DIHEDRAL ? -M_PI : 0;
+            const double high =
+                bond ? fmin(2 * mf_bonded_rest(curve), mf_bonded_longest(curve)) : M_PI;
+            const double width = width_of(curve, low, high, temperature);
+            fastest = fmax(fastest,
+                           (bond ? 2 : bend / (length * length)) * temperature / (width * width));
+        }
+    return fastest;
+}
+
+struct hybrid_step mf_hybrid_step_find(const struct table *potential,
+                                       const struct molecules *molecules, double temperature) {
+    static const double share = 0.15; // of many oscillators, all of which must be taken at once
+    enum { MOST = 10 };               // half a period is 20 of them
+    struct hybrid_step step = {.first = INFINITY, .longest = INFINITY, .inner = 1};
+    if (potential) {
+        step.first = first_of_pairs(potential, temperature);
+        step.longest = longest_step(potential, temperature);
+    }
+    if (molecules == NULL)
+        return step;
+    const double fast = share / sqrt(fastest_of_molecules(molecules, temperature));
+    step.inner = (int64_t)fmax(1, fmin(MOST, ceil(step.first / fast)));
+    step.first = fmin(step.first, (double)step.inner * fast);
+    return step;
+}

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file Targets of one kind for the groups of a scene: {"backbone": {"file": …}, …}.
+#pragma once
+
+#include "input/target_bonded.h"
+#include "io/json_write.h"
+
+/// By the numbers of the groups.
+struct target_groups {
+    enum topology_order order;
+    size_t groups; ///< of the scene; 0: the target is not given
+    char name[MOLECULES_MOST_GROUPS][TOPOLOGY_NAME_SIZE];
+    struct target_bonded *member;            ///< shape [groups]
+    size_t first[MOLECULES_MOST_GROUPS + 1]; ///< value of each among those of all
+    double *value, *error;                   ///< of all members, one behind the other
+};
+
+/// Read the object of a kind; `molecules` are those of the scene, or NULL. Faults go to the
+/// document. Fails: NO_MEMORY.
+enum status mf_target_groups_read(struct target_groups *groups, enum topology_order order,
+                                  struct json_object *object, const struct molecules *molecules,
+                                  const struct units *units, int dimensions) MUST_USE;
+void mf_target_groups_clear(struct target_groups *groups);
+void mf_target_groups_write(const struct target_groups *groups, struct json_writer *writer);
+
+/// What the observable is to measure for them.
+struct bonded_settings mf_target_groups_settings(const struct target_groups *groups);

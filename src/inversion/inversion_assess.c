@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What the samples of an inversion say beside its targets.
+#include "inversion/inversion.h"
+
+#include <math.h>
+
+/// The error of what is near to its target, in units of its noise.
+static const double near_noises = 2;
+
+double mf_inversion_g(const struct inversion *inversion, size_t bin) {
+    return inversion->replicas.counts.mean[bin] / inversion->ideal[bin];
+}
+
+double mf_inversion_target_g(const struct inversion *inversion, size_t bin) {
+    return inversion->target_counts[bin] / inversion->ideal[bin];
+}
+
+/// Of one section; returns its χ².
+static double assess(struct inversion *inversion, struct inversion_section *section) {
+    const struct comoments *counts = &inversion->replicas.counts;
+    const size_t *known_bin = inversion->grid.known_bin;
+    section->inefficiency = mf_replicas_inefficiency(
+        &inversion->replicas, inversion->ideal, known_bin + section->known, section->known_count);
+    const double independent = counts->count / section->inefficiency;
+    const double bins = (double)section->bins;
+    double sum = 0, own = 0, both = 0, misfit = 0;
+    for (size_t n = section->bin; n < section->bin + section->bins; n++)
+        sum += pow((counts->mean[n] - inversion->target_counts[n]) / inversion->unit[n], 2);
+    for (size_t a = section->known; a < section->known + section->known_count; a++) {
+        const size_t bin = known_bin[a];
+        const double unit = inversion->unit[bin] * inversion->unit[bin];
+        // An empty bin still has the uncertainty of one count.
+        const double sampled =
+            fmax(mf_comoments_covariance(counts, bin, bin), 1 / counts->count) / independent;
+        inversion->excess[a] = counts->mean[bin] - inversion->target_counts[bin];
+        inversion->variance[a] = sampled + pow(inversion->target_error[bin], 2);
+        misfit += inversion->excess[a] * inversion->excess[a] / inversion->variance[a];
+        own += sampled / unit;
+        both += inversion->variance[a] / unit;
+    }
+    inversion->distance[section->kind] =
+        (struct target_distance){.rms = sqrt(sum / bins), .noise = sqrt(both / bins)};
+    section->rms = sqrt(sum / bins) / section->peak;
+    section->own_noise = sqrt(own / bins) / section->peak;
+    return misfit;
+}
+
+void mf_inversion_assess(struct inversion *inversion) {
+    const struct inversion_section *first = &inversion->section[0];
+    double misfit = 0;
+    inversion->own_noise = 0;
+    for (int k = 0; k < inversion->sections; k++) {
+        misfit += assess(inversion, &inversion->section[k]);
+        inversion->own_noise = fmax(inversion->own_noise, inversion->section[k].own_noise);
+    }
+    inversion->inefficiency = first->inefficiency;
+    inversion->disagreement = mf_replicas_disagreement(
+        &inversion->replicas, inversion->ideal, inversion->grid.known_bin, first->known_count);
+    inversion->misfit = misfit / (double)inversion->grid.known;
+}
+
+bool mf_inversion_is_near(const struct inversion *inversion) {
+    for (int k = 0; k < inversion->sections; k++) {
+        const struct target_distance *distance = &inversion->distance[inversion->section[k].kind];
+        if (!(distance->rms < near_noises * distance->noise))
+            return false;
+    }
+    return true;
+}

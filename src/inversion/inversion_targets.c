@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What an inversion counts, and how much of it its targets ask for.
+#include "inversion/inversion.h"
+
+#include "observe/finite_size.h"
+
+#include <math.h>
+
+/// S of the pairs if g were 1, and of their target.
+static void count_pairs(struct inversion *inversion) {
+    const struct inverse_problem *problem = inversion->problem;
+    const struct simulation_setup *scene = &problem->scene;
+    const struct rdf_bins *bins = &problem->targets.bins;
+    const struct target *target = &problem->targets.target[TARGET_RDF];
+    const double from = (double)mf_composition_particles(&scene->composition);
+    const double to = (double)mf_composition_particles(&inversion->composition);
+    for (size_t first = 0; first < inversion->grid.pair_bins; first += bins->count) {
+        const int pair = (int)(first / bins->count);
+        const double factor =
+            mf_finite_size_factor_of(bins, target->value + first, target->error + first,
+                                     &scene->box, &scene->composition, pair, from, to);
+        for (size_t k = 0; k < bins->count; k++) {
+            const size_t bin = first + k;
+            const double ideal =
+                mf_rdf_ideal_pairs_of(bins, k, &inversion->box, &inversion->composition, pair);
+            inversion->ideal[bin] = inversion->unit[bin] = ideal;
+            inversion->target_counts[bin] = ideal * target->value[bin] * factor;
+            inversion->target_error[bin] = ideal * target->error[bin];
+            inversion->least[bin] = problem->core_threshold;
+        }
+    }
+}
+
+static double peak_of(const struct bonded_grid *group) {
+    double peak = 0;
+    for (size_t k = 0; k < group->unknown->bins.count; k++)
+        peak = fmax(peak, group->target[k]);
+    return peak;
+}
+
+/// The same of a group; `ideal` is S where p is its mean over the known bins.
+static void count_group(struct inversion *inversion, const struct potential_group *group) {
+    const struct inverse_problem *problem = inversion->problem;
+    const struct simulation_setup *scene = &problem->scene;
+    const struct bonded_unknown *unknown = group->own.unknown;
+    const double *error =
+        problem->targets.target[mf_bonded_distribution_kind(unknown->order)].error + unknown->first;
+    const double mean = mf_bonded_grid_mean(&group->own), peak = peak_of(&group->own);
+    const double terms = (double)mf_bonded_distribution_terms(
+        mf_molecules_find(scene->interaction, scene->interactions), unknown->order, unknown->group);
+    const double unit = unknown->bins.width * terms;
+    for (size_t k = 0; k < unknown->bins.count; k++) {
+        const size_t bin = group->bin + k;
+        inversion->unit[bin] = unit;
+        inversion->ideal[bin] = unit * mean;
+        inversion->target_counts[bin] = unit * group->own.target[k];
+        inversion->target_error[bin] = unit * error[k];
+        inversion->least[bin] = mf_bonded_grid_seen * peak / mean;
+    }
+}
+
+/// The section of a kind, behind those before: the last one, or a new one.
+static struct inversion_section *find_section(struct inversion *inversion, int kind) {
+    struct inversion_section *section = &inversion->section[inversion->sections];
+    if (inversion->sections > 0) {
+        const struct inversion_section *last = section - 1;
+        if (last->kind == kind)
+            return section - 1;
+        section->bin = last->bin + last->bins;
+        section->known = last->known + last->known_count;
+    }
+    section->kind = kind;
+    inversion->sections++;
+    return section;
+}
+
+/// The groups stand in the order of their kinds. U may bend by k_B T within a tenth of the range
+/// that is known.
+static void enter_group(struct inversion *inversion, size_t g) {
+    static const double narrow = 0.1;
+    const struct bonded_grid *own = &inversion->grid.group[g].own;
+    const struct bonded_unknown *unknown = own->unknown;
+    struct inversion_section *section =
+        find_section(inversion, mf_bonded_distribution_kind(unknown->order));
+    section->bins += unknown->bins.count;
+    section->known_count += own->known;
+    section->peak = fmax(section->peak, peak_of(own));
+    inversion->groups[g] = (struct sampler_group){unknown->order, unknown->group, unknown->bins};
+    inversion->shape[inversion->grid.pairs + g] =
+        (struct imc_shape){.bend = fmax(1, narrow * (double)own->known),
+                           .periodic = unknown->order == TOPOLOGY_DIHEDRAL};
+}
+
+void mf_inversion_count_targets(struct inversion *inversion) {
+    const struct potential_grid *grid = &inversion->grid;
+    if (grid->pairs > 0) {
+        struct inversion_section *section = find_section(inversion, TARGET_RDF);
+        section->bins = grid->pair_bins;
+        section->known_count = grid->pairs_known;
+        section->peak = 1;
+    }
+    count_pairs(inversion);
+    for (size_t g = 0; g < grid->groups; g++) {
+        count_group(inversion, &grid->group[g]);
+        enter_group(inversion, g);
+    }
+}

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file How bond lengths, angles and dihedrals of each group are distributed: p(q), ∫ p dq = 1,
+/// and p over its Jacobian, which is exp(−U/k_B T) up to a factor where a term stands alone:
+///   r^(d−1) of lengths, (sin θ)^(d−2) of angles, 1 of dihedrals
+/// (V. Rühle et al., J. Chem. Theory Comput. 5, 3211 (2009), eqs. 5 to 8). Jacobians are integrated
+/// over the bins.
+#pragma once
+
+#include "forces/molecules.h"
+#include "observe/observable.h"
+
+/// Equal bins of lengths [λ] or of angles [degrees].
+struct bonded_bins {
+    double low, width;
+    size_t count;
+};
+
+static inline double bonded_bins_centre(const struct bonded_bins *bins, size_t k) {
+    return bins->low + ((double)k + 0.5) * bins->width;
+}
+
+/// Settings of the observables bond_lengths, bond_angles and dihedral_angles.
+struct bonded_settings {
+    int64_t bins; ///< of all groups; 0: those of `target`
+    /// Of each group of a target; a count of 0: not measured. The values of the target are those of
+    /// these groups, one behind the other.
+    struct bonded_bins target[MOLECULES_MOST_GROUPS];
+};
+
+/// The observable of an order of terms, and the number of its target among all kinds.
+const struct observable *mf_bonded_distribution_of(enum topology_order order);
+int mf_bonded_distribution_kind(enum topology_order order);
+
+/// The order of terms that a kind of targets is about; TOPOLOGY_ORDERS if it is about none.
+enum topology_order mf_bonded_distribution_order(int kind);
+
+/// Terms of a group in all molecules.
+size_t mf_bonded_distribution_terms(const struct molecules *molecules, enum topology_order order,
+                                    int group);
+
+/// Add the terms of a group to the counts of the bins that they are in, shape [bins->count]. What
+/// is in no bin is not counted; dihedrals go round. The particles must be joined.
+void mf_bonded_distribution_count(const struct molecules *molecules, enum topology_order order,
+                                  int group, const struct bonded_bins *bins,
+                                  const struct particles *particles, double *counts);
+
+/// ∫ of the Jacobian over the part of a bin in which q can be [λ^d or rad]. Tested:
+/// test_bonded_distribution.
+double mf_bonded_distribution_jacobian(enum topology_order order, int dimensions,
+                                       const struct bonded_bins *bins, size_t bin);
+
+extern const struct observable mf_bonded_lengths, mf_bonded_angles, mf_bonded_dihedrals;

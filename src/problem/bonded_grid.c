@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Tested: test_bonded_grid.
+#include "problem/bonded_grid.h"
+
+#include "base/memory.h"
+#include "curves/bonded_table.h"
+
+#include <math.h>
+
+const double mf_bonded_grid_seen = 1e-3;
+
+enum { FEWEST_BINS = 5 };
+
+/// The slope at an end is that of the chord to where U is this much lower [k_B T], that noise may
+/// not turn it, and at least so much over the known range.
+static const double chord = 2, least_rise = 10;
+
+static bool is_periodic(const struct bonded_grid *grid) {
+    return grid->unknown->order == TOPOLOGY_DIHEDRAL;
+}
+
+static double largest_of(const struct bonded_grid *grid) {
+    double largest = 0;
+    for (size_t k = 0; k < grid->unknown->bins.count; k++)
+        largest = fmax(largest, grid->target[k]);
+    return largest;
+}
+
+/// Whether q can be the centre of a bin.
+static bool is_possible(const struct bonded_grid *grid, double q) {
+    static const double rounding = 1e-6;
+    return grid->unknown->order == TOPOLOGY_DIHEDRAL ||
+           (q > 0 && (grid->unknown->order == TOPOLOGY_BOND || q <= 180 * (1 + rounding)));
+}
+
+static void find_known(struct bonded_grid *grid) {
+    const struct bonded_bins *bins = &grid->unknown->bins;
+    const double seen = mf_bonded_grid_seen * largest_of(grid);
+    size_t end = bins->count;
+    if (is_periodic(grid)) {
+        grid->known = bins->count;
+        return;
+    }
+    while (grid->first < end && (grid->target[grid->first] <= seen ||
+                                 !is_possible(grid, bonded_bins_centre(bins, grid->first))))
+        grid->first++;
+    while (end > grid->first &&
+           (grid->target[end - 1] <= seen || !is_possible(grid, bonded_bins_centre(bins, end - 1))))
+        end--;
+    grid->known = end - grid->first;
+}
+
+/// Half of the known range on both sides, as far as q can be.
+static void find_margins(struct bonded_grid *grid) {
+    const struct bonded_bins *bins = &grid->unknown->bins;
+    const size_t most = grid->known / 2 + FEWEST_BINS;
+    size_t above = 0;
+    if (is_periodic(grid)) {
+        grid->points = grid->known + 1;
+        return;
+    }
+    const double low = bonded_bins_centre(bins, grid->first);
+    const double high = bonded_bins_centre(bins, grid->first + grid->known - 1);
+    while (grid->below < most && is_possible(grid, low - (double)(grid->below + 1) * bins->width))
+        grid->below++;
+    while (above < most && is_possible(grid, high + (double)(above + 1) * bins->width))
+        above++;
+    grid->points = grid->below + grid->known + above;
+}
+
+enum status mf_bonded_grid_init(struct bonded_grid *grid, const struct inverse_problem *problem,
+                                const struct bonded_unknown *unknown) {
+    const struct molecules *molecules =
+        mf_molecules_find(problem->scene.interaction, problem->scene.interactions);
+    const char *kind = mf_topology_order_names[unknown->order],
+               *name = molecules->group[unknown->order][unknown->group].name;
+    *grid = (struct bonded_grid){
+        .unknown = unknown,
+        .target = problem->targets.target[mf_bonded_distribution_kind(unknown->order)].value +
+                  unknown->first,
+        .temperature = problem->scene.temperature,
+        .dimensions = problem->scene.box.dimensions};
+    find_known(grid);
+    find_margins(grid);
+    if (is_periodic(grid) &&
+        fabs(unknown->bins.width * (double)unknown->bins.count - 360) > 0.01 * unknown->bins.width)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "the target of the %s \"%s\" has bins over %g degrees, not 360", kind,
+                              name, unknown->bins.width * (double)unknown->bins.count);
+    if (grid->known < FEWEST_BINS)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "the target of the %s \"%s\" has only %zu bins with a p above %g of "
+                              "its peak: narrower bins are needed",
+                              kind, name, grid->known, mf_bonded_grid_seen);
+    return STATUS_OK;
+}
+
+double mf_bonded_grid_place(const struct bonded_grid *grid, size_t point) {
+    const double beyond = (double)point - (double)grid->below;
+    return bonded_bins_centre(&grid->unknown->bins, grid->first) +
+           beyond * grid->unknown->bins.width;
+}
+
+double mf_bonded_grid_mean(const struct bonded_grid *grid) {
+    double sum = 0;
+    for (size_t k = 0; k < grid->known; k++)
+        sum += grid->target[grid->first + k];
+    return sum / (double)grid->known;
+}
+
+void mf_bonded_grid_start(const struct bonded_grid *grid, double *energy) {
+    const struct bonded_unknown *unknown = grid->unknown;
+    // What was not seen is as high as what is hardly seen.
+    const double seen = mf_bonded_grid_seen * largest_of(grid);
+    double least = INFINITY, *known = energy + grid->below;
+    for (size_t k = 0; k < grid->known; k++) {
+        const size_t bin = grid->first + k;
+        const double p = fmax(grid->target[bin], seen);
+        known[k] = -grid->temperature *
+                   log(p / mf_bonded_distribution_jacobian(unknown->order, grid->dimensions,
+                                                           &unknown->bins, bin));
+        least = fmin(least, known[k]);
+    }
+    for (size_t k = 0; k < grid->known; k++)
+        known[k] -= least;
+    mf_bonded_grid_complete(grid, energy);
+}
+
+/// Go on with `count` values beyond an end, by steps of `way`, 1 or −1, through the array.
+static void extend(const struct bonded_grid *grid, double *end, ptrdiff_t way, size_t count,
+                   bool at_bound) {
+    const size_t last = grid->known - 1;
+    size_t lower = 1, lowest = 1;
+    while (lower < last && end[0] - end[-way * (ptrdiff_t)lower] < chord * grid->temperature)
+        lower++;
+    for (size_t k = 1; k <= last; k++)
+        if (end[-way * (ptrdiff_t)k] < end[-way * (ptrdiff_t)lowest])
+            lowest = k;
+    double slope = (end[0] - end[-way * (ptrdiff_t)lower]) / (double)lower, bend = 0;
+    if (!at_bound) {
+        slope = fmax(slope, least_rise * grid->temperature / (double)grid->known);
+        bend = slope / (double)lowest;
+    }
+    for (size_t k = 1; k <= count; k++)
+        end[way * (ptrdiff_t)k] = end[0] + (double)k * (slope + 0.5 * bend * (double)k);
+}
+
+void mf_bonded_grid_complete(const struct bonded_grid *grid, double *energy) {
+    const size_t above = grid->points - grid->below - grid->known;
+    if (is_periodic(grid)) {
+        energy[grid->known] = energy[0];
+        return;
+    }
+    // An angle that can go no further is not held back.
+    extend(grid, energy + grid->below, -1, grid->below, grid->below < FEWEST_BINS);
+    extend(grid, energy + grid->below + grid->known - 1, 1, above, above < FEWEST_BINS);
+}
+
+enum status mf_bonded_grid_curve(const struct bonded_grid *grid, const double *energy,
+                                 struct bonded_curve *curve) {
+    static const struct bonded_law *const tables[TOPOLOGY_ORDERS] = {
+        &mf_bonded_table_bond, &mf_bonded_table_angle, &mf_bonded_table_dihedral};
+    enum status status = STATUS_OK;
+    double *q = NULL;
+    NEW_ARRAY(q, grid->points);
+    for (size_t k = 0; k < grid->points; k++)
+        q[k] = mf_bonded_grid_place(grid, k);
+    CHECK(mf_bonded_create(curve, tables[grid->unknown->order]));
+    CHECK(mf_bonded_table_set_points(curve, q, energy, grid->points));
+done:
+    mf_memory_free(q);
+    return status;
+}

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file The points at which the fitted U(q) of a group of bonds, angles or dihedrals is known.
+///
+/// They are the centres of the target's bins: those from the first to the last in which it is seen,
+/// and some on both sides, where U goes on so that nothing is lost there: as a parabola that rises
+/// from the last slope, as one about its minimum would. Beyond the last point it is a straight line
+/// (curves/bonded_table.h). A dihedral has all bins of the circle, and the first once more.
+#pragma once
+
+#include "problem/inverse.h"
+
+struct bonded_grid {
+    const struct bonded_unknown *unknown; ///< borrowed
+    const double *target;                 ///< p of its bins, shape [unknown->bins.count]; borrowed
+    double temperature;                   ///< [k_B T_0]
+    int dimensions;                       ///< of space
+    size_t first;                         ///< bin of the target that is known first
+    size_t known;                         ///< bins from there on that have a value of their own
+    size_t below;                         ///< points before the first known one
+    size_t points;                        ///< of all
+};
+
+/// The part of the largest p of a target below which its ends are not known.
+extern const double mf_bonded_grid_seen;
+
+/// Fails: BAD_INPUT, naming the group, if hardly any bin is seen, or a dihedral's do not go round.
+enum status mf_bonded_grid_init(struct bonded_grid *grid, const struct inverse_problem *problem,
+                                const struct bonded_unknown *unknown) MUST_USE;
+
+/// q of a point [λ] or [degrees].
+double mf_bonded_grid_place(const struct bonded_grid *grid, size_t point);
+
+/// −k_B T ln(p/J) of the known bins, with J the mean Jacobian of a bin and the least value 0, shape
+/// [points], completed.
+void mf_bonded_grid_start(const struct bonded_grid *grid, double *energy);
+
+/// Complete U, shape [points], from its known values.
+void mf_bonded_grid_complete(const struct bonded_grid *grid, double *energy);
+
+/// The curve of completed values, to be cleared with mf_bonded_clear. Fails: NO_MEMORY.
+enum status mf_bonded_grid_curve(const struct bonded_grid *grid, const double *energy,
+                                 struct bonded_curve *curve) MUST_USE;
+
+/// Mean of p over the known bins.
+double mf_bonded_grid_mean(const struct bonded_grid *grid);

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Fits of molecules from outside: all potentials of a three-bead chain at once from what a
+// simulation of known ones has measured, the same bits again, and files that cannot be right.
+#include "shared/is_close.h"
+#include "shared/results.h"
+#include "shared/run_program.h"
+#include "shared/small_inputs.h"
+#include "shared/testing.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#define MOLECULES                                                                                  \
+    "\"molecules\": {\"trimer\": {\"count\": 80, \"chain\": {\"beads\": [\"A\", \"B\", \"A\"],\n"  \
+    "  \"bond\": \"backbone\", \"angle\": \"bend\"}}}"
+#define FRICTION "\"dissipative\": {\"law\": \"power\", \"sigma\": 3}"
+
+/// The truth.
+static const char scene[] =
+    "{\"seed\": 11, \"box\": [4.4, 4.4, 4.4], \"time_step\": 0.005,\n"
+    "\"bonds\": {\"backbone\": {\"law\": \"harmonic\", \"k\": 100, \"length\": 0.6}},\n"
+    "\"angles\": {\"bend\": {\"law\": \"harmonic\", \"k\": 12, \"angle\": 110}},\n" MOLECULES ",\n"
+    "\"conservative\": {\"A-A\": {\"law\": \"soft-repulsion\", \"a\": 20},\n"
+    "  \"A-B\": {\"law\": \"soft-repulsion\", \"a\": 12},\n"
+    "  \"B-B\": {\"law\": \"soft-repulsion\", \"a\": 25}},\n" FRICTION ",\n"
+    "\"rdf\": {\"range\": 1.2, \"bins\": 24}, \"bond_lengths\": {\"bins\": 60},\n"
+    "\"bond_angles\": {\"bins\": 45},\n"
+    "\"measure\": {\"equilibration\": 2000, \"samples\": 400, \"every\": 25}}\n";
+
+static const char run[] =
+    "{\"seed\": 2, \"target\": {\"rdf\": {\"A-A\": {\"file\": \"truth/rdf_A-A.tsv\"},\n"
+    "  \"A-B\": {\"file\": \"truth/rdf_A-B.tsv\"}, \"B-B\": {\"file\": \"truth/rdf_B-B.tsv\"}},\n"
+    " \"bond_lengths\": {\"backbone\": {\"file\": \"truth/bond_lengths.tsv\"}},\n"
+    " \"bond_angles\": {\"bend\": {\"file\": \"truth/bond_angles.tsv\"}}},\n"
+    "\"scene\": {\"box\": [4.4, 4.4, 4.4], \"time_step\": 0.005,\n" MOLECULES ", " FRICTION "},\n"
+    "\"method\": {\"name\": \"imc\", \"replicas\": 2, \"equilibration\": 40, \"samples\": 60,\n"
+    "  \"iterations\": 4, \"precision\": 0.02},\n"
+    "\"verification\": {\"replicas\": 2, \"equilibration\": 500, \"samples\": 60, \"every\": "
+    "25}}\n";
+
+static int enter(void **state) {
+    static struct run_program_result result;
+    if (small_inputs_enter_without_gnuplot(state) != 0)
+        return -1;
+    small_inputs_write(*state, "scene.json", scene, NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "truth");
+    run_program_assert_code(&result, 0);
+    return 0;
+}
+
+static const char *const tables[] = {"potential_A-A.tsv",
+                                     "potential_A-B.tsv",
+                                     "bonds_backbone.tsv",
+                                     "angles_bend.tsv",
+                                     "bonds_backbone_history.tsv",
+                                     "bond_lengths_backbone.tsv",
+                                     "bond_angles_bend.tsv",
+                                     "history.tsv",
+                                     NULL};
+
+/// Threads, an interruption and the written file change no bits.
+static void test_fit_molecules_again_with_the_same_bits(void **state) {
+    static struct run_program_result result;
+    small_inputs_write(*state, "run.json", run, NULL, NULL);
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "one", "--threads", "1");
+    assert_true(result.code == 0 || result.code == 1);
+    RUN_PROGRAM(&result, "fit", "one/used.json", "-o", "two", "--threads", "2");
+    assert_true(result.code == 0 || result.code == 1);
+    run_program(&result,
+                &(struct run_program_how){.interrupt_after = 0.3, .interrupt_from_start = false},
+                (const char *const[]){"fit", "run.json", "-o", "three", NULL});
+    assert_true(result.code == 130);
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "three", "--resume");
+    assert_true(result.code == 0 || result.code == 1);
+    results_assert_same("one", "two", tables);
+    results_assert_same("one", "three", tables);
+}
+
+/// What is found can be simulated: its tables are the scene's laws.
+static void test_fit_molecules_result_runs_as_a_scene(void **state) {
+    static struct run_program_result result;
+    small_inputs_write(*state, "run.json", run, NULL, NULL);
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "found");
+    assert_true(result.code == 0 || result.code == 1);
+    const char again[] =
+        "{\"seed\": 5, \"box\": [4.4, 4.4, 4.4], \"time_step\": 0.005,\n"
+        "\"bonds\": {\"backbone\": {\"law\": \"table\", \"file\": \"found/bonds_backbone.tsv\"}},\n"
+        "\"angles\": {\"bend\": {\"law\": \"table\", \"file\": "
+        "\"found/angles_bend.tsv\"}},\n" MOLECULES ",\n"
+        "\"conservative\": {\"A-A\": {\"law\": \"table\", \"file\": \"found/potential_A-A.tsv\"},\n"
+        "  \"A-B\": {\"law\": \"table\", \"file\": \"found/potential_A-B.tsv\"},\n"
+        "  \"B-B\": {\"law\": \"table\", \"file\": \"found/potential_B-B.tsv\"}},\n" FRICTION ",\n"
+        "\"measure\": {\"equilibration\": 200, \"samples\": 40, \"every\": 25}}\n";
+    RUN_PROGRAM(&result, "export", "found", "--engine", "lammps", "-o", "lammps");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err, "only pair forces are exported");
+    small_inputs_write(*state, "again.json", again, NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "again.json", "-o", "again");
+    run_program_assert_code(&result, 0);
+}
+
+/// A group with a law is known; its target is compared with the result.
+static void test_fit_molecules_leaves_known_laws_alone(void **state) {
+    static struct run_program_result result;
+    small_inputs_write(*state, "run.json", run, "\"scene\": {",
+                       "\"scene\": {\"bonds\": {\"backbone\": {\"law\": \"harmonic\", \"k\": "
+                       "100, \"length\": 0.6}}, ");
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "known");
+    assert_true(result.code == 0 || result.code == 1);
+    assert_int_equal(access("known/bond_lengths_backbone.tsv", F_OK), 0);
+    assert_int_not_equal(access("known/bonds_backbone.tsv", F_OK), 0);
+    assert_int_equal(access("known/angles_bend.tsv", F_OK), 0);
+    // The true bond in a liquid that is nearly the true one.
+    const double rmse = results_number("known/summary.json", "bond_lengths_rmse");
+    assert_true(rmse < 10 * results_number("known/summary.json", "bond_lengths_noise"));
+}
+
+struct wrong {
+    const char *from, *to, *words[3];
+};
+
+static void test_fit_molecules_refuses_what_cannot_be(void **state) {
+    static const struct wrong wrong[] = {
+        {"\"bend\": {\"file\"",
+         "\"bond\": {\"file\"",
+         {"scene.molecules.trimer.chain.angle", "\"bend\" is no group", NULL}},
+        {"\"imc\"", "\"hnc\"", {"method.name: \"hnc\" knows no molecules", NULL}},
+        {"\"name\": \"imc\", \"replicas\": 2, \"equilibration\": 40, \"samples\": 60,\n"
+         "  \"iterations\": 4, \"precision\": 0.02",
+         "\"name\": \"cma-es\"",
+         {"scene.molecules: \"cma-es\" finds the potentials of single beads alone", NULL}},
+        {"\"truth/bond_angles.tsv\"",
+         "\"truth/bond_lengths.tsv\"",
+         {"target.bond_angles.bend.file: ", "as if in radians", NULL}},
+        {"\"replicas\": 2, \"equilibration\": 40",
+         "\"particles\": 120",
+         {"method.particles: molecules are sampled in the scene's box", NULL}},
+        {"\"method\"",
+         "\"unknowns\": {\"potential\": {}, \"bonds\": {\"backbone\": {}}}, \"method\"",
+         {"scene.molecules.trimer.chain.angle", "\"bend\" is no group", NULL}},
+    };
+    static struct run_program_result result;
+    for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++) {
+        small_inputs_write(*state, "run.json", run, wrong[k].from, wrong[k].to);
+        RUN_PROGRAM(&result, "fit", "run.json", "-o", "refused");
+        run_program_assert_code(&result, 2);
+        for (size_t w = 0; wrong[k].words[w]; w++)
+            assert_contains(result.err, wrong[k].words[w]);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(test_fit_molecules_again_with_the_same_bits, enter,
+                                        small_inputs_leave),
+        cmocka_unit_test_setup_teardown(test_fit_molecules_result_runs_as_a_scene, enter,
+                                        small_inputs_leave),
+        cmocka_unit_test_setup_teardown(test_fit_molecules_leaves_known_laws_alone, enter,
+                                        small_inputs_leave),
+        cmocka_unit_test_setup_teardown(test_fit_molecules_refuses_what_cannot_be, enter,
+                                        small_inputs_leave),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// An inversion finds the potentials of pairs, bonds and angles of a three-bead chain at once from
+// what dynamics of known ones have measured: g(r) but for the ramp, U of bonds and angles within
+// their bands.
+#include "base/memory.h"
+#include "curves/formula.h"
+#include "inversion/inversion.h"
+#include "problem/verify.h"
+#include "shared/fluids.h"
+#include "shared/molecules.h"
+#include "shared/testing.h"
+
+#include <math.h>
+
+enum { CHAINS = 70, BEADS = 3, PAIR_BINS = 24, BOND_BINS = 30, ANGLE_BINS = 30 };
+
+static const int type[BEADS] = {0};
+static const double repulsion = 20, spring = 120, bend = 12;
+static const struct molecules_number bond_numbers[] = {{"k", 120}, {"length", 0.6}, {NULL, 0}};
+static const struct molecules_number angle_numbers[] = {{"k", 12}, {"angle", 110}, {NULL, 0}};
+static const struct bonded_bins bond_bins = {0.35, 0.5 / BOND_BINS, BOND_BINS};
+static const struct bonded_bins angle_bins = {60, 100.0 / ANGLE_BINS, ANGLE_BINS};
+
+/// Chains of known laws, what was measured of them, and the problem of finding the laws again.
+struct twin {
+    struct fluid fluid;
+    struct molecules molecules;
+    struct bonded_settings bond, angle;
+    struct inverse_problem problem;
+    struct verification measured;
+};
+
+static void ignore(void *context, const struct inverse_progress *progress) {
+    (void)context, (void)progress;
+}
+static const struct inverse_listener listener = {ignore, NULL};
+
+static void make_chains(struct twin *twin) {
+    struct formula_soft_repulsion_parameters soft = {repulsion, 1};
+    const struct curve curve = {&mf_formula_soft_repulsion, &soft};
+    const struct composition composition =
+        molecules_topology(&twin->molecules.topology, molecules_chain(CHAINS, type, BEADS, 1, 2),
+                           (struct topology_kind){0}, 1, NULL);
+    molecules_add_group(&twin->molecules, TOPOLOGY_BOND, &mf_bond_harmonic, bond_numbers);
+    molecules_add_group(&twin->molecules, TOPOLOGY_ANGLE, &mf_angle_harmonic, angle_numbers);
+    fluid_groot_warren(&twin->fluid, CHAINS * BEADS, 0.004);
+    mf_table_clear(&twin->fluid.potential);
+    assert_ok(mf_table_init_potential(&twin->fluid.potential, &curve));
+    molecules_enter(&twin->fluid.setup, &twin->molecules, &composition);
+}
+
+static void state_problem(struct twin *twin) {
+    struct inverse_problem *problem = &twin->problem;
+    const int bond = mf_bonded_distribution_kind(TOPOLOGY_BOND);
+    const int angle = mf_bonded_distribution_kind(TOPOLOGY_ANGLE);
+    static const double none[PAIR_BINS + BOND_BINS + ANGLE_BINS];
+    *problem = (struct inverse_problem){.scene = twin->fluid.setup,
+                                        .core_threshold = 1e-3,
+                                        .core_stiffness = 2000,
+                                        .seed = 5,
+                                        .threads = 2};
+    struct targets *targets = &problem->compared;
+    twin->bond.target[0] = bond_bins;
+    twin->angle.target[0] = angle_bins;
+    targets->bins = (struct rdf_bins){0, 0.05, PAIR_BINS};
+    targets->target[TARGET_RDF] = (struct target){PAIR_BINS, none, none, 0, 0, NULL};
+    targets->target[bond] = (struct target){BOND_BINS, none, none, 0, 0, NULL};
+    targets->target[angle] = (struct target){ANGLE_BINS, none, none, 0, 0, NULL};
+    targets->settings[mf_observable_kind(bond).place] = &twin->bond;
+    targets->settings[mf_observable_kind(angle).place] = &twin->angle;
+}
+
+/// Measure with the true laws, and look for them.
+static void measure(struct twin *twin) {
+    const struct verify_parameters plan = {
+        .replicas = 4, .plan = {.equilibration = 3000, .samples = 400, .every = 25}};
+    struct inverse_problem *problem = &twin->problem;
+    assert_ok(mf_verify(problem, &twin->fluid.potential, twin->fluid.setup.omega, &plan, &listener,
+                        &twin->measured));
+    for (int kind = 0; kind < TARGETS; kind++) {
+        problem->compared.target[kind].value = twin->measured.observed.value[kind];
+        problem->compared.target[kind].error = twin->measured.observed.error[kind];
+    }
+    problem->targets = problem->compared;
+    problem->unknown[UNKNOWN_POTENTIAL].wanted = problem->unknown[UNKNOWN_BONDED].wanted = true;
+    problem->bonded = 2;
+    problem->group[0] = (struct bonded_unknown){TOPOLOGY_BOND, 0, bond_bins, 0};
+    problem->group[1] = (struct bonded_unknown){TOPOLOGY_ANGLE, 0, angle_bins, 0};
+}
+
+static void make_twin(struct twin *twin) {
+    *twin = (struct twin){0};
+    make_chains(twin);
+    state_problem(twin);
+    measure(twin);
+}
+
+static void clear_twin(struct twin *twin) {
+    mf_verify_clear(&twin->measured);
+    mf_molecules_clear(&twin->molecules);
+    fluid_clear(&twin->fluid);
+}
+
+/// k of the parabola through U where it is well known, weighted by its errors, and the rms of what
+/// is left in errors.
+static void fit_parabola(const struct inversion *inversion, size_t g, double unit, double *k,
+                         double *deviation) {
+    const struct potential_grid *grid = &inversion->grid;
+    double normal[3][4] = {{0}}, sum = 0, count = 0, c[3];
+    for (int pass = 0; pass < 2; pass++) {
+        for (size_t a = 0; a < grid->known; a++) {
+            const size_t point = grid->known_point[a];
+            if (!grid->well_known[a] || point < grid->group[g].point ||
+                point >= grid->group[g].point + grid->group[g].own.points)
+                continue;
+            const double q = unit * grid->r[point] - (g == 0 ? 0.6 : 110 * M_PI / 180);
+            const double error = inversion->band.error[point], u = inversion->best[point];
+            const double row[4] = {1, q, q * q, u};
+            for (int i = 0; i < 3 && pass == 0; i++)
+                for (int j = 0; j < 4; j++)
+                    normal[i][j] += row[i] * row[j] / (error * error);
+            if (pass == 1) {
+                sum += pow((u - c[0] - c[1] * q - c[2] * q * q) / error, 2);
+                count++;
+            }
+        }
+        for (int i = 0; i < 3 && pass == 0; i++)
+            for (int j = 0; j < 3; j++)
+                for (int n = 3; n >= i && j != i; n--)
+                    normal[j][n] -= normal[j][i] / normal[i][i] * normal[i][n];
+        for (int i = 0; i < 3 && pass == 0; i++)
+            c[i] = normal[i][3] / normal[i][i];
+    }
+    *k = 2 * c[2];
+    *deviation = sqrt(sum / count);
+}
+
+static void check_pairs(const struct inversion *inversion) {
+    const struct potential_grid *grid = &inversion->grid;
+    double above = 0, below = 0, squares = 0, count = 0;
+    for (size_t a = 0; a < grid->pairs_known; a++) {
+        const size_t point = grid->known_point[a];
+        const double r = grid->r[point], shape = mf_potential_grid_ramp(grid, point);
+        const double truth = r < 1 ? repulsion * (1 - r) * (1 - r) / 2 : 0;
+        const double off = inversion->best[point] - truth;
+        if (!grid->well_known[a])
+            continue;
+        above += shape * off;
+        below += shape * shape;
+        squares += off * off;
+        count++;
+    }
+    const double rms = sqrt((squares - above * above / below) / count);
+    print_message("pairs: rms without the ramp %.4f, ramp %.3f (%.3f)\n", rms, above / below,
+                  inversion->band.ramp.error);
+    assert_true(rms < 0.1);
+}
+
+/// k within 5 %, which is 0.6 % of the distribution's width times some; the deviations from a
+/// parabola as large as the bands say, within what smoothing takes off and misfit adds.
+static void check_groups(const struct inversion *inversion) {
+    static const double truth[] = {spring, bend}, unit[] = {1, M_PI / 180};
+    for (size_t g = 0; g < 2; g++) {
+        double k, deviation;
+        fit_parabola(inversion, g, unit[g], &k, &deviation);
+        print_message("group %zu: k = %.3f of %g, deviations %.2f bands\n", g, k, truth[g],
+                      deviation);
+        assert_true(fabs(k / truth[g] - 1) < 0.05);
+        assert_true(deviation > 0.2 && deviation < 1.6);
+    }
+}
+
+static void find(const struct inverse_method *method) {
+    static struct twin twin;
+    make_twin(&twin);
+    struct inversion *inversion = mf_memory_zeroed(1, method->state_size);
+    struct inversion_settings settings = {.common = {0}};
+    struct inverse_step step;
+    for (const struct inverse_table *table = method->tables; table->fields; table++)
+        mf_fields_set_defaults(table->fields, (char *)&settings + table->offset);
+    settings.common.replicas = 4;
+    settings.common.equilibration = 60;
+    settings.common.precision = 0.008;
+    assert_ok(method->create(inversion, method, &twin.problem, &settings));
+    do {
+        assert_ok(method->iterate(inversion, &step, &listener));
+        print_message("%s, iteration %u: error %.4f, noise %.4f\n", method->name, step.iteration,
+                      step.error, step.noise);
+    } while (!step.finished);
+    assert_true(step.converged);
+    check_pairs(inversion);
+    check_groups(inversion);
+    method->destroy(inversion);
+    mf_memory_free(inversion);
+    clear_twin(&twin);
+}
+
+static void test_imc_finds_pairs_bonds_and_angles_at_once(void **state) {
+    (void)state;
+    find(&mf_imc);
+}
+
+static void test_ibi_finds_pairs_bonds_and_angles_at_once(void **state) {
+    (void)state;
+    find(&mf_ibi);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_imc_finds_pairs_bonds_and_angles_at_once),
+        cmocka_unit_test(test_ibi_finds_pairs_bonds_and_angles_at_once),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

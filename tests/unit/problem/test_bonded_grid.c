@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Where the fitted U of bonds, angles and dihedrals is known, against distributions of known laws.
+#include "problem/bonded_grid.h"
+
+#include "problem/potential_grid.h"
+#include "shared/is_close.h"
+#include "shared/molecules.h"
+#include "shared/testing.h"
+
+#include <math.h>
+
+enum { BINS = 180, POINTS = 3 * BINS };
+
+static const double temperature = 1.5;
+static const int types[4] = {0};
+
+/// A problem of chains of four beads with a group of each order, one of which is looked for.
+struct twin {
+    struct molecules molecules;
+    struct inverse_problem problem;
+    double target[BINS], error[BINS];
+};
+
+/// p of a bin is proportional to exp(−U/k_B T) and to the Jacobian at its centre.
+static void make_twin(struct twin *twin, enum topology_order order, struct bonded_bins bins,
+                      double (*energy)(double)) {
+    *twin = (struct twin){.problem = {.scene = {.temperature = temperature,
+                                                .box = {.dimensions = 3, .length = {9, 9, 9}}}}};
+    const struct composition composition =
+        molecules_topology(&twin->molecules.topology, molecules_chain(20, types, 4, 2, 0),
+                           (struct topology_kind){0}, 1, NULL);
+    molecules_add_group(&twin->molecules, TOPOLOGY_BOND, &mf_bond_harmonic, NULL);
+    molecules_add_group(&twin->molecules, TOPOLOGY_ANGLE, &mf_angle_harmonic, NULL);
+    molecules_add_group(&twin->molecules, TOPOLOGY_DIHEDRAL, &mf_dihedral_periodic, NULL);
+    molecules_enter(&twin->problem.scene, &twin->molecules, &composition);
+    double sum = 0;
+    for (size_t k = 0; k < bins.count; k++) {
+        const double q = bonded_bins_centre(&bins, k);
+        const double jacobian = order == TOPOLOGY_BOND    ? q * q
+                                : order == TOPOLOGY_ANGLE ? sin(q * M_PI / 180)
+                                                          : 1;
+        twin->target[k] = fmax(0, jacobian) * exp(-energy(q) / temperature);
+        sum += bins.width * twin->target[k];
+    }
+    for (size_t k = 0; k < bins.count; k++)
+        twin->target[k] /= sum;
+    twin->problem.bonded = 1;
+    twin->problem.unknown[UNKNOWN_BONDED].wanted = true;
+    twin->problem.group[0] = (struct bonded_unknown){order, 0, bins, 0};
+    twin->problem.targets.target[mf_bonded_distribution_kind(order)] =
+        (struct target){.count = bins.count, .value = twin->target, .error = twin->error};
+}
+
+static void clear_twin(struct twin *twin) {
+    mf_molecules_clear(&twin->molecules);
+}
+
+/// The curve that a fit begins with, and its grid.
+static void begin(const struct twin *twin, struct bonded_grid *grid, double *values,
+                  struct bonded_curve *curve) {
+    assert_ok(mf_bonded_grid_init(grid, &twin->problem, &twin->problem.group[0]));
+    assert_true(grid->points <= POINTS);
+    mf_bonded_grid_start(grid, values);
+    assert_ok(mf_bonded_grid_curve(grid, values, curve));
+}
+
+static double bond_energy(double r) {
+    return 400 * (r - 0.8) * (r - 0.8) / 2;
+}
+
+static double angle_energy(double theta) {
+    return 8 * pow((theta - 150) * M_PI / 180, 2) / 2;
+}
+
+static double dihedral_energy(double phi) {
+    return 1.2 * (1 + cos(3 * phi * M_PI / 180)) + 0.4 * cos((phi - 30) * M_PI / 180);
+}
+
+/// Against the law that made it, up to a constant; q in the units of the curve.
+static void assert_law(const struct bonded_curve *curve, double (*energy)(double), double unit,
+                       double low, double high, double tolerance) {
+    double base;
+    mf_bonded_value(curve, unit * low, &base, NULL);
+    for (double q = low; q <= high; q += (high - low) / 97) {
+        double value;
+        mf_bonded_value(curve, unit * q, &value, NULL);
+        assert_close(value - base, energy(q) - energy(low), tolerance);
+    }
+}
+
+static void test_bonded_grid_inverts_the_distribution_of_a_bond(void **state) {
+    (void)state;
+    static struct twin twin;
+    struct bonded_grid grid;
+    struct bonded_curve curve = {0};
+    double values[POINTS];
+    make_twin(&twin, TOPOLOGY_BOND, (struct bonded_bins){0.6, 0.4 / BINS, BINS}, bond_energy);
+    begin(&twin, &grid, values, &curve);
+    assert_law(&curve, bond_energy, 1, 0.66, 0.94, 2e-3);
+    mf_bonded_clear(&curve);
+    clear_twin(&twin);
+}
+
+/// Beyond the known range the curve goes on as the parabola that it is, and grows for ever.
+static void test_bonded_grid_holds_what_leaves_the_target(void **state) {
+    (void)state;
+    static struct twin twin;
+    struct bonded_grid grid;
+    struct bonded_curve curve = {0};
+    double values[POINTS], before, energy;
+    make_twin(&twin, TOPOLOGY_BOND, (struct bonded_bins){0.6, 0.4 / BINS, BINS}, bond_energy);
+    begin(&twin, &grid, values, &curve);
+    const double last = mf_bonded_grid_place(&grid, grid.below + grid.known - 1);
+    assert_true(last > 0.93 && last < 1);
+    assert_law(&curve, bond_energy, 1, last, last + 0.05, 1.5);
+    mf_bonded_clear(&curve);
+    // Noise at the end, a bin that was seen alone, must not turn the wall.
+    twin.target[BINS - 1] = 0.02;
+    begin(&twin, &grid, values, &curve);
+    assert_int_equal(grid.first + grid.known, BINS);
+    mf_bonded_value(&curve, 1, &before, NULL);
+    for (double r = 1.02; r < 2; r += 0.02, before = energy) {
+        mf_bonded_value(&curve, r, &energy, NULL);
+        assert_true(energy > before);
+    }
+    mf_bonded_clear(&curve);
+    clear_twin(&twin);
+}
+
+/// An angle reaches 180 degrees, where its Jacobian, not its energy, makes p vanish.
+static void test_bonded_grid_lets_an_angle_be_straight(void **state) {
+    (void)state;
+    static struct twin twin;
+    struct bonded_grid grid;
+    struct bonded_curve curve = {0};
+    double values[POINTS];
+    make_twin(&twin, TOPOLOGY_ANGLE, (struct bonded_bins){0, 180.0 / BINS, BINS}, angle_energy);
+    begin(&twin, &grid, values, &curve);
+    assert_law(&curve, angle_energy, M_PI / 180, 80, 180, 6e-3);
+    mf_bonded_clear(&curve);
+    clear_twin(&twin);
+}
+
+static void test_bonded_grid_closes_the_circle(void **state) {
+    (void)state;
+    static struct twin twin;
+    struct bonded_grid grid;
+    struct bonded_curve curve = {0};
+    double values[POINTS], low, high;
+    make_twin(&twin, TOPOLOGY_DIHEDRAL, (struct bonded_bins){-180, 360.0 / BINS, BINS},
+              dihedral_energy);
+    begin(&twin, &grid, values, &curve);
+    assert_law(&curve, dihedral_energy, M_PI / 180, -180, 180, 2e-3);
+    mf_bonded_value(&curve, -M_PI + 1e-9, NULL, &low);
+    mf_bonded_value(&curve, M_PI - 1e-9, NULL, &high);
+    assert_close(low, high, 1e-6);
+    mf_bonded_clear(&curve);
+    clear_twin(&twin);
+}
+
+static void test_bonded_grid_refuses_what_tells_nothing(void **state) {
+    (void)state;
+    static struct twin twin;
+    struct bonded_grid grid;
+    make_twin(&twin, TOPOLOGY_BOND, (struct bonded_bins){0, 0.2, 10}, bond_energy);
+    assert_fails(mf_bonded_grid_init(&grid, &twin.problem, &twin.problem.group[0]),
+                 STATUS_BAD_INPUT, "has only 2 bins");
+    clear_twin(&twin);
+    make_twin(&twin, TOPOLOGY_DIHEDRAL, (struct bonded_bins){-170, 2, 170}, dihedral_energy);
+    assert_fails(mf_bonded_grid_init(&grid, &twin.problem, &twin.problem.group[0]),
+                 STATUS_BAD_INPUT, "340 degrees, not 360");
+    clear_twin(&twin);
+}
+
+/// Blocks of groups stand behind those of pairs; without an unknown Φ there are no pairs.
+static void test_potential_grid_has_groups_behind_the_pairs(void **state) {
+    (void)state;
+    enum { PAIR_BINS = 30 };
+    static struct twin twin;
+    struct potential_grid grid;
+    double g[PAIR_BINS];
+    make_twin(&twin, TOPOLOGY_ANGLE, (struct bonded_bins){0, 180.0 / BINS, BINS}, angle_energy);
+    for (int k = 0; k < PAIR_BINS; k++)
+        g[k] = k < 10 ? 0 : 1;
+    twin.problem.targets.bins = (struct rdf_bins){0, 0.1, PAIR_BINS};
+    twin.problem.targets.target[TARGET_RDF] = (struct target){.count = PAIR_BINS, .value = g};
+    twin.problem.unknown[UNKNOWN_POTENTIAL].wanted = true;
+    twin.problem.core_threshold = 1e-3;
+    assert_ok(mf_potential_grid_init(&grid, &twin.problem));
+    assert_int_equal(grid.pair_points, PAIR_BINS + 1);
+    assert_int_equal(grid.pairs_known, PAIR_BINS - 10);
+    assert_int_equal(grid.all_bins, PAIR_BINS + BINS);
+    const size_t first = grid.pairs_known;
+    assert_int_equal(grid.known_bin[first], PAIR_BINS + grid.group[0].own.first);
+    assert_close(grid.r[grid.known_point[first]],
+                 bonded_bins_centre(&twin.problem.group[0].bins, grid.group[0].own.first), 1e-9);
+    assert_close(mf_potential_grid_ramp(&grid, grid.known_point[first]), 0, 0);
+    mf_potential_grid_clear(&grid);
+    twin.problem.unknown[UNKNOWN_POTENTIAL].wanted = false;
+    assert_ok(mf_potential_grid_init(&grid, &twin.problem));
+    assert_int_equal(grid.pairs, 0);
+    assert_int_equal(grid.known_bin[0], grid.group[0].own.first);
+    mf_potential_grid_clear(&grid);
+    clear_twin(&twin);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_bonded_grid_inverts_the_distribution_of_a_bond),
+        cmocka_unit_test(test_bonded_grid_holds_what_leaves_the_target),
+        cmocka_unit_test(test_bonded_grid_lets_an_angle_be_straight),
+        cmocka_unit_test(test_bonded_grid_closes_the_circle),
+        cmocka_unit_test(test_bonded_grid_refuses_what_tells_nothing),
+        cmocka_unit_test(test_potential_grid_has_groups_behind_the_pairs),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
