@@ -2,6 +2,7 @@
 #include "export/export_model.h"
 
 #include "base/memory.h"
+#include "curves/bonded_table.h"
 #include "curves/sampled.h"
 #include "export/export_columns.h"
 #include "export/export_start.h"
@@ -246,6 +247,31 @@ done:
     return status;
 }
 
+/// The fitted laws of groups: bonds_backbone.tsv, angles_bend.tsv and so on.
+static enum status read_groups(struct export_model *model) {
+    struct molecules *molecules = &model->scene.molecules.molecules;
+    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+        for (int g = 0; g < molecules->groups[order]; g++) {
+            struct molecules_group *group = &molecules->group[order][g];
+            const char *const unit[2] = {order == TOPOLOGY_BOND ? "lambda" : "degrees", "k_B T_0"};
+            char path[OUTPUT_PATH_SIZE], name[2 * TOPOLOGY_NAME_SIZE];
+            double *q, *energy;
+            size_t count;
+            if (!mf_scene_groups_are_fitted(group))
+                continue;
+            snprintf(name, sizeof name, "%s_%s.tsv", mf_scene_group_keys[order], group->name);
+            file_of(model, name, path);
+            TRY(mf_scene_read_columns(path, unit, order == TOPOLOGY_DIHEDRAL ? -DBL_MAX : 0,
+                                      &model->scene.units, &q, &energy, &count));
+            const enum status status = mf_bonded_table_set_points(&group->curve, q, energy, count);
+            mf_memory_free(q);
+            mf_memory_free(energy);
+            if (status != STATUS_OK)
+                return mf_status_prefix(status, "%s", path);
+        }
+    return STATUS_OK;
+}
+
 /// The fitted friction weight, one for all pairs.
 static enum status read_omega(struct export_model *model) {
     static const struct export_column wanted[] = {
@@ -301,6 +327,7 @@ static enum status find_laws(struct reading *reading) {
         TRY(read_potentials(model));
     if (reading->unknown & SCENE_FITS_OMEGA)
         TRY(read_omega(model));
+    TRY(read_groups(model));
     leave_out_friction(model);
     if (model->setup.potential == NULL)
         return mf_status_fail(STATUS_BAD_INPUT, "%s: there is no potential to export",
