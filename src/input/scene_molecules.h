@@ -61,6 +61,10 @@ static inline bool scene_has_molecules(const struct scene_molecules *molecules) 
     return molecules->molecules.topology.kinds > 0;
 }
 
+/// Write the kinds alone, a share of each one's molecules, or groups with their laws and the kinds.
+void mf_scene_kinds_write(const struct scene_molecules *molecules,
+                          const struct composition *composition, double share,
+                          struct json_writer *writer);
 void mf_scene_molecules_write(const struct scene_molecules *molecules,
                               const struct composition *composition, struct json_writer *writer);
 

@@ -2,6 +2,8 @@
 #include "base/memory.h"
 #include "input/scene_molecules.h"
 
+#include <math.h>
+
 static void write_beads(const struct topology_kind *kind, const struct composition *composition,
                         struct json_writer *writer) {
     const char **names = mf_memory_zeroed((size_t)kind->beads, sizeof *names);
@@ -51,18 +53,15 @@ static void write_terms(const struct molecules *molecules, const struct topology
     mf_memory_free(rows);
 }
 
-void mf_scene_molecules_write(const struct scene_molecules *molecules,
-                              const struct composition *composition, struct json_writer *writer) {
+void mf_scene_kinds_write(const struct scene_molecules *molecules,
+                          const struct composition *composition, double share,
+                          struct json_writer *writer) {
     const struct molecules *own = &molecules->molecules;
-    if (!scene_has_molecules(molecules))
-        return;
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
-        mf_scene_groups_write(own, order, writer);
     mf_json_begin(writer, "molecules");
     for (int k = 0; k < own->topology.kinds; k++) {
         const struct topology_kind *kind = &own->topology.kind[k];
         mf_json_begin(writer, kind->name);
-        mf_json_put_integer(writer, "count", kind->count);
+        mf_json_put_integer(writer, "count", (int64_t)ceil(share * (double)kind->count));
         mf_json_put_integer(writer, "exclude", kind->exclude);
         if (molecules->told[k].is_chain)
             write_chain(own, kind, &molecules->told[k], composition, writer);
@@ -73,4 +72,13 @@ void mf_scene_molecules_write(const struct scene_molecules *molecules,
         mf_json_end(writer);
     }
     mf_json_end(writer);
+}
+
+void mf_scene_molecules_write(const struct scene_molecules *molecules,
+                              const struct composition *composition, struct json_writer *writer) {
+    if (!scene_has_molecules(molecules))
+        return;
+    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+        mf_scene_groups_write(&molecules->molecules, order, writer);
+    mf_scene_kinds_write(molecules, composition, 1, writer);
 }

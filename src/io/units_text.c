@@ -14,7 +14,6 @@ static const char *const pure[] = {"",
                                    "samples",
                                    "times",
                                    "genes",
-                                   "degrees",
                                    "rad",
                                    "error",
                                    "standard errors",
@@ -59,6 +58,7 @@ static const struct {
     {"Pa", {1, PRESSURE}},
     {"bar", {1e5, PRESSURE}},
     {"atm", {101325, PRESSURE}},
+    {"degrees", {1, {0}}},
 };
 
 struct reader {

@@ -107,9 +107,8 @@ static enum status begin(struct state *s, enum topology_order order,
         return mf_status_fail(STATUS_BAD_INPUT, "%s: the scene has no %ss",
                               mf_bonded_distribution_of(order)->name,
                               mf_topology_order_names[order]);
-    *s = (struct state){.molecules = molecules,
-                        .order = order,
-                        .dimensions = setup->box.dimensions};
+    *s =
+        (struct state){.molecules = molecules, .order = order, .dimensions = setup->box.dimensions};
     CHECK(mf_sample_blocks_init(&s->blocks, (size_t)plan->samples));
     for (int g = 0; g < molecules->groups[order]; g++) {
         s->bins[g] = settings->bins > 0 ? choose_bins(molecules, order, settings->bins)

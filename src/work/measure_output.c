@@ -226,9 +226,10 @@ static void put_rdf(const struct measure_result *result, struct json_writer *wri
     mf_json_end(writer);
 }
 
-/// Friction is for beads of one mass: motion of others is compared with, and not fitted.
+/// Friction is found for single beads of one mass: motion of others is compared with, and not
+/// fitted.
 static void put_fitted(const struct measure_result *result, struct json_writer *writer) {
-    if (mf_measure_output_masses_differ(result))
+    if (result->kinds || mf_measure_output_masses_differ(result))
         mf_json_put_text(writer, "fitted", "no");
 }
 
@@ -257,9 +258,31 @@ static void put_diffusion_target(const struct measure_result *result, struct jso
     mf_json_end(writer);
 }
 
+/// "bond_lengths": {"backbone": {"file": "bond_lengths.tsv"}} and so on.
+static void put_groups(const struct measure_result *result, struct json_writer *writer) {
+    static const char *const keys[TOPOLOGY_ORDERS] = {"bond_lengths", "bond_angles",
+                                                      "dihedral_angles"};
+    const struct molecules *const molecules = &result->kinds->molecules;
+    for (int order = 0; order < TOPOLOGY_ORDERS; order++) {
+        char file[32];
+        snprintf(file, sizeof file, "%s.tsv", keys[order]);
+        if (molecules->groups[order] > 0)
+            mf_json_begin(writer, keys[order]);
+        for (int g = 0; g < molecules->groups[order]; g++) {
+            mf_json_begin(writer, molecules->group[order][g].name);
+            mf_json_put_text(writer, "file", file);
+            mf_json_end(writer);
+        }
+        if (molecules->groups[order] > 0)
+            mf_json_end(writer);
+    }
+}
+
 static void put_targets(const struct measure_result *result, struct json_writer *writer) {
     mf_json_begin(writer, "target");
     put_rdf(result, writer);
+    if (result->kinds)
+        put_groups(result, writer);
     if (mf_measure_tables_have_etd(result))
         put_etd(result, writer);
     if (mf_measure_tables_have_motion(result)) {
@@ -271,9 +294,47 @@ static void put_targets(const struct measure_result *result, struct json_writer 
     mf_json_end(writer);
 }
 
+/// Beads that a fit simulates well.
+enum { MOST_BEADS = 4000 };
+
+/// Beads that are in no molecule.
+static struct composition find_single(const struct measure_result *result) {
+    struct composition single = result->measured->pairs.composition;
+    const struct topology *const topology = &result->kinds->molecules.topology;
+    for (int k = 0; k < topology->kinds; k++)
+        for (int bead = 0; bead < topology->kind[k].beads; bead++)
+            single.count[topology->kind[k].type[bead]] -= topology->kind[k].count;
+    return single;
+}
+
+static void put_types(const struct composition *composition, double share,
+                      struct json_writer *writer) {
+    mf_json_begin(writer, "types");
+    for (int type = 0; type < composition->types; type++)
+        if (composition->count[type] > 0)
+            mf_json_put_integer(writer, composition->name[type],
+                                (int64_t)ceil(share * (double)composition->count[type]));
+    mf_json_end(writer);
+}
+
+/// Molecules, and the single beads beside them.
+static void put_molecules_of_scene(const struct measure_result *result,
+                                   struct json_writer *writer) {
+    const struct composition *const all = &result->measured->pairs.composition;
+    const struct composition single = find_single(result);
+    const double share = fmin(1, (double)MOST_BEADS / (double)mf_composition_particles(all));
+    mf_scene_kinds_write(result->kinds, all, share, writer);
+    if (mf_composition_particles(&single) == 0 && isnan(find_mass(result, 0)))
+        return;
+    mf_json_begin(writer, "particles");
+    if (mf_composition_particles(&single) > 0)
+        put_types(&single, share, writer);
+    put_masses(result, writer);
+    mf_json_end(writer);
+}
+
 /// A mixture is told by the numbers of its beads, of no more of them than a fit simulates well.
 static void put_particles(const struct measure_result *result, struct json_writer *writer) {
-    enum { MOST_BEADS = 4000 };
     const struct composition *const all = &result->measured->pairs.composition;
     const int64_t beads = mf_composition_particles(all);
     const struct composition some =
@@ -281,12 +342,8 @@ static void put_particles(const struct measure_result *result, struct json_write
     if (!composition_is_mixed(all) && isnan(find_mass(result, 0)))
         return;
     mf_json_begin(writer, "particles");
-    if (composition_is_mixed(all)) {
-        mf_json_begin(writer, "types");
-        for (int type = 0; type < some.types; type++)
-            mf_json_put_integer(writer, some.name[type], some.count[type]);
-        mf_json_end(writer);
-    }
+    if (composition_is_mixed(all))
+        put_types(&some, 1, writer);
     put_masses(result, writer);
     mf_json_end(writer);
 }
@@ -299,7 +356,10 @@ static enum status write_target(const struct measure_result *result) {
     put_targets(result, writer);
     mf_json_begin(writer, "scene");
     mf_json_put_quantity(writer, "density", "1/lambda^3", find_density(result));
-    put_particles(result, writer);
+    if (result->kinds)
+        put_molecules_of_scene(result, writer);
+    else
+        put_particles(result, writer);
     if (!isnan(find_temperature(result)))
         mf_json_put_number(writer, "temperature", find_temperature(result));
     mf_json_end(writer);

@@ -2,6 +2,7 @@
 /// @file The folder of a measurement: a target for `mesofit fit`.
 #pragma once
 
+#include "input/scene_molecules.h"
 #include "work/measure_run.h"
 
 /// A measurement that is over.
@@ -10,6 +11,7 @@ struct measure_result {
     const struct frames *frames;
     const struct mapping *mapping;
     const struct measured *measured;
+    const struct scene_molecules *kinds; ///< that the beads are, or NULL
     struct units units;
     const char *folder;
     bool interrupted;

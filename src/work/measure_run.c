@@ -199,10 +199,10 @@ static void say_results(struct run *run, const struct measure_result *result) {
     if (measured->plan.q_maximum > 0)
         mf_progress_say(&run->progress, "S(q) to %.4g 1/nm, of at most %lld waves in a bin",
                         measured->plan.q_maximum, (long long)measured->plan.waves);
-    if (measured->pairs.molecule)
+    if (measured->pairs.molecule && result->kinds == NULL)
         mf_progress_say(&run->progress,
-                        "mesofit: warning: molecules have several beads: a fit knows "
-                        "no bonds, its beads go where they like");
+                        "mesofit: warning: molecules have several beads: a fit knows no bonds "
+                        "without --molecules, its beads go where they like");
     say_molecules(run, result);
     say_motion(run, &result->units);
     if (measured->motion.begun && mf_measure_output_masses_differ(result))
@@ -221,6 +221,7 @@ static enum status write_results(struct run *run, bool interrupted) {
                                           .frames = &run->frames,
                                           .mapping = &run->mapping,
                                           .measured = &run->measured,
+                                          .kinds = run->request->molecules ? &run->molecules : NULL,
                                           .units = mf_measured_units(run->request->system),
                                           .folder = run->folder.path,
                                           .interrupted = interrupted,

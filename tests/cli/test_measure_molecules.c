@@ -64,6 +64,19 @@ static void compare(const char *name, int column, int rows) {
     assert_true(4 * found > rows);
 }
 
+/// What was measured is a run file: all groups and pairs are to be found, motion is compared with.
+static void check_target(void) {
+    static struct run_program_result result;
+    RUN_PROGRAM(&result, "measure", "out/snapshots/trajectory.lammpstrj", "--file-units", "lj",
+                "--molecules", "out/used.json", "--range", "2", "--bins", "20", "--temperature",
+                "300", "-o", "fitted");
+    run_program_assert_code(&result, 0);
+    assert_null(strstr(result.err, "a fit knows no bonds"));
+    RUN_PROGRAM(&result, "fit", "fitted/target.json", "--explain");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.out, "chosen: method");
+}
+
 /// Ids go by types, so that molecules are found by their numbers and types.
 static void test_a_simulation_is_measured_again(void **state) {
     static struct run_program_result result;
@@ -87,6 +100,7 @@ static void test_a_simulation_is_measured_again(void **state) {
         compare("molecule_sizes.tsv", column, 60);
     compare("end_to_end.tsv", 1, 10);
     compare("end_to_end.tsv", 3, 10);
+    check_target();
 }
 
 // All images --------------------------------------------------------------------------------------
