@@ -48,3 +48,16 @@ double mf_bonded_rest(const struct bonded_curve *curve) {
 double mf_bonded_longest(const struct bonded_curve *curve) {
     return curve->law->longest ? curve->law->longest(curve->parameters) : INFINITY;
 }
+
+double mf_bonded_reach(const struct bonded_curve *curve, double height) {
+    enum { DOUBLINGS = 40 };
+    const double rest = mf_bonded_rest(curve), most = mf_bonded_longest(curve);
+    double least, energy, way = fmax(1e-3, 1e-3 * rest);
+    mf_bonded_value(curve, rest, &least, NULL);
+    for (int n = 0; n < DOUBLINGS && rest + way < most; n++, way *= 2) {
+        mf_bonded_value(curve, rest + way, &energy, NULL);
+        if (energy > least + height)
+            break;
+    }
+    return fmin(rest + way, most);
+}

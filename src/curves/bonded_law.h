@@ -48,6 +48,10 @@ double mf_bonded_rest(const struct bonded_curve *curve);
 /// Length at which a bond tears [λ], or infinite.
 double mf_bonded_longest(const struct bonded_curve *curve);
 
+/// How long a bond may be before it is stretched by more than an energy, within a factor of two of
+/// the way from its rest, which may be at 0; at most its longest [λ].
+double mf_bonded_reach(const struct bonded_curve *curve, double height);
+
 #define BONDED_RADIANS (M_PI / 180) ///< of a degree
 
 extern const struct bonded_law mf_bond_harmonic, mf_bond_fene, mf_bonded_table_bond;

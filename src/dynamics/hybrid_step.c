@@ -59,14 +59,14 @@ static double fastest_of_molecules(const struct molecules *molecules, double tem
     static const double bend = 6;
     double length = INFINITY, fastest = 0;
     for (int g = 0; g < molecules->groups[TOPOLOGY_BOND]; g++)
-        length = fmin(length, mf_bonded_rest(&molecules->group[TOPOLOGY_BOND][g].curve));
+        length =
+            fmin(length, mf_bonded_reach(&molecules->group[TOPOLOGY_BOND][g].curve, temperature));
     for (int order = 0; order < TOPOLOGY_ORDERS; order++)
         for (int g = 0; g < molecules->groups[order]; g++) {
             const struct bonded_curve *curve = &molecules->group[order][g].curve;
             const bool bond = order == TOPOLOGY_BOND;
             const double low = order == TOPOLOGY_DIHEDRAL ? -M_PI : 0;
-            const double high =
-                bond ? fmin(2 * mf_bonded_rest(curve), mf_bonded_longest(curve)) : M_PI;
+            const double high = bond ? mf_bonded_reach(curve, temperature) : M_PI;
             const double width = width_of(curve, low, high, temperature);
             fastest = fmax(fastest,
                            (bond ? 2 : bend / (length * length)) * temperature / (width * width));

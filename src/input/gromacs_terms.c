@@ -121,14 +121,22 @@ static enum status find_values(const struct gromacs_reading *reading,
                                const struct gromacs_line *line,
                                const struct gromacs_function *function,
                                const struct topology_term *term, double *values) {
+    int found = 0;
     for (size_t k = 0; k < reading->types; k++) {
         const struct gromacs_term_type *type = &reading->type[k];
         if (type->order != (int)function->kind || type->number != function->number ||
             type->words == 0 || !is_of(reading, term, type))
             continue;
+        found++;
         memcpy(values, type->value, sizeof type->value);
-        return STATUS_OK;
     }
+    if (found > 1)
+        return mf_gromacs_fail(line,
+                               "%d lines have parameters of the types of this %s, which GROMACS "
+                               "would add up or choose from: write them with the term",
+                               found, mf_topology_order_names[function->kind]);
+    if (found == 1)
+        return STATUS_OK;
     return mf_gromacs_fail(line,
                            "the %s has no parameters, and there are none of its types and function",
                            mf_topology_order_names[function->kind]);

@@ -177,6 +177,13 @@ static enum status check_range(const struct rows *rows, enum topology_order orde
                           low, high);
 }
 
+static void rescale(struct rows *rows, double factor) {
+    for (size_t k = 0; k < rows->count; k++) {
+        rows->p[k] *= factor;
+        rows->error[k] *= factor;
+    }
+}
+
 /// Divide by the integral, which is 1 up to rounding.
 static enum status normalise(struct rows *rows, const char *file) {
     double sum = 0;
@@ -187,22 +194,33 @@ static enum status normalise(struct rows *rows, const char *file) {
                               "%s: the integral of p is %.4g, not 1: a distribution is normalised, "
                               "and has its Jacobian in it",
                               file, sum);
-    for (size_t k = 0; k < rows->count; k++) {
-        rows->p[k] /= sum;
-        rows->error[k] /= sum;
-    }
+    rescale(rows, 1 / sum);
     return STATUS_OK;
 }
 
 // Bins --------------------------------------------------------------------------------------------
 
-/// The first and the last row of a circle may be halves of one bin.
+/// Whether the first and the last row of a circle are halves of one bin, and not the same bin
+/// twice, by what is between the rows beside them.
+static bool has_half_ends(const struct rows *rows) {
+    const size_t last = rows->count - 1;
+    const double beside = 0.5 * (rows->p[1] + rows->p[last - 1]);
+    const double here = rows->p[0] + rows->p[last];
+    return fabs(here - beside) <= fabs(0.5 * here - beside);
+}
+
+/// The first and the last row of a circle may be halves of one bin, or the same bin twice.
 static enum status close_circle(struct rows *rows, double *width, const char *file) {
     const size_t last = rows->count - 1;
     const double bins = 360 / *width;
     if (fabs((double)last - bins) < 0.5) {
-        rows->p[0] += rows->p[last];
-        rows->error[0] = hypot(rows->error[0], rows->error[last]);
+        if (has_half_ends(rows)) {
+            rows->p[0] += rows->p[last];
+            rows->error[0] = hypot(rows->error[0], rows->error[last]);
+        } else {
+            rows->p[0] = 0.5 * (rows->p[0] + rows->p[last]);
+            rescale(rows, 1 / (1 - rows->p[last] * *width));
+        }
         rows->count--;
     } else if (fabs((double)rows->count - bins) >= 0.5) {
         return mf_status_fail(STATUS_BAD_INPUT,
@@ -280,11 +298,16 @@ static enum status set_errors(struct target_bonded *target, struct rows *rows,
     return STATUS_OK;
 }
 
-/// Join rows to bins, if there are many. A rest at the end is dropped, of a circle there is none.
+/// Join rows to bins, if there are many. A rest at the end is dropped; of a circle there is none,
+/// and rows whose number has no such divisor stay as they are.
 static void join(struct target_bonded *target, struct rows *rows, bool circle) {
-    size_t of = (rows->count + MOST_BINS - 1) / MOST_BINS;
+    enum { COARSEST = 2 };
+    const size_t least = (rows->count + MOST_BINS - 1) / MOST_BINS;
+    size_t of = least;
     while (circle && rows->count % of != 0)
         of++;
+    if (of > COARSEST * least)
+        of = 1;
     target->joined = of;
     target->bins.width *= (double)of;
     target->bins.count = rows->count / of;

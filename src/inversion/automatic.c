@@ -65,13 +65,13 @@ static enum status careful_step(const struct inversion *inversion, double *step)
 /// The Newton step with the careful one in reserve, or that alone.
 static enum status update(struct inversion *inversion, double *extra) {
     const struct imc_parameters noise = {0};
-    double newton[3];
+    double newton[3] = {0};
     if (!in_basin(inversion))
         return careful_step(inversion, inversion->step);
     TRY(careful_step(inversion, inversion->other_step));
     inversion->has_other = true;
     TRY(mf_imc_step(inversion, &noise, inversion->step, newton));
-    extra[0] = 1;
+    extra[0] = newton[2] > 0;
     extra[1] = newton[1];
     extra[2] = newton[2];
     return STATUS_OK;

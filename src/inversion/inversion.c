@@ -233,13 +233,18 @@ static bool meets_targets(const struct inversion *inversion) {
             inversion->distance[kind].rms >
                 mf_inverse_noise_margin * inversion->distance[kind].noise)
             return false;
+    // Each group, too: of several, a stiff one would hide what a soft one misses.
+    for (int k = 0; k < inversion->sections; k++)
+        if (inversion->section[k].rms > mf_inverse_noise_margin * inversion->section[k].noise)
+            return false;
     return true;
 }
 
 /// Whether a method that takes the most probable step has gone all of the way that g hardly sees.
 static bool has_settled(const struct inversion *inversion) {
     const struct inverse_ramp *ramp = &inversion->band.ramp;
-    return !inversion->settling || targets_ask(&inversion->problem->targets, TARGET_PRESSURE) ||
+    return !inversion->settling || inversion->grid.pairs == 0 ||
+           targets_ask(&inversion->problem->targets, TARGET_PRESSURE) ||
            (fabs(ramp->way) <= settled_way * ramp->error &&
             fabs(ramp->pressure_way) <= settled_way * ramp->pressure_open);
 }

@@ -70,11 +70,12 @@ struct inversion_section {
     int kind;                  ///< enum target_kind, or of mf_bonded_distribution_kind
     size_t bin, bins;          ///< the first one among all, and how many there are
     size_t known, known_count; ///< the same of those that are known
-    double peak;               ///< largest value of a bonded target; of g 1
+    double peak;               ///< largest value of a group's target; of g 1
     double inefficiency;       ///< samples that count as one independent
-    double rms, own_noise;     ///< of the samples, in peaks
+    double rms, noise;         ///< of the samples and their targets, in peaks
+    double own_noise;          ///< of the samples alone
 };
-enum { INVERSION_MOST_SECTIONS = 1 + TOPOLOGY_ORDERS };
+enum { INVERSION_MOST_SECTIONS = 1 + INVERSE_MOST_BONDED };
 
 struct inversion {
     struct inversion_settings settings;

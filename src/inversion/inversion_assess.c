@@ -16,6 +16,14 @@ double mf_inversion_target_g(const struct inversion *inversion, size_t bin) {
     return inversion->target_counts[bin] / inversion->ideal[bin];
 }
 
+/// Add a section to the distance of its kind, over the bins of all of them.
+static void add_distance(struct target_distance *distance, double sum, double both, size_t bins) {
+    const double before = (double)distance->count, all = before + (double)bins;
+    distance->rms = sqrt((before * distance->rms * distance->rms + sum) / all);
+    distance->noise = sqrt((before * distance->noise * distance->noise + both) / all);
+    distance->count += bins;
+}
+
 /// Of one section; returns its χ².
 static double assess(struct inversion *inversion, struct inversion_section *section) {
     const struct comoments *counts = &inversion->replicas.counts;
@@ -39,9 +47,9 @@ static double assess(struct inversion *inversion, struct inversion_section *sect
         own += sampled / unit;
         both += inversion->variance[a] / unit;
     }
-    inversion->distance[section->kind] =
-        (struct target_distance){.rms = sqrt(sum / bins), .noise = sqrt(both / bins)};
+    add_distance(&inversion->distance[section->kind], sum, both, section->bins);
     section->rms = sqrt(sum / bins) / section->peak;
+    section->noise = sqrt(both / bins) / section->peak;
     section->own_noise = sqrt(own / bins) / section->peak;
     return misfit;
 }
@@ -49,22 +57,23 @@ static double assess(struct inversion *inversion, struct inversion_section *sect
 void mf_inversion_assess(struct inversion *inversion) {
     const struct inversion_section *first = &inversion->section[0];
     double misfit = 0;
-    inversion->own_noise = 0;
+    inversion->own_noise = inversion->inefficiency = 0;
+    for (int k = 0; k < inversion->sections; k++)
+        inversion->distance[inversion->section[k].kind] = (struct target_distance){0};
     for (int k = 0; k < inversion->sections; k++) {
+        const struct inversion_section *section = &inversion->section[k];
         misfit += assess(inversion, &inversion->section[k]);
-        inversion->own_noise = fmax(inversion->own_noise, inversion->section[k].own_noise);
+        inversion->own_noise = fmax(inversion->own_noise, section->own_noise);
+        inversion->inefficiency = fmax(inversion->inefficiency, section->inefficiency);
     }
-    inversion->inefficiency = first->inefficiency;
     inversion->disagreement = mf_replicas_disagreement(
         &inversion->replicas, inversion->ideal, inversion->grid.known_bin, first->known_count);
     inversion->misfit = misfit / (double)inversion->grid.known;
 }
 
 bool mf_inversion_is_near(const struct inversion *inversion) {
-    for (int k = 0; k < inversion->sections; k++) {
-        const struct target_distance *distance = &inversion->distance[inversion->section[k].kind];
-        if (!(distance->rms < near_noises * distance->noise))
+    for (int k = 0; k < inversion->sections; k++)
+        if (!(inversion->section[k].rms < near_noises * inversion->section[k].noise))
             return false;
-    }
     return true;
 }

@@ -224,6 +224,10 @@ enum status mf_inversion_create(void *memory, const struct inverse_method *metho
     const struct simulation_setup *scene = &problem->scene;
     const bool joined = mf_molecules_find(scene->interaction, scene->interactions) != NULL;
     const bool pairs = inversion->grid.pairs > 0;
+    if (!pairs && targets_ask(&problem->targets, TARGET_PRESSURE))
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "target.pressure: no potential of pairs is to be found that could "
+                              "meet it; with \"fitted\": \"no\" it is compared with");
     TRY(mf_inversion_tabulate(inversion));
     TRY(mf_replicas_init(
         &inversion->replicas, (size_t)p->replicas, (enum sampler_kind)p->sampler,

@@ -60,13 +60,11 @@ static void count_group(struct inversion *inversion, const struct potential_grou
     }
 }
 
-/// The section of a kind, behind those before: the last one, or a new one.
-static struct inversion_section *find_section(struct inversion *inversion, int kind) {
+/// A section behind those before.
+static struct inversion_section *add_section(struct inversion *inversion, int kind) {
     struct inversion_section *section = &inversion->section[inversion->sections];
     if (inversion->sections > 0) {
         const struct inversion_section *last = section - 1;
-        if (last->kind == kind)
-            return section - 1;
         section->bin = last->bin + last->bins;
         section->known = last->known + last->known_count;
     }
@@ -82,10 +80,10 @@ static void enter_group(struct inversion *inversion, size_t g) {
     const struct bonded_grid *own = &inversion->grid.group[g].own;
     const struct bonded_unknown *unknown = own->unknown;
     struct inversion_section *section =
-        find_section(inversion, mf_bonded_distribution_kind(unknown->order));
-    section->bins += unknown->bins.count;
-    section->known_count += own->known;
-    section->peak = fmax(section->peak, peak_of(own));
+        add_section(inversion, mf_bonded_distribution_kind(unknown->order));
+    section->bins = unknown->bins.count;
+    section->known_count = own->known;
+    section->peak = peak_of(own);
     inversion->groups[g] = (struct sampler_group){unknown->order, unknown->group, unknown->bins};
     inversion->shape[inversion->grid.pairs + g] =
         (struct imc_shape){.bend = fmax(1, narrow * (double)own->known),
@@ -95,7 +93,7 @@ static void enter_group(struct inversion *inversion, size_t g) {
 void mf_inversion_count_targets(struct inversion *inversion) {
     const struct potential_grid *grid = &inversion->grid;
     if (grid->pairs > 0) {
-        struct inversion_section *section = find_section(inversion, TARGET_RDF);
+        struct inversion_section *section = add_section(inversion, TARGET_RDF);
         section->bins = grid->pair_bins;
         section->known_count = grid->pairs_known;
         section->peak = 1;

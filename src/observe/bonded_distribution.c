@@ -80,20 +80,23 @@ double mf_bonded_distribution_jacobian(enum topology_order order, int dimensions
 
 // Sampling ----------------------------------------------------------------------------------------
 
-/// As far as the lengths of any group are likely to go.
-static double longest_of(const struct molecules *molecules) {
+/// As far as the lengths of any group are likely to go: once in 10^8 a bond at rest at 0 goes on.
+static double longest_of(const struct molecules *molecules, double temperature) {
+    static const double likely = 18;
     double longest = 0;
     for (int g = 0; g < molecules->groups[TOPOLOGY_BOND]; g++) {
         const struct bonded_curve *curve = &molecules->group[TOPOLOGY_BOND][g].curve;
-        longest = fmax(longest, fmin(mf_bonded_longest(curve), 2 * mf_bonded_rest(curve)));
+        const double rest = mf_bonded_rest(curve);
+        longest = fmax(longest, rest > 0 ? fmin(mf_bonded_longest(curve), 2 * rest)
+                                         : mf_bonded_reach(curve, likely * temperature));
     }
     return longest;
 }
 
 static struct bonded_bins choose_bins(const struct molecules *molecules, enum topology_order order,
-                                      int64_t count) {
+                                      int64_t count, double temperature) {
     const double low = order == TOPOLOGY_DIHEDRAL ? -180 : 0;
-    const double high = order == TOPOLOGY_BOND ? longest_of(molecules) : 180;
+    const double high = order == TOPOLOGY_BOND ? longest_of(molecules, temperature) : 180;
     return (struct bonded_bins){low, (high - low) / (double)count, (size_t)count};
 }
 
@@ -111,8 +114,9 @@ static enum status begin(struct state *s, enum topology_order order,
         (struct state){.molecules = molecules, .order = order, .dimensions = setup->box.dimensions};
     CHECK(mf_sample_blocks_init(&s->blocks, (size_t)plan->samples));
     for (int g = 0; g < molecules->groups[order]; g++) {
-        s->bins[g] = settings->bins > 0 ? choose_bins(molecules, order, settings->bins)
-                                        : settings->target[g];
+        s->bins[g] = settings->bins > 0
+                         ? choose_bins(molecules, order, settings->bins, setup->temperature)
+                         : settings->target[g];
         s->first[g + 1] = s->first[g] + s->bins[g].count;
     }
     NEW_ARRAY(s->counts, s->blocks.count * s->first[molecules->groups[order]]);

@@ -148,6 +148,26 @@ done:
     return status;
 }
 
+/// Of the groups of each order the one that is farthest from its target, by its noise.
+static void find_worst(const struct inverse_problem *problem, struct verification *verification) {
+    for (size_t g = 0; g < problem->bonded; g++) {
+        const struct bonded_unknown *group = &problem->group[g];
+        const int kind = mf_bonded_distribution_kind(group->order);
+        struct target target = problem->compared.target[kind];
+        struct target_distance *worst = &verification->worst[kind];
+        if (target.count == 0)
+            continue;
+        target.count = group->bins.count;
+        target.value += group->first;
+        target.error += group->first;
+        const struct target_distance distance =
+            mf_targets_distance(&target, verification->observed.value[kind] + group->first,
+                                verification->observed.error[kind] + group->first);
+        if (worst->count == 0 || distance.rms * worst->noise > worst->rms * distance.noise)
+            *worst = distance;
+    }
+}
+
 /// Results of all replicas together, in their order.
 static enum status summarise(struct measurement *replicas, size_t count,
                              struct verification *verification) {
@@ -216,6 +236,7 @@ enum status mf_verify(const struct inverse_problem *problem, const struct table 
     CHECK(run_replicas(
         &(struct work){problem, potential, omega, parameters, listener, replicas, {0}}));
     CHECK(summarise(replicas, count, verification));
+    find_worst(problem, verification);
     CHECK(keep_configuration(&replicas->simulation.particles, verification));
 done:
     for (size_t k = 0; replicas && k < count; k++)

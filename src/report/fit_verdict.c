@@ -43,7 +43,7 @@ bool mf_fit_verdict_contradicts(const struct verification *verification, bool pr
     }
     for (enum topology_order order = 0; order < TOPOLOGY_ORDERS; order++) {
         const int kind = mf_bonded_distribution_kind(order);
-        const struct target_distance *bonded = &verification->distance[kind];
+        const struct target_distance *bonded = &verification->worst[kind];
         if (!(bonded->rms > noise_margin * bonded->noise))
             continue;
         snprintf(reason, INVERSE_REASON_SIZE,

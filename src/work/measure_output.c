@@ -317,12 +317,28 @@ static void put_types(const struct composition *composition, double share,
     mf_json_end(writer);
 }
 
+/// The part of all that a fit simulates well; all, if there are so few of anything that the
+/// composition would be another one.
+static double find_share(const struct measure_result *result, const struct composition *single) {
+    static const double most_change = 0.02;
+    const struct topology *const topology = &result->kinds->molecules.topology;
+    const double beads = (double)mf_composition_particles(&result->measured->pairs.composition);
+    const double share = fmin(1, MOST_BEADS / beads), fewest = 1 / (share * most_change);
+    for (int k = 0; k < topology->kinds; k++)
+        if (topology->kind[k].count > 0 && (double)topology->kind[k].count < fewest)
+            return 1;
+    for (int type = 0; type < single->types; type++)
+        if (single->count[type] > 0 && (double)single->count[type] < fewest)
+            return 1;
+    return share;
+}
+
 /// Molecules, and the single beads beside them.
 static void put_molecules_of_scene(const struct measure_result *result,
                                    struct json_writer *writer) {
     const struct composition *const all = &result->measured->pairs.composition;
     const struct composition single = find_single(result);
-    const double share = fmin(1, (double)MOST_BEADS / (double)mf_composition_particles(all));
+    const double share = find_share(result, &single);
     mf_scene_kinds_write(result->kinds, all, share, writer);
     if (mf_composition_particles(&single) == 0 && isnan(find_mass(result, 0)))
         return;
