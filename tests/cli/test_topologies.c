@@ -134,6 +134,7 @@ static void test_topologies_that_cannot_be_are_refused(void **state) {
         {"4 C1 1 HEX A 4", "5 C1 1 HEX A 4", "topol.top:16:", "next atom has number 4"},
         {"2 C2 1 HEX B 2", "2 C* 1 HEX B 2", "topol.top:14:", "a type is called"},
         {"hexane 20\nW 5\nhexane 10", "hexane 0", "topol.top", "[ molecules ] has none"},
+        {"; a comment", "[ bondtypes ]\nC1 C2 1 0.4 900", "topol.top:", "2 lines have parameters"},
         {"; a comment", "word", "topol.top:1:", "begins with a section"},
     };
     static struct run_program_result result;

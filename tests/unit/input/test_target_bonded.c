@@ -94,24 +94,30 @@ static void test_target_bonded_reads_angles_in_radians_and_degrees(void **state)
     free(second);
 }
 
-/// VOTCA's dihedrals begin and end with half a bin about ±π.
+/// Dihedrals begin and end with half a bin about ±π, or both with all of that bin, normalised with
+/// (VOTCA's histograms) or without the second.
 static void test_target_bonded_joins_the_ends_of_a_circle(void **state) {
     enum { ROWS = 101 };
-    struct target_bonded target;
-    char table[64 * ROWS] = "";
-    for (int k = 0; k < ROWS; k++) {
-        const double phi = -M_PI + 2 * M_PI * k / (ROWS - 1);
-        const double p = (1 + 0.5 * cos(phi)) / (2 * M_PI);
-        snprintf(table + strlen(table), 64, "%.8f %.8f i\n", phi,
-                 k == 0 || k == ROWS - 1 ? p / 2 : p);
+    static const struct {
+        double ends, all; // part of p in both ends, integral of all rows
+    } cases[] = {{0.5, 1}, {1, 1}, {1, 1 + 0.5 / (ROWS - 1)}};
+    for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
+        struct target_bonded target;
+        char table[64 * ROWS] = "";
+        for (int k = 0; k < ROWS; k++) {
+            const double phi = -M_PI + 2 * M_PI * k / (ROWS - 1);
+            const double p = (1 + 0.5 * cos(phi)) / (2 * M_PI) / cases[n].all;
+            snprintf(table + strlen(table), 64, "%.8f %.10f i\n", phi,
+                     k == 0 || k == ROWS - 1 ? p * cases[n].ends : p);
+        }
+        assert_ok(read(state, table, VOTCA, TOPOLOGY_DIHEDRAL, &target));
+        assert_int_equal(target.bins.count, ROWS - 1);
+        assert_close(target.bins.width * (double)target.bins.count, 360, 1e-9);
+        assert_close(bonded_bins_centre(&target.bins, 0), -180, 1e-4);
+        assert_close(target.value[0], 0.5 / 360, 1e-6);
+        assert_close(target.value[50], 1.5 / 360, 1e-6);
+        mf_target_bonded_clear(&target);
     }
-    assert_ok(read(state, table, VOTCA, TOPOLOGY_DIHEDRAL, &target));
-    assert_int_equal(target.bins.count, ROWS - 1);
-    assert_close(target.bins.width * (double)target.bins.count, 360, 1e-9);
-    assert_close(bonded_bins_centre(&target.bins, 0), -180, 1e-4);
-    assert_close(target.value[0], 0.5 / 360, 1e-6);
-    assert_close(target.value[50], 1.5 / 360, 1e-6);
-    mf_target_bonded_clear(&target);
 }
 
 /// Counts of a stiff bond, whose p is steeper than its noise: σ² is that of counts.
