@@ -61,12 +61,15 @@ class Views(PageTest):
         self.wait(lambda: "step" in self.text("frames"))
         self.press("pause")
         self.wait(lambda: self.phase() == "paused")
+        return self.wait(self.frame_that_is_drawn)
+
+    def frame_that_is_drawn(self):
+        """The program's last frame, once the page has drawn that one."""
         frame = self.served.ask("/api/particles")[1]
-        self.wait(lambda: f"step {struct.unpack_from('=d', frame, 24)[0]:.0f}," in self.text("frames"))
-        return frame
+        return frame if f"step {struct.unpack_from('=d', frame, 24)[0]:.0f}," in self.text("frames") else None
 
     def colour(self, name):
-        self.at("colour").send_keys(name)
+        self.at("colour").find_element("css selector", f"option[value={name}]").click()
         self.wait(lambda: self.at("colour").get_attribute("value") == name)
         self.browser.execute_async_script("requestAnimationFrame(() => requestAnimationFrame(arguments[0]))")
 
