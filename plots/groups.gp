@@ -26,7 +26,7 @@ do for [k = 1:words(drawn)] {
 
 do for [kind in kinds] {
     eval open(kind, figure, 720, 440)
-    set xrange [low(0, X_min):X_max]
+    set xrange [X_min > X_max / 4 ? X_min : low(0, X_min):X_max]
     set yrange [1.04 * lowest:end_of(highest)]
     set xlabel symbol . " / " . unit
     set ylabel figure eq "molecule_motion" ? "⟨|Δ{/:Bold R}({/:Italic t})|^2⟩ / " . squared : first eq "time" ? "⟨{/:Bold R}({/:Italic t})·{/:Bold R}(0)⟩ / ⟨{/:Italic R}²⟩" : "{/:Italic p}(" . symbol . ")"
