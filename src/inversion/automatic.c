@@ -69,9 +69,10 @@ static enum status update(struct inversion *inversion, double *extra) {
     if (!in_basin(inversion))
         return careful_step(inversion, inversion->step);
     TRY(careful_step(inversion, inversion->other_step));
-    inversion->has_other = true;
     TRY(mf_imc_step(inversion, &noise, inversion->step, newton));
-    extra[0] = newton[2] > 0;
+    // Without directions the covariance told no step, and that of Boltzmann inversion is taken.
+    inversion->has_other = newton[2] > 0;
+    extra[0] = inversion->has_other;
     extra[1] = newton[1];
     extra[2] = newton[2];
     return STATUS_OK;

@@ -31,8 +31,9 @@ static enum status begin(void *state, const void *settings, const struct simulat
     for (int k = 0; k < topology->kinds; k++) {
         const size_t count = (size_t)topology->kind[k].count;
         s->most = count > s->most ? count : s->most;
-        CHECK(mf_motion_init_points(&s->motion[k], settings, simulation, count, plan->equilibration,
-                                    plan->samples * plan->every));
+        status = mf_motion_init_points(&s->motion[k], settings, simulation, count,
+                                       plan->equilibration, plan->samples * plan->every);
+        CHECK(status != STATUS_OK ? mf_status_prefix(status, "molecule_motion") : STATUS_OK);
     }
     NEW_ARRAY(s->centres, 2 * (size_t)setup->box.dimensions * s->most);
 done:
