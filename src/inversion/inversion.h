@@ -95,7 +95,9 @@ struct inversion {
     /// Shape [bins]: S if g were 1, or p its mean over the known bins; S for a value of 1 of the
     /// target; S of the target and its error; S/ideal that counts as none.
     double *ideal, *unit, *target_counts, *target_error, *least;
-    double *excess, *variance;                ///< of S in the known bins, shape [known]
+    double *excess, *variance;                     ///< of S in the known bins, shape [known]
+    double *pooled, *pooled_variance, *pooled_phi; ///< of iterations near the target, see
+                                                   ///< mf_inversion_pool
     double *covariance;                       ///< C of S in the known bins, shape [known, known]
     double *doubt;                            ///< variances with those of C, of fits with groups
     double behind;                            ///< samples behind C
@@ -125,6 +127,7 @@ struct inversion {
         struct inversion_drift drift;          ///< of the potentials sampled since the start
         double best_own_noise, best_disagreement;
         double responses;                 ///< samples behind C, of all iterations near the noise
+        double pool;                      ///< samples that the pooled excess is worth, 0 far off
         double first_error, second_error; ///< of g, in the first two iterations from a start
     } progress;
 };
@@ -204,6 +207,13 @@ void mf_inversion_reason_tell(const struct inversion *inversion, char reason[INV
 /// Fill excess, variance and inefficiencies of S, the distances over the bins of each section, and
 /// their noise, from the present samples.
 void mf_inversion_assess(struct inversion *inversion);
+
+/// Near the target, replace the excess and its variance by those of all iterations since it was
+/// reached: what the earlier ones saw, moved to the present potential by C. A step from the present
+/// samples alone carries their noise into the next potential, so that its error is sqrt(2) times
+/// the noise, iteration after iteration; Kushner and Yin, Stochastic Approximation (2003),
+/// section 1.1. Present samples weigh a third at least, for what C does not tell.
+void mf_inversion_pool(struct inversion *inversion);
 
 /// Whether g, and p of all groups, are so near to their targets, by their noise, that C hardly
 /// changes any more.

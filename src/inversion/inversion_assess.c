@@ -4,9 +4,13 @@
 #include "inversion/inversion.h"
 
 #include <math.h>
+#include <string.h>
 
-/// The error of what is near to its target, in units of its noise.
-static const double near_noises = 2;
+/// Share of the present samples in what all iterations near the target tell, at least.
+static const double least_share = 1.0 / 3;
+
+/// The error of what is near to its target, in units of its noise, and of what stays near.
+static const double near_noises = 2, still_near_noises = 3;
 
 double mf_inversion_g(const struct inversion *inversion, size_t bin) {
     return inversion->replicas.counts.mean[bin] / inversion->ideal[bin];
@@ -72,8 +76,44 @@ void mf_inversion_assess(struct inversion *inversion) {
 }
 
 bool mf_inversion_is_near(const struct inversion *inversion) {
+    const double noises = inversion->progress.pool > 0 ? still_near_noises : near_noises;
     for (int k = 0; k < inversion->sections; k++)
-        if (!(inversion->section[k].rms < near_noises * inversion->section[k].noise))
+        if (!(inversion->section[k].rms < noises * inversion->section[k].noise))
             return false;
     return true;
+}
+
+/// The pooled excess at the present potential: S − C ΔΦ/k_B T.
+static void move_pool(struct inversion *inversion) {
+    const struct potential_grid *grid = &inversion->grid;
+    const double temperature = inversion->problem->scene.temperature;
+    for (size_t b = 0; b < grid->known; b++) {
+        const size_t point = grid->known_point[b];
+        const double change = (inversion->phi[point] - inversion->pooled_phi[point]) / temperature;
+        for (size_t a = 0; a < grid->known; a++)
+            inversion->pooled[a] -= inversion->covariance[a * grid->known + b] * change;
+    }
+}
+
+void mf_inversion_pool(struct inversion *inversion) {
+    const struct potential_grid *grid = &inversion->grid;
+    double *pool = &inversion->progress.pool;
+    const double now = inversion->replicas.counts.count;
+    if (!mf_inversion_is_near(inversion)) {
+        *pool = 0;
+        return;
+    }
+    const double share = fmax(least_share, now / (*pool + now));
+    if (*pool > 0)
+        move_pool(inversion);
+    for (size_t a = 0; a < grid->known; a++) {
+        const double target = pow(inversion->target_error[grid->known_bin[a]], 2);
+        double *excess = &inversion->pooled[a], *sampled = &inversion->pooled_variance[a];
+        *excess = (1 - share) * *excess + share * inversion->excess[a];
+        *sampled = pow(1 - share, 2) * *sampled + pow(share, 2) * (inversion->variance[a] - target);
+        inversion->excess[a] = *excess;
+        inversion->variance[a] = *sampled + target;
+    }
+    memcpy(inversion->pooled_phi, inversion->phi, grid->points * sizeof(double));
+    *pool = 1 / (pow(1 - share, 2) / fmax(*pool, 1) + share * share / now);
 }

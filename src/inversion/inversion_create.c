@@ -65,7 +65,8 @@ void mf_inversion_destroy(void *memory) {
                         inversion->variance,     inversion->covariance, inversion->pressure.slope,
                         inversion->phi,          inversion->step,       inversion->other_step,
                         inversion->best,         inversion->best_step,  inversion->best_other,
-                        inversion->best_counts};
+                        inversion->best_counts,  inversion->pooled,     inversion->pooled_variance,
+                        inversion->pooled_phi};
     for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
         mf_memory_free(arrays[k]);
 }
@@ -84,6 +85,9 @@ static enum status allocate(struct inversion *inversion) {
     NEW_ARRAY(inversion->excess, known);
     NEW_ARRAY(inversion->variance, known);
     NEW_ARRAY(inversion->covariance, known * known);
+    NEW_ARRAY(inversion->pooled, known);
+    NEW_ARRAY(inversion->pooled_variance, known);
+    NEW_ARRAY(inversion->pooled_phi, points);
     if (inversion->grid.groups > 0)
         NEW_ARRAY(inversion->doubt, known);
     NEW_ARRAY(inversion->pressure.slope, known);
@@ -254,12 +258,14 @@ size_t mf_inversion_spans(void *memory, struct memory_span *span) {
     size_t n = 0;
     span[n++] = (struct memory_span){&inversion->progress, sizeof inversion->progress};
     double *arrays[] = {inversion->phi, inversion->best, inversion->best_step,
-                        inversion->best_other};
+                        inversion->best_other, inversion->pooled_phi};
     for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
         span[n++] = (struct memory_span){arrays[k], bytes};
     span[n++] = (struct memory_span){inversion->best_counts, inversion->bins * sizeof(double)};
     const size_t known = inversion->grid.known;
     span[n++] = (struct memory_span){inversion->covariance, known * known * sizeof(double)};
+    span[n++] = (struct memory_span){inversion->pooled, known * sizeof(double)};
+    span[n++] = (struct memory_span){inversion->pooled_variance, known * sizeof(double)};
     n += mf_inversion_band_spans(&inversion->band, inversion->grid.points, span + n);
     n += mf_inversion_trail_spans(&inversion->trail, span + n);
     return n + mf_replicas_spans(&inversion->replicas, span + n);
