@@ -53,24 +53,26 @@ static double width_of(const struct bonded_curve *curve, double low, double high
     return fmax(0.5 * (to - from), spacing);
 }
 
-/// Of mass 1, the beads of a bond oscillate with ω² = 2 U''. To bend an angle between two bonds of
-/// length l moves three beads: ω² = 6 U''/l² where it is straight, and less else.
-static double fastest_of_molecules(const struct molecules *molecules, double temperature) {
+double mf_hybrid_step_squared_frequency(const struct bonded_curve *curve, enum topology_order order,
+                                        double length, double temperature) {
     static const double bend = 6;
+    const bool bond = order == TOPOLOGY_BOND;
+    const double low = order == TOPOLOGY_DIHEDRAL ? -M_PI : 0;
+    const double high = bond ? mf_bonded_reach(curve, temperature) : M_PI;
+    const double width = width_of(curve, low, high, temperature);
+    return (bond ? 2 : bend / (length * length)) * temperature / (width * width);
+}
+
+static double fastest_of_molecules(const struct molecules *molecules, double temperature) {
     double length = INFINITY, fastest = 0;
     for (int g = 0; g < molecules->groups[TOPOLOGY_BOND]; g++)
         length =
             fmin(length, mf_bonded_reach(&molecules->group[TOPOLOGY_BOND][g].curve, temperature));
     for (int order = 0; order < TOPOLOGY_ORDERS; order++)
-        for (int g = 0; g < molecules->groups[order]; g++) {
-            const struct bonded_curve *curve = &molecules->group[order][g].curve;
-            const bool bond = order == TOPOLOGY_BOND;
-            const double low = order == TOPOLOGY_DIHEDRAL ? -M_PI : 0;
-            const double high = bond ? mf_bonded_reach(curve, temperature) : M_PI;
-            const double width = width_of(curve, low, high, temperature);
-            fastest = fmax(fastest,
-                           (bond ? 2 : bend / (length * length)) * temperature / (width * width));
-        }
+        for (int g = 0; g < molecules->groups[order]; g++)
+            fastest = fmax(fastest, mf_hybrid_step_squared_frequency(
+                                        &molecules->group[order][g].curve,
+                                        (enum topology_order)order, length, temperature));
     return fastest;
 }
 

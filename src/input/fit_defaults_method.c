@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // How long, how exactly and by what method a fit works that its run file leaves to the program.
+#include "dynamics/hybrid_step.h"
 #include "input/fit_choice.h"
 #include "inversion/inversion.h"
 
@@ -34,25 +35,48 @@ static void find_well(const struct target_bonded *target, double *mean, double *
     *variance = pow((double)(high - low) * bins->width, 2) / (8 * log(2));
 }
 
-double mf_fit_defaults_stiff_step(const struct fit_choice *c) {
-    static const double allowed = 0.003, bend = 6; // as in dynamics/hybrid_step.c
-    const struct target_files *files = &c->read->files;
+/// Of the fastest oscillation that a group's target shows, or its law if it has none: ω².
+static double fastest_of(const struct fit_choice *c, enum topology_order order, size_t g,
+                         double length) {
+    static const double bend = 6; // as in dynamics/hybrid_step.c
+    const struct target_groups *groups = &c->read->files.groups[order];
     const double temperature = c->read->scene.setup.temperature;
-    double length = INFINITY, fastest = 0, mean, variance;
+    double mean, variance;
+    if (!target_groups_have(groups, g))
+        return mf_hybrid_step_squared_frequency(
+                   &c->read->scene.molecules.molecules.group[order][g].curve, order, length,
+                   temperature) /
+               c->mass;
+    find_well(&groups->member[g], &mean, &variance);
+    if (order == TOPOLOGY_BOND)
+        return 2 * temperature / (c->mass * variance);
+    return bend * temperature /
+           (c->mass * variance * BONDED_RADIANS * BONDED_RADIANS * length * length);
+}
+
+static double shortest_bond(const struct fit_choice *c) {
+    const struct molecules *molecules = &c->read->scene.molecules.molecules;
+    const struct target_groups *bonds = &c->read->files.groups[TOPOLOGY_BOND];
+    double length = INFINITY, mean, variance;
+    for (size_t g = 0; g < (size_t)molecules->groups[TOPOLOGY_BOND]; g++) {
+        if (target_groups_have(bonds, g))
+            find_well(&bonds->member[g], &mean, &variance);
+        else
+            mean = mf_bonded_reach(&molecules->group[TOPOLOGY_BOND][g].curve,
+                                   c->read->scene.setup.temperature);
+        length = fmin(length, mean);
+    }
+    return length;
+}
+
+double mf_fit_defaults_stiff_step(const struct fit_choice *c) {
+    static const double allowed = 0.003;
+    const struct molecules *molecules = &c->read->scene.molecules.molecules;
+    const double length = shortest_bond(c);
+    double fastest = 0;
     for (int order = 0; order < TOPOLOGY_ORDERS; order++)
-        for (size_t g = 0; g < files->groups[order].groups; g++) {
-            if (files->groups[order].member[g].bins.count == 0)
-                continue;
-            find_well(&files->groups[order].member[g], &mean, &variance);
-            if (order == TOPOLOGY_BOND) {
-                length = fmin(length, mean);
-                fastest = fmax(fastest, 2 * temperature / (c->mass * variance));
-            } else {
-                variance *= BONDED_RADIANS * BONDED_RADIANS;
-                fastest =
-                    fmax(fastest, bend * temperature / (c->mass * variance * length * length));
-            }
-        }
+        for (size_t g = 0; g < (size_t)molecules->groups[order]; g++)
+            fastest = fmax(fastest, fastest_of(c, (enum topology_order)order, g, length));
     return 2 * sqrt(allowed / fastest);
 }
 

@@ -25,16 +25,19 @@ const struct field mf_target_files_use_fields[] = {
     FIELD_END,
 };
 
-/// All end with the shortest.
+/// All end with the shortest; where they would have ended is kept.
 static void cut_to_shortest(struct target_files *files) {
     size_t shortest = SIZE_MAX;
     for (size_t pair = 0; pair < files->pairs; pair++) {
         const size_t count = files->rdf[pair].bins.count;
         shortest = count > 0 && count < shortest ? count : shortest;
     }
-    for (size_t pair = 0; pair < files->pairs; pair++)
-        if (files->rdf[pair].bins.count > shortest)
-            files->rdf[pair].bins.count = shortest;
+    for (size_t pair = 0; pair < files->pairs; pair++) {
+        struct rdf_bins *bins = &files->rdf[pair].bins;
+        files->rdf_ends[pair] = mf_rdf_bins_edge(bins, bins->count);
+        if (bins->count > shortest)
+            bins->count = shortest;
+    }
 }
 
 /// All pair types must have the bins of the first.

@@ -19,8 +19,9 @@ struct target_files {
     size_t pairs;                                  ///< its pair types
     /// Of all, one behind the other, in the numbers of the scene: shape [pairs, bins].
     double *rdf_g, *rdf_error;
-    double *rdf_given;                  ///< g before it was divided by its normalisation
-    struct normalisation normalisation; ///< by which those that do not say theirs are divided
+    double rdf_ends[COMPOSITION_MOST_PAIRS]; ///< where the file of each would end [λ]
+    double *rdf_given;                       ///< g before it was divided by its normalisation
+    struct normalisation normalisation;      ///< by which those that do not say theirs are divided
     struct target_etd etd;
     struct target_groups groups[TOPOLOGY_ORDERS]; ///< of bonds, angles and dihedrals
     struct target_curve curve[TARGETS];           ///< of those that are curves

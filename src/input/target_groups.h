@@ -23,5 +23,10 @@ enum status mf_target_groups_read(struct target_groups *groups, enum topology_or
 void mf_target_groups_clear(struct target_groups *groups);
 void mf_target_groups_write(const struct target_groups *groups, struct json_writer *writer);
 
+/// Whether a group of the scene has a target.
+static inline bool target_groups_have(const struct target_groups *groups, size_t group) {
+    return group < groups->groups && groups->member[group].bins.count > 0;
+}
+
 /// What the observable is to measure for them.
 struct bonded_settings mf_target_groups_settings(const struct target_groups *groups);

@@ -284,6 +284,13 @@ static void tell_origin(const struct view *view, const struct target_sanity_list
     const struct target_rdf *target = view->target;
     double length;
     const char *unit = unit_of(view, &length);
+    const double ends = view->files->rdf_ends[view->target - view->files->rdf];
+    if (ends > mf_rdf_bins_edge(view->bins, view->bins->count) * (1 + 1e-9))
+        say(listener,
+            "target %s: it goes on to %.4g %s and is cut at %.4g %s, where the shortest ends: "
+            "all g(r) of a mixture end together",
+            view->name, ends * length, unit,
+            mf_rdf_bins_edge(view->bins, view->bins->count) * length, unit);
     if (target->joined > 1)
         say(listener, "target %s: %zu rows of the file make a bin of %.4g %s", view->name,
             target->joined, view->bins->width * length, unit);

@@ -59,7 +59,6 @@ static double assess(struct inversion *inversion, struct inversion_section *sect
 }
 
 void mf_inversion_assess(struct inversion *inversion) {
-    const struct inversion_section *first = &inversion->section[0];
     double misfit = 0;
     inversion->own_noise = inversion->inefficiency = 0;
     for (int k = 0; k < inversion->sections; k++)
@@ -71,7 +70,7 @@ void mf_inversion_assess(struct inversion *inversion) {
         inversion->inefficiency = fmax(inversion->inefficiency, section->inefficiency);
     }
     inversion->disagreement = mf_replicas_disagreement(
-        &inversion->replicas, inversion->ideal, inversion->grid.known_bin, first->known_count);
+        &inversion->replicas, inversion->ideal, inversion->grid.known_bin, inversion->grid.known);
     inversion->misfit = misfit / (double)inversion->grid.known;
 }
 

@@ -170,7 +170,12 @@ static void find_errors(struct inversion *inversion, const double *weight, doubl
         const double variance = band->covariance[a * n + a];
         const double of_ramp = ramp_variance > 0 ? scratch[a] * scratch[a] / ramp_variance : 0;
         band->error[grid->known_point[a]] = variance >= 0 ? sqrt(variance) : NAN;
-        band->without_ramp[grid->known_point[a]] = sqrt(fmax(0, variance - of_ramp));
+        band->without_ramp[grid->known_point[a]] =
+            variance >= 0 ? sqrt(fmax(0, variance - of_ramp)) : NAN;
+    }
+    for (size_t g = 0; g < grid->groups; g++) {
+        mf_potential_grid_close(grid, g, band->error);
+        mf_potential_grid_close(grid, g, band->without_ramp);
     }
     band->ramp.error = sqrt(ramp_variance);
     band->ramp.pressure = mf_inversion_pressure_ramp_slope(inversion);

@@ -144,6 +144,13 @@ void mf_potential_grid_complete(const struct potential_grid *grid, double *phi) 
         mf_bonded_grid_complete(&grid->group[g].own, phi + grid->group[g].point);
 }
 
+void mf_potential_grid_close(const struct potential_grid *grid, size_t group, double *values) {
+    const struct potential_group *own = &grid->group[group];
+    double *block = values + own->point;
+    if (own->own.unknown->order == TOPOLOGY_DIHEDRAL)
+        block[own->own.known] = block[0];
+}
+
 /// Of one block.
 static enum status make_part(const struct potential_grid *grid, const double *phi, size_t pair,
                              struct table *part) {

@@ -50,6 +50,10 @@ bool mf_potential_grid_in_core(const struct potential_grid *grid, size_t point);
 /// the target knows.
 void mf_potential_grid_complete(const struct potential_grid *grid, double *phi);
 
+/// What a group of dihedrals has at its first point it has at its last, which is the same: of
+/// errors.
+void mf_potential_grid_close(const struct potential_grid *grid, size_t group, double *values);
+
 /// Table of the pairs for the kernels from a completed phi. Fails: NO_MEMORY.
 enum status mf_potential_grid_table(const struct potential_grid *grid, const double *phi,
                                     struct table *table) MUST_USE;

@@ -159,6 +159,24 @@ static void test_fit_molecules_leaves_known_laws_alone(void **state) {
     assert_true(rmse < 10 * results_number("known/summary.json", "bond_lengths_noise"));
 }
 
+/// A Verlet step makes the variance of a harmonic length too large by (ω Δt)²/4, ω² = 2 k/m: 0.003
+/// with k = 10⁵ at Δt = 0.000245, and one digit of that is taken.
+static void test_fit_molecules_default_time_step_knows_stiff_laws(void **state) {
+    static const char stiff[] =
+        "{\"target\": {\"rdf\": {\"A-A\": {\"file\": \"truth/rdf_A-A.tsv\"},\n"
+        "  \"A-B\": {\"file\": \"truth/rdf_A-B.tsv\"}, \"B-B\": {\"file\": "
+        "\"truth/rdf_B-B.tsv\"}},\n"
+        " \"bond_angles\": {\"bend\": {\"file\": \"truth/bond_angles.tsv\"}}},\n"
+        "\"scene\": {\"box\": [4.4, 4.4, 4.4],\n"
+        " \"bonds\": {\"backbone\": {\"law\": \"harmonic\", \"k\": 1e5, \"length\": "
+        "0.6}},\n" MOLECULES "}}\n";
+    static struct run_program_result result;
+    small_inputs_write(*state, "run.json", stiff, NULL, NULL);
+    RUN_PROGRAM(&result, "fit", "run.json", "--explain");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.out, "time step 0.0002 tau");
+}
+
 struct wrong {
     const char *from, *to, *words[3];
 };
@@ -201,6 +219,8 @@ int main(void) {
                                         small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_fit_molecules_leaves_known_laws_alone, enter,
                                         small_inputs_leave),
+        cmocka_unit_test_setup_teardown(test_fit_molecules_default_time_step_knows_stiff_laws,
+                                        enter, small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_fit_molecules_refuses_what_cannot_be, enter,
                                         small_inputs_leave),
     };

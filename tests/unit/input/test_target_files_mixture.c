@@ -80,6 +80,8 @@ static void test_targets_read_cuts_pairs_to_the_shortest(void **state) {
     assert_ok(read(state, AA ", \"B-A\": {\"file\": \"more.tsv\"}, " BB, &t));
     mf_target_files_targets(&t, false, &fitted, &compared);
     assert_int_equal(fitted.bins.count, 4);
+    assert_close(t.rdf_ends[0], 0.4, 1e-12);
+    assert_close(t.rdf_ends[1], 0.5, 1e-12);
     assert_int_equal(fitted.target[TARGET_RDF].count, 12);
     assert_close(fitted.target[TARGET_RDF].value[4 + 2], 1.25, 1e-12);
     mf_target_files_clear(&t);
