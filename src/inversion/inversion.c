@@ -20,8 +20,8 @@ static const double noise_share = 1.0 / 3;
 /// Samples of an iteration double at most so often.
 enum { MOST_DOUBLINGS = 7 };
 
-/// The way that is left of the ramp, and of the pressure, at which both have settled: in the errors
-/// that they have by the present samples.
+/// The way that is left of the ramp, and of the pressure, in their errors, at which both have
+/// settled.
 static const double settled_way = 0.5;
 
 /// Replicas that are placed anew are equilibrated so many times as long.
@@ -243,12 +243,10 @@ static bool meets_targets(const struct inversion *inversion) {
 /// Whether a method that takes the most probable step has gone all of the way that g hardly sees.
 static bool has_settled(const struct inversion *inversion) {
     const struct inverse_ramp *ramp = &inversion->band.ramp;
-    const double pooled = inversion->progress.pool / inversion->replicas.counts.count;
-    const double way = settled_way * sqrt(fmax(1, pooled));
     return !inversion->settling || inversion->grid.pairs == 0 ||
            targets_ask(&inversion->problem->targets, TARGET_PRESSURE) ||
-           (fabs(ramp->way) <= way * ramp->error &&
-            fabs(ramp->pressure_way) <= way * ramp->pressure_open);
+           (fabs(ramp->way) <= settled_way * ramp->error &&
+            fabs(ramp->pressure_way) <= settled_way * ramp->pressure_open);
 }
 
 bool mf_inversion_runs_away(const struct inversion *inversion) {
