@@ -88,7 +88,7 @@ static enum status time_size(const struct simulation_setup *setup, size_t partic
                                           .width = setup->potential->cutoff / BINS,
                                           .bins = BINS,
                                           .seed = setup->seed};
-    for (int kind = 0; mf_sampler_kinds[kind]; kind++)
+    for (int kind = 0; kind < SAMPLER_AUTO; kind++)
         TRY(time_sampler(&system, (enum sampler_kind)kind, threads));
     return STATUS_OK;
 }
