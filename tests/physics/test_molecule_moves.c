@@ -15,8 +15,8 @@
 
 #include <math.h>
 
-static const double temperature = 1.3, strength = 16; // Φ = strength (1 − r)²/2
-static const double spring = 40, rest = 0.7, stiffness = 5, bent = 110, torsion = 1.5, phase = 70;
+static const double temperature = 1.3, strength = 40; // Φ = strength (1 − r)²/2
+static const double spring = 40, rest = 0.6, stiffness = 5, bent = 110, torsion = 1.5, phase = 70;
 
 enum { MOST_BEADS = 6, VALUES = 4, BEADS_ALONE = MOLECULE_MOVES, ALL_MOVES };
 
@@ -27,6 +27,7 @@ struct example {
     int molecules, beads; ///< of each molecule
     int highest;          ///< order of the terms of a chain
     bool ring, star;      ///< in place of a chain
+    int exclude;          ///< bonds
     int move;             ///< enum molecule_move, BEADS_ALONE or ALL_MOVES
     double edge;          ///< of the box
 };
@@ -176,7 +177,7 @@ static void draw_configuration(struct draw *draw) {
 
 // What is measured --------------------------------------------------------------------------------
 
-/// Φ of the pairs that are not bonded (exclude 1); the square of the cosine between the first bonds
+/// Φ of the pairs that are not excluded; the square of the cosine between the first bonds
 /// of the first and the last molecule; the mean length of first bonds; and how far the ends of the
 /// first molecule are apart, or of two molecules the cosine of the distance of their first beads.
 static void measure(const struct example *e, double (*x)[3], double values[VALUES]) {
@@ -191,7 +192,7 @@ static void measure(const struct example *e, double (*x)[3], double values[VALUE
             double square = 0;
             for (int d = 0; d < e->dimensions; d++)
                 square += pow(box_nearest(x[i][d] - x[j][d], e->edge), 2);
-            if (!bonded && square < 1)
+            if ((!bonded || e->exclude == 0) && square < 1)
                 values[0] += strength * pow(1 - sqrt(square), 2) / 2;
         }
     for (int m = 0; m < e->molecules; m++) {
@@ -234,14 +235,14 @@ static void add_term(struct topology_kind *kind, int order, int a, int b) {
     kind->term[order][kind->terms[order]++] = (struct topology_term){.bead = {a, b}};
 }
 
-/// Molecules of a kind that excludes its bonded pairs alone.
 static struct composition make_molecules(struct molecules *molecules, const struct example *e) {
     static const int type[MOST_BEADS] = {0};
     const struct molecules_number bond[] = {{"k", spring}, {"length", rest}, {NULL, 0}};
     const struct molecules_number bend[] = {{"k", stiffness}, {"angle", bent}, {NULL, 0}};
     const struct molecules_number twist[] = {
         {"k", torsion}, {"multiplicity", 2}, {"phase", phase}, {NULL, 0}};
-    struct topology_kind kind = molecules_chain(e->molecules, type, e->beads, e->highest, 1);
+    struct topology_kind kind =
+        molecules_chain(e->molecules, type, e->beads, e->highest, e->exclude);
     if (e->ring || e->star) {
         mf_memory_free(kind.term[TOPOLOGY_BOND]);
         kind.term[TOPOLOGY_BOND] = mf_memory_zeroed(MOST_BEADS, sizeof(struct topology_term));
@@ -321,8 +322,7 @@ static void begin(struct metropolis *metropolis, const struct example *e, struct
             }
 }
 
-/// Four numbers of twelve examples: with differences of 4.3 standard errors a false alarm comes
-/// once in a thousand seeds.
+/// 34 numbers that scatter, with errors of 40 blocks: one is off by 4.8 of them once in 1000 seeds.
 static void check(const struct example *e) {
     struct molecules molecules;
     struct metropolis metropolis;
@@ -347,7 +347,7 @@ static void check(const struct example *e) {
                                   pow(mf_statistics_standard_error(&found[v]), 2));
         print_message("%s %d: %.5f, exact %.5f, apart by %.2f standard errors (%.5f)\n", e->name, v,
                       found[v].mean, exact[v].mean, (found[v].mean - exact[v].mean) / error, error);
-        assert_close(found[v].mean, exact[v].mean, 4.3 * error + 1e-9);
+        assert_close(found[v].mean, exact[v].mean, 4.8 * error + 1e-9);
     }
     mf_metropolis_clear(&metropolis);
     mf_molecules_clear(&molecules);
@@ -365,25 +365,27 @@ static void test_each_move_alone_leaves_dumbbells_in_equilibrium(void **state) {
 
 static void test_moves_leave_flat_dumbbells_in_equilibrium(void **state) {
     (void)state;
-    check(&(struct example){"flat, rotate", 2, 2, 2, .move = MOLECULE_ROTATE, .edge = 3});
-    check(&(struct example){"flat, all", 2, 2, 2, .move = ALL_MOVES, .edge = 3});
+    check(&(struct example){"flat, rotate", 2, 2, 2, .exclude = 1, .move = MOLECULE_ROTATE,
+                            .edge = 3});
+    check(&(struct example){"flat, all", 2, 2, 2, .exclude = 1, .move = ALL_MOVES, .edge = 3});
 }
 
 static void test_moves_leave_chains_that_meet_themselves_in_equilibrium(void **state) {
     (void)state;
-    check(&(struct example){"chain, pivot", 3, 1, 5, TOPOLOGY_DIHEDRAL, .move = MOLECULE_PIVOT,
-                            .edge = 12});
-    check(&(struct example){"chain, beads", 3, 1, 5, TOPOLOGY_DIHEDRAL, .move = BEADS_ALONE,
-                            .edge = 12});
-    check(
-        &(struct example){"chain, all", 3, 1, 6, TOPOLOGY_DIHEDRAL, .move = ALL_MOVES, .edge = 12});
+    check(&(struct example){"chain, pivot", 3, 1, 5, TOPOLOGY_DIHEDRAL, .exclude = 1,
+                            .move = MOLECULE_PIVOT, .edge = 12});
+    check(&(struct example){"chain, beads", 3, 1, 5, TOPOLOGY_DIHEDRAL, .exclude = 1,
+                            .move = BEADS_ALONE, .edge = 12});
+    check(&(struct example){"chain, all", 3, 1, 6, TOPOLOGY_DIHEDRAL, .exclude = 1,
+                            .move = ALL_MOVES, .edge = 12});
 }
 
 static void test_moves_leave_stars_and_rings_in_equilibrium(void **state) {
     (void)state;
-    check(
-        &(struct example){"star, pivot", 3, 1, 5, .star = true, .move = MOLECULE_PIVOT, .edge = 6});
-    check(&(struct example){"ring, all", 3, 2, 4, .ring = true, .move = ALL_MOVES, .edge = 6});
+    check(&(struct example){"star, pivot", 3, 1, 5, .star = true, .exclude = 1,
+                            .move = MOLECULE_PIVOT, .edge = 6});
+    check(&(struct example){"ring, all", 3, 2, 4, .ring = true, .exclude = 1, .move = ALL_MOVES,
+                            .edge = 6});
 }
 
 int main(void) {
