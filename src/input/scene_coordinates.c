@@ -2,6 +2,7 @@
 #include "input/scene_coordinates.h"
 
 #include "base/memory.h"
+#include "input/lammps_topology.h"
 #include "trajectory/trajectory.h"
 
 #include <math.h>
@@ -10,9 +11,9 @@
 /// Files have three decimals; a bond that is so many times as long is of other beads.
 static const double box_tolerance = 2e-3, longest_share = 3;
 
-bool mf_scene_coordinates_is_gro(const char *file) {
+bool mf_scene_coordinates_are_of_engine(const char *file) {
     const char *dot = strrchr(file, '.');
-    return dot && strcmp(dot, ".gro") == 0;
+    return (dot && strcmp(dot, ".gro") == 0) || mf_lammps_topology_is(file);
 }
 
 /// The number of each id in the file, from 0 on.
@@ -97,6 +98,8 @@ static enum status take_frame(struct scene *scene, struct json_object *particles
     NEW_ARRAY(number, beads);
     NEW_ARRAY(scene->start_values, 2 * (size_t)dimensions * beads);
     number_ids(scene, number);
+    for (size_t id = 0; id < beads && scene->molecules.order; id++)
+        number[id] = scene->molecules.order[number[id]];
     for (int d = 0; d < dimensions; d++) {
         double *x = scene->start_values + (size_t)d * beads;
         double *v = scene->start_values + (size_t)(dimensions + d) * beads;
@@ -117,13 +120,21 @@ done:
 
 enum status mf_scene_coordinates_read(struct scene *scene, struct json_object *particles) {
     const char *file = scene->setup.placement.file;
-    const struct trajectory_options options = {NULL};
+    const struct trajectory_options options = {.units = scene->molecules.order_units};
     struct trajectory trajectory;
     struct trajectory_frame frame = {0};
     bool more = true;
     if (scene->molecules.scattered) {
         mf_json_fault(particles, "file",
                       "%s: coordinates want each moleculetype once in [ molecules ]", file);
+        return STATUS_OK;
+    }
+    if (mf_lammps_topology_is(file) != (scene->molecules.order != NULL)) {
+        mf_json_fault(
+            particles, "file",
+            "%s: coordinates of a data file of LAMMPS, and no others, belong to molecules "
+            "of one",
+            file);
         return STATUS_OK;
     }
     enum status status = mf_trajectory_open(&trajectory, file, &options);
