@@ -244,9 +244,11 @@ static enum status check_doubled(struct reading *reading, int order) {
     struct lammps_term *sorted = NULL;
     NEW_ARRAY(sorted, count);
     for (size_t n = 0; n < count; n++) {
-        sorted[n] = terms->term[order][n];
-        for (int k = 0; k < beads && sorted[n].atom[0] > sorted[n].atom[beads - 1]; k++)
-            sorted[n].atom[k] = terms->term[order][n].atom[beads - 1 - k];
+        const struct lammps_term *from = &terms->term[order][n];
+        const bool turned = from->atom[0] > from->atom[beads - 1];
+        sorted[n] = *from;
+        for (int k = 0; k < beads && turned; k++)
+            sorted[n].atom[k] = from->atom[beads - 1 - k];
     }
     qsort(sorted, count, sizeof *sorted, compare_terms);
     for (size_t n = 1; n < count; n++) {

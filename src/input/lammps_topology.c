@@ -42,17 +42,11 @@ enum status mf_lammps_topology_units(const char *file, const char *told, const s
     if (title[0] && told[0] && strcmp(title, told) != 0)
         return mf_status_fail(STATUS_BAD_INPUT, "%s:1: says that its units are \"%s\"", file,
                               title);
-    const char *name = told[0]                              ? told
-                       : title[0]                           ? title
-                       : units->system == UNITS_ANGSTROM_FS ? "real"
-                       : known                              ? ""
-                                                            : "lj";
+    const char *name = told[0] ? told : title[0] ? title : known ? "real" : "lj";
     const struct scale *scale = find_scale(name);
     if (scale == NULL)
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "%s: %s%s: \"units\": \"real\", \"metal\" or \"lj\" of \"molecules\" "
-                              "says whose units it has",
-                              file, name[0] ? "its units are not known: " : "it does not tell",
+                              "%s:1: units \"%s\" are not known, but real, metal and lj", file,
                               name);
     if (scale == &scales[LJ] && known)
         return mf_status_fail(STATUS_BAD_INPUT,
@@ -109,19 +103,13 @@ static enum status find_group(struct reading *reading, int order, int type, size
 }
 
 static enum status find_groups(struct reading *reading) {
-    enum status status = STATUS_OK;
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++) {
-        NEW_ARRAY(reading->group[order], reading->terms.types[order] + 1);
-        memset(reading->group[order], 0xff,
-               (size_t)(reading->terms.types[order] + 1) * sizeof(int));
+    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
         for (size_t n = 0; n < reading->terms.terms[order]; n++) {
             const struct lammps_term *term = &reading->terms.term[order][n];
             if (reading->group[order][term->type] < 0)
-                CHECK(find_group(reading, order, term->type, term->line));
+                TRY(find_group(reading, order, term->type, term->line));
         }
-    }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 // The file ----------------------------------------------------------------------------------------
@@ -132,10 +120,33 @@ static enum status read_terms(struct reading *reading, const struct structure *s
     size_t length;
     CHECK(mf_text_file_read(reading->file, &text, &length));
     CHECK(mf_lammps_terms_read(&reading->terms, reading->file, text, length, structure));
-    CHECK(find_groups(reading));
+    for (int order = 0; order < TOPOLOGY_ORDERS; order++) {
+        NEW_ARRAY(reading->group[order], reading->terms.types[order] + 1);
+        for (int64_t type = 0; type <= reading->terms.types[order]; type++)
+            reading->group[order][type] = -1;
+    }
 done:
     mf_memory_free(text);
     return status;
+}
+
+static void clear(struct reading *reading) {
+    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+        mf_memory_free(reading->group[order]);
+    mf_lammps_terms_clear(&reading->terms);
+}
+
+static enum status find_kinds(const struct reading *reading, const struct structure *structure,
+                              int exclude, struct topology *topology,
+                              struct composition *composition, size_t **order) {
+    return mf_lammps_kinds_find(
+        &(struct lammps_kinds_source){
+            .file = reading->file,
+            .structure = structure,
+            .terms = &reading->terms,
+            .group = {reading->group[0], reading->group[1], reading->group[2]},
+            .exclude = exclude},
+        topology, composition, order);
 }
 
 enum status mf_lammps_topology_read(struct molecules *molecules, struct composition *composition,
@@ -156,18 +167,52 @@ enum status mf_lammps_topology_read(struct molecules *molecules, struct composit
     *order = NULL;
     TRY(mf_trajectory_open(&trajectory, file, &options));
     CHECK(read_terms(&reading, &trajectory.structure));
-    CHECK(mf_lammps_kinds_find(
-        &(struct lammps_kinds_source){
-            .file = file,
-            .structure = &trajectory.structure,
-            .terms = &reading.terms,
-            .group = {reading.group[0], reading.group[1], reading.group[2]},
-            .exclude = exclude},
-        &molecules->topology, composition, order));
+    CHECK(find_groups(&reading));
+    CHECK(find_kinds(&reading, &trajectory.structure, exclude, &molecules->topology, composition,
+                     order));
 done:
+    clear(&reading);
+    mf_trajectory_close(&trajectory);
+    return status;
+}
+
+/// Whether two kinds are as many molecules of the same types with as many terms.
+static bool are_alike(const struct topology_kind *a, const struct composition *of_a,
+                      const struct topology_kind *b, const struct composition *of_b) {
+    if (a->count != b->count || a->beads != b->beads ||
+        memcmp(a->terms, b->terms, sizeof a->terms) != 0)
+        return false;
+    for (int bead = 0; bead < a->beads; bead++)
+        if (strcmp(of_a->name[a->type[bead]], of_b->name[b->type[bead]]) != 0)
+            return false;
+    return true;
+}
+
+enum status mf_lammps_topology_order(const char *file, const char *style,
+                                     const struct topology *topology,
+                                     const struct composition *composition, size_t **order) {
+    enum status status = STATUS_OK;
+    const struct trajectory_options options = {.units = style};
+    struct reading reading = {.file = file};
+    struct trajectory trajectory;
+    struct topology own = {0};
+    struct composition types = {0};
+    *order = NULL;
+    TRY(mf_trajectory_open(&trajectory, file, &options));
+    CHECK(read_terms(&reading, &trajectory.structure));
     for (int n = 0; n < TOPOLOGY_ORDERS; n++)
-        mf_memory_free(reading.group[n]);
-    mf_lammps_terms_clear(&reading.terms);
+        for (int64_t type = 0; type <= reading.terms.types[n]; type++)
+            reading.group[n][type] = (int)type;
+    CHECK(find_kinds(&reading, &trajectory.structure, 0, &own, &types, order));
+    bool same = own.kinds == topology->kinds;
+    for (int k = 0; k < own.kinds && same; k++)
+        same = are_alike(&own.kind[k], &types, &topology->kind[k], composition);
+    if (!same)
+        status =
+            mf_status_fail(STATUS_BAD_INPUT, "%s: its molecules are not those of the scene", file);
+done:
+    mf_topology_clear(&own);
+    clear(&reading);
     mf_trajectory_close(&trajectory);
     return status;
 }

@@ -11,10 +11,10 @@ enum { LAMMPS_NOTE_SIZE = 256, LAMMPS_MOST_ATOMS = 20000 }; ///< of a molecule
 /// Whether a file is one, by its name: "….data", "data.…".
 bool mf_lammps_topology_is(const char *file);
 
-/// Whose units the numbers of a file are: those that its first line tells, else "real" for a scene
-/// that speaks of Å and fs, and "lj" for one without units.
+/// Whose units the numbers of a file are: those that its first line tells, else "real", and "lj"
+/// for a scene without units.
 /// @param[in] told  "lj", "real" or "metal", or "": as above
-/// Fails: BAD_INPUT for a scene in other units or if both tell another; IO; NO_MEMORY.
+/// Fails: BAD_INPUT for other units, or if both tell another; IO; NO_MEMORY.
 enum status mf_lammps_topology_units(const char *file, const char *told, const struct units *units,
                                      const char **style) MUST_USE;
 
@@ -38,3 +38,11 @@ enum status mf_lammps_topology_read(struct molecules *molecules, struct composit
                                     const char *file, const struct units *units, const char *style,
                                     int exclude, size_t **order,
                                     char note[LAMMPS_NOTE_SIZE]) MUST_USE;
+
+/// The same order for molecules that a scene tells by itself, as used.json does, if the file has as
+/// many of them, of the same types and with as many terms, kind after kind. Fails: BAD_INPUT if it
+/// has others, or as mf_lammps_topology_read; IO; NO_MEMORY.
+enum status mf_lammps_topology_order(const char *file, const char *style,
+                                     const struct topology *topology,
+                                     const struct composition *composition,
+                                     size_t **order) MUST_USE;

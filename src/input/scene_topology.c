@@ -22,8 +22,8 @@ const struct field mf_scene_file_fields[] = {
      .help = "of a data file: pairs of beads at most so many bonds apart do not act as pairs; "
              "special_bonds 0 0 0, as LAMMPS begins, is 3, 0 1 1 is 1 and 1 1 1 is 0"},
     {"units", FIELD_CHOICE, TOLD_FILE(units), .choices = file_units, .initial = 0, .unit = "",
-     .help = "of a data file whose first line does not tell them; auto: real if the scene's "
-             "units are angstrom-fs, lj if it has none"},
+     .help = "of a data file whose first line does not tell them; auto: real, and lj if the scene "
+             "has no units"},
     FIELD_END,
 };
 
