@@ -37,7 +37,7 @@ static int compare(const void *a, const void *b) {
 /// An arm as "pivot-first: beads", sorted.
 static void describe(const struct molecule_plan *plan, int n, char *text) {
     const struct molecule_arm *arm = &plan->arm[n];
-    int bead[MOST];
+    int bead[MOST] = {0};
     const int beads = molecule_arm_beads(plan, arm);
     for (int k = 0; k < beads; k++)
         bead[k] = molecule_arm_bead(plan, arm, k);
