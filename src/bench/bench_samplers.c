@@ -74,10 +74,12 @@ done:
     return status;
 }
 
-/// All samplers of a system with the scene's densities.
+/// All samplers of a system with the scene's densities, or of the scene with its molecules.
 static enum status time_size(const struct simulation_setup *setup, size_t particles, int threads) {
+    const struct molecules *molecules = mf_molecules_find(setup->interaction, setup->interactions);
     const struct composition composition =
-        mf_composition_scaled(&setup->composition, (int64_t)particles);
+        molecules ? setup->composition
+                  : mf_composition_scaled(&setup->composition, (int64_t)particles);
     const struct box box =
         mf_box_scaled(&setup->box, (double)mf_composition_particles(&composition) /
                                        (double)mf_composition_particles(&setup->composition));
@@ -87,6 +89,7 @@ static enum status time_size(const struct simulation_setup *setup, size_t partic
                                           .temperature = setup->temperature,
                                           .width = setup->potential->cutoff / BINS,
                                           .bins = BINS,
+                                          .molecules = molecules,
                                           .seed = setup->seed};
     for (int kind = 0; kind < SAMPLER_AUTO; kind++)
         TRY(time_sampler(&system, (enum sampler_kind)kind, threads));
@@ -98,7 +101,8 @@ static enum status time_all(const struct simulation_setup *setup, int threads) {
         return mf_status_fail(STATUS_BAD_INPUT,
                               "a scene without a potential has nothing to sample");
     printf("particles  sampler      ms a sample  inefficiency  error of g * sqrt(s)\n");
-    for (size_t k = 0; k < sizeof sizes / sizeof *sizes; k++)
+    const bool joined = mf_molecules_find(setup->interaction, setup->interactions) != NULL;
+    for (size_t k = 0; k < (joined ? 1 : sizeof sizes / sizeof *sizes); k++)
         TRY(time_size(setup, sizes[k], threads));
     return STATUS_OK;
 }
@@ -106,9 +110,11 @@ static enum status time_all(const struct simulation_setup *setup, int threads) {
 enum status mf_bench_samplers(const char *file, const struct run_options *common) {
     struct bench_scene scene = {0};
     enum status status = mf_bench_scene_read(&scene, file, NULL, common);
-    if (status == STATUS_OK && scene.scene.setup.interactions > 0)
-        status = mf_status_fail(STATUS_BAD_INPUT, "%s: samplers know pairs alone, not \"%s\"", file,
-                                scene.scene.setup.interaction[0].kind->name);
+    for (int k = 0; k < scene.scene.setup.interactions && status == STATUS_OK; k++)
+        if (scene.scene.setup.interaction[k].kind != &mf_molecules)
+            status = mf_status_fail(STATUS_BAD_INPUT,
+                                    "%s: samplers know pairs and molecules alone, not \"%s\"", file,
+                                    scene.scene.setup.interaction[k].kind->name);
     if (status == STATUS_OK)
         status = time_all(&scene.scene.setup, common->has_threads ? common->threads : 1);
     mf_scene_clear(&scene.scene);
