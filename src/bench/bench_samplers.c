@@ -41,6 +41,21 @@ static double error_of_g(const struct replicas *replicas, const double *ideal,
     return sqrt(sum / (double)count * *inefficiency / counts->count);
 }
 
+/// How often each kind of moves of molecules was accepted.
+static void print_moves(const struct sampler *sampler) {
+    const struct metropolis *chain = &sampler->chain;
+    if (sampler->kind != SAMPLER_MONTE_CARLO || sampler->molecules == NULL)
+        return;
+    printf("           accepted: %.2f of beads", (double)chain->accepted / (double)chain->tried);
+    for (int move = 0; move < MOLECULE_MOVES; move++) {
+        const struct molecule_tally *tally = &chain->molecules.tally[move];
+        if (tally->tried > 0)
+            printf(", %s %.2f", mf_molecule_move_names[move],
+                   (double)tally->accepted / (double)tally->tried);
+    }
+    printf("\n");
+}
+
 /// Time one sampler, and print its row.
 static enum status time_sampler(const struct sampler_system *system, enum sampler_kind kind,
                                 int threads) {
@@ -69,6 +84,7 @@ static enum status time_sampler(const struct sampler_system *system, enum sample
     printf("%9lld  %-11s  %11.3f  %12.2f  %10.5f +- %.5f\n",
            (long long)mf_composition_particles(system->composition), mf_sampler_kinds[kind],
            1e3 * seconds.mean, inefficiency.mean, merit.mean, mf_statistics_standard_error(&merit));
+    print_moves(&replicas.member[0].sampler);
 done:
     mf_replicas_clear(&replicas);
     return status;
