@@ -41,6 +41,21 @@ static double error_of_g(const struct replicas *replicas, const double *ideal,
     return sqrt(sum / (double)count * *inefficiency / counts->count);
 }
 
+/// How often each kind of moves of molecules was accepted.
+static void print_moves(const struct sampler *sampler) {
+    const struct metropolis *chain = &sampler->chain;
+    if (sampler->kind != SAMPLER_MONTE_CARLO || sampler->molecules == NULL)
+        return;
+    printf("           accepted: %.2f of beads", (double)chain->accepted / (double)chain->tried);
+    for (int move = 0; move < MOLECULE_MOVES; move++) {
+        const struct molecule_tally *tally = &chain->molecules.tally[move];
+        if (tally->tried > 0)
+            printf(", %s %.2f", mf_molecule_move_names[move],
+                   (double)tally->accepted / (double)tally->tried);
+    }
+    printf("\n");
+}
+
 /// Time one sampler, and print its row.
 static enum status time_sampler(const struct sampler_system *system, enum sampler_kind kind,
                                 int threads) {
@@ -69,15 +84,18 @@ static enum status time_sampler(const struct sampler_system *system, enum sample
     printf("%9lld  %-11s  %11.3f  %12.2f  %10.5f +- %.5f\n",
            (long long)mf_composition_particles(system->composition), mf_sampler_kinds[kind],
            1e3 * seconds.mean, inefficiency.mean, merit.mean, mf_statistics_standard_error(&merit));
+    print_moves(&replicas.member[0].sampler);
 done:
     mf_replicas_clear(&replicas);
     return status;
 }
 
-/// All samplers of a system with the scene's densities.
+/// All samplers of a system with the scene's densities, or of the scene with its molecules.
 static enum status time_size(const struct simulation_setup *setup, size_t particles, int threads) {
+    const struct molecules *molecules = mf_molecules_find(setup->interaction, setup->interactions);
     const struct composition composition =
-        mf_composition_scaled(&setup->composition, (int64_t)particles);
+        molecules ? setup->composition
+                  : mf_composition_scaled(&setup->composition, (int64_t)particles);
     const struct box box =
         mf_box_scaled(&setup->box, (double)mf_composition_particles(&composition) /
                                        (double)mf_composition_particles(&setup->composition));
@@ -87,8 +105,9 @@ static enum status time_size(const struct simulation_setup *setup, size_t partic
                                           .temperature = setup->temperature,
                                           .width = setup->potential->cutoff / BINS,
                                           .bins = BINS,
+                                          .molecules = molecules,
                                           .seed = setup->seed};
-    for (int kind = 0; mf_sampler_kinds[kind]; kind++)
+    for (int kind = 0; kind < SAMPLER_AUTO; kind++)
         TRY(time_sampler(&system, (enum sampler_kind)kind, threads));
     return STATUS_OK;
 }
@@ -98,7 +117,8 @@ static enum status time_all(const struct simulation_setup *setup, int threads) {
         return mf_status_fail(STATUS_BAD_INPUT,
                               "a scene without a potential has nothing to sample");
     printf("particles  sampler      ms a sample  inefficiency  error of g * sqrt(s)\n");
-    for (size_t k = 0; k < sizeof sizes / sizeof *sizes; k++)
+    const bool joined = mf_molecules_find(setup->interaction, setup->interactions) != NULL;
+    for (size_t k = 0; k < (joined ? 1 : sizeof sizes / sizeof *sizes); k++)
         TRY(time_size(setup, sizes[k], threads));
     return STATUS_OK;
 }
@@ -106,9 +126,11 @@ static enum status time_all(const struct simulation_setup *setup, int threads) {
 enum status mf_bench_samplers(const char *file, const struct run_options *common) {
     struct bench_scene scene = {0};
     enum status status = mf_bench_scene_read(&scene, file, NULL, common);
-    if (status == STATUS_OK && scene.scene.setup.interactions > 0)
-        status = mf_status_fail(STATUS_BAD_INPUT, "%s: samplers know pairs alone, not \"%s\"", file,
-                                scene.scene.setup.interaction[0].kind->name);
+    for (int k = 0; k < scene.scene.setup.interactions && status == STATUS_OK; k++)
+        if (scene.scene.setup.interaction[k].kind != &mf_molecules)
+            status = mf_status_fail(STATUS_BAD_INPUT,
+                                    "%s: samplers know pairs and molecules alone, not \"%s\"", file,
+                                    scene.scene.setup.interaction[k].kind->name);
     if (status == STATUS_OK)
         status = time_all(&scene.scene.setup, common->has_threads ? common->threads : 1);
     mf_scene_clear(&scene.scene);

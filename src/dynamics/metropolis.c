@@ -4,6 +4,7 @@
 #include "base/interrupt.h"
 #include "base/memory.h"
 #include "base/rng.h"
+#include "dynamics/hybrid.h"
 #include "dynamics/move.h"
 #include "system/placement.h"
 
@@ -15,16 +16,8 @@
 /// takes 1.7 times as long with 0.36 as with 0.72, and 1.2 times with 0.5 and with 1.
 static const double skin_distances = 0.72;
 
-/// Accepted fraction that the step size is tuned to.
-static const double wanted_acceptance = 0.4;
-
 static double mean_distance(const struct box *box, size_t count) {
     return pow(mf_box_volume(box) / (double)count, 1.0 / box->dimensions);
-}
-
-/// Largest step that leaves the list room for one sweep.
-static double largest_step(const struct metropolis *metropolis) {
-    return 0.49 * metropolis->neighbours.skin / sqrt(metropolis->particles.box.dimensions);
 }
 
 enum status mf_metropolis_init(struct metropolis *metropolis, const struct box *box,
@@ -32,23 +25,24 @@ enum status mf_metropolis_init(struct metropolis *metropolis, const struct box *
                                double temperature, uint64_t seed) {
     enum status status = STATUS_OK;
     const size_t count = (size_t)mf_composition_particles(composition);
+    const double cutoff = potential ? potential->cutoff : 0;
     *metropolis = (struct metropolis){
         .law = {.potential = potential, .composition = *composition, .temperature = temperature},
         .step = 0.1,
         .seed = seed};
     CHECK(mf_particles_init(&metropolis->particles, box, count));
     NEW_ARRAY(metropolis->order, count);
-    CHECK(mf_neighbours_init(&metropolis->neighbours, NEIGHBOURS_FULL, box, count,
-                             potential->cutoff, skin_distances * mean_distance(box, count)));
-    if (metropolis->neighbours.skin < 0.05 * potential->cutoff) {
+    CHECK(mf_neighbours_init(&metropolis->neighbours, NEIGHBOURS_FULL, box, count, cutoff,
+                             skin_distances * mean_distance(box, count)));
+    if (metropolis->neighbours.skin < 0.05 * cutoff) {
         status =
             mf_status_fail(STATUS_BAD_INPUT,
                            "the box is too small for Monte Carlo: its shortest edge %g must be "
                            "at least 2.1 times the cutoff %g",
-                           mf_box_shortest(box), potential->cutoff);
+                           mf_box_shortest(box), cutoff);
         goto done;
     }
-    metropolis->step = fmin(metropolis->step, largest_step(metropolis));
+    metropolis->step = fmin(metropolis->step, metropolis_longest_step(metropolis));
     mf_placement_lattice(&metropolis->particles, 0.05, seed);
     if (composition_is_mixed(composition))
         mf_placement_mix(&metropolis->particles, seed);
@@ -64,6 +58,7 @@ void mf_metropolis_clear(struct metropolis *metropolis) {
     mf_particles_clear(&metropolis->particles);
     mf_neighbours_clear(&metropolis->neighbours);
     mf_memory_free(metropolis->order);
+    mf_molecule_moves_clear(&metropolis->molecules);
     *metropolis = (struct metropolis){0};
 }
 
@@ -71,7 +66,36 @@ enum status mf_metropolis_refresh(struct metropolis *metropolis) {
     return mf_neighbours_sort_and_build(&metropolis->neighbours, &metropolis->particles);
 }
 
+/// Where hybrid Monte Carlo begins: placed along their bonds, and parted.
+static enum status place_molecules(struct metropolis *metropolis) {
+    struct particles *particles = &metropolis->particles;
+    const struct pair_law *law = &metropolis->law;
+    struct hybrid hybrid;
+    TRY(mf_hybrid_init(&hybrid, &particles->box, &law->composition, law->potential,
+                       metropolis->molecules.molecules, &(struct pair_histogram){0},
+                       law->temperature, metropolis->seed));
+    const struct particles *from = &hybrid.simulation.particles;
+    for (int d = 0; d < particles->box.dimensions; d++)
+        memcpy(particles->position[d], from->position[d], from->count * sizeof(double));
+    memcpy(particles->id, from->id, from->count * sizeof *from->id);
+    mf_hybrid_clear(&hybrid);
+    return mf_metropolis_refresh(metropolis);
+}
+
+enum status mf_metropolis_join(struct metropolis *metropolis, const struct molecules *molecules) {
+    if (molecules == NULL)
+        return STATUS_OK;
+    TRY(mf_particles_join(&metropolis->particles, &molecules->topology));
+    TRY(mf_molecule_moves_init(&metropolis->molecules, molecules, &metropolis->particles));
+    TRY(place_molecules(metropolis));
+    memcpy(metropolis->order, metropolis->particles.id,
+           metropolis->particles.count * sizeof *metropolis->order);
+    return STATUS_OK;
+}
+
 enum status mf_metropolis_scatter(struct metropolis *metropolis) {
+    if (metropolis->molecules.molecules)
+        return place_molecules(metropolis);
     TRY(mf_placement_disordered(&metropolis->particles, metropolis->seed));
     return mf_metropolis_refresh(metropolis);
 }
@@ -83,14 +107,19 @@ static void try_move(struct metropolis *metropolis, size_t k) {
     const struct rng_block random =
         mf_rng_philox(metropolis->seed, RNG_METROPOLIS, metropolis->sweep, particles->id[k], 0);
     int32_t to[3] = {0};
-    double moved[3];
+    double moved[3], change = 0;
     for (int d = 0; d < box->dimensions; d++) {
         moved[d] = particles->position[d][k] +
                    metropolis->step * (2 * mf_rng_uniform(random.word[d], 0) - 1);
         to[d] = box_fraction(moved[d], 1 / box->length[d]);
     }
-    const double change =
-        mf_move_energy_change(&metropolis->law, particles, &metropolis->neighbours, k, to);
+    const struct neighbours *neighbours = &metropolis->neighbours;
+    if (metropolis->law.potential)
+        change = mf_move_energy_change(&metropolis->law, particles, k,
+                                       neighbours->list + neighbours->start[k],
+                                       neighbours->stop[k] - neighbours->start[k], to);
+    if (metropolis->molecules.molecules)
+        change += mf_molecule_moves_bead_change(&metropolis->molecules, particles, k, moved);
     metropolis->tried++;
     // Written so that a NaN is refused.
     if (!(mf_rng_uniform(random.word[3], 0) < exp(-change / metropolis->law.temperature)))
@@ -118,16 +147,28 @@ static enum status refresh_if_needed(struct metropolis *metropolis) {
 /// arrays, which are sorted by place, it would not: which kernel acts depends on the state, and
 /// what is sorted so before each sweep (three particles on a ring of six sites, all 216 states) has
 /// an energy 0.4 % too high and single states off by 16 % of the largest probability.
-static enum status sweep(struct metropolis *metropolis) {
+enum status mf_metropolis_move_beads(struct metropolis *metropolis) {
     const struct particles *particles = &metropolis->particles;
-    if (mf_interrupt_wanted(metropolis->cancel))
-        return mf_status_fail(STATUS_INTERRUPTED, "interrupted");
     TRY(refresh_if_needed(metropolis));
     uint32_t *place = particles->spare_words; // of each id
     for (size_t k = 0; k < particles->count; k++)
         place[particles->id[k]] = (uint32_t)k;
     for (size_t k = 0; k < particles->count; k++)
         try_move(metropolis, place[metropolis->order[k]]);
+    return STATUS_OK;
+}
+
+/// The kind of moves of molecules that ends a sweep.
+static enum molecule_move next_move(const struct metropolis *metropolis) {
+    return (enum molecule_move)(metropolis->sweep % MOLECULE_MOVES);
+}
+
+static enum status sweep(struct metropolis *metropolis) {
+    if (mf_interrupt_wanted(metropolis->cancel))
+        return mf_status_fail(STATUS_INTERRUPTED, "interrupted");
+    TRY(mf_metropolis_move_beads(metropolis));
+    if (metropolis->molecules.molecules)
+        TRY(mf_molecule_moves_pass(metropolis, next_move(metropolis)));
     metropolis->sweep++;
     return STATUS_OK;
 }
@@ -138,23 +179,45 @@ enum status mf_metropolis_run(struct metropolis *metropolis, uint32_t sweeps) {
     return STATUS_OK;
 }
 
+static void forget_tallies(struct metropolis *metropolis) {
+    metropolis->accepted = metropolis->tried = 0;
+    for (int move = 0; move < MOLECULE_MOVES; move++)
+        metropolis->molecules.tally[move].accepted = metropolis->molecules.tally[move].tried = 0;
+}
+
 enum status mf_metropolis_equilibrate(struct metropolis *metropolis, uint32_t sweeps) {
     memcpy(metropolis->order, metropolis->particles.id,
            metropolis->particles.count * sizeof *metropolis->order);
     for (uint32_t s = 0; s < sweeps; s++) {
-        metropolis->accepted = metropolis->tried = 0;
+        const enum molecule_move move = next_move(metropolis);
+        forget_tallies(metropolis);
         TRY(sweep(metropolis));
         const double accepted = (double)metropolis->accepted / (double)metropolis->tried;
-        metropolis->step *= fmin(1.1, fmax(0.9, 1 + 0.5 * (accepted - wanted_acceptance)));
-        metropolis->step = fmin(metropolis->step, largest_step(metropolis));
+        metropolis->step = fmin(metropolis->step * metropolis_tuning(accepted),
+                                metropolis_longest_step(metropolis));
+        if (metropolis->molecules.molecules)
+            mf_molecule_moves_tune(metropolis, move);
     }
-    metropolis->accepted = metropolis->tried = 0;
+    forget_tallies(metropolis);
     return STATUS_OK;
 }
 
-void mf_metropolis_count(const struct metropolis *metropolis,
-                         const struct pair_histogram *histogram, struct pair_sums *sums) {
+enum status mf_metropolis_count(struct metropolis *metropolis,
+                                const struct pair_histogram *histogram, struct pair_sums *sums) {
     struct pair_law law = metropolis->law;
     law.histogram = histogram;
-    mf_move_count_pairs(&law, &metropolis->particles, &metropolis->neighbours, sums);
+    *sums = (struct pair_sums){0};
+    if (law.potential)
+        mf_move_count_pairs(&law, &metropolis->particles, &metropolis->neighbours, sums);
+    return metropolis->molecules.molecules ? mf_molecule_moves_add_sums(metropolis, sums)
+                                           : STATUS_OK;
+}
+
+void mf_metropolis_tally(const struct metropolis *metropolis, uint64_t *accepted, uint64_t *tried) {
+    *accepted = metropolis->accepted;
+    *tried = metropolis->tried;
+    for (int move = 0; move < MOLECULE_MOVES; move++) {
+        *accepted += metropolis->molecules.tally[move].accepted;
+        *tried += metropolis->molecules.tally[move].tried;
+    }
 }

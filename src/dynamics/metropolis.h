@@ -3,10 +3,15 @@
 ///
 /// N. Metropolis et al., J. Chem. Phys. 21, 1087 (1953): each sweep tries to move every particle
 /// once, in an order that equilibration fixes, by a uniform random vector of a cube. Same
-/// particles, same neighbour search and same tables as the dynamics.
+/// particles, same neighbour search and same tables as the dynamics. Beads of molecules move as
+/// single ones do, with U of their bonds, angles and dihedrals, and each sweep ends with one move
+/// of each molecule (dynamics/molecule_moves.h), of another kind in the next sweep.
 #pragma once
 
+#include "dynamics/molecule_moves.h"
 #include "forces/pair.h"
+
+#include <math.h>
 
 #include <stdatomic.h>
 
@@ -14,22 +19,46 @@ struct metropolis {
     struct particles particles;
     struct neighbours neighbours; ///< full list
     struct pair_law law;          ///< its potential is borrowed and may be exchanged
-    uint32_t *order;              ///< ids, in the order in which a sweep moves them
-    double step;                  ///< half edge of the cube of moves [λ]
+    struct molecule_moves molecules;
+    uint32_t *order; ///< ids, in the order in which a sweep moves them
+    double step;     ///< half edge of the cube of moves [λ]
     uint64_t seed;
     const atomic_bool *cancel; ///< stops the sweeps once it is set, or NULL; borrowed
     uint32_t sweep;            ///< sweeps so far: the counter of the random numbers
-    uint64_t accepted, tried;
+    uint64_t accepted, tried;  ///< moves of beads
 };
 
-/// Particles on a lattice in `box`, mixed at random, ready for sweeps with `potential`.
+/// How far a particle may go before the list of neighbours is looked after [λ].
+static inline double metropolis_reach(const struct metropolis *metropolis) {
+    return 0.49 * metropolis->neighbours.skin;
+}
+
+/// Half edge of the largest cube of moves: the list has room for one of each particle [λ].
+static inline double metropolis_longest_step(const struct metropolis *metropolis) {
+    return metropolis_reach(metropolis) / sqrt(metropolis->particles.box.dimensions);
+}
+
+/// By what a step is multiplied if so many moves were accepted, where 40 % are wanted.
+static inline double metropolis_tuning(double accepted) {
+    return fmin(1.1, fmax(0.9, 1 + 0.5 * (accepted - 0.4)));
+}
+
+/// Particles on a lattice in `box`, mixed at random, ready for sweeps with `potential`, or NULL:
+/// without pairs.
 /// Fails: NO_MEMORY; BAD_INPUT if the box is below twice the cutoff, with some room for a list.
 enum status mf_metropolis_init(struct metropolis *metropolis, const struct box *box,
                                const struct composition *composition, const struct table *potential,
                                double temperature, uint64_t seed) MUST_USE;
 void mf_metropolis_clear(struct metropolis *metropolis);
 
-/// Place the particles anew, without order. Fails: NO_MEMORY.
+/// Let the particles be molecules, placed as a scene does. Single beads pay nothing for it.
+/// @param[in] molecules  of the composition; borrowed, and so may their laws be; NULL: nothing to
+/// do Fails: as mf_hybrid_init.
+enum status mf_metropolis_join(struct metropolis *metropolis,
+                               const struct molecules *molecules) MUST_USE;
+
+/// Place the particles anew, without order; molecules as a scene does. Fails: NO_MEMORY,
+/// INTERRUPTED.
 enum status mf_metropolis_scatter(struct metropolis *metropolis) MUST_USE;
 
 /// Sweeps whose step size is tuned towards 40 % accepted. They and all after them move the
@@ -39,12 +68,20 @@ enum status mf_metropolis_scatter(struct metropolis *metropolis) MUST_USE;
 /// test_metropolis.
 enum status mf_metropolis_equilibrate(struct metropolis *metropolis, uint32_t sweeps) MUST_USE;
 
+/// The moves of beads of one sweep. Fails: NO_MEMORY.
+enum status mf_metropolis_move_beads(struct metropolis *metropolis) MUST_USE;
+
 /// Sweeps with a fixed step size, as detailed balance asks. Fails: NO_MEMORY, INTERRUPTED.
 enum status mf_metropolis_run(struct metropolis *metropolis, uint32_t sweeps) MUST_USE;
 
-/// Add all pairs nearer than the cutoff to a histogram of one part, and sum Φ and r·F.
-void mf_metropolis_count(const struct metropolis *metropolis,
-                         const struct pair_histogram *histogram, struct pair_sums *sums);
+/// Add all pairs nearer than the cutoff to a histogram of one part, and sum Φ and r·F, with those
+/// of bonds, angles and dihedrals. Fails: as mf_molecule_moves_add_sums.
+enum status mf_metropolis_count(struct metropolis *metropolis,
+                                const struct pair_histogram *histogram,
+                                struct pair_sums *sums) MUST_USE;
+
+/// Moves of all kinds that were tried since mf_metropolis_equilibrate, and how many were accepted.
+void mf_metropolis_tally(const struct metropolis *metropolis, uint64_t *accepted, uint64_t *tried);
 
 /// Sort the particles and build the list anew from the positions alone, so that a run that
 /// continues and one that was reloaded here go on with the same bits. Fails: NO_MEMORY.

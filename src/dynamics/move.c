@@ -22,9 +22,9 @@ static const struct move_kernels *choose(const struct pair_law *law,
 }
 
 double mf_move_energy_change(const struct pair_law *law, const struct particles *particles,
-                             const struct neighbours *neighbours, size_t particle,
+                             size_t particle, const int32_t *list, size_t count,
                              const int32_t to[3]) {
-    return choose(law, particles)->energy_change(law, particles, neighbours, particle, to);
+    return choose(law, particles)->energy_change(law, particles, particle, list, count, to);
 }
 
 void mf_move_count_pairs(const struct pair_law *law, const struct particles *particles,

@@ -9,10 +9,10 @@
 /// Σ_j Φ(|r' − r_j|) − Φ(|r − r_j|), from the same rows of the table as the forces, in single
 /// precision. A NaN in the table shows.
 /// @param[in] law         its potential and composition are read
-/// @param[in] neighbours  a full list, complete for the cutoff from both places
+/// @param[in] list  shape [count]: its neighbours, complete for the cutoff from both places
 /// Tested: test_move.
 double mf_move_energy_change(const struct pair_law *law, const struct particles *particles,
-                             const struct neighbours *neighbours, size_t particle,
+                             size_t particle, const int32_t *list, size_t count,
                              const int32_t to[3]);
 
 /// Add the pairs nearer than the potential's cutoff to the law's histogram, of one part, and sum Φ

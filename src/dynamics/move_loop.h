@@ -121,12 +121,10 @@ LANES_INLINE void move_sums(struct move_batch *batch, const struct move_scene *s
 }
 
 LANES_INLINE double move_change(const struct pair_law *law, const struct particles *particles,
-                                const struct neighbours *neighbours, size_t self,
-                                const int32_t to[3], const int dim, const bool mixed) {
+                                size_t self, const int32_t *list, size_t count, const int32_t to[3],
+                                const int dim, const bool mixed) {
     const struct move_scene scene = move_prepare(law, particles, mixed);
     const int32_t *from = scene.place[self].fraction;
-    const int32_t *list = neighbours->list + neighbours->start[self];
-    const size_t count = neighbours->stop[self] - neighbours->start[self];
     const lanes_real cutoff2 = lanes_all(scene.cutoff2);
     lanes_real energy_before = lanes_all(0), energy_after = lanes_all(0);
     struct move_batch before, after;
@@ -209,9 +207,8 @@ LANES_INLINE void move_count(const struct pair_law *law, const struct particles 
 
 #define MOVE_CHANGE(name, dim, mixed)                                                              \
     static double name(const struct pair_law *law, const struct particles *particles,              \
-                       const struct neighbours *neighbours, size_t particle,                       \
-                       const int32_t to[3]) {                                                      \
-        return move_change(law, particles, neighbours, particle, to, dim, mixed);                  \
+                       size_t particle, const int32_t *list, size_t count, const int32_t to[3]) {  \
+        return move_change(law, particles, particle, list, count, to, dim, mixed);                 \
     }
 #define MOVE_COUNT(name, dim, mixed)                                                               \
     static void name(const struct pair_law *law, const struct particles *particles,                \

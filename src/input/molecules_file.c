@@ -2,6 +2,7 @@
 #include "input/molecules_file.h"
 
 #include "input/gromacs_topology.h"
+#include "input/lammps_topology.h"
 #include "io/json.h"
 
 #include <string.h>
@@ -42,6 +43,11 @@ enum status mf_molecules_file_read(struct scene_molecules *molecules, struct com
     struct json_document *document;
     *molecules = (struct scene_molecules){0};
     *types = (struct composition){0};
+    if (mf_lammps_topology_is(file))
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: a data file of LAMMPS does not say in which order a trajectory "
+                              "has its molecules: name a JSON file or a topology of GROMACS",
+                              file);
     if (is_topology(file))
         return read_topology(molecules, types, file);
     TRY(mf_json_open(&document, file));

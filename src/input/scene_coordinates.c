@@ -2,6 +2,7 @@
 #include "input/scene_coordinates.h"
 
 #include "base/memory.h"
+#include "input/lammps_topology.h"
 #include "trajectory/trajectory.h"
 
 #include <math.h>
@@ -10,9 +11,9 @@
 /// Files have three decimals; a bond that is so many times as long is of other beads.
 static const double box_tolerance = 2e-3, longest_share = 3;
 
-bool mf_scene_coordinates_is_gro(const char *file) {
+bool mf_scene_coordinates_are_of_engine(const char *file) {
     const char *dot = strrchr(file, '.');
-    return dot && strcmp(dot, ".gro") == 0;
+    return (dot && strcmp(dot, ".gro") == 0) || mf_lammps_topology_is(file);
 }
 
 /// The number of each id in the file, from 0 on.
@@ -32,6 +33,11 @@ static void number_ids(const struct scene *scene, size_t *number) {
 static bool is_box(const struct scene *scene, struct json_object *particles,
                    const struct trajectory_frame *frame, double unit) {
     const struct box *box = &scene->setup.box;
+    if (fabs(frame->box[1][0]) + fabs(frame->box[2][0]) + fabs(frame->box[2][1]) > box_tolerance) {
+        mf_json_fault(particles, "file", "%s: its box is tilted, and those of scenes are not",
+                      scene->setup.placement.file);
+        return false;
+    }
     for (int d = 0; d < 3; d++) {
         const double length = unit * (d < box->dimensions ? box->length[d] : 0);
         if (fabs(frame->box[d][d] - length) <= box_tolerance)
@@ -97,6 +103,8 @@ static enum status take_frame(struct scene *scene, struct json_object *particles
     NEW_ARRAY(number, beads);
     NEW_ARRAY(scene->start_values, 2 * (size_t)dimensions * beads);
     number_ids(scene, number);
+    for (size_t id = 0; id < beads && scene->molecules.order; id++)
+        number[id] = scene->molecules.order[number[id]];
     for (int d = 0; d < dimensions; d++) {
         double *x = scene->start_values + (size_t)d * beads;
         double *v = scene->start_values + (size_t)(dimensions + d) * beads;
@@ -115,18 +123,37 @@ done:
     return status;
 }
 
+/// In which order the file has the atoms.
+static enum status find_order(struct scene *scene) {
+    const char *file = scene->setup.placement.file;
+    struct scene_molecules *molecules = &scene->molecules;
+    if (!mf_lammps_topology_is(file) && molecules->order)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: molecules of a data file of LAMMPS begin where it has them",
+                              file);
+    if (!mf_lammps_topology_is(file) || molecules->order)
+        return STATUS_OK;
+    TRY(mf_lammps_topology_units(file, "", &scene->units, &molecules->order_units));
+    return mf_lammps_topology_order(file, molecules->order_units, &molecules->molecules.topology,
+                                    &scene->setup.composition, &molecules->order);
+}
+
 enum status mf_scene_coordinates_read(struct scene *scene, struct json_object *particles) {
     const char *file = scene->setup.placement.file;
-    const struct trajectory_options options = {NULL};
     struct trajectory trajectory;
     struct trajectory_frame frame = {0};
     bool more = true;
+    if (mf_json_fault_count(particles->document) > 0)
+        return STATUS_OK; // whose places they are may not be known
     if (scene->molecules.scattered) {
         mf_json_fault(particles, "file",
                       "%s: coordinates want each moleculetype once in [ molecules ]", file);
         return STATUS_OK;
     }
-    enum status status = mf_trajectory_open(&trajectory, file, &options);
+    enum status status = find_order(scene);
+    const struct trajectory_options options = {.units = scene->molecules.order_units};
+    if (status == STATUS_OK)
+        status = mf_trajectory_open(&trajectory, file, &options);
     if (status == STATUS_OK) {
         status = mf_trajectory_next(&trajectory, &frame, &more);
         if (status == STATUS_OK && frame.atoms != (size_t)scene->setup.placement.count)

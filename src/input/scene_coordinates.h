@@ -4,10 +4,11 @@
 
 #include "input/scene.h"
 
-/// Whether a file of coordinates is one of GROMACS, by its name.
-bool mf_scene_coordinates_is_gro(const char *file);
+/// Whether a file of coordinates is one of GROMACS or LAMMPS, by its name.
+bool mf_scene_coordinates_are_of_engine(const char *file);
 
-/// Read the places, and velocities if there are any, of a .gro file into scene->start: molecule
+/// Read the places, and velocities if there are any, of a .gro file, or of the data file of LAMMPS
+/// that the molecules are from, into scene->start: molecule
 /// after molecule, kind after kind, then single beads, type after type. With units nm and ps become
 /// λ and τ; without, these are 1 nm and 1 ps.
 /// Faults go to the document, one line: another number of atoms, another box, a bond that is more

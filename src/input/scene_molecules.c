@@ -3,7 +3,7 @@
 
 #include "base/memory.h"
 #include "base/nearest.h"
-#include "input/gromacs_topology.h"
+#include "input/scene_topology.h"
 #include "io/json_list.h"
 
 #include <string.h>
@@ -28,15 +28,6 @@ const struct field mf_scene_molecule_fields[] = {
      .help = "pairs of beads at most so many bonds apart have no pair potential and no friction; "
              "-1: as far as the terms of the molecule reach, 1 with bonds alone, 2 with angles, 3 "
              "with dihedrals, as VOTCA does"},
-    FIELD_END,
-};
-
-struct told_file {
-    char file[FIELD_TEXT_SIZE];
-};
-const struct field mf_scene_file_fields[] = {
-    {"file", FIELD_FILE, .offset = offsetof(struct told_file, file), .required = true, .unit = "",
-     .help = "a topology of GROMACS in the place of kinds"},
     FIELD_END,
 };
 
@@ -360,34 +351,30 @@ static void check_use(const struct reading *reading, struct json_object *scene) 
                           composition->name[type], (long long)composition->count[type]);
 }
 
+/// Groups of a scene that a file's terms have, beside those that the file brings along.
+static void find_used(struct reading *reading) {
+    const struct topology *topology = &reading->molecules->molecules.topology;
+    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+        for (int k = 0; k < topology->kinds; k++)
+            for (int n = 0; n < topology->kind[k].terms[order]; n++)
+                reading->used[order][topology->kind[k].term[order][n].group] = true;
+}
+
 /// "molecules": {"file": "topol.top"}: kinds and groups of a topology.
 static enum status read_file(struct reading *reading, struct json_object *object,
                              const struct units *units) {
     const size_t faults = mf_json_fault_count(object->document);
     struct scene_molecules *own = reading->molecules;
     struct topology *topology = &own->molecules.topology;
-    struct told_file told;
-    struct gromacs_note note;
-    mf_json_fields(object, mf_scene_file_fields, &told);
-    mf_json_finish(object);
+    TRY(mf_scene_topology_read(own, object, reading->composition, units));
     if (mf_json_fault_count(object->document) > faults)
         return STATUS_OK;
-    const enum status status =
-        mf_gromacs_topology_read(&own->molecules, reading->composition, told.file, units, &note);
-    if (status == STATUS_NO_MEMORY)
-        return status;
-    if (status != STATUS_OK) {
-        mf_json_fault(object, "file", "%s", mf_status_message());
-        return STATUS_OK;
-    }
-    snprintf(own->warning, sizeof own->warning, "%s", note.text);
-    own->scattered = note.scattered;
     for (int k = 0; k < topology->kinds; k++) {
         own->told[k] = (struct scene_molecule){.group = {-1, -1, -1}};
         reading->kind = topology->kind[k]; // borrowed
         warn_of(reading);
     }
-    memset(reading->used, 1, sizeof reading->used);
+    find_used(reading);
     return STATUS_OK;
 }
 
@@ -443,5 +430,6 @@ enum status mf_scene_molecules_read(struct scene_molecules *molecules, struct js
 
 void mf_scene_molecules_clear(struct scene_molecules *molecules) {
     mf_molecules_clear(&molecules->molecules);
+    mf_memory_free(molecules->order);
     *molecules = (struct scene_molecules){0};
 }

@@ -29,6 +29,9 @@ struct scene_molecules {
     struct molecules molecules;
     struct scene_molecule told[TOPOLOGY_MOST_KINDS];
     bool scattered; ///< a topology's molecules are not in the order of their kinds
+    /// Of a data file of LAMMPS, else NULL: mf_lammps_topology_read; and its units.
+    size_t *order;
+    const char *order_units;
     char warning[SCENE_MOLECULES_WARNING_SIZE]; ///< one line; "" if there is nothing to say
 };
 

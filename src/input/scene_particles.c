@@ -201,7 +201,7 @@ enum status mf_scene_particles_read(struct scene *scene, struct json_object *obj
         mf_json_fault(&particles, "file", "is required with \"placement\": \"file\"");
         return STATUS_OK;
     }
-    return mf_scene_coordinates_is_gro(placement->file)
+    return mf_scene_coordinates_are_of_engine(placement->file)
                ? mf_scene_coordinates_read(scene, &particles)
                : read_positions(scene, &particles);
 }

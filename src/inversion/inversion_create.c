@@ -12,10 +12,10 @@ static const char *const starts[] = {"auto", "mean-force", NULL};
 const struct field mf_inversion_fields[] = {
     {"particles", FIELD_INTEGER, MEMBER(particles), .initial = 0, .minimum = 0, .maximum = 1e7,
      .unit = "", .help = "of the Monte Carlo system, at the scene's density; 0 means the scene's"},
-    {"sampler", FIELD_CHOICE, MEMBER(sampler), .choices = mf_sampler_kinds,
-     .initial = SAMPLER_MONTE_CARLO, .unit = "",
-     .help =
-         "single moves, or short trajectories of all particles, by which molecules always move"},
+    {"sampler", FIELD_CHOICE, MEMBER(sampler), .choices = mf_sampler_kinds, .initial = SAMPLER_AUTO,
+     .unit = "",
+     .help = "Metropolis moves of beads and molecules, or short trajectories of all particles "
+             "(hybrid Monte Carlo); auto: moves of single beads, trajectories of molecules"},
     {"replicas", FIELD_INTEGER, MEMBER(replicas), .initial = 8, .minimum = 2,
      .maximum = REPLICAS_MOST, .unit = "", .help = "independent samplers"},
     {"equilibration", FIELD_INTEGER, MEMBER(equilibration), .initial = 200, .minimum = 0,

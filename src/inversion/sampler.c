@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-const char *const mf_sampler_kinds[] = {"monte-carlo", "dynamics", NULL};
+const char *const mf_sampler_kinds[] = {"monte-carlo", "dynamics", "auto", NULL};
 
 size_t mf_sampler_bins(const struct sampler_system *system) {
     size_t bins = (size_t)mf_composition_pairs(system->composition) * system->bins;
@@ -15,8 +15,10 @@ size_t mf_sampler_bins(const struct sampler_system *system) {
 enum status mf_sampler_init(struct sampler *sampler, enum sampler_kind kind,
                             const struct sampler_system *system) {
     enum status status = STATUS_OK;
+    if (kind == SAMPLER_AUTO)
+        kind = system->molecules ? SAMPLER_DYNAMICS : SAMPLER_MONTE_CARLO;
     *sampler =
-        (struct sampler){.kind = system->molecules ? SAMPLER_DYNAMICS : kind,
+        (struct sampler){.kind = kind,
                          .molecules = system->molecules,
                          .group = system->group,
                          .groups = system->groups,
@@ -35,6 +37,7 @@ enum status mf_sampler_init(struct sampler *sampler, enum sampler_kind kind,
     CHECK(mf_metropolis_init(&sampler->chain, system->box, system->composition, system->potential,
                              system->temperature, system->seed));
     sampler->chain.cancel = system->cancel;
+    CHECK(mf_metropolis_join(&sampler->chain, system->molecules));
 done:
     if (status != STATUS_OK)
         mf_sampler_clear(sampler);
@@ -67,11 +70,14 @@ enum status mf_sampler_equilibrate(struct sampler *sampler, uint64_t sweeps) {
 
 /// S of the groups in the present configuration, from `sample` on; returns their end.
 static double *count_groups(const struct sampler *sampler, double *sample) {
+    const struct particles *particles = sampler->kind == SAMPLER_DYNAMICS
+                                            ? &sampler->hybrid.simulation.particles
+                                            : &sampler->chain.particles;
     for (size_t k = 0; k < sampler->groups; k++) {
         const struct sampler_group *group = &sampler->group[k];
         memset(sample, 0, group->bins.count * sizeof *sample);
         mf_bonded_distribution_count(sampler->molecules, group->order, group->group, &group->bins,
-                                     &sampler->hybrid.simulation.particles, sample);
+                                     particles, sample);
         sample += group->bins.count;
     }
     return sample;
@@ -88,7 +94,7 @@ enum status mf_sampler_sample(struct sampler *sampler, uint64_t sweeps, double *
     } else {
         TRY(mf_metropolis_run(&sampler->chain, (uint32_t)sweeps));
         memset(sampler->histogram.counts, 0, (bins + 1) * sizeof *counts);
-        mf_metropolis_count(&sampler->chain, &sampler->histogram, &sums);
+        TRY(mf_metropolis_count(&sampler->chain, &sampler->histogram, &sums));
     }
     for (size_t a = 0; a < bins; a++)
         sample[a] = counts[a];
@@ -99,10 +105,12 @@ enum status mf_sampler_sample(struct sampler *sampler, uint64_t sweeps, double *
 }
 
 double mf_sampler_acceptance(const struct sampler *sampler) {
-    const struct metropolis *chain = &sampler->chain;
     const struct hybrid *hybrid = &sampler->hybrid;
-    return sampler->kind == SAMPLER_DYNAMICS ? (double)hybrid->taken / (double)hybrid->tried
-                                             : (double)chain->accepted / (double)chain->tried;
+    uint64_t accepted, tried;
+    if (sampler->kind == SAMPLER_DYNAMICS)
+        return (double)hybrid->taken / (double)hybrid->tried;
+    mf_metropolis_tally(&sampler->chain, &accepted, &tried);
+    return (double)accepted / (double)tried;
 }
 
 /// Positions and ids of the particles, in their order.
@@ -118,6 +126,8 @@ static size_t chain_spans(struct metropolis *chain, struct memory_span *span) {
     size_t n = place_spans(&chain->particles, span);
     span[n++] = (struct memory_span){&chain->step, sizeof chain->step};
     span[n++] = (struct memory_span){&chain->sweep, sizeof chain->sweep};
+    if (chain->molecules.molecules)
+        span[n++] = (struct memory_span){chain->molecules.tally, sizeof chain->molecules.tally};
     return n;
 }
 

@@ -2,7 +2,7 @@
 /// @file One source of configurations of the canonical ensemble, by single moves or by dynamics.
 ///
 /// A sweep is a move of every particle (metropolis), or a trajectory of a few time steps (hybrid).
-/// Which of them makes more of a second: docs/results/samplers.md. Molecules move by dynamics.
+/// Which of them makes more of a second: docs/results/samplers.md.
 #pragma once
 
 #include "base/memory.h"
@@ -10,7 +10,11 @@
 #include "dynamics/metropolis.h"
 #include "observe/bonded_distribution.h"
 
-enum sampler_kind { SAMPLER_MONTE_CARLO, SAMPLER_DYNAMICS };
+enum sampler_kind {
+    SAMPLER_MONTE_CARLO,
+    SAMPLER_DYNAMICS,
+    SAMPLER_AUTO ///< single beads by moves, molecules by dynamics
+};
 
 /// Names in the order of enum sampler_kind, NULL-terminated.
 extern const char *const mf_sampler_kinds[];
@@ -23,7 +27,7 @@ struct sampler_group {
 };
 
 struct sampler {
-    enum sampler_kind kind;
+    enum sampler_kind kind;            ///< not SAMPLER_AUTO
     const struct molecules *molecules; ///< NULL: single particles
     const struct sampler_group *group; ///< shape [groups]
     size_t groups;
@@ -51,7 +55,8 @@ struct sampler_system {
 /// Bins that are counted: of all pair types, and of the groups.
 size_t mf_sampler_bins(const struct sampler_system *system);
 
-/// Particles on a lattice. Must be cleared. Fails: as mf_metropolis_init and mf_hybrid_init.
+/// Particles on a lattice, molecules as a scene places them. Must be cleared. Fails: as
+/// mf_metropolis_init and mf_hybrid_init.
 enum status mf_sampler_init(struct sampler *sampler, enum sampler_kind kind,
                             const struct sampler_system *system) MUST_USE;
 void mf_sampler_clear(struct sampler *sampler);

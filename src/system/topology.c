@@ -5,6 +5,7 @@
 
 #include <ctype.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 const char *const mf_topology_order_names[TOPOLOGY_ORDERS] = {"bond", "angle", "dihedral"};
@@ -96,41 +97,83 @@ const struct topology_term *mf_topology_unbonded(const struct topology_kind *kin
 
 // What is excluded --------------------------------------------------------------------------------
 
-/// Mark the beads bonded to those marked with `distance` with one more.
-static void mark_next(const struct topology_kind *kind, int *marked, int distance) {
-    for (int n = 0; n < kind->terms[TOPOLOGY_BOND]; n++) {
-        const int *bead = kind->term[TOPOLOGY_BOND][n].bead;
+/// The bonds of each bead: those of b lead to to[start[b] … start[b + 1]).
+struct bonds {
+    int *start, *to;
+};
+
+static enum status find_bonds(const struct topology_kind *kind, struct bonds *bonds) {
+    enum status status = STATUS_OK;
+    const int count = kind->terms[TOPOLOGY_BOND];
+    const struct topology_term *term = kind->term[TOPOLOGY_BOND];
+    NEW_ARRAY(bonds->start, kind->beads + 2);
+    NEW_ARRAY(bonds->to, 2 * count);
+    int *next = bonds->start + 1; // of each bead; they end as starts
+    for (int n = 0; n < count; n++)
         for (int k = 0; k < 2; k++)
-            if (marked[bead[k]] == distance && marked[bead[1 - k]] < 0)
-                marked[bead[1 - k]] = distance + 1;
-    }
+            next[term[n].bead[k] + 1]++;
+    for (int bead = 0; bead < kind->beads; bead++)
+        next[bead + 1] += next[bead];
+    for (int n = 0; n < count; n++)
+        for (int k = 0; k < 2; k++)
+            bonds->to[next[term[n].bead[k]]++] = term[n].bead[1 - k];
+done:
+    return status;
+}
+
+static int compare_beads(const void *a, const void *b) {
+    const int x = *(const int *)a, y = *(const int *)b;
+    return x < y ? -1 : x > y;
+}
+
+/// The beads at most kind->exclude bonds from one, by growing number, behind it in `reached`.
+/// @param[in,out] distance  shape [beads], −1 of all
+static int reach(const struct topology_kind *kind, const struct bonds *bonds, int bead,
+                 int *distance, int *reached) {
+    int count = 1;
+    reached[0] = bead;
+    distance[bead] = 0;
+    for (int n = 0; n < count && distance[reached[n]] < kind->exclude; n++)
+        for (int k = bonds->start[reached[n]]; k < bonds->start[reached[n] + 1]; k++) {
+            const int to = bonds->to[k];
+            if (distance[to] >= 0)
+                continue;
+            distance[to] = distance[reached[n]] + 1;
+            reached[count++] = to;
+        }
+    for (int n = 0; n < count; n++)
+        distance[reached[n]] = -1;
+    qsort(reached + 1, (size_t)count - 1, sizeof *reached, compare_beads);
+    return count - 1;
 }
 
 /// The beads at most `exclude` bonds from each.
 static enum status find_near(struct topology_kind *kind) {
     enum status status = STATUS_OK;
-    int *marked = NULL;
-    NEW_ARRAY(marked, kind->beads);
+    struct bonds bonds = {0};
+    int *distance = NULL, *reached = NULL;
+    NEW_ARRAY(distance, kind->beads);
+    NEW_ARRAY(reached, kind->beads);
     NEW_ARRAY(kind->near_start, kind->beads + 1);
+    CHECK(find_bonds(kind, &bonds));
+    memset(distance, 0xff, (size_t)kind->beads * sizeof *distance);
     for (int pass = 0; pass < 2; pass++) {
         int found = 0;
         for (int bead = 0; bead < kind->beads; bead++) {
-            for (int k = 0; k < kind->beads; k++)
-                marked[k] = k == bead ? 0 : -1;
-            for (int distance = 0; distance < kind->exclude; distance++)
-                mark_next(kind, marked, distance);
-            for (int k = 0; k < kind->beads; k++) {
-                if (pass == 1 && marked[k] > 0)
-                    kind->near[found] = k;
-                found += marked[k] > 0;
-            }
+            const int count = reach(kind, &bonds, bead, distance, reached);
+            if (pass == 1)
+                memcpy(kind->near + found, reached + 1, (size_t)count * sizeof *reached);
+            found += count;
             kind->near_start[bead + 1] = found;
         }
         if (pass == 0)
             NEW_ARRAY(kind->near, found);
     }
 done:
-    mf_memory_free(marked);
+    mf_memory_free(distance);
+    mf_memory_free(reached);
+    mf_memory_free(bonds.start);
+    mf_memory_free(bonds.to);
     return status;
 }
 

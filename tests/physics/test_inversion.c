@@ -54,7 +54,7 @@ static void measure_target(const struct fluid *fluid, const struct rdf_bins *bin
     for (int sample = 0; sample < SAMPLES; sample++) {
         assert_ok(mf_metropolis_run(&metropolis, 4));
         assert_ok(mf_rdf_sample(&rdf, &metropolis.particles, &metropolis.neighbours));
-        mf_metropolis_count(&metropolis, &pairs, &sums);
+        assert_ok(mf_metropolis_count(&metropolis, &pairs, &sums));
         virial += sums.virial / SAMPLES;
     }
     double volume = 1;

@@ -167,9 +167,70 @@ static void test_respa_goes_back_the_way_it_came(void **state) {
     mf_table_clear(&table);
 }
 
+/// Energy a bead of dynamics without friction, every 0.2 τ from the first 40 τ on: how it scatters,
+/// and by how much it grows in a time.
+static void follow_energy(double time_step, double *scatter, double *drift) {
+    enum { SAMPLES = 300 };
+    struct molecules molecules;
+    struct simulation simulation;
+    struct table table;
+    struct running_mean energy = {0};
+    double slope = 0, squares = 0;
+    const struct composition composition = make_chains(&molecules);
+    const struct respa_parameters inner = {4};
+    make_table(&table, 25);
+    struct simulation_setup setup = {.box = {3, {3.9, 3.9, 3.9}}, // density 3
+                                     .placement = {.kind = PLACEMENT_LATTICE},
+                                     .temperature = 1,
+                                     .time_step = time_step,
+                                     .temperature_limit = 100,
+                                     .integrator = &mf_respa,
+                                     .integrator_parameters = &inner,
+                                     .potential = &table,
+                                     .precision = PAIR_DOUBLE,
+                                     .seed = 3,
+                                     .threads = 1};
+    molecules_enter(&setup, &molecules, &composition);
+    assert_ok(mf_simulation_init(&simulation, &setup, NULL));
+    const uint64_t every = (uint64_t)llround(0.2 / time_step);
+    assert_ok(mf_simulation_run(&simulation, 200 * every));
+    for (int n = 0; n < SAMPLES; n++) {
+        simulation.wants = PAIR_FORCES_AND_SUMS;
+        assert_ok(mf_simulation_run(&simulation, every));
+        const double each =
+            (simulation.sums.energy + mf_particles_kinetic_energy(&simulation.particles)) /
+            (CHAINS * BEADS);
+        const double time = 0.2 * (n - 0.5 * (SAMPLES - 1));
+        mf_statistics_add(&energy, each);
+        slope += time * each;
+        squares += time * time;
+    }
+    *scatter = mf_statistics_standard_error(&energy) * sqrt(SAMPLES);
+    *drift = slope / squares;
+    print_message("time step %g: energy %.6f, scatter %.2g, drift %.2g a bead and time\n",
+                  time_step, energy.mean, *scatter, *drift);
+    mf_simulation_clear(&simulation);
+    mf_molecules_clear(&molecules);
+    mf_table_clear(&table);
+}
+
+/// Multiple time steps keep the energy with an error of Δt², in a melt of pairs, bonds and angles:
+/// at half the time step it scatters a quarter as much. In 60 τ it drifts by less than 0.0012 k_B T
+/// a bead.
+static void test_respa_keeps_the_energy_with_an_error_of_second_order(void **state) {
+    (void)state;
+    double scatter[2], drift;
+    for (int n = 0; n < 2; n++) {
+        follow_energy(n == 0 ? 0.01 : 0.005, &scatter[n], &drift);
+        assert_close(drift, 0, 2e-5);
+    }
+    assert_close(scatter[0] / scatter[1], 4, 1.2);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_hybrid_samples_bonds_and_angles_exactly),
+        cmocka_unit_test(test_respa_keeps_the_energy_with_an_error_of_second_order),
         cmocka_unit_test(test_respa_goes_back_the_way_it_came),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -102,7 +102,8 @@ static void measure_monte_carlo(const struct simulation_setup *setup, const stru
             // Distances are rounded to single precision before the table is read, so that a pair
             // may be on the other side of the cutoff, where the force ends abruptly.
             uint32_t counts[2] = {0};
-            mf_metropolis_count(&metropolis, &(struct pair_histogram){0, 1, 1, 0, counts}, &fast);
+            assert_ok(mf_metropolis_count(&metropolis, &(struct pair_histogram){0, 1, 1, 0, counts},
+                                          &fast));
             assert_close(fast.virial, sums.virial, 1e-4 * (double)count + edge);
         }
         add_block(measurement, energy, &rdf);

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "dynamics/molecule_plan.h"
+
+#include "base/memory.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/// The bonds of each bead: those of b lead to to[start[b] … start[b + 1]).
+struct bonds {
+    int *start, *to;
+};
+
+static enum status find_bonds(const struct topology_kind *kind, struct bonds *bonds) {
+    enum status status = STATUS_OK;
+    const int count = kind->terms[TOPOLOGY_BOND];
+    const struct topology_term *term = kind->term[TOPOLOGY_BOND];
+    int *next = NULL;
+    NEW_ARRAY(bonds->start, kind->beads + 1);
+    NEW_ARRAY(bonds->to, 2 * count);
+    NEW_ARRAY(next, kind->beads);
+    for (int n = 0; n < count; n++)
+        for (int k = 0; k < 2; k++)
+            bonds->start[term[n].bead[k] + 1]++;
+    for (int bead = 0; bead < kind->beads; bead++) {
+        bonds->start[bead + 1] += bonds->start[bead];
+        next[bead] = bonds->start[bead];
+    }
+    for (int n = 0; n < count; n++)
+        for (int k = 0; k < 2; k++)
+            bonds->to[next[term[n].bead[k]]++] = term[n].bead[1 - k];
+done:
+    mf_memory_free(next);
+    return status;
+}
+
+static bool are_bonded(const struct bonds *bonds, int a, int b) {
+    for (int n = bonds->start[a]; n < bonds->start[a + 1]; n++)
+        if (bonds->to[n] == b)
+            return true;
+    return false;
+}
+
+/// Whether all beads that are next to each other in a term are bonded.
+static bool terms_follow_bonds(const struct topology_kind *kind, const struct bonds *bonds) {
+    for (int order = TOPOLOGY_ANGLE; order < TOPOLOGY_ORDERS; order++)
+        for (int n = 0; n < kind->terms[order]; n++)
+            for (int k = 0; k + 1 < topology_beads(order); k++)
+                if (!are_bonded(bonds, kind->term[order][n].bead[k],
+                                kind->term[order][n].bead[k + 1]))
+                    return false;
+    return true;
+}
+
+// Arms --------------------------------------------------------------------------------------------
+
+/// On the way through the beads; all of shape [beads].
+struct way {
+    int *place; ///< in `walk`, −1 before it is reached
+    int *next;  ///< its next bond
+    int *low;   ///< the first place that a bond leads to from it or from what follows it
+};
+
+static void enter(struct molecule_plan *plan, const struct bonds *bonds, struct way *way, int bead,
+                  int parent, int *reached) {
+    way->next[bead] = bonds->start[bead];
+    way->place[bead] = way->low[bead] = *reached;
+    plan->parent[bead] = parent;
+    plan->walk[(*reached)++] = bead;
+}
+
+/// A bond from a bead's parent that no way goes around is in no ring (R. E. Tarjan, Inf. Process.
+/// Lett. 2, 160 (1974)): what follows the bead and what does not are two arms.
+static void leave(struct molecule_plan *plan, struct way *way, int bead, int reached) {
+    const int parent = plan->parent[bead], begin = way->place[bead];
+    if (parent < 0)
+        return;
+    if (way->low[bead] < way->low[parent])
+        way->low[parent] = way->low[bead];
+    if (way->low[bead] < begin)
+        return;
+    const bool outside = 2 * (reached - begin) > plan->beads;
+    plan->arm[plan->arms++] = (struct molecule_arm){.pivot = outside ? bead : parent,
+                                                    .first = outside ? parent : bead,
+                                                    .begin = begin,
+                                                    .end = reached,
+                                                    .outside = outside};
+}
+
+/// Depth first from one bead to all that bonds lead to.
+static void walk_from(struct molecule_plan *plan, const struct bonds *bonds, struct way *way,
+                      int root, int *reached) {
+    int bead = root;
+    enter(plan, bonds, way, root, -1, reached);
+    while (bead >= 0) {
+        if (way->next[bead] == bonds->start[bead + 1]) {
+            leave(plan, way, bead, *reached);
+            bead = plan->parent[bead];
+            continue;
+        }
+        const int to = bonds->to[way->next[bead]++];
+        if (way->place[to] < 0) {
+            enter(plan, bonds, way, to, bead, reached);
+            bead = to;
+        } else if (to != plan->parent[bead] && way->place[to] < way->low[bead]) {
+            way->low[bead] = way->place[to];
+        }
+    }
+}
+
+static enum status find_arms(struct molecule_plan *plan, const struct topology_kind *kind) {
+    enum status status = STATUS_OK;
+    struct bonds bonds = {0};
+    struct way way = {0};
+    int reached = 0;
+    NEW_ARRAY(plan->walk, kind->beads);
+    NEW_ARRAY(plan->parent, kind->beads);
+    NEW_ARRAY(plan->arm, kind->beads);
+    NEW_ARRAY(way.place, kind->beads);
+    NEW_ARRAY(way.next, kind->beads);
+    NEW_ARRAY(way.low, kind->beads);
+    CHECK(find_bonds(kind, &bonds));
+    memset(way.place, 0xff, (size_t)kind->beads * sizeof *way.place);
+    walk_from(plan, &bonds, &way, 0, &reached);
+    plan->joined = reached == kind->beads;
+    for (int bead = 0; bead < kind->beads; bead++)
+        if (way.place[bead] < 0)
+            walk_from(plan, &bonds, &way, bead, &reached);
+    if (!plan->joined || !terms_follow_bonds(kind, &bonds))
+        plan->arms = 0;
+done:
+    mf_memory_free(bonds.start);
+    mf_memory_free(bonds.to);
+    mf_memory_free(way.place);
+    mf_memory_free(way.next);
+    mf_memory_free(way.low);
+    return status;
+}
+
+// Terms -------------------------------------------------------------------------------------------
+
+/// A term of a bead, to be sorted by bead and law.
+struct entry {
+    int bead, order, group, term;
+};
+
+static int compare_entries(const void *a, const void *b) {
+    const int *x = a, *y = b; // four numbers each, in the order in which they count
+    for (size_t k = 0; k < sizeof(struct entry) / sizeof(int); k++)
+        if (x[k] != y[k])
+            return x[k] < y[k] ? -1 : 1;
+    return 0;
+}
+
+static size_t list_entries(const struct topology_kind *kind, struct entry *entry) {
+    size_t count = 0;
+    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+        for (int n = 0; n < kind->terms[order]; n++)
+            for (int k = 0; k < topology_beads(order); k++, count++)
+                if (entry)
+                    entry[count] = (struct entry){kind->term[order][n].bead[k], order,
+                                                  kind->term[order][n].group, n};
+    return count;
+}
+
+static enum status find_runs(struct molecule_plan *plan, const struct topology_kind *kind) {
+    enum status status = STATUS_OK;
+    struct entry *entry = NULL;
+    const size_t entries = list_entries(kind, NULL);
+    size_t used = 0;
+    int runs = 0;
+    NEW_ARRAY(entry, entries);
+    NEW_ARRAY(plan->run_start, kind->beads + 1);
+    NEW_ARRAY(plan->run, entries);
+    NEW_ARRAY(plan->term_bead, TOPOLOGY_MOST_BEADS * entries);
+    list_entries(kind, entry);
+    qsort(entry, entries, sizeof *entry, compare_entries);
+    for (size_t e = 0; e < entries; e++) {
+        const struct entry *here = &entry[e], *last = e > 0 ? here - 1 : NULL;
+        if (last == NULL || last->bead != here->bead || last->order != here->order ||
+            last->group != here->group)
+            plan->run[runs++] = (struct molecule_run){here->order, here->group, 0, used};
+        plan->run[runs - 1].count++;
+        plan->run_start[here->bead + 1] = runs;
+        for (int k = 0; k < topology_beads(here->order); k++)
+            plan->term_bead[used++] = kind->term[here->order][here->term].bead[k];
+    }
+    for (int bead = 0; bead < kind->beads; bead++)
+        if (plan->run_start[bead + 1] < plan->run_start[bead])
+            plan->run_start[bead + 1] = plan->run_start[bead]; // without terms
+done:
+    mf_memory_free(entry);
+    return status;
+}
+
+enum status mf_molecule_plan_init(struct molecule_plan *plan, const struct topology_kind *kind) {
+    *plan = (struct molecule_plan){.beads = kind->beads};
+    const int64_t others = (int64_t)kind->beads * (kind->beads - 1);
+    plan->excluded = kind->near_start[kind->beads] == others;
+    TRY(find_arms(plan, kind));
+    return find_runs(plan, kind);
+}
+
+void mf_molecule_plan_clear(struct molecule_plan *plan) {
+    mf_memory_free(plan->walk);
+    mf_memory_free(plan->parent);
+    mf_memory_free(plan->arm);
+    mf_memory_free(plan->run_start);
+    mf_memory_free(plan->run);
+    mf_memory_free(plan->term_bead);
+    *plan = (struct molecule_plan){0};
+}

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file "molecules": {"file": "topol.top"}: molecules of another program.
+#pragma once
+
+#include "input/scene_molecules.h"
+
+/// Read kinds, groups and types of the file that an object names, by its name a topology of GROMACS
+/// or a data file of LAMMPS. The topology is not completed. Faults go to the document. Fails:
+/// NO_MEMORY.
+enum status mf_scene_topology_read(struct scene_molecules *molecules, struct json_object *object,
+                                   struct composition *composition,
+                                   const struct units *units) MUST_USE;
