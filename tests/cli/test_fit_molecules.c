@@ -171,8 +171,8 @@ static void test_fit_molecules_refuses_what_cannot_be(void **state) {
         {"\"imc\"", "\"hnc\"", {"method.name: \"hnc\" knows no molecules", NULL}},
         {"\"name\": \"imc\", \"replicas\": 2, \"equilibration\": 40, \"samples\": 60,\n"
          "  \"iterations\": 4, \"precision\": 0.02",
-         "\"name\": \"cma-es\"",
-         {"scene.molecules: \"cma-es\" finds the potentials of single beads alone", NULL}},
+         "\"name\": \"formulas\"",
+         {"method.name: \"formulas\" knows no molecules", NULL}},
         {"\"truth/bond_angles.tsv\"",
          "\"truth/bond_lengths.tsv\"",
          {"target.bond_angles.bend.file: ", "as if in radians", NULL}},
