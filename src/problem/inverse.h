@@ -290,6 +290,8 @@ struct inverse_method {
     const char *const *columns;        ///< names of `extra`, NULL-terminated
     bool finds_potential, finds_omega; ///< whether it can
     bool knows_molecules;              ///< and finds what is unknown of their bonds, too
+    bool
+        restricted; ///< of an inversion: its potentials are of a form that need not meet the target
     enum status (*create)(void *state, const struct inverse_method *method,
                           const struct inverse_problem *problem, const void *parameters);
     void (*destroy)(void *state);
@@ -309,6 +311,7 @@ struct inverse_method {
     EACH(imc)                                                                                      \
     EACH(ibi)                                                                                      \
     EACH(hnc)                                                                                      \
+    EACH(relative_entropy)                                                                         \
     OPTIMISERS(EACH##_MATCHING)                                                                    \
     EACH(gauss_newton)                                                                             \
     EACH(pareto)                                                                                   \

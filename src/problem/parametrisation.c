@@ -111,7 +111,8 @@ static enum status curve_basis(const struct parametrisation *parametrisation,
     double *place = NULL;
     if (kind == UNKNOWN_BONDED)
         return mf_parametrisation_bonded_basis(
-            &parametrisation->unknowns.potential.group[curve].own, block);
+            &parametrisation->unknowns.potential.group[curve].own,
+            mf_parametrisation_variables_of(parametrisation, kind, curve), block);
     NEW_ARRAY(place, points);
     mf_parametrisation_places(parametrisation, kind, curve, place);
     CHECK(mf_shape_basis(mf_shapes[unknown_of(parametrisation, kind)->parameters.shape],

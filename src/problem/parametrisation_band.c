@@ -143,7 +143,8 @@ static enum status add_rough(const struct parametrisation *parametrisation, doub
         basis = rough = NULL;
         NEW_ARRAY(basis, own->known * (size_t)own->unknown->shape.coefficients);
         NEW_ARRAY(rough, own->known);
-        CHECK(mf_parametrisation_bonded_basis(own, basis));
+        CHECK(
+            mf_parametrisation_bonded_basis(own, (size_t)own->unknown->shape.coefficients, basis));
         CHECK(mf_parametrisation_bonded_rough(
             own, targets->target[kind].error + own->unknown->first, basis, rough));
         for (size_t k = 0; k < own->known; k++)

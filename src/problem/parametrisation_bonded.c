@@ -32,8 +32,8 @@ done:
     return status;
 }
 
-enum status mf_parametrisation_bonded_basis(const struct bonded_grid *grid, double *basis) {
-    const size_t count = (size_t)grid->unknown->shape.coefficients;
+enum status mf_parametrisation_bonded_basis(const struct bonded_grid *grid, size_t count,
+                                            double *basis) {
     const double whole = mf_bonded_grid_mean(grid) * (double)grid->known;
     if (grid->unknown->order == TOPOLOGY_DIHEDRAL)
         fill_waves(grid, count, basis);

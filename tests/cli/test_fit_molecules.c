@@ -64,9 +64,9 @@ static const char *const tables[] = {"potential_A-A.tsv",
                                      NULL};
 
 /// Threads, an interruption and the written file change no bits.
-static void test_fit_molecules_again_with_the_same_bits(void **state) {
+static void fit_again(struct temporary_folder *folder, const char *from, const char *to) {
     static struct run_program_result result;
-    small_inputs_write(*state, "run.json", run, NULL, NULL);
+    small_inputs_write(folder, "run.json", run, from, to);
     RUN_PROGRAM(&result, "fit", "run.json", "-o", "one", "--threads", "1");
     assert_true(result.code == 0 || result.code == 1);
     RUN_PROGRAM(&result, "fit", "one/used.json", "-o", "two", "--threads", "2");
@@ -79,6 +79,35 @@ static void test_fit_molecules_again_with_the_same_bits(void **state) {
     assert_true(result.code == 0 || result.code == 1);
     results_assert_same("one", "two", tables);
     results_assert_same("one", "three", tables);
+}
+
+static void test_fit_molecules_again_with_the_same_bits(void **state) {
+    fit_again(*state, NULL, NULL);
+}
+
+static void test_fit_by_relative_entropy_again_with_the_same_bits(void **state) {
+    fit_again(*state, "\"imc\"", "\"relative-entropy\"");
+}
+
+/// Three coefficients do not make g(r), nor one a bond's p: it has converged, and its
+/// summary says how far the bond is off.
+static void test_fit_by_relative_entropy_tells_what_its_form_does_not_meet(void **state) {
+    static struct run_program_result result;
+    small_inputs_write(*state, "run.json", run, "\"imc\", \"replicas\": 2",
+                       "\"relative-entropy\", \"coefficients\": 3, \"group_coefficients\": 1, "
+                       "\"replicas\": 4");
+    char *text = temporary_folder_read("run.json");
+    small_inputs_write(*state, "run.json", text, "\"samples\": 60,\n  \"iterations\": 4",
+                       "\"samples\": 300,\n  \"iterations\": 16");
+    free(text);
+    text = temporary_folder_read("run.json");
+    small_inputs_write(*state, "run.json", text, "\"precision\": 0.02", "\"precision\": 0.005");
+    free(text);
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "found");
+    run_program_assert_code(&result, 0);
+    results_assert_text("found/summary.json", "status", "converged");
+    assert_true(results_number("found/summary.json", "bond_lengths_rmse") >
+                10 * results_number("found/summary.json", "bond_lengths_noise"));
 }
 
 /// The numbers behind a section's name in a file of tables, up to the next name.
@@ -197,6 +226,11 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(test_fit_molecules_again_with_the_same_bits, enter,
                                         small_inputs_leave),
+        cmocka_unit_test_setup_teardown(test_fit_by_relative_entropy_again_with_the_same_bits,
+                                        enter, small_inputs_leave),
+        cmocka_unit_test_setup_teardown(
+            test_fit_by_relative_entropy_tells_what_its_form_does_not_meet, enter,
+            small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_fit_molecules_result_runs_as_a_scene, enter,
                                         small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_fit_molecules_leaves_known_laws_alone, enter,

@@ -129,7 +129,7 @@ static void test_bonded_basis_makes_smooth_curves_without_a_constant(void **stat
         const struct bonded_grid *grid = grid_of(&twin, g);
         const size_t own = (size_t)grid->unknown->shape.coefficients;
         const double middle = mf_bonded_grid_place(grid, grid->below + grid->known / 2);
-        assert_ok(mf_parametrisation_bonded_basis(grid, basis));
+        assert_ok(mf_parametrisation_bonded_basis(grid, own, basis));
         for (size_t n = 0; n < own; n++) {
             double mean = 0;
             for (size_t k = 0; k < grid->known; k++)
@@ -163,7 +163,7 @@ static void test_bonded_rough_is_the_noise_that_no_coefficients_make_up_for(void
         const struct bonded_grid *grid = grid_of(&twin, g);
         const size_t own = (size_t)grid->unknown->shape.coefficients;
         double squares[BINS] = {0};
-        assert_ok(mf_parametrisation_bonded_basis(grid, basis));
+        assert_ok(mf_parametrisation_bonded_basis(grid, own, basis));
         assert_ok(mf_parametrisation_bonded_rough(grid, twin.error[g], basis, rough));
         for (uint32_t draw = 0; draw < DRAWS; draw++) {
             double values[BINS];
@@ -216,7 +216,7 @@ static void test_parametrisation_has_groups_behind_the_pairs(void **state) {
     const struct bonded_grid *angle = &p.unknowns.potential.group[1].own;
     const struct unknowns_part part = mf_unknowns_part(&p.unknowns, UNKNOWN_BONDED, 1);
     double basis[MOST];
-    assert_ok(mf_parametrisation_bonded_basis(angle, basis));
+    assert_ok(mf_parametrisation_bonded_basis(angle, 5, basis));
     for (size_t k = 0; k < points; k++) {
         const size_t known = k - part.first - angle->below;
         if (k < part.first || k >= part.first + part.points)
@@ -274,7 +274,7 @@ static void test_parametrisation_band_of_groups_holds_both_noises(void **state) 
     covariance[8 * 23] = 0.01 * 0.01; // the second coefficient of the bond, in a range of ±2
     assert_ok(mf_parametrisation_band(&p, UNKNOWN_BONDED, x, covariance, error, flat));
     const struct bonded_grid *bond = &p.unknowns.potential.group[0].own;
-    assert_ok(mf_parametrisation_bonded_basis(bond, basis));
+    assert_ok(mf_parametrisation_bonded_basis(bond, 4, basis));
     assert_ok(mf_parametrisation_bonded_rough(bond, twin.error[0], basis, rough));
     assert_true(isnan(error[0]));
     assert_true(isnan(error[bond->points - 1]));
