@@ -189,15 +189,15 @@ static const struct topic fixed_topics[] = {
     {"unknowns", "unknowns", "\"unknowns\" of a run file", {NULL}},
     {"unknowns",
      "group",
-     "U of a group of bonds, angles or dihedrals, to be found from its target: an object without "
-     "members",
-     {NULL}},
+     "U of a group of bonds, angles or dihedrals, to be found from its target",
+     {mf_inverse_group_fields}},
     {"unknowns", "potential", "Phi(r), to be found", {mf_inverse_potential_fields}},
     {"unknowns", "omega", "a friction weight omega(r), to be found", {mf_inverse_omega_fields}},
     {"unknowns",
      "numbers",
      "a number of the scene, to be found, under the path of its key: \"conservative.a\", "
-     "\"conservative.A-B.a\", \"dissipative.sigma\", \"temperature\", \"dynamics.lambda\"",
+     "\"conservative.A-B.a\", \"dissipative.sigma\", \"bonds.backbone.k\", \"temperature\", "
+     "\"dynamics.lambda\"",
      {mf_numbers_fields}},
     {"unknowns",
      "fixed",

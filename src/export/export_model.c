@@ -375,8 +375,8 @@ enum status mf_export_model_read(struct export_model *model, const char *folder)
     TRY(check_scene(model));
     TRY(read_summary(&reading));
     name_types(model);
-    model->molecules = mf_molecules_find(model->setup.interaction, model->setup.interactions);
     TRY(find_laws(&reading));
+    model->molecules = mf_molecules_find(model->setup.interaction, model->setup.interactions);
     TRY(mf_export_start_find(model));
     return find_bins(model);
 }

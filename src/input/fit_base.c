@@ -42,21 +42,26 @@ static enum status fill_hnc(const struct inverse_problem *problem, const struct 
     if (even_under_tension || status == STATUS_NO_MEMORY)
         return status;
     if (status != STATUS_OK || pressure < 0)
-        mf_potential_grid_start(&unknowns->potential, problem, curve);
+        mf_potential_grid_start_pairs(&unknowns->potential, problem, curve);
     return STATUS_OK;
 }
 
-/// The base of an unknown; what is made of the target, whatever start there is.
+/// The base of an unknown; what is made of the target, whatever start there is. The hypernetted
+/// chain knows no bonds.
 static enum status fill_base(const struct fit_file *fit, const struct unknowns *unknowns,
                              enum unknown_kind kind, double *curve) {
     struct inverse_problem without = fit->problem;
     const enum unknown_base base = base_of(&fit->unknown[kind]);
+    const bool joined = scene_has_molecules(&fit->scene.molecules);
     for (int pair = 0; pair < COMPOSITION_MOST_PAIRS; pair++)
         without.unknown[UNKNOWN_POTENTIAL].start[pair] = NULL;
     if (base == BASE_START)
         mf_unknowns_start(unknowns, kind, curve);
-    else if (base == BASE_MEAN_FORCE)
-        mf_potential_grid_start(&unknowns->potential, &without, curve);
+    else if (base == BASE_MEAN_FORCE || (base == BASE_AUTO && joined))
+        mf_potential_grid_start_pairs(&unknowns->potential, &without, curve);
+    else if (joined)
+        return mf_status_fail(STATUS_BAD_INPUT, "unknowns.potential.base: the hypernetted chain "
+                                                "knows no molecules; \"mean-force\" does");
     else if (base == BASE_HNC && fit->problem.scene.box.dimensions != 3)
         return mf_status_fail(STATUS_BAD_INPUT, "unknowns.potential.base: the hypernetted chain is "
                                                 "for three dimensions; \"mean-force\" is not");
@@ -73,7 +78,7 @@ enum status mf_fit_base_find(struct fit_file *fit) {
     CHECK(mf_unknowns_init(&unknowns, &fit->problem));
     for (int kind = 0; kind < UNKNOWNS; kind++) {
         struct fit_unknown *unknown = &fit->unknown[kind];
-        if (!unknown->wanted || base_of(unknown) == BASE_NONE)
+        if (!unknown->wanted || kind == UNKNOWN_BONDED || base_of(unknown) == BASE_NONE)
             continue;
         NEW_ARRAY(unknown->base, mf_unknowns_points(&unknowns, kind));
         CHECK(fill_base(fit, &unknowns, kind, unknown->base));

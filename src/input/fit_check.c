@@ -77,12 +77,12 @@ static bool is_inverted(const struct fit_file *fit, int kind) {
     return false;
 }
 
-/// Molecules are sampled by inversions alone, which find a group from its own distribution.
+/// A group is found from its own distribution.
 static enum status check_molecules(const struct fit_file *fit, const char *file) {
-    if (scene_has_molecules(&fit->scene.molecules) && fit->method->kind != INVERSE_INVERSION)
+    if (scene_has_molecules(&fit->scene.molecules) && !fit->method->knows_molecules)
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "%s: scene.molecules: \"%s\" finds the potentials of single beads "
-                              "alone; \"imc\", \"ibi\" and \"auto\" know molecules",
+                              "%s: method.name: \"%s\" knows no molecules; \"imc\", \"ibi\", "
+                              "\"auto\", \"gauss-newton\" and the optimisers do",
                               file, fit->method->name);
     for (int kind = 0; mf_targets_name(kind); kind++)
         if (is_inverted(fit, kind) && !fit->files.use[kind].fitted)

@@ -127,8 +127,8 @@ static void state_groups(struct fit_file *fit) {
             if (!mf_scene_groups_are_fitted(&molecules->group[order][g]) ||
                 (size_t)g >= groups->groups || groups->member[g].bins.count == 0)
                 continue;
-            problem->group[problem->bonded++] =
-                (struct bonded_unknown){order, g, groups->member[g].bins, groups->first[g]};
+            problem->group[problem->bonded++] = (struct bonded_unknown){
+                order, g, groups->member[g].bins, groups->first[g], fit->shape[order][g]};
         }
 }
 
@@ -137,6 +137,9 @@ static void compare_known(struct fit_file *fit) {
     bool found[TOPOLOGY_ORDERS] = {false};
     for (size_t g = 0; g < fit->problem.bonded; g++)
         found[fit->problem.group[g].order] = true;
+    for (size_t n = 0; n < fit->numbers; n++)
+        if (fit->number[n].place == INVERSE_OF_BONDED)
+            found[inverse_order(fit->number[n].part)] = true;
     for (enum topology_order order = 0; order < TOPOLOGY_ORDERS; order++)
         if (!found[order])
             fit->files.use[mf_bonded_distribution_kind(order)].fitted = 0;

@@ -133,6 +133,19 @@ static void add_memory(struct entries *entries, const struct scene_memory *memor
     }
 }
 
+/// Laws of bonds, angles and dihedrals: "bonds.backbone.k".
+static void add_groups(struct entries *entries, const struct molecules *molecules) {
+    for (enum topology_order order = 0; order < TOPOLOGY_ORDERS; order++)
+        for (int g = 0; g < molecules->groups[order]; g++) {
+            const struct molecules_group *group = &molecules->group[order][g];
+            char prefix[INVERSE_NUMBER_NAME_SIZE];
+            snprintf(prefix, sizeof prefix, "%s.%s.", mf_scene_group_keys[order], group->name);
+            add(entries, prefix, group->curve.law->fields, NULL,
+                &(struct entry){.place = INVERSE_OF_BONDED, .part = inverse_group(order, g)},
+                group->curve.parameters);
+        }
+}
+
 const struct scene_law *mf_fit_numbers_law(const struct scene *scene, enum inverse_place place) {
     switch (place) {
     case INVERSE_OF_POTENTIAL:
@@ -160,8 +173,11 @@ static void list(struct entries *entries, const struct scene *scene) {
     if (setup->integrator)
         add(entries, "dynamics.", setup->integrator->fields, NULL, &dynamics,
             setup->integrator_parameters);
+    add_groups(entries, &scene->molecules.molecules);
     for (int k = 0; k < setup->interactions; k++) {
         const struct interaction_choice *choice = &setup->interaction[k];
+        if (choice->kind == &mf_molecules)
+            continue;
         char prefix[INVERSE_NUMBER_NAME_SIZE];
         snprintf(prefix, sizeof prefix, "interactions.%s.", choice->kind->name);
         add(entries, prefix, choice->kind->fields, NULL,
@@ -172,6 +188,20 @@ static void list(struct entries *entries, const struct scene *scene) {
     add(entries, "particles.", mf_attributes_fields, "it is not the same for all particles",
         &nowhere, NULL);
     add(entries, "units.", mf_units_fields, converts, &nowhere, NULL);
+}
+
+/// The group of a path that is an unknown curve, or NULL.
+static const char *sought_group(const struct scene *scene, const char *path) {
+    const struct molecules *molecules = &scene->molecules.molecules;
+    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+        for (int g = 0; g < molecules->groups[order]; g++) {
+            const struct molecules_group *group = &molecules->group[order][g];
+            char prefix[INVERSE_NUMBER_NAME_SIZE];
+            snprintf(prefix, sizeof prefix, "%s.%s.", mf_scene_group_keys[order], group->name);
+            if (mf_scene_groups_are_fitted(group) && strncmp(path, prefix, strlen(prefix)) == 0)
+                return group->name;
+        }
+    return NULL;
 }
 
 /// No key of the scene: the nearest that could be found, or why there is none.
@@ -189,6 +219,14 @@ static enum status fault_unknown(struct json_object *numbers, const char *path,
         mf_json_fault(numbers, path,
                       "%s is an unknown curve itself; \"curve\" says what it is made of",
                       mf_inverse_unknown_names[in_potential ? UNKNOWN_POTENTIAL : UNKNOWN_OMEGA]);
+        return STATUS_OK;
+    }
+    if (sought_group(scene, path)) {
+        mf_json_fault(
+            numbers, path,
+            "\"%s\" is an unknown curve itself; with a law of it in the scene its numbers "
+            "can be found",
+            sought_group(scene, path));
         return STATUS_OK;
     }
     NEW_ARRAY(known, entries->count);

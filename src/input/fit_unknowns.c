@@ -75,7 +75,17 @@ void mf_fit_unknowns_groups(struct json_object *root, struct json_object *scene,
     }
 }
 
-/// "bonds": {"backbone": {}}: each needs a target.
+static void read_shape(struct bonded_shape *shape, enum topology_order order,
+                       struct json_object *group) {
+    enum { COEFFICIENTS = 4, OF_CIRCLE = 6 };
+    mf_json_fields(group, mf_inverse_group_fields, shape);
+    if (shape->coefficients == 0)
+        shape->coefficients = order == TOPOLOGY_DIHEDRAL ? OF_CIRCLE : COEFFICIENTS;
+    if (group->item)
+        mf_json_finish(group);
+}
+
+/// "bonds": {"backbone": {"coefficients": 6}}: each needs a target.
 static void read_groups(struct fit_file *fit, struct json_object *root,
                         struct json_object *unknowns) {
     const struct molecules *molecules = &fit->scene.molecules.molecules;
@@ -88,8 +98,7 @@ static void read_groups(struct fit_file *fit, struct json_object *root,
                 continue;
             fit->unknown[UNKNOWN_BONDED].wanted = true;
             struct json_object group = mf_json_child(&groups, name, false);
-            if (group.item)
-                mf_json_finish(&group);
+            read_shape(&fit->shape[order][g], order, &group);
             if (mf_json_fault_count(root->document) == 0 &&
                 ((size_t)g >= targets->groups || targets->member[g].bins.count == 0))
                 mf_json_fault(&groups, name, "there is no \"target.%s.%s\" to find it from",
@@ -297,6 +306,7 @@ static void write_groups(const struct fit_file *fit, struct json_writer *writer)
                 mf_json_begin(writer, mf_scene_group_keys[order]);
             begun = true;
             mf_json_begin(writer, molecules->group[order][g].name);
+            mf_json_put_fields(writer, mf_inverse_group_fields, &fit->shape[order][g]);
             mf_json_end(writer);
         }
         if (begun)

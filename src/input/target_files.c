@@ -363,7 +363,9 @@ static struct target target_of(const struct target_files *files, int kind) {
     if (order < TOPOLOGY_ORDERS)
         return (struct target){.count = files->groups[order].first[files->groups[order].groups],
                                .value = files->groups[order].value,
-                               .error = files->groups[order].error};
+                               .error = files->groups[order].error,
+                               .block = files->groups[order].block,
+                               .blocks = files->groups[order].blocks};
     if (kind == TARGET_RDF)
         return (struct target){.count = files->pairs * files->rdf[0].bins.count,
                                .value = files->rdf_g,

@@ -31,6 +31,7 @@ static enum status collect(struct target_groups *groups) {
         groups->first[g + 1] = groups->first[g] + groups->member[g].bins.count;
     NEW_ARRAY(groups->value, groups->first[groups->groups]);
     NEW_ARRAY(groups->error, groups->first[groups->groups]);
+    NEW_ARRAY(groups->block, groups->groups * TARGETS_MOST_BLOCKS + 1);
     for (size_t g = 0; g < groups->groups; g++) {
         const struct target_bonded *member = &groups->member[g];
         const size_t bytes = member->bins.count * sizeof(double);
@@ -38,7 +39,10 @@ static enum status collect(struct target_groups *groups) {
             continue;
         memcpy(groups->value + groups->first[g], member->value, bytes);
         memcpy(groups->error + groups->first[g], member->error, bytes);
+        groups->blocks += mf_targets_blocks(member->value, member->bins.count, groups->first[g],
+                                            groups->block + groups->blocks);
     }
+    groups->block[groups->blocks] = groups->first[groups->groups];
 done:
     return status;
 }
@@ -84,6 +88,7 @@ void mf_target_groups_clear(struct target_groups *groups) {
     mf_memory_free(groups->member);
     mf_memory_free(groups->value);
     mf_memory_free(groups->error);
+    mf_memory_free(groups->block);
     *groups = (struct target_groups){0};
 }
 

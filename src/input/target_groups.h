@@ -4,6 +4,7 @@
 
 #include "input/target_bonded.h"
 #include "io/json_write.h"
+#include "problem/targets.h"
 
 /// By the numbers of the groups.
 struct target_groups {
@@ -13,6 +14,7 @@ struct target_groups {
     struct target_bonded *member;            ///< shape [groups]
     size_t first[MOLECULES_MOST_GROUPS + 1]; ///< value of each among those of all
     double *value, *error;                   ///< of all members, one behind the other
+    size_t *block, blocks;                   ///< their blocks (mf_targets_blocks), and the end
 };
 
 /// Read the object of a kind; `molecules` are those of the scene, or NULL. Faults go to the

@@ -86,6 +86,7 @@ const struct inverse_method mf_automatic = {
                "and Laaksonen 1995)",
     .own = &(const struct inversion_rule){update},
     .tables = (const struct inverse_table[]){INVERSION_TABLE, {NULL, 0}},
+    .knows_molecules = true,
     .columns = columns,
     .create = mf_inversion_create,
     INVERSION_RECORD,

@@ -53,10 +53,6 @@ static enum status create(void *inversion, const struct inverse_method *method,
                           const struct inverse_problem *problem, const void *parameters) {
     if (problem->scene.box.dimensions != 3)
         return mf_status_fail(STATUS_BAD_INPUT, "method.name: \"hnc\" is for three dimensions");
-    if (mf_molecules_find(problem->scene.interaction, problem->scene.interactions))
-        return mf_status_fail(STATUS_BAD_INPUT,
-                              "method.name: \"hnc\" knows no molecules; \"imc\", \"ibi\" and "
-                              "\"auto\" do");
     return mf_inversion_create(inversion, method, problem, parameters);
 }
 

@@ -116,6 +116,7 @@ const struct inverse_method mf_imc = {
     .tables = (const struct inverse_table[]){INVERSION_TABLE,
                                              {own_fields, offsetof(struct inversion_settings, imc)},
                                              {NULL, 0}},
+    .knows_molecules = true,
     .columns = columns,
     .create = mf_inversion_create,
     INVERSION_RECORD,

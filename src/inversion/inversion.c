@@ -17,6 +17,9 @@ static const double largest_unknown_change = 3;
 /// Samples are doubled until their noise is this share of the error, or as small as was asked for.
 static const double noise_share = 1.0 / 3;
 
+/// A gradient below this many times its noise is hardly more than that.
+static const double near_miss = 2;
+
 /// Samples of an iteration double at most so often.
 enum { MOST_DOUBLINGS = 7 };
 
@@ -74,19 +77,28 @@ static enum status assess_response(struct inversion *inversion) {
     return mf_inversion_pressure_slopes(inversion);
 }
 
+static bool goes_by_gradient(const struct inversion *inversion) {
+    return inversion->basis.count > 0;
+}
+
 /// phi = best + damping · best_step, bounded as a whole where the target is well known, and bin by
-/// bin elsewhere.
+/// bin elsewhere; as a whole everywhere if it is made of coefficients.
 static void take_step(struct inversion *inversion) {
     const struct potential_grid *grid = &inversion->grid;
+    const bool whole = goes_by_gradient(inversion);
     double largest = 0;
-    for (size_t a = 0; a < grid->known; a++)
-        if (grid->well_known[a])
-            largest = fmax(largest, fabs(inversion->best_step[grid->known_point[a]]));
+    for (size_t a = 0; a < grid->known; a++) {
+        const double size = fabs(inversion->best_step[grid->known_point[a]]);
+        if (grid->well_known[a] || whole)
+            largest =
+                fmax(largest,
+                     grid->well_known[a] ? size : size * largest_change / largest_unknown_change);
+    }
     const double share = fmin(inversion->progress.damping, largest_change / fmax(largest, 1e-300));
     for (size_t a = 0; a < grid->known; a++) {
         const size_t point = grid->known_point[a];
         double change = share * inversion->best_step[point];
-        if (!grid->well_known[a])
+        if (!grid->well_known[a] && !whole)
             change = fmax(-largest_unknown_change, fmin(largest_unknown_change, change));
         inversion->phi[point] = inversion->best[point] + change;
     }
@@ -124,9 +136,11 @@ static struct replicas_plan plan(const struct inversion *inversion) {
 /// asked for. Replicas that are stuck would never be told apart from noise.
 static bool needs_samples(const struct inversion *inversion, int doublings) {
     const double precision = inversion->settings.common.precision;
+    // What is out of reach of few coefficients is no error that hides the noise.
+    const double share = inversion->progress.miss < near_miss ? 0 : noise_share;
     for (int k = 0; k < inversion->sections; k++) {
         const struct inversion_section *section = &inversion->section[k];
-        if (section->own_noise > fmax(precision, noise_share * section->rms))
+        if (section->own_noise > fmax(precision, share * section->rms))
             return doublings < MOST_DOUBLINGS;
     }
     return false;
@@ -181,8 +195,20 @@ static void go_back(struct inversion *inversion) {
     progress->damping = inversion->settings.common.damping;
 }
 
+/// S_rel is convex: its Newton steps promise less and less, unless one was too long.
+static bool keeps_by_gradient(struct inversion *inversion) {
+    const struct inversion_basis *basis = &inversion->basis;
+    double *least = &inversion->progress.least_decrement;
+    const bool kept = basis->decrement <= 2 * *least + 8 * basis->chance;
+    *least = fmin(*least, basis->decrement);
+    inversion->progress.miss = basis->miss;
+    return kept;
+}
+
 bool mf_inversion_keeps(struct inversion *inversion) {
     struct inversion_progress *progress = &inversion->progress;
+    if (goes_by_gradient(inversion))
+        return keeps_by_gradient(inversion);
     const double now = count_noises(inversion, inversion->distance);
     const double least =
         isinf(progress->best[TARGET_RDF].rms) ? INFINITY : count_noises(inversion, progress->least);
@@ -219,15 +245,18 @@ static enum status go_on(struct inversion *inversion, bool kept) {
         take_step(inversion);
         return STATUS_OK;
     }
-    progress->best[TARGET_RDF].rms = INFINITY;
+    progress->best[TARGET_RDF].rms = progress->least_decrement = INFINITY;
     progress->drift.count = 0;
     progress->damping = inversion->settings.common.damping;
     progress->anew = true;
     return mf_inversion_start_again(inversion);
 }
 
-/// Whether the present potential meets all targets as far as their noise lets see.
+/// Whether the present potential meets all targets as far as their noise lets see; of few
+/// coefficients, whether no change of these makes it better.
 static bool meets_targets(const struct inversion *inversion) {
+    if (goes_by_gradient(inversion))
+        return inversion->basis.miss <= mf_inverse_noise_margin;
     for (int kind = 0; kind < TARGETS; kind++)
         if (targets_ask(&inversion->problem->targets, kind) &&
             inversion->distance[kind].rms >

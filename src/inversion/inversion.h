@@ -17,6 +17,7 @@
 #pragma once
 
 #include "inversion/inversion_band.h"
+#include "inversion/inversion_basis.h"
 #include "inversion/inversion_drift.h"
 #include "inversion/inversion_pressure.h"
 #include "inversion/inversion_trail.h"
@@ -52,6 +53,7 @@ struct inversion_settings {
     struct inversion_parameters common;
     struct imc_parameters imc;
     struct hnc_parameters hnc;
+    struct entropy_parameters entropy;
 };
 
 extern const struct field mf_inversion_fields[]; ///< of struct inversion_parameters
@@ -60,7 +62,8 @@ struct inversion;
 
 /// What an inversion has of its own (inverse_method.own): the step from its samples, for the known
 /// bins, into `step`; perhaps another into `other_step`, with `has_other` set, to be taken from
-/// here if that one makes it worse; and up to INVERSION_OWN_COLUMNS columns.
+/// here if that one makes it worse; and up to INVERSION_OWN_COLUMNS columns. A method that is
+/// `restricted` measures the gradient of its coefficients, and goes by that.
 struct inversion_rule {
     enum status (*update)(struct inversion *inversion, double *extra);
 };
@@ -113,6 +116,7 @@ struct inversion {
     bool has_other;     ///< else: half of it
     double *best, *best_step, *best_other;
     double *best_counts;          ///< ⟨S⟩ of the best, shape [bins]
+    struct inversion_basis basis; ///< of methods that go by the gradient; else its count is 0
     struct inversion_band band;   ///< of the best
     struct inversion_trail trail; ///< of all iterations
     // What a checkpoint keeps besides phi, best, … and the samplers:
@@ -128,6 +132,9 @@ struct inversion {
         double best_own_noise, best_disagreement;
         double responses;                 ///< samples behind C, of all iterations near the noise
         double pool;                      ///< samples that the pooled excess is worth, 0 far off
+        double least_decrement;           ///< of what was kept, by the gradient
+        double miss;                      ///< of the last gradient, in its noise
+        uint32_t near_steps;              ///< one after the other with a gradient of hardly more
         double first_error, second_error; ///< of g, in the first two iterations from a start
     } progress;
 };
@@ -176,10 +183,15 @@ enum status mf_inversion_tabulate(struct inversion *inversion) MUST_USE;
 /// The linear equations of the present samples, without the pressure.
 struct imc_system mf_inversion_system(const struct inversion *inversion);
 
+/// Replace phi by the nearest that coefficients make, where potentials are made of them. Fails:
+/// NO_MEMORY.
+enum status mf_inversion_restrict(struct inversion *inversion) MUST_USE;
+
 /// Whether the present potential is kept: unless it is farther from the targets than the nearest so
 /// far, by two of the present noises. The nearest, not the last: samples are no more precise than a
 /// third of the error, so that each could be 1.67 times as far as the one before, and so on.
-/// Remembers the nearest. Tested: test_inversion_keeps.
+/// Remembers the nearest. By the gradient: unless what is still promised of S_rel, which is convex,
+/// is more than twice the least so far. Tested: test_inversion_keeps.
 bool mf_inversion_keeps(struct inversion *inversion);
 
 /// Fill phi with the start of the fit: the problem's own, the hypernetted chain's, or −k_B T ln g;

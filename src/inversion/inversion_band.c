@@ -121,21 +121,37 @@ static void add_square(struct inversion *inversion, double factor, const double 
             inversion->band.covariance[a * n + b] += factor * u[a] * u[b];
 }
 
-/// The way of A and of the pressure that the most probable step x = Σ Bᵀ W^½ excess would go from
-/// here. Of A it counts as an error: Σ ← Σ + (A/σ_A²)² Σw (Σw)ᵀ.
-static enum status add_way(struct inversion *inversion, const struct imc_system *system,
-                           const double *weight, double *scratch) {
+/// The step from here: the most probable one, x = Σ Bᵀ W^½ excess, or that of the coefficients.
+static enum status find_step(const struct inversion *inversion, const struct imc_system *system,
+                             double *step) {
     enum status status = STATUS_OK;
     const size_t n = inversion->grid.known;
-    struct inverse_ramp *ramp = &inversion->band.ramp;
-    double *asked = NULL, *step = NULL;
+    double *asked = NULL;
+    for (size_t a = 0; a < n; a++)
+        step[a] = inversion->step[inversion->grid.known_point[a]];
+    if (inversion->basis.count > 0)
+        return STATUS_OK;
     NEW_ARRAY(asked, n);
-    NEW_ARRAY(step, n);
     for (size_t a = 0; a < n; a++)
         for (size_t b = 0; b < n; b++)
             asked[a] += system->covariance[b * n + a] * system->excess[b] /
                         (system->temperature * system->variance[b]);
     spread(inversion, asked, step);
+done:
+    mf_memory_free(asked);
+    return status;
+}
+
+/// The way of A and of the pressure that this step would go. Of A it counts as an error: Σ ← Σ +
+/// (A/σ_A²)² Σw (Σw)ᵀ.
+static enum status add_way(struct inversion *inversion, const struct imc_system *system,
+                           const double *weight, double *scratch) {
+    enum status status = STATUS_OK;
+    const size_t n = inversion->grid.known;
+    struct inverse_ramp *ramp = &inversion->band.ramp;
+    double *step = NULL;
+    NEW_ARRAY(step, n);
+    CHECK(find_step(inversion, system, step));
     ramp->way = ramp->pressure_way = 0;
     for (size_t a = 0; a < n; a++) {
         ramp->way += weight[a] * step[a];
@@ -145,7 +161,6 @@ static enum status add_way(struct inversion *inversion, const struct imc_system 
     if (variance > 0) // without pairs there is no ramp
         add_square(inversion, pow(ramp->way / variance, 2), scratch);
 done:
-    mf_memory_free(asked);
     mf_memory_free(step);
     return status;
 }
@@ -245,7 +260,9 @@ enum status mf_inversion_band_find(struct inversion *inversion) {
     for (size_t a = 0; a < system.size; a++)
         variance[a] = birge_factor(inversion) * system.variance[a];
     system.variance = variance;
-    CHECK(mf_inversion_band_covariance(&system, band->covariance, &band->ramp.directions));
+    CHECK(inversion->basis.count > 0
+              ? mf_inversion_basis_covariance(inversion, band->covariance, &band->ramp.directions)
+              : mf_inversion_band_covariance(&system, band->covariance, &band->ramp.directions));
     take_constants_off(inversion);
     weigh_ramp(inversion, weight);
     CHECK(add_way(inversion, &system, weight, scratch));

@@ -56,6 +56,7 @@ void mf_inversion_destroy(void *memory) {
     mf_potential_grid_molecules_clear(&inversion->grid, &inversion->molecules);
     mf_potential_grid_clear(&inversion->grid);
     mf_inversion_band_clear(&inversion->band);
+    mf_inversion_basis_clear(&inversion->basis);
     mf_inversion_trail_clear(&inversion->trail);
     mf_memory_free(inversion->shape);
     mf_memory_free(inversion->groups);
@@ -168,6 +169,9 @@ static enum status prepare(struct inversion *inversion, const struct inverse_pro
     TRY(refuse_holes(inversion));
     TRY(allocate(inversion));
     mf_inversion_count_targets(inversion);
+    if (inversion->method && inversion->method->restricted)
+        TRY(mf_inversion_basis_init(&inversion->basis, &inversion->grid,
+                                    &inversion->settings.entropy));
     return mf_inversion_start(inversion);
 }
 
@@ -247,8 +251,11 @@ enum status mf_inversion_create(void *memory, const struct inverse_method *metho
                                  .group = inversion->groups,
                                  .groups = inversion->grid.groups,
                                  .seed = problem->seed}));
-    inversion->progress = (struct inversion_progress){
-        .anew = true, .damping = p->damping, .best[TARGET_RDF].rms = INFINITY};
+    inversion->progress = (struct inversion_progress){.anew = true,
+                                                      .damping = p->damping,
+                                                      .best[TARGET_RDF].rms = INFINITY,
+                                                      .least_decrement = INFINITY,
+                                                      .miss = INFINITY};
     return STATUS_OK;
 }
 

@@ -57,9 +57,25 @@ static void tell_what_is_missing(const struct inversion *inversion,
             p->best_own_noise, settings->precision);
 }
 
+/// The same of potentials made of coefficients, which need not meet g.
+static void tell_gradient(const struct inversion *inversion, char reason[INVERSE_REASON_SIZE]) {
+    const struct inversion_progress *p = &inversion->progress;
+    if (!(p->miss <= mf_inverse_noise_margin))
+        snprintf(reason, INVERSE_REASON_SIZE,
+                 "the gradient of the relative entropy is %.2g times its noise: more "
+                 "\"iterations\" or \"samples\", or fewer \"coefficients\", may help",
+                 p->miss);
+    else
+        tell_what_is_missing(inversion, reason);
+}
+
 /// The first reason that applies.
 void mf_inversion_reason_tell(const struct inversion *inversion, char reason[INVERSE_REASON_SIZE]) {
     const struct inversion_progress *p = &inversion->progress;
+    if (inversion->basis.count > 0) {
+        tell_gradient(inversion, reason);
+        return;
+    }
     const struct inversion_parameters *settings = &inversion->settings.common;
     const struct target_distance *rdf = &p->best[TARGET_RDF];
     const bool stuck = p->damping < mf_inversion_least_damping * settings->damping;

@@ -97,12 +97,35 @@ done:
     return status;
 }
 
+/// Weights are what the target has in the bins, which is by how much each one enters S_rel, and at
+/// least a hundredth of their mean.
+enum status mf_inversion_restrict(struct inversion *inversion) {
+    static const double least = 0.01;
+    enum status status = STATUS_OK;
+    const struct potential_grid *grid = &inversion->grid;
+    double *weight = NULL, sum = 0;
+    if (inversion->basis.count == 0)
+        return STATUS_OK;
+    NEW_ARRAY(weight, grid->known);
+    for (size_t a = 0; a < grid->known; a++)
+        sum += inversion->target_counts[grid->known_bin[a]];
+    for (size_t a = 0; a < grid->known; a++)
+        weight[a] =
+            fmax(inversion->target_counts[grid->known_bin[a]], least * sum / (double)grid->known);
+    CHECK(mf_inversion_basis_project(&inversion->basis, grid, weight, inversion->phi));
+    mf_potential_grid_complete(grid, inversion->phi);
+done:
+    mf_memory_free(weight);
+    return status;
+}
+
 enum status mf_inversion_start(struct inversion *inversion) {
     if (!is_from_hnc(inversion))
         return mf_inversion_start_again(inversion);
     mf_potential_grid_start(&inversion->grid, inversion->problem, inversion->phi);
     TRY(add_indirect(inversion));
-    return smooth(inversion);
+    TRY(smooth(inversion));
+    return mf_inversion_restrict(inversion);
 }
 
 /// rms of g* − 1.
@@ -125,5 +148,7 @@ bool mf_inversion_start_is_poor(const struct inversion *inversion, bool kept) {
 
 enum status mf_inversion_start_again(struct inversion *inversion) {
     mf_potential_grid_start(&inversion->grid, inversion->problem, inversion->phi);
-    return has_own(inversion) ? STATUS_OK : smooth(inversion);
+    if (!has_own(inversion))
+        TRY(smooth(inversion));
+    return mf_inversion_restrict(inversion);
 }

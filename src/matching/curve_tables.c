@@ -15,14 +15,16 @@ static enum status write_curve(const struct parametrisation *parametrisation,
     enum status status = STATUS_OK;
     const struct unknowns *unknowns = &parametrisation->unknowns;
     const size_t points = mf_unknowns_points(unknowns, kind);
-    const size_t each = mf_unknowns_part(unknowns, kind, curve).points, first = curve * each;
+    const struct unknowns_part part = mf_unknowns_part(unknowns, kind, curve);
+    const size_t each = part.points, first = part.first;
     struct data_column *column = NULL;
     double *values = NULL;
     char(*names)[CURVE_TABLES_NAME_SIZE + 24] = NULL;
     NEW_ARRAY(column, members + 1);
     NEW_ARRAY(names, members);
     NEW_ARRAY(values, (members + 1) * points);
-    column[0] = (struct data_column){"r[lambda]", mf_unknowns_r(unknowns, kind) + first, NULL};
+    column[0] = (struct data_column){mf_unknowns_heading(unknowns, kind, curve),
+                                     mf_unknowns_r(unknowns, kind) + first, NULL};
     for (size_t k = 0; k < members; k++) {
         double *value = values + k * points;
         mf_parametrisation_curve(parametrisation, kind, member[k].variables, value);

@@ -283,13 +283,19 @@ static void tell_reason(const struct state *state, char reason[INVERSE_REASON_SI
     mf_population_tell_failure(&state->population, why, reason);
 }
 
-/// Whether some potential meets all that is fitted: g(r) and the pressure. What moves may be out of
-/// reach of any friction.
+/// Whether some potential meets all that is fitted: g(r) and the pressure, and the distributions of
+/// groups. What moves may be out of reach of any friction.
 static bool can_be_met(const struct inverse_problem *problem) {
     const struct targets *targets = &problem->targets;
-    return problem->unknown[UNKNOWN_POTENTIAL].wanted &&
-           mf_targets_count(targets) == (size_t)targets_ask(targets, TARGET_RDF) +
-                                            (size_t)targets_ask(targets, TARGET_PRESSURE);
+    for (int kind = 0; mf_targets_name(kind); kind++) {
+        const bool of_pairs = kind == TARGET_RDF || kind == TARGET_PRESSURE;
+        const bool of_groups = mf_bonded_distribution_order(kind) < TOPOLOGY_ORDERS;
+        if (targets_ask(targets, kind) &&
+            !(of_pairs && problem->unknown[UNKNOWN_POTENTIAL].wanted) &&
+            !(of_groups && problem->unknown[UNKNOWN_BONDED].wanted))
+            return false;
+    }
+    return true;
 }
 
 static bool has_narrowed(const struct state *state) {
@@ -386,6 +392,7 @@ const struct inverse_method mf_gauss_newton = {
     .state_size = sizeof(struct state),
     .finds_potential = true,
     .finds_omega = true,
+    .knows_molecules = true,
     .most_iterations = most_iterations,
     .sampling = mf_population_sampling,
     .keeps_parts = true,

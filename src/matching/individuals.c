@@ -59,21 +59,20 @@ static bool is_formula(const struct unknown *unknown) {
 static void name_genes(const struct parametrisation *parametrisation, enum unknown_kind kind,
                        const struct units *units, struct gene *gene) {
     const struct unknowns *unknowns = &parametrisation->unknowns;
-    const struct unknown *unknown = &unknowns->problem->unknown[kind];
-    const size_t each = (size_t)unknown->parameters.coefficients;
-    const double range = unknown->parameters.maximum - unknown->parameters.minimum;
-    for (size_t k = 0; k < mf_parametrisation_variables(parametrisation, kind); k++) {
-        char curve[UNKNOWNS_NAME_SIZE], name[NAME_SIZE];
-        mf_unknowns_curve_name(unknowns, kind, k / each, curve);
-        snprintf(name, sizeof name, "%s(%zu)", curve, k % each + 1);
-        if (is_formula(unknown)) {
-            gene[k].range = 1;
-            snprintf(gene[k].name, sizeof gene[k].name, "%s", name);
-            continue;
+    if (!unknowns->problem->unknown[kind].wanted)
+        return;
+    for (size_t curve = 0; curve < mf_unknowns_curve_count(unknowns, kind); curve++) {
+        char of[UNKNOWNS_NAME_SIZE], name[NAME_SIZE];
+        mf_unknowns_curve_name(unknowns, kind, curve, of);
+        for (size_t k = 0; k < mf_parametrisation_variables_of(parametrisation, kind, curve); k++) {
+            snprintf(name, sizeof name, "%s(%zu)", of, k + 1);
+            if (is_formula(&unknowns->problem->unknown[kind]))
+                snprintf(gene->name, sizeof gene->name, "%s", name);
+            else
+                mf_data_table_name(units, name, mf_unknowns_unit(kind), gene->name,
+                                   sizeof gene->name);
+            gene++;
         }
-        mf_data_table_name(units, name, mf_unknowns_unit(kind), gene[k].name, sizeof gene[k].name);
-        gene[k].minimum = unknown->parameters.minimum;
-        gene[k].range = range;
     }
 }
 
@@ -86,8 +85,10 @@ static void name_all(const struct parametrisation *parametrisation, const struct
         struct gene *number = &gene[parametrisation->first_number + n];
         mf_data_table_name(units, problem->number[n].name, problem->number[n].unit, number->name,
                            sizeof number->name);
-        number->minimum = problem->number[n].minimum;
-        number->range = problem->number[n].maximum - problem->number[n].minimum;
+    }
+    for (size_t n = 0; n < parametrisation->variables; n++) {
+        gene[n].minimum = parametrisation->least[n];
+        gene[n].range = parametrisation->range[n];
     }
 }
 
@@ -180,7 +181,8 @@ enum status mf_individuals_write(const struct individuals *individuals,
         return STATUS_OK;
     for (int kind = 0; kind < UNKNOWNS; kind++) {
         const struct unknown *unknown = &unknowns->problem->unknown[kind];
-        if (!unknown->wanted || unknown->parameters.shape != INVERSE_CURVE_BEZIER)
+        if (!unknown->wanted || kind == UNKNOWN_BONDED ||
+            unknown->parameters.shape != INVERSE_CURVE_BEZIER)
             continue;
         for (size_t n = 0; n < mf_unknowns_curve_count(unknowns, kind); n++)
             TRY(write_genes(parametrisation, kind, n, folder));

@@ -96,13 +96,9 @@ static const double reach = 0.3;
 /// Rounds, of which an iteration takes at least one, and a last iteration for the incumbent.
 static uint32_t most_iterations(const struct inverse_method *method,
                                 const struct inverse_problem *problem, const void *parameters) {
-    size_t variables = problem->numbers;
-    for (int kind = 0; kind < UNKNOWNS; kind++)
-        if (problem->unknown[kind].wanted)
-            variables += (size_t)problem->unknown[kind].parameters.coefficients;
     const struct driven *driven = method->own;
     return driven->optimiser->most_rounds((const char *)parameters + driven->parameters,
-                                          variables) +
+                                          mf_parametrisation_count(problem)) +
            1;
 }
 
@@ -359,6 +355,7 @@ static size_t spans(void *memory, struct memory_span *span) {
         .state_size = sizeof(struct state),                                                        \
         .finds_potential = true,                                                                   \
         .finds_omega = true,                                                                       \
+        .knows_molecules = true,                                                                   \
         .most_iterations = most_iterations,                                                        \
         .sampling = mf_population_sampling,                                                        \
         .keeps_parts = true,                                                                       \

@@ -300,6 +300,7 @@ const struct inverse_method mf_pareto = {
     .state_size = sizeof(struct pareto_state),
     .finds_potential = true,
     .finds_omega = true,
+    .knows_molecules = true,
     .most_iterations = most_iterations,
     .sampling = mf_population_sampling,
     .keeps_parts = true,

@@ -65,7 +65,8 @@ static const char *const omega_bases[] = {"none", "start", NULL};
 const struct field mf_inverse_potential_fields[] = {
     CURVE(potential_curves, potential_bases, BASE_AUTO,
           "what the curve is added to; auto: \"start\" if there is one, else hypernetted-chain, "
-          "the inversion of g, or where that fails and in two dimensions mean-force, -k_B T ln g. "
+          "the inversion of g, or where that fails, in two dimensions and beside molecules "
+          "mean-force, -k_B T ln g. "
           "Default: none where \"minimum\" or \"maximum\" is given, else auto",
           6.5, "k_B T_0") // ends at the target's range
     {"spacing", FIELD_CHOICE, MEMBER(spacing), .choices = spacings, .initial = SPACING_EVEN,
@@ -81,6 +82,18 @@ const struct field mf_inverse_omega_fields[] = {
         .maximum = DBL_MAX, .unit = "lambda", .help = "below which omega is 0"},
     {"cutoff", FIELD_NUMBER, MEMBER(cutoff), .initial = 1, .minimum = FIELD_ABOVE_ZERO,
      .maximum = DBL_MAX, .unit = "lambda", .help = "where omega ends"},
+    FIELD_END,
+};
+
+#define SHAPE(name) .offset = offsetof(struct bonded_shape, name)
+const struct field mf_inverse_group_fields[] = {
+    {"coefficients", FIELD_INTEGER, SHAPE(coefficients), .initial = 0, .minimum = 0, .maximum = 100,
+     .unit = "",
+     .help =
+         "of what methods that simulate candidates add to -k_B T ln(p/J): cubic B-splines, of a "
+         "dihedral cos phi, sin phi, cos 2 phi, ...; 0: 4, of a dihedral 6"},
+    {"maximum", FIELD_NUMBER, SHAPE(maximum), .initial = 2, .minimum = FIELD_ABOVE_ZERO,
+     .maximum = DBL_MAX, .unit = "k_B T_0", .help = "largest coefficient; the least is -maximum"},
     FIELD_END,
 };
 

@@ -85,12 +85,14 @@ struct unknown {
     const double *base;
 };
 
-/// Where a number of a scene stands: in a curve of a law that is known, or in the setup.
+/// Where a number of a scene stands: in a curve of a law that is known, in the law of a group of
+/// bonds, angles or dihedrals, or in the setup.
 enum inverse_place {
     INVERSE_OF_POTENTIAL = UNKNOWN_POTENTIAL,
     INVERSE_OF_OMEGA = UNKNOWN_OMEGA,
     INVERSE_OF_MEMORY = UNKNOWN_MEMORY,
     INVERSE_OF_TRANSVERSE = UNKNOWN_TRANSVERSE,
+    INVERSE_OF_BONDED = UNKNOWN_BONDED,
     INVERSE_OF_SETUP = UNKNOWNS,
     INVERSE_OF_DYNAMICS,
     INVERSE_OF_INTERACTION,
@@ -105,9 +107,17 @@ struct inverse_number {
     double minimum, maximum;             ///< its range
     double start;                        ///< to begin with
     enum inverse_place place;
-    int part;      ///< curve of the law, or which of the interactions
+    int part;      ///< curve of the law, which of the interactions, or inverse_group of a group
     size_t offset; ///< in the parameters of that, or in struct simulation_setup
 };
+
+/// The number of a group among those of all orders, and back.
+static inline int inverse_group(enum topology_order order, int group) {
+    return (int)order * (int)MOLECULES_MOST_GROUPS + group;
+}
+static inline enum topology_order inverse_order(int group) {
+    return (enum topology_order)(group / (int)MOLECULES_MOST_GROUPS);
+}
 
 /// The curves of a law of the scene. Borrowed.
 struct inverse_law {
@@ -115,12 +125,21 @@ struct inverse_law {
     const struct curve *curve; ///< shape [curves]; family NULL: none
 };
 
+/// How a method that moves variables writes U(q): as functions times coefficients that are added to
+/// the Boltzmann inversion of the target (problem/parametrisation_bonded.h).
+struct bonded_shape {
+    int64_t coefficients;
+    double maximum; ///< of a coefficient, up and down [k_B T_0]
+};
+extern const struct field mf_inverse_group_fields[];
+
 /// A group of bonds, angles or dihedrals whose U(q) is to be found.
 struct bonded_unknown {
     enum topology_order order;
     int group;               ///< among those of its order
     struct bonded_bins bins; ///< of its target
     size_t first;            ///< its first value in the target of its order
+    struct bonded_shape shape;
 };
 
 enum { INVERSE_MOST_BONDED = (int)TOPOLOGY_ORDERS * (int)MOLECULES_MOST_GROUPS };
@@ -270,6 +289,9 @@ struct inverse_method {
     bool keeps_parts;
     const char *const *columns;        ///< names of `extra`, NULL-terminated
     bool finds_potential, finds_omega; ///< whether it can
+    bool knows_molecules;              ///< and finds what is unknown of their bonds, too
+    bool
+        restricted; ///< of an inversion: its potentials are of a form that need not meet the target
     enum status (*create)(void *state, const struct inverse_method *method,
                           const struct inverse_problem *problem, const void *parameters);
     void (*destroy)(void *state);
@@ -289,6 +311,7 @@ struct inverse_method {
     EACH(imc)                                                                                      \
     EACH(ibi)                                                                                      \
     EACH(hnc)                                                                                      \
+    EACH(relative_entropy)                                                                         \
     OPTIMISERS(EACH##_MATCHING)                                                                    \
     EACH(gauss_newton)                                                                             \
     EACH(pareto)                                                                                   \

@@ -102,6 +102,28 @@ static enum status put(const struct inverse_number *number, double value,
     return STATUS_OK;
 }
 
+/// The scene's molecules, with the numbers of their laws.
+static enum status change_molecules(const struct inverse_problem *problem, const double *value,
+                                    struct simulation_setup *scene, struct numbers_own *own) {
+    own->molecules = *mf_molecules_find(scene->interaction, scene->interactions);
+    for (size_t n = 0; n < problem->numbers; n++) {
+        const struct inverse_number *number = &problem->number[n];
+        if (number->place != INVERSE_OF_BONDED)
+            continue;
+        struct bonded_curve *curve =
+            &own->molecules.group[inverse_order(number->part)][number->part % MOLECULES_MOST_GROUPS]
+                 .curve;
+        const void *parameters = curve->parameters;
+        TRY(copy(&parameters, curve->law->size, &own->bonded[number->part]));
+        curve->parameters = own->bonded[number->part];
+        memcpy((char *)curve->parameters + number->offset, &value[n], sizeof value[n]);
+    }
+    for (int k = 0; k < scene->interactions; k++)
+        if (scene->interaction[k].kind == &mf_molecules)
+            scene->interaction[k].parameters = &own->molecules;
+    return STATUS_OK;
+}
+
 const struct table **mf_numbers_table_of(struct simulation_setup *scene, int law) {
     switch (law) {
     case UNKNOWN_POTENTIAL:
@@ -125,6 +147,8 @@ enum status mf_numbers_apply(const struct inverse_problem *problem, const double
             TRY(tabulate(problem, place, value, &own->table[place]));
             *mf_numbers_table_of(&changed->scene, place) = &own->table[place];
         }
+    if (concerns(problem, INVERSE_OF_BONDED))
+        TRY(change_molecules(problem, value, &changed->scene, own));
     return STATUS_OK;
 }
 
@@ -133,6 +157,8 @@ void mf_numbers_own_clear(struct numbers_own *own) {
         mf_table_clear(&own->table[place]);
     for (int k = 0; k < INTERACTION_MOST; k++)
         mf_memory_free(own->interaction[k]);
+    for (int group = 0; group < INVERSE_MOST_BONDED; group++)
+        mf_memory_free(own->bonded[group]);
     mf_memory_free(own->dynamics);
     *own = (struct numbers_own){0};
 }

@@ -14,10 +14,13 @@ void mf_numbers_fields_of(const char *unit, struct field fields[NUMBERS_FIELDS])
 /// Where a setup has the table of a law, by enum unknown_kind.
 const struct table **mf_numbers_table_of(struct simulation_setup *scene, int law);
 
-/// What is made for values: tables of laws, and parameters of the integrator and the interactions.
+/// What is made for values: tables of laws, parameters of the integrator and the interactions, and
+/// the molecules, whose groups have parameters of their own where a number belongs to them.
 struct numbers_own {
     struct table table[UNKNOWNS];
     void *dynamics, *interaction[INTERACTION_MOST];
+    struct molecules molecules;
+    void *bonded[INVERSE_MOST_BONDED]; ///< parameters, by inverse_group
 };
 
 /// The problem whose scene has these values: settings are replaced, and the table of a law with a

@@ -12,20 +12,29 @@ struct parametrisation {
     size_t variables;        ///< of all unknowns
     size_t first_number;     ///< variable of the first number, behind those of the curves
     size_t first[UNKNOWNS];  ///< variable of each
-    double *basis[UNKNOWNS]; ///< shape [points, variables of it]: curve = base + basis · x, with
+    double *basis[UNKNOWNS]; ///< shape [points, variables of it]: curve = base + basis · c, with
                              ///< the base of the problem; NULL: a formula
+    double *least, *range;   ///< shape [variables]: c = least + range · x, and of numbers; of a
+                             ///< formula 0 and 1
+    double *bonded;          ///< base of the groups (problem/parametrisation_bonded.h)
 };
+
+/// Variables of a problem, as mf_parametrisation_init counts them.
+size_t mf_parametrisation_count(const struct inverse_problem *problem);
 
 /// Fails: NO_MEMORY; BAD_INPUT as mf_potential_grid_init.
 enum status mf_parametrisation_init(struct parametrisation *parametrisation,
                                     const struct inverse_problem *problem) MUST_USE;
 void mf_parametrisation_clear(struct parametrisation *parametrisation);
 
-/// Variables of an unknown; 0 if it is known.
+/// Variables of an unknown, 0 if it is known; and of one of its curves.
 size_t mf_parametrisation_variables(const struct parametrisation *parametrisation,
                                     enum unknown_kind kind);
+size_t mf_parametrisation_variables_of(const struct parametrisation *parametrisation,
+                                       enum unknown_kind kind, size_t curve);
 
-/// Points of a curve below this one do not follow its variables: the core of a potential.
+/// Points of a curve below this one do not follow its variables: the core of a potential, and what
+/// a group's target does not know.
 size_t mf_parametrisation_first_point(const struct parametrisation *parametrisation,
                                       enum unknown_kind kind, size_t curve);
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "problem/parametrisation.h"
 
+#include "problem/parametrisation_bonded.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -8,14 +10,13 @@
 static enum status find_slopes(const struct parametrisation *parametrisation,
                                enum unknown_kind kind, const double *variables, double *slopes) {
     enum status status = STATUS_OK;
-    const struct unknown_parameters *p =
-        &parametrisation->unknowns.problem->unknown[kind].parameters;
+    const double *range = parametrisation->range + parametrisation->first[kind];
     const size_t count = mf_parametrisation_variables(parametrisation, kind),
                  points = mf_unknowns_points(&parametrisation->unknowns, kind);
     double *moved = NULL, *curve = NULL;
     if (parametrisation->basis[kind]) {
         for (size_t k = 0; k < points * count; k++)
-            slopes[k] = parametrisation->basis[kind][k] * (p->maximum - p->minimum);
+            slopes[k] = parametrisation->basis[kind][k] * range[k % count];
         return STATUS_OK;
     }
     NEW_ARRAY(moved, parametrisation->variables);
@@ -116,13 +117,43 @@ static void find_errors(const double *slopes, const double *covariance, size_t p
     }
 }
 
-/// A core is set: it has no error.
+/// A core is set: it has no error. Nor has what goes on beyond what a group's target knows.
 static void forget_core(const struct parametrisation *parametrisation, enum unknown_kind kind,
                         double *values) {
     for (size_t k = 0; k < mf_unknowns_points(&parametrisation->unknowns, kind); k++)
-        if (kind == UNKNOWN_POTENTIAL &&
-            mf_potential_grid_in_core(&parametrisation->unknowns.potential, k))
+        if ((kind == UNKNOWN_POTENTIAL &&
+             mf_potential_grid_in_core(&parametrisation->unknowns.potential, k)) ||
+            (kind == UNKNOWN_BONDED && !mf_unknowns_fits(&parametrisation->unknowns, kind, k)))
             values[k] = NAN;
+}
+
+/// The noise of the targets in the base of the groups.
+static enum status add_rough(const struct parametrisation *parametrisation, double *error) {
+    enum status status = STATUS_OK;
+    const struct potential_grid *grid = &parametrisation->unknowns.potential;
+    const struct targets *targets = &parametrisation->unknowns.problem->targets;
+    double *basis = NULL, *rough = NULL;
+    for (size_t g = 0; g < grid->groups; g++) {
+        const struct bonded_grid *own = &grid->group[g].own;
+        const int kind = mf_bonded_distribution_kind(own->unknown->order);
+        double *at = error + mf_unknowns_part(&parametrisation->unknowns, UNKNOWN_BONDED, g).first +
+                     own->below;
+        mf_memory_free(basis);
+        mf_memory_free(rough);
+        basis = rough = NULL;
+        NEW_ARRAY(basis, own->known * (size_t)own->unknown->shape.coefficients);
+        NEW_ARRAY(rough, own->known);
+        CHECK(
+            mf_parametrisation_bonded_basis(own, (size_t)own->unknown->shape.coefficients, basis));
+        CHECK(mf_parametrisation_bonded_rough(
+            own, targets->target[kind].error + own->unknown->first, basis, rough));
+        for (size_t k = 0; k < own->known; k++)
+            at[k] = hypot(at[k], rough[k]);
+    }
+done:
+    mf_memory_free(basis);
+    mf_memory_free(rough);
+    return status;
 }
 
 enum status mf_parametrisation_band(const struct parametrisation *parametrisation,
@@ -146,6 +177,8 @@ enum status mf_parametrisation_band(const struct parametrisation *parametrisatio
             own[a * count + b] = covariance[(at + a) * parametrisation->variables + at + b];
     CHECK(find_slopes(parametrisation, kind, variables, slopes));
     find_errors(slopes, own, points, count, error);
+    if (kind == UNKNOWN_BONDED)
+        CHECK(add_rough(parametrisation, error));
     for (size_t n = 0; n < INVERSE_FLAT; n++)
         CHECK(find_flat(slopes, own, points, count, flat, n, flat + n * points));
     forget_core(parametrisation, kind, error);

@@ -127,7 +127,7 @@ bool mf_potential_grid_in_core(const struct potential_grid *grid, size_t point) 
     return point % (grid->bins + 1) < grid->core[point / (grid->bins + 1)];
 }
 
-static void complete_pairs(const struct potential_grid *grid, double *phi) {
+void mf_potential_grid_complete_pairs(const struct potential_grid *grid, double *phi) {
     for (size_t pair = 0; pair < grid->pairs; pair++) {
         const size_t begin = mf_potential_grid_block(grid, pair), first = grid->core[pair];
         const double *r = grid->r + begin;
@@ -138,10 +138,15 @@ static void complete_pairs(const struct potential_grid *grid, double *phi) {
     }
 }
 
-void mf_potential_grid_complete(const struct potential_grid *grid, double *phi) {
-    complete_pairs(grid, phi);
+void mf_potential_grid_complete_groups(const struct potential_grid *grid, double *energy) {
     for (size_t g = 0; g < grid->groups; g++)
-        mf_bonded_grid_complete(&grid->group[g].own, phi + grid->group[g].point);
+        mf_bonded_grid_complete(&grid->group[g].own,
+                                energy + (grid->group[g].point - grid->pair_points));
+}
+
+void mf_potential_grid_complete(const struct potential_grid *grid, double *phi) {
+    mf_potential_grid_complete_pairs(grid, phi);
+    mf_potential_grid_complete_groups(grid, phi + grid->pair_points);
 }
 
 void mf_potential_grid_close(const struct potential_grid *grid, size_t group, double *values) {
@@ -212,7 +217,7 @@ void mf_potential_grid_start_pairs(const struct potential_grid *grid,
         phi[point] =
             start ? mf_curve_value(start, grid->r[point]) : -problem->scene.temperature * log(g);
     }
-    complete_pairs(grid, phi);
+    mf_potential_grid_complete_pairs(grid, phi);
 }
 
 void mf_potential_grid_start(const struct potential_grid *grid,

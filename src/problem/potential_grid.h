@@ -47,8 +47,10 @@ size_t mf_potential_grid_block(const struct potential_grid *grid, size_t pair);
 bool mf_potential_grid_in_core(const struct potential_grid *grid, size_t point);
 
 /// Complete phi, shape [points], from its known values: core below, 0 at the cutoff; U beyond what
-/// the target knows.
+/// the target knows. Or pairs alone, shape [pair_points], or groups, shape [points − pair_points].
 void mf_potential_grid_complete(const struct potential_grid *grid, double *phi);
+void mf_potential_grid_complete_pairs(const struct potential_grid *grid, double *phi);
+void mf_potential_grid_complete_groups(const struct potential_grid *grid, double *energy);
 
 /// What a group of dihedrals has at its first point it has at its last, which is the same: of
 /// errors.

@@ -115,7 +115,26 @@ double mf_targets_noise(const struct targets *targets, const struct target_dista
 enum { BLOCKS = 10 };
 
 static size_t features_of(const struct target *target) {
-    return target->count > 0 && target->columns > 0 ? BLOCKS * BLOCKS : target->count;
+    if (target->count == 0)
+        return 0;
+    return target->columns > 0 ? BLOCKS * BLOCKS : target->block ? target->blocks : target->count;
+}
+
+size_t mf_targets_blocks(const double *value, size_t count, size_t first,
+                         size_t block[TARGETS_MOST_BLOCKS]) {
+    double whole = 0, own = 0;
+    size_t blocks = 0;
+    bool full = true;
+    for (size_t k = 0; k < count; k++)
+        whole += value[k];
+    for (size_t k = 0; k < count; k++) {
+        if (full)
+            block[blocks++] = first + k;
+        own = full ? value[k] : own + value[k];
+        full = own * TARGETS_MOST_BLOCKS >= whole * (1 - 1e-9);
+    }
+    // What is left at the end belongs to the block before.
+    return blocks > 1 && !full ? blocks - 1 : blocks;
 }
 
 size_t mf_targets_features(const struct targets *targets) {
@@ -154,6 +173,28 @@ static struct feature block_of(const struct target *target, const double *observ
     return feature;
 }
 
+/// The mean of a distribution over one of its blocks, over that of the target. Its bins are seen by
+/// different counts, so that their errors are independent.
+static struct feature share_of(const struct target *target, const double *observed, size_t block) {
+    struct feature all = {0};
+    double wanted = 0;
+    for (size_t k = target->block[block]; k < target->block[block + 1]; k++) {
+        add_cell(&all, target, observed, k);
+        wanted += target->value[k];
+    }
+    return (struct feature){1, all.value / wanted, all.square / (wanted * wanted)};
+}
+
+/// Mean of the target over one of its blocks; 1 of what has none.
+static double block_mean(const struct target *target, size_t block) {
+    double sum = 0;
+    if (target->block == NULL)
+        return 1;
+    for (size_t k = target->block[block]; k < target->block[block + 1]; k++)
+        sum += target->value[k];
+    return sum / (double)(target->block[block + 1] - target->block[block]);
+}
+
 void mf_targets_take_features(const struct targets *targets, double *const *observed, double *value,
                               double *error) {
     size_t n = 0;
@@ -164,6 +205,8 @@ void mf_targets_take_features(const struct targets *targets, double *const *obse
             struct feature feature = {0};
             if (target->columns > 0)
                 feature = block_of(target, of, k);
+            else if (target->block)
+                feature = share_of(target, of, k);
             else
                 add_cell(&feature, target, of, k);
             value[n] = feature.count > 0 ? feature.value / feature.count : 0;
@@ -182,6 +225,7 @@ void mf_targets_spread_error(const struct targets *targets, double error, double
         const size_t own = features_of(target);
         const double weight = own > 0 && count > 1 ? mf_targets_weight(target) : 1;
         for (size_t k = 0; k < own; k++)
-            variance[n++] = error * error / (weight * weight) * (double)own / features;
+            variance[n++] =
+                pow(error / (weight * block_mean(target, k)), 2) * (double)own / features;
     }
 }

@@ -30,6 +30,9 @@ struct target {
     double weight;       ///< of its error in the sum; 0: one over the rms of its errors
     size_t columns;      ///< of a matrix, else 0
     const double *x;     ///< shape [count]: of a curve that is told at its own points, else NULL
+    const size_t *block; ///< of distributions: first values of the blocks that are its features,
+                         ///< shape [blocks + 1]; NULL: none
+    size_t blocks;
 };
 
 /// Everything that is asked for, and how it was measured.
@@ -79,7 +82,16 @@ double mf_targets_noise(const struct targets *targets, const struct target_dista
 
 /// @name Features: the targets in few enough numbers for a linear model
 /// Values as they are, but a matrix, E(t, r_0), as means over blocks of cells, 10 by 10, without
-/// its first row.
+/// its first row; and distributions as means over their blocks, over those of the target.
+
+/// Blocks of consecutive values of a distribution, each of at least a 50th of the whole, so that
+/// the few counts of its ends, whose errors are hardly known, do not stand alone. Returns how many.
+/// @param[in]  value  shape [count]
+/// @param[out] block  the first value of each, counted from `first`; at most 50
+/// Tested: test_targets.
+enum { TARGETS_MOST_BLOCKS = 50 };
+size_t mf_targets_blocks(const double *value, size_t count, size_t first,
+                         size_t block[TARGETS_MOST_BLOCKS]);
 
 size_t mf_targets_features(const struct targets *targets);
 

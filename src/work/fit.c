@@ -337,15 +337,16 @@ static void say_verified(struct run *run, const struct fit_result *result) {
 
 /// The verification has the last word. An inversion has converged only if the result agrees with
 /// the target; measured, inversions of water, Lennard-Jones and the Gaussian core are verified
-/// within 0.8 to 2.3 times the statistical error. Other methods do not say that they agree, but how
-/// far they are off: that is what must be borne out.
+/// within 0.8 to 2.3 times the statistical error. Other methods, and inversions by few
+/// coefficients, do not say that they agree, but how far they are off: that is what must be borne
+/// out.
 static void doubt(struct run *run, const struct verification *verification) {
     static const double noise_margin = 3;
     struct standing *standing = &run->standing;
     const struct targets *targets = &run->fit.problem.targets;
     if (!standing->converged && !standing->used_up)
         return;
-    if (run->fit.method->kind == INVERSE_INVERSION
+    if (run->fit.method->kind == INVERSE_INVERSION && !run->fit.method->restricted
             ? mf_fit_verdict_contradicts(verification, targets_ask(targets, TARGET_PRESSURE),
                                          run->fit.problem.scene.temperature, noise_margin,
                                          &run->fit.scene.units, standing->reason)

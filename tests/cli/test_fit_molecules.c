@@ -63,31 +63,59 @@ static const char *const tables[] = {"potential_A-A.tsv",
                                      "history.tsv",
                                      NULL};
 
-/// Threads, an interruption and the written file change no bits, whatever the sampler; and both
-/// find much the same.
+/// Threads, an interruption and the written file change no bits.
+static void fit_again(struct temporary_folder *folder, const char *from, const char *to) {
+    static struct run_program_result result;
+    small_inputs_write(folder, "run.json", run, from, to);
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "one", "--threads", "1", "--force");
+    assert_true(result.code == 0 || result.code == 1);
+    RUN_PROGRAM(&result, "fit", "one/used.json", "-o", "two", "--threads", "2", "--force");
+    assert_true(result.code == 0 || result.code == 1);
+    run_program(&result,
+                &(struct run_program_how){.interrupt_after = 0.3, .interrupt_from_start = false},
+                (const char *const[]){"fit", "run.json", "-o", "three", "--force", NULL});
+    assert_true(result.code == 130);
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "three", "--resume");
+    assert_true(result.code == 0 || result.code == 1);
+    results_assert_same("one", "two", tables);
+    results_assert_same("one", "three", tables);
+}
+
+/// Whatever the sampler; both find much the same.
 static void test_fit_molecules_again_with_the_same_bits(void **state) {
     static const char *const samplers[] = {"dynamics", "monte-carlo"};
-    static struct run_program_result result;
     for (int k = 0; k < 2; k++) {
         char method[64];
         snprintf(method, sizeof method, "\"imc\", \"sampler\": \"%s\"", samplers[k]);
-        small_inputs_write(*state, "run.json", run, "\"imc\"", method);
-        RUN_PROGRAM(&result, "fit", "run.json", "-o", "one", "--threads", "1", "--force");
-        assert_true(result.code == 0 || result.code == 1);
-        RUN_PROGRAM(&result, "fit", "one/used.json", "-o", "two", "--threads", "2", "--force");
-        assert_true(result.code == 0 || result.code == 1);
-        run_program(
-            &result,
-            &(struct run_program_how){.interrupt_after = 0.3, .interrupt_from_start = false},
-            (const char *const[]){"fit", "run.json", "-o", "three", "--force", NULL});
-        assert_true(result.code == 130);
-        RUN_PROGRAM(&result, "fit", "run.json", "-o", "three", "--resume");
-        assert_true(result.code == 0 || result.code == 1);
-        results_assert_same("one", "two", tables);
-        results_assert_same("one", "three", tables);
+        fit_again(*state, "\"imc\"", method);
         results_assert_text("one/used.json", "method.sampler", samplers[k]);
         assert_true(results_number("one/summary.json", "rdf_rmse") < 0.05);
     }
+}
+
+static void test_fit_by_relative_entropy_again_with_the_same_bits(void **state) {
+    fit_again(*state, "\"imc\"", "\"relative-entropy\"");
+}
+
+/// Three coefficients do not make g(r), nor one a bond's p: it has converged, and its
+/// summary says how far the bond is off.
+static void test_fit_by_relative_entropy_tells_what_its_form_does_not_meet(void **state) {
+    static struct run_program_result result;
+    small_inputs_write(*state, "run.json", run, "\"imc\", \"replicas\": 2",
+                       "\"relative-entropy\", \"coefficients\": 3, \"group_coefficients\": 1, "
+                       "\"replicas\": 4");
+    char *text = temporary_folder_read("run.json");
+    small_inputs_write(*state, "run.json", text, "\"samples\": 60,\n  \"iterations\": 4",
+                       "\"samples\": 300,\n  \"iterations\": 16");
+    free(text);
+    text = temporary_folder_read("run.json");
+    small_inputs_write(*state, "run.json", text, "\"precision\": 0.02", "\"precision\": 0.005");
+    free(text);
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "found");
+    run_program_assert_code(&result, 0);
+    results_assert_text("found/summary.json", "status", "converged");
+    assert_true(results_number("found/summary.json", "bond_lengths_rmse") >
+                10 * results_number("found/summary.json", "bond_lengths_noise"));
 }
 
 /// The numbers behind a section's name in a file of tables, up to the next name.
@@ -198,8 +226,8 @@ static void test_fit_molecules_refuses_what_cannot_be(void **state) {
         {"\"imc\"", "\"hnc\"", {"method.name: \"hnc\" knows no molecules", NULL}},
         {"\"name\": \"imc\", \"replicas\": 2, \"equilibration\": 40, \"samples\": 60,\n"
          "  \"iterations\": 4, \"precision\": 0.02",
-         "\"name\": \"cma-es\"",
-         {"scene.molecules: \"cma-es\" finds the potentials of single beads alone", NULL}},
+         "\"name\": \"formulas\"",
+         {"method.name: \"formulas\" knows no molecules", NULL}},
         {"\"truth/bond_angles.tsv\"",
          "\"truth/bond_lengths.tsv\"",
          {"target.bond_angles.bend.file: ", "as if in radians", NULL}},
@@ -224,6 +252,11 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(test_fit_molecules_again_with_the_same_bits, enter,
                                         small_inputs_leave),
+        cmocka_unit_test_setup_teardown(test_fit_by_relative_entropy_again_with_the_same_bits,
+                                        enter, small_inputs_leave),
+        cmocka_unit_test_setup_teardown(
+            test_fit_by_relative_entropy_tells_what_its_form_does_not_meet, enter,
+            small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_fit_molecules_result_runs_as_a_scene, enter,
                                         small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_fit_molecules_leaves_known_laws_alone, enter,

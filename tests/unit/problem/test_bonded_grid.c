@@ -47,7 +47,7 @@ static void make_twin(struct twin *twin, enum topology_order order, struct bonde
         twin->target[k] /= sum;
     twin->problem.bonded = 1;
     twin->problem.unknown[UNKNOWN_BONDED].wanted = true;
-    twin->problem.group[0] = (struct bonded_unknown){order, 0, bins, 0};
+    twin->problem.group[0] = (struct bonded_unknown){order, 0, bins, 0, {0}};
     twin->problem.targets.target[mf_bonded_distribution_kind(order)] =
         (struct target){.count = bins.count, .value = twin->target, .error = twin->error};
 }

@@ -5,6 +5,7 @@
 #include "dynamics/dpd_verlet.h"
 #include "problem/parametrisation.h"
 #include "shared/is_close.h"
+#include "shared/molecules.h"
 #include "shared/testing.h"
 
 #include <math.h>
@@ -143,6 +144,48 @@ static void test_numbers_apply_copies_the_parameters_of_an_interaction(void **st
     mf_numbers_own_clear(&own);
 }
 
+/// Two numbers of one law and one of another; the scene's laws stay what they were.
+static void test_numbers_apply_changes_laws_of_bonds_and_angles(void **state) {
+    (void)state;
+    static const int types[3] = {0};
+    static const struct molecules_number bond[] = {{"k", 100}, {"length", 0.5}, {NULL, 0}};
+    static const struct molecules_number angle[] = {{"k", 20}, {"angle", 90}, {NULL, 0}};
+    static struct molecules molecules;
+    struct inverse_problem changed = {0};
+    struct numbers_own own = {0};
+    double energy;
+    molecules_topology(&molecules.topology, molecules_chain(2, types, 3, 1, 2),
+                       (struct topology_kind){0}, 1, NULL);
+    molecules_add_group(&molecules, TOPOLOGY_BOND, &mf_bond_harmonic, bond);
+    molecules_add_group(&molecules, TOPOLOGY_ANGLE, &mf_angle_cosine_squared, angle);
+    molecules_add_group(&molecules, TOPOLOGY_ANGLE, &mf_angle_harmonic, angle);
+    const size_t second = mf_angle_harmonic.fields[1].offset;
+    const struct inverse_problem problem = {
+        .numbers = 3,
+        .number = {{.place = INVERSE_OF_BONDED, .part = inverse_group(TOPOLOGY_BOND, 0)},
+                   {.place = INVERSE_OF_BONDED,
+                    .part = inverse_group(TOPOLOGY_ANGLE, 1),
+                    .offset = second},
+                   {.place = INVERSE_OF_BONDED,
+                    .part = inverse_group(TOPOLOGY_BOND, 0),
+                    .offset = mf_bond_harmonic.fields[1].offset}},
+        .scene = {.interaction = {{&mf_molecules, &molecules}}, .interactions = 1}};
+    assert_ok(mf_numbers_apply(&problem, (const double[]){300, 120, 0.6}, &changed, &own));
+    const struct molecules *found =
+        mf_molecules_find(changed.scene.interaction, changed.scene.interactions);
+    mf_bonded_value(&found->group[TOPOLOGY_BOND][0].curve, 0.7, &energy, NULL);
+    assert_close(energy, 0.5 * 300 * 0.1 * 0.1, 1e-12);
+    mf_bonded_value(&found->group[TOPOLOGY_ANGLE][1].curve, M_PI, &energy, NULL);
+    assert_close(energy, 0.5 * 20 * M_PI * M_PI / 9, 1e-12);
+    // No number belongs to it.
+    assert_ptr_equal(found->group[TOPOLOGY_ANGLE][0].curve.parameters,
+                     molecules.group[TOPOLOGY_ANGLE][0].curve.parameters);
+    mf_bonded_value(&molecules.group[TOPOLOGY_BOND][0].curve, 0.7, &energy, NULL);
+    assert_close(energy, 0.5 * 100 * 0.2 * 0.2, 1e-12);
+    mf_numbers_own_clear(&own);
+    mf_molecules_clear(&molecules);
+}
+
 static void test_numbers_are_variables_from_minimum_to_maximum_with_errors(void **state) {
     (void)state;
     struct mixture mixture;
@@ -230,6 +273,7 @@ int main(void) {
         cmocka_unit_test(test_numbers_apply_gives_the_tables_and_settings_of_a_scene_that_says_so),
         cmocka_unit_test(test_numbers_apply_leaves_laws_alone_that_no_number_belongs_to),
         cmocka_unit_test(test_numbers_apply_copies_the_parameters_of_an_interaction),
+        cmocka_unit_test(test_numbers_apply_changes_laws_of_bonds_and_angles),
         cmocka_unit_test(test_numbers_are_variables_from_minimum_to_maximum_with_errors),
         cmocka_unit_test(test_numbers_stand_behind_the_curves_and_change_none),
         cmocka_unit_test(test_numbers_bound_is_the_end_that_a_value_has_come_to),

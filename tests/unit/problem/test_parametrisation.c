@@ -193,6 +193,8 @@ static void test_parametrisation_curve_of_a_weight_is_never_negative(void **stat
     size_t zeros = 0;
     begin(&both, false, true);
     both.problem.unknown[UNKNOWN_OMEGA].parameters.minimum = -5;
+    mf_parametrisation_clear(&both.parametrisation);
+    assert_ok(mf_parametrisation_init(&both.parametrisation, &both.problem));
     for (int k = 0; k < WEIGHT_GENES; k++)
         both.variables[k] = k % 2;
     mf_parametrisation_curve(&both.parametrisation, UNKNOWN_OMEGA, both.variables, curve);

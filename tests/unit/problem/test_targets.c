@@ -168,6 +168,55 @@ static void test_targets_features_of_the_target_stand_in_for_what_was_not_measur
         assert_close(value[n], wanted[n], 0);
 }
 
+/// Two groups of one target: blocks hold a 50th of their group, end with it and leave nothing out.
+static void test_targets_blocks_hold_a_fiftieth_of_their_group(void **state) {
+    (void)state;
+    enum { FIRST = 200, SECOND = 30 };
+    double value[FIRST + SECOND];
+    size_t block[2 * TARGETS_MOST_BLOCKS + 1];
+    for (size_t k = 0; k < FIRST + SECOND; k++)
+        value[k] = k < FIRST ? exp(-0.5 * pow(((double)k - 80) / 25, 2)) : 1;
+    const size_t first = mf_targets_blocks(value, FIRST, 0, block);
+    const size_t all = first + mf_targets_blocks(value + FIRST, SECOND, FIRST, block + first);
+    block[all] = FIRST + SECOND;
+    assert_in_range(first, 30, TARGETS_MOST_BLOCKS);
+    assert_int_equal(block[0], 0);
+    assert_int_equal(block[first], FIRST);
+    // Bins that hold more than a 50th are blocks of one.
+    assert_int_equal(all - first, SECOND);
+    for (size_t n = 0; n < first; n++) {
+        double sum = 0;
+        for (size_t k = block[n]; k < block[n + 1]; k++)
+            sum += value[k];
+        assert_true(sum > 0.0199 * 25 * sqrt(2 * M_PI)); // a tail is cut off
+        assert_true(n == 0 || block[n] > block[n - 1]);
+    }
+}
+
+/// A mean over the target's, whose error is that of independent counts; and what a miss of each bin
+/// by the same amount makes of it.
+static void test_targets_features_of_distributions_are_shares_of_the_target(void **state) {
+    (void)state;
+    static const double wanted[] = {0, 1, 3, 4}, error[] = {0, 0.3, 0.4, 1};
+    static const size_t block[] = {0, 3, 4};
+    double observed[] = {1, 1, 4, 2}, value[2], own[2], variance[2];
+    double *const all[TARGETS] = {observed};
+    const struct targets targets = {
+        .target[0] = {.count = 4, .value = wanted, .error = error, .block = block, .blocks = 2}};
+    assert_int_equal(mf_targets_features(&targets), 2);
+    mf_targets_take_features(&targets, all, value, NULL);
+    assert_close(value[0], 6.0 / 4, rounding);
+    assert_close(value[1], 2.0 / 4, rounding);
+    mf_targets_take_features(&targets, NULL, value, own);
+    assert_close(value[0], 1, rounding);
+    assert_close(value[1], 1, rounding);
+    assert_close(own[0], 0.5 / 4, rounding);
+    assert_close(own[1], 1.0 / 4, rounding);
+    mf_targets_spread_error(&targets, 0.2, variance);
+    assert_close(variance[0], pow(0.2 * 3 / 4, 2), rounding);
+    assert_close(variance[1], pow(0.2 / 4, 2), rounding);
+}
+
 static void test_targets_features_are_0_when_the_target_does_not_know(void **state) {
     (void)state;
     const double g[] = {1, NAN, 3}, g_error[] = {0.1, 0.2, NAN}, d[] = {NAN}, d_error[] = {NAN};
@@ -229,6 +278,8 @@ int main(void) {
         cmocka_unit_test(test_targets_features_are_means_over_ten_by_ten_blocks_of_escape_times),
         cmocka_unit_test(test_targets_features_use_every_cell_once_when_ten_does_not_divide_them),
         cmocka_unit_test(test_targets_features_of_the_target_stand_in_for_what_was_not_measured),
+        cmocka_unit_test(test_targets_blocks_hold_a_fiftieth_of_their_group),
+        cmocka_unit_test(test_targets_features_of_distributions_are_shares_of_the_target),
         cmocka_unit_test(test_targets_features_are_0_when_the_target_does_not_know),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "problem/parametrisation_bonded.h"
+
+#include "base/memory.h"
+#include "curves/shape.h"
+
+#include <gsl/gsl_linalg.h>
+#include <math.h>
+
+/// Sines and cosines of a dihedral, which goes round.
+static void fill_waves(const struct bonded_grid *grid, size_t count, double *basis) {
+    for (size_t k = 0; k < grid->known; k++) {
+        const double phi = BONDED_RADIANS * mf_bonded_grid_place(grid, k);
+        for (size_t n = 0; n < count; n++) {
+            const double turns = (double)(n / 2 + 1);
+            basis[k * count + n] = n % 2 ? sin(turns * phi) : cos(turns * phi);
+        }
+    }
+}
+
+/// B-splines from the first to the last known bin. The one that is left out at the end is the sum
+/// of the others but for a constant.
+static enum status fill_splines(const struct bonded_grid *grid, size_t count, double *basis) {
+    enum status status = STATUS_OK;
+    double *place = NULL;
+    NEW_ARRAY(place, grid->known);
+    for (size_t k = 0; k < grid->known; k++)
+        place[k] = (double)k / (double)(grid->known - 1);
+    CHECK(mf_shape_basis(mf_shapes[INVERSE_CURVE_BSPLINE], count, place, grid->known, basis));
+done:
+    mf_memory_free(place);
+    return status;
+}
+
+enum status mf_parametrisation_bonded_basis(const struct bonded_grid *grid, size_t count,
+                                            double *basis) {
+    const double whole = mf_bonded_grid_mean(grid) * (double)grid->known;
+    if (grid->unknown->order == TOPOLOGY_DIHEDRAL)
+        fill_waves(grid, count, basis);
+    else
+        TRY(fill_splines(grid, count, basis));
+    for (size_t n = 0; n < count; n++) {
+        double mean = 0;
+        for (size_t k = 0; k < grid->known; k++)
+            mean += grid->target[grid->first + k] / whole * basis[k * count + n];
+        for (size_t k = 0; k < grid->known; k++)
+            basis[k * count + n] -= mean;
+    }
+    return STATUS_OK;
+}
+
+/// (k_B T σ/p)², of what was not seen that of what is hardly seen.
+static void find_variances(const struct bonded_grid *grid, const double *target_error,
+                           double *variance) {
+    static const double least = 1e-12;
+    double peak = 0;
+    for (size_t k = 0; k < grid->known; k++)
+        peak = fmax(peak, grid->target[grid->first + k]);
+    for (size_t k = 0; k < grid->known; k++) {
+        const double p = fmax(grid->target[grid->first + k], mf_bonded_grid_seen * peak);
+        const double error = target_error[grid->first + k];
+        variance[k] = fmax(least, pow(grid->temperature * (isfinite(error) ? error : 0) / p, 2));
+    }
+}
+
+enum status mf_parametrisation_bonded_rough(const struct bonded_grid *grid,
+                                            const double *target_error, const double *basis,
+                                            double *error) {
+    static const double ridge = 1e-12;
+    enum status status = STATUS_OK;
+    const size_t own = (size_t)grid->unknown->shape.coefficients, count = own + 1;
+    double *normal = NULL, *row = NULL, *solved = NULL, *variance = NULL;
+    NEW_ARRAY(normal, count * count);
+    NEW_ARRAY(row, count);
+    NEW_ARRAY(solved, count);
+    NEW_ARRAY(variance, grid->known);
+    find_variances(grid, target_error, variance);
+    gsl_matrix_view factor = gsl_matrix_view_array(normal, count, count);
+    const gsl_vector_const_view right = gsl_vector_const_view_array(row, count);
+    gsl_vector_view left = gsl_vector_view_array(solved, count);
+    for (int pass = 0; pass < 2; pass++) {
+        for (size_t k = 0; k < grid->known; k++) {
+            for (size_t a = 0; a < count; a++)
+                row[a] = a < own ? basis[k * own + a] : 1;
+            for (size_t a = 0; a < count && pass == 0; a++)
+                for (size_t b = 0; b < count; b++)
+                    normal[a * count + b] +=
+                        row[a] * row[b] / variance[k] * (a == b ? 1 + ridge : 1);
+            if (pass == 0)
+                continue;
+            gsl_linalg_cholesky_solve(&factor.matrix, &right.vector, &left.vector);
+            double fitted = 0;
+            for (size_t a = 0; a < count; a++)
+                fitted += row[a] * solved[a];
+            error[k] = sqrt(fmax(0, variance[k] - fitted));
+        }
+        if (pass == 0)
+            gsl_linalg_cholesky_decomp1(&factor.matrix);
+    }
+done:
+    mf_memory_free(normal);
+    mf_memory_free(row);
+    mf_memory_free(solved);
+    mf_memory_free(variance);
+    return status;
+}
