@@ -4,13 +4,22 @@
 #include "dynamics/simulation.h"
 
 /// The forces see velocities predicted to v(t) + λ Δt F(t); after the half kick that is
-/// v + (λ − ½) Δt F.
+/// v + (λ − ½) Δt F. Friction and noise of a pair do not depend on its masses. What is predicted
+/// does: with different masses λ is ½.
 static enum status step(struct simulation *simulation) {
     const struct dpd_verlet_parameters *parameters = simulation->setup.integrator_parameters;
     const double lambda = parameters->lambda;
     mf_simulation_kick_and_drift(simulation);
     TRY(mf_simulation_compute_forces(simulation, (lambda - 0.5) * simulation->setup.time_step));
     mf_simulation_kick(simulation);
+    return STATUS_OK;
+}
+
+static enum status begin(struct simulation *simulation) {
+    const struct dpd_verlet_parameters *parameters = simulation->setup.integrator_parameters;
+    if (particles_masses(&simulation->particles) && parameters->lambda != 0.5)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "dynamics.lambda: beads of different masses are moved with 0.5");
     return STATUS_OK;
 }
 
@@ -28,6 +37,8 @@ const struct integrator mf_dpd_verlet = {
     .fields = fields,
     .parameters_size = sizeof(struct dpd_verlet_parameters),
     .dissipative = true,
+    .masses = true,
     .tells_transfer = true,
+    .begin = begin,
     .step = step,
 };

@@ -193,8 +193,8 @@ static enum status choose_unknowns(struct fit_choice *c) {
 /// its velocity a step.
 static double moderate_friction(const struct fit_choice *c, double cutoff) {
     static const double strongest = 0.1;
-    const double rate = mf_fit_scales_friction(c->rdf, cutoff);
-    return sqrt(fmin(1 / (rate * c->crossing), strongest / c->time_step));
+    const double rate = mf_fit_scales_friction(c->rdf, cutoff) / c->mass;
+    return sqrt(fmin(1 / (rate * c->crossing), strongest * c->mass / c->time_step));
 }
 
 /// ω as a spline from where pairs begin to the end of the second shell, up to several times the
@@ -228,11 +228,12 @@ static enum status choose_friction(struct fit_choice *c) {
     const struct simulation_setup *setup = &c->read->scene.setup;
     if (c->finds[UNKNOWN_OMEGA] || !mf_fit_choice_lacks(c->root, "scene", "dissipative") ||
         !mf_fit_choice_lacks(c->root, "scene", "dynamics") ||
-        !mf_fit_choice_lacks(c->root, "scene", "memory") ||
-        !attributes_are(&setup->attribute[ATTRIBUTES_MASS], 1))
+        !mf_fit_choice_lacks(c->root, "scene", "memory"))
         return STATUS_OK;
+    if (!attributes_are(&setup->attribute[ATTRIBUTES_MASS], 1))
+        TRY(mf_fit_choice_give_text(c->root, "scene.dynamics", "integrator", "dpd-verlet"));
     const double cutoff = c->scales.shell, sigma = moderate_friction(c, cutoff);
-    const double time = 1 / (mf_fit_scales_friction(c->rdf, cutoff) * sigma * sigma);
+    const double time = c->mass / (mf_fit_scales_friction(c->rdf, cutoff) * sigma * sigma);
     char size[FIT_CHOICE_TEXT_SIZE], end[FIT_CHOICE_TEXT_SIZE], memory[FIT_CHOICE_TEXT_SIZE];
     mf_fit_choice_say(c,
                       "friction omega = %s times 1 - r/(%s): up to the end of the first shell, and "

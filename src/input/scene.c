@@ -172,8 +172,8 @@ static enum status read_dynamics(struct scene *scene, struct json_object *object
     else if (mass->ranges > 0 && !integrator->masses)
         mf_json_fault(
             object, "particles.mass",
-            "%s moves particles of mass 1 only; \"velocity-verlet\" moves others, without "
-            "\"dissipative\"",
+            "%s moves particles of mass 1 only; \"dpd-verlet\" moves others, and without "
+            "\"dissipative\" \"velocity-verlet\"",
             integrator->name);
     return STATUS_OK;
 }

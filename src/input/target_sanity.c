@@ -65,11 +65,15 @@ static struct view view_of(const struct target_files *files, const struct scene 
 }
 
 /// What lengths are told in.
-static const char *unit_of(const struct view *view, double *length) {
-    const struct units *units = &view->scene->units;
+static const char *length_unit(const struct scene *scene, double *length) {
+    const struct units *units = &scene->units;
     static const char *const names[] = {"nm", "nm", "angstrom"};
     *length = mf_units_beside(units) ? units->length : mf_units_factor(units, "lambda");
     return mf_units_known(units) ? names[units->system] : "lambda";
+}
+
+static const char *unit_of(const struct view *view, double *length) {
+    return length_unit(view->scene, length);
 }
 
 /// "14.66 nm^-3 = 0.780 g/cm^3", or in λ without units.
@@ -379,7 +383,7 @@ static void tell_normalisation(const struct normalisation *n,
 }
 
 /// "target bond_lengths.backbone: 34 bins of 0.001 from 0.1505 to 0.1835, peak 84 at 0.169; …".
-static void tell_group(const struct target_groups *groups, size_t g,
+static void tell_group(const struct target_groups *groups, size_t g, const struct scene *scene,
                        const struct target_sanity_listener *listener) {
     const struct target_bonded *member = &groups->member[g];
     const struct bonded_bins *bins = &member->bins;
@@ -393,10 +397,13 @@ static void tell_group(const struct target_groups *groups, size_t g,
         snprintf(errors, sizeof errors, "; no errors given: %.2g of the peak %s",
                  member->estimated_error,
                  member->assumed ? "is assumed there" : "there, from the scatter of the rows");
-    say(listener, "target %s.%s: %zu bins of %.4g from %.4g to %.4g, peak at %.4g%s",
-        mf_bonded_distribution_of(groups->order)->name, groups->name[g], bins->count, bins->width,
-        bins->low, bins->low + (double)bins->count * bins->width, bonded_bins_centre(bins, peak),
-        errors);
+    double factor = 1;
+    const char *unit = groups->order == TOPOLOGY_BOND ? length_unit(scene, &factor) : "degrees";
+    say(listener, "target %s.%s: %zu bins of %.4g from %.4g to %.4g %s, peak at %.4g%s",
+        mf_bonded_distribution_of(groups->order)->name, groups->name[g], bins->count,
+        factor * bins->width, factor * bins->low,
+        factor * (bins->low + (double)bins->count * bins->width), unit,
+        factor * bonded_bins_centre(bins, peak), errors);
 }
 
 enum status mf_target_sanity_tell(const struct target_files *files, const struct scene *scene,
@@ -412,7 +419,7 @@ enum status mf_target_sanity_tell(const struct target_files *files, const struct
     }
     for (int order = 0; order < TOPOLOGY_ORDERS; order++)
         for (size_t g = 0; g < files->groups[order].groups; g++)
-            tell_group(&files->groups[order], g, listener);
+            tell_group(&files->groups[order], g, scene, listener);
     tell_normalisation(&files->normalisation, listener);
     char line[SCENE_LINE_SIZE];
     if (mf_scene_is_hot(scene, line))
