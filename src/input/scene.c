@@ -170,11 +170,10 @@ static enum status read_dynamics(struct scene *scene, struct json_object *object
     if (mass->ranges > 0 && !integrator->masses && attributes_are(mass, 1))
         mass->ranges = 0; // they are the unit
     else if (mass->ranges > 0 && !integrator->masses)
-        mf_json_fault(
-            object, "particles.mass",
-            "%s moves particles of mass 1 only; \"dpd-verlet\" moves others, and without "
-            "\"dissipative\" \"velocity-verlet\"",
-            integrator->name);
+        mf_json_fault(object, "particles.mass",
+                      "%s moves particles of mass 1 only; \"dpd-verlet\" moves others, and without "
+                      "\"dissipative\" \"velocity-verlet\"",
+                      integrator->name);
     return STATUS_OK;
 }
 
