@@ -64,9 +64,9 @@ static void state_problem(struct twin *twin) {
     twin->bond.target[0] = bond_bins;
     twin->angle.target[0] = angle_bins;
     targets->bins = (struct rdf_bins){0, 0.05, PAIR_BINS};
-    targets->target[TARGET_RDF] = (struct target){PAIR_BINS, none, none, 0, 0, NULL};
-    targets->target[bond] = (struct target){BOND_BINS, none, none, 0, 0, NULL};
-    targets->target[angle] = (struct target){ANGLE_BINS, none, none, 0, 0, NULL};
+    targets->target[TARGET_RDF] = (struct target){.count = PAIR_BINS, .value = none, .error = none};
+    targets->target[bond] = (struct target){.count = BOND_BINS, .value = none, .error = none};
+    targets->target[angle] = (struct target){.count = ANGLE_BINS, .value = none, .error = none};
     targets->settings[mf_observable_kind(bond).place] = &twin->bond;
     targets->settings[mf_observable_kind(angle).place] = &twin->angle;
 }
