@@ -105,6 +105,14 @@ static void take_step(struct inversion *inversion) {
     mf_potential_grid_complete(grid, inversion->phi);
 }
 
+/// Whether the samples are as exact as was asked for.
+static bool is_precise(const struct inversion *inversion) {
+    for (int k = 0; k < inversion->sections; k++)
+        if (inversion->section[k].own_noise > inversion->section[k].precision)
+            return false;
+    return true;
+}
+
 /// Keep the present potential as the best, with the steps that lead on from it.
 static enum status keep(struct inversion *inversion) {
     struct inversion_progress *progress = &inversion->progress;
@@ -117,6 +125,7 @@ static enum status keep(struct inversion *inversion) {
            inversion->bins * sizeof(double));
     memcpy(progress->best, inversion->distance, sizeof progress->best);
     progress->best_own_noise = inversion->own_noise;
+    progress->best_precise = is_precise(inversion);
     progress->best_disagreement = inversion->disagreement;
     return mf_inversion_band_find(inversion);
 }
@@ -135,12 +144,11 @@ static struct replicas_plan plan(const struct inversion *inversion) {
 /// Whether more samples would help: their noise is a large part of the error, and not yet what was
 /// asked for. Replicas that are stuck would never be told apart from noise.
 static bool needs_samples(const struct inversion *inversion, int doublings) {
-    const double precision = inversion->settings.common.precision;
     // What is out of reach of few coefficients is no error that hides the noise.
     const double share = inversion->progress.miss < near_miss ? 0 : noise_share;
     for (int k = 0; k < inversion->sections; k++) {
         const struct inversion_section *section = &inversion->section[k];
-        if (section->own_noise > fmax(precision, share * section->rms))
+        if (section->own_noise > fmax(section->precision, share * section->rms))
             return doublings < MOST_DOUBLINGS;
     }
     return false;
@@ -361,8 +369,8 @@ enum status mf_inversion_iterate(void *memory, struct inverse_step *step,
     mf_inversion_drift_add(&progress->drift, find_ramp(inversion),
                            inversion->distance[TARGET_RDF].rms);
     TRY(judge(inversion, &kept));
-    const bool precise = inversion->own_noise <= inversion->settings.common.precision;
-    describe(inversion, own, kept && precise && meets_targets(inversion) && has_settled(inversion),
+    describe(inversion, own,
+             kept && progress->best_precise && meets_targets(inversion) && has_settled(inversion),
              step);
     if (!step->finished)
         TRY(go_on(inversion, kept));

@@ -77,6 +77,7 @@ struct inversion_section {
     double inefficiency;       ///< samples that count as one independent
     double rms, noise;         ///< of the samples and their targets, in peaks
     double own_noise;          ///< of the samples alone
+    double precision;          ///< at which that is small enough
 };
 enum { INVERSION_MOST_SECTIONS = 1 + INVERSE_MOST_BONDED };
 
@@ -122,8 +123,9 @@ struct inversion {
     // What a checkpoint keeps besides phi, best, … and the samplers:
     struct inversion_progress {
         uint32_t iteration;
-        bool anew;       ///< the replicas are placed anew
-        bool best_other; ///< the best has another step
+        bool anew;         ///< the replicas are placed anew
+        bool best_other;   ///< the best has another step
+        bool best_precise; ///< its samples are as exact as was asked for
         uint64_t evaluations, sweeps;
         double damping;
         struct target_distance best[TARGETS];  ///< rms of g infinite: there is none yet

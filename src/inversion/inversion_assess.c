@@ -55,6 +55,10 @@ static double assess(struct inversion *inversion, struct inversion_section *sect
     section->rms = sqrt(sum / bins) / section->peak;
     section->noise = sqrt(both / bins) / section->peak;
     section->own_noise = sqrt(own / bins) / section->peak;
+    // p of a group need not be known better than that of its target, which has as many bins.
+    section->precision = inversion->settings.common.precision;
+    if (section->kind != TARGET_RDF)
+        section->precision = fmax(section->precision, sqrt((both - own) / bins) / section->peak);
     return misfit;
 }
 

@@ -42,7 +42,7 @@ static void tell_what_is_missing(const struct inversion *inversion,
             "g agrees within %.2g, but its covariances have no inverse, so that the errors of the "
             "potential are not known: more \"samples\" are needed",
             p->best_own_noise);
-    else if (p->best_own_noise <= settings->precision)
+    else if (p->best_precise)
         snprintf(reason, INVERSE_REASON_SIZE,
                  "g agrees, but it still asks for another ramp A (1 - r/cutoff), by %.2g k_B T_0 "
                  "with an error of %.2g, and a pressure by %.2g with one of %.2g: more "
