@@ -102,7 +102,8 @@ void mf_inversion_pool(struct inversion *inversion) {
     const struct potential_grid *grid = &inversion->grid;
     double *pool = &inversion->progress.pool;
     const double now = inversion->replicas.counts.count;
-    if (!mf_inversion_is_near(inversion)) {
+    // The gradient of coefficients has the noise of the present samples, and shorter steps.
+    if (inversion->basis.count > 0 || !mf_inversion_is_near(inversion)) {
         *pool = 0;
         return;
     }
