@@ -17,7 +17,7 @@ const join = (folder, name) => (folder ? folder + "/" + name : name);
 
 export class Files {
   constructor(place, { open, fail, settings }) {
-    Object.assign(this, { place, open, fail, settings, root: "work", folder: "" });
+    Object.assign(this, { place, open, fail, settings, root: "work", folder: "", asked: 0 });
   }
 
   async act(what) {
@@ -28,9 +28,13 @@ export class Files {
     }
   }
 
+  // Answers may come in another order than they were asked for: the last wish is shown.
   async show(root = this.root, folder = this.folder) {
+    const number = ++this.asked;
     await this.act(async () => {
       const list = await getJson("files", { in: root, path: folder });
+      if (number !== this.asked)
+        return;
       Object.assign(this, { root, folder });
       this.build(list);
     });
@@ -69,14 +73,19 @@ export class Files {
   }
 
   async look(name, whole) {
+    const number = ++this.asked;
     await this.act(async () => {
       const heading = element("h2", { textContent: name });
       if (/\.(png|svg)$/.test(name)) {
         const picture = element("img", { className: "figure", alt: "figure " + name });
         picture.src = URL.createObjectURL(await (await ask("file", { in: this.root, path: whole })).blob());
+        if (number !== this.asked)
+          return;
         this.view.replaceChildren(heading, picture);
       } else {
         const text = await getText("file", { in: this.root, path: whole });
+        if (number !== this.asked)
+          return;
         const shown = element("textarea", { value: text.slice(0, 200000), spellcheck: false, readOnly: this.root !== "work" || text.length > 200000 });
         shown.setAttribute("aria-label", "contents of " + name);
         this.view.replaceChildren(heading, shown);

@@ -204,6 +204,21 @@ class Page(PageTest):
         time.sleep(2.5)
         self.assertTrue(self.at("files").is_displayed())
 
+    def test_folder_that_was_chosen_stays_when_an_earlier_list_comes_late(self):
+        self.assertEqual(run_plain(self.folder, "simulate", "scene.json", "-o", "done"), 0)
+        self.begin("live", "done")
+        self.at("tab-files").click()
+        self.browser.execute_script("window.fetchAtOnce = window.fetch")
+        self.button("results")
+        self.delay_answers("files", 1)
+        self.button("working folder").click()
+        self.browser.execute_script("window.fetch = window.fetchAtOnce")
+        self.button("results").click()
+        self.button("download as zip")
+        time.sleep(1.5)
+        offered = [button.text for button in self.at("files").find_elements("tag name", "button")]
+        self.assertIn("download as zip", offered)
+
     def test_another_file_is_chosen_edited_refused_and_saved(self):
         self.begin("live")
         self.assertEqual(self.phase(), "choosing")
