@@ -53,14 +53,18 @@ static double width_of(const struct bonded_curve *curve, double low, double high
     return fmax(0.5 * (to - from), spacing);
 }
 
-double mf_hybrid_step_squared_frequency(const struct bonded_curve *curve, enum topology_order order,
-                                        double length, double temperature) {
-    static const double bend = 6;
-    const bool bond = order == TOPOLOGY_BOND;
+double mf_hybrid_step_variance(const struct bonded_curve *curve, enum topology_order order,
+                               double temperature) {
     const double low = order == TOPOLOGY_DIHEDRAL ? -M_PI : 0;
-    const double high = bond ? mf_bonded_reach(curve, temperature) : M_PI;
-    const double width = width_of(curve, low, high, temperature);
-    return (bond ? 2 : bend / (length * length)) * temperature / (width * width);
+    const double high = order == TOPOLOGY_BOND ? mf_bonded_reach(curve, temperature) : M_PI;
+    return pow(width_of(curve, low, high, temperature), 2);
+}
+
+double mf_hybrid_step_squared_frequency(enum topology_order order, double variance, double length,
+                                        double temperature) {
+    static const double bend = 6;
+    const double joints = order == TOPOLOGY_BOND ? 2 : bend / (length * length);
+    return joints * temperature / variance;
 }
 
 static double fastest_of_molecules(const struct molecules *molecules, double temperature) {
@@ -70,9 +74,12 @@ static double fastest_of_molecules(const struct molecules *molecules, double tem
             fmin(length, mf_bonded_reach(&molecules->group[TOPOLOGY_BOND][g].curve, temperature));
     for (int order = 0; order < TOPOLOGY_ORDERS; order++)
         for (int g = 0; g < molecules->groups[order]; g++)
-            fastest = fmax(fastest, mf_hybrid_step_squared_frequency(
-                                        &molecules->group[order][g].curve,
-                                        (enum topology_order)order, length, temperature));
+            fastest =
+                fmax(fastest, mf_hybrid_step_squared_frequency(
+                                  (enum topology_order)order,
+                                  mf_hybrid_step_variance(&molecules->group[order][g].curve,
+                                                          (enum topology_order)order, temperature),
+                                  length, temperature));
     return fastest;
 }
 

@@ -10,11 +10,16 @@ struct hybrid_step {
     int64_t inner;         ///< steps of bonds, angles and dihedrals in one of the pairs
 };
 
-/// ω² of the fastest oscillation that the law of a group allows in molecules of mass 1, whose
-/// shortest bond has the length [λ]: of a bond 2 U'', of others 6 U''/length², which is that of a
-/// straight angle and more than that of others; U'' by the width of the well at k_B T/2.
-double mf_hybrid_step_squared_frequency(const struct bonded_curve *curve, enum topology_order order,
-                                        double length, double temperature);
+/// Variance of q [λ²] or [rad²] by the law of a group: the square of half the width of its well at
+/// k_B T/2.
+double mf_hybrid_step_variance(const struct bonded_curve *curve, enum topology_order order,
+                               double temperature);
+
+/// ω² of a group whose q has this variance, in molecules of mass 1 whose shortest bond has the
+/// length [λ]: with U'' = k_B T/variance of a bond 2 U'', of others 6 U''/length², which is that of
+/// a straight angle and more than that of others.
+double mf_hybrid_step_squared_frequency(enum topology_order order, double variance, double length,
+                                        double temperature);
 
 /// By the fastest pairs and the fastest terms of molecules of mass 1. Either may be NULL. Tested:
 /// test_hybrid.

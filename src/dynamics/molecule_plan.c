@@ -6,35 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/// The bonds of each bead: those of b lead to to[start[b] … start[b + 1]).
-struct bonds {
-    int *start, *to;
-};
-
-static enum status find_bonds(const struct topology_kind *kind, struct bonds *bonds) {
-    enum status status = STATUS_OK;
-    const int count = kind->terms[TOPOLOGY_BOND];
-    const struct topology_term *term = kind->term[TOPOLOGY_BOND];
-    int *next = NULL;
-    NEW_ARRAY(bonds->start, kind->beads + 1);
-    NEW_ARRAY(bonds->to, 2 * count);
-    NEW_ARRAY(next, kind->beads);
-    for (int n = 0; n < count; n++)
-        for (int k = 0; k < 2; k++)
-            bonds->start[term[n].bead[k] + 1]++;
-    for (int bead = 0; bead < kind->beads; bead++) {
-        bonds->start[bead + 1] += bonds->start[bead];
-        next[bead] = bonds->start[bead];
-    }
-    for (int n = 0; n < count; n++)
-        for (int k = 0; k < 2; k++)
-            bonds->to[next[term[n].bead[k]]++] = term[n].bead[1 - k];
-done:
-    mf_memory_free(next);
-    return status;
-}
-
-static bool are_bonded(const struct bonds *bonds, int a, int b) {
+static bool are_bonded(const struct topology_bonds *bonds, int a, int b) {
     for (int n = bonds->start[a]; n < bonds->start[a + 1]; n++)
         if (bonds->to[n] == b)
             return true;
@@ -42,7 +14,8 @@ static bool are_bonded(const struct bonds *bonds, int a, int b) {
 }
 
 /// Whether all beads that are next to each other in a term are bonded.
-static bool terms_follow_bonds(const struct topology_kind *kind, const struct bonds *bonds) {
+static bool terms_follow_bonds(const struct topology_kind *kind,
+                               const struct topology_bonds *bonds) {
     for (int order = TOPOLOGY_ANGLE; order < TOPOLOGY_ORDERS; order++)
         for (int n = 0; n < kind->terms[order]; n++)
             for (int k = 0; k + 1 < topology_beads(order); k++)
@@ -61,8 +34,8 @@ struct way {
     int *low;   ///< the first place that a bond leads to from it or from what follows it
 };
 
-static void enter(struct molecule_plan *plan, const struct bonds *bonds, struct way *way, int bead,
-                  int parent, int *reached) {
+static void enter(struct molecule_plan *plan, const struct topology_bonds *bonds, struct way *way,
+                  int bead, int parent, int *reached) {
     way->next[bead] = bonds->start[bead];
     way->place[bead] = way->low[bead] = *reached;
     plan->parent[bead] = parent;
@@ -88,8 +61,8 @@ static void leave(struct molecule_plan *plan, struct way *way, int bead, int rea
 }
 
 /// Depth first from one bead to all that bonds lead to.
-static void walk_from(struct molecule_plan *plan, const struct bonds *bonds, struct way *way,
-                      int root, int *reached) {
+static void walk_from(struct molecule_plan *plan, const struct topology_bonds *bonds,
+                      struct way *way, int root, int *reached) {
     int bead = root;
     enter(plan, bonds, way, root, -1, reached);
     while (bead >= 0) {
@@ -110,7 +83,7 @@ static void walk_from(struct molecule_plan *plan, const struct bonds *bonds, str
 
 static enum status find_arms(struct molecule_plan *plan, const struct topology_kind *kind) {
     enum status status = STATUS_OK;
-    struct bonds bonds = {0};
+    struct topology_bonds bonds = {0};
     struct way way = {0};
     int reached = 0;
     NEW_ARRAY(plan->walk, kind->beads);
@@ -119,7 +92,7 @@ static enum status find_arms(struct molecule_plan *plan, const struct topology_k
     NEW_ARRAY(way.place, kind->beads);
     NEW_ARRAY(way.next, kind->beads);
     NEW_ARRAY(way.low, kind->beads);
-    CHECK(find_bonds(kind, &bonds));
+    CHECK(mf_topology_bonds(kind, &bonds));
     memset(way.place, 0xff, (size_t)kind->beads * sizeof *way.place);
     walk_from(plan, &bonds, &way, 0, &reached);
     plan->joined = reached == kind->beads;

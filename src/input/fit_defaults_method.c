@@ -35,23 +35,20 @@ static void find_well(const struct target_bonded *target, double *mean, double *
     *variance = pow((double)(high - low) * bins->width, 2) / (8 * log(2));
 }
 
-/// Of the fastest oscillation that a group's target shows, or its law if it has none: ω².
+/// ω² of a group, by its target, or by its law if it has none.
 static double fastest_of(const struct fit_choice *c, enum topology_order order, size_t g,
                          double length) {
-    static const double bend = 6; // as in dynamics/hybrid_step.c
     const struct target_groups *groups = &c->read->files.groups[order];
+    const struct bonded_curve *curve = &c->read->scene.molecules.molecules.group[order][g].curve;
     const double temperature = c->read->scene.setup.temperature;
     double mean, variance;
-    if (!target_groups_have(groups, g))
-        return mf_hybrid_step_squared_frequency(
-                   &c->read->scene.molecules.molecules.group[order][g].curve, order, length,
-                   temperature) /
-               c->mass;
-    find_well(&groups->member[g], &mean, &variance);
-    if (order == TOPOLOGY_BOND)
-        return 2 * temperature / (c->mass * variance);
-    return bend * temperature /
-           (c->mass * variance * BONDED_RADIANS * BONDED_RADIANS * length * length);
+    if (target_groups_have(groups, g)) {
+        find_well(&groups->member[g], &mean, &variance);
+        variance *= order == TOPOLOGY_BOND ? 1 : BONDED_RADIANS * BONDED_RADIANS;
+    } else {
+        variance = mf_hybrid_step_variance(curve, order, temperature);
+    }
+    return mf_hybrid_step_squared_frequency(order, variance, length, temperature) / c->mass;
 }
 
 static double shortest_bond(const struct fit_choice *c) {

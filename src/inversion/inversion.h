@@ -226,7 +226,8 @@ void mf_inversion_assess(struct inversion *inversion);
 /// reached: what the earlier ones saw, moved to the present potential by C. A step from the present
 /// samples alone carries their noise into the next potential, so that its error is sqrt(2) times
 /// the noise, iteration after iteration; Kushner and Yin, Stochastic Approximation (2003),
-/// section 1.1. Present samples weigh a third at least, for what C does not tell.
+/// section 1.1. Present samples weigh a third at least, for what C does not tell. Not of a method
+/// that goes by a gradient. Tested: test_inversion_keeps.
 void mf_inversion_pool(struct inversion *inversion);
 
 /// Whether g, and p of all groups, are so near to their targets, by their noise, that C hardly

@@ -97,12 +97,7 @@ const struct topology_term *mf_topology_unbonded(const struct topology_kind *kin
 
 // What is excluded --------------------------------------------------------------------------------
 
-/// The bonds of each bead: those of b lead to to[start[b] … start[b + 1]).
-struct bonds {
-    int *start, *to;
-};
-
-static enum status find_bonds(const struct topology_kind *kind, struct bonds *bonds) {
+enum status mf_topology_bonds(const struct topology_kind *kind, struct topology_bonds *bonds) {
     enum status status = STATUS_OK;
     const int count = kind->terms[TOPOLOGY_BOND];
     const struct topology_term *term = kind->term[TOPOLOGY_BOND];
@@ -128,7 +123,7 @@ static int compare_beads(const void *a, const void *b) {
 
 /// The beads at most kind->exclude bonds from one, by growing number, behind it in `reached`.
 /// @param[in,out] distance  shape [beads], −1 of all
-static int reach(const struct topology_kind *kind, const struct bonds *bonds, int bead,
+static int reach(const struct topology_kind *kind, const struct topology_bonds *bonds, int bead,
                  int *distance, int *reached) {
     int count = 1;
     reached[0] = bead;
@@ -150,12 +145,12 @@ static int reach(const struct topology_kind *kind, const struct bonds *bonds, in
 /// The beads at most `exclude` bonds from each.
 static enum status find_near(struct topology_kind *kind) {
     enum status status = STATUS_OK;
-    struct bonds bonds = {0};
+    struct topology_bonds bonds = {0};
     int *distance = NULL, *reached = NULL;
     NEW_ARRAY(distance, kind->beads);
     NEW_ARRAY(reached, kind->beads);
     NEW_ARRAY(kind->near_start, kind->beads + 1);
-    CHECK(find_bonds(kind, &bonds));
+    CHECK(mf_topology_bonds(kind, &bonds));
     memset(distance, 0xff, (size_t)kind->beads * sizeof *distance);
     for (int pass = 0; pass < 2; pass++) {
         int found = 0;

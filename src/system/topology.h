@@ -89,6 +89,13 @@ enum status mf_topology_count_excluded(const struct topology_kind *kind, int exc
 enum status mf_topology_complete(struct topology *topology,
                                  const struct composition *composition) MUST_USE;
 
+/// The bonds of each bead of a kind: those of b lead to to[start[b] … start[b + 1]).
+struct topology_bonds {
+    int *start, *to; ///< both to be freed
+};
+enum status mf_topology_bonds(const struct topology_kind *kind,
+                              struct topology_bonds *bonds) MUST_USE;
+
 /// An order in which a kind's beads are placed so that each follows one that it is bonded to, if
 /// there is one. @param[out] order, parent  shape [beads]: the bead that is placed as number n; of
 /// each bead the one before it, or −1
