@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Inverse Monte Carlo where its linear response holds, and before that the steps that need none: by
-// the hypernetted chain, or in two dimensions and of molecules Boltzmann inversion. A Newton step
-// converges at once near the solution and leads away from far off it (its basin; P. Deuflhard,
-// Newton Methods for Nonlinear Problems (2004), section 2.1, which tests it as here, by what the
-// last step did against what was predicted).
+// Inverse Monte Carlo where its linear response holds, and before that the steps that need none, or
+// little of it: by the hypernetted chain, or in two dimensions and of molecules Boltzmann
+// inversion, of groups with the response of few coefficients (inversion/inversion_coarse.h). A
+// Newton step converges at once near the solution and leads away from far off it (its basin; P.
+// Deuflhard, Newton Methods for Nonlinear Problems (2004), section 2.1, which tests it as here, by
+// what the last step did against what was predicted).
 #include "inversion/inversion.h"
+#include "inversion/inversion_coarse.h"
 
 #include <math.h>
 #include <string.h>
@@ -46,18 +48,20 @@ static bool newton_helped(const struct inversion *inversion) {
 }
 
 /// Inside the basin of inverse Monte Carlo: near the noise, where its response holds, or where its
-/// steps converge.
+/// steps converge. Of groups C tells no more than the careful step until the targets are near.
 static bool in_basin(const struct inversion *inversion) {
     const bool first = isinf(inversion->progress.best[TARGET_RDF].rms);
-    return mf_inversion_is_near(inversion) ||
-           (!first && (newton_helped(inversion) || predicts(inversion)));
+    return mf_inversion_is_near(inversion) || (!first && inversion->coarse.count == 0 &&
+                                               (newton_helped(inversion) || predicts(inversion)));
 }
 
-static enum status careful_step(const struct inversion *inversion, double *step) {
+static enum status careful_step(struct inversion *inversion, double *step) {
     const struct simulation_setup *scene = &inversion->problem->scene;
     if (inversion->box.dimensions == 3 &&
         mf_molecules_find(scene->interaction, scene->interactions) == NULL)
         return mf_hnc_step(inversion, ridge, step);
+    if (inversion->coarse.count > 0)
+        return mf_inversion_coarse_step(inversion, step);
     mf_ibi_step(inversion, step);
     return STATUS_OK;
 }
@@ -70,9 +74,7 @@ static enum status update(struct inversion *inversion, double *extra) {
         return careful_step(inversion, inversion->step);
     TRY(careful_step(inversion, inversion->other_step));
     TRY(mf_imc_step(inversion, &noise, inversion->step, newton));
-    // Without directions the covariance told no step, and that of Boltzmann inversion is taken.
-    inversion->has_other = newton[2] > 0;
-    extra[0] = inversion->has_other;
+    extra[0] = inversion->has_other = true;
     extra[1] = newton[1];
     extra[2] = newton[2];
     return STATUS_OK;

@@ -3,6 +3,7 @@
 // Inverse Monte Carlo. A. P. Lyubartsev and A. Laaksonen, Phys. Rev. E 52, 3730 (1995).
 #include "inversion/imc_solve.h"
 #include "inversion/inversion.h"
+#include "inversion/inversion_coarse.h"
 
 #include <math.h>
 
@@ -63,25 +64,16 @@ static void doubt_response(struct inversion *inversion, double independent,
                 independent;
 }
 
-/// Whether C tells a step: of fewer independent samples than bins it has no inverse, and what it
-/// says of the excess is less than Boltzmann inversion does, unless that is hardly more than noise.
-static bool tells(const struct inversion *inversion, double independent) {
-    return inversion->doubt == NULL || mf_inversion_is_near(inversion) ||
-           independent >= (double)inversion->grid.known;
-}
-
 enum status mf_imc_step(struct inversion *inversion, const struct imc_parameters *parameters,
                         double *step, double extra[3]) {
     const struct inverse_problem *problem = inversion->problem;
     const struct potential_grid *grid = &inversion->grid;
     enum status status = STATUS_OK;
     struct imc_solution solution;
-    const double independent = inversion->behind / inversion->inefficiency;
     double *x = NULL;
     struct imc_system system = mf_inversion_system(inversion);
-    mf_ibi_step(inversion, step);
-    if (!tells(inversion, independent))
-        return STATUS_OK;
+    if (mf_inversion_is_coarse(inversion))
+        return mf_inversion_coarse_step(inversion, step);
     mf_inversion_trail_take(&inversion->trail, &system);
     if (targets_ask(&problem->targets, TARGET_PRESSURE)) {
         system.constraint = inversion->pressure.slope;
@@ -89,7 +81,8 @@ enum status mf_imc_step(struct inversion *inversion, const struct imc_parameters
     }
     NEW_ARRAY(x, grid->known);
     if (inversion->doubt) {
-        doubt_response(inversion, independent, step);
+        mf_ibi_logarithms(inversion, step);
+        doubt_response(inversion, inversion->behind / inversion->inefficiency, step);
         system.variance = inversion->doubt;
     }
     CHECK(solvers[parameters->regularisation](&system, choose_strength(inversion, parameters), x,

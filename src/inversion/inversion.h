@@ -116,10 +116,11 @@ struct inversion {
     double *other_step; ///< what to do if the step makes it worse
     bool has_other;     ///< else: half of it
     double *best, *best_step, *best_other;
-    double *best_counts;          ///< ⟨S⟩ of the best, shape [bins]
-    struct inversion_basis basis; ///< of methods that go by the gradient; else its count is 0
-    struct inversion_band band;   ///< of the best
-    struct inversion_trail trail; ///< of all iterations
+    double *best_counts;           ///< ⟨S⟩ of the best, shape [bins]
+    struct inversion_basis basis;  ///< of methods that go by the gradient; else its count is 0
+    struct inversion_basis coarse; ///< of steps far from the targets, of fits with groups
+    struct inversion_band band;    ///< of the best
+    struct inversion_trail trail;  ///< of all iterations
     // What a checkpoint keeps besides phi, best, … and the samplers:
     struct inversion_progress {
         uint32_t iteration;

@@ -124,8 +124,7 @@ done:
 
 /// BᵀC B, and the noise of the gradient but for the samples': that of the target, bin by bin, and
 /// of one count where there are none.
-static void fill_matrices(const struct inversion *inversion) {
-    const struct inversion_basis *basis = &inversion->basis;
+static void fill_matrices(struct inversion_basis *basis, const struct inversion *inversion) {
     const struct potential_grid *grid = &inversion->grid;
     const size_t count = basis->count, known = grid->known;
     const double empty = inversion->inefficiency / pow(inversion->replicas.counts.count, 2);
@@ -148,13 +147,13 @@ static void fill_matrices(const struct inversion *inversion) {
 }
 
 /// Bᵀ S of a block of samples, or of all blocks of a replica, for one coefficient.
-static double block_gradient(const struct inversion *inversion, size_t member, size_t begin,
-                             size_t end, size_t coefficient) {
+static double block_gradient(const struct inversion_basis *basis, const struct inversion *inversion,
+                             size_t member, size_t begin, size_t end, size_t coefficient) {
     const struct potential_grid *grid = &inversion->grid;
     double sum = 0;
     for (size_t b = begin; b < end; b++)
         for (size_t a = 0; a < grid->known; a++)
-            sum += inversion->basis.value[a * inversion->basis.count + coefficient] *
+            sum += basis->value[a * basis->count + coefficient] *
                    inversion->replicas.member[member]
                        .block[b * inversion->replicas.bins + grid->known_bin[a]];
     return sum / (double)(end - begin);
@@ -162,8 +161,8 @@ static double block_gradient(const struct inversion *inversion, size_t member, s
 
 /// Samples that count as one independent: by the scatter of parts of them, of blocks or of whole
 /// replicas, the mean over coefficients of the variance over that of independent ones.
-static double find_inefficiency(const struct inversion *inversion, size_t parts) {
-    const struct inversion_basis *basis = &inversion->basis;
+static double find_inefficiency(const struct inversion_basis *basis,
+                                const struct inversion *inversion, size_t parts) {
     const struct replicas *replicas = &inversion->replicas;
     const size_t length = REPLICAS_BLOCKS / parts;
     double sum = 0;
@@ -171,8 +170,8 @@ static double find_inefficiency(const struct inversion *inversion, size_t parts)
         struct running_mean found = {0};
         for (size_t m = 0; m < replicas->count; m++)
             for (size_t part = 0; part < parts; part++)
-                mf_statistics_add(
-                    &found, block_gradient(inversion, m, part * length, (part + 1) * length, k));
+                mf_statistics_add(&found, block_gradient(basis, inversion, m, part * length,
+                                                         (part + 1) * length, k));
         const double variance = basis->hessian[k * (basis->count + 1)];
         if (variance > 0)
             sum += found.squares / (found.count - 1) / variance;
@@ -181,13 +180,15 @@ static double find_inefficiency(const struct inversion *inversion, size_t parts)
 }
 
 /// Few replicas hardly know how they scatter: halves of them count then.
-static double count_independent(const struct inversion *inversion) {
+static double count_independent(const struct inversion_basis *basis,
+                                const struct inversion *inversion) {
     enum { MANY = 4 };
     const size_t parts = inversion->replicas.count < MANY ? 2 : 1;
     double inefficiency = inversion->inefficiency;
     if (inversion->replicas.count > 1)
-        inefficiency = fmax(inefficiency, fmax(find_inefficiency(inversion, parts),
-                                               find_inefficiency(inversion, REPLICAS_BLOCKS)));
+        inefficiency =
+            fmax(inefficiency, fmax(find_inefficiency(basis, inversion, parts),
+                                    find_inefficiency(basis, inversion, REPLICAS_BLOCKS)));
     return inversion->replicas.counts.count / inefficiency;
 }
 
@@ -232,16 +233,21 @@ static void find_change(struct inversion_basis *basis, double temperature) {
     }
 }
 
-void mf_inversion_basis_measure(struct inversion *inversion) {
-    struct inversion_basis *basis = &inversion->basis;
+void mf_inversion_basis_respond(struct inversion_basis *basis, const struct inversion *inversion) {
+    fill_matrices(basis, inversion);
+    basis->independent = count_independent(basis, inversion);
+}
+
+void mf_inversion_basis_measure(struct inversion_basis *basis, const struct inversion *inversion,
+                                double *step) {
     const struct potential_grid *grid = &inversion->grid;
     const size_t count = basis->count;
     memset(basis->gradient, 0, count * sizeof *basis->gradient);
     for (size_t a = 0; a < grid->known; a++)
         for (size_t k = 0; k < count; k++)
             basis->gradient[k] += basis->value[a * count + k] * inversion->excess[a];
-    fill_matrices(inversion);
-    const double independent = basis->independent = count_independent(inversion);
+    mf_inversion_basis_respond(basis, inversion);
+    const double independent = basis->independent;
     for (size_t k = 0; k < count * count; k++)
         basis->noise[k] += basis->hessian[k] / independent;
     memcpy(basis->inverse, basis->noise, count * count * sizeof *basis->noise);
@@ -250,7 +256,7 @@ void mf_inversion_basis_measure(struct inversion *inversion) {
     invert(basis, 1, 1 / independent, basis->inverse);
     invert(basis, 1 + (double)count / independent, 1 / independent, basis->damped);
     find_change(basis, inversion->problem->scene.temperature);
-    make_curve(basis, grid, basis->change, inversion->step);
+    make_curve(basis, grid, basis->change, step);
 }
 
 enum status mf_inversion_basis_covariance(const struct inversion *inversion, double *covariance,

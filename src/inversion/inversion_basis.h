@@ -53,9 +53,14 @@ enum status mf_inversion_basis_project(const struct inversion_basis *basis,
                                        const struct potential_grid *grid, const double *weight,
                                        double *phi) MUST_USE;
 
+/// Hessian and independent samples, and the noise of the gradient by the target alone.
+void mf_inversion_basis_respond(struct inversion_basis *basis, const struct inversion *inversion);
+
 /// Gradient, Hessian and Newton step by the present samples and their covariance.
+/// @param[out] step  of the potential in the known bins, shape [points]
 /// Tested: test_inversion_basis.
-void mf_inversion_basis_measure(struct inversion *inversion);
+void mf_inversion_basis_measure(struct inversion_basis *basis, const struct inversion *inversion,
+                                double *step);
 
 /// Covariance of the potential in the known bins, shape [known, known]: (k_B T)² B A (N + 1/n²) A
 /// Bᵀ with the inverse A above and the noise N of the gradient; and the directions that the samples

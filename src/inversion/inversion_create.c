@@ -2,6 +2,7 @@
 //
 // What an inversion is made of: its parameters, its system, its memory.
 #include "inversion/inversion.h"
+#include "inversion/inversion_coarse.h"
 
 #include <math.h>
 #include <string.h>
@@ -57,6 +58,7 @@ void mf_inversion_destroy(void *memory) {
     mf_potential_grid_clear(&inversion->grid);
     mf_inversion_band_clear(&inversion->band);
     mf_inversion_basis_clear(&inversion->basis);
+    mf_inversion_basis_clear(&inversion->coarse);
     mf_inversion_trail_clear(&inversion->trail);
     mf_memory_free(inversion->shape);
     mf_memory_free(inversion->groups);
@@ -172,6 +174,8 @@ static enum status prepare(struct inversion *inversion, const struct inverse_pro
     if (inversion->method && inversion->method->restricted)
         TRY(mf_inversion_basis_init(&inversion->basis, &inversion->grid,
                                     &inversion->settings.entropy));
+    else if (inversion->grid.groups > 0)
+        TRY(mf_inversion_coarse_init(inversion));
     return mf_inversion_start(inversion);
 }
 

@@ -54,7 +54,7 @@ static void shorten(struct inversion *inversion) {
 static enum status update(struct inversion *inversion, double *extra) {
     static const double enough = 2;
     const struct inversion_basis *basis = &inversion->basis;
-    mf_inversion_basis_measure(inversion);
+    mf_inversion_basis_measure(&inversion->basis, inversion, inversion->step);
     extra[0] = basis->miss;
     extra[1] = basis->decrement;
     extra[2] = (double)basis->count;

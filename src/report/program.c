@@ -161,6 +161,11 @@ enum status mf_program_find_folder(char *path, size_t size, const char *name, co
 void mf_program_begin_again(char **words) {
     if (getenv("OMP_WAIT_POLICY") || getenv("GOMP_SPINCOUNT"))
         return;
-    if (setenv("GOMP_SPINCOUNT", "1000", 1) == 0)
-        execv("/proc/self/exe", words);
+    // By its own path: as /proc/self/exe, `ps` and `pkill` would call it "exe".
+    char self[OUTPUT_PATH_SIZE];
+    const ssize_t length = readlink("/proc/self/exe", self, sizeof self - 1);
+    if (length < 0 || setenv("GOMP_SPINCOUNT", "1000", 1) != 0)
+        return;
+    self[length] = '\0';
+    execv(self, words);
 }

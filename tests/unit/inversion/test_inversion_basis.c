@@ -72,7 +72,7 @@ static void test_basis_of_all_bins_takes_the_step_of_inverse_monte_carlo(void **
     (void)state;
     static struct made made;
     make(&made, 100, 1e14);
-    mf_inversion_basis_measure(&made.inversion);
+    mf_inversion_basis_measure(&made.inversion.basis, &made.inversion, made.step);
     for (size_t a = 0; a < KNOWN; a++) {
         double predicted = 0;
         for (size_t b = 0; b < KNOWN; b++)
@@ -90,7 +90,7 @@ static void test_basis_of_few_coefficients_makes_their_gradient_zero(void **stat
     make(&made, 4, 1e14);
     const struct inversion_basis *basis = &made.inversion.basis;
     double left[KNOWN], promised = 0, whole = 0;
-    mf_inversion_basis_measure(&made.inversion);
+    mf_inversion_basis_measure(&made.inversion.basis, &made.inversion, made.step);
     for (size_t a = 0; a < KNOWN; a++) {
         left[a] = made.excess[a];
         for (size_t b = 0; b < KNOWN; b++)
@@ -165,7 +165,7 @@ static void test_basis_covariance_is_the_scatter_of_the_step(void **state) {
     factorise(made.covariance, factor);
     for (uint32_t draw = 0; draw < DRAWS; draw++) {
         draw_excess(&made, factor, samples, draw);
-        mf_inversion_basis_measure(&made.inversion);
+        mf_inversion_basis_measure(&made.inversion.basis, &made.inversion, made.step);
         misses += pow(made.inversion.basis.miss, 2) / DRAWS;
         decrement += made.inversion.basis.decrement / DRAWS;
         for (size_t a = 0; a < KNOWN; a++)

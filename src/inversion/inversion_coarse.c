@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "inversion/inversion_coarse.h"
+
+#include "base/memory.h"
+#include "inversion/inversion.h"
+
+#include <gsl/gsl_blas.h>
+#include <gsl/gsl_eigen.h>
+#include <gsl/gsl_linalg.h>
+#include <math.h>
+#include <string.h>
+
+/// The largest eigenvalue of the response in units of Boltzmann inversion's.
+static const double largest = 2;
+
+enum status mf_inversion_coarse_init(struct inversion *inversion) {
+    static const struct entropy_parameters size = {.coefficients = 20, .group_coefficients = 8};
+    return mf_inversion_basis_init(&inversion->coarse, &inversion->grid, &size);
+}
+
+bool mf_inversion_is_coarse(const struct inversion *inversion) {
+    return inversion->coarse.count > 0 && !mf_inversion_is_near(inversion);
+}
+
+/// Work space of one step, in coefficients.
+struct response {
+    gsl_matrix *ideal;       ///< T, then its factor L: T = L Lᵀ
+    gsl_matrix *sampled;     ///< L⁻¹BᵀC B L⁻ᵀ
+    gsl_matrix *eigenvector; ///< of that
+    gsl_vector *eigenvalue;
+    gsl_vector *asked; ///< Bᵀ S* u, then L⁻¹ of it
+    gsl_vector *along; ///< the same along the eigenvectors
+    gsl_eigen_symmv_workspace *workspace;
+};
+
+static void response_free(struct response *r) {
+    gsl_matrix_free(r->ideal);
+    gsl_matrix_free(r->sampled);
+    gsl_matrix_free(r->eigenvector);
+    gsl_vector_free(r->eigenvalue);
+    gsl_vector_free(r->asked);
+    gsl_vector_free(r->along);
+    gsl_eigen_symmv_free(r->workspace);
+}
+
+static enum status response_allocate(struct response *r, size_t count) {
+    *r = (struct response){gsl_matrix_calloc(count, count), gsl_matrix_alloc(count, count),
+                           gsl_matrix_alloc(count, count),  gsl_vector_alloc(count),
+                           gsl_vector_calloc(count),        gsl_vector_alloc(count),
+                           gsl_eigen_symmv_alloc(count)};
+    if (r->ideal && r->sampled && r->eigenvector && r->eigenvalue && r->asked && r->along &&
+        r->workspace)
+        return STATUS_OK;
+    return mf_status_fail(STATUS_NO_MEMORY, "no memory for %zu coefficients", count);
+}
+
+/// T and Bᵀ S* u. A coefficient that hardly any pair sees keeps a little of its own.
+static void fill_ideal(const struct inversion *inversion, const double *step, struct response *r) {
+    static const double ridge = 1e-9;
+    const struct inversion_basis *coarse = &inversion->coarse;
+    const struct potential_grid *grid = &inversion->grid;
+    const size_t count = coarse->count;
+    for (size_t a = 0; a < grid->known; a++) {
+        const double weight = inversion->target_counts[grid->known_bin[a]];
+        const double *row = coarse->value + a * count;
+        for (size_t k = 0; k < count; k++) {
+            *gsl_vector_ptr(r->asked, k) += row[k] * weight * step[grid->known_point[a]];
+            for (size_t n = 0; n < count; n++)
+                *gsl_matrix_ptr(r->ideal, k, n) +=
+                    row[k] * weight * row[n] * (k == n ? 1 + ridge : 1);
+        }
+    }
+}
+
+/// The response of the samples in the norm of T, and what is asked for along its eigenvectors.
+static void decompose(const struct inversion_basis *coarse, struct response *r) {
+    const gsl_matrix_const_view hessian =
+        gsl_matrix_const_view_array(coarse->hessian, coarse->count, coarse->count);
+    gsl_linalg_cholesky_decomp1(r->ideal);
+    gsl_matrix_memcpy(r->sampled, &hessian.matrix);
+    gsl_blas_dtrsm(CblasLeft, CblasLower, CblasNoTrans, CblasNonUnit, 1, r->ideal, r->sampled);
+    gsl_blas_dtrsm(CblasRight, CblasLower, CblasTrans, CblasNonUnit, 1, r->ideal, r->sampled);
+    gsl_eigen_symmv(r->sampled, r->eigenvalue, r->eigenvector, r->workspace);
+    gsl_blas_dtrsv(CblasLower, CblasNoTrans, CblasNonUnit, r->ideal, r->asked);
+    gsl_blas_dgemv(CblasTrans, 1, r->eigenvector, r->asked, 0, r->along);
+}
+
+/// step += B (H⁻¹ − T⁻¹) Bᵀ S* u.
+static void add_difference(const struct inversion *inversion, struct response *r, double *step) {
+    const struct inversion_basis *coarse = &inversion->coarse;
+    const struct potential_grid *grid = &inversion->grid;
+    const double scatter = sqrt((double)coarse->count / coarse->independent);
+    const double share = scatter / (1 + scatter);
+    for (size_t k = 0; k < coarse->count; k++) {
+        const double h = fmin(gsl_vector_get(r->eigenvalue, k), largest);
+        *gsl_vector_ptr(r->along, k) *= 1 / (share + (1 - share) * h) - 1;
+    }
+    gsl_blas_dgemv(CblasNoTrans, 1, r->eigenvector, r->along, 0, r->asked);
+    gsl_blas_dtrsv(CblasLower, CblasTrans, CblasNonUnit, r->ideal, r->asked);
+    for (size_t a = 0; a < grid->known; a++)
+        for (size_t k = 0; k < coarse->count; k++)
+            step[grid->known_point[a]] +=
+                coarse->value[a * coarse->count + k] * gsl_vector_get(r->asked, k);
+}
+
+enum status mf_inversion_coarse_respond(struct inversion *inversion, double *step) {
+    enum status status = STATUS_OK;
+    struct response response = {0};
+    CHECK(response_allocate(&response, inversion->coarse.count));
+    mf_inversion_basis_respond(&inversion->coarse, inversion);
+    fill_ideal(inversion, step, &response);
+    decompose(&inversion->coarse, &response);
+    add_difference(inversion, &response, step);
+done:
+    response_free(&response);
+    return status;
+}
+
+/// Of an excess of which a part is noise, the rest is to be removed (N. Wiener, Extrapolation,
+/// Interpolation, and Smoothing of Stationary Time Series (1949)): 1 − noise²/rms² of each section.
+static void leave_noise(const struct inversion *inversion, double *step) {
+    for (int k = 0; k < inversion->sections; k++) {
+        const struct inversion_section *section = &inversion->section[k];
+        const double share = fmax(0, 1 - pow(section->noise / section->rms, 2));
+        for (size_t a = section->known; a < section->known + section->known_count; a++)
+            step[inversion->grid.known_point[a]] *= share;
+    }
+}
+
+enum status mf_inversion_coarse_step(struct inversion *inversion, double *step) {
+    mf_ibi_logarithms(inversion, step);
+    leave_noise(inversion, step);
+    TRY(mf_inversion_coarse_respond(inversion, step));
+    mf_inversion_pressure_add_ramp(inversion, step);
+    return STATUS_OK;
+}
