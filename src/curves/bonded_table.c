@@ -2,6 +2,7 @@
 #include "curves/bonded_table.h"
 
 #include "base/memory.h"
+#include "base/simd.h"
 
 #include <gsl/gsl_spline.h>
 #include <math.h>
@@ -10,23 +11,34 @@
 enum { INTERVALS = 2048 };
 
 /// Hermite's cubic between two points of the grid, where t goes from 0 to 1.
+/// Beyond the ends the curve goes on as a straight line. NaN gives NaN.
+/// @param[in,out] energy  the places on the grid, from 0 on, and then the energies
+SIMD_CLONES static void evaluate_places(const struct bonded_table *p, size_t count,
+                                        double *restrict energy, double *restrict slope) {
+    const double last = p->intervals, most = last - 1, inverse = 1 / p->spacing;
+    const double(*restrict point)[2] = (const double(*)[2])p->point;
+    for (size_t n = 0; n < count; n++) {
+        const double place = energy[n], above = place > 0 ? place : 0;
+        const double inside = above < last ? above : last, beyond = place - inside;
+        const int k = (int)(inside < most ? inside : most);
+        const double t = inside - k, u = 1 - t;
+        const double a = point[k][0], b = point[k + 1][0];
+        const double da = point[k][1], db = point[k + 1][1];
+        const double rise = 6 * t * u * (b - a) + u * (1 - 3 * t) * da + t * (1 - 3 * u) * db;
+        energy[n] = a + t * t * (3 - 2 * t) * (b - a) + t * u * (u * da - t * db) + rise * beyond;
+        slope[n] = rise * inverse;
+    }
+}
+
 static void evaluate(const void *parameters, size_t count, const double *q, double *energy,
                      double *slope) {
     const struct bonded_table *p = parameters;
-    const double last = p->intervals;
-    for (size_t n = 0; n < count; n++) {
-        double place = (q[n] - p->first) / p->spacing;
-        if (p->periodic)
-            place -= last * floor(place / last);
-        const double inside = fmin(fmax(place, 0), last), beyond = place - inside;
-        const int k = (int)fmin(inside, last - 1);
-        const double t = inside - k, u = 1 - t;
-        const double a = p->point[k][0], b = p->point[k + 1][0];
-        const double da = p->point[k][1], db = p->point[k + 1][1];
-        const double rise = 6 * t * u * (b - a) + u * (1 - 3 * t) * da + t * (1 - 3 * u) * db;
-        energy[n] = a + t * t * (3 - 2 * t) * (b - a) + t * u * (u * da - t * db) + rise * beyond;
-        slope[n] = rise / p->spacing;
-    }
+    const double inverse = 1 / p->spacing, last = p->intervals;
+    for (size_t n = 0; n < count; n++)
+        energy[n] = (q[n] - p->first) * inverse;
+    for (size_t n = 0; n < count && p->periodic; n++)
+        energy[n] -= last * floor(energy[n] / last);
+    evaluate_places(p, count, energy, slope);
 }
 
 static double rest(const void *parameters) {

@@ -6,6 +6,11 @@
 #include <math.h>
 #include <string.h>
 
+/// glibc has an atan2 of vectors (libmvec), at most 4 units of the last place off.
+#if SIMD_X86 && defined(__GLIBC__)
+__attribute__((simd("notinbranch"))) extern double atan2(double y, double x);
+#endif
+
 #define INLINE static inline __attribute__((always_inline))
 
 /// Where a sine, or a product of lengths that it is measured by, is below this there is no
@@ -124,8 +129,9 @@ void mf_bonded_add_bonds(const struct bonded_terms *terms, struct particles *par
 // Angles ------------------------------------------------------------------------------------------
 
 /// θ between a = r_0 − r_1 and b = r_2 − r_1, by its sine and cosine, exact at all angles.
-static void measure_angles(const struct particles *particles, const int32_t *place, size_t count,
-                           bonded_vectors a, bonded_vectors b, double *theta) {
+SIMD_CLONES static void measure_angles(const struct particles *particles, const int32_t *place,
+                                       size_t count, bonded_vectors a, bonded_vectors b,
+                                       double *theta) {
     separate(particles, place, 3, 0, 1, count, a);
     separate(particles, place, 3, 2, 1, count, b);
     for (size_t n = 0; n < count; n++) {
@@ -137,44 +143,55 @@ static void measure_angles(const struct particles *particles, const int32_t *pla
     }
 }
 
-/// With p = a × b, ∂θ/∂a = a × p/(a² |p|) and ∂θ/∂b = p × b/(b² |p|): away from each other in their
-/// plane.
-static void push_angle(const struct bonded_terms *terms, struct particles *particles, size_t n,
-                       const double a[3], const double b[3], double slope,
-                       struct bonded_sums *sums) {
-    const int32_t *place = terms->place + 3 * n;
-    double p[3], first[3], last[3], middle[3];
-    cross(a, b, p);
-    const double aa = dot(a, a), bb = dot(b, b), length = sqrt(dot(p, p));
-    if (!(length > no_direction * sqrt(aa * bb)))
-        return;
-    cross(a, p, first);
-    cross(p, b, last);
-    for (int d = 0; d < 3; d++) {
-        first[d] *= -slope / (aa * length);
-        last[d] *= -slope / (bb * length);
-        middle[d] = -first[d] - last[d];
-    }
-    push(particles, place[0], first);
-    push(particles, place[1], middle);
-    push(particles, place[2], last);
-    if (terms->transfer) {
-        add_transfer(sums, a, first);
-        add_transfer(sums, b, last);
+/// Forces on the first and the last beads, in the place of the vectors: with p = a × b, ∂θ/∂a = a ×
+/// p/(a² |p|) and ∂θ/∂b = p × b/(b² |p|), away from each other in their plane.
+SIMD_CLONES static void find_turns(const double *slope, size_t count, bonded_vectors a,
+                                   bonded_vectors b) {
+    for (size_t n = 0; n < count; n++) {
+        double u[3], v[3], p[3], first[3], last[3];
+        take(a, n, u);
+        take(b, n, v);
+        cross(u, v, p);
+        const double uu = dot(u, u), vv = dot(v, v), length = sqrt(dot(p, p));
+        const double turn = length > no_direction * sqrt(uu * vv) ? -slope[n] / length : 0;
+        cross(u, p, first);
+        cross(p, v, last);
+        for (int d = 0; d < 3; d++) {
+            a[d][n] = turn != 0 ? turn / uu * first[d] : 0;
+            b[d][n] = turn != 0 ? turn / vv * last[d] : 0;
+        }
     }
 }
 
 void mf_bonded_add_angles(const struct bonded_terms *terms, struct particles *particles,
                           struct bonded_sums *sums) {
+    const size_t count = terms->count;
+    const int32_t *place = terms->place;
     double theta[BONDED_BATCH], slope[BONDED_BATCH];
-    bonded_vectors a, b;
-    measure_angles(particles, terms->place, terms->count, a, b, theta);
+    bonded_vectors first, last, a, b;
+    measure_angles(particles, place, count, first, last, theta);
     ask_law(terms, theta, slope, sums);
-    for (size_t n = 0; n < terms->count; n++) {
-        double u[3], v[3];
-        take(a, n, u);
-        take(b, n, v);
-        push_angle(terms, particles, n, u, v, slope[n], sums);
+    if (terms->transfer) {
+        memcpy(a, first, sizeof a);
+        memcpy(b, last, sizeof b);
+    }
+    find_turns(slope, count, first, last);
+    for (int d = 0; d < particles->box.dimensions; d++) {
+        double *restrict f = particles->force[d];
+        for (size_t n = 0; n < count; n++) {
+            f[place[3 * n]] += first[d][n];
+            f[place[3 * n + 1]] -= first[d][n] + last[d][n];
+            f[place[3 * n + 2]] += last[d][n];
+        }
+    }
+    for (size_t n = 0; n < count && terms->transfer; n++) {
+        double from[3], force[3];
+        take(a, n, from);
+        take(first, n, force);
+        add_transfer(sums, from, force);
+        take(b, n, from);
+        take(last, n, force);
+        add_transfer(sums, from, force);
     }
 }
 
@@ -183,8 +200,9 @@ void mf_bonded_add_angles(const struct bonded_terms *terms, struct particles *pa
 // A. Blondel and M. Karplus, J. Comput. Chem. 17, 1132 (1996): with F = r_0 − r_1, G = r_1 − r_2,
 // H = r_3 − r_2, A = F × G and B = H × G nothing is divided by the sine of φ.
 
-static void measure_dihedrals(const struct particles *particles, const int32_t *place, size_t count,
-                              bonded_vectors f, bonded_vectors g, bonded_vectors h, double *phi) {
+SIMD_CLONES static void measure_dihedrals(const struct particles *particles, const int32_t *place,
+                                          size_t count, bonded_vectors f, bonded_vectors g,
+                                          bonded_vectors h, double *phi) {
     separate(particles, place, 4, 0, 1, count, f);
     separate(particles, place, 4, 1, 2, count, g);
     separate(particles, place, 4, 3, 2, count, h);
