@@ -17,27 +17,31 @@ const join = (folder, name) => (folder ? folder + "/" + name : name);
 
 export class Files {
   constructor(place, { open, fail, settings }) {
-    Object.assign(this, { place, open, fail, settings, root: "work", folder: "", asked: 0 });
+    Object.assign(this, { place, open, fail, settings, root: "work", folder: "", wished: { root: "work", folder: "" }, asked: 0 });
   }
 
-  async act(what) {
+  async act(what, isWanted = () => true) {
     try {
       await what();
     } catch (error) {
+      if (!isWanted())
+        return;
+      this.wished = { root: this.root, folder: this.folder };
       this.fail(error.message);
     }
   }
 
   // Answers may come in another order than they were asked for: the last wish is shown.
-  async show(root = this.root, folder = this.folder) {
-    const number = ++this.asked;
+  async show(root = this.wished.root, folder = this.wished.folder) {
+    const number = ++this.asked, isWanted = () => number === this.asked;
+    this.wished = { root, folder };
     await this.act(async () => {
       const list = await getJson("files", { in: root, path: folder });
-      if (number !== this.asked)
+      if (!isWanted())
         return;
       Object.assign(this, { root, folder });
       this.build(list);
-    });
+    }, isWanted);
   }
 
   build(list) {
@@ -73,18 +77,18 @@ export class Files {
   }
 
   async look(name, whole) {
-    const number = ++this.asked;
+    const number = ++this.asked, isWanted = () => number === this.asked;
     await this.act(async () => {
       const heading = element("h2", { textContent: name });
       if (/\.(png|svg)$/.test(name)) {
         const picture = element("img", { className: "figure", alt: "figure " + name });
         picture.src = URL.createObjectURL(await (await ask("file", { in: this.root, path: whole })).blob());
-        if (number !== this.asked)
+        if (!isWanted())
           return;
         this.view.replaceChildren(heading, picture);
       } else {
         const text = await getText("file", { in: this.root, path: whole });
-        if (number !== this.asked)
+        if (!isWanted())
           return;
         const shown = element("textarea", { value: text.slice(0, 200000), spellcheck: false, readOnly: this.root !== "work" || text.length > 200000 });
         shown.setAttribute("aria-label", "contents of " + name);
@@ -93,7 +97,7 @@ export class Files {
           this.view.append(button("save " + name, () => this.act(() => this.save(whole, shown.value, true))));
       }
       this.view.scrollIntoView({ block: "nearest" });
-    });
+    }, isWanted);
   }
 
   async save(whole, contents, replace) {

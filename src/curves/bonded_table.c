@@ -11,7 +11,7 @@
 enum { INTERVALS = 2048 };
 
 /// Hermite's cubic between two points of the grid, where t goes from 0 to 1.
-/// Beyond the ends the curve goes on as a straight line. NaN gives NaN.
+/// Beyond the ends the curve goes on as a straight line. The energy of NaN is NaN.
 /// @param[in,out] energy  the places on the grid, from 0 on, and then the energies
 SIMD_CLONES static void evaluate_places(const struct bonded_table *p, size_t count,
                                         double *restrict energy, double *restrict slope) {

@@ -6,9 +6,11 @@
 #include <math.h>
 #include <string.h>
 
-/// glibc has an atan2 of vectors (libmvec), at most 4 units of the last place off.
-#if SIMD_X86 && defined(__GLIBC__)
+/// glibc has an atan2 of vectors (libmvec) since 2.35, at most 4 units of the last place off.
+#if SIMD_X86 && defined(__GLIBC_PREREQ)
+#if __GLIBC_PREREQ(2, 35)
 __attribute__((simd("notinbranch"))) extern double atan2(double y, double x);
+#endif
 #endif
 
 #define INLINE static inline __attribute__((always_inline))

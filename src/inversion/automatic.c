@@ -83,9 +83,9 @@ static enum status update(struct inversion *inversion, double *extra) {
 const struct inverse_method mf_automatic = {
     .name = "auto",
     .summary = "hypernetted-chain steps (Delbary et al. 2020; in 2-D and of molecules Boltzmann "
-               "inversion, Reith et "
-               "al. 2003) until their linear response holds, then inverse Monte Carlo (Lyubartsev "
-               "and Laaksonen 1995)",
+               "inversion, Reith et al. 2003) until their linear response holds, or with groups "
+               "until the targets are near, then inverse Monte Carlo (Lyubartsev and Laaksonen "
+               "1995)",
     .own = &(const struct inversion_rule){update},
     .tables = (const struct inverse_table[]){INVERSION_TABLE, {NULL, 0}},
     .knows_molecules = true,

@@ -72,7 +72,8 @@ enum status mf_imc_step(struct inversion *inversion, const struct imc_parameters
     struct imc_solution solution;
     double *x = NULL;
     struct imc_system system = mf_inversion_system(inversion);
-    if (mf_inversion_is_coarse(inversion))
+    if (mf_inversion_is_coarse(inversion) && parameters->regularisation == 0 &&
+        !(parameters->strength > 0))
         return mf_inversion_coarse_step(inversion, step);
     mf_inversion_trail_take(&inversion->trail, &system);
     if (targets_ask(&problem->targets, TARGET_PRESSURE)) {

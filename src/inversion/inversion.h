@@ -252,8 +252,8 @@ void mf_ibi_step(const struct inversion *inversion, double *step);
 /// The same with the slope of the hypernetted chain. Fails: NO_MEMORY.
 enum status mf_hnc_step(const struct inversion *inversion, double ridge, double *step) MUST_USE;
 
-/// The regularised Newton step, or, with groups, that of Boltzmann inversion where C of few samples
-/// tells less; `extra` are strength, misfit and directions. Sets `settling`.
-/// Fails: NO_MEMORY.
+/// The regularised Newton step, or, with groups far from their targets and without a regularisation
+/// of the user's, that of mf_inversion_coarse_step; `extra` are strength, misfit and directions.
+/// Sets `settling`. Fails: NO_MEMORY.
 enum status mf_imc_step(struct inversion *inversion, const struct imc_parameters *parameters,
                         double *step, double extra[3]) MUST_USE;

@@ -54,14 +54,18 @@ static enum status response_allocate(struct response *r, size_t count) {
     return mf_status_fail(STATUS_NO_MEMORY, "no memory for %zu coefficients", count);
 }
 
-/// T and Bᵀ S* u. A coefficient that hardly any pair sees keeps a little of its own.
+/// T and Bᵀ S* u. What is empty in the target counts as a hundredth of the mean of all bins, so
+/// that no coefficient is unseen.
 static void fill_ideal(const struct inversion *inversion, const double *step, struct response *r) {
-    static const double ridge = 1e-9;
+    static const double ridge = 1e-9, least = 0.01;
     const struct inversion_basis *coarse = &inversion->coarse;
     const struct potential_grid *grid = &inversion->grid;
     const size_t count = coarse->count;
+    double mean = 0;
+    for (size_t a = 0; a < grid->known; a++)
+        mean += inversion->target_counts[grid->known_bin[a]] / (double)grid->known;
     for (size_t a = 0; a < grid->known; a++) {
-        const double weight = inversion->target_counts[grid->known_bin[a]];
+        const double weight = fmax(inversion->target_counts[grid->known_bin[a]], least * mean);
         const double *row = coarse->value + a * count;
         for (size_t k = 0; k < count; k++) {
             *gsl_vector_ptr(r->asked, k) += row[k] * weight * step[grid->known_point[a]];
@@ -72,17 +76,20 @@ static void fill_ideal(const struct inversion *inversion, const double *step, st
     }
 }
 
-/// The response of the samples in the norm of T, and what is asked for along its eigenvectors.
-static void decompose(const struct inversion_basis *coarse, struct response *r) {
+/// The response of the samples in the norm of T, and what is asked for along its eigenvectors;
+/// false if coefficients are not independent of each other.
+static bool decompose(const struct inversion_basis *coarse, struct response *r) {
     const gsl_matrix_const_view hessian =
         gsl_matrix_const_view_array(coarse->hessian, coarse->count, coarse->count);
-    gsl_linalg_cholesky_decomp1(r->ideal);
+    if (gsl_linalg_cholesky_decomp1(r->ideal) != GSL_SUCCESS)
+        return false;
     gsl_matrix_memcpy(r->sampled, &hessian.matrix);
     gsl_blas_dtrsm(CblasLeft, CblasLower, CblasNoTrans, CblasNonUnit, 1, r->ideal, r->sampled);
     gsl_blas_dtrsm(CblasRight, CblasLower, CblasTrans, CblasNonUnit, 1, r->ideal, r->sampled);
     gsl_eigen_symmv(r->sampled, r->eigenvalue, r->eigenvector, r->workspace);
     gsl_blas_dtrsv(CblasLower, CblasNoTrans, CblasNonUnit, r->ideal, r->asked);
     gsl_blas_dgemv(CblasTrans, 1, r->eigenvector, r->asked, 0, r->along);
+    return true;
 }
 
 /// step += B (H⁻¹ − T⁻¹) Bᵀ S* u.
@@ -109,8 +116,8 @@ enum status mf_inversion_coarse_respond(struct inversion *inversion, double *ste
     CHECK(response_allocate(&response, inversion->coarse.count));
     mf_inversion_basis_respond(&inversion->coarse, inversion);
     fill_ideal(inversion, step, &response);
-    decompose(&inversion->coarse, &response);
-    add_difference(inversion, &response, step);
+    if (decompose(&inversion->coarse, &response))
+        add_difference(inversion, &response, step);
 done:
     response_free(&response);
     return status;

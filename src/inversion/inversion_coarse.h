@@ -26,8 +26,8 @@ bool mf_inversion_is_coarse(const struct inversion *inversion);
 /// B H⁻¹Bᵀ S* u. In the norm of T, where Boltzmann inversion has H = 1, the eigenvalues h of BᵀC B
 /// of m coefficients and n independent samples scatter by sqrt(m/n) (V. A. Marchenko and L. A.
 /// Pastur, Math. USSR Sb. 1, 457 (1967)), so those of H are λ + (1 − λ) h with λ = s/(1 + s), s =
-/// sqrt(m/n), which makes no step twice as long as the right one. h above 2 counts as 2: samples
-/// that drift have such ones, and liquids do not.
+/// sqrt(m/n), so that a step along what responds no more than an ideal gas is hardly more than
+/// twice as long as the right one. h above 2 counts as 2: samples that drift have such ones.
 /// @param[in,out] step  u in the known bins, shape [points]. Fails: NO_MEMORY. Tested:
 /// test_inversion_coarse.
 enum status mf_inversion_coarse_respond(struct inversion *inversion, double *step) MUST_USE;

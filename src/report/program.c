@@ -164,8 +164,9 @@ void mf_program_begin_again(char **words) {
     // By its own path: as /proc/self/exe, `ps` and `pkill` would call it "exe".
     char self[OUTPUT_PATH_SIZE];
     const ssize_t length = readlink("/proc/self/exe", self, sizeof self - 1);
-    if (length < 0 || setenv("GOMP_SPINCOUNT", "1000", 1) != 0)
+    if (length < 0 || length == sizeof self - 1 || setenv("GOMP_SPINCOUNT", "1000", 1) != 0)
         return;
     self[length] = '\0';
     execv(self, words);
+    execv("/proc/self/exe", words); // it was replaced meanwhile
 }

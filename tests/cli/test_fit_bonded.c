@@ -65,11 +65,12 @@ static int enter(void **state) {
     return 0;
 }
 
-/// False alarms: 3 in 1000 for another seed, if the errors are honest.
+/// False alarms: 6 in 100,000 for another seed, or a processor with other last bits, if the errors
+/// are honest. Three errors, 3 in 1000, were too few for four numbers.
 static void assert_found(const char *name, double truth, double largest_error) {
     const double value = results_parameter("out/summary.json", name, "value");
     const double error = results_parameter("out/summary.json", name, "error");
-    if (!(error > 0 && error < largest_error) || !(fabs(value - truth) < 3 * error))
+    if (!(error > 0 && error < largest_error) || !(fabs(value - truth) < 4 * error))
         fail_msg("%s = %g +- %g, not %g", name, value, error, truth);
 }
 

@@ -120,12 +120,29 @@ static void test_coarse_step_is_not_shortened_by_what_drifts(void **state) {
     clear(&made);
 }
 
+/// Bins that are empty in the target leave coefficients that no pair sees.
+static void test_coarse_step_of_a_target_with_a_hole_is_finite(void **state) {
+    (void)state;
+    static struct made made;
+    make(&made, 8, 100, 1, 0.3);
+    for (size_t k = CORE + 1; k < CORE + 6; k++) {
+        made.counts[k] = 0;
+        for (size_t a = 0; a < KNOWN; a++)
+            made.covariance[a * KNOWN + k - CORE] = made.covariance[(k - CORE) * KNOWN + a] = 0;
+    }
+    assert_ok(mf_inversion_coarse_respond(&made.inversion, made.step));
+    for (size_t k = CORE; k < BINS; k++)
+        assert_true(fabs(made.step[k]) < 10);
+    clear(&made);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_coarse_step_of_an_ideal_response_is_that_of_boltzmann_inversion),
         cmocka_unit_test(test_coarse_step_of_many_samples_is_newtons),
         cmocka_unit_test(test_coarse_step_of_few_samples_is_short),
         cmocka_unit_test(test_coarse_step_is_not_shortened_by_what_drifts),
+        cmocka_unit_test(test_coarse_step_of_a_target_with_a_hole_is_finite),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
