@@ -167,8 +167,10 @@ static void test_respa_goes_back_the_way_it_came(void **state) {
     mf_table_clear(&table);
 }
 
-/// Energy a bead of dynamics without friction, every 0.2 τ from the first 40 τ on: how it scatters,
-/// and by how much it grows in a time.
+/// Energy a bead of dynamics without friction, every 0.2 τ from the first 40 τ on: by how much it
+/// grows in a time, and how it scatters about that line. Its growth is a walk of chance, which does
+/// not follow the time step: of four seeds it made 0.0001 to 0.0002 of scatters of 0.0002 to
+/// 0.0003.
 static void follow_energy(double time_step, double *scatter, double *drift) {
     enum { SAMPLES = 300 };
     struct molecules molecules;
@@ -205,8 +207,8 @@ static void follow_energy(double time_step, double *scatter, double *drift) {
         slope += time * each;
         squares += time * time;
     }
-    *scatter = mf_statistics_standard_error(&energy) * sqrt(SAMPLES);
     *drift = slope / squares;
+    *scatter = sqrt((energy.squares - *drift * slope) / (SAMPLES - 2));
     print_message("time step %g: energy %.6f, scatter %.2g, drift %.2g a bead and time\n",
                   time_step, energy.mean, *scatter, *drift);
     mf_simulation_clear(&simulation);
