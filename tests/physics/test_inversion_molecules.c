@@ -158,9 +158,9 @@ static void check_pairs(const struct inversion *inversion) {
 }
 
 /// k within 5 %, which is 0.6 % of the distribution's width times some; the deviations from a
-/// parabola as large as the bands say, within what smoothing takes off and misfit adds: at most
-/// `most`.
-static void check_groups(const struct inversion *inversion, double most) {
+/// parabola as large as the bands say, within what smoothing takes off and misfit adds: from
+/// `least` to `most`.
+static void check_groups(const struct inversion *inversion, double least, double most) {
     static const double truth[] = {spring, bend}, unit[] = {1, M_PI / 180};
     for (size_t g = 0; g < 2; g++) {
         double k, deviation;
@@ -168,11 +168,11 @@ static void check_groups(const struct inversion *inversion, double most) {
         print_message("group %zu: k = %.3f of %g, deviations %.2f bands\n", g, k, truth[g],
                       deviation);
         assert_true(fabs(k / truth[g] - 1) < 0.05);
-        assert_true(deviation > 0.2 && deviation < most);
+        assert_true(deviation > least && deviation < most);
     }
 }
 
-static void find(const struct inverse_method *method, double most) {
+static void find(const struct inverse_method *method, double least, double most) {
     static struct twin twin;
     make_twin(&twin);
     struct inversion *inversion = mf_memory_zeroed(1, method->state_size);
@@ -191,7 +191,7 @@ static void find(const struct inverse_method *method, double most) {
     } while (!step.finished);
     assert_true(step.converged);
     check_pairs(inversion);
-    check_groups(inversion, most);
+    check_groups(inversion, least, most);
     method->destroy(inversion);
     mf_memory_free(inversion);
     clear_twin(&twin);
@@ -199,19 +199,21 @@ static void find(const struct inverse_method *method, double most) {
 
 static void test_imc_finds_pairs_bonds_and_angles_at_once(void **state) {
     (void)state;
-    find(&mf_imc, 1.6);
+    find(&mf_imc, 0.2, 1.6);
 }
 
 static void test_ibi_finds_pairs_bonds_and_angles_at_once(void **state) {
     (void)state;
-    find(&mf_ibi, 1.6);
+    find(&mf_ibi, 0.2, 1.6);
 }
 
 /// Bins deviate together that few coefficients make: eight of these are above 2 on average in one
-/// case of 1000, if the errors are honest.
+/// case of 1000, if the errors are honest. Without a parabola five are left; two
+/// seeds had 0.89, 0.19 and 0.45, 0.37. Of bands that are twice as wide as they should be they are
+/// below 0.1 in one case of 1000.
 static void test_relative_entropy_finds_pairs_bonds_and_angles_at_once(void **state) {
     (void)state;
-    find(&mf_relative_entropy, 2.5);
+    find(&mf_relative_entropy, 0.1, 2.5);
 }
 
 /// Dimers of which the bond alone is looked for; nothing else acts.
