@@ -94,6 +94,17 @@ static void make_curve(const struct inversion_basis *basis, const struct potenti
     }
 }
 
+void mf_inversion_basis_weights(const struct inversion *inversion, double *weight) {
+    static const double least = 0.01;
+    const struct potential_grid *grid = &inversion->grid;
+    double sum = 0;
+    for (size_t a = 0; a < grid->known; a++)
+        sum += inversion->target_counts[grid->known_bin[a]];
+    for (size_t a = 0; a < grid->known; a++)
+        weight[a] =
+            fmax(inversion->target_counts[grid->known_bin[a]], least * sum / (double)grid->known);
+}
+
 enum status mf_inversion_basis_project(const struct inversion_basis *basis,
                                        const struct potential_grid *grid, const double *weight,
                                        double *phi) {

@@ -47,6 +47,11 @@ enum status mf_inversion_basis_init(struct inversion_basis *basis,
                                     const struct entropy_parameters *parameters) MUST_USE;
 void mf_inversion_basis_clear(struct inversion_basis *basis);
 
+/// Weights of the known bins, shape [known]: what the target has there, which is by how much each
+/// one enters S_rel, and at least a hundredth of their mean, so that no coefficient is unseen where
+/// a target is empty.
+void mf_inversion_basis_weights(const struct inversion *inversion, double *weight);
+
 /// Replace the known values of `phi`, shape [points], by the nearest that coefficients make, by
 /// least squares with these weights of the known bins. Nothing is completed. Fails: NO_MEMORY.
 enum status mf_inversion_basis_project(const struct inversion_basis *basis,

@@ -54,26 +54,29 @@ static enum status response_allocate(struct response *r, size_t count) {
     return mf_status_fail(STATUS_NO_MEMORY, "no memory for %zu coefficients", count);
 }
 
-/// T and Bᵀ S* u. What is empty in the target counts as a hundredth of the mean of all bins, so
-/// that no coefficient is unseen.
-static void fill_ideal(const struct inversion *inversion, const double *step, struct response *r) {
-    static const double ridge = 1e-9, least = 0.01;
+/// T and Bᵀ S* u.
+static enum status fill_ideal(const struct inversion *inversion, const double *step,
+                              struct response *r) {
+    static const double ridge = 1e-9;
+    enum status status = STATUS_OK;
     const struct inversion_basis *coarse = &inversion->coarse;
     const struct potential_grid *grid = &inversion->grid;
     const size_t count = coarse->count;
-    double mean = 0;
-    for (size_t a = 0; a < grid->known; a++)
-        mean += inversion->target_counts[grid->known_bin[a]] / (double)grid->known;
+    double *weight = NULL;
+    NEW_ARRAY(weight, grid->known);
+    mf_inversion_basis_weights(inversion, weight);
     for (size_t a = 0; a < grid->known; a++) {
-        const double weight = fmax(inversion->target_counts[grid->known_bin[a]], least * mean);
         const double *row = coarse->value + a * count;
         for (size_t k = 0; k < count; k++) {
-            *gsl_vector_ptr(r->asked, k) += row[k] * weight * step[grid->known_point[a]];
+            *gsl_vector_ptr(r->asked, k) += row[k] * weight[a] * step[grid->known_point[a]];
             for (size_t n = 0; n < count; n++)
                 *gsl_matrix_ptr(r->ideal, k, n) +=
-                    row[k] * weight * row[n] * (k == n ? 1 + ridge : 1);
+                    row[k] * weight[a] * row[n] * (k == n ? 1 + ridge : 1);
         }
     }
+done:
+    mf_memory_free(weight);
+    return status;
 }
 
 /// The response of the samples in the norm of T, and what is asked for along its eigenvectors;
@@ -115,7 +118,7 @@ enum status mf_inversion_coarse_respond(struct inversion *inversion, double *ste
     struct response response = {0};
     CHECK(response_allocate(&response, inversion->coarse.count));
     mf_inversion_basis_respond(&inversion->coarse, inversion);
-    fill_ideal(inversion, step, &response);
+    CHECK(fill_ideal(inversion, step, &response));
     if (decompose(&inversion->coarse, &response))
         add_difference(inversion, &response, step);
 done:

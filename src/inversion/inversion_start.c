@@ -97,21 +97,14 @@ done:
     return status;
 }
 
-/// Weights are what the target has in the bins, which is by how much each one enters S_rel, and at
-/// least a hundredth of their mean.
 enum status mf_inversion_restrict(struct inversion *inversion) {
-    static const double least = 0.01;
     enum status status = STATUS_OK;
     const struct potential_grid *grid = &inversion->grid;
-    double *weight = NULL, sum = 0;
+    double *weight = NULL;
     if (inversion->basis.count == 0)
         return STATUS_OK;
     NEW_ARRAY(weight, grid->known);
-    for (size_t a = 0; a < grid->known; a++)
-        sum += inversion->target_counts[grid->known_bin[a]];
-    for (size_t a = 0; a < grid->known; a++)
-        weight[a] =
-            fmax(inversion->target_counts[grid->known_bin[a]], least * sum / (double)grid->known);
+    mf_inversion_basis_weights(inversion, weight);
     CHECK(mf_inversion_basis_project(&inversion->basis, grid, weight, inversion->phi));
     mf_potential_grid_complete(grid, inversion->phi);
 done:

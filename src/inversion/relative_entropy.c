@@ -27,8 +27,7 @@ static enum status take_logarithms(struct inversion *inversion) {
     const struct potential_grid *grid = &inversion->grid;
     double *weight = NULL;
     NEW_ARRAY(weight, grid->known);
-    for (size_t a = 0; a < grid->known; a++)
-        weight[a] = inversion->target_counts[grid->known_bin[a]];
+    mf_inversion_basis_weights(inversion, weight);
     mf_ibi_logarithms(inversion, inversion->step);
     CHECK(mf_inversion_basis_project(&inversion->basis, grid, weight, inversion->step));
 done:
