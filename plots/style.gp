@@ -124,7 +124,7 @@ rmse_of(target) = "rmse of " . target_label(target) . target_unit(target)
 
 # What the column "error" of a fit is, from the targets that used.json says are fitted.
 fitted = !has("used.json") ? "" : system("awk '/\"[a-z_]+\":[ \t]*\\{/ { \
-    split($0, part, /\"/); kind = part[2] } /\"fitted\":.*\"yes\"/ { printf \" %s\", kind }' used.json")
+    split($0, part, /\"/); kind = part[2] } /\"fitted\":.*\"yes\"/ && !seen[kind]++ { printf \" %s\", kind }' used.json")
 error_label = words(fitted) > 1 ? "weighted error" : \
     rmse_of(words(fitted) == 1 ? word(fitted, 1) : "rdf")
 

@@ -27,7 +27,8 @@ enum rng_stream {
     RNG_COLLISIONS,    ///< with a heat bath; counters: trajectory, particle id
     RNG_BROWNIAN,      ///< kicks of an integrator without velocities; counters: step, particle id
     RNG_SOLVENT,       ///< of collision dynamics; counters: step, cell or number, what it is for
-    RNG_PAIR_MEMORY    ///< hidden variables of pairs; counters: step, smaller id, larger id
+    RNG_PAIR_MEMORY,   ///< hidden variables of pairs; counters: step, smaller id, larger id
+    RNG_STATES         ///< seeds of the states of a fit: number of the state
 };
 
 struct rng_block {

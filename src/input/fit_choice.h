@@ -10,7 +10,7 @@
 
 /// Filled in from choice to choice, in their order.
 struct fit_choice {
-    const struct fit_file *read;
+    const struct fit_file *read, *leader;
     struct json_object *root;
     struct fit_choices *said;
     const struct fit_scales_rdf *rdf;

@@ -33,6 +33,11 @@ static double find_cutoff(const struct fit_choice *c, const char **why) {
     const double whole = c->scales.range - 0.5 * c->rdf->bins.width;
     double cutoff = fmin(whole, fmax(beyond * c->scales.seen, 2 * c->scales.neighbour));
     *why = "beyond, g - 1 is within its noise";
+    if (c->leader) {
+        const struct rdf_bins *bins = &c->leader->files.rdf[0].bins;
+        *why = "as the first state has it";
+        return mf_rdf_bins_centre(bins, bins->count - 1);
+    }
     if (mf_fit_choice_lacks(c->root, "scene", "box"))
         return cutoff;
     const double half = 0.5 * mf_box_shortest(&c->read->scene.setup.box),
@@ -51,7 +56,7 @@ static enum status choose_cutoff(struct fit_choice *c) {
     const char *why, *key;
     char text[FIT_CHOICE_TEXT_SIZE];
     const double cutoff = find_cutoff(c, &why);
-    const bool forced = strcmp(why, "half of the box") == 0;
+    const bool forced = c->leader || strcmp(why, "half of the box") == 0;
     struct json_object rdf = mf_fit_choice_object(c->root, "target.rdf");
     c->range = c->scales.range;
     if (!c->finds[UNKNOWN_POTENTIAL] || (cutoff > worth * c->range && !forced))
@@ -244,8 +249,8 @@ static enum status choose_friction(struct fit_choice *c) {
     return mf_fit_choice_give_omega(c, "scene.dissipative", sigma, cutoff);
 }
 
-enum status mf_fit_defaults_choose(const struct fit_file *read, struct json_object *root,
-                                   struct fit_choices *choices) {
+enum status mf_fit_defaults_choose(const struct fit_file *read, const struct fit_file *leader,
+                                   struct json_object *root, struct fit_choices *choices) {
     static enum status (*const steps[])(struct fit_choice *) = {
         choose_unknowns,
         choose_core,
@@ -262,6 +267,7 @@ enum status mf_fit_defaults_choose(const struct fit_file *read, struct json_obje
     enum status status = STATUS_OK;
     struct fit_scales_rdf rdf = {0};
     struct fit_choice c = {.read = read,
+                           .leader = leader,
                            .root = root,
                            .said = choices,
                            .rdf = &rdf,

@@ -18,8 +18,9 @@ bool mf_fit_defaults_wanted(const struct json_object *root);
 enum status mf_fit_defaults_make_readable(struct json_object *root) MUST_USE;
 
 /// Put in what is chosen, and keep a line of each choice with its reason.
-/// @param[in]  read  the same file, made readable and read
-/// @param[in]  root  of the file as it stands
+/// @param[in]  read    the same file, made readable and read
+/// @param[in]  leader  the first state, whose range of g(r) the others have; NULL without
+/// @param[in]  root    of the file as it stands
 /// Fails: NO_MEMORY. Tested: test_fit_defaults, test_default_fits.
-enum status mf_fit_defaults_choose(const struct fit_file *read, struct json_object *root,
-                                   struct fit_choices *choices) MUST_USE;
+enum status mf_fit_defaults_choose(const struct fit_file *read, const struct fit_file *leader,
+                                   struct json_object *root, struct fit_choices *choices) MUST_USE;

@@ -107,15 +107,17 @@ static const struct field *fields_with(const struct inverse_method *method, cons
 enum status mf_fit_defaults_method(struct fit_choice *c) {
     const bool simulates = c->finds[UNKNOWN_OMEGA] || c->read->numbers > 0;
     const bool both = simulates && c->finds[UNKNOWN_POTENTIAL] && c->read->numbers == 0;
-    const struct inverse_method *method = both        ? &mf_successive
-                                          : simulates ? &mf_gauss_newton
-                                                      : &mf_automatic;
+    const struct inverse_method *method = both               ? &mf_successive
+                                          : simulates        ? &mf_gauss_newton
+                                          : c->read->name[0] ? &mf_joint_imc
+                                                             : &mf_automatic;
     const double particles = choose_particles(c);
     TRY(mf_fit_choice_give_text(c->root, "method", "name", method->name));
     if (both || !simulates) {
         const char *of[2] = {both ? "potential_particles" : "particles",
                              both ? "potential_precision" : "precision"};
-        const bool joined = scene_has_molecules(&c->read->scene.molecules);
+        // States of other densities have other particles in a box of that width.
+        const bool joined = scene_has_molecules(&c->read->scene.molecules) || c->read->name[0];
         mf_fit_choice_say(
             c,
             "method \"%s\": it finds the potential from g(r) by samples of %.0f particles, until "

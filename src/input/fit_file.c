@@ -7,6 +7,7 @@
 #include "input/fit_base.h"
 #include "input/fit_check.h"
 #include "input/fit_defaults.h"
+#include "input/fit_states.h"
 #include "input/fit_unknowns.h"
 
 #include <math.h>
@@ -93,10 +94,14 @@ static enum status read_scene(struct fit_file *fit, struct json_object *root) {
     return STATUS_OK;
 }
 
-static enum status read_root(struct fit_file *fit, struct json_object *root) {
+/// @param[in] leader  the first of several states, whose units all have; NULL of itself
+static enum status read_root(struct fit_file *fit, struct json_object *root,
+                             const struct fit_file *leader) {
     mf_json_fields(root, mf_heading_fields, &fit->heading);
     struct json_object scene = mf_json_child(root, "scene", false);
     mf_units_speak(root, &scene);
+    if (leader && mf_units_speaks(&leader->scene.units))
+        mf_json_speak(root->document, &leader->scene.units);
     // Before what its units convert.
     TRY(read_scene(fit, root));
     TRY(mf_target_files_read(
@@ -180,46 +185,87 @@ static void state_problem(struct fit_file *fit, const struct run_options *option
     mf_target_files_targets(&fit->files, others > 0, &problem->targets, &problem->compared);
 }
 
+/// Which state of which file is read.
+struct reading {
+    const char *file;
+    const struct run_options *options;
+    size_t state;
+    const struct fit_file *leader; ///< the first state, in whose units and range the others are
+    size_t states;                 ///< found; 0: the file has no states
+};
+
 /// Read the file, with choices for what it leaves out if there is a `plain` reading of it; else
 /// made readable if it needs choices, and `wanted` says so.
-static enum status read_document(struct fit_file *fit, const char *file,
+static enum status read_document(struct fit_file *fit, struct reading *reading,
                                  const struct fit_file *plain, bool *wanted) {
     struct json_document *document;
-    TRY(mf_json_open(&document, file));
+    TRY(mf_json_open(&document, reading->file));
+    enum status status =
+        mf_fit_states_take(document, reading->file, reading->state, fit->name, &reading->states);
     struct json_object root = mf_json_root(document);
-    enum status status = mf_heading_check_run(&root, file);
+    if (status == STATUS_OK)
+        status = mf_heading_check_run(&root, reading->file);
     *wanted = mf_fit_defaults_wanted(&root);
     if (status == STATUS_OK && *wanted)
-        status = plain ? mf_fit_defaults_choose(plain, &root, &fit->choices)
+        status = plain ? mf_fit_defaults_choose(plain, reading->leader, &root, &fit->choices)
                        : mf_fit_defaults_make_readable(&root);
     if (status == STATUS_OK)
         status = mf_json_collect_files(document, &fit->inputs);
     if (status == STATUS_OK)
-        status = read_root(fit, &root);
+        status = read_root(fit, &root, reading->leader);
     return mf_json_close(document, status);
+}
+
+static enum status parse_state(struct fit_file *fit, struct reading *reading) {
+    bool wanted;
+    *fit = (struct fit_file){0};
+    TRY(read_document(fit, reading, NULL, &wanted));
+    state_problem(fit, reading->options);
+    if (wanted) {
+        struct fit_file plain = *fit;
+        *fit = (struct fit_file){0};
+        const enum status status = read_document(fit, reading, &plain, &wanted);
+        mf_fit_file_clear(&plain);
+        TRY(status);
+        state_problem(fit, reading->options);
+    }
+    return STATUS_OK;
+}
+
+/// The states behind the first. What they read is read by the run.
+static enum status parse_others(struct fit_file *fit, const struct reading *first) {
+    enum status status = STATUS_OK;
+    if (first->states < 2)
+        return STATUS_OK;
+    NEW_ARRAY(fit->other, first->states - 1);
+    while (fit->others < first->states - 1) {
+        struct fit_file *other = &fit->other[fit->others++];
+        struct reading reading = {first->file, first->options, fit->others, fit, 0};
+        CHECK(mf_fit_states_mark(other, parse_state(other, &reading)));
+        for (size_t k = 0; k < other->inputs.count; k++)
+            CHECK(mf_input_files_add(&fit->inputs, other->inputs.file[k].name));
+    }
+done:
+    return status;
 }
 
 enum status mf_fit_file_parse(struct fit_file *fit, const char *file,
                               const struct run_options *options) {
-    bool wanted;
-    *fit = (struct fit_file){0};
-    TRY(read_document(fit, file, NULL, &wanted));
-    state_problem(fit, options);
-    if (wanted) {
-        struct fit_file plain = *fit;
-        *fit = (struct fit_file){0};
-        const enum status status = read_document(fit, file, &plain, &wanted);
-        mf_fit_file_clear(&plain);
-        TRY(status);
-        state_problem(fit, options);
-    }
+    struct reading reading = {file, options, 0, NULL, 0};
+    TRY(mf_fit_states_mark(fit, parse_state(fit, &reading)));
+    TRY(parse_others(fit, &reading));
+    mf_fit_states_link(fit);
     return STATUS_OK;
 }
 
 enum status mf_fit_file_read(struct fit_file *fit, const char *file,
                              const struct run_options *options) {
     TRY(mf_fit_file_parse(fit, file, options));
-    TRY(mf_fit_check(fit, file));
+    TRY(mf_fit_states_check(fit, file));
+    for (size_t s = 0; s < mf_fit_states_count(fit); s++) {
+        struct fit_file *state = mf_fit_states_at(fit, s);
+        TRY(mf_fit_states_mark(state, mf_fit_check(state, file)));
+    }
     return mf_fit_base_find(fit);
 }
 
@@ -233,18 +279,47 @@ void mf_fit_file_clear(struct fit_file *fit) {
     }
     mf_memory_free(fit->method_parameters);
     mf_input_files_clear(&fit->inputs);
+    for (size_t s = 0; s < fit->others; s++)
+        mf_fit_file_clear(&fit->other[s]);
+    mf_memory_free(fit->other);
     *fit = (struct fit_file){0};
+}
+
+static void write_verification(const struct fit_file *fit, struct json_writer *writer) {
+    mf_json_begin(writer, "verification");
+    mf_json_put_fields(writer, mf_verify_fields, &fit->verification);
+    mf_json_end(writer);
+}
+
+/// What is measured, and of what.
+static void write_state(const struct fit_file *fit, struct json_writer *writer) {
+    mf_target_files_write(&fit->files, writer);
+    mf_json_begin(writer, "scene");
+    mf_scene_write(&fit->scene, writer);
+    mf_json_end(writer);
+    write_verification(fit, writer);
+}
+
+static void write_states(const struct fit_file *fit, struct json_writer *writer) {
+    mf_json_begin(writer, "states");
+    for (size_t s = 0; s < mf_fit_states_count(fit); s++) {
+        const struct fit_file *state = s == 0 ? fit : &fit->other[s - 1];
+        mf_json_begin(writer, state->name);
+        write_state(state, writer);
+        mf_json_end(writer);
+    }
+    mf_json_end(writer);
 }
 
 enum status mf_fit_file_write(const struct fit_file *fit, const char *path) {
     struct json_writer *writer = mf_json_writer_create();
     mf_json_put_fields(writer, mf_heading_fields, &fit->heading);
     mf_units_write(&fit->scene.units, writer);
-    mf_target_files_write(&fit->files, writer);
+    if (fit->name[0])
+        write_states(fit, writer);
+    else
+        write_state(fit, writer);
     mf_fit_unknowns_write(fit, writer);
-    mf_json_begin(writer, "scene");
-    mf_scene_write(&fit->scene, writer);
-    mf_json_end(writer);
     mf_json_begin(writer, "method");
     mf_json_put_text(writer, "name", fit->method->name);
     for (const struct inverse_table *table = fit->method->tables; table->fields; table++)
@@ -253,9 +328,6 @@ enum status mf_fit_file_write(const struct fit_file *fit, const char *path) {
     mf_json_end(writer);
     mf_json_begin(writer, "core");
     mf_json_put_fields(writer, mf_fit_core_fields, &fit->core);
-    mf_json_end(writer);
-    mf_json_begin(writer, "verification");
-    mf_json_put_fields(writer, mf_verify_fields, &fit->verification);
     mf_json_end(writer);
     const enum status status = mf_json_write(writer, path);
     mf_json_writer_free(writer);
@@ -277,4 +349,6 @@ void mf_fit_file_digest(const struct fit_file *fit, uint64_t *digest) {
         for (int pair = 0; pair < COMPOSITION_MOST_PAIRS; pair++)
             if (fit->problem.unknown[kind].start[pair])
                 digest_curve(fit->problem.unknown[kind].start[pair], digest);
+    for (size_t s = 0; s < fit->others; s++)
+        mf_fit_file_digest(&fit->other[s], digest);
 }

@@ -32,8 +32,14 @@ struct fit_choices {
     char line[FIT_MOST_CHOICES][FIT_CHOICE_SIZE];
 };
 
+enum { FIT_STATE_NAME_SIZE = 64 };
+
 /// Owns everything that the problem borrows.
 struct fit_file {
+    char name[FIT_STATE_NAME_SIZE]; ///< of a state; "" if there is but one
+    size_t others;                  ///< states beside this, the first
+    struct fit_file *other;         ///< shape [others], each whole but for its own others
+    const struct inverse_problem *problems[INVERSE_MOST_STATES]; ///< of all states
     struct heading heading;
     struct fit_choices choices;
     struct target_files files;

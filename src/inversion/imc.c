@@ -76,7 +76,7 @@ enum status mf_imc_step(struct inversion *inversion, const struct imc_parameters
         !(parameters->strength > 0))
         return mf_inversion_coarse_step(inversion, step);
     mf_inversion_trail_take(&inversion->trail, &system);
-    if (targets_ask(&problem->targets, TARGET_PRESSURE)) {
+    if (targets_ask(&problem->targets, TARGET_PRESSURE) && inversion->joint == NULL) {
         system.constraint = inversion->pressure.slope;
         system.wanted = *problem->targets.target[TARGET_PRESSURE].value - inversion->pressure.value;
     }

@@ -55,6 +55,8 @@ static void assess_covariance(struct inversion *inversion) {
 }
 
 struct imc_system mf_inversion_system(const struct inversion *inversion) {
+    if (inversion->joint)
+        return *inversion->joint;
     return (struct imc_system){.size = inversion->grid.known,
                                .block = inversion->grid.known_of,
                                .blocks = inversion->grid.blocks,
@@ -355,15 +357,18 @@ static void describe(const struct inversion *inversion, const double *own, bool 
         mf_inversion_reason_tell(inversion, step->reason);
 }
 
-enum status mf_inversion_iterate(void *memory, struct inverse_step *step,
+enum status mf_inversion_observe(struct inversion *inversion,
                                  const struct inverse_listener *listener) {
-    struct inversion *inversion = memory;
-    struct inversion_progress *progress = &inversion->progress;
-    double own[INVERSION_OWN_COLUMNS] = {0};
-    bool kept;
     TRY(sample(inversion, listener));
     TRY(assess_response(inversion));
     mf_inversion_pool(inversion);
+    return STATUS_OK;
+}
+
+enum status mf_inversion_advance(struct inversion *inversion, struct inverse_step *step) {
+    struct inversion_progress *progress = &inversion->progress;
+    double own[INVERSION_OWN_COLUMNS] = {0};
+    bool kept;
     const struct inversion_rule *rule = inversion->method->own;
     inversion->has_other = inversion->settling = false;
     TRY(rule->update(inversion, own));
@@ -379,4 +384,10 @@ enum status mf_inversion_iterate(void *memory, struct inverse_step *step,
         TRY(go_on(inversion, kept));
     progress->iteration++;
     return STATUS_OK;
+}
+
+enum status mf_inversion_iterate(void *memory, struct inverse_step *step,
+                                 const struct inverse_listener *listener) {
+    TRY(mf_inversion_observe(memory, listener));
+    return mf_inversion_advance(memory, step);
 }

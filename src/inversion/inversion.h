@@ -104,6 +104,7 @@ struct inversion {
                                                    ///< mf_inversion_pool
     double *covariance;                       ///< C of S in the known bins, shape [known, known]
     double *doubt;                            ///< variances with those of C, of fits with groups
+    const struct imc_system *joint;           ///< the equations of several states, or NULL
     double behind;                            ///< samples behind C
     double misfit;                            ///< χ² of the excess by bin
     double inefficiency;                      ///< of the first section
@@ -183,7 +184,14 @@ void mf_inversion_count_targets(struct inversion *inversion);
 /// Make the tables of the present potentials, which the samplers read. Fails: NO_MEMORY.
 enum status mf_inversion_tabulate(struct inversion *inversion) MUST_USE;
 
-/// The linear equations of the present samples, without the pressure.
+/// The two halves of an iteration: sample the present potential and find what that says; keep the
+/// potential or go back, and step on. Fails: as inverse_method.iterate.
+enum status mf_inversion_observe(struct inversion *inversion,
+                                 const struct inverse_listener *listener) MUST_USE;
+enum status mf_inversion_advance(struct inversion *inversion, struct inverse_step *step) MUST_USE;
+
+/// The linear equations of the present samples, without the pressure; those of all states where
+/// there are several, with it.
 struct imc_system mf_inversion_system(const struct inversion *inversion);
 
 /// Replace phi by the nearest that coefficients make, where potentials are made of them. Fails:

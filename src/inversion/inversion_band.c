@@ -169,7 +169,7 @@ done:
 static void add_pressure(struct inversion *inversion, double *scratch) {
     const double open = spread(inversion, inversion->pressure.slope, scratch);
     inversion->band.ramp.pressure_open = sqrt(open);
-    if (!targets_ask(&inversion->problem->targets, TARGET_PRESSURE))
+    if (!targets_ask(&inversion->problem->targets, TARGET_PRESSURE) || inversion->joint)
         return;
     const double noise = inversion->distance[TARGET_PRESSURE].noise;
     add_square(inversion, -1 / (open + noise * noise), scratch);

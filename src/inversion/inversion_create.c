@@ -142,12 +142,13 @@ static enum status choose_size(struct inversion *inversion) {
 /// No potential of pairs empties a shell in the midst of a liquid: an empty bin beyond one that is
 /// well known is a fault of the target, and what would be made of it a barrier without an end.
 static enum status refuse_holes(const struct inversion *inversion) {
+    static const double well = 0.1;
     const struct inverse_problem *problem = inversion->problem;
     const struct potential_grid *grid = &inversion->grid;
     for (size_t n = 0; n < grid->pairs_known; n++) {
         const size_t bin = grid->known_bin[n], next = grid->known_bin[n] + 1;
-        if (next % grid->bins == 0 || !grid->well_known[n] ||
-            problem->targets.target[TARGET_RDF].value[next] > problem->core_threshold)
+        const double *g = problem->targets.target[TARGET_RDF].value;
+        if (next % grid->bins == 0 || !(g[bin] > well) || g[next] > problem->core_threshold)
             continue;
         const double r = mf_rdf_bins_centre(&problem->targets.bins, next % grid->bins);
         char kind[COMPOSITION_PAIR_NAME_SIZE];

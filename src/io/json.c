@@ -131,6 +131,46 @@ const struct units *mf_json_units(const struct json_object *object) {
     return &object->document->units;
 }
 
+/// What is null goes, objects are merged, and everything else replaces what was there; false if
+/// there is no memory.
+static bool merge(cJSON *object, const cJSON *patch) {
+    const cJSON *from;
+    cJSON_ArrayForEach(from, patch) {
+        cJSON *to = cJSON_GetObjectItemCaseSensitive(object, from->string);
+        const bool both = cJSON_IsObject(from) && cJSON_IsObject(to);
+        if (!both)
+            cJSON_DeleteItemFromObjectCaseSensitive(object, from->string);
+        if (cJSON_IsNull(from))
+            continue;
+        if (!both) {
+            to = cJSON_IsObject(from) ? cJSON_CreateObject() : cJSON_Duplicate(from, true);
+            if (!cJSON_AddItemToObject(object, from->string, to)) {
+                cJSON_Delete(to);
+                return false;
+            }
+        }
+        if (cJSON_IsObject(from) && !merge(to, from))
+            return false;
+    }
+    return true;
+}
+
+enum status mf_json_take_variant(struct json_document *document, const char *key, size_t n) {
+    cJSON *variants = cJSON_DetachItemFromObjectCaseSensitive(document->root, key);
+    const cJSON *one = cJSON_GetArrayItem(variants, (int)n);
+    enum status status = STATUS_OK;
+    if (!cJSON_IsObject(one)) {
+        status = mf_status_fail(STATUS_BAD_INPUT, "%s: %s.%s: expected an object", document->file,
+                                key, one && one->string ? one->string : "");
+    } else {
+        status = merge(document->root, one)
+                     ? STATUS_OK
+                     : mf_status_fail(STATUS_NO_MEMORY, "%s: out of memory", document->file);
+    }
+    cJSON_Delete(variants);
+    return status;
+}
+
 struct json_object mf_json_root(struct json_document *document) {
     struct json_object root = view(document, document->root);
     if (!cJSON_IsObject(document->root)) {

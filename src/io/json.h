@@ -47,6 +47,12 @@ void mf_json_speak(struct json_document *document, const struct units *units);
 /// In which units the numbers of the object are.
 const struct units *mf_json_units(const struct json_object *object);
 
+/// Make the document what member number n of its object `key` makes of it: that object goes, and
+/// the member is merged into the rest (RFC 7396, JSON Merge Patch). Before its root is viewed.
+/// Fails: NO_MEMORY; BAD_INPUT if the member is no object. Tested: test_json.
+enum status mf_json_take_variant(struct json_document *document, const char *key,
+                                 size_t n) MUST_USE;
+
 /// View of the document's root, which must be an object.
 struct json_object mf_json_root(struct json_document *document);
 

@@ -55,6 +55,8 @@ static enum status open_run(struct mesofit_fit **made, const char *file,
     fit->progress = progress;
     fit->context = context;
     CHECK(mf_fit_file_parse(&fit->file, file, &options));
+    if (fit->file.others > 0)
+        CHECK(mf_status_fail(STATUS_BAD_INPUT, "%s: states: the program alone fits several", file));
     if (own)
         CHECK(add_own_laws(fit, own));
     CHECK(mf_fit_check(&fit->file, file));

@@ -144,8 +144,15 @@ struct bonded_unknown {
 
 enum { INVERSE_MOST_BONDED = (int)TOPOLOGY_ORDERS * (int)MOLECULES_MOST_GROUPS };
 
+enum { INVERSE_MOST_STATES = 16 };
+
 /// What is to be fitted. Borrowed by the methods.
 struct inverse_problem {
+    /// Those that share the unknowns, this one among them, each with targets and a scene of its
+    /// own: shape [states]. 0: this one stands alone. Borrowed.
+    const struct inverse_problem *const *state;
+    size_t states;
+    const char *name; ///< of this state; borrowed
     struct targets targets;  ///< to be fitted
     struct targets compared; ///< by the verification: those and others
     struct unknown unknown[UNKNOWNS];
@@ -253,7 +260,7 @@ struct inverse_folder {
     const struct units *units; ///< in which they speak
 };
 
-enum { INVERSE_MAX_SPANS = 1024 };
+enum { INVERSE_MAX_SPANS = 10240 };
 
 /// What kind of method it is.
 enum inverse_kind {
@@ -292,6 +299,7 @@ struct inverse_method {
     bool knows_molecules;              ///< and finds what is unknown of their bonds, too
     bool
         restricted; ///< of an inversion: its potentials are of a form that need not meet the target
+    bool knows_states; ///< fits several states at once
     enum status (*create)(void *state, const struct inverse_method *method,
                           const struct inverse_problem *problem, const void *parameters);
     void (*destroy)(void *state);
@@ -311,6 +319,7 @@ struct inverse_method {
     EACH(imc)                                                                                      \
     EACH(ibi)                                                                                      \
     EACH(hnc)                                                                                      \
+    EACH(joint_imc)                                                                                \
     EACH(relative_entropy)                                                                         \
     OPTIMISERS(EACH##_MATCHING)                                                                    \
     EACH(gauss_newton)                                                                             \

@@ -7,11 +7,19 @@
 
 #include <math.h>
 
+/// g of a bin, of several states the largest: what one of them tells is known.
+static double most_pairs(const struct inverse_problem *problem, size_t bin) {
+    double most = problem->targets.target[TARGET_RDF].value[bin];
+    for (size_t s = 0; s < problem->states; s++)
+        most = fmax(most, problem->state[s]->targets.target[TARGET_RDF].value[bin]);
+    return most;
+}
+
 static enum status find_core(struct potential_grid *grid, const struct inverse_problem *problem,
                              size_t pair) {
-    const double *g = problem->targets.target[TARGET_RDF].value + pair * grid->bins;
     size_t *core = &grid->core[pair];
-    while (*core < grid->bins && g[*core] <= problem->core_threshold)
+    while (*core < grid->bins &&
+           most_pairs(problem, pair * grid->bins + *core) <= problem->core_threshold)
         (*core)++;
     if (*core + 3 > grid->bins) {
         char name[COMPOSITION_PAIR_NAME_SIZE];
@@ -32,8 +40,7 @@ static void index_known(struct potential_grid *grid, const struct inverse_proble
         for (size_t k = grid->core[pair]; k < grid->bins; k++, n++) {
             grid->known_point[n] = mf_potential_grid_block(grid, pair) + k;
             grid->known_bin[n] = pair * grid->bins + k;
-            grid->well_known[n] =
-                problem->targets.target[TARGET_RDF].value[grid->known_bin[n]] > well;
+            grid->well_known[n] = most_pairs(problem, grid->known_bin[n]) > well;
         }
     for (size_t g = 0; g < grid->groups; g++) {
         const struct potential_group *group = &grid->group[g];

@@ -374,10 +374,11 @@ static enum status write_configuration(const struct fit_file *fit,
                                   verification->particles);
 }
 
-enum status mf_fit_output_observables(const struct fit_file *fit, const struct fit_result *result,
+enum status mf_fit_output_observables(const struct fit_file *fit,
+                                      const struct verification *verification,
                                       const struct run_folder *folder) {
     const struct target_files *files = &fit->files;
-    const struct observed *observed = &result->verification->observed;
+    const struct observed *observed = &verification->observed;
     for (size_t pair = 0; files->given[TARGET_RDF] && pair < files->pairs; pair++)
         TRY(write_rdf(fit, observed, pair, folder));
     if (files->given[TARGET_ETD])
@@ -389,5 +390,5 @@ enum status mf_fit_output_observables(const struct fit_file *fit, const struct f
     for (int kind = 0; kind < TARGETS; kind++)
         if (files->curve[kind].points > 0)
             TRY(write_curve(fit, kind, observed, folder));
-    return write_configuration(fit, result->verification, folder);
+    return write_configuration(fit, verification, folder);
 }

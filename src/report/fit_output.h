@@ -23,7 +23,7 @@ struct fit_result {
     const struct inverse_parameter *number;    ///< shape [problem.numbers]
     const char *formula;                       ///< of the curve, or ""
     const char *reason;                        ///< why it has not converged, or settled, or ""
-    const struct verification *verification;   ///< NULL if there was none
+    const struct verification *verification;   ///< of each state; NULL if there was none
 };
 
 /// potential.tsv and omega.tsv, what of them was fitted.
@@ -31,8 +31,10 @@ enum status mf_fit_output_curves(const struct fit_file *fit, const struct unknow
                                  const struct fit_result *result,
                                  const struct run_folder *folder) MUST_USE;
 
-/// From the verification: rdf.tsv, etd.tsv and motion.tsv, as far as there are targets.
-enum status mf_fit_output_observables(const struct fit_file *fit, const struct fit_result *result,
+/// From the verification of one state: rdf.tsv, etd.tsv and motion.tsv, as far as there are
+/// targets.
+enum status mf_fit_output_observables(const struct fit_file *fit,
+                                      const struct verification *verification,
                                       const struct run_folder *folder) MUST_USE;
 
 /// summary.json.

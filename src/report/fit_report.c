@@ -169,17 +169,26 @@ static void say_thermodynamics(struct progress *to, const struct units *units,
                         configurational, kelvin, pressure);
 }
 
+/// What was found of a state, or of the only one.
+static void say_state(struct progress *to, const struct fit_file *fit,
+                      const struct verification *v) {
+    const struct units *units = &fit->scene.units;
+    if (fit->name[0])
+        mf_progress_say(to, "state \"%s\":", fit->name);
+    say_distances(to, fit, v);
+    if (targets_ask(&fit->problem.compared, TARGET_DIFFUSION))
+        say_diffusion(to, units, v);
+    say_thermodynamics(to, units, &v->thermodynamics);
+}
+
 void mf_fit_report_say(struct progress *to, const struct fit_file *fit,
                        const struct unknowns *unknowns, const struct fit_result *result) {
-    const struct verification *v = result->verification;
     const struct units *units = &fit->scene.units;
     say_changes(to, units, unknowns, result);
     if (result->formula[0])
         mf_progress_say(to, "formula: %s", result->formula);
     say_parameters(to, fit, result->parameter);
     say_numbers(to, fit, result->number);
-    say_distances(to, fit, v);
-    if (targets_ask(&fit->problem.compared, TARGET_DIFFUSION))
-        say_diffusion(to, units, v);
-    say_thermodynamics(to, units, &v->thermodynamics);
+    for (size_t s = 0; s <= fit->others; s++)
+        say_state(to, s == 0 ? fit : &fit->other[s - 1], &result->verification[s]);
 }

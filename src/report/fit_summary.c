@@ -297,6 +297,21 @@ static void put_verification(struct json_writer *writer, const struct fit_file *
     mf_units_put(&fit->scene.units, writer, t->potential_energy, t->pressure);
 }
 
+/// "states": {"dilute": {"rdf_rmse": …}, …}: those of the first stand above, too.
+static void put_states(struct json_writer *writer, const struct fit_file *fit,
+                       const struct verification *verification) {
+    if (fit->name[0] == '\0')
+        return;
+    mf_json_begin(writer, "states");
+    for (size_t s = 0; s <= fit->others; s++) {
+        const struct fit_file *state = s == 0 ? fit : &fit->other[s - 1];
+        mf_json_begin(writer, state->name);
+        put_verification(writer, state, &verification[s]);
+        mf_json_end(writer);
+    }
+    mf_json_end(writer);
+}
+
 enum status mf_fit_output_summary(const struct fit_file *fit, const struct unknowns *unknowns,
                                   const struct fit_result *result,
                                   const struct run_folder *folder) {
@@ -321,6 +336,8 @@ enum status mf_fit_output_summary(const struct fit_file *fit, const struct unkno
         mf_json_put_text(writer, "formula", result->formula);
     if (result->verification)
         put_verification(writer, fit, result->verification);
+    if (result->verification)
+        put_states(writer, fit, result->verification);
     put_normalisation(writer, fit);
     put_truth(writer, fit, unknowns, result);
     for (int kind = 0; kind < UNKNOWNS; kind++)

@@ -14,6 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 /// Room for the name of any file behind the path of the folder.
@@ -184,15 +185,39 @@ static enum status with_files_in(const char *place, int (*is_one)(const struct d
     return status;
 }
 
-/// Do something with every file of the folder, and of that of its snapshots, that is one of those.
+static int is_named(const struct dirent *entry) {
+    return entry->d_name[0] != '.';
+}
+
+/// The same of a folder below, if it is there, or of all folders in it.
+struct below {
+    int (*is_one)(const struct dirent *);
+    enum status (*act)(const char *path, const void *context);
+    const void *context;
+};
+
+static enum status with_files_of_state(const char *path, const void *context) {
+    const struct below *below = context;
+    struct stat about;
+    if (stat(path, &about) != 0 || !S_ISDIR(about.st_mode))
+        return STATUS_OK;
+    return with_files_in(path, below->is_one, below->act, below->context);
+}
+
+/// Do something with every file of the folder, of that of its snapshots and of those of its
+/// states, that is one of those.
 static enum status with_files(const struct run_folder *folder, int (*is_one)(const struct dirent *),
                               enum status (*act)(const char *path, const void *context),
                               const void *context) {
-    char snapshots[OUTPUT_PATH_SIZE];
+    const struct below below = {is_one, act, context};
+    char path[OUTPUT_PATH_SIZE];
     TRY(with_files_in(folder->path, is_one, act, context));
-    mf_run_folder_file(folder, SNAPSHOT_FOLDER, snapshots);
-    return access(snapshots, F_OK) == 0 ? with_files_in(snapshots, is_one, act, context)
-                                        : STATUS_OK;
+    mf_run_folder_file(folder, SNAPSHOT_FOLDER, path);
+    if (access(path, F_OK) == 0)
+        TRY(with_files_in(path, is_one, act, context));
+    mf_run_folder_file(folder, STATES_FOLDER, path);
+    return access(path, F_OK) == 0 ? with_files_in(path, is_named, with_files_of_state, &below)
+                                   : STATUS_OK;
 }
 
 // May it be written? ------------------------------------------------------------------------------
@@ -330,6 +355,22 @@ void mf_run_folder_close(struct run_folder *folder) {
 void mf_run_folder_file(const struct run_folder *folder, const char *name, char *path) {
     snprintf(path, OUTPUT_PATH_SIZE, "%.*s/%.*s", LONGEST_FOLDER, folder->path, NAME_ROOM - 2,
              name);
+}
+
+enum status mf_run_folder_state(const struct run_folder *folder, const char *name,
+                                struct run_folder *state) {
+    char states[OUTPUT_PATH_SIZE];
+    *state = (struct run_folder){0};
+    mf_run_folder_file(folder, STATES_FOLDER, states);
+    const int length = snprintf(state->path, sizeof state->path, "%s/%s", states, name);
+    if (length < 0 || length > LONGEST_FOLDER)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%.60s…: the path of a state's folder has at most %d bytes",
+                              folder->path, LONGEST_FOLDER);
+    if (!ranks_lead())
+        return STATUS_OK;
+    TRY(mf_output_make_folder(states));
+    return mf_output_make_folder(state->path);
 }
 
 void mf_run_folder_draw(const struct run_folder *folder) {

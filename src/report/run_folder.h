@@ -14,6 +14,9 @@
 /// How far a run is, while it works: report/progress.h.
 #define PROGRESS_FILE "progress.json"
 
+/// The folder of the folders of a fit's states.
+#define STATES_FOLDER "states"
+
 /// A simulation or a measurement may replace an earlier one of its kind, a fit nothing without
 /// --force.
 enum run_kind { RUN_SIMULATION, RUN_FIT, RUN_MEASUREMENT };
@@ -52,6 +55,11 @@ void mf_run_folder_close(struct run_folder *folder);
 
 /// Path of a file in the folder, into `path` of OUTPUT_PATH_SIZE bytes.
 void mf_run_folder_file(const struct run_folder *folder, const char *name, char *path);
+
+/// The folder of a state of a fit in that of the fit, which is made with it; it is not locked by
+/// itself. Fails: BAD_INPUT if its path is too long; IO.
+enum status mf_run_folder_state(const struct run_folder *folder, const char *name,
+                                struct run_folder *state) MUST_USE;
 
 /// Draw the figures of the folder; what fails is a warning on stderr.
 void mf_run_folder_draw(const struct run_folder *folder);

@@ -5,6 +5,7 @@
 #include "base/parallel.h"
 #include "base/ranks.h"
 #include "base/visible.h"
+#include "input/fit_states.h"
 #include "io/checkpoint.h"
 #include "report/fit_output.h"
 #include "report/fit_report.h"
@@ -136,8 +137,7 @@ static enum status read_and_create(struct run *run, const char *file,
                                    const struct run_options *options) {
     TRY(mf_fit_file_read(&run->fit, file, options));
     TRY(mf_run_folder_open(&run->folder, RUN_FIT, file, &run->fit.inputs, options));
-    TRY(mf_target_files_normalise(&run->fit.files, &run->fit.scene.setup.box,
-                                  scene_has_molecules(&run->fit.scene.molecules)));
+    TRY(mf_fit_states_normalise(&run->fit));
     const enum status status = create(run);
     return status == STATUS_OK
                ? STATUS_OK
@@ -335,63 +335,102 @@ static void say_verified(struct run *run, const struct fit_result *result) {
     mf_progress_say(to, "results in %s", run->folder.path);
 }
 
-/// The verification has the last word. An inversion has converged only if the result agrees with
-/// the target; measured, inversions of water, Lennard-Jones and the Gaussian core are verified
-/// within 0.8 to 2.3 times the statistical error. Other methods, and inversions by few
+/// What the verification of a state contradicts. An inversion has converged only if the result
+/// agrees with the target; measured, inversions of water, Lennard-Jones and the Gaussian core are
+/// verified within 0.8 to 2.3 times the statistical error. Other methods, and inversions by few
 /// coefficients, do not say that they agree, but how far they are off: that is what must be borne
 /// out.
-static void doubt(struct run *run, const struct verification *verification) {
+static bool is_contradicted(struct run *run, const struct fit_file *state,
+                            const struct verification *verification) {
     static const double noise_margin = 3;
     struct standing *standing = &run->standing;
-    const struct targets *targets = &run->fit.problem.targets;
+    const struct targets *targets = &state->problem.targets;
+    return run->fit.method->kind == INVERSE_INVERSION && !run->fit.method->restricted
+               ? mf_fit_verdict_contradicts(verification, targets_ask(targets, TARGET_PRESSURE),
+                                            state->problem.scene.temperature, noise_margin,
+                                            &state->scene.units, standing->reason)
+               : mf_fit_verdict_is_worse(verification, targets, standing->error, standing->variance,
+                                         standing->reason);
+}
+
+/// The verification has the last word.
+static void doubt(struct run *run, const struct verification *verification) {
+    struct standing *standing = &run->standing;
     if (!standing->converged && !standing->used_up)
         return;
-    if (run->fit.method->kind == INVERSE_INVERSION && !run->fit.method->restricted
-            ? mf_fit_verdict_contradicts(verification, targets_ask(targets, TARGET_PRESSURE),
-                                         run->fit.problem.scene.temperature, noise_margin,
-                                         &run->fit.scene.units, standing->reason)
-            : mf_fit_verdict_is_worse(verification, targets, standing->error, standing->variance,
-                                      standing->reason))
-        run->doubted = true;
+    for (size_t s = 0; s < mf_fit_states_count(&run->fit) && !run->doubted; s++)
+        run->doubted = is_contradicted(run, mf_fit_states_at(&run->fit, s), &verification[s]);
     if (run->doubted)
         standing->converged = standing->used_up = false;
 }
 
-/// The independent verification of the result, and everything that rests on it.
-static enum status verify_and_write(struct run *run) {
+/// Of one state, with the tables that all have.
+static enum status verify_state(struct run *run, const struct fit_file *state,
+                                const struct inverse_listener *listener,
+                                struct verification *verification) {
+    struct unknowns unknowns = {0};
     struct unknowns_laws laws = {0};
     double number[INVERSE_MOST_NUMBERS];
-    struct verification verification = {0};
-    struct progress progress = mf_progress_begin(run->progress.quiet, run->progress.watcher);
-    progress.folder = run->progress.folder;
-    const struct inverse_listener listener = {tell_verification, &progress};
     enum status status = STATUS_OK;
     for (int n = 0; n < INVERSE_MOST_NUMBERS; n++)
         number[n] = run->standing.number[n].value;
-    CHECK(mf_unknowns_laws_make(&run->unknowns, (const double *const *)run->curve, number, &laws));
-    status = mf_verify(&laws.problem, laws.table[UNKNOWN_POTENTIAL], laws.table[UNKNOWN_OMEGA],
-                       &run->fit.verification, &listener, &verification);
+    CHECK(mf_unknowns_init(&unknowns, &state->problem));
+    CHECK(mf_unknowns_laws_make(&unknowns, (const double *const *)run->curve, number, &laws));
+    CHECK(mf_verify(&laws.problem, laws.table[UNKNOWN_POTENTIAL], laws.table[UNKNOWN_OMEGA],
+                    &state->verification, listener, verification));
+    mf_fit_verdict_mark(&state->scene.units, verification);
+done:
+    mf_unknowns_laws_clear(&laws);
+    mf_unknowns_clear(&unknowns);
+    return status;
+}
+
+/// Tables and figures of a state: the first has those of the run's folder.
+static enum status write_state(const struct run *run, const struct fit_file *state,
+                               const struct verification *verification) {
+    struct run_folder folder = run->folder;
+    if (state != &run->fit)
+        TRY(mf_run_folder_state(&run->folder, state->name, &folder));
+    TRY(mf_fit_output_observables(state, verification, &folder));
+    if (state != &run->fit)
+        mf_run_folder_draw(&folder);
+    return STATUS_OK;
+}
+
+/// The independent verification of the result, and everything that rests on it.
+static enum status verify_and_write(struct run *run) {
+    struct verification *verification = NULL;
+    struct progress progress = mf_progress_begin(run->progress.quiet, run->progress.watcher);
+    progress.folder = run->progress.folder;
+    const struct inverse_listener listener = {tell_verification, &progress};
+    const size_t states = mf_fit_states_count(&run->fit);
+    enum status status = STATUS_OK;
+    NEW_ARRAY(verification, states);
+    for (size_t s = 0; status == STATUS_OK && s < states; s++)
+        status = verify_state(run, mf_fit_states_at(&run->fit, s), &listener, &verification[s]);
     if (status == STATUS_UNSTABLE)
         status = write_unstable(run);
     CHECK(status);
-    mf_fit_verdict_mark(&run->fit.scene.units, &verification);
-    doubt(run, &verification);
+    doubt(run, verification);
     const bool accepted = run->standing.converged || run->standing.used_up;
     struct fit_result result = result_so_far(run, accepted ? STATUS_OK : STATUS_UNCONVERGED);
-    result.verification = &verification;
+    result.verification = verification;
     CHECK(mf_fit_tasks_write(&run->folder, mf_progress_seconds(&run->progress)));
-    CHECK(mf_fit_output_observables(&run->fit, &result, &run->folder));
+    for (size_t s = 0; s < states; s++)
+        CHECK(write_state(run, mf_fit_states_at(&run->fit, s), &verification[s]));
     CHECK(mf_fit_output_summary(&run->fit, &run->unknowns, &result, &run->folder));
     mf_run_folder_draw(&run->folder);
     say_verified(run, &result);
-    if (verification.warning[0])
-        mf_progress_say(&run->progress, "mesofit: warning: %s", verification.warning);
+    for (size_t s = 0; s < states; s++)
+        if (verification[s].warning[0])
+            mf_progress_say(&run->progress, "mesofit: warning: %s", verification[s].warning);
     status = result.status;
     if (status == STATUS_UNCONVERGED)
         tell_unconverged(run);
 done:
-    mf_unknowns_laws_clear(&laws);
-    mf_verify_clear(&verification);
+    for (size_t s = 0; verification && s < states; s++)
+        mf_verify_clear(&verification[s]);
+    mf_memory_free(verification);
     return status;
 }
 

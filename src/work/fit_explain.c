@@ -4,7 +4,7 @@
 #include "work/explain.h"
 #include "input/target_sanity.h"
 #include "work/fit.h"
-#include "input/fit_file.h"
+#include "input/fit_states.h"
 #include "work/fit_tasks.h"
 
 #include <string.h>
@@ -62,6 +62,15 @@ static void print_line(void *stream, const char *line) {
     fprintf(stream, "%s\n", line);
 }
 
+static enum status print_targets(const struct fit_file *state) {
+    if (state->name[0])
+        printf("State \"%s\":\n", state->name);
+    for (size_t k = 0; k < state->choices.count; k++)
+        printf("chosen: %s\n", state->choices.line[k]);
+    return mf_target_sanity_tell(&state->files, &state->scene,
+                                 &(struct target_sanity_listener){print_line, stdout});
+}
+
 /// The method refuses what it cannot fit when it is created.
 static enum status try_method(const struct fit_file *fit) {
     void *state = mf_memory_zeroed(1, fit->method->state_size);
@@ -111,18 +120,15 @@ enum status mf_fit_explain(const char *file, const struct run_options *options, 
     struct unknowns unknowns = {0};
     struct unknowns_laws laws = {0};
     CHECK(mf_fit_file_read(&fit, file, options));
-    CHECK(mf_target_files_normalise(&fit.files, &fit.scene.setup.box,
-                                    scene_has_molecules(&fit.scene.molecules)));
+    CHECK(mf_fit_states_normalise(&fit));
     status = mf_unknowns_init(&unknowns, &fit.problem);
     if (status == STATUS_OK)
         status = try_method(&fit);
     CHECK(status != STATUS_OK ? mf_status_prefix(status, "%s", file) : STATUS_OK);
     CHECK(mf_unknowns_laws_start(&unknowns, &laws));
     mf_explain_scale(stdout, &fit.scene.units);
-    for (size_t k = 0; k < fit.choices.count; k++)
-        printf("chosen: %s\n", fit.choices.line[k]);
-    CHECK(mf_target_sanity_tell(&fit.files, &fit.scene,
-                                &(struct target_sanity_listener){print_line, stdout}));
+    for (size_t s = 0; s < mf_fit_states_count(&fit); s++)
+        CHECK(print_targets(mf_fit_states_at(&fit, s)));
     print_numbers(&fit);
     CHECK(print_simulations(&fit, &laws));
     if (ranks > 0) {

@@ -7,10 +7,11 @@ static void say_line(void *progress, const char *line) {
     mf_progress_say(progress, "%s", line);
 }
 
-enum status mf_fit_tell_targets(struct progress *to, const struct fit_file *fit) {
+static enum status tell_state(struct progress *to, const struct fit_file *fit) {
     const struct target_etd *etd = &fit->files.etd;
     const char *warning = mf_scene_warning(&fit->scene);
-    mf_progress_say_scale(to, &fit->scene.units);
+    if (fit->name[0])
+        mf_progress_say(to, "state \"%s\":", fit->name);
     if (warning)
         mf_progress_say(to, "mesofit: warning: scene: %s", warning);
     for (size_t k = 0; k < fit->choices.count; k++)
@@ -20,4 +21,12 @@ enum status mf_fit_tell_targets(struct progress *to, const struct fit_file *fit)
                         etd->left_out, (size_t)(etd->grid.times * etd->grid.bins));
     return mf_target_sanity_tell(&fit->files, &fit->scene,
                                  &(struct target_sanity_listener){say_line, to});
+}
+
+enum status mf_fit_tell_targets(struct progress *to, const struct fit_file *fit) {
+    mf_progress_say_scale(to, &fit->scene.units);
+    TRY(tell_state(to, fit));
+    for (size_t s = 0; s < fit->others; s++)
+        TRY(tell_state(to, &fit->other[s]));
+    return STATUS_OK;
 }

@@ -355,6 +355,36 @@ static void test_json_collect_files_finds_what_the_fields_name(void **state) {
     mf_input_files_clear(&inputs);
 }
 
+/// The rules of RFC 7396: null takes away, objects are merged, also into nothing, and all else
+/// replaces.
+static void test_json_take_variant_merges_it(void **state) {
+    double value;
+    struct json_document *document =
+        open_text(state, "{\"a\": 1, \"b\": {\"c\": 2, \"d\": 3}, \"k\": {\"x\": 1}, \"of\": {\n"
+                         "\"first\": {\"a\": 7}, \"second\": {\"a\": 5, \"k\": [4],\n"
+                         "\"b\": {\"c\": null, \"e\": {\"f\": null, \"g\": 6}}}}}");
+    assert_ok(mf_json_take_variant(document, "of", 1));
+    struct json_object root = mf_json_root(document);
+    assert_false(mf_json_is_member(&root, "of"));
+    assert_int_equal(mf_json_numbers(&root, "a", &value, 1), 1);
+    assert_true(value == 5);
+    assert_int_equal(mf_json_numbers(&root, "k", &value, 1), 1);
+    assert_true(value == 4);
+    struct json_object b = mf_json_child(&root, "b", true);
+    assert_false(mf_json_is_member(&b, "c"));
+    assert_int_equal(mf_json_numbers(&b, "d", &value, 1), 1);
+    assert_true(value == 3);
+    struct json_object e = mf_json_child(&b, "e", true);
+    assert_false(mf_json_is_member(&e, "f"));
+    assert_int_equal(mf_json_numbers(&e, "g", &value, 1), 1);
+    assert_true(value == 6);
+    assert_ok(mf_json_close(document, STATUS_OK));
+    document = open_text(state, "{\"of\": {\"first\": 3}}");
+    assert_fails(mf_json_take_variant(document, "of", 0), STATUS_BAD_INPUT,
+                 "run.json: of.first: expected an object");
+    assert_ok(mf_json_close(document, STATUS_OK));
+}
+
 #define IN_FOLDER(test)                                                                            \
     cmocka_unit_test_setup_teardown(test, temporary_folder_create, temporary_folder_remove)
 
@@ -383,6 +413,7 @@ int main(void) {
         IN_FOLDER(test_json_close_tells_want_of_memory_first),
         IN_FOLDER(test_faults_show_control_characters),
         IN_FOLDER(test_json_collect_files_finds_what_the_fields_name),
+        IN_FOLDER(test_json_take_variant_merges_it),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

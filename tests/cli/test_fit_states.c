@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Fits of several states that share a potential: that of one state is the fit of a file without
+// states; two densities find a known potential, with their pressures, too; states that contradict
+// each other do not converge; and what is refused.
+#include "shared/results.h"
+#include "shared/run_program.h"
+#include "shared/small_inputs.h"
+#include "shared/testing.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#define LAW "\"conservative\": {\"law\": \"soft-repulsion\", \"a\": 25}"
+#define SETUP                                                                                      \
+    "\"box\": [5, 5, 5], \"time_step\": 0.02, \"dissipative\": {\"law\": \"power\", \"sigma\": 3}"
+
+/// The truth; the number of particles and a are replaced.
+static const char scene[] =
+    "{\"seed\": 3, " SETUP ", " LAW ", \"particles\": {\"count\": 250},\n"
+    "\"rdf\": {\"range\": 1.2, \"bins\": 30},\n"
+    "\"measure\": {\"equilibration\": 500, \"samples\": 400, \"every\": 20}}\n";
+
+#define STATES                                                                                     \
+    "\"states\": {\n"                                                                              \
+    " \"dilute\": {\"scene\": {\"particles\": {\"count\": 250}},\n"                                \
+    "  \"target\": {\"rdf\": {\"file\": \"dilute/rdf.tsv\"}}},\n"                                  \
+    " \"dense\": {\"scene\": {\"particles\": {\"count\": 500}},\n"                                 \
+    "  \"target\": {\"rdf\": {\"file\": \"dense/rdf.tsv\"}}}}"
+#define COMMON                                                                                     \
+    "\"scene\": {" SETUP "},\n"                                                                    \
+    "\"unknowns\": {\"potential\": {\"truth\": {\"law\": \"soft-repulsion\", \"a\": 25}}},\n"      \
+    "\"verification\": {\"replicas\": 2, \"equilibration\": 300, \"samples\": 100, \"every\": "    \
+    "20},\n"                                                                                       \
+    "\"method\": {\"name\": \"joint-imc\", \"replicas\": 4, \"samples\": 100, \"precision\": "     \
+    "0.008}"
+static const char run[] = "{\"seed\": 4, " COMMON ",\n" STATES "}\n";
+
+static struct run_program_result result;
+
+static int enter(void **state) {
+    if (small_inputs_enter_without_gnuplot(state) != 0)
+        return -1;
+    small_inputs_write(*state, "dilute.json", scene, NULL, NULL);
+    small_inputs_write(*state, "dense.json", scene, "250", "500");
+    small_inputs_write(*state, "other.json", scene, "\"a\": 25", "\"a\": 12");
+    RUN_PROGRAM(&result, "simulate", "dilute.json", "-o", "dilute");
+    run_program_assert_code(&result, 0);
+    RUN_PROGRAM(&result, "simulate", "dense.json", "-o", "dense");
+    run_program_assert_code(&result, 0);
+    RUN_PROGRAM(&result, "simulate", "other.json", "-o", "other");
+    run_program_assert_code(&result, 0);
+    return 0;
+}
+
+static void test_one_state_is_a_fit_without_states(void **state) {
+    static const char *const same[] = {"potential.tsv", "rdf.tsv", NULL};
+    small_inputs_write(*state, "one.json",
+                       "{\"seed\": 4, " COMMON ",\n\"states\": {\"dense\": {\n"
+                       "\"scene\": {\"particles\": {\"count\": 500}},\n"
+                       "\"target\": {\"rdf\": {\"file\": \"dense/rdf.tsv\"}}}}}\n",
+                       NULL, NULL);
+    small_inputs_write(*state, "plain.json",
+                       "{\"seed\": 4, \"scene\": {" SETUP ", \"particles\": {\"count\": 500}},\n"
+                       "\"target\": {\"rdf\": {\"file\": \"dense/rdf.tsv\"}},\n"
+                       "\"verification\": {\"replicas\": 2, \"equilibration\": 300, \"samples\": "
+                       "100, \"every\": 20},\n"
+                       "\"unknowns\": {\"potential\": {\"truth\": {\"law\": \"soft-repulsion\", "
+                       "\"a\": 25}}},\n"
+                       "\"method\": {\"name\": \"imc\", \"replicas\": 4, \"samples\": 100, "
+                       "\"precision\": 0.008}}\n",
+                       NULL, NULL);
+    RUN_PROGRAM(&result, "fit", "one.json", "-o", "one");
+    run_program_assert_code(&result, 0);
+    RUN_PROGRAM(&result, "fit", "plain.json", "-o", "plain");
+    run_program_assert_code(&result, 0);
+    results_assert_same("one", "plain", same);
+    assert_int_equal(access("one/states", F_OK), -1);
+}
+
+/// The ramp is what g(r) of one state hardly tells. Five errors: a false alarm in a million seeds
+/// if the errors are honest.
+static void assert_found(const char *folder, double most_error) {
+    char file[64];
+    snprintf(file, sizeof file, "%s/summary.json", folder);
+    const double ramp = results_number(file, "truth_ramp");
+    const double error = results_number(file, "ramp_error");
+    print_message("%s: ramp %.4f +- %.4f, %.4f beside it\n", folder, ramp, error,
+                  results_number(file, "truth_rms_without_ramp"));
+    assert_true(error > 0 && error < most_error);
+    assert_true(fabs(ramp) < 5 * error);
+    assert_true(results_number(file, "truth_rms_without_ramp") < 0.05);
+}
+
+static void test_two_densities_find_a_known_potential(void **state) {
+    static const char *const same[] = {"potential.tsv",        "rdf.tsv",
+                                       "states/dense/rdf.tsv", "states/dense/configuration.tsv",
+                                       "summary.json",         NULL};
+    static const char *const pieces[] = {"fit", "run.json", "-o", "pieces", NULL};
+    small_inputs_write(*state, "run.json", run, NULL, NULL);
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "out");
+    run_program_assert_code(&result, 0);
+    assert_non_null(strstr(result.err, "state \"dilute\":"));
+    assert_non_null(strstr(result.err, "state \"dense\":"));
+    assert_found("out", 0.25);
+    results_assert_table("out/states/dense/rdf.tsv", 5, 30);
+    results_number("out/summary.json", "states.dilute.rdf_rmse");
+    results_number("out/summary.json", "states.dense.pressure");
+    // Its settings, and the pieces of a run that is interrupted, make the same result.
+    RUN_PROGRAM(&result, "fit", "out/used.json", "-o", "again");
+    run_program_assert_code(&result, 0);
+    results_assert_same("out", "again", (const char *const[]){same[0], same[1], same[2], NULL});
+    run_program_in_pieces(0, pieces);
+    results_assert_same("out", "pieces", (const char *const[]){same[0], same[1], same[3], NULL});
+}
+
+/// The run with the pressures of the truth among the targets.
+static void write_with_pressures(struct temporary_folder *folder) {
+    static const char with[] = "{\"seed\": 4, " COMMON ",\n\"states\": {\n"
+                               " \"dilute\": {\"scene\": {\"particles\": {\"count\": 250}},\n"
+                               "  \"target\": {\"rdf\": {\"file\": \"dilute/rdf.tsv\"},\n"
+                               "  \"pressure\": {\"value\": %.6g, \"error\": 0.05}}},\n"
+                               " \"dense\": {\"scene\": {\"particles\": {\"count\": 500}},\n"
+                               "  \"target\": {\"rdf\": {\"file\": \"dense/rdf.tsv\"},\n"
+                               "  \"pressure\": {\"value\": %.6g, \"error\": 0.05}}}}}\n";
+    char text[4096];
+    snprintf(text, sizeof text, with, results_number("dilute/summary.json", "pressure"),
+             results_number("dense/summary.json", "pressure"));
+    small_inputs_write(folder, "run.json", text, NULL, NULL);
+}
+
+static void test_pressures_of_two_densities_are_met(void **state) {
+    write_with_pressures(*state);
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "out", "--force");
+    run_program_assert_code(&result, 0);
+    assert_found("out", 0.05);
+}
+
+static void test_states_that_contradict_each_other_do_not_converge(void **state) {
+    small_inputs_write(*state, "run.json", run, "dilute/rdf.tsv", "other/rdf.tsv");
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "out", "--force");
+    run_program_assert_code(&result, 1);
+    assert_non_null(strstr(result.err, "no step makes all states better together"));
+    results_assert_text("out/summary.json", "status", "unconverged");
+}
+
+static void test_what_no_states_can_be_is_refused(void **state) {
+    static const struct {
+        const char *from, *to, *words[4];
+    } cases[] = {
+        {"\"joint-imc\"", "\"imc\"", {"method.name", "\"imc\" fits one state", NULL}},
+        {"\"dense/rdf.tsv\"", "\"dense/rdf.tsv\", \"cutoff\": 1", {"states.dense", "same bins"}},
+        {"\"dense\": {", "\"../dense\": {", {"states", "\"../dense\"", "letters"}},
+        {"\"dense\": {", "\"dense\": 4, \"x\": {", {"states.dense", "expected an object"}},
+        {"{\"count\": 500}", "{\"types\": {\"A\": 500}}", {"states.dense", NULL}},
+        {"{\"file\": \"dense/rdf.tsv\"}",
+         "{\"file\": \"dense/rdf.tsv\"}, \"pressure\": {\"value\": 3, \"error\": 1}",
+         {"target.pressure", "all states fit the same targets"}},
+        {"{\"count\": 500}", "{\"cuont\": 500}", {"states.dense", "cuont", NULL}},
+        {"dense/rdf.tsv", "none.tsv", {"states.dense", "none.tsv", NULL}},
+    };
+    assert_int_equal(mkdir("bad", 0777), 0);
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        small_inputs_write(*state, "bad.json", run, cases[k].from, cases[k].to);
+        RUN_PROGRAM(&result, "fit", "bad.json", "-o", "bad");
+        print_message("%s", result.err);
+        run_program_assert_refused(&result, "bad", cases[k].to, 1, cases[k].words);
+    }
+    small_inputs_write(*state, "bad.json", "{" COMMON ", \"states\": {}}\n", NULL, NULL);
+    RUN_PROGRAM(&result, "fit", "bad.json", "-o", "bad");
+    run_program_assert_refused(&result, "bad", "none", 1,
+                               (const char *const[]){"states", "there are 0", NULL});
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_one_state_is_a_fit_without_states),
+        cmocka_unit_test(test_two_densities_find_a_known_potential),
+        cmocka_unit_test(test_pressures_of_two_densities_are_met),
+        cmocka_unit_test(test_states_that_contradict_each_other_do_not_converge),
+        cmocka_unit_test(test_what_no_states_can_be_is_refused),
+    };
+    return cmocka_run_group_tests(tests, enter, small_inputs_leave);
+}
