@@ -32,6 +32,11 @@ static const struct inner run_objects[] = {
     {"units", "\"nm-ps\" or \"angstrom-fs\", in which the file and its results speak", "units"},
     {"core", "where the target is 0", "core"},
     {"verification", "independent simulations of the result", "verification"},
+    {"states",
+     "{\"dilute\": {\"scene\": {…}, \"target\": {…}}, …}: systems that share a potential, each "
+     "this "
+     "file with its own keys put over it",
+     "run"},
     {NULL, NULL, NULL},
 };
 

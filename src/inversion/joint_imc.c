@@ -20,8 +20,8 @@ struct joint {
     struct inversion *state; ///< shape [states]; the first one leads
     struct imc_system system;
     double *covariance, *excess, *variance; ///< of the system
-    double least;        ///< error so far
-    uint32_t standstill; ///< iterations since it was lower by more than a little
+    double least;                           ///< error so far
+    uint32_t standstill;                    ///< iterations since it was lower by more than a little
 };
 
 static struct inversion *leader_of(const struct joint *joint) {

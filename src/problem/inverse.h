@@ -152,7 +152,7 @@ struct inverse_problem {
     /// own: shape [states]. 0: this one stands alone. Borrowed.
     const struct inverse_problem *const *state;
     size_t states;
-    const char *name; ///< of this state; borrowed
+    const char *name;        ///< of this state; borrowed
     struct targets targets;  ///< to be fitted
     struct targets compared; ///< by the verification: those and others
     struct unknown unknown[UNKNOWNS];

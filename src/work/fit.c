@@ -15,6 +15,7 @@
 #include "work/fit_ranks.h"
 #include "work/fit_tasks.h"
 #include "work/fit_tell.h"
+#include "work/fit_verify.h"
 
 #include <math.h>
 #include <string.h>
@@ -364,39 +365,6 @@ static void doubt(struct run *run, const struct verification *verification) {
         standing->converged = standing->used_up = false;
 }
 
-/// Of one state, with the tables that all have.
-static enum status verify_state(struct run *run, const struct fit_file *state,
-                                const struct inverse_listener *listener,
-                                struct verification *verification) {
-    struct unknowns unknowns = {0};
-    struct unknowns_laws laws = {0};
-    double number[INVERSE_MOST_NUMBERS];
-    enum status status = STATUS_OK;
-    for (int n = 0; n < INVERSE_MOST_NUMBERS; n++)
-        number[n] = run->standing.number[n].value;
-    CHECK(mf_unknowns_init(&unknowns, &state->problem));
-    CHECK(mf_unknowns_laws_make(&unknowns, (const double *const *)run->curve, number, &laws));
-    CHECK(mf_verify(&laws.problem, laws.table[UNKNOWN_POTENTIAL], laws.table[UNKNOWN_OMEGA],
-                    &state->verification, listener, verification));
-    mf_fit_verdict_mark(&state->scene.units, verification);
-done:
-    mf_unknowns_laws_clear(&laws);
-    mf_unknowns_clear(&unknowns);
-    return status;
-}
-
-/// Tables and figures of a state: the first has those of the run's folder.
-static enum status write_state(const struct run *run, const struct fit_file *state,
-                               const struct verification *verification) {
-    struct run_folder folder = run->folder;
-    if (state != &run->fit)
-        TRY(mf_run_folder_state(&run->folder, state->name, &folder));
-    TRY(mf_fit_output_observables(state, verification, &folder));
-    if (state != &run->fit)
-        mf_run_folder_draw(&folder);
-    return STATUS_OK;
-}
-
 /// The independent verification of the result, and everything that rests on it.
 static enum status verify_and_write(struct run *run) {
     struct verification *verification = NULL;
@@ -407,7 +375,8 @@ static enum status verify_and_write(struct run *run) {
     enum status status = STATUS_OK;
     NEW_ARRAY(verification, states);
     for (size_t s = 0; status == STATUS_OK && s < states; s++)
-        status = verify_state(run, mf_fit_states_at(&run->fit, s), &listener, &verification[s]);
+        status = mf_fit_verify_state(mf_fit_states_at(&run->fit, s), run->curve,
+                                     run->standing.number, &listener, &verification[s]);
     if (status == STATUS_UNSTABLE)
         status = write_unstable(run);
     CHECK(status);
@@ -417,7 +386,7 @@ static enum status verify_and_write(struct run *run) {
     result.verification = verification;
     CHECK(mf_fit_tasks_write(&run->folder, mf_progress_seconds(&run->progress)));
     for (size_t s = 0; s < states; s++)
-        CHECK(write_state(run, mf_fit_states_at(&run->fit, s), &verification[s]));
+        CHECK(mf_fit_verify_write(&run->fit, s, &verification[s], &run->folder));
     CHECK(mf_fit_output_summary(&run->fit, &run->unknowns, &result, &run->folder));
     mf_run_folder_draw(&run->folder);
     say_verified(run, &result);
