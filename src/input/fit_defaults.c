@@ -26,13 +26,21 @@ enum status mf_fit_defaults_make_readable(struct json_object *root) {
 
 // The choices -------------------------------------------------------------------------------------
 
+/// What is left of g − 1 beyond the cutoff. Molecules are many beads, and forces between all that
+/// are a long way apart are most of the work: hexane with a cutoff of 1.3 nm, beyond which g
+/// differs from 1 by 0.03 at most, has g from there to 2 nm within 0.003
+/// (docs/results/molecules.md).
+static const double little = 0.002, little_of_molecules = 0.03;
+
 /// Centre of the last bin that is used: where g is seen to differ from 1, and all of the bin within
 /// half of a box that is given and not much too small.
 static double find_cutoff(const struct fit_choice *c, const char **why) {
-    static const double beyond = 1.1, least_of_box = 0.8;
-    const double whole = c->scales.range - 0.5 * c->rdf->bins.width;
+    static const double least_of_box = 0.8;
+    const bool joined = scene_has_molecules(&c->read->scene.molecules);
+    const double beyond = joined ? 1 : 1.1, whole = c->scales.range - 0.5 * c->rdf->bins.width;
     double cutoff = fmin(whole, fmax(beyond * c->scales.seen, 2 * c->scales.neighbour));
-    *why = "beyond, g - 1 is within its noise";
+    *why = joined ? "beyond, g differs from 1 by less than 0.03, which forces up to here make, too"
+                  : "beyond, g - 1 is within its noise";
     if (c->leader) {
         const struct rdf_bins *bins = &c->leader->files.rdf[0].bins;
         *why = "as the first state has it";
@@ -277,7 +285,9 @@ enum status mf_fit_defaults_choose(const struct fit_file *read, const struct fit
     if (rdf.bins.count == 0) // there is nothing to choose by, and the method is missing
         goto done;
     c.density = rdf.density;
-    c.scales = mf_fit_scales_find(&rdf, setup->temperature);
+    c.scales = mf_fit_scales_find(&rdf, setup->temperature,
+                                  scene_has_molecules(&read->scene.molecules) ? little_of_molecules
+                                                                              : little);
     c.mass = masses.maximum > 0 ? masses.minimum : 1;
     c.crossing = c.scales.neighbour * sqrt(c.mass / setup->temperature);
     for (size_t k = 0; k < sizeof steps / sizeof *steps; k++)

@@ -105,10 +105,10 @@ static double find_core(const struct view *view) {
     return mf_rdf_bins_edge(view->bins, k);
 }
 
-/// Upper edge of the last bin about which g differs from its tail by more than noise.
-static double find_seen(const struct view *view) {
+/// Upper edge of the last bin about which g differs from its tail by more than noise, and `little`.
+static double find_seen(const struct view *view, double little) {
     enum { HALF = 2 };
-    static const double standard_errors = 5, least = 0.002; // of some hundred places
+    static const double standard_errors = 5; // of some hundred places
     const struct rdf_bins *bins = view->bins;
     for (size_t k = bins->count; k-- > 0;) {
         double sum = 0, variance = 0, count = 0;
@@ -117,7 +117,7 @@ static double find_seen(const struct view *view) {
             variance += view->error[j] * view->error[j];
             count++;
         }
-        if (fabs(sum) > fmax(least * count, standard_errors * sqrt(variance)))
+        if (fabs(sum) > fmax(little * count, standard_errors * sqrt(variance)))
             return mf_rdf_bins_edge(bins, k + 1);
     }
     return 0;
@@ -133,7 +133,8 @@ static double find_noise(const struct fit_scales_rdf *rdf) {
     return count > 0 ? sqrt(squares / count) : 0;
 }
 
-struct fit_scales mf_fit_scales_find(const struct fit_scales_rdf *rdf, double temperature) {
+struct fit_scales mf_fit_scales_find(const struct fit_scales_rdf *rdf, double temperature,
+                                     double little) {
     enum { NARROWEST = 2, WIDEST = 8 };
     struct fit_scales scales = {.core = INFINITY,
                                 .neighbour = INFINITY,
@@ -153,7 +154,7 @@ struct fit_scales mf_fit_scales_find(const struct fit_scales_rdf *rdf, double te
         scales.core = fmin(scales.core, find_core(&view));
         scales.neighbour = fmin(scales.neighbour, neighbour);
         scales.shell = fmax(scales.shell, find_shell(&view, neighbour));
-        scales.seen = fmax(scales.seen, find_seen(&view));
+        scales.seen = fmax(scales.seen, find_seen(&view, little));
     }
     scales.shell = fmin(scales.shell, scales.range);
     return scales;

@@ -13,8 +13,8 @@ struct fit_scales {
     double curvature;    ///< largest of −k_B T (ln g)'' where pairs come near [k_B T_0/λ²]
     double curvature_at; ///< [λ]
     double noise;        ///< standard error of g, rms over the bins with pairs
-    double seen;         ///< g differs from its tail by more than its noise up to here [λ]
-    double range;        ///< upper edge of the last bin [λ]
+    double seen;  ///< g differs from its tail by more than its noise, and `little`, up to here [λ]
+    double range; ///< upper edge of the last bin [λ]
 };
 
 /// g(r) of all pair types, one behind the other. Borrowed, but `own`.
@@ -34,8 +34,10 @@ enum status mf_fit_scales_rdf_init(struct fit_scales_rdf *rdf, const struct targ
 void mf_fit_scales_rdf_clear(struct fit_scales_rdf *rdf);
 
 /// The curvature is that of parabolas through ln g at five points or, where these are too noisy, at
-/// more; 0 if none tells it. Threads: any. Tested: test_fit_scales.
-struct fit_scales mf_fit_scales_find(const struct fit_scales_rdf *rdf, double temperature);
+/// more; 0 if none tells it. A g that differs by `little` from its tail counts as its tail.
+/// Threads: any. Tested: test_fit_scales.
+struct fit_scales mf_fit_scales_find(const struct fit_scales_rdf *rdf, double temperature,
+                                     double little);
 
 /// Mean friction of a bead by its neighbours if ω = 1 − r/cutoff of each pair:
 /// (ρ/d) Σ x_a x_b ∫ g_ab ω² dV, the rate at which its velocity is lost [1/τ]. Tested:

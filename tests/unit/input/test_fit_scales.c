@@ -43,7 +43,7 @@ static void test_fit_scales_finds_curvature_neighbours_shell_and_how_far_g_is_se
     struct known known;
     (void)state;
     fill(&known, liquid, 0.001);
-    const struct fit_scales scales = mf_fit_scales_find(&known.rdf, 2);
+    const struct fit_scales scales = mf_fit_scales_find(&known.rdf, 2, 0.002);
     // A parabola is found as it is, k_B T · 300, but for those that look over the peak.
     assert_close(scales.curvature, 600, 10);
     assert_close(scales.neighbour, 1, width);
@@ -64,7 +64,7 @@ static void test_fit_scales_of_a_gas_without_structure_are_those_of_its_density(
     struct known known;
     (void)state;
     fill(&known, flat, 0.01);
-    const struct fit_scales scales = mf_fit_scales_find(&known.rdf, 1);
+    const struct fit_scales scales = mf_fit_scales_find(&known.rdf, 1, 0.002);
     assert_close(scales.neighbour, pow(0.8, -1.0 / 3), 1e-9);
     assert_close(scales.curvature, 0, 0);
     assert_close(scales.seen, 0, 0);
@@ -78,7 +78,7 @@ static void test_fit_scales_takes_wider_parabolas_where_g_is_noisy(void **state)
     fill(&known, liquid, 0.1);
     for (size_t k = 0; k < BINS; k++)
         known.g[k] = fmax(1e-6, known.g[k] + 0.1 * M_SQRT2 * sin((double)(7 * k * k)));
-    const struct fit_scales scales = mf_fit_scales_find(&known.rdf, 1);
+    const struct fit_scales scales = mf_fit_scales_find(&known.rdf, 1, 0.002);
     print_message("curvature %.0f\n", scales.curvature);
     assert_in_range((int)scales.curvature, 200, 450);
 }
