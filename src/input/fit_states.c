@@ -17,14 +17,38 @@ static bool is_plain(const char *name) {
            name[strspn(name, letters)] == '\0';
 }
 
+/// What a state can have of its own; the rest is of all.
+static enum status check_keys(const struct json_object *states, const char *file,
+                              const char *name) {
+    static const char *const own[] = {"scene", "target", "verification"};
+    struct json_object all = *states;
+    const char *member;
+    if (!mf_json_is_object(states, name)) // its reader says so
+        return STATUS_OK;
+    const struct json_object state = mf_json_child(&all, name, false);
+    for (size_t n = 0; (member = mf_json_key(&state, n)); n++) {
+        bool known = false;
+        for (size_t k = 0; k < sizeof own / sizeof *own; k++)
+            known = known || strcmp(member, own[k]) == 0;
+        if (!known)
+            return mf_status_fail(STATUS_BAD_INPUT,
+                                  "%s: %s.%s.%.80s: a state has \"scene\", \"target\" and "
+                                  "\"verification\"; what all share stands outside",
+                                  file, key, name, member);
+    }
+    return STATUS_OK;
+}
+
 static enum status check_names(const struct json_object *states, const char *file, size_t *count) {
     const char *name;
-    for (*count = 0; (name = mf_json_key(states, *count)); ++*count)
+    for (*count = 0; (name = mf_json_key(states, *count)); ++*count) {
         if (!is_plain(name))
             return mf_status_fail(STATUS_BAD_INPUT,
                                   "%s: %s: \"%.80s\": a state is called by letters, digits, _, - "
                                   "and ., %d of them at most",
                                   file, key, name, FIT_STATE_NAME_SIZE - 1);
+        TRY(check_keys(states, file, name));
+    }
     if (*count >= 1 && *count <= INVERSE_MOST_STATES)
         return STATUS_OK;
     return mf_status_fail(STATUS_BAD_INPUT, "%s: %s: there are %zu; from 1 to %d can be fitted",
