@@ -34,7 +34,7 @@ ranks() {
 
 # sums FOLDER: digests of all that a fit leaves but for what tells times.
 sums() {
-    for file in "$1"/*.tsv "$1"/*.json "$1"/*.pot "$1"/*.tex; do
+    for file in "$1"/*.tsv "$1"/states/*/*.tsv "$1"/*.json "$1"/*.pot "$1"/*.tex; do
         case $file in
         */timing.tsv | */tasks.tsv | *\**) ;;
         *) printf '%s %s\n' "${file##*/}" "$(grep -v '"seconds"\|"threads"' "$file" | sha256sum)" ;;
@@ -106,6 +106,11 @@ run ibi "$rdf" '"potential": {}' "\"name\": \"ibi\", $sampled"
 run hnc "$rdf" '"potential": {}' "\"name\": \"hnc\", $sampled"
 run relative-entropy "$rdf" '"potential": {}' "\"name\": \"relative-entropy\", \"coefficients\": 8, $sampled"
 run auto "$rdf" '"potential": {}' "\"name\": \"auto\", $sampled"
+sed 's/"count": 192/"count": 128/; s/"seed": 3/"seed": 5/' scene.json >dilute.json
+"$without" simulate dilute.json -o dilute --quiet 2>words || exit 1
+run joint-imc "$rdf" '"potential": {}' "\"name\": \"joint-imc\", $sampled"
+sed -i 's|"method"|"states": {"dense": {}, "dilute": {"scene": {"particles": {"count": 128}},\
+  "target": {"rdf": {"file": "dilute/rdf.tsv"}}}}, "method"|' joint-imc.json
 run genetic "$rdf" "$potential" "\"name\": \"genetic\", \"population\": 12, \"generations\": 4, \"racing\": 2, \"warm_start\": \"yes\", $simulated"
 run cma-es "$rdf, $etd, $moves" "$potential, $omega" "\"name\": \"cma-es\", \"rounds\": 4, $simulated"
 run nlopt "$rdf" "$potential" "\"name\": \"nlopt\", \"evaluations\": 12, $simulated"
