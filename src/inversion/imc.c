@@ -64,13 +64,31 @@ static void doubt_response(struct inversion *inversion, double independent,
                 independent;
 }
 
+/// The wide part of a step near the targets of groups, by few coefficients: their response is well
+/// known, and so it goes all of its way, where the noise of C lets a step that has a value for each
+/// bin go a part of its way along the ramp and whatever else is wide. What it leaves of the excess
+/// is for the bins.
+/// @param[out] wide      shape [points] [k_B T_0]
+/// @param[out] residual  shape [known]
+static void take_wide_part(struct inversion *inversion, double *wide, double *residual) {
+    const struct potential_grid *grid = &inversion->grid;
+    const double temperature = inversion->problem->scene.temperature;
+    mf_inversion_basis_measure(&inversion->coarse, inversion, wide);
+    for (size_t a = 0; a < grid->known; a++) {
+        residual[a] = inversion->excess[a];
+        for (size_t b = 0; b < grid->known; b++)
+            residual[a] -= inversion->covariance[a * grid->known + b] * wide[grid->known_point[b]] /
+                           temperature;
+    }
+}
+
 enum status mf_imc_step(struct inversion *inversion, const struct imc_parameters *parameters,
                         double *step, double extra[3]) {
     const struct inverse_problem *problem = inversion->problem;
     const struct potential_grid *grid = &inversion->grid;
     enum status status = STATUS_OK;
     struct imc_solution solution;
-    double *x = NULL;
+    double *x = NULL, *wide = NULL, *residual = NULL;
     struct imc_system system = mf_inversion_system(inversion);
     if (mf_inversion_is_coarse(inversion) && parameters->regularisation == 0 &&
         !(parameters->strength > 0))
@@ -81,6 +99,14 @@ enum status mf_imc_step(struct inversion *inversion, const struct imc_parameters
         system.wanted = *problem->targets.target[TARGET_PRESSURE].value - inversion->pressure.value;
     }
     NEW_ARRAY(x, grid->known);
+    NEW_ARRAY(wide, grid->points);
+    NEW_ARRAY(residual, grid->known);
+    if (inversion->coarse.count > 0 && mf_inversion_is_near(inversion)) {
+        take_wide_part(inversion, wide, residual);
+        system.excess = residual;
+        for (size_t a = 0; a < grid->known; a++)
+            system.wanted -= inversion->pressure.slope[a] * wide[grid->known_point[a]];
+    }
     if (inversion->doubt) {
         mf_ibi_logarithms(inversion, step);
         doubt_response(inversion, inversion->behind / inversion->inefficiency, step);
@@ -89,12 +115,14 @@ enum status mf_imc_step(struct inversion *inversion, const struct imc_parameters
     CHECK(solvers[parameters->regularisation](&system, choose_strength(inversion, parameters), x,
                                               &solution));
     for (size_t a = 0; a < grid->known; a++)
-        step[grid->known_point[a]] = x[a];
+        step[grid->known_point[a]] = wide[grid->known_point[a]] + x[a];
     extra[0] = solution.strength;
     extra[1] = solution.misfit;
     extra[2] = solution.directions;
 done:
     mf_memory_free(x);
+    mf_memory_free(wide);
+    mf_memory_free(residual);
     return status;
 }
 

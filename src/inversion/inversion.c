@@ -24,10 +24,8 @@ static const double near_miss = 2;
 enum { MOST_DOUBLINGS = 7 };
 
 /// The way that is left of the ramp, and of the pressure, in their errors, at which both have
-/// settled. Where groups have as many bins as there are samples, the noise of C makes each step a
-/// part of its way (assess_covariance): hexane went on for six iterations with 0.6 to 0.8 of an
-/// error of 0.05 k_B T left, which is a part of the band (add_way in inversion_band.c).
-static const double settled_way = 0.5, settled_way_of_groups = 1;
+/// settled.
+static const double settled_way = 0.5;
 
 /// Replicas that are placed anew are equilibrated so many times as long.
 enum { ANEW_EQUILIBRATION = 5 };
@@ -284,11 +282,10 @@ static bool meets_targets(const struct inversion *inversion) {
 /// Whether a method that takes the most probable step has gone all of the way that g hardly sees.
 static bool has_settled(const struct inversion *inversion) {
     const struct inverse_ramp *ramp = &inversion->band.ramp;
-    const double most = inversion->grid.groups > 0 ? settled_way_of_groups : settled_way;
     return !inversion->settling || inversion->grid.pairs == 0 ||
            targets_ask(&inversion->problem->targets, TARGET_PRESSURE) ||
-           (fabs(ramp->way) <= most * ramp->error &&
-            fabs(ramp->pressure_way) <= most * ramp->pressure_open);
+           (fabs(ramp->way) <= settled_way * ramp->error &&
+            fabs(ramp->pressure_way) <= settled_way * ramp->pressure_open);
 }
 
 bool mf_inversion_runs_away(const struct inversion *inversion) {

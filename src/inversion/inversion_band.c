@@ -129,7 +129,7 @@ static enum status find_step(const struct inversion *inversion, const struct imc
     double *asked = NULL;
     for (size_t a = 0; a < n; a++)
         step[a] = inversion->step[inversion->grid.known_point[a]];
-    if (inversion->basis.count > 0)
+    if (inversion->basis.count > 0 || (inversion->coarse.count > 0 && inversion->settling))
         return STATUS_OK;
     NEW_ARRAY(asked, n);
     for (size_t a = 0; a < n; a++)
