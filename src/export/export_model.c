@@ -6,6 +6,7 @@
 #include "curves/sampled.h"
 #include "export/export_columns.h"
 #include "export/export_start.h"
+#include "input/fit_states.h"
 #include "input/fit_unknowns.h"
 #include "input/heading.h"
 #include "observe/rdf_observable.h"
@@ -81,11 +82,16 @@ static void read_time_step(struct simulation_setup *setup, struct json_object *r
 
 static enum status read_used(struct reading *reading) {
     struct export_model *model = reading->model;
-    char path[OUTPUT_PATH_SIZE];
+    char path[OUTPUT_PATH_SIZE], state[FIT_STATE_NAME_SIZE];
+    size_t states;
     struct json_document *document;
     struct heading heading;
     file_of(model, "used.json", path);
     TRY(mf_json_open(&document, path));
+    // Of several states, the first.
+    const enum status taken = mf_fit_states_take(document, path, 0, state, &states);
+    if (taken != STATUS_OK)
+        return mf_json_close(document, taken);
     struct json_object root = mf_json_root(document);
     mf_json_fields(&root, mf_heading_fields, &heading);
     snprintf(model->title, sizeof model->title, "%s", heading.title);

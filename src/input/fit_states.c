@@ -60,8 +60,10 @@ enum status mf_fit_states_take(struct json_document *document, const char *file,
     struct json_object root = mf_json_root(document);
     name[0] = '\0';
     *count = 0;
-    if (root.item == NULL || !mf_json_is_object(&root, key))
+    if (root.item == NULL || !mf_json_is_member(&root, key))
         return STATUS_OK;
+    if (!mf_json_is_object(&root, key))
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: %s: expected an object of states", file, key);
     const struct json_object states = mf_json_child(&root, key, false);
     TRY(check_names(&states, file, count));
     snprintf(name, FIT_STATE_NAME_SIZE, "%s", mf_json_key(&states, n));
@@ -78,8 +80,12 @@ struct fit_file *mf_fit_states_at(struct fit_file *fit, size_t s) {
 
 void mf_fit_states_link(struct fit_file *fit) {
     const size_t count = mf_fit_states_count(fit);
-    for (size_t s = 0; s < count; s++)
+    for (size_t s = 0; s < count; s++) {
         fit->problems[s] = &mf_fit_states_at(fit, s)->problem;
+        // The steepest of what was chosen for each.
+        fit->core.stiffness = fmax(fit->core.stiffness, mf_fit_states_at(fit, s)->core.stiffness);
+    }
+    fit->problem.core_stiffness = fit->core.stiffness;
     for (size_t s = 0; count > 1 && s < count; s++) {
         struct inverse_problem *problem = &mf_fit_states_at(fit, s)->problem;
         problem->state = fit->problems;
@@ -114,6 +120,12 @@ static bool same_types(const struct composition *a, const struct composition *b)
     return same;
 }
 
+static bool same_units(const struct units *a, const struct units *b) {
+    return a->system == b->system && fabs(a->length - b->length) <= 1e-9 * fabs(a->length) &&
+           fabs(a->temperature - b->temperature) <= 1e-9 * fabs(a->temperature) &&
+           fabs(a->mass - b->mass) <= 1e-9 * fabs(a->mass);
+}
+
 /// Curves are shared point by point.
 static enum status check_alike(const struct fit_file *fit, const struct fit_file *other,
                                const char *file) {
@@ -125,6 +137,11 @@ static enum status check_alike(const struct fit_file *fit, const struct fit_file
                               other->name, fit->name);
     if (fit->scene.setup.box.dimensions != other->scene.setup.box.dimensions)
         return mf_status_fail(STATUS_BAD_INPUT, "%s: %s.%s: its dimensions are not those of \"%s\"",
+                              file, key, other->name, fit->name);
+    if (!same_units(&fit->scene.units, &other->scene.units))
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: %s.%s: scene.units: they are not those of \"%s\": lambda, T_0 "
+                              "and mu are of all states",
                               file, key, other->name, fit->name);
     if (first->bins.count != second->bins.count ||
         !(fabs(first->bins.low - second->bins.low) < 1e-6 * width) ||

@@ -15,7 +15,7 @@ static bool has(struct json_object root, const char *key) {
 }
 
 enum status mf_heading_check_scene(const struct json_object *root, const char *file) {
-    if (!has(*root, "scene") || !has(*root, "target"))
+    if (!has(*root, "states") && (!has(*root, "scene") || !has(*root, "target")))
         return STATUS_OK;
     return mf_status_fail(STATUS_BAD_INPUT,
                           "%s: this is a run file, with a scene and a target; use: mesofit fit %s",
@@ -23,7 +23,7 @@ enum status mf_heading_check_scene(const struct json_object *root, const char *f
 }
 
 enum status mf_heading_check_run(const struct json_object *root, const char *file) {
-    if (has(*root, "scene") || has(*root, "target") || !has(*root, "box"))
+    if (has(*root, "scene") || has(*root, "target") || has(*root, "states") || !has(*root, "box"))
         return STATUS_OK;
     return mf_status_fail(STATUS_BAD_INPUT,
                           "%s: this is a scene file, without a target; use: mesofit simulate %s",

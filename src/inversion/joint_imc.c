@@ -92,72 +92,107 @@ done:
 // All states in one
 // --------------------------------------------------------------------------------
 
-static void add_squares(struct target_distance *sum, const struct target_distance *own,
-                        size_t states) {
-    sum->rms += own->rms * own->rms / (double)states;
-    sum->noise += own->noise * own->noise / (double)states;
-    sum->variance += own->variance / (double)states;
-    sum->count += own->count;
+/// In units of its noise.
+static double noises_of(const struct target_distance *distance) {
+    return distance->rms > 0 ? distance->rms / distance->noise : 0;
 }
 
-/// The distances of the first state become those of all, rms over the states; its section that of
-/// the state that is farthest off by its noise, with the noise of the least exact.
+/// The target of a state that is farthest off.
+struct worst {
+    size_t state;
+    int kind;
+    double noises;
+};
+
+/// What is farthest off of all states and targets, or of targets of one kind; `kind` −1: all.
+static struct worst find_worst(const struct joint *joint, int kind) {
+    struct worst worst = {0, kind < 0 ? TARGET_RDF : kind, 0};
+    for (size_t s = 0; s < joint->states; s++)
+        for (int k = 0; k < TARGETS; k++) {
+            const struct inversion *state = &joint->state[s];
+            const double noises = noises_of(&state->distance[k]);
+            if ((kind < 0 || k == kind) && targets_ask(&state->problem->targets, k) &&
+                noises > worst.noises)
+                worst = (struct worst){s, k, noises};
+        }
+    return worst;
+}
+
+/// rms over the states and their targets, each in units of its noise.
+static double find_distance(const struct joint *joint) {
+    double squares = 0, count = 0;
+    for (size_t s = 0; s < joint->states; s++)
+        for (int k = 0; k < TARGETS; k++)
+            if (targets_ask(&joint->state[s].problem->targets, k)) {
+                squares += pow(noises_of(&joint->state[s].distance[k]), 2);
+                count++;
+            }
+    return sqrt(squares / count);
+}
+
+/// The section of the first state becomes that of the state that is farthest off by its noise, with
+/// the noise of the least exact; its distance of g the rms over the states, and that of the
+/// pressure as many times its own noise as that of the worst state.
 static void join_distances(struct joint *joint) {
     struct inversion *leader = leader_of(joint);
-    struct target_distance all[TARGETS] = {{0}};
-    double misfit = 0;
+    struct inversion_section section = leader->section[0];
+    struct target_distance rdf = {.count = 0};
+    double misfit = 0, disagreement = 0;
+    const double states = (double)joint->states;
+    const struct worst pressure = find_worst(joint, TARGET_PRESSURE);
+    const struct worst worst = find_worst(joint, TARGET_RDF);
     for (size_t s = 0; s < joint->states; s++) {
         const struct inversion *state = &joint->state[s];
-        const struct inversion_section *own = &state->section[0];
-        struct inversion_section *worst = &leader->section[0];
-        for (int kind = 0; kind < TARGETS; kind++)
-            add_squares(&all[kind], &state->distance[kind], joint->states);
-        if (own->rms * worst->noise > worst->rms * own->noise) {
-            worst->rms = own->rms;
-            worst->noise = own->noise;
-        }
-        worst->own_noise = fmax(worst->own_noise, own->own_noise);
-        leader->own_noise = fmax(leader->own_noise, state->own_noise);
-        leader->disagreement = fmax(leader->disagreement, state->disagreement);
-        misfit += state->misfit / (double)joint->states;
+        const struct target_distance *own = &state->distance[TARGET_RDF];
+        rdf.rms += own->rms * own->rms / states;
+        rdf.noise += own->noise * own->noise / states;
+        rdf.variance += own->variance / states;
+        rdf.count += own->count;
+        section.own_noise = fmax(section.own_noise, state->section[0].own_noise);
+        disagreement = fmax(disagreement, state->disagreement);
+        misfit += state->misfit / states;
     }
-    for (int kind = 0; kind < TARGETS; kind++) {
-        leader->distance[kind] = all[kind];
-        leader->distance[kind].rms = sqrt(all[kind].rms);
-        leader->distance[kind].noise = sqrt(all[kind].noise);
-    }
+    rdf.rms = sqrt(rdf.rms);
+    rdf.noise = sqrt(rdf.noise);
+    section.rms = joint->state[worst.state].section[0].rms;
+    section.noise = joint->state[worst.state].section[0].noise;
+    leader->section[0] = section;
+    leader->own_noise = section.own_noise;
+    leader->disagreement = disagreement;
     leader->misfit = misfit;
+    leader->distance[TARGET_RDF] = rdf;
+    leader->distance[TARGET_PRESSURE].rms =
+        pressure.noises * leader->distance[TARGET_PRESSURE].noise;
 }
 
-/// The state that is farthest off by its noise.
-static size_t find_worst(const struct joint *joint) {
-    size_t worst = 0;
-    for (size_t s = 1; s < joint->states; s++) {
-        const struct target_distance *own = &joint->state[s].distance[TARGET_RDF];
-        const struct target_distance *most = &joint->state[worst].distance[TARGET_RDF];
-        if (own->rms * most->noise > most->rms * own->noise)
-            worst = s;
-    }
-    return worst;
+static void tell_worst(const struct joint *joint, const struct worst *worst, const char *why,
+                       char reason[INVERSE_REASON_SIZE]) {
+    const struct inversion *state = &joint->state[worst->state];
+    snprintf(reason, INVERSE_REASON_SIZE, "%s%s of \"%s\" is off by %.1f times its noise", why,
+             mf_targets_name(worst->kind), state->problem->name, worst->noises);
 }
 
 /// Where the states want different potentials the steps end in a compromise, about which they go
 /// on: the equations of a state that is far off carry the noise of C into the step.
-static void end_at_standstill(struct joint *joint, size_t worst,
-                              const struct target_distance *of_worst, struct inverse_step *step) {
+static void end_at_standstill(struct joint *joint, double distance, const struct worst *worst,
+                              struct inverse_step *step) {
     static const double progress = 0.95;
     static const uint32_t patience = 5;
-    const bool better = step->iteration == 0 || step->error < progress * joint->least;
-    joint->least = better ? step->error : joint->least;
+    const bool better = step->iteration == 0 || distance < progress * joint->least;
+    const bool met = worst->noises <= mf_inverse_noise_margin;
+    joint->least = better ? distance : joint->least;
     joint->standstill = better ? 0 : joint->standstill + 1;
-    if (step->finished || joint->standstill < patience ||
-        of_worst->rms <= mf_inverse_noise_margin * of_worst->noise)
+    if (met || step->converged)
         return;
-    step->finished = true;
-    snprintf(step->reason, sizeof step->reason,
-             "no step makes all states better together: the error of g of \"%s\" is %.2g, its "
-             "statistical error %.2g; they seem to have no potential in common",
-             joint->state[worst].problem->name, of_worst->rms, of_worst->noise);
+    if (!step->finished && joint->standstill >= patience) {
+        step->finished = true;
+        tell_worst(joint, worst,
+                   "no step makes all states better together; they seem to have no potential in "
+                   "common: ",
+                   step->reason);
+    } else if (step->finished) {
+        tell_worst(joint, worst, "", step->reason);
+    }
 }
 
 /// Let the other states sample what the first one does.
@@ -188,15 +223,15 @@ static enum status iterate(void *memory, struct inverse_step *step,
         TRY(mf_inversion_observe(&joint->state[s], listener));
     if (joint->states == 1)
         return mf_inversion_advance(leader, step);
-    const size_t worst = find_worst(joint);
-    const struct target_distance of_worst = joint->state[worst].distance[TARGET_RDF];
+    const struct worst worst = find_worst(joint, -1);
+    const double distance = find_distance(joint);
     TRY(reduce(joint));
     join_distances(joint);
     leader->joint = &joint->system;
     status = mf_inversion_advance(leader, step);
     leader->joint = NULL;
     add_work(joint, step);
-    end_at_standstill(joint, worst, &of_worst, step);
+    end_at_standstill(joint, distance, &worst, step);
     return status;
 }
 
@@ -235,7 +270,10 @@ static enum status create(void *memory, const struct inverse_method *method,
     NEW_ARRAY(joint->state, states);
     for (; joint->states < states; joint->states++) {
         const struct inverse_problem *own = states > 1 ? problem->state[joint->states] : problem;
-        CHECK(mf_inversion_create(&joint->state[joint->states], method, own, parameters));
+        status = mf_inversion_create(&joint->state[joint->states], method, own, parameters);
+        CHECK(status == STATUS_OK || states == 1
+                  ? status
+                  : mf_status_prefix(status, "states.%s", own->name));
     }
     CHECK(allocate(joint));
 done:

@@ -101,7 +101,7 @@ enum status mf_live_view_is_fit(const char *file, const char *text, bool *is_fit
     mf_text_file_lend(NULL, 0);
     TRY(status);
     struct json_object root = mf_json_root(document);
-    *is_fit = mf_json_has(&root, "target");
+    *is_fit = mf_json_has(&root, "target") || mf_json_has(&root, "states");
     return mf_json_close(document, STATUS_OK);
 }
 

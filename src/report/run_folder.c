@@ -185,39 +185,15 @@ static enum status with_files_in(const char *place, int (*is_one)(const struct d
     return status;
 }
 
-static int is_named(const struct dirent *entry) {
-    return entry->d_name[0] != '.';
-}
-
-/// The same of a folder below, if it is there, or of all folders in it.
-struct below {
-    int (*is_one)(const struct dirent *);
-    enum status (*act)(const char *path, const void *context);
-    const void *context;
-};
-
-static enum status with_files_of_state(const char *path, const void *context) {
-    const struct below *below = context;
-    struct stat about;
-    if (stat(path, &about) != 0 || !S_ISDIR(about.st_mode))
-        return STATUS_OK;
-    return with_files_in(path, below->is_one, below->act, below->context);
-}
-
-/// Do something with every file of the folder, of that of its snapshots and of those of its
-/// states, that is one of those.
+/// Do something with every file of the folder, and of that of its snapshots, that is one of those.
 static enum status with_files(const struct run_folder *folder, int (*is_one)(const struct dirent *),
                               enum status (*act)(const char *path, const void *context),
                               const void *context) {
-    const struct below below = {is_one, act, context};
-    char path[OUTPUT_PATH_SIZE];
+    char snapshots[OUTPUT_PATH_SIZE];
     TRY(with_files_in(folder->path, is_one, act, context));
-    mf_run_folder_file(folder, SNAPSHOT_FOLDER, path);
-    if (access(path, F_OK) == 0)
-        TRY(with_files_in(path, is_one, act, context));
-    mf_run_folder_file(folder, STATES_FOLDER, path);
-    return access(path, F_OK) == 0 ? with_files_in(path, is_named, with_files_of_state, &below)
-                                   : STATUS_OK;
+    mf_run_folder_file(folder, SNAPSHOT_FOLDER, snapshots);
+    return access(snapshots, F_OK) == 0 ? with_files_in(snapshots, is_one, act, context)
+                                        : STATUS_OK;
 }
 
 // May it be written? ------------------------------------------------------------------------------
@@ -357,6 +333,15 @@ void mf_run_folder_file(const struct run_folder *folder, const char *name, char 
              name);
 }
 
+/// A folder of this fit, and no link to another's.
+static enum status make_own(const char *path) {
+    struct stat about;
+    TRY(mf_output_make_folder(path));
+    if (lstat(path, &about) == 0 && S_ISDIR(about.st_mode))
+        return STATUS_OK;
+    return mf_status_fail(STATUS_BAD_INPUT, "%s is a link: states have folders of their own", path);
+}
+
 enum status mf_run_folder_state(const struct run_folder *folder, const char *name,
                                 struct run_folder *state) {
     char states[OUTPUT_PATH_SIZE];
@@ -369,8 +354,28 @@ enum status mf_run_folder_state(const struct run_folder *folder, const char *nam
                               folder->path, LONGEST_FOLDER);
     if (!ranks_lead())
         return STATUS_OK;
-    TRY(mf_output_make_folder(states));
-    return mf_output_make_folder(state->path);
+    TRY(make_own(states));
+    return make_own(state->path);
+}
+
+enum status mf_run_folder_open_state(const struct run_folder *folder, const char *name,
+                                     const struct input_files *inputs) {
+    struct run_folder state;
+    TRY(mf_run_folder_state(folder, name, &state));
+    if (!ranks_lead())
+        return STATUS_OK;
+    TRY(check_writable(&state));
+    if (has(&state, "used.json"))
+        return mf_status_fail(STATUS_BAD_INPUT, "%s holds a run of its own: -o OTHER keeps it",
+                              state.path);
+    return with_files(&state, is_output, spare_input, inputs);
+}
+
+enum status mf_run_folder_begin_state(const struct run_folder *folder, const char *name,
+                                      bool resume) {
+    struct run_folder state;
+    TRY(mf_run_folder_state(folder, name, &state));
+    return mf_run_folder_begin(&state, resume);
 }
 
 void mf_run_folder_draw(const struct run_folder *folder) {

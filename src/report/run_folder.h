@@ -61,5 +61,13 @@ void mf_run_folder_file(const struct run_folder *folder, const char *name, char 
 enum status mf_run_folder_state(const struct run_folder *folder, const char *name,
                                 struct run_folder *state) MUST_USE;
 
+/// Find out whether that folder can be written, as mf_run_folder_open: refused are a link, a folder
+/// with a run of its own, and one with a file that the run reads. And remove from it what an
+/// earlier run left, as mf_run_folder_begin.
+enum status mf_run_folder_open_state(const struct run_folder *folder, const char *name,
+                                     const struct input_files *inputs) MUST_USE;
+enum status mf_run_folder_begin_state(const struct run_folder *folder, const char *name,
+                                      bool resume) MUST_USE;
+
 /// Draw the figures of the folder; what fails is a warning on stderr.
 void mf_run_folder_draw(const struct run_folder *folder);

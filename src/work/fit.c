@@ -138,6 +138,7 @@ static enum status read_and_create(struct run *run, const char *file,
                                    const struct run_options *options) {
     TRY(mf_fit_file_read(&run->fit, file, options));
     TRY(mf_run_folder_open(&run->folder, RUN_FIT, file, &run->fit.inputs, options));
+    TRY(mf_fit_verify_folders(&run->fit, &run->folder));
     TRY(mf_fit_states_normalise(&run->fit));
     const enum status status = create(run);
     return status == STATUS_OK
@@ -150,7 +151,8 @@ static enum status begin_folder(struct run *run, const struct run_options *optio
     // Saved now, so that a run interrupted in its first iteration can be resumed like any other.
     TRY(options->resume ? load(run) : save(run));
     // What an earlier run left is touched once this one has begun.
-    return mf_run_folder_begin(&run->folder, options->resume);
+    TRY(mf_run_folder_begin(&run->folder, options->resume));
+    return mf_fit_verify_begin(&run->fit, &run->folder, options->resume);
 }
 
 static enum status prepare(struct run *run, const char *file, const struct run_options *options) {
@@ -336,31 +338,13 @@ static void say_verified(struct run *run, const struct fit_result *result) {
     mf_progress_say(to, "results in %s", run->folder.path);
 }
 
-/// What the verification of a state contradicts. An inversion has converged only if the result
-/// agrees with the target; measured, inversions of water, Lennard-Jones and the Gaussian core are
-/// verified within 0.8 to 2.3 times the statistical error. Other methods, and inversions by few
-/// coefficients, do not say that they agree, but how far they are off: that is what must be borne
-/// out.
-static bool is_contradicted(struct run *run, const struct fit_file *state,
-                            const struct verification *verification) {
-    static const double noise_margin = 3;
-    struct standing *standing = &run->standing;
-    const struct targets *targets = &state->problem.targets;
-    return run->fit.method->kind == INVERSE_INVERSION && !run->fit.method->restricted
-               ? mf_fit_verdict_contradicts(verification, targets_ask(targets, TARGET_PRESSURE),
-                                            state->problem.scene.temperature, noise_margin,
-                                            &state->scene.units, standing->reason)
-               : mf_fit_verdict_is_worse(verification, targets, standing->error, standing->variance,
-                                         standing->reason);
-}
-
 /// The verification has the last word.
 static void doubt(struct run *run, const struct verification *verification) {
     struct standing *standing = &run->standing;
     if (!standing->converged && !standing->used_up)
         return;
-    for (size_t s = 0; s < mf_fit_states_count(&run->fit) && !run->doubted; s++)
-        run->doubted = is_contradicted(run, mf_fit_states_at(&run->fit, s), &verification[s]);
+    run->doubted = mf_fit_verify_contradicts(&run->fit, verification, standing->error,
+                                             standing->variance, standing->reason);
     if (run->doubted)
         standing->converged = standing->used_up = false;
 }
@@ -392,7 +376,9 @@ static enum status verify_and_write(struct run *run) {
     say_verified(run, &result);
     for (size_t s = 0; s < states; s++)
         if (verification[s].warning[0])
-            mf_progress_say(&run->progress, "mesofit: warning: %s", verification[s].warning);
+            mf_progress_say(&run->progress, "mesofit: warning: %s%s%s",
+                            mf_fit_states_at(&run->fit, s)->name, run->fit.name[0] ? ": " : "",
+                            verification[s].warning);
     status = result.status;
     if (status == STATUS_UNCONVERGED)
         tell_unconverged(run);

@@ -6,6 +6,13 @@
 #include "problem/verify.h"
 #include "report/run_folder.h"
 
+/// Open the folders of the states behind the first, and begin to write there. Fails: as
+/// mf_run_folder_open_state and mf_run_folder_begin_state.
+enum status mf_fit_verify_folders(const struct fit_file *fit,
+                                  const struct run_folder *folder) MUST_USE;
+enum status mf_fit_verify_begin(const struct fit_file *fit, const struct run_folder *folder,
+                                bool resume) MUST_USE;
+
 /// Simulate a state, or the only one, with what was found.
 /// @param[in] curve   shape [UNKNOWNS][points]
 /// @param[in] number  shape [INVERSE_MOST_NUMBERS]
@@ -14,6 +21,16 @@ enum status mf_fit_verify_state(const struct fit_file *state, double *const *cur
                                 const struct inverse_parameter *number,
                                 const struct inverse_listener *listener,
                                 struct verification *verification) MUST_USE;
+
+/// Whether the verification of any state contradicts the fit, and why. An inversion has converged
+/// only if the result agrees with the target; measured, inversions of water, Lennard-Jones and the
+/// Gaussian core are verified within 0.8 to 2.3 times the statistical error. Other methods, and
+/// inversions by few coefficients, do not say that they agree, but how far they are off: that is
+/// what must be borne out.
+/// @param[in] verification     shape [states]
+/// @param[in] error, variance  of the fit, by itself
+bool mf_fit_verify_contradicts(const struct fit_file *fit, const struct verification *verification,
+                               double error, double variance, char reason[INVERSE_REASON_SIZE]);
 
 /// Tables of state number s: the first has those of the run's folder, the others have folders and
 /// figures of their own. Fails: IO, NO_MEMORY.

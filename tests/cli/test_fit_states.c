@@ -172,10 +172,51 @@ static void test_what_no_states_can_be_is_refused(void **state) {
         print_message("%s", result.err);
         run_program_assert_refused(&result, "bad", cases[k].to, 1, cases[k].words);
     }
+    small_inputs_write(*state, "bad.json", "{" COMMON ", \"states\": [1]}\n", NULL, NULL);
+    RUN_PROGRAM(&result, "fit", "bad.json", "-o", "bad");
+    run_program_assert_refused(&result, "bad", "list", 1,
+                               (const char *const[]){"states: expected an object", NULL});
     small_inputs_write(*state, "bad.json", "{" COMMON ", \"states\": {}}\n", NULL, NULL);
     RUN_PROGRAM(&result, "fit", "bad.json", "-o", "bad");
     run_program_assert_refused(&result, "bad", "none", 1,
                                (const char *const[]){"states", "there are 0", NULL});
+}
+
+/// Folders of states are those of this fit: another run's in its place, a link, and a file are
+/// refused before the fit begins, and a simulation does not look at them.
+static void test_folders_of_states_are_the_fits_own(void **state) {
+    small_inputs_write(*state, "run.json", run, NULL, NULL);
+    assert_int_equal(mkdir("taken", 0777), 0);
+    assert_int_equal(mkdir("taken/states", 0777), 0);
+    RUN_PROGRAM(&result, "simulate", "dilute.json", "-o", "taken/states/dense");
+    run_program_assert_code(&result, 0);
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "taken");
+    run_program_assert_code(&result, 2);
+    assert_non_null(strstr(result.err, "taken/states/dense holds a run of its own"));
+    RUN_PROGRAM(&result, "simulate", "dilute.json", "-o", "taken");
+    RUN_PROGRAM(&result, "simulate", "dilute.json", "-o", "taken");
+    run_program_assert_code(&result, 0);
+    assert_int_equal(access("taken/states/dense/rdf.tsv", F_OK), 0);
+    assert_int_equal(mkdir("linked", 0777), 0);
+    assert_int_equal(mkdir("linked/states", 0777), 0);
+    assert_int_equal(symlink("../../dense", "linked/states/dense"), 0);
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "linked");
+    run_program_assert_code(&result, 2);
+    assert_non_null(strstr(result.err, "linked/states/dense is a link"));
+    assert_int_equal(access("dense/rdf.tsv", F_OK), 0);
+}
+
+/// Of a fit of states the first is exported; a run file of states is no scene.
+static void test_results_of_states_are_exported(void **state) {
+    small_inputs_write(*state, "run.json", run, NULL, NULL);
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "out", "--force");
+    run_program_assert_code(&result, 0);
+    RUN_PROGRAM(&result, "export", "out", "--engine", "lammps", "-o", "lammps");
+    run_program_assert_code(&result, 0);
+    assert_int_equal(access("lammps/in.mesofit", F_OK), 0);
+    RUN_PROGRAM(&result, "simulate", "run.json", "-o", "no");
+    run_program_assert_code(&result, 2);
+    assert_non_null(strstr(result.err, "use: mesofit fit run.json"));
 }
 
 int main(void) {
@@ -185,6 +226,8 @@ int main(void) {
         cmocka_unit_test(test_pressures_of_two_densities_are_met),
         cmocka_unit_test(test_states_that_contradict_each_other_do_not_converge),
         cmocka_unit_test(test_what_no_states_can_be_is_refused),
+        cmocka_unit_test(test_folders_of_states_are_the_fits_own),
+        cmocka_unit_test(test_results_of_states_are_exported),
     };
     return cmocka_run_group_tests(tests, enter, small_inputs_leave);
 }
