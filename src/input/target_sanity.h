@@ -40,3 +40,11 @@ enum status mf_target_sanity_check(const struct target_files *files, const struc
 /// 50, which may be in kelvins. Fails: NO_MEMORY. Tested: test_target_sanity.
 enum status mf_target_sanity_tell(const struct target_files *files, const struct scene *scene,
                                   const struct target_sanity_listener *listener) MUST_USE;
+
+/// The same of bonds, angles and dihedrals: a line a group, and a warning of angles that may be
+/// straight.
+void mf_target_sanity_tell_groups(const struct target_files *files, const struct scene *scene,
+                                  const struct target_sanity_listener *listener);
+
+/// The unit of length in which a person is told of targets, and λ in it.
+const char *mf_target_sanity_length(const struct scene *scene, double *length);
