@@ -4,6 +4,7 @@
 #include "inversion/imc_solve.h"
 #include "inversion/inversion.h"
 #include "inversion/inversion_coarse.h"
+#include "inversion/inversion_ramp.h"
 
 #include <math.h>
 
@@ -64,24 +65,6 @@ static void doubt_response(struct inversion *inversion, double independent,
                 independent;
 }
 
-/// The wide part of a step near the targets of groups, by few coefficients: their response is well
-/// known, and so it goes all of its way, where the noise of C lets a step that has a value for each
-/// bin go a part of its way along the ramp and whatever else is wide. What it leaves of the excess
-/// is for the bins.
-/// @param[out] wide      shape [points] [k_B T_0]
-/// @param[out] residual  shape [known]
-static void take_wide_part(struct inversion *inversion, double *wide, double *residual) {
-    const struct potential_grid *grid = &inversion->grid;
-    const double temperature = inversion->problem->scene.temperature;
-    mf_inversion_basis_measure(&inversion->coarse, inversion, wide);
-    for (size_t a = 0; a < grid->known; a++) {
-        residual[a] = inversion->excess[a];
-        for (size_t b = 0; b < grid->known; b++)
-            residual[a] -= inversion->covariance[a * grid->known + b] * wide[grid->known_point[b]] /
-                           temperature;
-    }
-}
-
 enum status mf_imc_step(struct inversion *inversion, const struct imc_parameters *parameters,
                         double *step, double extra[3]) {
     const struct inverse_problem *problem = inversion->problem;
@@ -101,8 +84,9 @@ enum status mf_imc_step(struct inversion *inversion, const struct imc_parameters
     NEW_ARRAY(x, grid->known);
     NEW_ARRAY(wide, grid->points);
     NEW_ARRAY(residual, grid->known);
-    if (inversion->coarse.count > 0 && mf_inversion_is_near(inversion)) {
-        take_wide_part(inversion, wide, residual);
+    // Groups have about as many bins as an iteration has samples, so that C is noisy.
+    if (inversion->coarse.count > 0 && grid->pairs > 0 && mf_inversion_is_near(inversion)) {
+        CHECK(mf_inversion_ramp_step(inversion, &system, wide, residual));
         system.excess = residual;
         for (size_t a = 0; a < grid->known; a++)
             system.wanted -= inversion->pressure.slope[a] * wide[grid->known_point[a]];
