@@ -20,7 +20,7 @@ struct run_program_how {
 struct run_program_result {
     int code;       ///< exit code, or −n if it died of signal n
     double seconds; ///< that it took
-    char out[32768], err[32768];
+    char out[65536], err[65536];
 };
 
 /// Run the program with `words`, NULL-terminated, and wait for its end. A text that does not fit
