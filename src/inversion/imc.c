@@ -86,7 +86,7 @@ enum status mf_imc_step(struct inversion *inversion, const struct imc_parameters
     NEW_ARRAY(residual, grid->known);
     // Groups have about as many bins as an iteration has samples, so that C is noisy.
     if (inversion->coarse.count > 0 && grid->pairs > 0 && mf_inversion_is_near(inversion)) {
-        CHECK(mf_inversion_ramp_step(inversion, &system, wide, residual));
+        mf_inversion_ramp_step(inversion, &system, wide, residual);
         system.excess = residual;
         for (size_t a = 0; a < grid->known; a++)
             system.wanted -= inversion->pressure.slope[a] * wide[grid->known_point[a]];
