@@ -232,10 +232,11 @@ static enum status draw_figure(const char *folder, const char *plots, const stru
 /// The figure of an observable; that without a script of its own is told what to draw.
 static enum status draw_observable(const char *folder, const char *plots,
                                    const struct observable *observable, size_t *count) {
-    // Scripts read the settings, too, which the folder of a state of a fit has not.
+    if (observable->figure == NULL || !has_files(folder, observable->files))
+        return STATUS_OK;
+    // It shows the box of the settings, which the folder of a state of a fit has not.
     static const char *const settings[] = {"used.json", NULL};
-    if (observable->figure == NULL || !has_files(folder, observable->files) ||
-        !has_files(folder, settings))
+    if (strcmp(observable->figure, "configuration") == 0 && !has_files(folder, settings))
         return STATUS_OK;
     ++*count;
     if (strcmp(observable->figure, OBSERVABLE_FIGURE_OF_CURVE) != 0 &&
