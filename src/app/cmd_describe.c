@@ -33,9 +33,8 @@ static const struct inner run_objects[] = {
     {"core", "where the target is 0", "core"},
     {"verification", "independent simulations of the result", "verification"},
     {"states",
-     "{\"dilute\": {\"scene\": {…}, \"target\": {…}}, …}: systems that share a potential, each "
-     "this "
-     "file with its own keys put over it",
+     "{\"dilute\": {\"scene\": {…}, \"target\": {…}}, …}: systems that share a potential, "
+     "each this file with its own keys put over it",
      "run"},
     {NULL, NULL, NULL},
 };

@@ -238,8 +238,7 @@ enum status mf_target_sanity_check(const struct target_files *files, const struc
     return STATUS_OK;
 }
 
-__attribute__((format(printf, 2, 3))) static void say(const struct target_sanity_listener *listener,
-                                                      const char *format, ...) {
+void mf_target_sanity_say(const struct target_sanity_listener *listener, const char *format, ...) {
     char line[512];
     va_list arguments;
     va_start(arguments, format);
@@ -268,7 +267,8 @@ static void tell_view(const struct view *view, const struct target_sanity_listen
     if (view->like > 1 && view->scene->setup.box.dimensions == 3 &&
         !scene_has_molecules(&view->scene->molecules))
         print_compressibility(view, compressibility, sizeof compressibility);
-    say(listener,
+    mf_target_sanity_say(
+        listener,
         "target %s: g from %.4g to %.4g %s, peak %.3g at %.4g %s, tail %.3f(%.0f); density %s%s%s",
         view->name, mf_rdf_bins_centre(bins, 0) * length,
         mf_rdf_bins_centre(bins, bins->count - 1) * length, unit, view->g[peak],
@@ -282,21 +282,24 @@ static void tell_origin(const struct view *view, const struct target_sanity_list
     const char *unit = unit_of(view, &length);
     const double ends = view->files->rdf_ends[view->target - view->files->rdf];
     if (ends > mf_rdf_bins_edge(view->bins, view->bins->count) * (1 + 1e-9))
-        say(listener,
+        mf_target_sanity_say(
+            listener,
             "target %s: it goes on to %.4g %s and is cut at %.4g %s, where the shortest ends: "
             "all g(r) of a mixture end together",
             view->name, ends * length, unit,
             mf_rdf_bins_edge(view->bins, view->bins->count) * length, unit);
     if (target->joined > 1)
-        say(listener, "target %s: %zu rows of the file make a bin of %.4g %s", view->name,
-            target->joined, view->bins->width * length, unit);
+        mf_target_sanity_say(listener, "target %s: %zu rows of the file make a bin of %.4g %s",
+                             view->name, target->joined, view->bins->width * length, unit);
     if (target->assumed)
-        say(listener,
+        mf_target_sanity_say(
+            listener,
             "target %s: no errors given, and no scatter tells them: %.2g at g = 1 in the last bin "
             "is assumed",
             view->name, target->estimated_error);
     else if (target->estimated_error > 0)
-        say(listener,
+        mf_target_sanity_say(
+            listener,
             "target %s: no errors given: %.2g at g = 1 in the last bin, from the scatter of the "
             "rows",
             view->name, target->estimated_error);
@@ -332,7 +335,8 @@ static enum status warn_of_normalisation(const struct view *view,
     if (largest >= 0)
         return STATUS_OK;
     print_compressibility(view, value, sizeof value);
-    say(listener,
+    mf_target_sanity_say(
+        listener,
         "mesofit: warning: target.%s: it asks for a negative compressibility, %s; a normalisation "
         "or "
         "density that is off by up to 3 %% would explain it",
@@ -349,14 +353,16 @@ static void warn_of_density(const struct view *view,
     char density[80], unit[UNITS_NAME_SIZE];
     print_density(view, density, sizeof density);
     if (neighbours < few_neighbours)
-        say(listener,
+        mf_target_sanity_say(
+            listener,
             "mesofit: warning: target.%s: it has the layers of a liquid, but at the density of the "
             "scene, %s, a bead has only %.2g neighbours up to the second one: is the unit of "
             "length, scene.box or the number of particles wrong? (solutes in an implicit solvent "
             "look so, too)",
             view->name, density, neighbours);
     else if (filled < dilute)
-        say(listener,
+        mf_target_sanity_say(
+            listener,
             "mesofit: warning: target.%s: a dilute gas: the density of the scene is %s, and the "
             "beads "
             "are %.3g %s wide",
@@ -367,7 +373,8 @@ static void warn_of_density(const struct view *view,
 static void tell_normalisation(const struct normalisation *n,
                                const struct target_sanity_listener *listener) {
     if (n->found)
-        say(listener,
+        mf_target_sanity_say(
+            listener,
             "target.rdf: g is too %s as a whole, by a factor of %.4f(%.0f), by which it is "
             "divided; "
             "\"normalisation\" of the target sets another, 1 for none",
@@ -389,6 +396,6 @@ enum status mf_target_sanity_tell(const struct target_files *files, const struct
     tell_normalisation(&files->normalisation, listener);
     char line[SCENE_LINE_SIZE];
     if (mf_scene_is_hot(scene, line))
-        say(listener, "mesofit: warning: scene.%s", line);
+        mf_target_sanity_say(listener, "mesofit: warning: scene.%s", line);
     return STATUS_OK;
 }

@@ -46,5 +46,9 @@ enum status mf_target_sanity_tell(const struct target_files *files, const struct
 void mf_target_sanity_tell_groups(const struct target_files *files, const struct scene *scene,
                                   const struct target_sanity_listener *listener);
 
+/// Say a line.
+void mf_target_sanity_say(const struct target_sanity_listener *listener, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
 /// The unit of length in which a person is told of targets, and λ in it.
 const char *mf_target_sanity_length(const struct scene *scene, double *length);

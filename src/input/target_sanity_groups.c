@@ -3,18 +3,7 @@
 // A look at the targets of bonds, angles and dihedrals.
 #include "input/target_sanity.h"
 
-#include <stdarg.h>
 #include <stdio.h>
-
-__attribute__((format(printf, 2, 3))) static void say(const struct target_sanity_listener *listener,
-                                                      const char *format, ...) {
-    char line[512];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(line, sizeof line, format, arguments);
-    va_end(arguments);
-    listener->say(listener->context, line);
-}
 
 /// What lengths are told in.
 const char *mf_target_sanity_length(const struct scene *scene, double *length) {
@@ -42,11 +31,12 @@ static void tell_group(const struct target_groups *groups, size_t g, const struc
     double factor = 1;
     const char *unit =
         groups->order == TOPOLOGY_BOND ? mf_target_sanity_length(scene, &factor) : "degrees";
-    say(listener, "target %s.%s: %zu bins of %.4g from %.4g to %.4g %s, peak at %.4g%s",
-        mf_bonded_distribution_of(groups->order)->name, groups->name[g], bins->count,
-        factor * bins->width, factor * bins->low,
-        factor * (bins->low + (double)bins->count * bins->width), unit,
-        factor * bonded_bins_centre(bins, peak), errors);
+    mf_target_sanity_say(listener,
+                         "target %s.%s: %zu bins of %.4g from %.4g to %.4g %s, peak at %.4g%s",
+                         mf_bonded_distribution_of(groups->order)->name, groups->name[g],
+                         bins->count, factor * bins->width, factor * bins->low,
+                         factor * (bins->low + (double)bins->count * bins->width), unit,
+                         factor * bonded_bins_centre(bins, peak), errors);
 }
 
 /// Three beads in a line have no plane: next to it the forces of a dihedral are without bound, and
@@ -64,7 +54,8 @@ static void warn_of_lines(const struct target_files *files,
             if (bonded_bins_centre(&member->bins, k) > straight)
                 share += member->value[k] * member->bins.width;
         if (share > many)
-            say(listener,
+            mf_target_sanity_say(
+                listener,
                 "mesofit: warning: target.dihedral_angles: %.0f %% of the angles \"%s\" are within "
                 "10 degrees of a straight line, where the force of a dihedral has no bound: "
                 "simulations with it are too hot. Leave the dihedrals out",

@@ -28,8 +28,7 @@ static struct inversion *leader_of(const struct joint *joint) {
     return &joint->state[0];
 }
 
-// The equations of all states
-// ----------------------------------------------------------------------
+// The equations of all states ---------------------------------------------------------------------
 
 /// Rows of the states and, below each state's, one of its pressure if it is asked for.
 static size_t count_rows(const struct joint *joint) {
@@ -89,8 +88,7 @@ done:
     return status;
 }
 
-// All states in one
-// --------------------------------------------------------------------------------
+// All states in one -------------------------------------------------------------------------------
 
 /// In units of its noise.
 static double noises_of(const struct target_distance *distance) {
@@ -230,17 +228,17 @@ static enum status iterate(void *memory, struct inverse_step *step,
     leader->joint = &joint->system;
     status = mf_inversion_advance(leader, step);
     leader->joint = NULL;
+    TRY(status); // else there is no step
     add_work(joint, step);
     end_at_standstill(joint, distance, &worst, step);
-    return status;
+    return STATUS_OK;
 }
 
 static enum status update(struct inversion *inversion, double *extra) {
     return mf_imc_step(inversion, &(const struct imc_parameters){0}, inversion->step, extra);
 }
 
-// The record
-// ---------------------------------------------------------------------------------------
+// The record --------------------------------------------------------------------------------------
 
 static enum status allocate(struct joint *joint) {
     enum status status = STATUS_OK;
