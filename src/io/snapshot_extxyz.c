@@ -25,6 +25,8 @@ static void print_heading(const struct snapshot *snapshot, FILE *stream) {
     fprintf(stream, "%zu\nLattice=\"%.10g 0 0 0 %.10g 0 0 0 %.10g\" pbc=\"T T %c\" ",
             snapshot->count, box->length[0], box->length[1], box->length[2],
             box->dimensions == 3 ? 'T' : 'F');
+    if (snapshot->units)
+        fprintf(stream, "Units=%s ", snapshot->units);
     fprintf(stream, "Step=%llu Time=%.10g Properties=species:S:1",
             (unsigned long long)snapshot->step, snapshot->time);
     for (int n = 0; n < snapshot->columns; n++)

@@ -17,6 +17,12 @@ const char *mf_snapshot_unit(const struct snapshot_column *column) {
     return "";
 }
 
+static const char *name_units(const struct units *units) {
+    if (!mf_units_speaks(units))
+        return "lj";
+    return units->system == UNITS_NM_PS ? "nm-ps" : "real";
+}
+
 enum status mf_snapshot_translate(struct snapshot *told, const struct snapshot *from,
                                   const struct units *units) {
     mf_snapshot_clear(told);
@@ -26,6 +32,7 @@ enum status mf_snapshot_translate(struct snapshot *told, const struct snapshot *
         *told = (struct snapshot){0};
         return STATUS_NO_MEMORY;
     }
+    told->units = name_units(units);
     told->time = mf_units_spoken(from->time, mf_units_factor(units, "tau"));
     for (int d = 0; d < from->box.dimensions; d++)
         told->box.length[d] =

@@ -88,6 +88,13 @@ static enum status describe_atom(const struct xyz_comment *comment,
     return STATUS_OK;
 }
 
+/// What the file or the user says; else the field's habit of Å, fs and u.
+static enum status find_units(struct trajectory *trajectory, const struct xyz_comment *comment) {
+    if (comment->units[0] != '\0')
+        return mf_trajectory_found_units(trajectory, comment->units);
+    return trajectory->scale.length > 0 ? STATUS_OK : mf_trajectory_found_units(trajectory, "real");
+}
+
 static enum status describe(struct trajectory *trajectory, struct trajectory_frame *first) {
     struct structure *const structure = &trajectory->structure;
     struct xyz_comment comment;
@@ -95,6 +102,7 @@ static enum status describe(struct trajectory *trajectory, struct trajectory_fra
     struct word word;
     int64_t atoms = 0;
     TRY(begin_frame(first, &comment, &line));
+    TRY(find_units(trajectory, &comment));
     if (mf_words_next(&rest, &word) && mf_words_integer(&word, &atoms))
         TRY(mf_structure_init(structure, (size_t)atoms));
     structure->has_names = comment.column[XYZ_NAME] >= 0;
@@ -156,9 +164,9 @@ static const char *const extensions[] = {"xyz", "extxyz", "exyz", NULL};
 const struct trajectory_format mf_format_xyz = {
     .name = "xyz",
     .extensions = extensions,
-    .summary =
-        "XYZ, plain or extended: Lattice, pbc, Time, and of Properties pos, velo, mass, id, mol",
-    .speaks = TRAJECTORY_ANGSTROM,
+    .summary = "XYZ, plain or extended: Lattice, pbc, Time, Units, and of Properties pos, velo, "
+               "mass, id, mol",
+    .speaks = TRAJECTORY_UNITS_TOLD,
     .recognise = recognise,
     .fetch = fetch,
     .describe = describe,

@@ -66,7 +66,8 @@ static enum status find_units(struct trajectory *trajectory, const char *units) 
 
 enum status mf_trajectory_found_units(struct trajectory *trajectory, const char *name) {
     struct trajectory_scale scale;
-    TRY(mf_trajectory_units_find(name, &scale));
+    if (mf_trajectory_units_find(name, &scale) != STATUS_OK)
+        return mf_status_prefix(STATUS_BAD_INPUT, "%s", trajectory->file);
     const bool told = trajectory->scale.length > 0;
     if (told && memcmp(&scale, &trajectory->scale, sizeof scale) != 0)
         return mf_status_fail(STATUS_BAD_INPUT, "%s: says that its units are \"%s\"",

@@ -11,14 +11,19 @@
 /// The time of "electron" is a femtosecond, its speed that of one Bohr in 1.03275 fs.
 #define ATOMIC_TIME 1.03275e-3
 
-const char *const mf_trajectory_unit_names[] = {"real",     "metal", "nano",  "lj", "si",
-                                                "electron", "cgs",   "micro", NULL};
+const char *const mf_trajectory_unit_names[] = {"real",     "metal", "nano",  "lj",    "si",
+                                                "electron", "cgs",   "micro", "nm-ps", NULL};
 
 static const struct trajectory_scale scales[] = {
-    {0.1, 1e-3, 1, 100},           {0.1, 1, 1, 0.1},
-    {1, 1e3, 1e-18 * GRAM, 1e-3},  {1, 1, 1, 1},
-    {1e9, 1e12, 1e3 * GRAM, 1e-3}, {BOHR, 1e-3, 1, BOHR / ATOMIC_TIME},
-    {1e7, 1e12, GRAM, 1e-5},       {1e3, 1e6, 1e-12 * GRAM, 1e-3},
+    {0.1, 1e-3, 1, 100},
+    {0.1, 1, 1, 0.1},
+    {1, 1e3, 1e-18 * GRAM, 1e-3},
+    {1, 1, 1, 1},
+    {1e9, 1e12, 1e3 * GRAM, 1e-3},
+    {BOHR, 1e-3, 1, BOHR / ATOMIC_TIME},
+    {1e7, 1e12, GRAM, 1e-5},
+    {1e3, 1e6, 1e-12 * GRAM, 1e-3},
+    {1, 1, 1, 1},
 };
 
 enum { STYLES = sizeof scales / sizeof *scales };

@@ -8,7 +8,7 @@
 enum trajectory_speaks {
     TRAJECTORY_OWN_UNITS, ///< the format says which, and nobody else
     TRAJECTORY_ANGSTROM,  ///< Å, fs and u, unless the user says otherwise
-    TRAJECTORY_UNITS_TOLD ///< only the user knows
+    TRAJECTORY_UNITS_TOLD ///< the file may say it; else only the user knows
 };
 
 /// What one unit of a file is.
@@ -20,7 +20,7 @@ struct trajectory_scale {
 };
 
 /// The unit styles of LAMMPS (manual, command `units`) by their names, NULL-terminated; in "lj"
-/// lengths, times and masses stay the numbers that they are.
+/// lengths, times and masses stay the numbers that they are. "nm-ps" is ours, and GROMACS's.
 extern const char *const mf_trajectory_unit_names[];
 
 /// Fails: BAD_INPUT if there is no such style. Tested: test_trajectory_lammps.

@@ -116,6 +116,9 @@ static const char *read_pair(struct xyz_comment *comment, const struct word *key
                    : "Properties should be name:kind:number, with pos:R:3 among them";
     if (mf_words_alike(key, "pbc"))
         return read_periodic(value, comment->periodic) ? NULL : "pbc should be three of T and F";
+    if (mf_words_alike(key, "Units"))
+        return mf_words_copy(value, comment->units, sizeof comment->units) ? NULL
+                                                                           : "Units is too long";
     if (mf_words_alike(key, "Time") && read_numbers(value, &number, 1))
         comment->time = number;
     if ((mf_words_alike(key, "Step") || mf_words_alike(key, "Timestep")) &&

@@ -24,6 +24,7 @@ struct xyz_comment {
     int64_t step;            ///< −1: not said
     int column[XYZ_COLUMNS]; ///< where each begins; −1: nowhere
     size_t columns;          ///< of an atom, at least
+    char units[32];          ///< as mf_trajectory_unit_names has them; "": not said
 };
 
 /// Read a comment; a plain one says nothing, and gives the columns of plain XYZ.

@@ -8,6 +8,7 @@
 #include "shared/testing.h"
 
 #include <stdio.h>
+#include <string.h>
 
 #define SNAPSHOTS                                                                                  \
     "\"snapshots\": {\"every\": 40, \"formats\": [\"vtp\", \"json\", \"extxyz\", "                 \
@@ -86,6 +87,31 @@ static void test_new_run_removes_the_snapshots_of_an_earlier_one(void **state) {
     assert_true(temporary_folder_exists("out/snapshots/step_000000080.vtp"));
     assert_false(temporary_folder_exists("out/snapshots/step_000000040.vtp"));
     assert_false(temporary_folder_exists("out/snapshots/trajectory.extxyz"));
+}
+
+/// Other programs take extended XYZ to be in Angstrom: ours says its units, and reads them again.
+static void test_measure_knows_the_units_of_snapshots(void **state) {
+    static struct run_program_result result;
+    static const struct {
+        const char *units, *box;
+    } variant[] = {{"nm-ps", "2"}, {"angstrom-fs", "20"}, {"reduced", "2"}};
+    for (size_t k = 0; k < sizeof variant / sizeof *variant; k++) {
+        char scene[512];
+        snprintf(
+            scene, sizeof scene,
+            "{\"units\": \"%s\", \"box\": [%s, %s, %s], %s"
+            "\"particles\": {\"count\": 100%s}, \"snapshots\": {\"every\": 5, \"formats\": "
+            "[\"extxyz\"]}, \"measure\": {\"equilibration\": 0, \"samples\": 20, \"every\": 5}}",
+            variant[k].units, variant[k].box, variant[k].box, variant[k].box,
+            k < 2 ? "\"temperature\": 300, " : "", k < 2 ? ", \"mass\": 18" : "");
+        temporary_folder_write(*state, "scene.json", scene, strlen(scene));
+        RUN_PROGRAM(&result, "simulate", "scene.json", "--force");
+        run_program_assert_code(&result, 0);
+        RUN_PROGRAM(&result, "measure", "out/snapshots/trajectory.extxyz", "-o", "target",
+                    "--force");
+        run_program_assert_code(&result, 0);
+        results_assert_number("target/summary.json", "density", 12.5);
+    }
 }
 
 static const char active[] =
@@ -195,6 +221,8 @@ int main(void) {
         cmocka_unit_test_setup_teardown(test_snapshots_change_nothing_else_and_threads_not_them,
                                         small_inputs_enter_without_gnuplot, small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_new_run_removes_the_snapshots_of_an_earlier_one,
+                                        small_inputs_enter_without_gnuplot, small_inputs_leave),
+        cmocka_unit_test_setup_teardown(test_measure_knows_the_units_of_snapshots,
                                         small_inputs_enter_without_gnuplot, small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_scene_begins_with_a_snapshot,
                                         small_inputs_enter_without_gnuplot, small_inputs_leave),

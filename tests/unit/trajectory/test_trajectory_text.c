@@ -112,6 +112,13 @@ static void test_extended_xyz_has_box_velocities_and_columns(void **state) {
     next(true);
     assert_vector(frame.position[0], 1, 2, 3);
     close_all();
+    open_text(state, "a.xyz", "1\nUnits=nm-ps Time=4 Properties=pos:R:3:velo:R:3\n1 2 3 4 5 6\n",
+              NULL);
+    next(true);
+    assert_vector(frame.position[0], 1, 2, 3);
+    assert_vector(frame.velocity[0], 4, 5, 6);
+    assert_true(frame.time == 4);
+    close_all();
 }
 
 #define PDB_ATOM(number, name, chain, x)                                                           \
@@ -216,6 +223,8 @@ static void test_text_is_refused_with_its_line(void **state) {
     assert_refused(state, "a.xyz", "1\n\nO 1 nan 3\n", "a.xyz:3: frame 0: a coordinate");
     assert_refused(state, "a.xyz", "1\nProperties=pos:R:2\n1 2\n", "a.xyz:2: frame 0: Properties");
     assert_refused(state, "a.xyz", "1\nLattice=\"1 2 3\"\nO 1 2 3\n", "nine numbers");
+    assert_refused(state, "a.xyz", "1\nUnits=furlong Properties=pos:R:3\n1 2 3\n",
+                   "a.xyz: no units are called \"furlong\"");
     assert_refused(state, "a.pdb", "MODEL 1\n" PDB_ATOM("1", " CA ", "A", "   1.000"),
                    "ENDMDL is missing");
     assert_refused(state, "a.pdb", "REMARK nothing\nEND\n", "a.pdb: the file has no frame");
