@@ -139,6 +139,7 @@ struct inversion {
         double least_decrement;           ///< of what was kept, by the gradient
         double miss;                      ///< of the last gradient, in its noise
         uint32_t near_steps;              ///< one after the other with a gradient of hardly more
+        uint32_t agreed;                  ///< iterations running that agreed with all targets
         double first_error, second_error; ///< of g, in the first two iterations from a start
     } progress;
 };
