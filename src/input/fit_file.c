@@ -8,6 +8,7 @@
 #include "input/fit_check.h"
 #include "input/fit_defaults.h"
 #include "input/fit_states.h"
+#include "input/fit_states_bins.h"
 #include "input/fit_unknowns.h"
 
 #include <math.h>
@@ -254,6 +255,9 @@ enum status mf_fit_file_parse(struct fit_file *fit, const char *file,
     struct reading reading = {file, options, 0, NULL, 0};
     TRY(mf_fit_states_mark(fit, parse_state(fit, &reading)));
     TRY(parse_others(fit, &reading));
+    TRY(mf_fit_states_widen(fit, file));
+    for (size_t s = 0; fit->others > 0 && s < mf_fit_states_count(fit); s++)
+        state_problem(mf_fit_states_at(fit, s), options);
     mf_fit_states_link(fit);
     return STATUS_OK;
 }

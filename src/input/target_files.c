@@ -141,6 +141,15 @@ static enum status read_groups(struct target_files *files, const struct observab
     return STATUS_OK;
 }
 
+enum status mf_target_files_widen(struct target_files *files, enum topology_order order,
+                                  size_t group, const struct bonded_bins *bins) {
+    const int place = mf_observable_kind(mf_bonded_distribution_kind(order)).place;
+    struct bonded_settings *settings = files->settings[place];
+    TRY(mf_target_groups_widen(&files->groups[order], group, bins));
+    *settings = mf_target_groups_settings(&files->groups[order]);
+    return STATUS_OK;
+}
+
 static enum status read_kind(struct target_files *files, int number, struct json_object *object,
                              const struct box *box, const struct molecules *molecules,
                              const struct units *units) {

@@ -46,6 +46,11 @@ void mf_target_files_write(const struct target_files *files, struct json_writer 
 /// Add what was read from files to the digest of a checkpoint.
 void mf_target_files_digest(const struct target_files *files, uint64_t *digest);
 
+/// As mf_target_groups_widen, of a group of bonds, angles or dihedrals; it is measured in these
+/// bins, too.
+enum status mf_target_files_widen(struct target_files *files, enum topology_order order,
+                                  size_t group, const struct bonded_bins *bins) MUST_USE;
+
 /// Divide g(r) by its normalisation: what the file says, else what mf_normalisation_find makes of
 /// the target in this box, and 1 of beads that are `joined` to molecules, of which it knows
 /// nothing. If the file says some of a mixture's, the others are 1. Fails:

@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "base/nearest.h"
 
+#include <math.h>
 #include <string.h>
 
 /// Keys of the object that are no groups (struct target_use).
@@ -27,6 +28,12 @@ static void fault_unknown(const struct target_groups *groups, struct json_object
 /// Values of all members, one behind the other.
 static enum status collect(struct target_groups *groups) {
     enum status status = STATUS_OK;
+    mf_memory_free(groups->value);
+    mf_memory_free(groups->error);
+    mf_memory_free(groups->block);
+    groups->value = groups->error = NULL;
+    groups->block = NULL;
+    groups->blocks = 0;
     for (size_t g = 0; g < groups->groups; g++)
         groups->first[g + 1] = groups->first[g] + groups->member[g].bins.count;
     NEW_ARRAY(groups->value, groups->first[groups->groups]);
@@ -79,6 +86,34 @@ enum status mf_target_groups_read(struct target_groups *groups, enum topology_or
     mf_json_finish(object);
     CHECK(collect(groups));
 done:
+    return status;
+}
+
+enum status mf_target_groups_widen(struct target_groups *groups, size_t group,
+                                   const struct bonded_bins *bins) {
+    enum status status = STATUS_OK;
+    struct target_bonded *member = &groups->member[group];
+    const size_t before = (size_t)lround((member->bins.low - bins->low) / bins->width);
+    const size_t last = member->bins.count - 1;
+    double *value = NULL, *error = NULL;
+    if (before == 0 && bins->count == member->bins.count)
+        return STATUS_OK;
+    NEW_ARRAY(value, bins->count);
+    NEW_ARRAY(error, bins->count);
+    for (size_t k = 0; k < bins->count; k++) {
+        const bool own = k >= before && k - before <= last;
+        value[k] = own ? member->value[k - before] : 0;
+        error[k] = member->error[own ? k - before : k < before ? 0 : last];
+    }
+    mf_memory_free(member->value);
+    mf_memory_free(member->error);
+    member->value = value;
+    member->error = error;
+    member->bins = *bins;
+    return collect(groups);
+done:
+    mf_memory_free(value);
+    mf_memory_free(error);
     return status;
 }
 

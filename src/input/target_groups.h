@@ -25,6 +25,11 @@ enum status mf_target_groups_read(struct target_groups *groups, enum topology_or
 void mf_target_groups_clear(struct target_groups *groups);
 void mf_target_groups_write(const struct target_groups *groups, struct json_writer *writer);
 
+/// Give the target of a group these bins, of which its own are some. What it has not seen has p = 0
+/// and the error of its nearest bin. Fails: NO_MEMORY.
+enum status mf_target_groups_widen(struct target_groups *groups, size_t group,
+                                   const struct bonded_bins *bins) MUST_USE;
+
 /// Whether a group of the scene has a target.
 static inline bool target_groups_have(const struct target_groups *groups, size_t group) {
     return group < groups->groups && groups->member[group].bins.count > 0;

@@ -11,6 +11,10 @@ static const char *const columns[] = {INVERSION_COLUMNS, NULL};
 void mf_ibi_logarithms(const struct inversion *inversion, double *step) {
     const struct potential_grid *grid = &inversion->grid;
     for (size_t n = 0; n < grid->known; n++) {
+        if (!grid->seen[n]) {
+            step[grid->known_point[n]] = 0;
+            continue;
+        }
         // An empty bin is as full as one with the threshold's few pairs.
         const size_t bin = grid->known_bin[n];
         const double least = inversion->least[bin];

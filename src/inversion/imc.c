@@ -41,20 +41,13 @@ static double choose_strength(struct inversion *inversion,
     return mf_inversion_band_prior(inversion);
 }
 
-/// Variances of what C predicts. C is itself sampled: of n independent samples C_ab has the
-/// variance (C_aa C_bb + C_ab²)/n (normal S), and so Σ_b C_ab x_b/k_B T has
-///   (C_aa Σ_b C_bb x_b² + (Σ_b C_ab x_b)²)/(n (k_B T)²),
-/// where the last sum is about the excess, and x about the step of Boltzmann inversion. Several
-/// pair types and groups have about as many bins as an iteration has independent samples: a step
-/// that removed the excess as far as its own noise would follow the noise of C, by thousands of k_B
-/// T.
-/// @param[in] logarithms  the step of Boltzmann inversion, shape [points]
-static void doubt_response(struct inversion *inversion, double independent,
-                           const double *logarithms) {
+void mf_imc_doubt(struct inversion *inversion, double *logarithms) {
     const size_t known = inversion->grid.known;
     const double *covariance = inversion->covariance;
     const double temperature = inversion->problem->scene.temperature;
+    const double independent = inversion->behind / inversion->inefficiency;
     double squares = 0;
+    mf_ibi_logarithms(inversion, logarithms);
     for (size_t a = 0; a < known; a++)
         squares += covariance[a * known + a] *
                    pow(logarithms[inversion->grid.known_point[a]] / temperature, 2);
@@ -63,6 +56,26 @@ static void doubt_response(struct inversion *inversion, double independent,
             inversion->variance[a] +
             (covariance[a * known + a] * squares + inversion->excess[a] * inversion->excess[a]) /
                 independent;
+}
+
+/// The same equations with the variances of what C predicts, in fits with groups.
+static void doubt_response(struct inversion *inversion, double *scratch,
+                           struct imc_system *system) {
+    if (inversion->doubt == NULL)
+        return;
+    if (inversion->joint) {
+        *system = inversion->joint->doubted;
+        return;
+    }
+    mf_imc_doubt(inversion, scratch);
+    system->variance = inversion->doubt;
+}
+
+/// The step far from the targets of groups.
+static enum status step_coarsely(struct inversion *inversion, double *step) {
+    TRY(mf_inversion_coarse_step(inversion, step));
+    mf_inversion_pressure_add_ramp(inversion, step);
+    return STATUS_OK;
 }
 
 enum status mf_imc_step(struct inversion *inversion, const struct imc_parameters *parameters,
@@ -75,7 +88,7 @@ enum status mf_imc_step(struct inversion *inversion, const struct imc_parameters
     struct imc_system system = mf_inversion_system(inversion);
     if (mf_inversion_is_coarse(inversion) && parameters->regularisation == 0 &&
         !(parameters->strength > 0))
-        return mf_inversion_coarse_step(inversion, step);
+        return step_coarsely(inversion, step);
     mf_inversion_trail_take(&inversion->trail, &system);
     if (targets_ask(&problem->targets, TARGET_PRESSURE) && inversion->joint == NULL) {
         system.constraint = inversion->pressure.slope;
@@ -85,16 +98,15 @@ enum status mf_imc_step(struct inversion *inversion, const struct imc_parameters
     NEW_ARRAY(wide, grid->points);
     NEW_ARRAY(residual, grid->known);
     // Groups have about as many bins as an iteration has samples, so that C is noisy.
-    if (inversion->coarse.count > 0 && grid->pairs > 0 && mf_inversion_is_near(inversion)) {
-        mf_inversion_ramp_step(inversion, &system, wide, residual);
+    const bool by_itself =
+        inversion->coarse.count > 0 && grid->pairs > 0 && mf_inversion_is_near(inversion);
+    const double ramp = by_itself ? mf_inversion_ramp_find(grid, &system) : 0;
+    doubt_response(inversion, step, &system);
+    if (by_itself) {
+        mf_inversion_ramp_take(grid, &system, ramp, wide, residual);
         system.excess = residual;
         for (size_t a = 0; a < grid->known; a++)
             system.wanted -= inversion->pressure.slope[a] * wide[grid->known_point[a]];
-    }
-    if (inversion->doubt) {
-        mf_ibi_logarithms(inversion, step);
-        doubt_response(inversion, inversion->behind / inversion->inefficiency, step);
-        system.variance = inversion->doubt;
     }
     CHECK(solvers[parameters->regularisation](&system, choose_strength(inversion, parameters), x,
                                               &solution));

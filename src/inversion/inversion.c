@@ -58,7 +58,7 @@ static void assess_covariance(struct inversion *inversion) {
 
 struct imc_system mf_inversion_system(const struct inversion *inversion) {
     if (inversion->joint)
-        return *inversion->joint;
+        return inversion->joint->system;
     return (struct imc_system){.size = inversion->grid.known,
                                .block = inversion->grid.known_of,
                                .blocks = inversion->grid.blocks,
@@ -285,11 +285,11 @@ static bool meets_targets(const struct inversion *inversion) {
 
 /// Whether a method that takes the most probable step has gone all of the way that g hardly sees.
 static bool has_settled(const struct inversion *inversion) {
-    const struct inverse_ramp *ramp = &inversion->band.ramp;
+    const struct inversion_band *band = &inversion->band;
     return !inversion->settling || inversion->grid.pairs == 0 ||
            targets_ask(&inversion->problem->targets, TARGET_PRESSURE) ||
-           (fabs(ramp->way) <= settled_way * ramp->error &&
-            fabs(ramp->pressure_way) <= settled_way * ramp->pressure_open);
+           (fabs(band->ramp.way) <= settled_way * band->ramp.error &&
+            fabs(band->farthest.way) <= settled_way * band->farthest.open);
 }
 
 bool mf_inversion_runs_away(const struct inversion *inversion) {

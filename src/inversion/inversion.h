@@ -81,6 +81,15 @@ struct inversion_section {
 };
 enum { INVERSION_MOST_SECTIONS = 1 + INVERSE_MOST_BONDED };
 
+/// What several states say together, for the step of the first of them (inversion/joint.h).
+struct inversion_joint {
+    const struct inversion *state; ///< shape [states]
+    size_t states;
+    struct imc_system system;  ///< the equations of all, with their pressures
+    struct imc_system doubted; ///< the same with the variances of mf_imc_doubt, of fits with groups
+    const double *coarse;      ///< the step far from the targets of groups, shape [points]
+};
+
 struct inversion {
     struct inversion_settings settings;
     const struct inverse_method *method;
@@ -104,7 +113,7 @@ struct inversion {
                                                    ///< mf_inversion_pool
     double *covariance;                       ///< C of S in the known bins, shape [known, known]
     double *doubt;                            ///< variances with those of C, of fits with groups
-    const struct imc_system *joint;           ///< the equations of several states, or NULL
+    const struct inversion_joint *joint;      ///< of the first of several states, or NULL
     double behind;                            ///< samples behind C
     double misfit;                            ///< χ² of the excess by bin
     double inefficiency;                      ///< of the first section
@@ -266,3 +275,13 @@ enum status mf_hnc_step(const struct inversion *inversion, double ridge, double 
 /// Sets `settling`. Fails: NO_MEMORY.
 enum status mf_imc_step(struct inversion *inversion, const struct imc_parameters *parameters,
                         double *step, double extra[3]) MUST_USE;
+
+/// Fill `doubt`, the variances of what C predicts. C is itself sampled: of n independent samples
+/// C_ab has the variance (C_aa C_bb + C_ab²)/n (normal S), and so Σ_b C_ab x_b/k_B T has
+///   (C_aa Σ_b C_bb x_b² + (Σ_b C_ab x_b)²)/(n (k_B T)²),
+/// where the last sum is about the excess, and x about the step of Boltzmann inversion. Several
+/// pair types and groups have about as many bins as an iteration has independent samples: a step
+/// that removed the excess as far as its own noise would follow the noise of C, by thousands of k_B
+/// T.
+/// @param[out] logarithms  the step of Boltzmann inversion, shape [points]
+void mf_imc_doubt(struct inversion *inversion, double *logarithms);

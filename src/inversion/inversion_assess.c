@@ -47,6 +47,8 @@ static double assess(struct inversion *inversion, struct inversion_section *sect
             fmax(mf_comoments_covariance(counts, bin, bin), 1 / counts->count) / independent;
         inversion->excess[a] = counts->mean[bin] - inversion->target_counts[bin];
         inversion->variance[a] = sampled + pow(inversion->target_error[bin], 2);
+        if (!inversion->grid.seen[a])
+            continue;
         misfit += inversion->excess[a] * inversion->excess[a] / inversion->variance[a];
         own += sampled / unit;
         both += inversion->variance[a] / unit;
@@ -62,6 +64,14 @@ static double assess(struct inversion *inversion, struct inversion_section *sect
     return misfit;
 }
 
+/// Bins of which the targets tell.
+static double count_seen(const struct potential_grid *grid) {
+    double count = 0;
+    for (size_t a = 0; a < grid->known; a++)
+        count += grid->seen[a];
+    return count;
+}
+
 void mf_inversion_assess(struct inversion *inversion) {
     double misfit = 0;
     inversion->own_noise = inversion->inefficiency = 0;
@@ -75,7 +85,7 @@ void mf_inversion_assess(struct inversion *inversion) {
     }
     inversion->disagreement = mf_replicas_disagreement(
         &inversion->replicas, inversion->ideal, inversion->grid.known_bin, inversion->grid.known);
-    inversion->misfit = misfit / (double)inversion->grid.known;
+    inversion->misfit = misfit / count_seen(&inversion->grid);
 }
 
 bool mf_inversion_is_near(const struct inversion *inversion) {

@@ -31,6 +31,7 @@ size_t mf_inversion_band_spans(struct inversion_band *band, size_t points,
     span[1] = (struct memory_span){band->without_ramp, points * sizeof(double)};
     span[2] = (struct memory_span){band->flat, INVERSE_FLAT * points * sizeof(double)};
     span[3] = (struct memory_span){&band->ramp, sizeof band->ramp};
+    span[4] = (struct memory_span){&band->farthest, sizeof band->farthest};
     return INVERSION_BAND_SPANS;
 }
 
@@ -144,14 +145,10 @@ done:
 
 /// The way of A and of the pressure that this step would go. Of A it counts as an error: Σ ← Σ +
 /// (A/σ_A²)² Σw (Σw)ᵀ.
-static enum status add_way(struct inversion *inversion, const struct imc_system *system,
-                           const double *weight, double *scratch) {
-    enum status status = STATUS_OK;
+static void add_way(struct inversion *inversion, const double *step, const double *weight,
+                    double *scratch) {
     const size_t n = inversion->grid.known;
     struct inverse_ramp *ramp = &inversion->band.ramp;
-    double *step = NULL;
-    NEW_ARRAY(step, n);
-    CHECK(find_step(inversion, system, step));
     ramp->way = ramp->pressure_way = 0;
     for (size_t a = 0; a < n; a++) {
         ramp->way += weight[a] * step[a];
@@ -160,9 +157,21 @@ static enum status add_way(struct inversion *inversion, const struct imc_system 
     const double variance = spread(inversion, weight, scratch);
     if (variance > 0) // without pairs there is no ramp
         add_square(inversion, pow(ramp->way / variance, 2), scratch);
-done:
-    mf_memory_free(step);
-    return status;
+}
+
+/// Of several states the pressure whose way is the most of its error.
+static void find_farthest(struct inversion *inversion, const double *step, double *scratch) {
+    const struct inverse_ramp *ramp = &inversion->band.ramp;
+    struct inversion_band_pressure *farthest = &inversion->band.farthest;
+    *farthest = (struct inversion_band_pressure){ramp->pressure_way, ramp->pressure_open};
+    for (size_t s = 1; inversion->joint && s < inversion->joint->states; s++) {
+        const double *slope = inversion->joint->state[s].pressure.slope;
+        struct inversion_band_pressure own = {0, sqrt(spread(inversion, slope, scratch))};
+        for (size_t a = 0; a < inversion->grid.known; a++)
+            own.way += slope[a] * step[a];
+        if (fabs(own.way) * farthest->open > fabs(farthest->way) * own.open)
+            *farthest = own;
+    }
 }
 
 /// What a pressure with its error adds: Σ ← Σ − Σp (Σp)ᵀ/(p·Σp + σ_P²).
@@ -238,35 +247,36 @@ done:
     return status;
 }
 
-/// χ² by bin, if above 1: by so much the variances are larger, as what is left of the excess shows.
-/// R. T. Birge, Phys. Rev. 40, 207 (1932).
-static double birge_factor(const struct inversion *inversion) {
+double mf_inversion_band_birge(const struct inversion *inversion) {
     return fmax(1, inversion->misfit);
 }
 
 double mf_inversion_band_prior(const struct inversion *inversion) {
-    return birge_factor(inversion) / pow(inversion->problem->scene.temperature, 2);
+    return mf_inversion_band_birge(inversion) / pow(inversion->problem->scene.temperature, 2);
 }
 
 enum status mf_inversion_band_find(struct inversion *inversion) {
     enum status status = STATUS_OK;
     const struct potential_grid *grid = &inversion->grid;
     struct inversion_band *band = &inversion->band;
-    double *weight = NULL, *scratch = NULL, *variance = NULL;
+    double *weight = NULL, *scratch = NULL, *variance = NULL, *step = NULL;
     NEW_ARRAY(weight, grid->known);
     NEW_ARRAY(scratch, grid->known);
     NEW_ARRAY(variance, grid->known);
+    NEW_ARRAY(step, grid->known);
     struct imc_system system = mf_inversion_system(inversion);
     for (size_t a = 0; a < system.size; a++)
-        variance[a] = birge_factor(inversion) * system.variance[a];
+        variance[a] = mf_inversion_band_birge(inversion) * system.variance[a];
     system.variance = variance;
     CHECK(inversion->basis.count > 0
               ? mf_inversion_basis_covariance(inversion, band->covariance, &band->ramp.directions)
               : mf_inversion_band_covariance(&system, band->covariance, &band->ramp.directions));
     take_constants_off(inversion);
     weigh_ramp(inversion, weight);
-    CHECK(add_way(inversion, &system, weight, scratch));
+    CHECK(find_step(inversion, &system, step));
+    add_way(inversion, step, weight, scratch);
     add_pressure(inversion, scratch);
+    find_farthest(inversion, step, scratch);
     find_errors(inversion, weight, scratch);
     if (!isnan(band->covariance[0]))
         CHECK(find_flat(inversion));
@@ -274,5 +284,6 @@ done:
     mf_memory_free(weight);
     mf_memory_free(scratch);
     mf_memory_free(variance);
+    mf_memory_free(step);
     return status;
 }

@@ -38,6 +38,11 @@ struct inversion_band {
     double
         *flat; ///< inverse_step.curve_flat, shape [INVERSE_FLAT, points] of pairs, then of groups
     struct inverse_ramp ramp;
+    /// Of the pressure of the state that is farthest from having settled: what the target still
+    /// asks for, and the standard error by g(r) alone [k_B T_0/λ^d].
+    struct inversion_band_pressure {
+        double way, open;
+    } farthest;
 };
 
 /// (F + prior)⁻¹.
@@ -47,6 +52,10 @@ struct inversion_band {
 /// Fails: NO_MEMORY. Tested: test_inversion_band.
 enum status mf_inversion_band_covariance(const struct imc_system *system, double *covariance,
                                          double *directions) MUST_USE;
+
+/// χ² by bin, if above 1: by so much the variances of g are larger, as what is left of the excess
+/// shows. R. T. Birge, Phys. Rev. 40, 207 (1932).
+double mf_inversion_band_birge(const struct inversion *inversion);
 
 /// Strength of mf_imc_solve's prior with which its step is the most probable one.
 double mf_inversion_band_prior(const struct inversion *inversion);
@@ -61,6 +70,6 @@ void mf_inversion_band_clear(struct inversion_band *band);
 /// Fails: NO_MEMORY.
 enum status mf_inversion_band_find(struct inversion *inversion) MUST_USE;
 
-enum { INVERSION_BAND_SPANS = 4 };
+enum { INVERSION_BAND_SPANS = 5 };
 size_t mf_inversion_band_spans(struct inversion_band *band, size_t points,
                                struct memory_span *span);

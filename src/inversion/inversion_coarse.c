@@ -140,7 +140,5 @@ static void leave_noise(const struct inversion *inversion, double *step) {
 enum status mf_inversion_coarse_step(struct inversion *inversion, double *step) {
     mf_ibi_logarithms(inversion, step);
     leave_noise(inversion, step);
-    TRY(mf_inversion_coarse_respond(inversion, step));
-    mf_inversion_pressure_add_ramp(inversion, step);
-    return STATUS_OK;
+    return mf_inversion_coarse_respond(inversion, step);
 }

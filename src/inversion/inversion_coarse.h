@@ -32,6 +32,6 @@ bool mf_inversion_is_coarse(const struct inversion *inversion);
 /// test_inversion_coarse.
 enum status mf_inversion_coarse_respond(struct inversion *inversion, double *step) MUST_USE;
 
-/// The step in the known bins, with the ramp for the pressure that is asked for.
+/// The step in the known bins; it does not look at the pressure.
 /// @param[out] step  shape [points]. Fails: NO_MEMORY.
 enum status mf_inversion_coarse_step(struct inversion *inversion, double *step) MUST_USE;

@@ -11,12 +11,14 @@
 #pragma once
 
 #include "inversion/imc_solve.h"
-
-struct inversion;
+#include "problem/potential_grid.h"
 
 /// Minimise Σ_a (excess_a − A Σ_b C_ab d_b/k_B T)²/variance_a, d = 1 − r/r_c, over A, with the
-/// ridge of mf_imc_solve_prior.
+/// ridge of mf_imc_solve_prior; returns A [k_B T_0].
+double mf_inversion_ramp_find(const struct potential_grid *grid, const struct imc_system *system);
+
+/// Take this ramp out of the excess.
 /// @param[out] y         A d, shape [points] [k_B T_0]
 /// @param[out] residual  what it leaves of the excess, shape [known]
-void mf_inversion_ramp_step(const struct inversion *inversion, const struct imc_system *system,
-                            double *y, double *residual);
+void mf_inversion_ramp_take(const struct potential_grid *grid, const struct imc_system *system,
+                            double amplitude, double *y, double *residual);

@@ -47,8 +47,8 @@ static void tell_what_is_missing(const struct inversion *inversion,
                  "g agrees, but it still asks for another ramp A (1 - r/cutoff), by %.2g k_B T_0 "
                  "with an error of %.2g, and a pressure by %.2g with one of %.2g: more "
                  "\"iterations\" are needed, or a \"pressure\"",
-                 inversion->band.ramp.way, inversion->band.ramp.error,
-                 inversion->band.ramp.pressure_way, inversion->band.ramp.pressure_open);
+                 inversion->band.ramp.way, inversion->band.ramp.error, inversion->band.farthest.way,
+                 inversion->band.farthest.open);
     else
         snprintf(
             reason, INVERSE_REASON_SIZE,

@@ -37,7 +37,9 @@ static bool find_variance(const struct inversion *inversion, double *variance) {
         const size_t bin = grid->known_bin[a];
         const double g = fmax(mf_inversion_target_g(inversion, bin), inversion->least[bin]);
         const double error = inversion->target_error[bin] / inversion->ideal[bin];
-        variance[a] = pow(inversion->problem->scene.temperature * error / g, 2);
+        // What another state has seen is known within k_B T here.
+        variance[a] =
+            pow(inversion->problem->scene.temperature * (grid->seen[a] ? error / g : 1), 2);
         if (!(variance[a] > 0))
             return false;
     }

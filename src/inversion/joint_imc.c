@@ -1,169 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// One potential for several states: temperatures, densities, compositions. Each state is an
-// inversion with samples of its own; the first one takes the step for all of them, by the linear
-// equations of all.
-//
-// The rows B_s x = b_s of the states, each over its errors, stand one below the other. A QR
-// decomposition leaves as many rows as unknowns, with the same least squares, so that the strength
-// of the regularisation, the band and its ramp are found as of one state.
-#include "inversion/imc_solve.h"
-#include "inversion/inversion.h"
+// Inverse Monte Carlo of several states: their iterations, and the record of the method.
+#include "inversion/inversion_coarse.h"
+#include "inversion/joint.h"
 
-#include <gsl/gsl_blas.h>
-#include <gsl/gsl_linalg.h>
-#include <math.h>
+#include <stdio.h>
 #include <string.h>
 
-struct joint {
-    size_t states;
-    struct inversion *state; ///< shape [states]; the first one leads
-    struct imc_system system;
-    double *covariance, *excess, *variance; ///< of the system
-    double least;                           ///< error so far
-    uint32_t standstill;                    ///< iterations since it was lower by more than a little
-};
-
-static struct inversion *leader_of(const struct joint *joint) {
-    return &joint->state[0];
-}
-
-// The equations of all states ---------------------------------------------------------------------
-
-/// Rows of the states and, below each state's, one of its pressure if it is asked for.
-static size_t count_rows(const struct joint *joint) {
-    const struct inversion *leader = leader_of(joint);
-    const bool pressure = targets_ask(&leader->problem->targets, TARGET_PRESSURE);
-    return joint->states * (leader->grid.known + pressure);
-}
-
-/// P + p·x = P* within the errors of both.
-static void fill_pressure(const struct inversion *state, gsl_matrix *rows, gsl_vector *rhs,
-                          size_t row) {
-    const double error = state->distance[TARGET_PRESSURE].noise;
-    const double wanted = *state->problem->targets.target[TARGET_PRESSURE].value;
-    for (size_t b = 0; b < state->grid.known; b++)
-        gsl_matrix_set(rows, row, b, state->pressure.slope[b] / error);
-    gsl_vector_set(rhs, row, (wanted - state->pressure.value) / error);
-}
-
-static void fill_rows(const struct joint *joint, gsl_matrix *rows, gsl_vector *rhs) {
-    const size_t known = leader_of(joint)->grid.known;
-    size_t row = 0;
-    for (size_t s = 0; s < joint->states; s++) {
-        const struct inversion *state = &joint->state[s];
-        const struct imc_system own = mf_inversion_system(state);
-        gsl_matrix_view response = gsl_matrix_submatrix(rows, row, 0, known, known);
-        mf_imc_solve_response(&own, &response.matrix);
-        for (size_t a = 0; a < known; a++)
-            gsl_vector_set(rhs, row + a, own.excess[a] / sqrt(own.variance[a]));
-        row += known;
-        if (targets_ask(&state->problem->targets, TARGET_PRESSURE))
-            fill_pressure(state, rows, rhs, row++);
-    }
-}
-
-/// The rows that a QR decomposition leaves, as a system whose variances are 1: R x = (Qᵀ b).
-static enum status reduce(struct joint *joint) {
-    enum status status = STATUS_OK;
-    const struct inversion *leader = leader_of(joint);
-    const size_t known = leader->grid.known, count = count_rows(joint);
-    gsl_matrix *rows = gsl_matrix_alloc(count, known);
-    gsl_vector *rhs = gsl_vector_alloc(count), *reflect = gsl_vector_alloc(known);
-    CHECK(rows && rhs && reflect ? STATUS_OK : STATUS_NO_MEMORY);
-    fill_rows(joint, rows, rhs);
-    gsl_linalg_QR_decomp(rows, reflect);
-    gsl_linalg_QR_QTvec(rows, reflect, rhs);
-    for (size_t a = 0; a < known; a++) {
-        joint->excess[a] = gsl_vector_get(rhs, a);
-        joint->variance[a] = 1;
-        for (size_t b = 0; b < known; b++)
-            joint->covariance[a * known + b] =
-                b < a ? 0 : gsl_matrix_get(rows, a, b) * joint->system.temperature;
-    }
-done:
-    gsl_matrix_free(rows);
-    gsl_vector_free(rhs);
-    gsl_vector_free(reflect);
-    return status;
-}
-
-// All states in one -------------------------------------------------------------------------------
-
-/// In units of its noise.
-static double noises_of(const struct target_distance *distance) {
-    return distance->rms > 0 ? distance->rms / distance->noise : 0;
-}
-
-/// The target of a state that is farthest off.
-struct worst {
-    size_t state;
-    int kind;
-    double noises;
-};
-
-/// What is farthest off of all states and targets, or of targets of one kind; `kind` −1: all.
-static struct worst find_worst(const struct joint *joint, int kind) {
-    struct worst worst = {0, kind < 0 ? TARGET_RDF : kind, 0};
-    for (size_t s = 0; s < joint->states; s++)
-        for (int k = 0; k < TARGETS; k++) {
-            const struct inversion *state = &joint->state[s];
-            const double noises = noises_of(&state->distance[k]);
-            if ((kind < 0 || k == kind) && targets_ask(&state->problem->targets, k) &&
-                noises > worst.noises)
-                worst = (struct worst){s, k, noises};
-        }
-    return worst;
-}
-
-/// rms over the states and their targets, each in units of its noise.
-static double find_distance(const struct joint *joint) {
-    double squares = 0, count = 0;
-    for (size_t s = 0; s < joint->states; s++)
-        for (int k = 0; k < TARGETS; k++)
-            if (targets_ask(&joint->state[s].problem->targets, k)) {
-                squares += pow(noises_of(&joint->state[s].distance[k]), 2);
-                count++;
-            }
-    return sqrt(squares / count);
-}
-
-/// The section of the first state becomes that of the state that is farthest off by its noise, with
-/// the noise of the least exact; its distance of g the rms over the states, and that of the
-/// pressure as many times its own noise as that of the worst state.
-static void join_distances(struct joint *joint) {
-    struct inversion *leader = leader_of(joint);
-    struct inversion_section section = leader->section[0];
-    struct target_distance rdf = {.count = 0};
-    double misfit = 0, disagreement = 0;
-    const double states = (double)joint->states;
-    const struct worst pressure = find_worst(joint, TARGET_PRESSURE);
-    const struct worst worst = find_worst(joint, TARGET_RDF);
-    for (size_t s = 0; s < joint->states; s++) {
-        const struct inversion *state = &joint->state[s];
-        const struct target_distance *own = &state->distance[TARGET_RDF];
-        rdf.rms += own->rms * own->rms / states;
-        rdf.noise += own->noise * own->noise / states;
-        rdf.variance += own->variance / states;
-        rdf.count += own->count;
-        section.own_noise = fmax(section.own_noise, state->section[0].own_noise);
-        disagreement = fmax(disagreement, state->disagreement);
-        misfit += state->misfit / states;
-    }
-    rdf.rms = sqrt(rdf.rms);
-    rdf.noise = sqrt(rdf.noise);
-    section.rms = joint->state[worst.state].section[0].rms;
-    section.noise = joint->state[worst.state].section[0].noise;
-    leader->section[0] = section;
-    leader->own_noise = section.own_noise;
-    leader->disagreement = disagreement;
-    leader->misfit = misfit;
-    leader->distance[TARGET_RDF] = rdf;
-    leader->distance[TARGET_PRESSURE].rms =
-        pressure.noises * leader->distance[TARGET_PRESSURE].noise;
-}
-
-static void tell_worst(const struct joint *joint, const struct worst *worst, const char *why,
+static void tell_worst(const struct joint *joint, const struct joint_worst *worst, const char *why,
                        char reason[INVERSE_REASON_SIZE]) {
     const struct inversion *state = &joint->state[worst->state];
     snprintf(reason, INVERSE_REASON_SIZE, "%s%s of \"%s\" is off by %.1f times its noise", why,
@@ -172,7 +16,7 @@ static void tell_worst(const struct joint *joint, const struct worst *worst, con
 
 /// Where the states want different potentials the steps end in a compromise, about which they go
 /// on: the equations of a state that is far off carry the noise of C into the step.
-static void end_at_standstill(struct joint *joint, double distance, const struct worst *worst,
+static void end_at_standstill(struct joint *joint, double distance, const struct joint_worst *worst,
                               struct inverse_step *step) {
     static const double progress = 0.95;
     static const uint32_t patience = 5;
@@ -195,7 +39,7 @@ static void end_at_standstill(struct joint *joint, double distance, const struct
 
 /// Let the other states sample what the first one does.
 static void follow(struct joint *joint) {
-    const struct inversion *leader = leader_of(joint);
+    const struct inversion *leader = joint_leader(joint);
     for (size_t s = 1; s < joint->states; s++) {
         struct inversion *state = &joint->state[s];
         memcpy(state->phi, leader->phi, leader->grid.points * sizeof *leader->phi);
@@ -211,21 +55,60 @@ static void add_work(struct joint *joint, struct inverse_step *step) {
     }
 }
 
+/// Progress of one state, told as a part of that of all.
+struct sharing {
+    const struct joint *joint;
+    size_t state;
+    const struct inverse_listener *listener;
+};
+
+static void tell_of_state(void *context, const struct inverse_progress *own) {
+    const struct sharing *sharing = context;
+    const struct inversion *leader = joint_leader(sharing->joint);
+    struct inverse_progress all = *own;
+    all.done += sharing->state * own->total;
+    all.total *= sharing->joint->states;
+    all.best = mf_targets_error(&leader->problem->targets, leader->progress.best);
+    sharing->listener->tell(sharing->listener->context, &all);
+}
+
+static enum status observe(struct joint *joint, const struct inverse_listener *listener) {
+    for (size_t s = 0; s < joint->states; s++) {
+        struct sharing sharing = {joint, s, listener};
+        const struct inverse_listener of_state = {tell_of_state, &sharing};
+        TRY(mf_inversion_observe(&joint->state[s], &of_state));
+    }
+    return STATUS_OK;
+}
+
+/// What the states say together. Their coarse steps go by how near each one is itself.
+static enum status join(struct joint *joint) {
+    const struct inversion *leader = joint_leader(joint);
+    const bool groups = leader->coarse.count > 0;
+    if (groups)
+        TRY(mf_joint_coarse_step(joint, joint->coarse));
+    mf_joint_targets_join(joint);
+    TRY(mf_joint_rows_reduce(joint, false, &joint->rows));
+    if (groups && !mf_inversion_is_coarse(leader))
+        TRY(mf_joint_rows_reduce(joint, true, &joint->doubted));
+    joint->together = (struct inversion_joint){joint->state, joint->states, joint->rows.system,
+                                               joint->doubted.system, joint->coarse};
+    return STATUS_OK;
+}
+
 static enum status iterate(void *memory, struct inverse_step *step,
                            const struct inverse_listener *listener) {
     struct joint *joint = memory;
-    struct inversion *leader = leader_of(joint);
+    struct inversion *leader = joint_leader(joint);
     enum status status;
     follow(joint);
-    for (size_t s = 0; s < joint->states; s++)
-        TRY(mf_inversion_observe(&joint->state[s], listener));
+    TRY(observe(joint, listener));
     if (joint->states == 1)
         return mf_inversion_advance(leader, step);
-    const struct worst worst = find_worst(joint, -1);
-    const double distance = find_distance(joint);
-    TRY(reduce(joint));
-    join_distances(joint);
-    leader->joint = &joint->system;
+    const struct joint_worst worst = mf_joint_targets_worst(joint);
+    const double distance = mf_joint_targets_distance(joint);
+    TRY(join(joint));
+    leader->joint = &joint->together;
     status = mf_inversion_advance(leader, step);
     leader->joint = NULL;
     TRY(status); // else there is no step
@@ -235,22 +118,25 @@ static enum status iterate(void *memory, struct inverse_step *step,
 }
 
 static enum status update(struct inversion *inversion, double *extra) {
-    return mf_imc_step(inversion, &(const struct imc_parameters){0}, inversion->step, extra);
+    if (inversion->joint == NULL || !mf_inversion_is_coarse(inversion))
+        return mf_imc_step(inversion, &(const struct imc_parameters){0}, inversion->step, extra);
+    memcpy(inversion->step, inversion->joint->coarse,
+           inversion->grid.points * sizeof *inversion->step);
+    return STATUS_OK;
 }
 
 // The record --------------------------------------------------------------------------------------
 
 static enum status allocate(struct joint *joint) {
     enum status status = STATUS_OK;
-    const struct inversion *leader = leader_of(joint);
-    const size_t known = leader->grid.known;
-    NEW_ARRAY(joint->covariance, known * known);
-    NEW_ARRAY(joint->excess, known);
-    NEW_ARRAY(joint->variance, known);
-    joint->system = mf_inversion_system(leader);
-    joint->system.covariance = joint->covariance;
-    joint->system.excess = joint->excess;
-    joint->system.variance = joint->variance;
+    const struct inversion *leader = joint_leader(joint);
+    if (joint->states == 1)
+        return STATUS_OK;
+    CHECK(mf_joint_rows_init(&joint->rows, leader));
+    if (leader->coarse.count == 0)
+        return STATUS_OK;
+    CHECK(mf_joint_rows_init(&joint->doubted, leader));
+    NEW_ARRAY(joint->coarse, leader->grid.points);
 done:
     return status;
 }
@@ -260,11 +146,6 @@ static enum status create(void *memory, const struct inverse_method *method,
     enum status status = STATUS_OK;
     struct joint *joint = memory;
     const size_t states = problem->states > 0 ? problem->states : 1;
-    if (problem->bonded > 0)
-        return mf_status_fail(STATUS_BAD_INPUT,
-                              "method.name: \"%s\" finds potentials of pairs; give bonds, angles "
-                              "and dihedrals their laws",
-                              method->name);
     NEW_ARRAY(joint->state, states);
     for (; joint->states < states; joint->states++) {
         const struct inverse_problem *own = states > 1 ? problem->state[joint->states] : problem;
@@ -285,9 +166,9 @@ static void destroy(void *memory) {
     for (size_t s = 0; s < joint->states; s++)
         mf_inversion_destroy(&joint->state[s]);
     mf_memory_free(joint->state);
-    mf_memory_free(joint->covariance);
-    mf_memory_free(joint->excess);
-    mf_memory_free(joint->variance);
+    mf_joint_rows_clear(&joint->rows);
+    mf_joint_rows_clear(&joint->doubted);
+    mf_memory_free(joint->coarse);
 }
 
 static size_t spans(void *memory, struct memory_span *span) {
@@ -301,7 +182,7 @@ static size_t spans(void *memory, struct memory_span *span) {
 }
 
 static enum status write(const void *memory, const struct inverse_folder *folder) {
-    return mf_inversion_write(leader_of(memory), folder);
+    return mf_inversion_write(joint_leader(memory), folder);
 }
 
 static const char *const columns[] = {INVERSION_COLUMNS, "regularisation[1]", "misfit[1]",

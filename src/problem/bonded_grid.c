@@ -20,10 +20,10 @@ static bool is_periodic(const struct bonded_grid *grid) {
     return grid->unknown->order == TOPOLOGY_DIHEDRAL;
 }
 
-static double largest_of(const struct bonded_grid *grid) {
+static double largest_of(const struct bonded_grid *grid, const double *target) {
     double largest = 0;
     for (size_t k = 0; k < grid->unknown->bins.count; k++)
-        largest = fmax(largest, grid->target[k]);
+        largest = fmax(largest, target[k]);
     return largest;
 }
 
@@ -34,21 +34,46 @@ static bool is_possible(const struct bonded_grid *grid, double q) {
            (q > 0 && (grid->unknown->order == TOPOLOGY_BOND || q <= 180 * (1 + rounding)));
 }
 
-static void find_known(struct bonded_grid *grid) {
+/// The bins first … end − 1 from the first to the last that a target has seen.
+static void find_seen(const struct bonded_grid *grid, const double *target, size_t *first,
+                      size_t *end) {
     const struct bonded_bins *bins = &grid->unknown->bins;
-    const double seen = mf_bonded_grid_seen * largest_of(grid);
-    size_t end = bins->count;
-    if (is_periodic(grid)) {
-        grid->known = bins->count;
+    const double seen = mf_bonded_grid_seen * largest_of(grid, target);
+    *first = 0;
+    *end = bins->count;
+    if (is_periodic(grid))
         return;
+    while (*first < *end &&
+           (target[*first] <= seen || !is_possible(grid, bonded_bins_centre(bins, *first))))
+        ++*first;
+    while (*end > *first &&
+           (target[*end - 1] <= seen || !is_possible(grid, bonded_bins_centre(bins, *end - 1))))
+        --*end;
+}
+
+/// p of the same group in one of the states.
+static const double *target_of(const struct bonded_grid *grid,
+                               const struct inverse_problem *problem, size_t state) {
+    const struct inverse_problem *other = problem->state[state];
+    const ptrdiff_t g = grid->unknown - problem->group;
+    return other->targets.target[mf_bonded_distribution_kind(grid->unknown->order)].value +
+           other->group[g].first;
+}
+
+/// The bins that one of the states has seen.
+static void find_known(struct bonded_grid *grid, const struct inverse_problem *problem) {
+    size_t first, end;
+    find_seen(grid, grid->target, &first, &end);
+    grid->seen_first = first;
+    grid->seen = end - first;
+    for (size_t s = 0; s < problem->states; s++) {
+        size_t own_first, own_end;
+        find_seen(grid, target_of(grid, problem, s), &own_first, &own_end);
+        first = own_first < first ? own_first : first;
+        end = own_end > end ? own_end : end;
     }
-    while (grid->first < end && (grid->target[grid->first] <= seen ||
-                                 !is_possible(grid, bonded_bins_centre(bins, grid->first))))
-        grid->first++;
-    while (end > grid->first &&
-           (grid->target[end - 1] <= seen || !is_possible(grid, bonded_bins_centre(bins, end - 1))))
-        end--;
-    grid->known = end - grid->first;
+    grid->first = first;
+    grid->known = end - first;
 }
 
 /// Half of the known range on both sides, as far as q can be.
@@ -81,7 +106,7 @@ enum status mf_bonded_grid_init(struct bonded_grid *grid, const struct inverse_p
                   unknown->first,
         .temperature = problem->scene.temperature,
         .dimensions = problem->scene.box.dimensions};
-    find_known(grid);
+    find_known(grid, problem);
     find_margins(grid);
     if (is_periodic(grid) &&
         fabs(unknown->bins.width * (double)unknown->bins.count - 360) > 0.01 * unknown->bins.width)
@@ -102,6 +127,16 @@ double mf_bonded_grid_place(const struct bonded_grid *grid, size_t point) {
            beyond * grid->unknown->bins.width;
 }
 
+bool mf_bonded_grid_is_above(const struct bonded_grid *grid, const struct inverse_problem *problem,
+                             size_t bin, double part) {
+    bool above = grid->target[bin] > part * largest_of(grid, grid->target);
+    for (size_t s = 0; s < problem->states; s++) {
+        const double *target = target_of(grid, problem, s);
+        above = above || target[bin] > part * largest_of(grid, target);
+    }
+    return above;
+}
+
 double mf_bonded_grid_mean(const struct bonded_grid *grid) {
     double sum = 0;
     for (size_t k = 0; k < grid->known; k++)
@@ -109,22 +144,32 @@ double mf_bonded_grid_mean(const struct bonded_grid *grid) {
     return sum / (double)grid->known;
 }
 
+/// The same points, of which those are known that this target has seen.
+static struct bonded_grid seen_by_itself(const struct bonded_grid *grid) {
+    struct bonded_grid own = *grid;
+    own.first = grid->seen_first;
+    own.known = grid->seen;
+    own.below = grid->below + (grid->seen_first - grid->first);
+    return own;
+}
+
 void mf_bonded_grid_start(const struct bonded_grid *grid, double *energy) {
     const struct bonded_unknown *unknown = grid->unknown;
     // What was not seen is as high as what is hardly seen.
-    const double seen = mf_bonded_grid_seen * largest_of(grid);
-    double least = INFINITY, *known = energy + grid->below;
-    for (size_t k = 0; k < grid->known; k++) {
-        const size_t bin = grid->first + k;
+    const double seen = mf_bonded_grid_seen * largest_of(grid, grid->target);
+    const struct bonded_grid own = seen_by_itself(grid);
+    double least = INFINITY, *known = energy + own.below;
+    for (size_t k = 0; k < own.known; k++) {
+        const size_t bin = own.first + k;
         const double p = fmax(grid->target[bin], seen);
         known[k] = -grid->temperature *
                    log(p / mf_bonded_distribution_jacobian(unknown->order, grid->dimensions,
                                                            &unknown->bins, bin));
         least = fmin(least, known[k]);
     }
-    for (size_t k = 0; k < grid->known; k++)
+    for (size_t k = 0; k < own.known; k++)
         known[k] -= least;
-    mf_bonded_grid_complete(grid, energy);
+    mf_bonded_grid_complete(&own, energy);
 }
 
 /// Go on with `count` values beyond an end, by steps of `way`, 1 or −1, through the array.

@@ -5,6 +5,8 @@
 /// and some on both sides, where U goes on so that nothing is lost there: as a parabola that rises
 /// from the last slope, as one about its minimum would. Beyond the last point it is a straight line
 /// (curves/bonded_table.h). A dihedral has all bins of the circle, and the first once more.
+///
+/// Of several states the points are those of all: a bin is known if one state has seen it.
 #pragma once
 
 #include "problem/inverse.h"
@@ -16,6 +18,7 @@ struct bonded_grid {
     int dimensions;                       ///< of space
     size_t first;                         ///< bin of the target that is known first
     size_t known;                         ///< bins from there on that have a value of their own
+    size_t seen_first, seen;              ///< those of them that this target has seen
     size_t below;                         ///< points before the first known one
     size_t points;                        ///< of all
 };
@@ -23,6 +26,7 @@ struct bonded_grid {
 /// The part of the largest p of a target below which its ends are not known.
 extern const double mf_bonded_grid_seen;
 
+/// @param[in] unknown  one of the problem's
 /// Fails: BAD_INPUT, naming the group, if hardly any bin is seen, or a dihedral's do not go round.
 enum status mf_bonded_grid_init(struct bonded_grid *grid, const struct inverse_problem *problem,
                                 const struct bonded_unknown *unknown) MUST_USE;
@@ -30,8 +34,8 @@ enum status mf_bonded_grid_init(struct bonded_grid *grid, const struct inverse_p
 /// q of a point [λ] or [degrees].
 double mf_bonded_grid_place(const struct bonded_grid *grid, size_t point);
 
-/// −k_B T ln(p/J) of the known bins, with J the mean Jacobian of a bin and the least value 0, shape
-/// [points], completed.
+/// −k_B T ln(p/J) of the bins that the target has seen, with J the mean Jacobian of a bin and the
+/// least value 0, shape [points], completed.
 void mf_bonded_grid_start(const struct bonded_grid *grid, double *energy);
 
 /// Complete U, shape [points], from its known values.
@@ -40,6 +44,10 @@ void mf_bonded_grid_complete(const struct bonded_grid *grid, double *energy);
 /// The curve of completed values, to be cleared with mf_bonded_clear. Fails: NO_MEMORY.
 enum status mf_bonded_grid_curve(const struct bonded_grid *grid, const double *energy,
                                  struct bonded_curve *curve) MUST_USE;
+
+/// Whether p of a bin of the target, of one state at least, is above this part of its peak.
+bool mf_bonded_grid_is_above(const struct bonded_grid *grid, const struct inverse_problem *problem,
+                             size_t bin, double part);
 
 /// Mean of p over the known bins.
 double mf_bonded_grid_mean(const struct bonded_grid *grid);

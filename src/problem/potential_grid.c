@@ -41,17 +41,17 @@ static void index_known(struct potential_grid *grid, const struct inverse_proble
             grid->known_point[n] = mf_potential_grid_block(grid, pair) + k;
             grid->known_bin[n] = pair * grid->bins + k;
             grid->well_known[n] = most_pairs(problem, grid->known_bin[n]) > well;
+            grid->seen[n] = true;
         }
     for (size_t g = 0; g < grid->groups; g++) {
         const struct potential_group *group = &grid->group[g];
-        const double *p = group->own.target + group->own.first;
-        double peak = 0;
-        for (size_t k = 0; k < group->own.known; k++)
-            peak = fmax(peak, p[k]);
-        for (size_t k = 0; k < group->own.known; k++, n++) {
-            grid->known_point[n] = group->point + group->own.below + k;
-            grid->known_bin[n] = group->bin + group->own.first + k;
-            grid->well_known[n] = p[k] > well * peak;
+        const struct bonded_grid *own = &group->own;
+        for (size_t k = 0; k < own->known; k++, n++) {
+            const size_t bin = own->first + k;
+            grid->known_point[n] = group->point + own->below + k;
+            grid->known_bin[n] = group->bin + bin;
+            grid->well_known[n] = mf_bonded_grid_is_above(own, problem, bin, well);
+            grid->seen[n] = bin >= own->seen_first && bin < own->seen_first + own->seen;
         }
     }
 }
@@ -106,6 +106,7 @@ enum status mf_potential_grid_init(struct potential_grid *grid,
     NEW_ARRAY(grid->known_point, grid->known);
     NEW_ARRAY(grid->known_bin, grid->known);
     NEW_ARRAY(grid->well_known, grid->known);
+    NEW_ARRAY(grid->seen, grid->known);
     index_known(grid, problem);
     NEW_ARRAY(grid->r, grid->points);
     place_points(grid, bins);
@@ -121,6 +122,7 @@ void mf_potential_grid_clear(struct potential_grid *grid) {
     mf_memory_free(grid->known_point);
     mf_memory_free(grid->known_bin);
     mf_memory_free(grid->well_known);
+    mf_memory_free(grid->seen);
     mf_memory_free(grid->r);
     mf_memory_free(grid->group);
     *grid = (struct potential_grid){0};

@@ -25,7 +25,9 @@ struct potential_grid {
     size_t *known_point; ///< shape [known]: where they are among the points …
     size_t *known_bin;   ///< … and among the bins of all blocks
     bool *well_known;    ///< shape [known]: the target tells the potential there: g* > 0.1, or p* >
-                         ///< 0.1 of its peak
+                         ///< 0.1 of its peak; of several states, one of their targets
+    bool *seen;          ///< shape [known]: this problem's target tells of the bin, and not only
+                         ///< another state's
     double *r;           ///< shape [points] [λ], of angles [degrees]
     double stiffness;
     struct potential_group {

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "inversion/joint.h"
+
+#include <math.h>
+
+/// An error in units of its noise.
+static double noises_of(double rms, double noise) {
+    return rms > 0 ? rms / noise : 0;
+}
+
+static double pressure_noises(const struct inversion *state) {
+    const struct target_distance *pressure = &state->distance[TARGET_PRESSURE];
+    return targets_ask(&state->problem->targets, TARGET_PRESSURE)
+               ? noises_of(pressure->rms, pressure->noise)
+               : 0;
+}
+
+static double section_noises(const struct joint *joint, size_t s, int k) {
+    const struct inversion_section *section = &joint->state[s].section[k];
+    return noises_of(section->rms, section->noise);
+}
+
+struct joint_worst mf_joint_targets_worst(const struct joint *joint) {
+    struct joint_worst worst = {0, joint_leader(joint)->section[0].kind, 0};
+    for (size_t s = 0; s < joint->states; s++) {
+        for (int k = 0; k < joint->state[s].sections; k++)
+            if (section_noises(joint, s, k) > worst.noises)
+                worst = (struct joint_worst){s, joint->state[s].section[k].kind,
+                                             section_noises(joint, s, k)};
+        if (pressure_noises(&joint->state[s]) > worst.noises)
+            worst = (struct joint_worst){s, TARGET_PRESSURE, pressure_noises(&joint->state[s])};
+    }
+    return worst;
+}
+
+double mf_joint_targets_distance(const struct joint *joint) {
+    double squares = 0, count = 0;
+    for (size_t s = 0; s < joint->states; s++)
+        for (int k = 0; k < TARGETS; k++) {
+            const struct target_distance *distance = &joint->state[s].distance[k];
+            if (!targets_ask(&joint->state[s].problem->targets, k))
+                continue;
+            squares += pow(noises_of(distance->rms, distance->noise), 2);
+            count++;
+        }
+    return sqrt(squares / count);
+}
+
+/// A section of the first state becomes that of all.
+static struct inversion_section join_section(const struct joint *joint, int k) {
+    struct inversion_section all = joint_leader(joint)->section[k];
+    size_t worst = 0;
+    for (size_t s = 1; s < joint->states; s++) {
+        const struct inversion_section *own = &joint->state[s].section[k];
+        if (section_noises(joint, s, k) > section_noises(joint, worst, k))
+            worst = s;
+        if (own->own_noise * all.precision > all.own_noise * own->precision) {
+            all.own_noise = own->own_noise;
+            all.precision = own->precision;
+        }
+    }
+    all.rms = joint->state[worst].section[k].rms;
+    all.noise = joint->state[worst].section[k].noise;
+    return all;
+}
+
+/// The distance of a kind of targets, rms over the states.
+static struct target_distance join_distance(const struct joint *joint, int kind) {
+    struct target_distance all = {.count = 0};
+    const double states = (double)joint->states;
+    for (size_t s = 0; s < joint->states; s++) {
+        const struct target_distance *own = &joint->state[s].distance[kind];
+        all.rms += own->rms * own->rms / states;
+        all.noise += own->noise * own->noise / states;
+        all.variance += own->variance / states;
+        all.count += own->count;
+    }
+    all.rms = sqrt(all.rms);
+    all.noise = sqrt(all.noise);
+    return all;
+}
+
+static void join_pressures(const struct joint *joint) {
+    double noises = 0;
+    for (size_t s = 0; s < joint->states; s++)
+        noises = fmax(noises, pressure_noises(&joint->state[s]));
+    struct target_distance *pressure = &joint_leader(joint)->distance[TARGET_PRESSURE];
+    pressure->rms = noises * pressure->noise;
+}
+
+void mf_joint_targets_join(const struct joint *joint) {
+    struct inversion *leader = joint_leader(joint);
+    struct target_distance distance[TARGETS] = {{.count = 0}};
+    double misfit = 0, disagreement = 0;
+    for (size_t s = 0; s < joint->states; s++) {
+        disagreement = fmax(disagreement, joint->state[s].disagreement);
+        misfit += joint->state[s].misfit / (double)joint->states;
+    }
+    leader->disagreement = disagreement;
+    leader->misfit = misfit;
+    for (int k = 0; k < leader->sections; k++)
+        distance[leader->section[k].kind] = join_distance(joint, leader->section[k].kind);
+    leader->own_noise = 0;
+    for (int k = 0; k < leader->sections; k++) {
+        leader->distance[leader->section[k].kind] = distance[leader->section[k].kind];
+        leader->section[k] = join_section(joint, k);
+        leader->own_noise = fmax(leader->own_noise, leader->section[k].own_noise);
+    }
+    join_pressures(joint);
+}
