@@ -2,6 +2,7 @@
 #include "input/fit_states.h"
 
 #include "base/rng.h"
+#include "inversion/inversion.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -78,8 +79,26 @@ struct fit_file *mf_fit_states_at(struct fit_file *fit, size_t s) {
     return s == 0 ? fit : &fit->other[s - 1];
 }
 
+/// "precision" among the parameters of an inversion, which all have first.
+static double *precision_of(const struct fit_file *state) {
+    return &((struct inversion_settings *)state->method_parameters)->common.precision;
+}
+
+/// The samples of all states are as exact as the most exact target asks for.
+static void share_precision(struct fit_file *fit) {
+    double *precision = precision_of(fit), least = *precision;
+    for (size_t s = 0; s < fit->others; s++)
+        least = fmin(least, *precision_of(&fit->other[s]));
+    if (least < *precision && fit->choices.count < FIT_MOST_CHOICES)
+        snprintf(fit->choices.line[fit->choices.count++], FIT_CHOICE_SIZE,
+                 "\"precision\" %.2g of all states: the least that was chosen for one", least);
+    *precision = least;
+}
+
 void mf_fit_states_link(struct fit_file *fit) {
     const size_t count = mf_fit_states_count(fit);
+    if (count > 1 && fit->method->knows_states)
+        share_precision(fit);
     for (size_t s = 0; s < count; s++) {
         fit->problems[s] = &mf_fit_states_at(fit, s)->problem;
         // The steepest of what was chosen for each.

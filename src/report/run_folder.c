@@ -25,7 +25,8 @@ enum {
 };
 
 /// What a run writes beside used.json; with *-* the tables about the pair types of a mixture, with
-/// * those about the modes of a memory.
+/// * those about the modes of a memory, with both those about groups of bonds, angles and
+/// dihedrals.
 static const char *const results[] = {
     "summary.json",
     PROGRESS_FILE,
@@ -52,6 +53,18 @@ static const char *const results[] = {
     "omega_transverse_flat.tsv",
     "omega_transverse_history.tsv",
     "memory_*.tsv",
+    "bonds_*.tsv",
+    "bonds_*-*.tsv",
+    "angles_*.tsv",
+    "angles_*-*.tsv",
+    "dihedrals_*.tsv",
+    "dihedrals_*-*.tsv",
+    "bond_lengths_*.tsv",
+    "bond_lengths_*-*.tsv",
+    "bond_angles_*.tsv",
+    "bond_angles_*-*.tsv",
+    "dihedral_angles_*.tsv",
+    "dihedral_angles_*-*.tsv",
     "numbers_history.tsv",
     "etd_cells.tsv",
     "population_potential.tsv",
@@ -113,11 +126,15 @@ static bool is_observed(const char *name) {
     return false;
 }
 
-static int is_result(const struct dirent *entry) {
+bool mf_run_folder_is_result(const char *name) {
     for (size_t k = 0; k < sizeof results / sizeof *results; k++)
-        if (fits(results[k], entry->d_name))
-            return 1;
-    return mf_snapshot_is_file(entry->d_name) || is_observed(entry->d_name);
+        if (fits(results[k], name))
+            return true;
+    return mf_snapshot_is_file(name) || is_observed(name);
+}
+
+static int is_result(const struct dirent *entry) {
+    return mf_run_folder_is_result(entry->d_name);
 }
 
 /// A result, but for the checkpoint, which the new run has replaced by its own.

@@ -50,6 +50,9 @@ enum status mf_run_folder_open(struct run_folder *folder, enum run_kind kind, co
 /// are those of the new run, which so has room to begin. Fails: IO.
 enum status mf_run_folder_begin(const struct run_folder *folder, bool resume) MUST_USE;
 
+/// Whether a run writes files of this name beside used.json.
+bool mf_run_folder_is_result(const char *name);
+
 /// Unlock it.
 void mf_run_folder_close(struct run_folder *folder);
 

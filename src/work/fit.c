@@ -358,9 +358,8 @@ static enum status verify_and_write(struct run *run) {
     const size_t states = mf_fit_states_count(&run->fit);
     enum status status = STATUS_OK;
     NEW_ARRAY(verification, states);
-    for (size_t s = 0; status == STATUS_OK && s < states; s++)
-        status = mf_fit_verify_state(mf_fit_states_at(&run->fit, s), run->curve,
-                                     run->standing.number, &listener, &verification[s]);
+    status =
+        mf_fit_verify_states(&run->fit, run->curve, run->standing.number, &listener, verification);
     if (status == STATUS_UNSTABLE)
         status = write_unstable(run);
     CHECK(status);

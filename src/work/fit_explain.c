@@ -20,8 +20,8 @@ static enum status print_simulation(const struct measurement_setup *measured,
     return status;
 }
 
-/// Simulations with the curves that the fit begins with.
-static enum status print_simulations(const struct fit_file *fit, const struct unknowns_laws *laws) {
+/// Simulations of a state with the curves that the fit begins with.
+static enum status print_state(const struct fit_file *fit, const struct unknowns_laws *laws) {
     const struct inverse_problem *problem = &fit->problem;
     struct simulation_setup setup = laws->problem.scene;
     setup.potential = laws->table[UNKNOWN_POTENTIAL];
@@ -33,17 +33,35 @@ static enum status print_simulations(const struct fit_file *fit, const struct un
                                                      .force_estimator = sampling.rdf_force};
         printf("An evaluation of the method \"%s\", one a thread:\n", fit->method->name);
         TRY(print_simulation(&evaluation, &setup, &fit->scene.units));
-    } else {
-        printf("The method \"%s\" samples by a Monte Carlo of its own, not by the dynamics of the "
-               "scene.\n",
-               fit->method->name);
     }
     if (fit->verification.time_step > 0)
         setup.time_step = fit->verification.time_step;
     const struct measurement_setup replica = {
         .targets = &problem->compared, .plan = fit->verification.plan, .thermodynamics = true};
-    printf("A replica of the verification, one a thread:\n");
+    printf("A replica of the verification%s%s%s, one a thread:\n",
+           fit->name[0] ? " of state \"" : "", fit->name, fit->name[0] ? "\"" : "");
     return print_simulation(&replica, &setup, &fit->scene.units);
+}
+
+static enum status print_simulations(struct fit_file *fit) {
+    if (fit->method->kind == INVERSE_INVERSION)
+        printf("The method \"%s\" samples by a Monte Carlo of its own, not by the dynamics of the "
+               "scene.\n",
+               fit->method->name);
+    for (size_t s = 0; s < mf_fit_states_count(fit); s++) {
+        const struct fit_file *state = mf_fit_states_at(fit, s);
+        struct unknowns unknowns = {0};
+        struct unknowns_laws laws = {0};
+        enum status status = mf_unknowns_init(&unknowns, &state->problem);
+        if (status == STATUS_OK)
+            status = mf_unknowns_laws_start(&unknowns, &laws);
+        if (status == STATUS_OK)
+            status = print_state(state, &laws);
+        mf_unknowns_laws_clear(&laws);
+        mf_unknowns_clear(&unknowns);
+        TRY(status);
+    }
+    return STATUS_OK;
 }
 
 static void print_numbers(const struct fit_file *fit) {
@@ -117,27 +135,20 @@ static void print_advice(const struct fit_file *fit, int workers) {
 enum status mf_fit_explain(const char *file, const struct run_options *options, int ranks) {
     enum status status = STATUS_OK;
     struct fit_file fit;
-    struct unknowns unknowns = {0};
-    struct unknowns_laws laws = {0};
     CHECK(mf_fit_file_read(&fit, file, options));
     CHECK(mf_fit_states_normalise(&fit));
-    status = mf_unknowns_init(&unknowns, &fit.problem);
-    if (status == STATUS_OK)
-        status = try_method(&fit);
+    status = try_method(&fit);
     CHECK(status != STATUS_OK ? mf_status_prefix(status, "%s", file) : STATUS_OK);
-    CHECK(mf_unknowns_laws_start(&unknowns, &laws));
     mf_explain_scale(stdout, &fit.scene.units);
     for (size_t s = 0; s < mf_fit_states_count(&fit); s++)
         CHECK(print_targets(mf_fit_states_at(&fit, s)));
     print_numbers(&fit);
-    CHECK(print_simulations(&fit, &laws));
+    CHECK(print_simulations(&fit));
     if (ranks > 0) {
         print_advice(&fit, ranks * options->threads);
         CHECK(mf_fit_tasks_explain(stdout, file, options, ranks));
     }
 done:
-    mf_unknowns_laws_clear(&laws);
-    mf_unknowns_clear(&unknowns);
     mf_fit_file_clear(&fit);
     return status;
 }

@@ -5,6 +5,7 @@
 #include "problem/unknowns.h"
 #include "report/fit_output.h"
 #include "report/fit_verdict.h"
+#include "report/stale_states.h"
 
 enum status mf_fit_verify_folders(const struct fit_file *fit, const struct run_folder *folder) {
     for (size_t s = 0; s < fit->others; s++)
@@ -14,12 +15,29 @@ enum status mf_fit_verify_folders(const struct fit_file *fit, const struct run_f
 
 enum status mf_fit_verify_begin(const struct fit_file *fit, const struct run_folder *folder,
                                 bool resume) {
-    for (size_t s = 0; s < fit->others; s++)
-        TRY(mf_run_folder_begin_state(folder, fit->other[s].name, resume));
-    return STATUS_OK;
+    const char *name[INVERSE_MOST_STATES];
+    for (size_t s = 0; s < fit->others; s++) {
+        name[s] = fit->other[s].name;
+        TRY(mf_run_folder_begin_state(folder, name[s], resume));
+    }
+    return resume ? STATUS_OK : mf_stale_states_remove(folder, name, fit->others);
 }
 
-enum status mf_fit_verify_state(const struct fit_file *state, double *const *curve,
+/// Simulations of a state, told among those of all.
+struct sharing {
+    uint64_t before, all;
+    const struct inverse_listener *listener;
+};
+
+static void tell_of_state(void *context, const struct inverse_progress *own) {
+    const struct sharing *sharing = context;
+    struct inverse_progress told = *own;
+    told.done += sharing->before;
+    told.total = sharing->all;
+    sharing->listener->tell(sharing->listener->context, &told);
+}
+
+static enum status verify_state(const struct fit_file *state, double *const *curve,
                                 const struct inverse_parameter *number,
                                 const struct inverse_listener *listener,
                                 struct verification *verification) {
@@ -38,6 +56,23 @@ done:
     mf_unknowns_laws_clear(&laws);
     mf_unknowns_clear(&unknowns);
     return mf_fit_states_mark(state, status);
+}
+
+enum status mf_fit_verify_states(struct fit_file *fit, double *const *curve,
+                                 const struct inverse_parameter *number,
+                                 const struct inverse_listener *listener,
+                                 struct verification *verification) {
+    const size_t states = mf_fit_states_count(fit);
+    struct sharing sharing = {0, 0, listener};
+    const struct inverse_listener of_state = {tell_of_state, &sharing};
+    for (size_t s = 0; s < states; s++)
+        sharing.all += (uint64_t)mf_fit_states_at(fit, s)->verification.replicas;
+    for (size_t s = 0; s < states; s++) {
+        const struct fit_file *state = mf_fit_states_at(fit, s);
+        TRY(verify_state(state, curve, number, &of_state, &verification[s]));
+        sharing.before += (uint64_t)state->verification.replicas;
+    }
+    return STATUS_OK;
 }
 
 /// Begin a reason with the name of the state that it is about.

@@ -6,21 +6,23 @@
 #include "problem/verify.h"
 #include "report/run_folder.h"
 
-/// Open the folders of the states behind the first, and begin to write there. Fails: as
-/// mf_run_folder_open_state and mf_run_folder_begin_state.
+/// Open the folders of the states behind the first, and begin to write there; what an earlier fit
+/// left of other states is removed. Fails: as mf_run_folder_open_state, mf_run_folder_begin_state
+/// and mf_stale_states_remove.
 enum status mf_fit_verify_folders(const struct fit_file *fit,
                                   const struct run_folder *folder) MUST_USE;
 enum status mf_fit_verify_begin(const struct fit_file *fit, const struct run_folder *folder,
                                 bool resume) MUST_USE;
 
-/// Simulate a state, or the only one, with what was found.
-/// @param[in] curve   shape [UNKNOWNS][points]
-/// @param[in] number  shape [INVERSE_MOST_NUMBERS]
-/// Fails: as mf_verify and mf_unknowns_laws_make. `verification` is to be cleared.
-enum status mf_fit_verify_state(const struct fit_file *state, double *const *curve,
-                                const struct inverse_parameter *number,
-                                const struct inverse_listener *listener,
-                                struct verification *verification) MUST_USE;
+/// Simulate all states with what was found; the listener is told of the simulations of all.
+/// @param[in]  curve         shape [UNKNOWNS][points]
+/// @param[in]  number        shape [INVERSE_MOST_NUMBERS]
+/// @param[out] verification  shape [states], zeros; to be cleared
+/// Fails: as mf_verify and mf_unknowns_laws_make.
+enum status mf_fit_verify_states(struct fit_file *fit, double *const *curve,
+                                 const struct inverse_parameter *number,
+                                 const struct inverse_listener *listener,
+                                 struct verification *verification) MUST_USE;
 
 /// Whether the verification of any state contradicts the fit, and why. An inversion has converged
 /// only if the result agrees with the target; measured, inversions of water, Lennard-Jones and the
