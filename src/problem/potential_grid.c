@@ -32,17 +32,29 @@ static enum status find_core(struct potential_grid *grid, const struct inverse_p
     return STATUS_OK;
 }
 
+/// The first bin in which this problem's own target has pairs.
+static size_t first_seen(const struct potential_grid *grid, const struct inverse_problem *problem,
+                         size_t pair) {
+    const double *g = problem->targets.target[TARGET_RDF].value + pair * grid->bins;
+    size_t k = grid->core[pair];
+    while (k < grid->bins && g[k] <= problem->core_threshold)
+        k++;
+    return k;
+}
+
 /// Where the known bins are.
 static void index_known(struct potential_grid *grid, const struct inverse_problem *problem) {
     static const double well = 0.1;
     size_t n = 0;
-    for (size_t pair = 0; pair < grid->pairs; pair++)
+    for (size_t pair = 0; pair < grid->pairs; pair++) {
+        const size_t seen = first_seen(grid, problem, pair);
         for (size_t k = grid->core[pair]; k < grid->bins; k++, n++) {
             grid->known_point[n] = mf_potential_grid_block(grid, pair) + k;
             grid->known_bin[n] = pair * grid->bins + k;
             grid->well_known[n] = most_pairs(problem, grid->known_bin[n]) > well;
-            grid->seen[n] = true;
+            grid->seen[n] = k >= seen;
         }
+    }
     for (size_t g = 0; g < grid->groups; g++) {
         const struct potential_group *group = &grid->group[g];
         const struct bonded_grid *own = &group->own;
