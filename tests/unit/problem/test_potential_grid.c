@@ -46,6 +46,30 @@ static void test_potential_grid_has_three_parts_when_the_target_has_a_core(void 
     mf_potential_grid_clear(&grid);
 }
 
+/// Two states: the second one has pairs two bins nearer to each other.
+static void test_potential_grid_of_states_knows_which_one_saw_a_bin(void **state) {
+    (void)state;
+    double far[BINS], near[BINS];
+    struct potential_grid grid;
+    make_target(far);
+    make_target(near);
+    near[CORE - 2] = near[CORE - 1] = 0.02;
+    struct inverse_problem problem[] = {make_problem(far), make_problem(near)};
+    const struct inverse_problem *all[] = {&problem[0], &problem[1]};
+    for (int s = 0; s < 2; s++) {
+        problem[s].state = all;
+        problem[s].states = 2;
+    }
+    for (int s = 0; s < 2; s++) {
+        assert_ok(mf_potential_grid_init(&grid, &problem[s]));
+        assert_int_equal(grid.core[0], CORE - 2);
+        assert_int_equal(grid.seen[0], s == 1);
+        assert_int_equal(grid.seen[1], s == 1);
+        assert_true(grid.seen[2]);
+        mf_potential_grid_clear(&grid);
+    }
+}
+
 static void test_potential_grid_has_no_core_when_the_target_begins_at_once(void **state) {
     (void)state;
     double target[BINS], phi[BINS + 1] = {0};
@@ -207,6 +231,7 @@ static void test_potential_grid_virials_are_those_of_a_changed_table(void **stat
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_potential_grid_has_three_parts_when_the_target_has_a_core),
+        cmocka_unit_test(test_potential_grid_of_states_knows_which_one_saw_a_bin),
         cmocka_unit_test(test_potential_grid_has_no_core_when_the_target_begins_at_once),
         cmocka_unit_test(test_potential_grid_refuses_when_the_target_is_empty),
         cmocka_unit_test(test_potential_grid_starts_from_the_mean_force_when_there_is_no_start),
