@@ -119,10 +119,25 @@ run pareto "$rdf, $etd" "$potential, $omega" "\"name\": \"pareto\", \"population
 run formulas "$rdf" '"potential": {}' "\"name\": \"formulas\", \"nodes\": 8, \"children\": 60, \"islands\": 3, \"curve_particles\": 192, \"curve_precision\": 0.02, \"checks\": 2, $simulated"
 run successive "$rdf, $etd" "\"potential\": {}, $omega" "\"name\": \"successive\", \"potential_precision\": 0.02, $simulated"
 
+# Trimers: pairs, bonds and angles at once.
+chain='"molecules": {"trimer": {"count": 40, "chain": {"type": "A", "length": 3, "bond": "rod", "angle": "bend"}}}'
+laws='"bonds": {"rod": {"law": "harmonic", "k": 200, "length": 0.6}}, "angles": {"bend": {"law": "harmonic", "k": 20, "angle": 110}}'
+sed "s/\"particles\": {\"count\": 192}/$laws, $chain/; s/\"etd\".*/\"bond_lengths\": {\"bins\": 40}, \"bond_angles\": {\"bins\": 40},/; s/\"motion\": {.*}, //; s/0.01,/0.005,/" \
+    scene.json >trimers.json
+"$without" simulate trimers.json -o trimers --quiet 2>words || cat words
+groups='"bond_lengths": {"rod": {"file": "trimers/bond_lengths.tsv"}}, "bond_angles": {"bend": {"file": "trimers/bond_angles.tsv"}}'
+for name in imc joint-imc; do
+    run $name-molecules '"rdf": {"file": "trimers/rdf.tsv"}, '"$groups" '"potential": {}' "\"name\": \"$name\", ${sampled/12/6}"
+    sed -i "s/\"particles\": {\"count\": 192}/$chain/" $name-molecules.json
+done
+sed -i 's|"method"|"states": {"cold": {"scene": {"temperature": 0.9}}, "warm": {"scene": {"temperature": 1}}}, "method"|' joint-imc-molecules.json
+
 for method in ${METHODS-$methods}; do
     "$without" fit "$method.json" -o "$method" --quiet --threads 1 2>words
     [ -s "$method/summary.json" ] || cat words
-    for layout in 4x1 3x2 1x4; do
+    layouts="4x1 3x2 1x4"
+    case $method in imc | genetic) layouts="$layouts 8x1 1x8" ;; esac
+    for layout in $layouts; do
         ranks "${layout%x*}" "$program" fit "$method.json" -o "$method-$layout" --quiet --threads "${layout#*x}"
         same "$method, ${layout%x*} ranks of ${layout#*x} threads" "$method" "$method-$layout"
     done
