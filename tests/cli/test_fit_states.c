@@ -206,6 +206,48 @@ static void test_folders_of_states_are_the_fits_own(void **state) {
     assert_int_equal(access("dense/rdf.tsv", F_OK), 0);
 }
 
+/// What a forced run finds of states with other names is removed, but for files of others.
+static void test_states_with_other_names_leave_nothing(void **state) {
+    static const char figures[] = "out/states/dense/figures", note[] = "kept";
+    small_inputs_write(*state, "run.json", run, NULL, NULL);
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "out", "--force");
+    run_program_assert_code(&result, 0);
+    mkdir(figures, 0777);
+    temporary_folder_write(*state, "out/states/dense/figures/rdf.svg", note, strlen(note));
+    temporary_folder_write(*state, "out/states/dilute-notes.txt", note, strlen(note));
+    small_inputs_write(*state, "run.json", run, "\"dense\": {", "\"thick\": {");
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "out", "--force");
+    run_program_assert_code(&result, 0);
+    assert_int_equal(access("out/states/thick/rdf.tsv", F_OK), 0);
+    assert_int_equal(access("out/states/dilute-notes.txt", F_OK), 0);
+    assert_int_equal(access("out/states/dense", F_OK), -1);
+    // What is not of a run stays, and its folder with it.
+    temporary_folder_write(*state, "out/states/thick/notes.txt", note, strlen(note));
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "out", "--force");
+    small_inputs_write(*state, "run.json", run, NULL, NULL);
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "out", "--force");
+    run_program_assert_code(&result, 0);
+    assert_int_equal(access("out/states/thick/notes.txt", F_OK), 0);
+    assert_int_equal(access("out/states/thick/rdf.tsv", F_OK), -1);
+}
+
+/// What is chosen of the precision is the least of the states': that of the second, whose target is
+/// better known.
+static void test_precision_is_that_of_the_most_exact_state(void **state) {
+    static const char text[] = "{\"seed\": 4, \"scene\": {\"box\": [5, 5, 5]},\n\"states\": {\n"
+                               " \"dilute\": {\"scene\": {\"particles\": {\"count\": 250}},\n"
+                               "  \"target\": {\"rdf\": {\"file\": \"dilute/rdf.tsv\"}}},\n"
+                               " \"dense\": {\"scene\": {\"particles\": {\"count\": 500}},\n"
+                               "  \"target\": {\"rdf\": {\"file\": \"dense/rdf.tsv\"}}}}}\n";
+    small_inputs_write(*state, "chosen.json", text, NULL, NULL);
+    RUN_PROGRAM(&result, "fit", "chosen.json", "--explain");
+    run_program_assert_code(&result, 0);
+    print_message("%s", result.out);
+    assert_contains(result.out, "of all states: the least that was chosen for one");
+    assert_contains(result.out, "verification of state \"dilute\"");
+    assert_contains(result.out, "verification of state \"dense\"");
+}
+
 /// Of a fit of states the first is exported; a run file of states is no scene.
 static void test_results_of_states_are_exported(void **state) {
     small_inputs_write(*state, "run.json", run, NULL, NULL);
@@ -227,6 +269,8 @@ int main(void) {
         cmocka_unit_test(test_states_that_contradict_each_other_do_not_converge),
         cmocka_unit_test(test_what_no_states_can_be_is_refused),
         cmocka_unit_test(test_folders_of_states_are_the_fits_own),
+        cmocka_unit_test(test_states_with_other_names_leave_nothing),
+        cmocka_unit_test(test_precision_is_that_of_the_most_exact_state),
         cmocka_unit_test(test_results_of_states_are_exported),
     };
     return cmocka_run_group_tests(tests, enter, small_inputs_leave);

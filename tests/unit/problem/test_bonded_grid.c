@@ -69,6 +69,10 @@ static double bond_energy(double r) {
     return 400 * (r - 0.8) * (r - 0.8) / 2;
 }
 
+static double wide_bond_energy(double r) {
+    return 0.5 * bond_energy(r);
+}
+
 static double angle_energy(double theta) {
     return 8 * pow((theta - 150) * M_PI / 180, 2) / 2;
 }
@@ -205,6 +209,37 @@ static void test_potential_grid_has_groups_behind_the_pairs(void **state) {
     clear_twin(&twin);
 }
 
+/// A second state that is hotter knows more bins. They are known to both, but seen by it alone; the
+/// first begins there with a parabola.
+static void test_bins_of_two_states_are_those_of_both(void **state) {
+    static const struct bonded_bins bins = {0.4, 0.8 / BINS, BINS};
+    static struct twin cold, hot;
+    struct bonded_grid grid, own;
+    double values[POINTS], alone[POINTS];
+    (void)state;
+    make_twin(&cold, TOPOLOGY_BOND, bins, bond_energy);
+    assert_ok(mf_bonded_grid_init(&own, &cold.problem, &cold.problem.group[0]));
+    mf_bonded_grid_start(&own, alone);
+    make_twin(&hot, TOPOLOGY_BOND, bins, wide_bond_energy);
+    const struct inverse_problem *const both[] = {&cold.problem, &hot.problem};
+    cold.problem.state = both;
+    cold.problem.states = 2;
+    assert_ok(mf_bonded_grid_init(&grid, &cold.problem, &cold.problem.group[0]));
+    assert_true(grid.first < own.first && grid.known > own.known);
+    assert_int_equal(grid.seen_first, own.first);
+    assert_int_equal(grid.seen, own.known);
+    mf_bonded_grid_start(&grid, values);
+    for (size_t k = 0; k < own.points; k++) {
+        const double q = mf_bonded_grid_place(&own, k);
+        const double place = (q - mf_bonded_grid_place(&grid, 0)) / bins.width;
+        if (place > -0.5 && place < (double)grid.points - 0.5)
+            assert_close(values[lround(place)], alone[k], 1e-9);
+    }
+    assert_true(mf_bonded_grid_is_above(&grid, &cold.problem, grid.first, mf_bonded_grid_seen));
+    clear_twin(&hot);
+    clear_twin(&cold);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_bonded_grid_inverts_the_distribution_of_a_bond),
@@ -213,6 +248,7 @@ int main(void) {
         cmocka_unit_test(test_bonded_grid_closes_the_circle),
         cmocka_unit_test(test_bonded_grid_refuses_what_tells_nothing),
         cmocka_unit_test(test_potential_grid_has_groups_behind_the_pairs),
+        cmocka_unit_test(test_bins_of_two_states_are_those_of_both),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
