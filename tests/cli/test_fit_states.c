@@ -106,6 +106,10 @@ static void test_two_densities_find_a_known_potential(void **state) {
     assert_non_null(strstr(result.err, "state \"dilute\":"));
     assert_non_null(strstr(result.err, "state \"dense\":"));
     assert_found("out", 0.25);
+    // Progress counts the simulations of both: it is at its end once.
+    const char *end = strstr(result.err, "verification  100 %");
+    assert_non_null(end);
+    assert_null(strstr(end + 1, "verification  100 %"));
     results_assert_table("out/states/dense/rdf.tsv", 5, 30);
     results_number("out/summary.json", "states.dilute.rdf_rmse");
     results_number("out/summary.json", "states.dense.pressure");

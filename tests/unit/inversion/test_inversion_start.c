@@ -3,9 +3,11 @@
 #include "curves/formula.h"
 #include "inversion/inversion.h"
 #include "shared/fluids.h"
+#include "shared/is_close.h"
 #include "shared/testing.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 enum { BINS = 125 };
 
@@ -193,6 +195,54 @@ static void test_inversion_band_counts_the_ramp_that_is_asked_for(void **state) 
     clear(&made);
 }
 
+/// Of two states with other slopes of the pressure the band tells of the one that is farther from
+/// having settled, whichever is the first.
+static void test_inversion_band_looks_at_the_pressures_of_all_states(void **state) {
+    (void)state;
+    struct made made;
+    struct inverse_step step;
+    const struct inverse_listener listener = {ignore, NULL};
+    struct inversion states[2] = {{.own_noise = 0}};
+    struct inversion_joint joint = {.state = states, .states = 2};
+    struct inversion_band_pressure farthest[2];
+    struct inverse_ramp ramp[2];
+    make(&made, INVERSION_FROM_MEAN_FORCE);
+    made.settings.common.samples = 200;
+    assert_ok(mf_inversion_create(&made.inversion, &mf_imc, &made.problem, &made.settings));
+    struct inversion *inversion = &made.inversion;
+    const size_t known = inversion->grid.known;
+    double *other = calloc(known, sizeof *other);
+    assert_non_null(other);
+    assert_ok(mf_inversion_iterate(inversion, &step, &listener));
+    for (size_t a = 0; a < known; a++) {
+        inversion->pressure.slope[a] =
+            mf_potential_grid_ramp(&inversion->grid, inversion->grid.known_point[a]);
+        other[a] = a == known / 2;
+    }
+    joint.system = mf_inversion_system(inversion);
+    double *slope[2] = {inversion->pressure.slope, other};
+    for (int first = 0; first < 2; first++) {
+        inversion->pressure.slope = slope[first];
+        states[1].pressure.slope = slope[1 - first];
+        inversion->joint = &joint;
+        assert_ok(mf_inversion_band_find(inversion));
+        inversion->joint = NULL;
+        ramp[first] = inversion->band.ramp;
+        farthest[first] = inversion->band.farthest;
+    }
+    inversion->pressure.slope = slope[0];
+    free(other);
+    const double ratio[2] = {fabs(ramp[0].pressure_way) / ramp[0].pressure_open,
+                             fabs(ramp[1].pressure_way) / ramp[1].pressure_open};
+    const int farther = ratio[1] > ratio[0];
+    print_message("ways of %.3f and %.3f errors\n", ratio[0], ratio[1]);
+    for (int first = 0; first < 2; first++) {
+        assert_close(farthest[first].way, ramp[farther].pressure_way, 1e-9);
+        assert_close(farthest[first].open, ramp[farther].pressure_open, 1e-9);
+    }
+    clear(&made);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_inversion_start_is_smooth_within_the_errors_of_the_target),
@@ -201,6 +251,7 @@ int main(void) {
         cmocka_unit_test(test_inversion_band_widens_when_more_than_noise_is_left),
         cmocka_unit_test(test_inversion_band_counts_the_ramp_that_is_asked_for),
         cmocka_unit_test(test_inversion_create_refuses_a_hole_beyond_the_core),
+        cmocka_unit_test(test_inversion_band_looks_at_the_pressures_of_all_states),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

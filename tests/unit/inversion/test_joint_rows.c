@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The equations that several states leave: their least squares are those of all rows, but for bins
+// that a state has not seen; and Birge's factor does not widen what pressures say.
+#include "inversion/joint.h"
+#include "shared/is_close.h"
+#include "shared/testing.h"
+
+#include <math.h>
+
+enum { BINS = 8, CORE = 2, KNOWN = BINS - CORE, STATES = 2, UNSEEN = 3 };
+
+static const double birge = 4, pressure_error = 0.1, temperature[STATES] = {1, 1.7};
+
+/// Two states with pressures; the second has not seen one of the bins.
+struct made {
+    struct inverse_problem problem[STATES];
+    struct inversion state[STATES];
+    struct joint joint;
+    double g[BINS], pressure[STATES], covariance[STATES][KNOWN * KNOWN], excess[STATES][KNOWN],
+        variance[STATES][KNOWN], slope[STATES][KNOWN];
+};
+
+static void make(struct made *made) {
+    *made = (struct made){.joint = {.states = STATES, .state = made->state}};
+    for (size_t k = 0; k < BINS; k++)
+        made->g[k] = k >= CORE;
+    for (size_t s = 0; s < STATES; s++) {
+        struct inversion *state = &made->state[s];
+        struct targets *targets = &made->problem[s].targets;
+        made->problem[s].scene.temperature = temperature[s];
+        made->problem[s].core_threshold = 1e-3;
+        made->pressure[s] = 3 + (double)s;
+        targets->bins = (struct rdf_bins){0, 0.1, BINS};
+        targets->target[TARGET_RDF] = (struct target){.count = BINS, .value = made->g};
+        targets->target[TARGET_PRESSURE] = (struct target){.count = 1, .value = &made->pressure[s]};
+        assert_ok(mf_potential_grid_init(&state->grid, &made->problem[s]));
+        assert_int_equal(state->grid.known, KNOWN);
+        for (size_t a = 0; a < KNOWN; a++) {
+            made->excess[s][a] = sin((double)(a + 5 * s));
+            made->variance[s][a] = 0.2 + 0.1 * (double)(a + s);
+            made->slope[s][a] = cos((double)(2 * a + s));
+            for (size_t b = 0; b < KNOWN; b++)
+                made->covariance[s][a * KNOWN + b] =
+                    (a == b ? 3 : 0) + 0.5 * cos((double)(a + b + s));
+        }
+        state->problem = &made->problem[s];
+        state->covariance = made->covariance[s];
+        state->excess = made->excess[s];
+        state->variance = made->variance[s];
+        state->pressure.slope = made->slope[s];
+        state->pressure.value = 1;
+        state->distance[TARGET_PRESSURE].noise = pressure_error;
+    }
+    made->state[0].misfit = birge;
+    made->state[1].grid.seen[UNSEEN] = false;
+}
+
+/// Bᵀ B of all rows, with the variances of g larger by a factor; by the definition.
+static double normal(const struct made *made, size_t a, size_t b, double factor) {
+    double sum = 0;
+    for (size_t s = 0; s < STATES; s++) {
+        for (size_t n = 0; n < KNOWN; n++)
+            if (made->state[s].grid.seen[n])
+                sum += made->covariance[s][n * KNOWN + a] * made->covariance[s][n * KNOWN + b] /
+                       (temperature[s] * temperature[s] * factor * made->variance[s][n]);
+        sum += made->slope[s][a] * made->slope[s][b] / (pressure_error * pressure_error);
+    }
+    return sum;
+}
+
+/// The same of Bᵀ b.
+static double right_side(const struct made *made, size_t a, double factor) {
+    double sum = 0;
+    for (size_t s = 0; s < STATES; s++) {
+        for (size_t n = 0; n < KNOWN; n++)
+            if (made->state[s].grid.seen[n])
+                sum += made->covariance[s][n * KNOWN + a] * made->excess[s][n] /
+                       (temperature[s] * factor * made->variance[s][n]);
+        sum += made->slope[s][a] * (made->pressure[s] - made->state[s].pressure.value) /
+               (pressure_error * pressure_error);
+    }
+    return sum;
+}
+
+static void test_rows_of_states_have_the_same_least_squares(void **state) {
+    (void)state;
+    static struct made made;
+    struct joint_equations equations = {0};
+    make(&made);
+    assert_ok(mf_joint_rows_init(&equations, &made.state[0]));
+    assert_ok(mf_joint_rows_reduce(&made.joint, false, &equations));
+    const double *c = equations.system.covariance, unit = equations.system.temperature;
+    for (size_t a = 0; a < KNOWN; a++) {
+        double asked = 0;
+        for (size_t n = 0; n < KNOWN; n++)
+            asked += c[n * KNOWN + a] / unit * equations.excess[n] / birge;
+        assert_close(asked, right_side(&made, a, birge), 1e-9);
+        for (size_t b = 0; b < KNOWN; b++) {
+            double found = 0;
+            // As the band has it: all variances, which are 1, larger by Birge's factor.
+            for (size_t n = 0; n < KNOWN; n++)
+                found += c[n * KNOWN + a] * c[n * KNOWN + b] / (unit * unit * birge);
+            assert_close(found, normal(&made, a, b, birge), 1e-9);
+        }
+    }
+    mf_joint_rows_clear(&equations);
+    for (size_t s = 0; s < STATES; s++)
+        mf_potential_grid_clear(&made.state[s].grid);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_rows_of_states_have_the_same_least_squares),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
