@@ -5,6 +5,7 @@
 /// Tested: test_structure_factor (unit, cli).
 #include "base/memory.h"
 #include "observe/measure.h"
+#include "observe/particle_waves.h"
 #include "observe/pooled.h"
 #include "observe/structure_factor.h"
 
@@ -30,69 +31,38 @@ static const struct field fields[] = {
 };
 
 struct state {
-    struct density_waves waves;
+    struct particle_waves waves;
     struct structure_factor factor;
-    double *numbers;                   ///< of one sample
-    uint32_t *place;                   ///< shape [count]: of an id among the particles
-    double unit[3];                    ///< 2π/L [1/λ]; 0 along what is no dimension
-    const struct particles *particles; ///< of the sample that is taken
+    double *numbers; ///< of one sample
 };
-
-static enum status begin_waves(struct state *s, const struct density_waves_plan *plan,
-                               const struct box *box) {
-    double lattice[3][3] = {{0}}, length[3] = {0};
-    for (int d = 0; d < box->dimensions; d++) {
-        length[d] = box->length[d];
-        lattice[d][d] = s->unit[d] = 2 * pi / box->length[d];
-    }
-    TRY(mf_density_waves_init(&s->waves, plan));
-    const enum status status = mf_density_waves_list(&s->waves, lattice, length);
-    return status == STATUS_BAD_INPUT ? mf_status_prefix(status, "structure_factor") : status;
-}
 
 static enum status begin(void *state, const void *settings, const struct simulation *simulation,
                          const struct measure_plan *plan) {
     enum status status = STATUS_OK;
     struct state *s = state;
     const struct settings *const wish = settings;
-    const struct composition *const composition = &simulation->setup.composition;
-    const size_t count = simulation->particles.count;
-    const struct density_waves_plan waves = {
-        .composition = composition_is_mixed(composition) ? *composition
-                                                         : mf_composition_of_one((int64_t)count),
-        .q_maximum = wish->q_maximum,
-        .bins = (size_t)wish->bins};
-    CHECK(begin_waves(s, &waves, &simulation->setup.box));
-    CHECK(mf_structure_factor_init(&s->factor, &waves, (size_t)plan->samples));
+    status =
+        mf_particle_waves_init(&s->waves, &simulation->setup.box, &simulation->setup.composition,
+                               simulation->particles.count, wish->q_maximum, (size_t)wish->bins);
+    CHECK(status == STATUS_BAD_INPUT ? mf_status_prefix(status, "structure_factor") : status);
+    CHECK(mf_structure_factor_init(&s->factor, &s->waves.waves.plan, (size_t)plan->samples));
     NEW_ARRAY(s->numbers, mf_structure_factor_numbers(&s->factor));
-    NEW_ARRAY(s->place, count);
 done:
     return status;
 }
 
 static void clear(void *state) {
     struct state *s = state;
-    mf_density_waves_clear(&s->waves);
+    mf_particle_waves_clear(&s->waves);
     mf_structure_factor_clear(&s->factor);
     mf_memory_free(s->numbers);
-    mf_memory_free(s->place);
     *s = (struct state){0};
-}
-
-static void tell_angle(const void *context, size_t bead, double angle[3]) {
-    const struct state *const s = context;
-    for (int d = 0; d < 3; d++)
-        angle[d] = s->unit[d] > 0 ? s->unit[d] * s->particles->position[d][s->place[bead]] : 0;
 }
 
 static enum status sample(void *state, struct simulation *simulation) {
     struct state *s = state;
-    const struct density_angles angles = {tell_angle, s};
-    s->particles = &simulation->particles;
-    for (size_t k = 0; k < s->particles->count; k++)
-        s->place[s->particles->id[k]] = (uint32_t)k;
-    mf_density_waves_find(&s->waves, &angles, simulation->setup.threads);
-    mf_structure_factor_take(&s->waves, s->numbers);
+    mf_particle_waves_find(&s->waves, &simulation->particles, simulation->setup.threads);
+    mf_structure_factor_take(&s->waves.waves, s->numbers);
     mf_structure_factor_add(&s->factor, s->numbers);
     return STATUS_OK;
 }

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "observe/kirkwood_buff_waves.h"
+
+#include "base/memory.h"
+
+#include <math.h>
+
+/// Of 2π ρ^(1/d), near the first peak of S.
+static const double longest_part = 0.2;
+
+static double choose_maximum(const struct box *box, size_t count, double wish) {
+    const double density = (double)count / mf_box_volume(box);
+    return wish > 0 ? wish : longest_part * 2 * M_PI * pow(density, 1.0 / box->dimensions);
+}
+
+double mf_kirkwood_buff_waves_expected(const struct box *box, size_t count, double q_maximum) {
+    const double ball = mf_box_shell_volume(box, 0, choose_maximum(box, count, q_maximum));
+    return ball * mf_box_volume(box) / pow(2 * M_PI, box->dimensions) / 2;
+}
+
+static double squared_length(const struct density_waves *waves, size_t k) {
+    double square = 0;
+    for (int d = 0; d < 3; d++) {
+        double q = 0;
+        for (int i = 0; i < 3; i++)
+            q += waves->wave[k].n[i] * waves->lattice[i][d];
+        square += q * q;
+    }
+    return square;
+}
+
+/// Weights of the intercept of least squares, Σ (S − S_0 − c q²)².
+static enum status find_weights(struct kirkwood_buff_waves *kb) {
+    static const double same = 1e-6;
+    const struct density_waves *waves = &kb->waves.waves;
+    const double count = (double)waves->vectors;
+    double first = 0, second = 0;
+    for (size_t k = 0; k < waves->vectors; k++) {
+        const double x = squared_length(waves, k);
+        first += x;
+        second += x * x;
+    }
+    const double spread = count * second - first * first;
+    if (!(spread > same * count * second))
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "the waves of the box up to q_maximum %.4g all have one length, so "
+                              "that there is no way to q = 0: a box with more particles has "
+                              "longer waves",
+                              kb->q_maximum);
+    for (size_t k = 0; k < waves->vectors; k++)
+        kb->weight[k] = (second - squared_length(waves, k) * first) / spread;
+    return STATUS_OK;
+}
+
+enum status mf_kirkwood_buff_waves_init(struct kirkwood_buff_waves *kb, const struct box *box,
+                                        const struct composition *composition, size_t count,
+                                        double q_maximum) {
+    enum status status = STATUS_OK;
+    *kb = (struct kirkwood_buff_waves){.box = *box,
+                                       .q_maximum = choose_maximum(box, count, q_maximum)};
+    CHECK(mf_particle_waves_init(&kb->waves, box, composition, count, kb->q_maximum, 1));
+    NEW_ARRAY(kb->weight, kb->waves.waves.vectors);
+    CHECK(find_weights(kb));
+done:
+    return status;
+}
+
+void mf_kirkwood_buff_waves_clear(struct kirkwood_buff_waves *kb) {
+    mf_particle_waves_clear(&kb->waves);
+    mf_memory_free(kb->weight);
+    *kb = (struct kirkwood_buff_waves){0};
+}
+
+size_t mf_kirkwood_buff_waves_pairs(const struct kirkwood_buff_waves *kb) {
+    return (size_t)mf_composition_pairs(&kb->waves.waves.plan.composition);
+}
+
+/// Σ weight Re ρ_a ρ_b*.
+static double extrapolate(const struct kirkwood_buff_waves *kb, const int type[2]) {
+    const struct density_waves *waves = &kb->waves.waves;
+    const size_t types = (size_t)waves->plan.composition.types;
+    double sum = 0;
+    for (size_t k = 0; k < waves->vectors; k++) {
+        const double *const rho = waves->amplitude + 2 * k * types;
+        const double *const a = rho + 2 * type[0], *const b = rho + 2 * type[1];
+        sum += kb->weight[k] * (a[0] * b[0] + a[1] * b[1]);
+    }
+    return sum;
+}
+
+void mf_kirkwood_buff_waves_take(struct kirkwood_buff_waves *kb, const struct particles *particles,
+                                 int threads, double *integral) {
+    const struct composition *composition = &kb->waves.waves.plan.composition;
+    const double volume = mf_box_volume(&kb->box);
+    mf_particle_waves_find(&kb->waves, particles, threads);
+    for (size_t pair = 0; pair < mf_kirkwood_buff_waves_pairs(kb); pair++) {
+        int type[2];
+        mf_composition_pair_types(composition, (int)pair, type);
+        const double a = (double)composition->count[type[0]];
+        const double b = (double)composition->count[type[1]];
+        integral[pair] =
+            volume * (extrapolate(kb, type) / (a * b) - (type[0] == type[1] ? 1 / a : 0));
+    }
+}
