@@ -6,6 +6,7 @@
 #include "app/reference.h"
 #include "base/nearest.h"
 #include "input/fit_file.h"
+#include "observe/kirkwood_buff_observable.h"
 #include "observe/measure.h"
 #include "trajectory/mapping_plan.h"
 
@@ -189,6 +190,11 @@ static const struct topic fixed_topics[] = {
      "number-target",
      "a number, as \"diffusion\" and \"pressure\"",
      {mf_target_curve_number_fields, mf_target_files_use_fields}},
+    {"target",
+     "kirkwood_buff-target",
+     "\"kirkwood_buff\": Kirkwood and Buff's integrals, of a mixture by pair types",
+     {mf_target_kirkwood_buff_fields, mf_kirkwood_buff_observable_fields,
+      mf_target_files_use_fields}},
     {"target", "diffusion-target", "\"diffusion\" besides", {mf_target_curve_diffusion_fields}},
     {"unknowns", "unknowns", "\"unknowns\" of a run file", {NULL}},
     {"unknowns",

@@ -3,6 +3,7 @@
 
 #include "input/target_sanity.h"
 #include "io/units_scale.h"
+#include "observe/kirkwood_buff_observable.h"
 #include "inversion/inversion.h"
 #include "problem/measurement.h"
 #include "problem/unknowns.h"
@@ -91,6 +92,18 @@ static enum status check_molecules(const struct fit_file *fit, const char *file)
     return STATUS_OK;
 }
 
+/// Integrals of Kirkwood and Buff are met by linear equations, not by a ramp.
+static enum status check_integrals(const struct fit_file *fit, const char *file) {
+    if (fit->method->kind != INVERSE_INVERSION || fit->method->meets_integrals ||
+        !targets_ask(&fit->problem.targets, mf_kirkwood_buff_kind()))
+        return STATUS_OK;
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "%s: target.kirkwood_buff: \"%s\" does not fit it; \"imc\", \"auto\", "
+                          "\"joint-imc\", \"gauss-newton\" and the optimisers do; with "
+                          "\"fitted\": \"no\" it is compared with",
+                          file, fit->method->name);
+}
+
 static enum status check_unknowns(const struct fit_file *fit, const char *file) {
     for (int kind = 0; kind < UNKNOWNS; kind++)
         if (fit->unknown[kind].wanted &&
@@ -101,8 +114,8 @@ static enum status check_unknowns(const struct fit_file *fit, const char *file) 
         return mf_status_fail(STATUS_BAD_INPUT, "%s: method.name: \"%s\" does not find numbers",
                               file, fit->method->name);
     for (int kind = 0; kind < TARGETS && fit->method->kind == INVERSE_INVERSION; kind++)
-        if (kind != TARGET_RDF && kind != TARGET_PRESSURE && !is_inverted(fit, kind) &&
-            targets_ask(&fit->problem.targets, kind))
+        if (kind != TARGET_RDF && kind != TARGET_PRESSURE && kind != mf_kirkwood_buff_kind() &&
+            !is_inverted(fit, kind) && targets_ask(&fit->problem.targets, kind))
             return mf_status_fail(
                 STATUS_BAD_INPUT,
                 "%s: target.%s.fitted: \"%s\" fits g(r), pressure and what groups are found from; "
@@ -232,6 +245,7 @@ static enum status check_windows(const struct fit_file *fit, const char *file) {
 enum status mf_fit_check(const struct fit_file *fit, const char *file) {
     const struct target_files *files = &fit->files;
     TRY(check_molecules(fit, file));
+    TRY(check_integrals(fit, file));
     TRY(check_unknowns(fit, file));
     if (files->given[TARGET_RDF])
         TRY(check_range(fit, file, "rdf", mf_rdf_bins_range(&files->rdf[0].bins)));

@@ -3,6 +3,7 @@
 
 #include "base/digest.h"
 #include "base/memory.h"
+#include "observe/kirkwood_buff_observable.h"
 
 #include <math.h>
 #include <string.h>
@@ -164,6 +165,10 @@ static enum status read_kind(struct target_files *files, int number, struct json
         return read_rdf(files, object, box, units);
     if (number == TARGET_ETD)
         return mf_target_etd_read(&files->etd, object);
+    if (number == mf_kirkwood_buff_kind()) {
+        mf_target_kirkwood_buff_read(&files->kirkwood_buff, object, &files->composition);
+        return STATUS_OK;
+    }
     if (form != OBSERVABLE_NUMBER)
         return mf_target_curve_read(&files->curve[number], kind.target, object);
     if (number == TARGET_DIFFUSION)
@@ -202,7 +207,8 @@ enum status mf_target_files_read(struct target_files *files, struct json_object 
     if (object.item == NULL)
         return STATUS_OK;
     for (int kind = 0; mf_targets_name(kind); kind++) {
-        const bool is_number = mf_observable_kind(kind).target->form == OBSERVABLE_NUMBER;
+        const bool is_number = mf_observable_kind(kind).target->form == OBSERVABLE_NUMBER ||
+                               kind == mf_kirkwood_buff_kind();
         struct json_object child =
             mf_json_child_of(&object, mf_targets_name(kind), false, is_number ? "value" : "file");
         files->given[kind] = child.item != NULL;
@@ -266,6 +272,8 @@ static void write_kind(const struct target_files *files, int number, struct json
         write_rdf(files, writer);
     else if (number == TARGET_ETD)
         mf_json_put_fields(writer, mf_target_etd_fields, &files->etd.parameters);
+    else if (number == mf_kirkwood_buff_kind())
+        mf_target_kirkwood_buff_write(&files->kirkwood_buff, &files->composition, writer);
     else if (form == OBSERVABLE_NUMBER)
         write_number(&files->number[number], kind.target->unit, writer);
     else
@@ -384,6 +392,10 @@ static struct target target_of(const struct target_files *files, int kind) {
                                .value = files->etd.survival,
                                .error = files->etd.error,
                                .columns = (size_t)files->etd.grid.bins};
+    if (kind == mf_kirkwood_buff_kind())
+        return (struct target){.count = files->kirkwood_buff.pairs,
+                               .value = files->kirkwood_buff.value,
+                               .error = files->kirkwood_buff.error};
     if (form == OBSERVABLE_NUMBER)
         return (struct target){.count = 1, .value = &number->value, .error = &number->error};
     return (struct target){.count = curve->points,

@@ -8,6 +8,7 @@
 #include "input/target_curve.h"
 #include "input/target_etd.h"
 #include "input/target_groups.h"
+#include "input/target_kirkwood_buff.h"
 #include "input/target_rdf.h"
 
 extern const struct field mf_target_files_use_fields[];
@@ -24,8 +25,9 @@ struct target_files {
     struct normalisation normalisation;      ///< by which those that do not say theirs are divided
     struct target_etd etd;
     struct target_groups groups[TOPOLOGY_ORDERS]; ///< of bonds, angles and dihedrals
-    struct target_curve curve[TARGETS];           ///< of those that are curves
-    struct target_number number[TARGETS];         ///< of those that are numbers
+    struct target_kirkwood_buff kirkwood_buff;
+    struct target_curve curve[TARGETS];   ///< of those that are curves
+    struct target_number number[TARGETS]; ///< of those that are numbers
     /// Of the observables whose targets say them, by their places in the list; else NULL.
     void *settings[OBSERVABLES_MOST];
     struct target_use {

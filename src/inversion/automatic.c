@@ -89,6 +89,7 @@ const struct inverse_method mf_automatic = {
     .own = &(const struct inversion_rule){update},
     .tables = (const struct inverse_table[]){INVERSION_TABLE, {NULL, 0}},
     .knows_molecules = true,
+    .meets_integrals = true,
     .columns = columns,
     .create = mf_inversion_create,
     INVERSION_RECORD,

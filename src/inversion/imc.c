@@ -5,6 +5,7 @@
 #include "inversion/inversion.h"
 #include "inversion/inversion_coarse.h"
 #include "inversion/inversion_ramp.h"
+#include "observe/kirkwood_buff_observable.h"
 
 #include <math.h>
 
@@ -122,6 +123,18 @@ done:
     return status;
 }
 
+/// VOTCA's lambda is of equations that are not over their errors, which integrals need.
+static enum status create(void *memory, const struct inverse_method *method,
+                          const struct inverse_problem *problem, const void *parameters) {
+    const struct inversion_settings *settings = parameters;
+    if (solvers[settings->imc.regularisation] == mf_imc_votca &&
+        targets_ask(&problem->targets, mf_kirkwood_buff_kind()))
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "method.regularisation: \"votca\" does not fit "
+                              "target.kirkwood_buff; \"noise\" and \"truncated\" do");
+    return mf_inversion_create(memory, method, problem, parameters);
+}
+
 static enum status update(struct inversion *inversion, double *extra) {
     return mf_imc_step(inversion, &inversion->settings.imc, inversion->step, extra);
 }
@@ -135,7 +148,8 @@ const struct inverse_method mf_imc = {
                                              {own_fields, offsetof(struct inversion_settings, imc)},
                                              {NULL, 0}},
     .knows_molecules = true,
+    .meets_integrals = true,
     .columns = columns,
-    .create = mf_inversion_create,
+    .create = create,
     INVERSION_RECORD,
 };

@@ -53,6 +53,7 @@ static void assess_covariance(struct inversion *inversion) {
                 mf_comoments_covariance(counts, grid->known_bin[a], grid->known_bin[b]);
             *c = (1 - share) * *c + share * now;
         }
+    mf_inversion_kirkwood_buff_respond(inversion, share);
     inversion->progress.responses = near ? inversion->behind : 0;
 }
 
@@ -157,7 +158,7 @@ static bool needs_samples(const struct inversion *inversion, int doublings) {
         if (section->own_noise > fmax(section->precision, share * section->rms))
             return doublings < MOST_DOUBLINGS;
     }
-    return false;
+    return mf_inversion_kirkwood_buff_is_noisy(inversion) && doublings < MOST_DOUBLINGS;
 }
 
 /// Sample the present potential until the noise is small against its error.
@@ -374,9 +375,21 @@ static void describe(const struct inversion *inversion, const double *own, bool 
 
 enum status mf_inversion_observe(struct inversion *inversion,
                                  const struct inverse_listener *listener) {
+    inversion->joint = NULL;
     TRY(sample(inversion, listener));
     TRY(assess_response(inversion));
     mf_inversion_pool(inversion);
+    return STATUS_OK;
+}
+
+/// Integrals are met by rows beside those of g(r), as several states are.
+static enum status join_integrals(struct inversion *inversion) {
+    if (inversion->kirkwood_buff.pairs == 0 || inversion->joint)
+        return STATUS_OK;
+    TRY(mf_inversion_rows_reduce(&inversion->rows, inversion, 1, false));
+    inversion->together =
+        (struct inversion_joint){.state = inversion, .states = 1, .system = inversion->rows.system};
+    inversion->joint = &inversion->together;
     return STATUS_OK;
 }
 
@@ -386,6 +399,7 @@ enum status mf_inversion_advance(struct inversion *inversion, struct inverse_ste
     bool kept;
     const struct inversion_rule *rule = inversion->method->own;
     inversion->has_other = inversion->settling = false;
+    TRY(join_integrals(inversion));
     TRY(rule->update(inversion, own));
     mf_inversion_trail_add(&inversion->trail, inversion->replicas.counts.mean,
                            inversion->target_counts);

@@ -19,7 +19,9 @@
 #include "inversion/inversion_band.h"
 #include "inversion/inversion_basis.h"
 #include "inversion/inversion_drift.h"
+#include "inversion/inversion_kirkwood_buff.h"
 #include "inversion/inversion_pressure.h"
+#include "inversion/inversion_rows.h"
 #include "inversion/inversion_trail.h"
 #include "problem/potential_grid.h"
 #include "inversion/replicas.h"
@@ -81,11 +83,12 @@ struct inversion_section {
 };
 enum { INVERSION_MOST_SECTIONS = 1 + INVERSE_MOST_BONDED };
 
-/// What several states say together, for the step of the first of them (inversion/joint.h).
+/// What several states say together, for the step of the first of them (inversion/joint.h); or one
+/// state, with integrals of Kirkwood and Buff.
 struct inversion_joint {
     const struct inversion *state; ///< shape [states]
     size_t states;
-    struct imc_system system;  ///< the equations of all, with their pressures
+    struct imc_system system;  ///< the equations of all, with their pressures and integrals
     struct imc_system doubted; ///< the same with the variances of mf_imc_doubt, of fits with groups
     const double *coarse;      ///< the step far from the targets of groups, shape [points]
 };
@@ -111,20 +114,24 @@ struct inversion {
     double *excess, *variance;                     ///< of S in the known bins, shape [known]
     double *pooled, *pooled_variance, *pooled_phi; ///< of iterations near the target, see
                                                    ///< mf_inversion_pool
-    double *covariance;                       ///< C of S in the known bins, shape [known, known]
-    double *doubt;                            ///< variances with those of C, of fits with groups
-    const struct inversion_joint *joint;      ///< of the first of several states, or NULL
-    double behind;                            ///< samples behind C
-    double misfit;                            ///< χ² of the excess by bin
-    double inefficiency;                      ///< of the first section
-    double disagreement;                      ///< of the replicas, mf_replicas_disagreement
+    double *covariance; ///< C of S in the known bins, shape [known, known]
+    double *doubt;      ///< variances with those of C, of fits with groups
+    const struct inversion_joint
+        *joint;          ///< of the first of several states, or with integrals; or NULL
+    double behind;       ///< samples behind C
+    double misfit;       ///< χ² of the excess by bin
+    double inefficiency; ///< of the first section
+    double disagreement; ///< of the replicas, mf_replicas_disagreement
     struct target_distance distance[TARGETS]; ///< of the samples from what is asked for
     double own_noise; ///< by the samples alone, rms, of the noisiest section
     bool settling;    ///< the step is the most probable one, near the noise
     struct inversion_pressure pressure;
-    double *phi, *step; ///< present potential and the step from it, shape [points]
-    double *other_step; ///< what to do if the step makes it worse
-    bool has_other;     ///< else: half of it
+    struct inversion_kirkwood_buff kirkwood_buff;
+    struct inversion_rows rows;      ///< with the integrals, if they are asked for
+    struct inversion_joint together; ///< these, as of one state
+    double *phi, *step;              ///< present potential and the step from it, shape [points]
+    double *other_step;              ///< what to do if the step makes it worse
+    bool has_other;                  ///< else: half of it
     double *best, *best_step, *best_other;
     double *best_counts;           ///< ⟨S⟩ of the best, shape [bins]
     struct inversion_basis basis;  ///< of methods that go by the gradient; else its count is 0
@@ -200,8 +207,8 @@ enum status mf_inversion_observe(struct inversion *inversion,
                                  const struct inverse_listener *listener) MUST_USE;
 enum status mf_inversion_advance(struct inversion *inversion, struct inverse_step *step) MUST_USE;
 
-/// The linear equations of the present samples, without the pressure; those of all states where
-/// there are several, with it.
+/// The linear equations of the present samples, without the pressure; with it those of all states
+/// where there are several, and those with the integrals of Kirkwood and Buff.
 struct imc_system mf_inversion_system(const struct inversion *inversion);
 
 /// Replace phi by the nearest that coefficients make, where potentials are made of them. Fails:

@@ -86,6 +86,7 @@ void mf_inversion_assess(struct inversion *inversion) {
     inversion->disagreement = mf_replicas_disagreement(
         &inversion->replicas, inversion->ideal, inversion->grid.known_bin, inversion->grid.known);
     inversion->misfit = misfit / count_seen(&inversion->grid);
+    mf_inversion_kirkwood_buff_measure(inversion);
 }
 
 bool mf_inversion_is_near(const struct inversion *inversion) {

@@ -60,6 +60,8 @@ void mf_inversion_destroy(void *memory) {
     mf_inversion_basis_clear(&inversion->basis);
     mf_inversion_basis_clear(&inversion->coarse);
     mf_inversion_trail_clear(&inversion->trail);
+    mf_inversion_kirkwood_buff_clear(&inversion->kirkwood_buff);
+    mf_inversion_rows_clear(&inversion->rows);
     mf_memory_free(inversion->shape);
     mf_memory_free(inversion->groups);
     mf_memory_free(inversion->doubt);
@@ -234,6 +236,9 @@ enum status mf_inversion_create(void *memory, const struct inverse_method *metho
     inversion->method = method;
     const struct inversion_parameters *p = &inversion->settings.common;
     TRY(prepare(inversion, problem));
+    TRY(mf_inversion_kirkwood_buff_init(inversion));
+    if (inversion->kirkwood_buff.pairs > 0)
+        TRY(mf_inversion_rows_init(&inversion->rows, inversion));
     const struct simulation_setup *scene = &problem->scene;
     const bool joined = mf_molecules_find(scene->interaction, scene->interactions) != NULL;
     const bool pairs = inversion->grid.pairs > 0;
@@ -255,6 +260,8 @@ enum status mf_inversion_create(void *memory, const struct inverse_method *metho
                                  .molecules = joined ? &inversion->molecules : NULL,
                                  .group = inversion->groups,
                                  .groups = inversion->grid.groups,
+                                 .kirkwood_buff = inversion->kirkwood_buff.pairs > 0,
+                                 .q_maximum = inversion->kirkwood_buff.q_maximum,
                                  .seed = problem->seed}));
     inversion->progress = (struct inversion_progress){.anew = true,
                                                       .damping = p->damping,
@@ -278,6 +285,9 @@ size_t mf_inversion_spans(void *memory, struct memory_span *span) {
     span[n++] = (struct memory_span){inversion->covariance, known * known * sizeof(double)};
     span[n++] = (struct memory_span){inversion->pooled, known * sizeof(double)};
     span[n++] = (struct memory_span){inversion->pooled_variance, known * sizeof(double)};
+    if (inversion->kirkwood_buff.pairs > 0)
+        span[n++] = (struct memory_span){inversion->kirkwood_buff.slope,
+                                         inversion->kirkwood_buff.pairs * known * sizeof(double)};
     n += mf_inversion_band_spans(&inversion->band, inversion->grid.points, span + n);
     n += mf_inversion_trail_spans(&inversion->trail, span + n);
     return n + mf_replicas_spans(&inversion->replicas, span + n);

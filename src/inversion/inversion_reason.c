@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "inversion/inversion.h"
 
+#include "observe/kirkwood_buff_observable.h"
+
 #include <math.h>
 #include <stdio.h>
 
@@ -25,6 +27,7 @@ static void tell_what_is_missing(const struct inversion *inversion,
     const struct inversion_progress *p = &inversion->progress;
     const struct inversion_parameters *settings = &inversion->settings.common;
     const struct target_distance *pressure = &p->best[TARGET_PRESSURE];
+    const struct target_distance *integrals = &p->best[mf_kirkwood_buff_kind()];
     const int missed = find_missed(inversion);
     if (missed >= 0)
         snprintf(reason, INVERSE_REASON_SIZE,
@@ -36,6 +39,12 @@ static void tell_what_is_missing(const struct inversion *inversion,
         snprintf(reason, INVERSE_REASON_SIZE,
                  "g agrees, but the pressure is %.3g off, with an error of %.2g", pressure->rms,
                  pressure->noise);
+    else if (integrals->rms > mf_inverse_noise_margin * integrals->noise)
+        snprintf(reason, INVERSE_REASON_SIZE,
+                 "g agrees, but an integral of target.kirkwood_buff is %.3g off, with an error of "
+                 "%.2g: more \"iterations\" or \"samples\" may help, or a longer cutoff of the "
+                 "potential",
+                 integrals->rms, integrals->noise);
     else if (isnan(inversion->band.ramp.way))
         snprintf(
             reason, INVERSE_REASON_SIZE,

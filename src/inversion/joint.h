@@ -3,24 +3,18 @@
 /// inversion with samples of its own; the first one takes the step for all of them.
 ///
 /// Near the targets, and of pairs alone always, the step is that of the linear equations of all
-/// states (joint_rows). With groups it is, as long as one state is far from its targets, the mean
-/// of the coarse steps of all (joint_coarse). What the first state judges itself by are the
+/// states (inversion_rows). With groups it is, as long as one state is far from its targets, the
+/// mean of the coarse steps of all (joint_coarse). What the first state judges itself by are the
 /// distances of all (joint_targets).
 #pragma once
 
 #include "inversion/inversion.h"
 
-/// Linear equations whose variances are 1.
-struct joint_equations {
-    double *covariance, *excess, *variance; ///< of `system`
-    struct imc_system system;
-};
-
 struct joint {
     size_t states;
     struct inversion *state;         ///< shape [states]; the first one leads
-    struct joint_equations rows;     ///< of all states
-    struct joint_equations doubted;  ///< with the variances of mf_imc_doubt, of fits with groups
+    struct inversion_rows rows;      ///< of all states
+    struct inversion_rows doubted;   ///< with the variances of mf_imc_doubt, of fits with groups
     double *coarse;                  ///< shape [points], of fits with groups
     struct inversion_joint together; ///< for the first state
     double least;                    ///< error so far
@@ -30,22 +24,6 @@ struct joint {
 static inline struct inversion *joint_leader(const struct joint *joint) {
     return &joint->state[0];
 }
-
-/// Fails: NO_MEMORY.
-enum status mf_joint_rows_init(struct joint_equations *equations,
-                               const struct inversion *leader) MUST_USE;
-void mf_joint_rows_clear(struct joint_equations *equations);
-
-/// The equations of all states at their present samples, with their pressures if these are asked
-/// for. The rows B_s x = b_s of the states, each over its errors, stand one below the other; a bin
-/// that a state has not seen has no row of that state. A QR decomposition leaves as many rows as
-/// unknowns, with the same least squares, so that the strength of the regularisation, the band and
-/// its ramp are found as of one state. Birge's factor, by which these widen the variances, is of g:
-/// the rows of pressures are that much narrower before.
-/// @param[in] doubted  with the variances of mf_imc_doubt; overwrites `step` of the states
-/// Fails: NO_MEMORY.
-enum status mf_joint_rows_reduce(const struct joint *joint, bool doubted,
-                                 struct joint_equations *equations) MUST_USE;
 
 /// The mean of the states' steps of mf_inversion_coarse_step, each bin weighted by 1/(k_B T
 /// σ_a/S_a)² of the states, 0 where a state has not seen it. U of a group is known but for a
@@ -71,6 +49,6 @@ double mf_joint_targets_distance(const struct joint *joint);
 
 /// Make the distances of the first state those of all. A section becomes that of the state that is
 /// farthest off by its noise, with the noise of the least exact; the distance of g, and of each
-/// kind of groups, the rms over the states; and that of the pressure as many times its own noise as
-/// that of the worst state.
+/// kind of groups, the rms over the states; and those of the pressure and of integrals as many
+/// times their own noise as that of the worst state.
 void mf_joint_targets_join(const struct joint *joint);

@@ -88,9 +88,9 @@ static enum status join(struct joint *joint) {
     if (groups)
         TRY(mf_joint_coarse_step(joint, joint->coarse));
     mf_joint_targets_join(joint);
-    TRY(mf_joint_rows_reduce(joint, false, &joint->rows));
+    TRY(mf_inversion_rows_reduce(&joint->rows, joint->state, joint->states, false));
     if (groups && !mf_inversion_is_coarse(leader))
-        TRY(mf_joint_rows_reduce(joint, true, &joint->doubted));
+        TRY(mf_inversion_rows_reduce(&joint->doubted, joint->state, joint->states, true));
     joint->together = (struct inversion_joint){joint->state, joint->states, joint->rows.system,
                                                joint->doubted.system, joint->coarse};
     return STATUS_OK;
@@ -132,10 +132,10 @@ static enum status allocate(struct joint *joint) {
     const struct inversion *leader = joint_leader(joint);
     if (joint->states == 1)
         return STATUS_OK;
-    CHECK(mf_joint_rows_init(&joint->rows, leader));
+    CHECK(mf_inversion_rows_init(&joint->rows, leader));
     if (leader->coarse.count == 0)
         return STATUS_OK;
-    CHECK(mf_joint_rows_init(&joint->doubted, leader));
+    CHECK(mf_inversion_rows_init(&joint->doubted, leader));
     NEW_ARRAY(joint->coarse, leader->grid.points);
 done:
     return status;
@@ -166,8 +166,8 @@ static void destroy(void *memory) {
     for (size_t s = 0; s < joint->states; s++)
         mf_inversion_destroy(&joint->state[s]);
     mf_memory_free(joint->state);
-    mf_joint_rows_clear(&joint->rows);
-    mf_joint_rows_clear(&joint->doubted);
+    mf_inversion_rows_clear(&joint->rows);
+    mf_inversion_rows_clear(&joint->doubted);
     mf_memory_free(joint->coarse);
 }
 
@@ -203,6 +203,7 @@ const struct inverse_method mf_joint_imc = {
     .finds_potential = true,
     .knows_molecules = true,
     .knows_states = true,
+    .meets_integrals = true,
     .create = create,
     .destroy = destroy,
     .iterate = iterate,

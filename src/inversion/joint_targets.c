@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "inversion/joint.h"
+#include "observe/kirkwood_buff_observable.h"
 
 #include <math.h>
 
@@ -8,11 +9,18 @@ static double noises_of(double rms, double noise) {
     return rms > 0 ? rms / noise : 0;
 }
 
-static double pressure_noises(const struct inversion *state) {
-    const struct target_distance *pressure = &state->distance[TARGET_PRESSURE];
-    return targets_ask(&state->problem->targets, TARGET_PRESSURE)
-               ? noises_of(pressure->rms, pressure->noise)
-               : 0;
+/// Of the pressure, or of integrals of Kirkwood and Buff.
+static double number_noises(const struct inversion *state, int kind) {
+    const struct target_distance *distance = &state->distance[kind];
+    return targets_ask(&state->problem->targets, kind) ? noises_of(distance->rms, distance->noise)
+                                                       : 0;
+}
+
+static void find_worst_number(const struct joint *joint, size_t s, int kind,
+                              struct joint_worst *worst) {
+    const double noises = number_noises(&joint->state[s], kind);
+    if (noises > worst->noises)
+        *worst = (struct joint_worst){s, kind, noises};
 }
 
 static double section_noises(const struct joint *joint, size_t s, int k) {
@@ -27,8 +35,8 @@ struct joint_worst mf_joint_targets_worst(const struct joint *joint) {
             if (section_noises(joint, s, k) > worst.noises)
                 worst = (struct joint_worst){s, joint->state[s].section[k].kind,
                                              section_noises(joint, s, k)};
-        if (pressure_noises(&joint->state[s]) > worst.noises)
-            worst = (struct joint_worst){s, TARGET_PRESSURE, pressure_noises(&joint->state[s])};
+        find_worst_number(joint, s, TARGET_PRESSURE, &worst);
+        find_worst_number(joint, s, mf_kirkwood_buff_kind(), &worst);
     }
     return worst;
 }
@@ -80,12 +88,12 @@ static struct target_distance join_distance(const struct joint *joint, int kind)
     return all;
 }
 
-static void join_pressures(const struct joint *joint) {
+static void join_numbers(const struct joint *joint, int kind) {
     double noises = 0;
     for (size_t s = 0; s < joint->states; s++)
-        noises = fmax(noises, pressure_noises(&joint->state[s]));
-    struct target_distance *pressure = &joint_leader(joint)->distance[TARGET_PRESSURE];
-    pressure->rms = noises * pressure->noise;
+        noises = fmax(noises, number_noises(&joint->state[s], kind));
+    struct target_distance *distance = &joint_leader(joint)->distance[kind];
+    distance->rms = noises * distance->noise;
 }
 
 void mf_joint_targets_join(const struct joint *joint) {
@@ -106,5 +114,6 @@ void mf_joint_targets_join(const struct joint *joint) {
         leader->section[k] = join_section(joint, k);
         leader->own_noise = fmax(leader->own_noise, leader->section[k].own_noise);
     }
-    join_pressures(joint);
+    join_numbers(joint, TARGET_PRESSURE);
+    join_numbers(joint, mf_kirkwood_buff_kind());
 }

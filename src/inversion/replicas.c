@@ -11,15 +11,15 @@
 enum status mf_replicas_init(struct replicas *replicas, size_t count, enum sampler_kind kind,
                              const struct sampler_system *system) {
     enum status status = STATUS_OK;
-    const size_t bins = mf_sampler_bins(system);
+    const size_t bins = mf_sampler_bins(system), numbers = mf_sampler_numbers(system);
     struct sampler_system own = *system;
     *replicas = (struct replicas){.bins = bins, .count = count};
-    CHECK(mf_comoments_init(&replicas->counts, bins + SAMPLER_SUMS));
+    CHECK(mf_comoments_init(&replicas->counts, numbers));
     for (size_t k = 0; k < count; k++) {
         struct replica *replica = &replicas->member[k];
-        NEW_ARRAY(replica->sample, bins + SAMPLER_SUMS);
+        NEW_ARRAY(replica->sample, numbers);
         NEW_ARRAY(replica->block, REPLICAS_BLOCKS * bins);
-        CHECK(mf_comoments_init(&replica->counts, bins + SAMPLER_SUMS));
+        CHECK(mf_comoments_init(&replica->counts, numbers));
         own.seed = mf_rng_child_seed(system->seed, RNG_EVALUATION, (uint32_t)k, 0);
         CHECK(mf_sampler_init(&replica->sampler, kind, &own));
     }
@@ -191,9 +191,9 @@ double mf_replicas_disagreement(const struct replicas *replicas, const double *i
     return REPLICAS_BLOCKS * between / within;
 }
 
-struct replicas_mean mf_replicas_mean(const struct replicas *replicas, enum sampler_sum sum,
+struct replicas_mean mf_replicas_mean(const struct replicas *replicas, size_t behind,
                                       double inefficiency) {
-    const size_t at = replicas->bins + sum;
+    const size_t at = replicas->bins + behind;
     struct running_mean chains = {0};
     for (size_t k = 0; k < replicas->count; k++)
         mf_statistics_add(&chains, replicas->member[k].counts.mean[at]);

@@ -17,11 +17,11 @@ struct replicas {
     struct replica {
         struct sampler sampler;
         struct comoments counts; ///< of the samples
-        double *sample;          ///< shape [bins + SAMPLER_SUMS]: S, then enum sampler_sum
+        double *sample;          ///< of mf_sampler_sample
         double *block;           ///< shape [REPLICAS_BLOCKS, bins]: mean S of each block
         double acceptance;       ///< part of the moves that were taken, since the last begin
     } member[REPLICAS_MOST];
-    struct comoments counts; ///< of all: S of the bins, then enum sampler_sum
+    struct comoments counts; ///< of all, as a sample has them
 };
 
 struct replicas_plan {
@@ -54,10 +54,11 @@ struct replicas_mean {
     double mean, error;
 };
 
-/// A sum over the pairs, with the standard error that is the larger of two: by the scatter of the
-/// replicas, and by that of all samples.
+/// What stands behind the bins of a sample, enum sampler_sum or one of the integrals, with the
+/// standard error that is the larger of two: by the scatter of the replicas, and by that of all
+/// samples.
 /// @param[in] inefficiency  of mf_replicas_inefficiency
-struct replicas_mean mf_replicas_mean(const struct replicas *replicas, enum sampler_sum sum,
+struct replicas_mean mf_replicas_mean(const struct replicas *replicas, size_t behind,
                                       double inefficiency);
 
 /// Part of the moves that were taken, the mean over the samplers.

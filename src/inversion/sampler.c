@@ -12,6 +12,22 @@ size_t mf_sampler_bins(const struct sampler_system *system) {
     return bins;
 }
 
+size_t mf_sampler_numbers(const struct sampler_system *system) {
+    const size_t pairs = (size_t)mf_composition_pairs(system->composition);
+    return mf_sampler_bins(system) + SAMPLER_SUMS + (system->kirkwood_buff ? pairs : 0);
+}
+
+/// The waves whose integrals are asked for.
+static enum status begin_waves(struct sampler *sampler, const struct sampler_system *system) {
+    if (!system->kirkwood_buff)
+        return STATUS_OK;
+    sampler->waves = true;
+    const enum status status = mf_kirkwood_buff_waves_init(
+        &sampler->kirkwood_buff, system->box, system->composition,
+        (size_t)mf_composition_particles(system->composition), system->q_maximum);
+    return status == STATUS_BAD_INPUT ? mf_status_prefix(status, "target.kirkwood_buff") : status;
+}
+
 enum status mf_sampler_init(struct sampler *sampler, enum sampler_kind kind,
                             const struct sampler_system *system) {
     enum status status = STATUS_OK;
@@ -26,10 +42,11 @@ enum status mf_sampler_init(struct sampler *sampler, enum sampler_kind kind,
                                        .width = system->width,
                                        .bins = system->bins,
                                        .pairs = (size_t)mf_composition_pairs(system->composition)}};
+    CHECK(begin_waves(sampler, system));
     if (sampler->kind == SAMPLER_DYNAMICS) {
-        TRY(mf_hybrid_init(&sampler->hybrid, system->box, system->composition, system->potential,
-                           system->molecules, &sampler->histogram, system->temperature,
-                           system->seed));
+        CHECK(mf_hybrid_init(&sampler->hybrid, system->box, system->composition, system->potential,
+                             system->molecules, &sampler->histogram, system->temperature,
+                             system->seed));
         sampler->hybrid.simulation.setup.cancel = system->cancel;
         return STATUS_OK;
     }
@@ -47,6 +64,7 @@ done:
 void mf_sampler_clear(struct sampler *sampler) {
     mf_metropolis_clear(&sampler->chain);
     mf_hybrid_clear(&sampler->hybrid);
+    mf_kirkwood_buff_waves_clear(&sampler->kirkwood_buff);
     mf_memory_free(sampler->histogram.counts);
     *sampler = (struct sampler){0};
 }
@@ -68,11 +86,14 @@ enum status mf_sampler_equilibrate(struct sampler *sampler, uint64_t sweeps) {
     return mf_metropolis_equilibrate(&sampler->chain, (uint32_t)sweeps);
 }
 
+static const struct particles *particles_of(const struct sampler *sampler) {
+    return sampler->kind == SAMPLER_DYNAMICS ? &sampler->hybrid.simulation.particles
+                                             : &sampler->chain.particles;
+}
+
 /// S of the groups in the present configuration, from `sample` on; returns their end.
 static double *count_groups(const struct sampler *sampler, double *sample) {
-    const struct particles *particles = sampler->kind == SAMPLER_DYNAMICS
-                                            ? &sampler->hybrid.simulation.particles
-                                            : &sampler->chain.particles;
+    const struct particles *particles = particles_of(sampler);
     for (size_t k = 0; k < sampler->groups; k++) {
         const struct sampler_group *group = &sampler->group[k];
         memset(sample, 0, group->bins.count * sizeof *sample);
@@ -101,6 +122,9 @@ enum status mf_sampler_sample(struct sampler *sampler, uint64_t sweeps, double *
     double *behind = count_groups(sampler, sample + bins);
     behind[SAMPLER_VIRIAL] = sums.virial;
     behind[SAMPLER_ENERGY] = sums.energy;
+    if (sampler->waves)
+        mf_kirkwood_buff_waves_take(&sampler->kirkwood_buff, particles_of(sampler), 1,
+                                    behind + SAMPLER_SUMS);
     return STATUS_OK;
 }
 

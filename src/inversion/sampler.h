@@ -9,6 +9,7 @@
 #include "dynamics/hybrid.h"
 #include "dynamics/metropolis.h"
 #include "observe/bonded_distribution.h"
+#include "observe/kirkwood_buff_waves.h"
 
 enum sampler_kind {
     SAMPLER_MONTE_CARLO,
@@ -34,6 +35,8 @@ struct sampler {
     struct metropolis chain;         ///< of SAMPLER_MONTE_CARLO
     struct hybrid hybrid;            ///< of SAMPLER_DYNAMICS
     struct pair_histogram histogram; ///< of the chain's configuration
+    bool waves;                      ///< the integrals are asked for
+    struct kirkwood_buff_waves kirkwood_buff;
 };
 
 /// What is to be sampled. Borrowed: the potential, which may be exchanged before mf_sampler_begin,
@@ -48,6 +51,8 @@ struct sampler_system {
     const struct molecules *molecules; ///< or NULL; its laws may be exchanged as the potential may
     const struct sampler_group *group; ///< to be counted behind the pairs, shape [groups]
     size_t groups;
+    bool kirkwood_buff; ///< Kirkwood and Buff's integrals are asked for
+    double q_maximum;   ///< of their waves, as of mf_kirkwood_buff_waves_init [1/λ]
     uint64_t seed;
     const atomic_bool *cancel; ///< stops the sweeps once it is set, or NULL
 };
@@ -55,8 +60,11 @@ struct sampler_system {
 /// Bins that are counted: of all pair types, and of the groups.
 size_t mf_sampler_bins(const struct sampler_system *system);
 
+/// Numbers of a sample: the bins, the sums, and the integrals of all pair types.
+size_t mf_sampler_numbers(const struct sampler_system *system);
+
 /// Particles on a lattice, molecules as a scene places them. Must be cleared. Fails: as
-/// mf_metropolis_init and mf_hybrid_init.
+/// mf_metropolis_init, mf_hybrid_init and mf_kirkwood_buff_waves_init.
 enum status mf_sampler_init(struct sampler *sampler, enum sampler_kind kind,
                             const struct sampler_system *system) MUST_USE;
 void mf_sampler_clear(struct sampler *sampler);
@@ -80,9 +88,9 @@ enum sampler_sum {
     SAMPLER_SUMS,
 };
 
-/// Sweeps, then a sample: S of each bin of each pair type and of each group, and behind them the
-/// sums.
-/// @param[out] sample  shape [mf_sampler_bins + SAMPLER_SUMS]
+/// Sweeps, then a sample: S of each bin of each pair type and of each group, behind them the sums,
+/// and behind these the integrals of the configuration.
+/// @param[out] sample  shape [mf_sampler_numbers]
 /// Fails: NO_MEMORY, INTERRUPTED. Tested: test_monte_carlo_mixture.
 enum status mf_sampler_sample(struct sampler *sampler, uint64_t sweeps, double *sample) MUST_USE;
 

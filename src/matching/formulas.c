@@ -8,6 +8,7 @@
 // g(r) hardly sees it, farther than a linear response reaches: so the best one takes the place of
 // the curve, with the differences of g(r) that its simulation shows, and the next cycle begins.
 #include "formulas_state.h"
+#include "observe/kirkwood_buff_observable.h"
 
 #include <assert.h>
 #include <math.h>
@@ -93,14 +94,14 @@ static void set_inner(struct formulas_inner *inner, const char *name, int64_t wh
         }
 }
 
-/// The inversion of g(r), and of the pressure if that is fitted.
+/// The inversion of g(r), and of the pressure and the integrals of it if they are fitted.
 static enum status create_inner(struct formulas_state *state) {
     enum status status = STATUS_OK;
     struct formulas_inner *inner = &state->inner;
     inner->method = inner_method;
     inner->problem = *state->problem;
     for (int kind = 0; kind < TARGETS; kind++)
-        if (kind != TARGET_RDF && kind != TARGET_PRESSURE)
+        if (kind != TARGET_RDF && kind != TARGET_PRESSURE && kind != mf_kirkwood_buff_kind())
             inner->problem.targets.target[kind].count = 0;
     CHECK((inner->parameters = mf_memory_zeroed(1, inner->method->parameters_size))
               ? STATUS_OK

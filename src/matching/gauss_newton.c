@@ -10,6 +10,7 @@
 #include "base/memory.h"
 #include "base/rng.h"
 #include "matching/population.h"
+#include "observe/kirkwood_buff_observable.h"
 
 #include <assert.h>
 #include <math.h>
@@ -123,13 +124,16 @@ static void destroy(void *memory) {
     mf_parametrisation_curves_clear(&state->curves);
 }
 
-/// The pressure, the last of the features, is met exactly.
+/// The pressure, one of the features, is met exactly.
 static enum status constrain_pressure(struct state *state) {
+    struct targets up_to = state->problem->targets;
     if (!targets_ask(&state->problem->targets, TARGET_PRESSURE))
         return mf_status_fail(
             STATUS_BAD_INPUT,
             "method.pressure: \"constraint\" needs a target.pressure that is fitted");
-    state->population.surrogate.exact = state->population.surrogate.features - 1;
+    for (int kind = TARGET_PRESSURE + 1; kind < TARGETS; kind++)
+        up_to.target[kind].count = 0;
+    state->population.surrogate.exact = mf_targets_features(&up_to) - 1;
     return STATUS_OK;
 }
 
@@ -288,7 +292,8 @@ static void tell_reason(const struct state *state, char reason[INVERSE_REASON_SI
 static bool can_be_met(const struct inverse_problem *problem) {
     const struct targets *targets = &problem->targets;
     for (int kind = 0; mf_targets_name(kind); kind++) {
-        const bool of_pairs = kind == TARGET_RDF || kind == TARGET_PRESSURE;
+        const bool of_pairs =
+            kind == TARGET_RDF || kind == TARGET_PRESSURE || kind == mf_kirkwood_buff_kind();
         const bool of_groups = mf_bonded_distribution_order(kind) < TOPOLOGY_ORDERS;
         if (targets_ask(targets, kind) &&
             !(of_pairs && problem->unknown[UNKNOWN_POTENTIAL].wanted) &&

@@ -3,9 +3,11 @@
 // Potential and friction weight one after the other. In equilibrium g(r) follows from the potential
 // alone, whatever the friction: pair friction and noise that balance each other keep the canonical
 // ensemble (P. Español and P. Warren, Europhys. Lett. 30, 191 (1995)). So the potential is found
-// first, by the inversion `auto` and from g(r) and the pressure alone; then it is held, and
+// first, by the inversion `auto` and from g(r), the pressure and the
+// integrals of g alone; then it is held, and
 // `gauss-newton` finds ω from what moves.
 #include "matching/population.h"
+#include "observe/kirkwood_buff_observable.h"
 
 #include <assert.h>
 #include <math.h>
@@ -96,7 +98,7 @@ static void destroy(void *memory) {
 }
 
 static bool is_of_potential(int target) {
-    return target == TARGET_RDF || target == TARGET_PRESSURE;
+    return target == TARGET_RDF || target == TARGET_PRESSURE || target == mf_kirkwood_buff_kind();
 }
 
 static enum status refuse(const struct inverse_method *method,

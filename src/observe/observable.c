@@ -3,6 +3,7 @@
 
 #include "observe/flow_field.h"
 #include "observe/flow_profile.h"
+#include "observe/kirkwood_buff_observable.h"
 #include "observe/shear_viscosity.h"
 
 /// Of which nothing else knows.
@@ -32,6 +33,7 @@ const struct observable *const mf_observables[] = {
     &mf_molecule_sizes,
     &mf_molecule_motion,
     &mf_rdf_intermolecular,
+    &mf_kirkwood_buff_observable,
     NULL,
 };
 

@@ -299,7 +299,8 @@ struct inverse_method {
     bool knows_molecules;              ///< and finds what is unknown of their bonds, too
     bool
         restricted; ///< of an inversion: its potentials are of a form that need not meet the target
-    bool knows_states; ///< fits several states at once
+    bool meets_integrals; ///< of an inversion: fits those of Kirkwood and Buff, too
+    bool knows_states;    ///< fits several states at once
     enum status (*create)(void *state, const struct inverse_method *method,
                           const struct inverse_problem *problem, const void *parameters);
     void (*destroy)(void *state);

@@ -54,6 +54,21 @@ struct target_distance mf_targets_distance(const struct target *target, const do
     return distance;
 }
 
+struct target_distance mf_targets_worst(const struct target *target, const double *value,
+                                        const double *error) {
+    struct target_distance worst = {0};
+    for (size_t k = 0; k < target->count; k++) {
+        const struct target one = {
+            .count = 1, .value = target->value + k, .error = target->error + k};
+        if (!isfinite(target->value[k]))
+            continue;
+        const struct target_distance distance = mf_targets_distance(&one, value + k, error + k);
+        if (worst.count == 0 || distance.rms * worst.noise > worst.rms * distance.noise)
+            worst = distance;
+    }
+    return worst;
+}
+
 double mf_targets_weight(const struct target *target) {
     if (target->weight > 0)
         return target->weight;

@@ -67,6 +67,11 @@ size_t mf_targets_count(const struct targets *targets);
 struct target_distance mf_targets_distance(const struct target *target, const double *value,
                                            const double *error);
 
+/// The same of the one known value that is farthest off by its noise: what agrees within the errors
+/// of all has each of its numbers within its own.
+struct target_distance mf_targets_worst(const struct target *target, const double *value,
+                                        const double *error);
+
 /// Weight of a target in the sum: its own, or one over the rms of its standard errors.
 double mf_targets_weight(const struct target *target);
 

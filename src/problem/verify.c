@@ -5,6 +5,7 @@
 #include "base/parallel.h"
 #include "base/rng.h"
 #include "base/statistics.h"
+#include "observe/kirkwood_buff_observable.h"
 #include "observe/motion.h"
 #include "observe/rdf_observable.h"
 
@@ -148,8 +149,13 @@ done:
     return status;
 }
 
-/// Of the groups of each order the one that is farthest from its target, by its noise.
+/// Of the groups of each order, and of the integrals, the one that is farthest from its target, by
+/// its noise.
 static void find_worst(const struct inverse_problem *problem, struct verification *verification) {
+    const int integrals = mf_kirkwood_buff_kind();
+    verification->worst[integrals] = mf_targets_worst(&problem->compared.target[integrals],
+                                                      verification->observed.value[integrals],
+                                                      verification->observed.error[integrals]);
     for (size_t g = 0; g < problem->bonded; g++) {
         const struct bonded_unknown *group = &problem->group[g];
         const int kind = mf_bonded_distribution_kind(group->order);

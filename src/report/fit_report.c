@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "report/fit_report.h"
 
+#include "observe/kirkwood_buff_observable.h"
 #include "problem/parametrisation.h"
 #include "report/fit_change.h"
 #include "base/number_text.h"
@@ -148,6 +149,26 @@ static void say_diffusion(struct progress *to, const struct units *units,
                     time * v->diffusion_end, mf_units_name(units, "tau", times));
 }
 
+/// "G of A-B = -0.31(2) lambda^3, target -0.30(1)".
+static void say_integrals(struct progress *to, const struct fit_file *fit,
+                          const struct verification *v) {
+    const int kind = mf_kirkwood_buff_kind();
+    const struct target *target = &fit->problem.compared.target[kind];
+    const double factor = mf_units_factor(&fit->scene.units, "lambda^d");
+    for (size_t pair = 0; pair < target->count; pair++) {
+        char name[COMPOSITION_PAIR_NAME_SIZE], unit[UNITS_NAME_SIZE];
+        char found[NUMBER_TEXT_SIZE], wanted[NUMBER_TEXT_SIZE];
+        if (isnan(target->value[pair]))
+            continue;
+        mf_composition_pair_name(&fit->scene.setup.composition, (int)pair, name);
+        mf_number_text(factor * v->observed.value[kind][pair],
+                       factor * v->observed.error[kind][pair], found);
+        mf_number_text(factor * target->value[pair], factor * target->error[pair], wanted);
+        mf_progress_say(to, "Kirkwood-Buff integral%s%s = %s%s, target %s", name[0] ? " of " : "",
+                        name, found, mf_units_suffix(&fit->scene.units, "lambda^d", unit), wanted);
+    }
+}
+
 static void say_thermodynamics(struct progress *to, const struct units *units,
                                const struct thermodynamics_summary *t) {
     const double factor = mf_units_factor(units, "T_0");
@@ -178,6 +199,7 @@ static void say_state(struct progress *to, const struct fit_file *fit,
     say_distances(to, fit, v);
     if (targets_ask(&fit->problem.compared, TARGET_DIFFUSION))
         say_diffusion(to, units, v);
+    say_integrals(to, fit, v);
     say_thermodynamics(to, units, &v->thermodynamics);
 }
 

@@ -3,6 +3,7 @@
 
 #include "mesofit.h"
 #include "observe/kirkwood_buff.h"
+#include "observe/kirkwood_buff_observable.h"
 #include "problem/parametrisation.h"
 #include "report/fit_change.h"
 
@@ -250,9 +251,23 @@ static void put_normalisation(struct json_writer *writer, const struct fit_file 
     mf_json_put_number(writer, "normalisation_error", !mixed && given > 0 ? 0 : found->error);
 }
 
+/// Those of the target "kirkwood_buff" and of the result.
+static void put_integrals(struct json_writer *writer, const struct fit_file *fit,
+                          const struct verification *v) {
+    const int kind = mf_kirkwood_buff_kind();
+    const struct composition *composition = &fit->scene.setup.composition;
+    const struct target *target = &fit->problem.compared.target[kind];
+    for (size_t pair = 0; pair < target->count; pair++) {
+        mf_kirkwood_buff_put(writer, "target_kirkwood_buff", composition, pair, target->value[pair],
+                             target->error[pair]);
+        mf_kirkwood_buff_put(writer, "kirkwood_buff", composition, pair,
+                             v->observed.value[kind][pair], v->observed.error[kind][pair]);
+    }
+}
+
 /// S(0) of the target and of the result, in three dimensions and of beads that are alike.
-static void put_kirkwood_buff(struct json_writer *writer, const struct fit_file *fit,
-                              const struct verification *v) {
+static void put_compressibility(struct json_writer *writer, const struct fit_file *fit,
+                                const struct verification *v) {
     const struct box *box = &fit->scene.setup.box;
     const struct rdf_bins *bins = &fit->files.rdf[0].bins;
     const size_t count = (size_t)fit->scene.setup.placement.count;
@@ -281,7 +296,10 @@ static void put_verification(struct json_writer *writer, const struct fit_file *
         mf_json_put_text(writer, "warning", v->warning);
     put_distances(writer, fit, v);
     put_diffusion(writer, fit, v);
-    put_kirkwood_buff(writer, fit, v);
+    if (targets_ask(&fit->problem.compared, mf_kirkwood_buff_kind()))
+        put_integrals(writer, fit, v);
+    else
+        put_compressibility(writer, fit, v);
     mf_json_put_quantity(writer, "temperature", "T_0", t->temperature);
     mf_json_put_quantity(writer, "temperature_error", "T_0", known_error(t->temperature_error));
     put_quantity(writer, "temperature_configurational", "T_0", t->temperature_configurational);

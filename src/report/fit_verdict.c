@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "report/fit_verdict.h"
 
+#include "observe/kirkwood_buff_observable.h"
+
 #include <math.h>
 #include <stdio.h>
 
@@ -23,8 +25,25 @@ static const char *find_cause(const struct thermodynamics_summary *found, double
     return "longer \"equilibration\" of either, or more \"particles\", may tell why";
 }
 
-bool mf_fit_verdict_contradicts(const struct verification *verification, bool pressure_is_fitted,
-                                double temperature, double noise_margin, const struct units *units,
+/// An integral of Kirkwood and Buff is off.
+static bool contradicts_integrals(const struct verification *verification, double noise_margin,
+                                  const struct units *units, char reason[INVERSE_REASON_SIZE]) {
+    const struct target_distance *worst = &verification->worst[mf_kirkwood_buff_kind()];
+    const double volume = mf_units_factor(units, "lambda^d");
+    char unit[UNITS_NAME_SIZE];
+    if (!(worst->rms > noise_margin * worst->noise))
+        return false;
+    snprintf(reason, INVERSE_REASON_SIZE,
+             "an integral of Kirkwood and Buff is off by %.2g%.16s in the verification (%.2g by "
+             "statistics), though the fit's samples agree with it: more \"samples\", or more "
+             "\"particles\", whose waves are as long as the scene's, may tell why",
+             volume * worst->rms, mf_units_suffix(units, "lambda^d", unit), volume * worst->noise);
+    return true;
+}
+
+bool mf_fit_verdict_contradicts(const struct verification *verification,
+                                const struct targets *fitted, double temperature,
+                                double noise_margin, const struct units *units,
                                 char reason[INVERSE_REASON_SIZE]) {
     const double bar = mf_units_factor(units, "k_B T_0/lambda^d");
     char unit[UNITS_NAME_SIZE], kelvin[UNITS_NAME_SIZE];
@@ -33,7 +52,7 @@ bool mf_fit_verdict_contradicts(const struct verification *verification, bool pr
     const struct target_distance *rdf = &verification->distance[TARGET_RDF];
     const struct thermodynamics_summary *found = &verification->thermodynamics;
     const struct target_distance *pressure = &verification->distance[TARGET_PRESSURE];
-    if (pressure_is_fitted && pressure->rms > noise_margin * pressure->noise) {
+    if (targets_ask(fitted, TARGET_PRESSURE) && pressure->rms > noise_margin * pressure->noise) {
         snprintf(
             reason, INVERSE_REASON_SIZE,
             "the verification's pressure, %.4g%.16s, is off by %.2g (%.2g by statistics): its time "
@@ -41,6 +60,9 @@ bool mf_fit_verdict_contradicts(const struct verification *verification, bool pr
             bar * found->pressure, unit, bar * pressure->rms, bar * pressure->noise);
         return true;
     }
+    if (targets_ask(fitted, mf_kirkwood_buff_kind()) &&
+        contradicts_integrals(verification, noise_margin, units, reason))
+        return true;
     for (enum topology_order order = 0; order < TOPOLOGY_ORDERS; order++) {
         const int kind = mf_bonded_distribution_kind(order);
         const struct target_distance *bonded = &verification->worst[kind];

@@ -8,12 +8,14 @@
 
 #include "problem/verify.h"
 
-/// Why the verified g(r), or the pressure if it was fitted, is not what the fit says it is, into
-/// `reason`.
-/// @param[in] noise_margin  either may be off by this many times its statistical error
+/// Why the verified g(r), or the pressure or an integral of Kirkwood and Buff if it was fitted, is
+/// not what the fit says it is, into `reason`.
+/// @param[in] fitted        the targets that were fitted
+/// @param[in] noise_margin  each may be off by this many times its statistical error
 /// Returns whether there is something to say. Tested: test_fit_verdict.
-bool mf_fit_verdict_contradicts(const struct verification *verification, bool pressure_is_fitted,
-                                double temperature, double noise_margin, const struct units *units,
+bool mf_fit_verdict_contradicts(const struct verification *verification,
+                                const struct targets *fitted, double temperature,
+                                double noise_margin, const struct units *units,
                                 char reason[INVERSE_REASON_SIZE]);
 
 /// Why the verified error of all targets is not the one that a method measured itself: it is larger

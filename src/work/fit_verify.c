@@ -89,9 +89,8 @@ static bool is_contradicted(const struct fit_file *state, const struct inverse_m
     static const double noise_margin = 3;
     const struct targets *targets = &state->problem.targets;
     return method->kind == INVERSE_INVERSION && !method->restricted
-               ? mf_fit_verdict_contradicts(verification, targets_ask(targets, TARGET_PRESSURE),
-                                            state->problem.scene.temperature, noise_margin,
-                                            &state->scene.units, reason)
+               ? mf_fit_verdict_contradicts(verification, targets, state->problem.scene.temperature,
+                                            noise_margin, &state->scene.units, reason)
                : mf_fit_verdict_is_worse(verification, targets, error, variance, reason);
 }
 

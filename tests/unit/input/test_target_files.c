@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "input/target_files.h"
 
+#include "io/units_scale.h"
+#include "observe/kirkwood_buff_observable.h"
 #include "shared/is_close.h"
 #include "shared/temporary_folder.h"
 #include "shared/testing.h"
@@ -49,6 +51,34 @@ static void write_tables(void **state) {
     put(state, "e.tsv", escape);
     put(state, "v.tsv", vacf);
     put(state, "m.tsv", msd);
+}
+
+/// A λ of half a nanometre: 1 nm³ is 8 λ³.
+static void test_targets_read_converts_integrals_of_kirkwood_and_buff(void **state) {
+    static const struct units spoken = {
+        .system = UNITS_NM_PS, .length = 0.5, .temperature = 300, .mass = 1e-26, .dimensions = 3};
+    static const char text[] =
+        "{\"target\": {\"kirkwood_buff\": {\"A-B\": {\"value\": -0.25, \"error\": 0.125}, "
+        "\"fitted\": \"no\"}}}";
+    const struct composition binary = {.types = 2, .count = {50, 50}, .name = {"A", "B"}};
+    const int kind = mf_kirkwood_buff_kind();
+    struct json_document *document;
+    struct target_files t;
+    struct targets fitted, compared;
+    assert_ok(
+        mf_json_open(&document, temporary_folder_write(*state, "a.json", text, strlen(text))));
+    mf_json_speak(document, &spoken);
+    struct json_object root = mf_json_root(document);
+    assert_ok(mf_target_files_read(&t, &root, &box, &binary, NULL, &spoken));
+    mf_json_finish(&root);
+    assert_ok(mf_json_close(document, STATUS_OK));
+    mf_target_files_targets(&t, false, &fitted, &compared);
+    assert_false(targets_ask(&fitted, kind));
+    assert_int_equal(compared.target[kind].count, 3);
+    assert_true(isnan(compared.target[kind].value[0]));
+    assert_close(compared.target[kind].value[1], -2, 1e-6);
+    assert_close(compared.target[kind].error[1], 1, 1e-6);
+    mf_target_files_clear(&t);
 }
 
 static void test_targets_read_takes_all_kinds(void **state) {
@@ -251,6 +281,7 @@ static void test_targets_digest_knows_every_number(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(test_targets_read_takes_all_kinds),
+        TEST(test_targets_read_converts_integrals_of_kirkwood_and_buff),
         TEST(test_targets_read_takes_the_columns_of_a_curve),
         TEST(test_targets_read_finds_the_columns_of_a_curve_by_their_names),
         TEST(test_targets_sample_motion_as_the_curves_do),

@@ -1,9 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "report/fit_verdict.h"
 
+#include "observe/kirkwood_buff_observable.h"
+
 #include "shared/testing.h"
 
 #include <string.h>
+
+static const double a_value = 1, an_error = 0.1;
+#define ONE                                                                                        \
+    { .count = 1, .value = &a_value, .error = &an_error }
+static const struct targets only_rdf = {.target[TARGET_RDF] = ONE};
+static const struct targets with_pressure = {
+    .target = {[TARGET_RDF] = ONE, [TARGET_PRESSURE] = ONE}};
 
 static struct verification make(double rms, double temperature, double pressure) {
     return (struct verification){.distance[TARGET_RDF] = {.rms = rms, .noise = 0.002},
@@ -15,7 +24,7 @@ static struct verification make(double rms, double temperature, double pressure)
 
 static void assert_says(const struct verification *verification, const char *words) {
     char reason[INVERSE_REASON_SIZE];
-    assert_true(mf_fit_verdict_contradicts(verification, false, 1.5, 3, NULL, reason));
+    assert_true(mf_fit_verdict_contradicts(verification, &only_rdf, 1.5, 3, NULL, reason));
     assert_contains(reason, words);
     assert_true(strlen(reason) + 1 < INVERSE_REASON_SIZE);
 }
@@ -24,7 +33,7 @@ static void test_fit_verdict_is_silent_when_g_is_off_by_noise(void **state) {
     (void)state;
     char reason[INVERSE_REASON_SIZE];
     const struct verification good = make(0.0059, 1.8, -3);
-    assert_false(mf_fit_verdict_contradicts(&good, true, 1.5, 3, NULL, reason));
+    assert_false(mf_fit_verdict_contradicts(&good, &with_pressure, 1.5, 3, NULL, reason));
 }
 
 static void test_fit_verdict_names_the_cause_when_g_is_off(void **state) {
@@ -45,11 +54,27 @@ static void test_fit_verdict_names_the_pressure_when_it_was_fitted_and_is_off(vo
     char reason[INVERSE_REASON_SIZE];
     struct verification found = make(0.0021, 1.5, 1.9);
     found.distance[TARGET_PRESSURE] = (struct target_distance){.rms = 0.4, .noise = 0.1};
-    assert_false(mf_fit_verdict_contradicts(&found, false, 1.5, 3, NULL, reason));
-    assert_true(mf_fit_verdict_contradicts(&found, true, 1.5, 3, NULL, reason));
+    assert_false(mf_fit_verdict_contradicts(&found, &only_rdf, 1.5, 3, NULL, reason));
+    assert_true(mf_fit_verdict_contradicts(&found, &with_pressure, 1.5, 3, NULL, reason));
     assert_contains(reason, "pressure, 1.9, is off by 0.4 (0.1 by statistics)");
     found.distance[TARGET_PRESSURE].rms = 0.29;
-    assert_false(mf_fit_verdict_contradicts(&found, true, 1.5, 3, NULL, reason));
+    assert_false(mf_fit_verdict_contradicts(&found, &with_pressure, 1.5, 3, NULL, reason));
+}
+
+static void test_fit_verdict_names_an_integral_when_it_was_fitted_and_is_off(void **state) {
+    (void)state;
+    const int kind = mf_kirkwood_buff_kind();
+    char reason[INVERSE_REASON_SIZE];
+    struct targets fitted = only_rdf;
+    struct verification found = make(0.0021, 1.5, 1.9);
+    fitted.target[kind] = (struct target)ONE;
+    found.worst[kind] = (struct target_distance){.rms = 0.4, .noise = 0.1};
+    assert_false(mf_fit_verdict_contradicts(&found, &only_rdf, 1.5, 3, NULL, reason));
+    assert_true(mf_fit_verdict_contradicts(&found, &fitted, 1.5, 3, NULL, reason));
+    assert_contains(reason, "Kirkwood and Buff is off by 0.4");
+    assert_true(strlen(reason) + 1 < INVERSE_REASON_SIZE);
+    found.worst[kind].rms = 0.29;
+    assert_false(mf_fit_verdict_contradicts(&found, &fitted, 1.5, 3, NULL, reason));
 }
 
 /// Of one target, and of two that count in units of their errors.
@@ -83,6 +108,7 @@ int main(void) {
         cmocka_unit_test(test_fit_verdict_is_silent_when_g_is_off_by_noise),
         cmocka_unit_test(test_fit_verdict_names_the_cause_when_g_is_off),
         cmocka_unit_test(test_fit_verdict_names_the_pressure_when_it_was_fitted_and_is_off),
+        cmocka_unit_test(test_fit_verdict_names_an_integral_when_it_was_fitted_and_is_off),
         cmocka_unit_test(test_fit_verdict_is_worse_when_the_difference_is_no_chance),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -86,10 +86,10 @@ static double right_side(const struct made *made, size_t a, double factor) {
 static void test_rows_of_states_have_the_same_least_squares(void **state) {
     (void)state;
     static struct made made;
-    struct joint_equations equations = {0};
+    struct inversion_rows equations = {0};
     make(&made);
-    assert_ok(mf_joint_rows_init(&equations, &made.state[0]));
-    assert_ok(mf_joint_rows_reduce(&made.joint, false, &equations));
+    assert_ok(mf_inversion_rows_init(&equations, &made.state[0]));
+    assert_ok(mf_inversion_rows_reduce(&equations, made.state, STATES, false));
     const double *c = equations.system.covariance, unit = equations.system.temperature;
     for (size_t a = 0; a < KNOWN; a++) {
         double asked = 0;
@@ -104,7 +104,7 @@ static void test_rows_of_states_have_the_same_least_squares(void **state) {
             assert_close(found, normal(&made, a, b, birge), 1e-9);
         }
     }
-    mf_joint_rows_clear(&equations);
+    mf_inversion_rows_clear(&equations);
     for (size_t s = 0; s < STATES; s++)
         mf_potential_grid_clear(&made.state[s].grid);
 }

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "input/target_kirkwood_buff.h"
+
+#include <math.h>
+
+#define NUMBER(name) .offset = offsetof(struct target_kirkwood_buff_number, name)
+const struct field mf_target_kirkwood_buff_fields[] = {
+    {"value", FIELD_NUMBER, NUMBER(value), .required = true, .minimum = -DBL_MAX,
+     .maximum = DBL_MAX, .unit = "lambda^d",
+     .help = "integral of g - 1 over all space, of the open system; of a mixture in an object of "
+             "each pair type that is to be met, as \"A-B\""},
+    {"error", FIELD_NUMBER, NUMBER(error), .required = true, .minimum = FIELD_ABOVE_ZERO,
+     .maximum = DBL_MAX, .unit = "lambda^d", .help = "its standard error"},
+    FIELD_END,
+};
+
+static void read_number(struct target_kirkwood_buff *target, int pair, struct json_object *object) {
+    struct target_kirkwood_buff_number number = {NAN, NAN};
+    mf_json_fields(object, mf_target_kirkwood_buff_fields, &number);
+    target->value[pair] = number.value;
+    target->error[pair] = number.error;
+}
+
+void mf_target_kirkwood_buff_read(struct target_kirkwood_buff *target, struct json_object *object,
+                                  const struct composition *composition) {
+    char name[COMPOSITION_MOST_PAIRS]
+             [COMPOSITION_PAIR_NAME_SIZE]; // remembered until it is finished
+    const char *key;
+    size_t named = 0;
+    *target = (struct target_kirkwood_buff){.pairs = (size_t)mf_composition_pairs(composition)};
+    for (size_t pair = 0; pair < target->pairs; pair++)
+        target->value[pair] = target->error[pair] = NAN;
+    if (composition->types == 0)
+        return; // a fault of the types is told, those of their pairs would mislead
+    if (!composition_is_mixed(composition)) {
+        read_number(target, 0, object);
+        mf_json_finish(object);
+        return;
+    }
+    for (size_t pair = 0; pair < target->pairs; pair++) {
+        mf_composition_pair_name(composition, (int)pair, name[pair]);
+        mf_json_has(object, name[pair]);
+    }
+    for (size_t n = 0; (key = mf_json_key(object, n)); n++) {
+        const int pair = mf_composition_find_pair(composition, key);
+        if (pair < 0)
+            continue;
+        if (!isnan(target->value[pair]))
+            mf_json_fault(object, key, "is there already, under its other name");
+        struct json_object child = mf_json_child_of(object, key, true, "value");
+        if (child.item)
+            read_number(target, pair, &child);
+        mf_json_finish(&child);
+        named++;
+    }
+    if (named == 0)
+        mf_json_fault(object, NULL,
+                      "names no pair type of the scene, as {\"%s-%s\": {\"value\": "
+                      "0.1, \"error\": 0.01}}",
+                      composition->name[0], composition->name[1]);
+    mf_json_finish(object);
+}
+
+void mf_target_kirkwood_buff_write(const struct target_kirkwood_buff *target,
+                                   const struct composition *composition,
+                                   struct json_writer *writer) {
+    for (size_t pair = 0; pair < target->pairs; pair++) {
+        const struct target_kirkwood_buff_number number = {target->value[pair],
+                                                           target->error[pair]};
+        char name[COMPOSITION_PAIR_NAME_SIZE];
+        if (isnan(number.value))
+            continue;
+        mf_composition_pair_name(composition, (int)pair, name);
+        if (target->pairs > 1)
+            mf_json_begin(writer, name);
+        mf_json_put_fields(writer, mf_target_kirkwood_buff_fields, &number);
+        if (target->pairs > 1)
+            mf_json_end(writer);
+    }
+}

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "inversion/inversion.h"
+
+#include "observe/kirkwood_buff_observable.h"
+
+#include <math.h>
+
+static const struct target *target_of(const struct inversion *inversion) {
+    return &inversion->problem->targets.target[mf_kirkwood_buff_kind()];
+}
+
+enum status mf_inversion_kirkwood_buff_init(struct inversion *inversion) {
+    enum status status = STATUS_OK;
+    struct inversion_kirkwood_buff *kb = &inversion->kirkwood_buff;
+    const struct targets *targets = &inversion->problem->targets;
+    const struct kirkwood_buff_settings *settings =
+        targets->settings[mf_observable_kind(mf_kirkwood_buff_kind()).place];
+    kb->pairs = target_of(inversion)->count;
+    if (kb->pairs == 0)
+        return STATUS_OK;
+    kb->q_maximum = settings->q_maximum;
+    NEW_ARRAY(kb->slope, kb->pairs * inversion->grid.known);
+done:
+    return status;
+}
+
+void mf_inversion_kirkwood_buff_clear(struct inversion_kirkwood_buff *kb) {
+    mf_memory_free(kb->slope);
+    *kb = (struct inversion_kirkwood_buff){0};
+}
+
+void mf_inversion_kirkwood_buff_measure(struct inversion *inversion) {
+    struct inversion_kirkwood_buff *kb = &inversion->kirkwood_buff;
+    for (size_t pair = 0; pair < kb->pairs; pair++) {
+        const struct replicas_mean mean =
+            mf_replicas_mean(&inversion->replicas, SAMPLER_SUMS + pair, inversion->inefficiency);
+        kb->value[pair] = mean.mean;
+        kb->error[pair] = mean.error;
+    }
+    if (kb->pairs > 0)
+        inversion->distance[mf_kirkwood_buff_kind()] =
+            mf_targets_worst(target_of(inversion), kb->value, kb->error);
+}
+
+void mf_inversion_kirkwood_buff_respond(struct inversion *inversion, double share) {
+    const struct inversion_kirkwood_buff *kb = &inversion->kirkwood_buff;
+    const struct potential_grid *grid = &inversion->grid;
+    const double temperature = inversion->problem->scene.temperature;
+    for (size_t pair = 0; pair < kb->pairs; pair++)
+        for (size_t b = 0; b < grid->known; b++) {
+            double *slope = &kb->slope[pair * grid->known + b];
+            const double now = -mf_comoments_covariance(&inversion->replicas.counts,
+                                                        inversion->bins + SAMPLER_SUMS + pair,
+                                                        grid->known_bin[b]) /
+                               temperature;
+            *slope = (1 - share) * *slope + share * now;
+        }
+}
+
+bool mf_inversion_kirkwood_buff_is_noisy(const struct inversion *inversion) {
+    static const double noise_share = 1.0 / 3;
+    const struct inversion_kirkwood_buff *kb = &inversion->kirkwood_buff;
+    const struct target *target = target_of(inversion);
+    if (!mf_inversion_is_near(inversion))
+        return false;
+    for (size_t pair = 0; pair < kb->pairs; pair++) {
+        const double off = fabs(kb->value[pair] - target->value[pair]);
+        if (kb->error[pair] > fmax(target->error[pair], noise_share * off))
+            return true;
+    }
+    return false;
+}

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file Kirkwood and Buff's integrals of an inversion's samples, and how they follow the
+/// potential.
+#pragma once
+
+#include "base/status.h"
+#include "system/composition.h"
+
+#include <stddef.h>
+
+struct inversion;
+
+/// By pair types, as the target has them.
+struct inversion_kirkwood_buff {
+    size_t pairs;     ///< 0: not asked for
+    double q_maximum; ///< of the waves, as the target has it [1/λ]
+    double value[COMPOSITION_MOST_PAIRS], error[COMPOSITION_MOST_PAIRS]; ///< [λ^d]
+    double *slope; ///< ∂G/∂Φ_b, shape [pairs, known]
+};
+
+/// Make room if the problem asks for the integrals. Fails: NO_MEMORY.
+enum status mf_inversion_kirkwood_buff_init(struct inversion *inversion) MUST_USE;
+void mf_inversion_kirkwood_buff_clear(struct inversion_kirkwood_buff *kb);
+
+/// Values and errors of the present samples, and the distance: that of the integral that is
+/// farthest off by its noise.
+void mf_inversion_kirkwood_buff_measure(struct inversion *inversion);
+
+/// Slopes ∂G/∂Φ_b = −cov(G, S_b)/k_B T, G that of a configuration
+/// (observe/kirkwood_buff_waves.h), of which the present samples make this share, and those before
+/// the rest: as of C. They are noisier than C: a few long waves have little to do with the energy
+/// of all pairs.
+void mf_inversion_kirkwood_buff_respond(struct inversion *inversion, double share);
+
+/// Whether the samples, near to the target's g, know an integral less well than its target, or than
+/// a third of what it is off.
+bool mf_inversion_kirkwood_buff_is_noisy(const struct inversion *inversion);

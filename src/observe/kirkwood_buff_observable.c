@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Means of G of each pair type over blocks of samples. Errors see the correlation of the blocks:
+// long waves decay slowly, with the collective diffusion D/S(q) times q². Tested:
+// test_kirkwood_buff_waves.
+#include "observe/kirkwood_buff_observable.h"
+
+#include "base/number_text.h"
+#include "base/statistics.h"
+#include "forces/molecules.h"
+#include "observe/kirkwood_buff_waves.h"
+#include "observe/measure.h"
+#include "observe/pooled.h"
+#include "observe/sample_blocks.h"
+
+#include <math.h>
+
+static const char unit[] = "lambda^d";
+
+const struct field mf_kirkwood_buff_observable_fields[] = {
+    {"q_maximum", FIELD_NUMBER, .offset = offsetof(struct kirkwood_buff_settings, q_maximum),
+     .initial = 0, .minimum = 0, .maximum = DBL_MAX, .unit = "1/lambda",
+     .help = "longest waves of the density, up to this wave number, from which S(q) goes to q = 0 "
+             "as a line in q^2; 0: a fifth of 2 pi density^(1/d)"},
+    FIELD_END,
+};
+
+struct state {
+    struct kirkwood_buff_waves waves;
+    struct sample_blocks blocks;
+    size_t pairs;
+    double density;
+    double *integral; ///< of one sample, shape [pairs] [λ^d]
+    double *sums;     ///< shape [blocks, pairs]
+};
+
+static enum status begin(void *state, const void *settings, const struct simulation *simulation,
+                         const struct measure_plan *plan) {
+    enum status status = STATUS_OK;
+    struct state *s = state;
+    const struct simulation_setup *setup = &simulation->setup;
+    const size_t count = simulation->particles.count;
+    if (mf_molecules_find(setup->interaction, setup->interactions))
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "kirkwood_buff: beads of molecules have no integrals of their own");
+    status =
+        mf_kirkwood_buff_waves_init(&s->waves, &setup->box, &setup->composition, count,
+                                    ((const struct kirkwood_buff_settings *)settings)->q_maximum);
+    CHECK(status == STATUS_BAD_INPUT ? mf_status_prefix(status, "kirkwood_buff") : status);
+    s->pairs = mf_kirkwood_buff_waves_pairs(&s->waves);
+    s->density = (double)count / mf_box_volume(&setup->box);
+    CHECK(mf_sample_blocks_init(&s->blocks, (size_t)plan->samples));
+    NEW_ARRAY(s->integral, s->pairs);
+    NEW_ARRAY(s->sums, s->blocks.count * s->pairs);
+done:
+    return status;
+}
+
+static void clear(void *state) {
+    struct state *s = state;
+    mf_kirkwood_buff_waves_clear(&s->waves);
+    mf_sample_blocks_clear(&s->blocks);
+    mf_memory_free(s->integral);
+    mf_memory_free(s->sums);
+    *s = (struct state){0};
+}
+
+static enum status sample(void *state, struct simulation *simulation) {
+    struct state *s = state;
+    if (mf_sample_blocks_are_full(&s->blocks)) {
+        mf_sample_blocks_join(&s->blocks, s->sums, s->pairs);
+        mf_sample_blocks_double(&s->blocks);
+    }
+    const size_t block = mf_sample_blocks_take(&s->blocks);
+    mf_kirkwood_buff_waves_take(&s->waves, &simulation->particles, simulation->setup.threads,
+                                s->integral);
+    for (size_t pair = 0; pair < s->pairs; pair++)
+        s->sums[block * s->pairs + pair] += s->integral[pair];
+    return STATUS_OK;
+}
+
+static size_t spans(void *state, struct memory_span *spans) {
+    struct state *s = state;
+    spans[0] = (struct memory_span){s->sums, s->blocks.count * s->pairs * sizeof *s->sums};
+    return 1 + mf_sample_blocks_spans(&s->blocks, spans + 1);
+}
+
+/// G of a pair type and its error; NaN before the first block is whole.
+static void find(const struct state *s, size_t pair, double *value, double *error) {
+    enum { MOST_BLOCKS = 64 };
+    const size_t whole = mf_sample_blocks_whole(&s->blocks);
+    double means[MOST_BLOCKS], sum = 0, samples = 0;
+    for (size_t block = 0; block < whole; block++) {
+        const double own = s->sums[block * s->pairs + pair];
+        means[block] = own / s->blocks.samples[block];
+        sum += own;
+        samples += s->blocks.samples[block];
+    }
+    *value = samples > 0 ? sum / samples : NAN;
+    *error = mf_statistics_correlated_error(means, whole, 1);
+}
+
+static enum status result(const void *const *states, size_t count,
+                          const struct observable_values *values) {
+    enum status status = STATUS_OK;
+    double *found = NULL;
+    struct pooled_curve *replicas = NULL;
+    NEW_ARRAY(found, 2 * count * values->count);
+    NEW_ARRAY(replicas, count);
+    for (size_t k = 0; k < count; k++) {
+        const struct state *s = states[k];
+        double *value = found + 2 * k * values->count, *error = value + values->count;
+        for (size_t pair = 0; pair < s->pairs; pair++)
+            find(s, pair, &value[pair], &error[pair]);
+        replicas[k] =
+            (struct pooled_curve){value, error, (double)mf_sample_blocks_whole(&s->blocks)};
+    }
+    mf_pooled_join(values, replicas, count);
+done:
+    mf_memory_free(found);
+    mf_memory_free(replicas);
+    return status;
+}
+
+/// A number that is known.
+static void put_known(struct json_writer *writer, const char *what, const char *error,
+                      const char *pair, double value) {
+    char key[COMPOSITION_PAIR_NAME_SIZE + 40];
+    snprintf(key, sizeof key, "%s%s%s%s", what, error, pair[0] ? "_" : "", pair);
+    if (isfinite(value))
+        mf_json_put_quantity(writer, key, unit, value);
+}
+
+void mf_kirkwood_buff_put(struct json_writer *writer, const char *what,
+                          const struct composition *composition, size_t pair, double value,
+                          double error) {
+    char name[COMPOSITION_PAIR_NAME_SIZE];
+    mf_composition_pair_name(composition, (int)pair, name);
+    put_known(writer, what, "", name, value);
+    put_known(writer, what, "_error", name, error > 0 ? error : NAN);
+}
+
+static void put(const void *state, const struct observable_results *results,
+                struct json_writer *writer) {
+    const struct state *s = state;
+    double value, error;
+    for (size_t pair = 0; pair < s->pairs; pair++) {
+        find(s, pair, &value, &error);
+        mf_kirkwood_buff_put(writer, "kirkwood_buff", &results->setup->composition, pair, value,
+                             error);
+    }
+    if (s->pairs == 1) {
+        mf_json_put_number(writer, "compressibility", 1 + s->density * value);
+        mf_json_put_number(writer, "compressibility_error", s->density * error);
+    }
+    mf_json_put_quantity(writer, "kirkwood_buff_q_maximum", "1/lambda", s->waves.q_maximum);
+    mf_json_put_number(writer, "kirkwood_buff_waves", (double)s->waves.waves.waves.vectors);
+}
+
+static void say(const void *state, const struct observable_results *results, char *line,
+                size_t size) {
+    const struct state *s = state;
+    const double factor = mf_units_factor(results->units, unit);
+    char suffix[UNITS_NAME_SIZE];
+    int length = snprintf(line, size, "Kirkwood-Buff integral%s", s->pairs > 1 ? "s" : "");
+    for (size_t pair = 0; pair < s->pairs && length < (int)size; pair++) {
+        char name[COMPOSITION_PAIR_NAME_SIZE], text[NUMBER_TEXT_SIZE];
+        double value, error;
+        find(s, pair, &value, &error);
+        mf_composition_pair_name(&results->setup->composition, (int)pair, name);
+        mf_number_text(factor * value, factor * error, text);
+        length +=
+            snprintf(line + length, size - (size_t)length, "%s %s%s%s%s", pair ? "," : "", name,
+                     name[0] ? " " : "", text, mf_units_suffix(results->units, unit, suffix));
+    }
+}
+
+/// Nanoseconds of a particle and wave vector.
+static const double wave_cost = 1.1;
+
+static void explain(const void *settings, const struct simulation_setup *setup, double every,
+                    struct stages *stages) {
+    const double wish = ((const struct kirkwood_buff_settings *)settings)->q_maximum;
+    const double waves =
+        mf_kirkwood_buff_waves_expected(&setup->box, (size_t)setup->placement.count, wish);
+    mf_stages_add(stages, "Kirkwood-Buff integrals", true, wave_cost * waves / every,
+                  "about %.0f wave vectors, one step in %.0f", waves, every);
+}
+
+static const struct observable_target targets[] = {
+    {.name = "kirkwood_buff",
+     .summary = "Kirkwood and Buff's integrals of pair types, of the open system",
+     .form = OBSERVABLE_OWN_FORM,
+     .unit = unit,
+     .has_settings = true},
+    {.name = NULL}};
+
+const struct observable mf_kirkwood_buff_observable = {
+    .name = "kirkwood_buff",
+    .summary = "Kirkwood and Buff's integrals by the longest waves of the density",
+    .fields = mf_kirkwood_buff_observable_fields,
+    .settings_size = sizeof(struct kirkwood_buff_settings),
+    .state_size = sizeof(struct state),
+    .begin = begin,
+    .clear = clear,
+    .sample = sample,
+    .spans = spans,
+    .put = put,
+    .say = say,
+    .explain = explain,
+    .stage = "Kirkwood-Buff integrals",
+    .targets = targets,
+    .result = result,
+};
+
+int mf_kirkwood_buff_kind(void) {
+    int kind = 0;
+    while (mf_observable_kind(kind).observable != &mf_kirkwood_buff_observable)
+        kind++;
+    return kind;
+}

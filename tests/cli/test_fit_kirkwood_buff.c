@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Integrals of Kirkwood and Buff as targets. A mixture with known potentials; its g(r) is known to
+// their cutoff, and tilted within its errors. By g alone the fit's integrals are several errors
+// off; with those of a simulation of the truth they agree. And what is refused.
+#include "shared/results.h"
+#include "shared/run_program.h"
+#include "shared/small_inputs.h"
+#include "shared/temporary_folder.h"
+#include "shared/testing.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define TYPES "\"particles\": {\"types\": {\"A\": 200, \"B\": 200}}"
+#define SETUP                                                                                      \
+    "\"box\": [7.4, 7.4, 7.4], \"time_step\": 0.05, " TYPES                                        \
+    ", \"dissipative\": {\"law\": \"power\", \"sigma\": 2}"
+#define SOFT(a) "{\"law\": \"soft-repulsion\", \"a\": " #a "}"
+
+static const char scene[] =
+    "{\"seed\": 1, " SETUP ",\n"
+    "\"conservative\": {\"A-A\": " SOFT(10) ", \"A-B\": " SOFT(14) ", \"B-B\": " SOFT(
+        10) "},\n"
+            "\"rdf\": {\"range\": 1, \"bins\": 16}, \"kirkwood_buff\": {\"q_maximum\": 2.2},\n"
+            "\"measure\": {\"equilibration\": 1000, \"samples\": 6000, \"every\": 20}}\n";
+
+#define RDF(pair) "\"" pair "\": {\"file\": \"g_" pair ".tsv\", \"normalisation\": 1}"
+#define METHOD                                                                                     \
+    "\"name\": \"imc\", \"replicas\": 8, \"samples\": 400, \"every\": 10, \"precision\": 0.01"
+#define CHECKS "\"replicas\": 4, \"equilibration\": 1000, \"samples\": 800, \"every\": 40"
+
+/// Of the run file, with the integrals in between.
+static const char head[] = "{\"seed\": 4, \"scene\": {" SETUP "}, \"unknowns\": {\"potential\": "
+                           "{}},\n\"method\": {" METHOD "},\n\"verification\": {" CHECKS "},\n"
+                           "\"target\": {\"rdf\": {" RDF("A-A") ", " RDF("A-B") ", " RDF("B-B") "}";
+
+static const char *const pairs[] = {"A-A", "A-B", "B-B"};
+static const double tilt = 0.06, wanted_error = 0.04;
+static struct run_program_result result;
+
+/// g of a pair type, larger or smaller than it was measured, with an error as large.
+static void write_tilted(struct temporary_folder *folder, const char *pair, double factor) {
+    char name[64], out[8192] = "";
+    snprintf(name, sizeof name, "truth/rdf_%s.tsv", pair);
+    char *text = temporary_folder_read(name);
+    size_t length = 0;
+    for (const char *line = text; line && *line; line = strchr(line, '\n')) {
+        double r, g;
+        line += *line == '\n';
+        if (sscanf(line, "%lf %lf", &r, &g) == 2)
+            length += (size_t)snprintf(out + length, sizeof out - length, "%g %g %g\n", r,
+                                       g * factor, tilt);
+    }
+    snprintf(name, sizeof name, "g_%s.tsv", pair);
+    temporary_folder_write(folder, name, out, length);
+    free(text);
+}
+
+static int enter(void **state) {
+    if (small_inputs_enter_without_gnuplot(state) != 0)
+        return -1;
+    small_inputs_write(*state, "truth.json", scene, NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "truth.json", "-o", "truth");
+    run_program_assert_code(&result, 0);
+    write_tilted(*state, "A-A", 1 - tilt);
+    write_tilted(*state, "A-B", 1 + tilt);
+    write_tilted(*state, "B-B", 1 - tilt);
+    return 0;
+}
+
+/// The run with the truth's integrals, fitted or not.
+static void write_run(struct temporary_folder *folder, const char *file, const char *fitted,
+                      double error) {
+    char text[4096], key[64];
+    int length = snprintf(text, sizeof text, "%s, \"kirkwood_buff\": {\"q_maximum\": 2.2, ", head);
+    for (int k = 0; k < 3; k++) {
+        snprintf(key, sizeof key, "kirkwood_buff_%s", pairs[k]);
+        length += snprintf(text + length, sizeof text - (size_t)length,
+                           "\"%s\": {\"value\": %.6g, \"error\": %g}, ", pairs[k],
+                           results_number("truth/summary.json", key), error);
+    }
+    snprintf(text + length, sizeof text - (size_t)length, "\"fitted\": \"%s\"}}}\n", fitted);
+    small_inputs_write(folder, file, text, NULL, NULL);
+}
+
+/// The integral that is farthest off, in standard errors of both.
+static double find_farthest(const char *folder) {
+    double farthest = 0;
+    for (int k = 0; k < 3; k++) {
+        char file[64], key[64];
+        snprintf(file, sizeof file, "%s/summary.json", folder);
+        snprintf(key, sizeof key, "kirkwood_buff_%s", pairs[k]);
+        const double found = results_number(file, key);
+        snprintf(key, sizeof key, "target_kirkwood_buff_%s", pairs[k]);
+        const double wanted = results_number(file, key);
+        snprintf(key, sizeof key, "kirkwood_buff_error_%s", pairs[k]);
+        const double error = results_number(file, key);
+        print_message("%s: G of %s = %.3f(%.3f), truth %.3f\n", folder, pairs[k], found, error,
+                      wanted);
+        farthest = fmax(farthest, fabs(found - wanted) / hypot(error, wanted_error));
+    }
+    return farthest;
+}
+
+static void test_g_alone_leaves_the_integrals_of_a_mixture_off(void **state) {
+    write_run(*state, "alone.json", "no", wanted_error);
+    RUN_PROGRAM(&result, "fit", "alone.json", "-o", "alone");
+    run_program_assert_code(&result, 0);
+    assert_true(find_farthest("alone") > 3);
+}
+
+/// 3 errors: as often as the verification itself would say that the fit has not converged.
+static void test_fit_meets_the_integrals_of_a_mixture(void **state) {
+    write_run(*state, "both.json", "yes", wanted_error);
+    RUN_PROGRAM(&result, "fit", "both.json", "-o", "both", "--threads", "2");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.err, "Kirkwood-Buff integral of A-B = ");
+    assert_true(find_farthest("both") < 3);
+    assert_true(results_number("both/summary.json", "rdf_rmse") < 1.5 * tilt);
+}
+
+/// With coarse integrals, which take few samples.
+static void test_fit_of_integrals_has_the_same_bits_when_it_is_resumed(void **state) {
+    static const char *const same[] = {"potential_A-B.tsv", "rdf_A-B.tsv", "history.tsv", NULL};
+    static const char *const pieces[] = {"fit",       "coarse.json", "-o", "pieces",
+                                         "--threads", "1",           NULL};
+    write_run(*state, "coarse.json", "yes", 5 * wanted_error);
+    RUN_PROGRAM(&result, "fit", "coarse.json", "-o", "coarse", "--threads", "2");
+    run_program_assert_code(&result, 0);
+    run_program_in_pieces(0, pieces);
+    results_assert_same("coarse", "pieces", same);
+}
+
+/// One line that names file and key. @param[in] integrals  the members of the target
+static void assert_refused(struct temporary_folder *folder, const char *integrals,
+                           const char *replaced, const char *by, const char *words) {
+    char text[4096];
+    snprintf(text, sizeof text, "%s, \"kirkwood_buff\": {%s}}}\n", head, integrals);
+    small_inputs_write(folder, "bad.json", text, replaced, by);
+    RUN_PROGRAM(&result, "fit", "bad.json", "-o", "bad");
+    print_message("%s", result.err);
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err, "bad.json");
+    assert_contains(result.err, words);
+}
+
+#define GOOD "\"q_maximum\": 2.2, \"A-B\": {\"value\": 0.1, \"error\": 0.01}"
+
+static void test_fit_refuses_integrals_that_cannot_be_met(void **state) {
+    assert_refused(*state, "\"A-C\": {\"value\": 0.1, \"error\": 0.01}", NULL, NULL,
+                   "kirkwood_buff.A-C: unknown key");
+    assert_refused(*state, "\"A-B\": {\"value\": 0.1}", NULL, NULL, "kirkwood_buff.A-B.error");
+    assert_refused(*state, "\"A-B\": {\"value\": 0.1, \"error\": 0}", NULL, NULL,
+                   "kirkwood_buff.A-B.error");
+    assert_refused(*state, GOOD ", \"B-A\": {\"value\": 0.1, \"error\": 0.01}", NULL, NULL,
+                   "under its other name");
+    assert_refused(*state, "\"q_maximum\": 2.2", NULL, NULL, "names no pair type");
+    assert_refused(*state, "\"value\": 0.1, \"error\": 0.01", NULL, NULL, "target.kirkwood_buff");
+    assert_refused(*state, "\"q_maximum\": 0.9, \"A-B\": {\"value\": 0.1, \"error\": 0.01}", NULL,
+                   NULL, "all have one length");
+    assert_refused(*state, GOOD, "\"name\": \"imc\"", "\"name\": \"ibi\"",
+                   "target.kirkwood_buff: \"ibi\" does not fit it");
+    assert_refused(*state, GOOD, "\"name\": \"imc\"",
+                   "\"name\": \"imc\", \"regularisation\": \"votca\", \"strength\": 1",
+                   "\"votca\" does not fit target.kirkwood_buff");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_g_alone_leaves_the_integrals_of_a_mixture_off),
+        cmocka_unit_test(test_fit_meets_the_integrals_of_a_mixture),
+        cmocka_unit_test(test_fit_of_integrals_has_the_same_bits_when_it_is_resumed),
+        cmocka_unit_test(test_fit_refuses_integrals_that_cannot_be_met),
+    };
+    return cmocka_run_group_tests(tests, enter, small_inputs_leave);
+}
