@@ -32,10 +32,17 @@ static const char scene[] =
     "\"name\": \"imc\", \"replicas\": 8, \"samples\": 400, \"every\": 10, \"precision\": 0.01"
 #define CHECKS "\"replicas\": 4, \"equilibration\": 1000, \"samples\": 800, \"every\": 40"
 
+#define PLAN METHOD "},\n\"verification\": {" CHECKS
+#define SHORT_PLAN                                                                                 \
+    "\"name\": \"imc\", \"replicas\": 2, \"samples\": 100, \"precision\": 0.05, \"iterations\": "  \
+    "3},\n"                                                                                        \
+    "\"verification\": {\"replicas\": 2, \"equilibration\": 50, \"samples\": 20, \"every\": 5"
+
 /// Of the run file, with the integrals in between.
-static const char head[] = "{\"seed\": 4, \"scene\": {" SETUP "}, \"unknowns\": {\"potential\": "
-                           "{}},\n\"method\": {" METHOD "},\n\"verification\": {" CHECKS "},\n"
-                           "\"target\": {\"rdf\": {" RDF("A-A") ", " RDF("A-B") ", " RDF("B-B") "}";
+static const char head[] =
+    "{\"seed\": 4, \"scene\": {" SETUP "}, \"unknowns\": {\"potential\": {}},\n"
+    "\"method\": {" PLAN
+    "},\n\"target\": {\"rdf\": {" RDF("A-A") ", " RDF("A-B") ", " RDF("B-B") "}";
 
 static const char *const pairs[] = {"A-A", "A-B", "B-B"};
 static const double tilt = 0.06, wanted_error = 0.04;
@@ -73,7 +80,7 @@ static int enter(void **state) {
 
 /// The run with the truth's integrals, fitted or not.
 static void write_run(struct temporary_folder *folder, const char *file, const char *fitted,
-                      double error) {
+                      double error, const char *plan) {
     char text[4096], key[64];
     int length = snprintf(text, sizeof text, "%s, \"kirkwood_buff\": {\"q_maximum\": 2.2, ", head);
     for (int k = 0; k < 3; k++) {
@@ -83,7 +90,7 @@ static void write_run(struct temporary_folder *folder, const char *file, const c
                            results_number("truth/summary.json", key), error);
     }
     snprintf(text + length, sizeof text - (size_t)length, "\"fitted\": \"%s\"}}}\n", fitted);
-    small_inputs_write(folder, file, text, NULL, NULL);
+    small_inputs_write(folder, file, text, PLAN, plan);
 }
 
 /// The integral that is farthest off, in standard errors of both.
@@ -106,7 +113,7 @@ static double find_farthest(const char *folder) {
 }
 
 static void test_g_alone_leaves_the_integrals_of_a_mixture_off(void **state) {
-    write_run(*state, "alone.json", "no", wanted_error);
+    write_run(*state, "alone.json", "no", wanted_error, PLAN);
     RUN_PROGRAM(&result, "fit", "alone.json", "-o", "alone");
     run_program_assert_code(&result, 0);
     assert_true(find_farthest("alone") > 3);
@@ -114,7 +121,7 @@ static void test_g_alone_leaves_the_integrals_of_a_mixture_off(void **state) {
 
 /// 3 errors: as often as the verification itself would say that the fit has not converged.
 static void test_fit_meets_the_integrals_of_a_mixture(void **state) {
-    write_run(*state, "both.json", "yes", wanted_error);
+    write_run(*state, "both.json", "yes", wanted_error, PLAN);
     RUN_PROGRAM(&result, "fit", "both.json", "-o", "both", "--threads", "2");
     run_program_assert_code(&result, 0);
     assert_contains(result.err, "Kirkwood-Buff integral of A-B = ");
@@ -122,15 +129,15 @@ static void test_fit_meets_the_integrals_of_a_mixture(void **state) {
     assert_true(results_number("both/summary.json", "rdf_rmse") < 1.5 * tilt);
 }
 
-/// With coarse integrals, which take few samples.
+/// With coarse integrals, which take few samples; whether they are met is no matter here.
 static void test_fit_of_integrals_has_the_same_bits_when_it_is_resumed(void **state) {
     static const char *const same[] = {"potential_A-B.tsv", "rdf_A-B.tsv", "history.tsv", NULL};
     static const char *const pieces[] = {"fit",       "coarse.json", "-o", "pieces",
                                          "--threads", "1",           NULL};
-    write_run(*state, "coarse.json", "yes", 5 * wanted_error);
+    write_run(*state, "coarse.json", "yes", 10 * wanted_error, SHORT_PLAN);
     RUN_PROGRAM(&result, "fit", "coarse.json", "-o", "coarse", "--threads", "2");
-    run_program_assert_code(&result, 0);
-    run_program_in_pieces(0, pieces);
+    print_message("%s", result.err);
+    run_program_in_pieces(result.code, pieces);
     results_assert_same("coarse", "pieces", same);
 }
 
