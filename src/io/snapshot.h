@@ -40,7 +40,7 @@ struct snapshot {
     struct box box;
     const struct composition *composition; ///< borrowed
     uint64_t step;
-    double time; ///< [τ]
+    double time;       ///< [τ]
     const char *units; ///< of all numbers, as trajectory_units.h names them
     /// position [λ] in the box, velocity [λ/τ], force [k_B T_0/λ], image [boxes crossed], then all
     /// attributes by their names, then the number of the molecule, from 1 on, if there are any.
