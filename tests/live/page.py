@@ -11,6 +11,7 @@ from served import Served, make_folder
 
 try:
     from selenium import webdriver
+    from selenium.common.exceptions import StaleElementReferenceException
     from selenium.webdriver import ActionChains
     from selenium.webdriver.chrome.service import Service
     from selenium.webdriver.common.keys import Keys
@@ -62,7 +63,9 @@ class PageTest(unittest.TestCase):
         self.wait(lambda: self.text("phase") != "connecting")
 
     def wait(self, condition, seconds=PATIENCE):
-        return WebDriverWait(self.browser, seconds, 0.1).until(lambda _: condition())
+        """What the condition gives once it is true; an element that is drawn anew in between is asked for again."""
+        patience = WebDriverWait(self.browser, seconds, 0.1, ignored_exceptions=(StaleElementReferenceException,))
+        return patience.until(lambda _: condition())
 
     def at(self, name):
         return self.browser.find_element("id", name)
@@ -87,9 +90,25 @@ class PageTest(unittest.TestCase):
             "return Chart.getChart(found[arguments[1]].querySelector('canvas')).data.datasets.map((s) => [s.label, s.data.length]);",
             table, number)
 
-    def button(self, text, within="files"):
-        return self.wait(lambda: next((b for b in self.at(within).find_elements("tag name", "button")
-                                       if b.text == text and b.is_displayed()), None))
+    def button(self, text):
+        """The button of the list of files, or none."""
+        return next((b for b in self.at("files").find_elements("tag name", "button") if b.text == text and b.is_displayed()), None)
+
+    def when_there(self, find, act):
+        """Does a thing with what is found; the list of files may be drawn anew between the two."""
+        def done():
+            element = find()
+            if element:
+                act(element)
+            return element
+        self.wait(done)
+
+    def click_button(self, text):
+        self.when_there(lambda: self.button(text), lambda button: button.click())
+
+    def open_file(self, name):
+        self.when_there(lambda: next((row for row in self.at("files").find_elements("tag name", "tr") if name in row.text), None),
+                        lambda row: row.find_element("xpath", ".//button[text()='open']").click())
 
     def shoot(self, name):
         if SHOTS:
