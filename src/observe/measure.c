@@ -101,7 +101,8 @@ enum status mf_measure_settle(struct simulation *simulation, const struct measur
         simulation->wants = last >= 0 ? PAIR_FORCES_AND_SUMS : PAIR_FORCES;
         TRY(run_until(simulation, end, plan, listener));
         if (last >= 0) {
-            TRY(look(simulation));
+            if ((int64_t)simulation->step == end) // and not of a run that was resumed later
+                TRY(look(simulation));
             TRY(mf_thermodynamics_temperature(simulation, &ratios.above[last],
                                               &ratios.below[last]));
         }

@@ -37,18 +37,20 @@ static enum status write(const void *state, const struct observable_results *res
     const double *energy = mf_thermodynamics_series(t, THERMODYNAMICS_POTENTIAL_ENERGY);
     const double *pressure = mf_thermodynamics_series(t, THERMODYNAMICS_PRESSURE);
     double *step = NULL, *time = NULL, *configurational = NULL, *physical[3] = {NULL};
+    const struct simulation_setup *setup = results->setup;
+    const double time_step = setup->integrator->samples ? NAN : setup->time_step;
     char path[OUTPUT_PATH_SIZE];
     NEW_ARRAY(step, t->samples);
     NEW_ARRAY(time, t->samples);
     NEW_ARRAY(configurational, t->samples);
     for (size_t k = 0; k < t->samples; k++) {
         step[k] = (double)(results->plan->equilibration + (int64_t)(k + 1) * results->plan->every);
-        time[k] = step[k] * results->setup->time_step;
+        time[k] = step[k] * time_step;
         configurational[k] = mf_thermodynamics_series(t, THERMODYNAMICS_FORCE_SQUARES)[k] /
                              mf_thermodynamics_series(t, THERMODYNAMICS_LAPLACIAN)[k];
     }
     // bar is a force on an area.
-    const bool known = mf_units_beside(units), in_space = results->setup->box.dimensions == 3;
+    const bool known = mf_units_beside(units), in_space = setup->box.dimensions == 3;
     physical[0] = mf_units_column(time, t->samples, known ? mf_units_time_ps(units) : 0);
     physical[1] =
         mf_units_column(energy, t->samples, known ? mf_units_energy_kj_per_mol(units) : 0);
