@@ -66,6 +66,7 @@ static void settle(void *state) {
     ((struct monte_carlo *)state)->settled = true;
 }
 
+/// The order of the moves is that of the start, which a run that goes on has, too.
 static size_t spans(void *state, struct memory_span *spans) {
     struct monte_carlo *s = state;
     struct metropolis *chain = &s->chain;
@@ -73,7 +74,6 @@ static size_t spans(void *state, struct memory_span *spans) {
     size_t n = mf_particles_spans(&chain->particles, spans);
     for (int d = 0; d < chain->particles.box.dimensions; d++)
         spans[n++] = (struct memory_span){chain->neighbours.built[d], count * sizeof(double)};
-    spans[n++] = (struct memory_span){chain->order, count * sizeof *chain->order};
     spans[n++] = (struct memory_span){&chain->step, sizeof chain->step};
     spans[n++] = (struct memory_span){&chain->sweep, sizeof chain->sweep};
     spans[n++] = (struct memory_span){&chain->accepted, sizeof chain->accepted};
