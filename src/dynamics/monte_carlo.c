@@ -6,29 +6,31 @@
 #include <math.h>
 #include <string.h>
 
-/// A move out of a torn bond, or from within a core that is infinite, would have no energy to be
-/// judged by.
-static enum status check_energy(struct simulation *simulation) {
-    simulation->wants = PAIR_FORCES_AND_SUMS;
-    TRY(mf_simulation_compute_potential(simulation));
-    if (isfinite(simulation->sums.energy))
-        return STATUS_OK;
-    return mf_status_fail(STATUS_BAD_INPUT,
-                          "particles: their energy is not finite at the start: a bond is torn, or "
-                          "beads lie on each other");
+/// A move out of a torn bond would have no energy to be judged by.
+static enum status check_bonds(const struct metropolis *chain) {
+    const struct molecule_moves *moves = &chain->molecules;
+    const struct topology *topology = &moves->molecules->topology;
+    for (int k = 0; k < topology->kinds; k++)
+        for (uint32_t m = 0; m < topology->kind[k].count; m++)
+            for (int bead = 0; bead < topology->kind[k].beads; bead++)
+                if (!isfinite(mf_molecule_moves_bead_energy(moves, k, m, bead, &chain->particles)))
+                    return mf_status_fail(STATUS_BAD_INPUT,
+                                          "molecules.%s: bead %d of molecule %u has no finite "
+                                          "energy at the start: is a bond too long?",
+                                          topology->kind[k].name, bead + 1, m + 1);
+    return STATUS_OK;
 }
 
 static enum status begin(struct simulation *simulation) {
     const struct simulation_setup *setup = &simulation->setup;
     struct monte_carlo *state = simulation->integrator_state;
     struct particles *particles = &simulation->particles;
-    TRY(check_energy(simulation));
     for (int d = 0; d < particles->box.dimensions; d++)
         memset(particles->velocity[d], 0, particles->count * sizeof *particles->velocity[d]);
     TRY(mf_metropolis_init_at(&state->chain, particles, &simulation->law,
                               mf_molecules_find(setup->interaction, setup->interactions)));
     state->chain.cancel = setup->cancel;
-    return STATUS_OK;
+    return state->chain.molecules.molecules ? check_bonds(&state->chain) : STATUS_OK;
 }
 
 static void clear(void *state) {

@@ -132,6 +132,41 @@ static void test_monte_carlo_refuses_what_it_does_not_know(void **state) {
     }
 }
 
+/// Its moves would have no energies to be judged by.
+static void test_a_bond_that_is_torn_at_the_start_is_refused(void **state) {
+    static struct run_program_result result;
+    static const char dimer[] =
+        "{\"box\": [8, 8, 8], \"bonds\": {\"rope\": {\"law\": \"fene\", \"k\": 5}},\n"
+        "\"molecules\": {\"dimer\": {\"count\": 1, \"chain\": {\"beads\": [\"A\", \"A\"],\n"
+        "  \"bond\": \"rope\"}}}, \"bond_lengths\": {},\n"
+        "\"particles\": {\"placement\": \"file\", \"file\": \"start.tsv\"},\n" BY_MONTE_CARLO "}\n";
+    static const char start[] = "1 1 1\n1 1 4\n";
+    temporary_folder_write(*state, "start.tsv", start, strlen(start));
+    small_inputs_write(*state, "scene.json", dimer, NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "refused");
+    run_program_assert_refused(&result, ".", "torn", 1,
+                               (const char *const[]){"scene.json: molecules.dimer", NULL});
+}
+
+/// Figures, too, are of sweeps, also where a scene has units beside.
+static void test_tables_and_figures_count_sweeps_in_the_place_of_times(void **state) {
+    static struct run_program_result result;
+    char head[512];
+    small_inputs_need_gnuplot();
+    small_scenes_write(*state, small_scenes_dpd,
+                       "\"dissipative\": {\"law\": \"power\", \"sigma\": 2.1213}", BY_MONTE_CARLO);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out", "--quiet");
+    run_program_assert_code(&result, 0);
+    assert_string_equal(result.err, "");
+    results_assert_table("out/thermodynamics.tsv", 8, 20);
+    FILE *table = fopen("out/thermodynamics.tsv", "r");
+    assert_non_null(fgets(head, sizeof head, table));
+    fclose(table);
+    assert_contains(head, "sweeps[1]");
+    assert_null(strstr(head, "time"));
+    assert_true(temporary_folder_exists("out/figures/simulation.png"));
+}
+
 static void test_a_target_of_time_is_refused_in_a_scene_by_monte_carlo(void **state) {
     static struct run_program_result result;
     static const char msd[] = "0 0 0.1\n0.1 0.2 0.1\n0.2 0.4 0.1\n0.3 0.6 0.1\n0.4 0.8 0.1\n";
@@ -172,6 +207,9 @@ int main(void) {
         TEST_WITHOUT_FIGURES(test_interrupted_monte_carlo_of_a_mixture_goes_on_with_the_same_bits),
         TEST_WITHOUT_FIGURES(test_the_summary_tells_how_many_moves_were_accepted),
         TEST_WITHOUT_FIGURES(test_monte_carlo_refuses_what_it_does_not_know),
+        TEST_WITHOUT_FIGURES(test_a_bond_that_is_torn_at_the_start_is_refused),
+        cmocka_unit_test_setup_teardown(test_tables_and_figures_count_sweeps_in_the_place_of_times,
+                                        small_inputs_enter, small_inputs_leave),
         TEST_WITHOUT_FIGURES(test_a_target_of_time_is_refused_in_a_scene_by_monte_carlo),
         TEST_WITHOUT_FIGURES(test_a_fit_is_verified_by_monte_carlo_when_its_scene_says_so),
     };
