@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # One simulation: its radial distribution function, and how it came to equilibrium.
-# Reads thermodynamics.tsv: step, time, temperature, potential_energy, pressure,
+# Reads thermodynamics.tsv: step, time or sweeps, temperature, potential_energy, pressure,
 # temperature_configurational (nan where they were not measured or do not exist), perhaps the same in ps, kJ/mol, bar,
 # and, if they are there, rdf.tsv or, in a mixture, rdf_A-A.tsv, rdf_A-B.tsv, …: r, g, g_error.
 
@@ -53,6 +53,7 @@ do for [kind in kinds] {
         set tmargin at screen 0.93
         set bmargin at screen 0.14
         set xrange [0:R_max]
+        set xtics autofreq
         set ytics autofreq
         set yrange [0:(g_top > 0 ? 1.08 * g_top : 1) / (1 - 0.075 * rows)]
         set format x "%h"
@@ -67,6 +68,7 @@ do for [kind in kinds] {
     set lmargin at screen left
     set rmargin at screen 0.975
     set xrange [T_min < T_max ? T_min : T_min - 1:T_max]
+    if (T_min < T_max && T_max >= 1000) { set xtics step_of((T_max - T_min) / 2) } # sweeps are many
     set format x ""
     unset xlabel
 

@@ -108,7 +108,7 @@ in_units(file, name, physical, reduced) = system(sprintf("awk -F '\t' -v name='%
 # The same of a column that is in physical units only if the file is.
 axis_of(file, name, symbol, reduced) = in_units(file, name . "[]", symbol . " / ", reduced)
 r_axis_of(file) = in_units(file, "r[nm]", "{/:Italic r} / nm", r_label)
-t_axis_of(file) = in_units(file, "time[ps]", "{/:Italic t} / ps", t_label)
+t_axis_of(file) = in_units(file, "sweeps[1]", "sweeps", in_units(file, "time[ps]", "{/:Italic t} / ps", t_label))
 
 # Dimensions of the scene whose results these are.
 dimensions = has("used.json") && int(system("grep -c '\"dimensions\":.*2' used.json || true")) ? 2 : 3

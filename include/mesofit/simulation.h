@@ -66,7 +66,7 @@ typedef double mesofit_force(void *context, size_t count, const uint32_t *id,
                              const double *const *position, double *const *force);
 
 /** Add these forces from the next step on, which calls them once or more often; NULL ends it. They
- * count for the energy, not for the pressure. */
+ * count for the energy, not for the pressure. "monte-carlo" refuses them: it knows no forces. */
 MESOFIT_API void mesofit_simulation_set_force(struct mesofit_simulation *simulation,
                                               mesofit_force *force, void *context);
 

@@ -322,7 +322,7 @@ static enum status carry_out(struct run *run, const char *file) {
     if (composition_is_mixed(&run->scene.scene.setup.composition))
         return mf_status_fail(STATUS_BAD_INPUT,
                               "%s: particles.types: bench accuracy wants one component", file);
-    if (simulation_is_overdamped(&run->scene.scene.setup))
+    if (!simulation_has_velocities(&run->scene.scene.setup))
         return mf_status_fail(STATUS_BAD_INPUT,
                               "%s: dynamics.integrator: bench accuracy wants velocities, which "
                               "\"%s\" has not",

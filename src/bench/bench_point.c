@@ -43,7 +43,7 @@ size_t mf_bench_methods(const struct simulation_setup *setup, struct bench_metho
     for (size_t k = 0; mf_integrator_list[k] && count + 2 <= BENCH_MOST_METHODS; k++) {
         const struct integrator *integrator = mf_integrator_list[k];
         if (integrator->dissipative != (setup->omega != NULL) || integrator->mobility ||
-            integrator->events || integrator->companions)
+            integrator->events || integrator->companions || integrator->samples)
             continue;
         const bool predicts = integrator == &mf_dpd_verlet;
         for (size_t l = 0; l < (predicts ? sizeof predictions / sizeof *predictions : 1); l++) {

@@ -9,9 +9,16 @@
 #include "base/memory.h"
 #include "base/status.h"
 #include "forces/friction.h"
+#include "system/particles.h"
 
 struct simulation;
 struct simulation_setup;
+
+/// What an integrator tells of itself after a run.
+struct integrator_number {
+    const char *name; ///< in summary.json
+    double value;     ///< without a unit
+};
 
 struct integrator {
     const char *name;
@@ -27,10 +34,20 @@ struct integrator {
     /// List what of the state a checkpoint must keep; returns the number of spans, at most
     /// INTEGRATOR_SPANS. NULL: nothing.
     size_t (*spans)(void *state, struct memory_span *spans);
+    /// Rebuild what the spans leave out. Fails: NO_MEMORY. NULL: nothing.
+    enum status (*restore)(void *state);
+    /// Told before the first sample, and perhaps again: from now on it does not change how it
+    /// moves. NULL: it never does.
+    void (*settle)(void *state);
+    /// What it tells of itself, at most INTEGRATOR_NUMBERS; returns how many. NULL: nothing.
+    size_t (*numbers)(const void *state, struct integrator_number *numbers);
     bool dissipative; ///< understands ω(r)
     bool remembers;   ///< and friction that remembers (forces/pair_memory.h)
     /// Moves hard particles from event to event: there are no forces, and kinetic energy is kept.
     bool events;
+    /// Draws configurations of the canonical ensemble: a step is a sweep, and there are neither
+    /// velocities nor time nor forces. Who looks at a configuration has its forces computed.
+    bool samples;
     /// The time step is a property of what is modelled, and no approximation: fits may look for it.
     bool model_time_step;
     /// Tells a simulation's `transfer` all impulses of pairs: those that are forces when these are
@@ -64,11 +81,11 @@ struct integrator {
     /// What a person should know of the parameters before a simulation, one line naming the key;
     /// NULL: nothing.
     const char *(*warning)(const struct simulation_setup *setup);
-    /// Advance by one step, with one call of mf_simulation_compute_forces.
+    /// Advance by one step, with one call of mf_simulation_compute_forces if it knows forces.
     enum status (*step)(struct simulation *simulation);
 };
 
-enum { INTEGRATOR_SPANS = 8 };
+enum { INTEGRATOR_SPANS = PARTICLES_SPANS + 10, INTEGRATOR_NUMBERS = 4 };
 
 /// All integrators, in the order in which they are listed.
 #define INTEGRATORS(EACH)                                                                          \
@@ -82,7 +99,8 @@ enum { INTEGRATOR_SPANS = 8 };
     EACH(mf_brownian)                                                                              \
     EACH(mf_brownian_euler)                                                                        \
     EACH(mf_event_driven)                                                                          \
-    EACH(mf_collision_dynamics)
+    EACH(mf_collision_dynamics)                                                                    \
+    EACH(mf_monte_carlo)
 
 #define INTEGRATOR_DECLARE(record) extern const struct integrator record;
 INTEGRATORS(INTEGRATOR_DECLARE)

@@ -16,24 +16,24 @@
 /// takes 1.7 times as long with 0.36 as with 0.72, and 1.2 times with 0.5 and with 1.
 static const double skin_distances = 0.72;
 
-static double mean_distance(const struct box *box, size_t count) {
-    return pow(mf_box_volume(box) / (double)count, 1.0 / box->dimensions);
+double mf_metropolis_skin(const struct box *box, double count) {
+    return skin_distances * pow(mf_box_volume(box) / count, 1.0 / box->dimensions);
 }
 
-enum status mf_metropolis_init(struct metropolis *metropolis, const struct box *box,
-                               const struct composition *composition, const struct table *potential,
-                               double temperature, uint64_t seed) {
+/// Room for the particles, and a list that is not built yet.
+static enum status prepare(struct metropolis *metropolis, const struct box *box, size_t count,
+                           const struct pair_law *law) {
     enum status status = STATUS_OK;
-    const size_t count = (size_t)mf_composition_particles(composition);
-    const double cutoff = potential ? potential->cutoff : 0;
-    *metropolis = (struct metropolis){
-        .law = {.potential = potential, .composition = *composition, .temperature = temperature},
-        .step = 0.1,
-        .seed = seed};
+    const double cutoff = law->potential ? law->potential->cutoff : 0;
+    *metropolis = (struct metropolis){.law = {.potential = law->potential,
+                                              .composition = law->composition,
+                                              .temperature = law->temperature},
+                                      .step = 0.1,
+                                      .seed = law->seed};
     CHECK(mf_particles_init(&metropolis->particles, box, count));
     NEW_ARRAY(metropolis->order, count);
     CHECK(mf_neighbours_init(&metropolis->neighbours, NEIGHBOURS_FULL, box, count, cutoff,
-                             skin_distances * mean_distance(box, count)));
+                             mf_metropolis_skin(box, (double)count)));
     if (metropolis->neighbours.skin < 0.05 * cutoff) {
         status =
             mf_status_fail(STATUS_BAD_INPUT,
@@ -43,11 +43,60 @@ enum status mf_metropolis_init(struct metropolis *metropolis, const struct box *
         goto done;
     }
     metropolis->step = fmin(metropolis->step, metropolis_longest_step(metropolis));
+done:
+    return status;
+}
+
+/// From now on sweeps move the particles in the present order of the arrays.
+static void keep_order(struct metropolis *metropolis) {
+    const struct particles *particles = &metropolis->particles;
+    memcpy(metropolis->order, particles->id, particles->count * sizeof *metropolis->order);
+}
+
+enum status mf_metropolis_init(struct metropolis *metropolis, const struct box *box,
+                               const struct composition *composition, const struct table *potential,
+                               double temperature, uint64_t seed) {
+    enum status status = STATUS_OK;
+    CHECK(prepare(metropolis, box, (size_t)mf_composition_particles(composition),
+                  &(struct pair_law){.potential = potential,
+                                     .composition = *composition,
+                                     .temperature = temperature,
+                                     .seed = seed}));
     mf_placement_lattice(&metropolis->particles, 0.05, seed);
     if (composition_is_mixed(composition))
         mf_placement_mix(&metropolis->particles, seed);
     CHECK(mf_metropolis_refresh(metropolis));
-    memcpy(metropolis->order, metropolis->particles.id, count * sizeof *metropolis->order);
+    keep_order(metropolis);
+done:
+    if (status != STATUS_OK)
+        mf_metropolis_clear(metropolis);
+    return status;
+}
+
+/// Let the particles be where others are.
+static enum status take_places(struct metropolis *metropolis, const struct particles *from) {
+    struct particles *particles = &metropolis->particles;
+    for (int d = 0; d < particles->box.dimensions; d++) {
+        memcpy(particles->position[d], from->position[d], from->count * sizeof(double));
+        memcpy(particles->image[d], from->image[d], from->count * sizeof *from->image[d]);
+    }
+    memcpy(particles->id, from->id, from->count * sizeof *from->id);
+    return mf_metropolis_refresh(metropolis);
+}
+
+static enum status join(struct metropolis *metropolis, const struct molecules *molecules) {
+    TRY(mf_particles_join(&metropolis->particles, &molecules->topology));
+    return mf_molecule_moves_init(&metropolis->molecules, molecules, &metropolis->particles);
+}
+
+enum status mf_metropolis_init_at(struct metropolis *metropolis, const struct particles *particles,
+                                  const struct pair_law *law, const struct molecules *molecules) {
+    enum status status = STATUS_OK;
+    CHECK(prepare(metropolis, &particles->box, particles->count, law));
+    if (molecules)
+        CHECK(join(metropolis, molecules));
+    CHECK(take_places(metropolis, particles));
+    keep_order(metropolis);
 done:
     if (status != STATUS_OK)
         mf_metropolis_clear(metropolis);
@@ -68,28 +117,22 @@ enum status mf_metropolis_refresh(struct metropolis *metropolis) {
 
 /// Where hybrid Monte Carlo begins: placed along their bonds, and parted.
 static enum status place_molecules(struct metropolis *metropolis) {
-    struct particles *particles = &metropolis->particles;
     const struct pair_law *law = &metropolis->law;
     struct hybrid hybrid;
-    TRY(mf_hybrid_init(&hybrid, &particles->box, &law->composition, law->potential,
+    TRY(mf_hybrid_init(&hybrid, &metropolis->particles.box, &law->composition, law->potential,
                        metropolis->molecules.molecules, &(struct pair_histogram){0},
                        law->temperature, metropolis->seed));
-    const struct particles *from = &hybrid.simulation.particles;
-    for (int d = 0; d < particles->box.dimensions; d++)
-        memcpy(particles->position[d], from->position[d], from->count * sizeof(double));
-    memcpy(particles->id, from->id, from->count * sizeof *from->id);
+    const enum status status = take_places(metropolis, &hybrid.simulation.particles);
     mf_hybrid_clear(&hybrid);
-    return mf_metropolis_refresh(metropolis);
+    return status;
 }
 
 enum status mf_metropolis_join(struct metropolis *metropolis, const struct molecules *molecules) {
     if (molecules == NULL)
         return STATUS_OK;
-    TRY(mf_particles_join(&metropolis->particles, &molecules->topology));
-    TRY(mf_molecule_moves_init(&metropolis->molecules, molecules, &metropolis->particles));
+    TRY(join(metropolis, molecules));
     TRY(place_molecules(metropolis));
-    memcpy(metropolis->order, metropolis->particles.id,
-           metropolis->particles.count * sizeof *metropolis->order);
+    keep_order(metropolis);
     return STATUS_OK;
 }
 
@@ -185,19 +228,23 @@ static void forget_tallies(struct metropolis *metropolis) {
         metropolis->molecules.tally[move].accepted = metropolis->molecules.tally[move].tried = 0;
 }
 
+enum status mf_metropolis_tune(struct metropolis *metropolis) {
+    const enum molecule_move move = next_move(metropolis);
+    forget_tallies(metropolis);
+    TRY(sweep(metropolis));
+    const double accepted = (double)metropolis->accepted / (double)metropolis->tried;
+    metropolis->step =
+        fmin(metropolis->step * metropolis_tuning(accepted), metropolis_longest_step(metropolis));
+    if (metropolis->molecules.molecules)
+        mf_molecule_moves_tune(metropolis, move);
+    forget_tallies(metropolis);
+    return STATUS_OK;
+}
+
 enum status mf_metropolis_equilibrate(struct metropolis *metropolis, uint32_t sweeps) {
-    memcpy(metropolis->order, metropolis->particles.id,
-           metropolis->particles.count * sizeof *metropolis->order);
-    for (uint32_t s = 0; s < sweeps; s++) {
-        const enum molecule_move move = next_move(metropolis);
-        forget_tallies(metropolis);
-        TRY(sweep(metropolis));
-        const double accepted = (double)metropolis->accepted / (double)metropolis->tried;
-        metropolis->step = fmin(metropolis->step * metropolis_tuning(accepted),
-                                metropolis_longest_step(metropolis));
-        if (metropolis->molecules.molecules)
-            mf_molecule_moves_tune(metropolis, move);
-    }
+    keep_order(metropolis);
+    for (uint32_t s = 0; s < sweeps; s++)
+        TRY(mf_metropolis_tune(metropolis));
     forget_tallies(metropolis);
     return STATUS_OK;
 }

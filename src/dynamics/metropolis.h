@@ -33,6 +33,9 @@ static inline double metropolis_reach(const struct metropolis *metropolis) {
     return 0.49 * metropolis->neighbours.skin;
 }
 
+/// The skin that its list would have in a box without end [λ].
+double mf_metropolis_skin(const struct box *box, double count);
+
 /// Half edge of the largest cube of moves: the list has room for one of each particle [λ].
 static inline double metropolis_longest_step(const struct metropolis *metropolis) {
     return metropolis_reach(metropolis) / sqrt(metropolis->particles.box.dimensions);
@@ -49,6 +52,13 @@ static inline double metropolis_tuning(double accepted) {
 enum status mf_metropolis_init(struct metropolis *metropolis, const struct box *box,
                                const struct composition *composition, const struct table *potential,
                                double temperature, uint64_t seed) MUST_USE;
+/// The same with particles, and molecules if they have joined any, where they are now.
+/// @param[in] law        its potential, composition, temperature and seed are read
+/// @param[in] molecules  as of mf_metropolis_join
+/// Fails: NO_MEMORY; BAD_INPUT as mf_metropolis_init.
+enum status mf_metropolis_init_at(struct metropolis *metropolis, const struct particles *particles,
+                                  const struct pair_law *law,
+                                  const struct molecules *molecules) MUST_USE;
 void mf_metropolis_clear(struct metropolis *metropolis);
 
 /// Let the particles be molecules, placed as a scene does. Single beads pay nothing for it.
@@ -61,7 +71,11 @@ enum status mf_metropolis_join(struct metropolis *metropolis,
 /// INTERRUPTED.
 enum status mf_metropolis_scatter(struct metropolis *metropolis) MUST_USE;
 
-/// Sweeps whose step size is tuned towards 40 % accepted. They and all after them move the
+/// One sweep, after which the step sizes of its moves are changed towards 40 % accepted. The tally
+/// begins anew. Fails: NO_MEMORY, INTERRUPTED.
+enum status mf_metropolis_tune(struct metropolis *metropolis) MUST_USE;
+
+/// Sweeps of mf_metropolis_tune. They and all after them move the
 /// particles in the order of the arrays as it is now: one by one through space, which takes a
 /// liquid from state to state in fewer sweeps than an order without plan, until the particles have
 /// mixed. Call mf_metropolis_refresh before. Fails: NO_MEMORY, INTERRUPTED. Tested:

@@ -17,10 +17,20 @@ static const double first_shift = 0.05;
 /// range.
 static const double quiet_step = 0.1;
 
+/// Along this part of the mean spacing a force that Monte Carlo meets may do the work of k_B T.
+static const double sweep_step = 0.01;
+
+static double spacing_of(const struct particles *particles) {
+    return pow(mf_particles_density(particles), -1.0 / particles->box.dimensions);
+}
+
 /// The force that changes a velocity by a thermal one in a time step, or that moves a particle
 /// without velocities by a free step.
-static double thermal_force(const struct simulation_setup *setup) {
-    if (!simulation_is_overdamped(setup))
+static double thermal_force(const struct simulation *simulation) {
+    const struct simulation_setup *setup = &simulation->setup;
+    if (setup->integrator->samples)
+        return setup->temperature / (sweep_step * spacing_of(&simulation->particles));
+    if (simulation_has_velocities(setup))
         return sqrt(setup->temperature) / setup->time_step;
     const double step = setup->temperature > 0 ? simulation_free_step(setup)
                                                : quiet_step * mf_simulation_range(setup);
@@ -41,7 +51,7 @@ static void shift(struct particles *particles, double enough, double cap) {
 
 enum status mf_relax_downhill(struct simulation *simulation, double enough) {
     struct particles *particles = &simulation->particles;
-    const double spacing = pow(mf_particles_density(particles), -1.0 / particles->box.dimensions);
+    const double spacing = spacing_of(particles);
     TRY(mf_simulation_compute_potential(simulation));
     for (int step = 0; step < MOST_STEPS; step++) {
         if (mf_interrupt_wanted(simulation->setup.cancel))
@@ -55,7 +65,7 @@ enum status mf_relax_downhill(struct simulation *simulation, double enough) {
 }
 
 enum status mf_relax_overlaps(struct simulation *simulation) {
-    const double enough = thermal_force(&simulation->setup);
+    const double enough = thermal_force(simulation);
     TRY(mf_simulation_compute_potential(simulation));
     if (!(mf_particles_largest_force(&simulation->particles) > overlap * enough))
         return STATUS_OK;

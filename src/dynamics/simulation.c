@@ -39,15 +39,21 @@ static double drift_of(const struct simulation_setup *setup) {
     return still ? slowest * mf_simulation_range(setup) / setup->time_step : driven;
 }
 
+/// A list of Monte Carlo is for one look, and the next one finds the particles anywhere.
+static double free_step_of(const struct simulation_setup *setup) {
+    if (setup->integrator->samples)
+        return mf_box_shortest(&setup->box);
+    return setup->integrator->mobility ? simulation_free_step(setup) : 0;
+}
+
 struct skin_scene mf_simulation_skin_scene(const struct simulation_setup *setup) {
-    return (struct skin_scene){
-        .box = &setup->box,
-        .count = (size_t)setup->placement.count,
-        .cutoff = mf_simulation_range(setup),
-        .temperature = setup->temperature / lightest(setup),
-        .time_step = setup->time_step,
-        .free_step = simulation_is_overdamped(setup) ? simulation_free_step(setup) : 0,
-        .drift = simulation_is_overdamped(setup) ? drift_of(setup) : 0};
+    return (struct skin_scene){.box = &setup->box,
+                               .count = (size_t)setup->placement.count,
+                               .cutoff = mf_simulation_range(setup),
+                               .temperature = setup->temperature / lightest(setup),
+                               .time_step = setup->time_step,
+                               .free_step = free_step_of(setup),
+                               .drift = setup->integrator->mobility ? drift_of(setup) : 0};
 }
 
 double mf_simulation_push(const struct simulation_setup *setup) {
@@ -218,7 +224,7 @@ void mf_simulation_take_temperature(struct simulation *simulation) {
 }
 
 double mf_simulation_temperature(const struct simulation *simulation) {
-    if (simulation_is_overdamped(&simulation->setup) || simulation->particles.count < 2)
+    if (!simulation_has_velocities(&simulation->setup) || simulation->particles.count < 2)
         return NAN;
     return isfinite(simulation->temperature) ? simulation->temperature
                                              : mf_particles_temperature(&simulation->particles);
@@ -228,7 +234,7 @@ double mf_simulation_temperature(const struct simulation *simulation) {
 /// temperature, or v² of a free particle's steps. Particles without velocities that something
 /// drives, or that no noise moves, may move in a step as far as they see each other.
 static double largest_square(const struct simulation_setup *setup) {
-    if (!simulation_is_overdamped(setup))
+    if (setup->integrator->mobility == NULL)
         return setup->temperature_limit * setup->temperature;
     const double range = mf_simulation_range(setup);
     const double steps = setup->temperature_limit * pow(simulation_free_step(setup), 2);
@@ -238,7 +244,7 @@ static double largest_square(const struct simulation_setup *setup) {
 
 static enum status fail_unstable(const struct simulation *simulation, double square) {
     const struct simulation_setup *setup = &simulation->setup;
-    const bool flies = !simulation_is_overdamped(setup);
+    const bool flies = simulation_has_velocities(setup);
     const double unit = flies ? 1 : setup->time_step * setup->time_step;
     char advice[UNSTABLE_ADVICE_SIZE];
     mf_unstable_advise(simulation, advice);
@@ -391,7 +397,7 @@ double mf_simulation_pressure(const struct simulation *simulation) {
     const struct particles *particles = &simulation->particles;
     const struct simulation_setup *setup = &simulation->setup;
     const bool held = simulation->law.omega || pair_memory_acts(&setup->memory) ||
-                      simulation_is_overdamped(setup);
+                      !simulation_has_velocities(setup);
     const double temperature = held ? setup->temperature : mf_simulation_temperature(simulation);
     return mf_particles_density(particles) * temperature +
            simulation->sums.virial / (particles->box.dimensions * mf_box_volume(&particles->box));
@@ -424,8 +430,9 @@ enum status mf_simulation_make_room(struct simulation *simulation) {
 
 enum status mf_simulation_restore(struct simulation *simulation) {
     TRY(mf_neighbours_rebuild(&simulation->neighbours, &simulation->particles));
+    const struct integrator *integrator = simulation->setup.integrator;
+    if (integrator->restore)
+        TRY(integrator->restore(simulation->integrator_state));
     // Kept pairs are not saved; another pass at the same step keeps the same.
-    if (simulation->setup.integrator->friction_first)
-        return mf_simulation_compute_forces(simulation, 0);
-    return STATUS_OK;
+    return integrator->friction_first ? mf_simulation_compute_forces(simulation, 0) : STATUS_OK;
 }

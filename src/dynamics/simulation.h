@@ -134,9 +134,9 @@ enum status mf_simulation_compute_potential(struct simulation *simulation) MUST_
 /// velocities and of fewer than two particles.
 double mf_simulation_temperature(const struct simulation *simulation);
 
-/// Whether the dynamics move without velocities, and so without a kinetic temperature.
-static inline bool simulation_is_overdamped(const struct simulation_setup *setup) {
-    return setup->integrator->mobility != NULL;
+/// Whether particles have velocities, and so a kinetic temperature.
+static inline bool simulation_has_velocities(const struct simulation_setup *setup) {
+    return setup->integrator->mobility == NULL && !setup->integrator->samples;
 }
 
 /// How far a free particle without velocities moves in a step by noise, sqrt(2 k_B T Δt/γ) along an
@@ -165,7 +165,7 @@ static inline double simulation_moved(const struct simulation_setup *setup) {
 /// Whether friction and noise, or the integrator itself, hold the temperature of the setup.
 static inline bool simulation_holds_temperature(const struct simulation_setup *setup) {
     const struct integrator *integrator = setup->integrator;
-    return setup->omega || pair_memory_acts(&setup->memory) || simulation_is_overdamped(setup) ||
+    return setup->omega || pair_memory_acts(&setup->memory) || !simulation_has_velocities(setup) ||
            (integrator->holds_temperature && integrator->holds_temperature(setup));
 }
 

@@ -20,7 +20,7 @@ enum status mf_simulation_check_change(const struct simulation *simulation,
     if (!is_positive(change->time_step))
         return mf_status_fail(STATUS_BAD_INPUT, "time_step: %g is not above 0",
                               mf_visible_number(change->time_step));
-    if (integrator->events || integrator->companions)
+    if (integrator->events || integrator->companions || integrator->samples)
         return mf_status_fail(STATUS_BAD_INPUT,
                               "\"%s\" begins with its temperature and its time step: stop the "
                               "simulation to change them",
@@ -44,7 +44,7 @@ static enum status renew_friction(struct simulation *simulation) {
 /// Velocities of the new temperature; without velocities there are none.
 static void scale_velocities(struct simulation *simulation, double scale) {
     struct particles *particles = &simulation->particles;
-    if (simulation_is_overdamped(&simulation->setup))
+    if (!simulation_has_velocities(&simulation->setup))
         return;
     for (int d = 0; d < particles->box.dimensions; d++)
         for (size_t k = 0; k < particles->count; k++)

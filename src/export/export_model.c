@@ -176,7 +176,7 @@ static enum status check_scene(const struct export_model *model) {
         what = setup->integrator->name;
         why = setup->integrator->events ? "moves hard particles, which have no pair forces"
                                         : "moves a solvent, which other engines have not";
-    } else if (setup->integrator->mobility) {
+    } else if (!simulation_has_velocities(setup)) {
         what = setup->integrator->name;
         why = "moves particles without velocities; only dynamics with velocities are exported";
     } else if (find_other(setup)) {

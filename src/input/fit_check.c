@@ -155,10 +155,15 @@ static enum status check_interactions(const struct fit_file *fit, const char *fi
         file, fit->method->name);
 }
 
-/// Without velocities there is no VACF to be measured.
+/// Without velocities there is no VACF to be measured, and without time nothing that needs it.
 static enum status check_velocities(const struct fit_file *fit, const char *file) {
     const struct simulation_setup *setup = &fit->scene.setup;
-    if (!simulation_is_overdamped(setup) || !fit->files.given[TARGET_VACF])
+    for (int kind = 0; kind < TARGETS && setup->integrator->samples; kind++)
+        if (fit->files.given[kind] && mf_observable_kind(kind).observable->of_time)
+            return mf_status_fail(STATUS_BAD_INPUT,
+                                  "%s: target.%s: \"%s\" knows neither time nor velocities", file,
+                                  mf_targets_name(kind), setup->integrator->name);
+    if (simulation_has_velocities(setup) || !fit->files.given[TARGET_VACF])
         return STATUS_OK;
     return mf_status_fail(STATUS_BAD_INPUT, "%s: target.vacf: \"%s\" has no velocities", file,
                           setup->integrator->name);

@@ -31,7 +31,7 @@ const struct field mf_scene_fields[] = {
      .maximum = DBL_MAX, .unit = "T_0",
      .help = "of the first velocities and of the noise; 0 for dynamics without velocities alone"},
     {"time_step", FIELD_NUMBER, MEMBER(time_step), .initial = 0.01, .minimum = FIELD_ABOVE_ZERO,
-     .maximum = DBL_MAX, .unit = "tau", .help = "of the integrator"},
+     .maximum = DBL_MAX, .unit = "tau", .help = "of the integrator; \"monte-carlo\" has no time"},
     {"skin", FIELD_NUMBER, MEMBER(skin), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
      .unit = "lambda",
      .help = "of the neighbour list: changes speed, not results; 0: the program chooses"},
@@ -121,6 +121,26 @@ static void check_orientation(const struct scene *scene, struct json_object *obj
                       mf_brownian.name);
 }
 
+/// Moves of Monte Carlo know pairs and molecules, in the precision of single moves.
+static void check_moves(const struct scene *scene, struct json_object *object) {
+    const struct simulation_setup *setup = &scene->setup;
+    for (int k = 0; k < setup->interactions; k++) {
+        const struct interaction *kind = setup->interaction[k].kind;
+        char key[64];
+        snprintf(key, sizeof key, "interactions.%s", kind->name);
+        if (kind != &mf_molecules)
+            mf_json_fault(
+                object, key,
+                "\"%s\" moves by the energy of pairs and molecules alone; leave it out, or "
+                "take another integrator",
+                setup->integrator->name);
+    }
+    if (setup->precision == PAIR_DOUBLE)
+        mf_json_fault(object, "precision",
+                      "\"%s\" computes its moves in mixed precision; leave it out",
+                      setup->integrator->name);
+}
+
 static enum status read_dynamics(struct scene *scene, struct json_object *object, int unknown) {
     const char **names;
     TRY(mf_names_collect(mf_integrator_list, NULL, &names));
@@ -161,10 +181,15 @@ static enum status read_dynamics(struct scene *scene, struct json_object *object
                       integrator->name);
     else if (dissipative && !integrator->dissipative)
         mf_json_fault(object, "dynamics",
-                      "%s knows no friction; use \"aboba\" with \"dissipative\"", integrator->name);
+                      integrator->samples
+                          ? "%s knows no friction, and needs none: leave \"dissipative\" out"
+                          : "%s knows no friction; use \"aboba\" with \"dissipative\"",
+                      integrator->name);
     else if (remembers && !integrator->remembers)
         mf_json_fault(object, "dynamics", "%s knows no \"%s\"; use \"aboba\"", integrator->name,
                       scene->memory.modes > 0 ? "memory" : "dissipative_transverse");
+    if (integrator->samples)
+        check_moves(scene, object);
     check_orientation(scene, object);
     struct attributes_source *mass = &scene->setup.attribute[ATTRIBUTES_MASS];
     if (mass->ranges > 0 && !integrator->masses && attributes_are(mass, 1))

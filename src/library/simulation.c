@@ -130,9 +130,24 @@ void mesofit_simulation_set_force(struct mesofit_simulation *simulation, mesofit
     simulation->force = (struct own_force){force, context};
 }
 
+static enum status check_force(const struct mesofit_simulation *simulation) {
+    const struct integrator *integrator = simulation->engine.setup.integrator;
+    if (simulation->force.function == NULL || !integrator->samples)
+        return STATUS_OK;
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "a force of the caller's: \"%s\" moves by the energy of pairs and "
+                          "molecules alone",
+                          integrator->name);
+}
+
+static enum status run(struct mesofit_simulation *simulation, uint64_t steps) {
+    TRY(check_force(simulation));
+    return mf_simulation_run(&simulation->engine, steps);
+}
+
 enum mesofit_status mesofit_simulation_run(struct mesofit_simulation *simulation, uint64_t steps) {
     mf_guard_enter();
-    return mf_guard_return(mf_simulation_run(&simulation->engine, steps));
+    return mf_guard_return(run(simulation, steps));
 }
 
 uint64_t mesofit_simulation_step(const struct mesofit_simulation *simulation) {
@@ -164,9 +179,9 @@ const double *mesofit_simulation_velocities(const struct mesofit_simulation *sim
 }
 
 double mesofit_simulation_temperature(const struct mesofit_simulation *simulation) {
-    return simulation_is_overdamped(&simulation->engine.setup)
-               ? NAN
-               : mf_particles_temperature(&simulation->engine.particles);
+    return simulation_has_velocities(&simulation->engine.setup)
+               ? mf_particles_temperature(&simulation->engine.particles)
+               : NAN;
 }
 
 // Measurements ------------------------------------------------------------------------------------
@@ -179,7 +194,9 @@ static struct measure_plan plan_from_now(const struct mesofit_simulation *simula
                                  .every = (int64_t)every};
 }
 
-static enum status check_plan(size_t samples, uint64_t every) {
+static enum status check_plan(const struct mesofit_simulation *simulation, size_t samples,
+                              uint64_t every) {
+    TRY(check_force(simulation));
     if (samples > 0 && every > 0)
         return STATUS_OK;
     return mf_status_fail(STATUS_BAD_INPUT, "samples and the steps between them must be positive");
@@ -198,7 +215,7 @@ static enum status measure_rdf(struct mesofit_simulation *simulation,
     const double range = plan->range > 0 ? plan->range : cutoff;
     struct rdf_observed rdf = {0};
     const struct observable_use uses[] = {{&mf_rdf_observable, &rdf, NULL}, {NULL, NULL, NULL}};
-    TRY(check_plan(plan->samples, plan->every));
+    TRY(check_plan(simulation, plan->samples, plan->every));
     if (!(range > 0) || plan->bins == 0)
         return mf_status_fail(STATUS_BAD_INPUT, "g(r) needs bins and, without forces, a range");
     const struct rdf_bins bins = {.width = range / (double)plan->bins, .count = plan->bins};
@@ -227,7 +244,7 @@ static enum status measure_means(struct mesofit_simulation *simulation, size_t s
     struct thermodynamics thermodynamics = {0};
     const struct observable_use uses[] = {{&mf_thermodynamics_observable, &thermodynamics, NULL},
                                           {NULL, NULL, NULL}};
-    TRY(check_plan(samples, every));
+    TRY(check_plan(simulation, samples, every));
     const struct measure_plan when = plan_from_now(simulation, samples, every);
     CHECK(mf_thermodynamics_init(&thermodynamics, samples));
     CHECK(mf_measure_sample(&simulation->engine, &when, uses, NULL));

@@ -21,9 +21,10 @@ _Static_assert(sizeof(struct head) == LIVE_PARTICLES_HEAD, "the page reads 64 by
 
 static unsigned find_parts(const struct simulation *simulation, bool energies) {
     const bool potential = simulation->setup.potential != NULL;
+    const bool listed = !simulation->setup.integrator->samples; // whoever is near now
     return (mf_simulation_oriented(&simulation->setup) ? LIVE_PARTICLES_POLARITY : 0) |
            (potential ? LIVE_PARTICLES_POTENTIAL : 0) |
-           (potential && energies ? LIVE_PARTICLES_ENERGY : 0);
+           (potential && energies && listed ? LIVE_PARTICLES_ENERGY : 0);
 }
 
 static size_t find_size(const struct particles *particles, unsigned parts) {
@@ -86,7 +87,7 @@ static void put_places(const struct particles *particles, float *to) {
 
 static void put_speeds(const struct simulation *simulation, float *to) {
     const struct particles *particles = &simulation->particles;
-    const bool flies = !simulation_is_overdamped(&simulation->setup);
+    const bool flies = simulation_has_velocities(&simulation->setup);
     for (size_t k = 0; k < particles->count; k++) {
         double square = 0;
         for (int d = 0; d < particles->box.dimensions; d++)

@@ -114,12 +114,14 @@ static void publish_numbers(struct live_watch *watch, bool forced) {
         return;
     const double time = (double)simulation->step * simulation->setup.time_step;
     put_number(writer, watch, "step", "", (double)simulation->step);
-    put_number(writer, watch, "time", "tau", time);
-    put_number(writer, watch, "time step", "tau", simulation->setup.time_step);
+    if (!simulation->setup.integrator->samples) {
+        put_number(writer, watch, "time", "tau", time);
+        put_number(writer, watch, "time step", "tau", simulation->setup.time_step);
+    }
     put_number(writer, watch, "set temperature", "T_0", simulation->setup.temperature);
     put_number(writer, watch, "beads", "", (double)simulation->particles.count);
     put_number(writer, watch, "steps a second", "", watch->rate);
-    if (!simulation_is_overdamped(&simulation->setup) && simulation->particles.count > 1)
+    if (simulation_has_velocities(&simulation->setup) && simulation->particles.count > 1)
         put_number(writer, watch, "temperature", "T_0", mf_simulation_temperature(simulation));
     put_samples(writer, watch);
     mf_live_view_publish(watch->view, LIVE_NUMBERS, writer);

@@ -403,6 +403,7 @@ static const char *const files[] = {"speeds.tsv", "collisions.tsv", "timing.tsv"
 const struct observable mf_collisions = {
     .name = "collisions",
     .summary = "of hard particles: pressure, collision rate, mean free path, speeds",
+    .of_time = true,
     .fields = fields,
     .settings_size = sizeof(struct settings),
     .state_size = sizeof(struct collisions),

@@ -170,6 +170,7 @@ static const char *const files[] = {"etd.tsv", "etd_error.tsv", "etd_bins.tsv", 
 const struct observable mf_etd_observable = {
     .name = "etd",
     .summary = "escape times of pairs",
+    .of_time = true,
     .fields = mf_etd_fields,
     .settings_size = sizeof(struct etd_settings),
     .state_size = sizeof(struct etd),

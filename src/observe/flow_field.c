@@ -272,6 +272,7 @@ static const char *const files[] = {"flow_field.tsv", NULL};
 const struct observable mf_flow_field = {
     .name = "flow_field",
     .summary = "flow of the solvent in the plane, and the drag on an obstacle",
+    .of_time = true,
     .of_solvent = true,
     .fields = fields,
     .settings_size = sizeof(struct settings),

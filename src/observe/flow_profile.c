@@ -401,6 +401,7 @@ static const char *const files[] = {"flow_profile.tsv", NULL};
 const struct observable mf_flow_profile = {
     .name = "flow_profile",
     .summary = "velocity of the solvent between plates or in a wave, its viscosity",
+    .of_time = true,
     .of_solvent = true,
     .fields = fields,
     .settings_size = sizeof(struct settings),

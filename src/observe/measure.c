@@ -39,6 +39,13 @@ static int64_t find_piece(const struct simulation *simulation,
     return wanted > 0 && wanted < most ? wanted : most;
 }
 
+/// Forces, sums and the list of the present configuration, of which sweeps of Monte Carlo compute
+/// nothing: for who looks at it.
+static enum status look(struct simulation *simulation) {
+    return simulation->setup.integrator->samples ? mf_simulation_compute_potential(simulation)
+                                                 : STATUS_OK;
+}
+
 /// Run until `step`, which a restart may already have passed.
 static enum status run_until(struct simulation *simulation, int64_t step,
                              const struct measure_plan *plan,
@@ -93,14 +100,17 @@ enum status mf_measure_settle(struct simulation *simulation, const struct measur
         TRY(run_until(simulation, end - 1, plan, listener));
         simulation->wants = last >= 0 ? PAIR_FORCES_AND_SUMS : PAIR_FORCES;
         TRY(run_until(simulation, end, plan, listener));
-        if (last >= 0)
+        if (last >= 0) {
+            if ((int64_t)simulation->step == end) // and not of a run that was resumed later
+                TRY(look(simulation));
             TRY(mf_thermodynamics_temperature(simulation, &ratios.above[last],
                                               &ratios.below[last]));
+        }
         tell(listener, simulation, plan);
     }
     const struct simulation_setup *setup = &simulation->setup;
-    *temperature = simulation_is_overdamped(setup) ? configurational(&ratios, setup->temperature)
-                                                   : kinetic(&ratios);
+    *temperature = simulation_has_velocities(setup) ? kinetic(&ratios)
+                                                    : configurational(&ratios, setup->temperature);
     return STATUS_OK;
 }
 
@@ -131,6 +141,7 @@ static enum status run_moving(struct simulation *simulation, int64_t step,
         TRY(run_until(simulation, due < step ? due : step, plan, listener));
         if (due > step)
             return STATUS_OK;
+        TRY(look(simulation));
         for (const struct observable_use *use = uses; use->observable; use++)
             if (use->observable->due && use->observable->due(use->state) == due)
                 TRY(use->observable->sample(use->state, simulation));
@@ -163,14 +174,16 @@ static bool wants_sums(const struct observable_use *uses) {
 }
 
 /// The last step before a sample. The force pass counts and sums what the sample needs; if that
-/// belongs to the middle of the step, a pass of the potential at its end does.
+/// belongs to the middle of the step, or the step has none, a pass of the potential at its end
+/// does.
 /// @param[out] counted  the observable that a force pass has counted for, or NULL
 static enum status run_sampled_step(struct simulation *simulation, int64_t due,
                                     const struct observable_use *uses,
                                     const struct measure_plan *plan,
                                     const struct observable_use **counted) {
     struct pair_law *law = &simulation->law;
-    const bool midway = simulation->setup.integrator->forces_midway;
+    const struct integrator *integrator = simulation->setup.integrator;
+    const bool midway = integrator->forces_midway || integrator->samples;
     *counted = NULL;
     const struct pair_histogram *histogram =
         !midway || potential_reaches(law) ? find_histogram(uses, counted) : NULL;
@@ -219,6 +232,9 @@ static enum status take_samples(struct simulation *simulation, const struct meas
 enum status mf_measure_sample(struct simulation *simulation, const struct measure_plan *plan,
                               const struct observable_use *uses,
                               const struct measure_listener *listener) {
+    const struct integrator *integrator = simulation->setup.integrator;
+    if (integrator->settle)
+        integrator->settle(simulation->integrator_state);
     simulation->transfer = find_transfer(uses);
     const enum status status = take_samples(simulation, plan, uses, listener);
     simulation->transfer = NULL;

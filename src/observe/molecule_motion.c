@@ -197,6 +197,7 @@ static const char *const files[] = {"molecule_motion.tsv", NULL};
 const struct observable mf_molecule_motion = {
     .name = "molecule_motion",
     .summary = "diffusion of the molecules' centres of mass",
+    .of_time = true,
     .fields = mf_motion_plan_fields,
     .settings_size = sizeof(struct motion_plan),
     .state_size = sizeof(struct state),

@@ -27,7 +27,8 @@ struct state {
     struct sample_blocks blocks;
     size_t room, lags, every; ///< room: for samples
     size_t most_beads;
-    double begin, time_step; ///< step of the first sample, Δt
+    double begin, time_step; ///< step of the first sample, Δt or 1 sweep
+    const char *clock;       ///< what tables call it
     double *gyration, *end;  ///< shape [kinds, room]: means over the molecules [λ²]
     double *ends;            ///< shape [lags + 1, molecules, 3]: the last end-to-end vectors [λ]
     double *products;        ///< shape [blocks, kinds, lags + 1]: sums of R(t)·R(0) [λ²]
@@ -94,13 +95,15 @@ static enum status begin(void *state, const void *settings, const struct simulat
         return mf_status_fail(STATUS_BAD_INPUT, "molecule_sizes: the scene has no molecules");
     const struct topology *topology = &molecules->topology;
     const size_t kinds = (size_t)topology->kinds, planned = (size_t)plan->samples;
+    const bool sweeps = setup->integrator && setup->integrator->samples;
     const size_t lags = (size_t)((const struct settings *)settings)->lags;
     *s = (struct state){.molecules = molecules,
                         .room = planned > 0 ? planned : FIRST_ROOM,
                         .lags = planned == 0 || lags < planned ? lags : planned - 1,
                         .every = (size_t)plan->every,
                         .begin = (double)plan->equilibration,
-                        .time_step = setup->time_step};
+                        .time_step = sweeps ? 1 : setup->time_step,
+                        .clock = sweeps ? "sweeps[1]" : "time[tau]"};
     for (size_t k = 0; k < kinds; k++)
         if ((size_t)topology->kind[k].beads > s->most_beads)
             s->most_beads = (size_t)topology->kind[k].beads;
@@ -243,7 +246,7 @@ static enum status write_sizes(const struct state *s, const struct observable_re
     NEW_ARRAY(time, s->blocks.taken);
     for (size_t k = 0; k < s->blocks.taken; k++)
         time[k] = (s->begin + (double)((k + 1) * s->every)) * s->time_step;
-    columns[n++] = (struct data_column){"time[tau]", time, NULL};
+    columns[n++] = (struct data_column){s->clock, time, NULL};
     for (int k = 0; k < topology->kinds; k++)
         for (int which = 0; which < 2; which++) {
             const double *series = which == 0 ? s->gyration : s->end;
@@ -298,7 +301,7 @@ static enum status write_correlation(const struct state *s,
     NEW_ARRAY(values, (1 + 2 * (size_t)topology->kinds) * row);
     for (size_t lag = 0; lag < row; lag++)
         values[lag] = (double)(lag * s->every) * s->time_step;
-    columns[n++] = (struct data_column){"time[tau]", values, NULL};
+    columns[n++] = (struct data_column){s->clock, values, NULL};
     for (int k = 0; k < topology->kinds; k++) {
         double *own = values + (1 + 2 * (size_t)k) * row;
         find_correlation(s, k, own);

@@ -34,7 +34,7 @@ static size_t complete_origins(const struct motion_plan *plan, size_t last) {
 
 /// Without velocities, and for beads in a solvent, the momentum of the particles is not conserved.
 static bool keeps_momentum(const struct simulation_setup *setup) {
-    return !simulation_is_overdamped(setup) && setup->integrator->companions == NULL;
+    return simulation_has_velocities(setup) && setup->integrator->companions == NULL;
 }
 
 static enum status allocate(struct motion *motion) {
@@ -77,7 +77,7 @@ enum status mf_motion_init_points(struct motion *motion, const struct motion_pla
 enum status mf_motion_init(struct motion *motion, const struct motion_plan *plan,
                            const struct simulation *simulation, int64_t begin, int64_t steps) {
     TRY(mf_motion_init_points(motion, plan, simulation, simulation->particles.count, begin, steps));
-    motion->flies = !simulation_is_overdamped(&simulation->setup);
+    motion->flies = simulation_has_velocities(&simulation->setup);
     return STATUS_OK;
 }
 

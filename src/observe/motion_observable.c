@@ -213,6 +213,7 @@ static const char *const files[] = {"motion.tsv", NULL};
 const struct observable mf_motion_observable = {
     .name = "motion",
     .summary = "diffusion",
+    .of_time = true,
     .fields = mf_motion_plan_fields,
     .settings_size = sizeof(struct motion_plan),
     .state_size = sizeof(struct motion),

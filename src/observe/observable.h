@@ -63,6 +63,7 @@ struct observable {
     const char *name;    ///< of its object in a scene file
     const char *summary; ///< for `mesofit describe`
     bool always;         ///< measured by `mesofit simulate` even if the scene does not name it
+    bool of_time;        ///< follows particles through time, or is about velocities
     bool of_solvent;     ///< of an integrator's own particles: the scene may have none
 
     const struct field *fields; ///< of the settings

@@ -264,6 +264,7 @@ static const char *const files[] = {"polarity.tsv", "polar_order.tsv", NULL};
 const struct observable mf_polarity_observable = {
     .name = "polarity",
     .summary = "directions: their order, how long they are kept, and where to",
+    .of_time = true,
     .fields = mf_motion_plan_fields,
     .settings_size = sizeof(struct motion_plan),
     .state_size = sizeof(struct polarity),

@@ -69,7 +69,7 @@ static enum status check(const struct simulation *simulation, bool driven) {
         if (!conserves_momentum(setup->interaction[k].kind))
             return mf_status_fail(STATUS_BAD_INPUT, "shear_viscosity: \"interactions\" other than "
                                                     "\"shear-wave\" do not conserve momentum");
-    if (driven && (setup->integrator->companions || simulation_is_overdamped(setup) ||
+    if (driven && (setup->integrator->companions || !simulation_has_velocities(setup) ||
                    !simulation_holds_temperature(setup)))
         return mf_status_fail(STATUS_BAD_INPUT,
                               "shear_viscosity: a wave heats the fluid, and \"%s\" has no friction "
@@ -426,6 +426,7 @@ static const char *const files[] = {"shear_viscosity.tsv", NULL};
 const struct observable mf_shear_viscosity = {
     .name = "shear_viscosity",
     .summary = "shear viscosity by Green and Kubo, or of the flow that \"shear-wave\" drives",
+    .of_time = true,
     .fields = fields,
     .settings_size = sizeof(struct settings),
     .state_size = sizeof(struct viscosity),

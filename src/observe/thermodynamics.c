@@ -45,7 +45,7 @@ enum status mf_thermodynamics_temperature(const struct simulation *simulation, d
                                           double *below) {
     *above = mf_simulation_temperature(simulation);
     *below = 1;
-    if (!simulation_is_overdamped(&simulation->setup) || simulation->law.potential == NULL)
+    if (simulation_has_velocities(&simulation->setup) || simulation->law.potential == NULL)
         return STATUS_OK;
     return configurational(simulation, above, below);
 }
@@ -170,7 +170,7 @@ static bool is_absurd(double temperature, double wanted) {
 enum status mf_thermodynamics_judge(const struct thermodynamics_summary *summary,
                                     const struct simulation_setup *setup) {
     const struct thermodynamics_summary *s = summary;
-    const bool flies = !simulation_is_overdamped(setup);
+    const bool flies = simulation_has_velocities(setup);
     // Walls and obstacles of a solvent push beads by no force that the positions would tell of.
     const bool positions = !isnan(s->temperature_configurational) && !setup->integrator->companions;
     const double wanted = simulation_holds_temperature(setup) ? setup->temperature : s->temperature;
@@ -184,9 +184,10 @@ enum status mf_thermodynamics_judge(const struct thermodynamics_summary *summary
         return STATUS_OK;
     if (!flies)
         return mf_status_fail(STATUS_UNSTABLE,
-                              "the temperature is %.3g by the positions, not %.3g: lower "
-                              "\"time_step\", or equilibrate for longer",
-                              s->temperature_configurational, wanted);
+                              "the temperature is %.3g by the positions, not %.3g: %sequilibrate "
+                              "for longer",
+                              s->temperature_configurational, wanted,
+                              setup->integrator->samples ? "" : "lower \"time_step\", or ");
     return mf_status_fail(
         STATUS_UNSTABLE,
         "the temperature is %.3g by the velocities and %.3g by the positions, not "

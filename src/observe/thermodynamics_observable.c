@@ -37,39 +37,43 @@ static enum status write(const void *state, const struct observable_results *res
     const double *energy = mf_thermodynamics_series(t, THERMODYNAMICS_POTENTIAL_ENERGY);
     const double *pressure = mf_thermodynamics_series(t, THERMODYNAMICS_PRESSURE);
     double *step = NULL, *time = NULL, *configurational = NULL, *physical[3] = {NULL};
+    const struct simulation_setup *setup = results->setup;
+    const bool sweeps = setup->integrator->samples; // in the place of times
+    const double time_step = sweeps ? 1 : setup->time_step;
     char path[OUTPUT_PATH_SIZE];
     NEW_ARRAY(step, t->samples);
     NEW_ARRAY(time, t->samples);
     NEW_ARRAY(configurational, t->samples);
     for (size_t k = 0; k < t->samples; k++) {
         step[k] = (double)(results->plan->equilibration + (int64_t)(k + 1) * results->plan->every);
-        time[k] = step[k] * results->setup->time_step;
+        time[k] = step[k] * time_step;
         configurational[k] = mf_thermodynamics_series(t, THERMODYNAMICS_FORCE_SQUARES)[k] /
                              mf_thermodynamics_series(t, THERMODYNAMICS_LAPLACIAN)[k];
     }
     // bar is a force on an area.
-    const bool known = mf_units_beside(units), in_space = results->setup->box.dimensions == 3;
+    const bool known = mf_units_beside(units), in_space = setup->box.dimensions == 3;
     physical[0] = mf_units_column(time, t->samples, known ? mf_units_time_ps(units) : 0);
     physical[1] =
         mf_units_column(energy, t->samples, known ? mf_units_energy_kj_per_mol(units) : 0);
     physical[2] = mf_units_column(pressure, t->samples, known ? mf_units_pressure_bar(units) : 0);
     CHECK(physical[0] && physical[1] && physical[2] ? STATUS_OK : STATUS_NO_MEMORY);
-    const struct data_column columns[] = {
+    enum { REDUCED = 6, PHYSICAL = 3 };
+    struct data_column columns[REDUCED + PHYSICAL] = {
         {"step", step, NULL},
-        {"time[tau]", time, NULL},
+        {sweeps ? "sweeps[1]" : "time[tau]", time, NULL},
         {"temperature[T_0]", mf_thermodynamics_series(t, THERMODYNAMICS_TEMPERATURE), "%.8g"},
         {"potential_energy[k_B.T_0]", energy, "%.12g"},
         {"pressure[k_B.T_0/lambda^d]", pressure, "%.8g"},
-        {"temperature_configurational[T_0]", configurational, "%.8g"},
-        {"time[ps]", physical[0], NULL},
-        {"potential_energy[kJ/mol]", physical[1], "%.8g"},
-        {"pressure[bar]", physical[2], "%.8g"}};
+        {"temperature_configurational[T_0]", configurational, "%.8g"}};
+    size_t n = REDUCED;
+    if (known && !sweeps)
+        columns[n++] = (struct data_column){"time[ps]", physical[0], NULL};
+    if (known)
+        columns[n++] = (struct data_column){"potential_energy[kJ/mol]", physical[1], "%.8g"};
+    if (known && in_space)
+        columns[n++] = (struct data_column){"pressure[bar]", physical[2], "%.8g"};
     mf_observable_file(results, "thermodynamics.tsv", path);
-    CHECK(mf_data_table_write_in(path, results->units, NULL, columns,
-                                 !known     ? 6
-                                 : in_space ? 9
-                                            : 8,
-                                 t->samples));
+    CHECK(mf_data_table_write_in(path, results->units, NULL, columns, n, t->samples));
 done:
     for (int k = 0; k < 3; k++)
         mf_memory_free(physical[k]);

@@ -360,7 +360,7 @@ static enum status write_configuration(const struct fit_file *fit,
         {"x[lambda]", "y[lambda]", "z[lambda]"},
         {"velocity_x[lambda/tau]", "velocity_y[lambda/tau]", "velocity_z[lambda/tau]"}};
     const struct simulation_setup *setup = &fit->scene.setup;
-    const int kinds = simulation_is_overdamped(setup) ? 1 : 2;
+    const int kinds = !simulation_has_velocities(setup) ? 1 : 2;
     struct data_column columns[6];
     char path[OUTPUT_PATH_SIZE];
     size_t n = 0;

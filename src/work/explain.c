@@ -2,17 +2,25 @@
 #include "work/explain.h"
 
 #include "base/simd.h"
+#include "dynamics/metropolis.h"
 #include "observe/hard_theory.h"
 
 #include <math.h>
 
 /// Nanoseconds, as those of observe/stages.h: of a particle and step, also with noise for each
 /// (`walk`); of a collision of hard particles with the crossings on the way to it; of a pair in
-/// range, whatever is computed of it; `remember`: for each mode of memory; `tell`: of its types.
+/// range, whatever is computed of it; `remember`: for each mode of memory; `tell`: of its types; of
+/// a move of Monte Carlo (`propose`), of its energy (`judge`) and of each neighbour (`meet`), and
+/// of what holds a bead in a molecule (`hold`).
 static const struct {
     double move, walk, collision, pair, conservative, dissipative, kept, remember, tell;
+    double propose, judge, meet, hold;
 } cost = {.move = 8,
           .walk = 30,
+          .propose = 55,
+          .judge = 100,
+          .meet = 1.7,
+          .hold = 100,
           .collision = 600,
           .pair = 0.9,
           .conservative = 0.3,
@@ -42,8 +50,29 @@ static void add_events(struct stages *stages, const struct simulation_setup *set
                   setup->integrator->name, rate * setup->time_step);
 }
 
+/// Sweeps, and what is computed for a sample besides.
+static void add_sweeps(struct stages *stages, const struct simulation_setup *setup, double every) {
+    const bool molecules = mf_molecules_find(setup->interaction, setup->interactions) != NULL;
+    const double cutoff = mf_stages_cutoff(setup), pairs = mf_stages_pairs_within(setup, cutoff);
+    const double reach = cutoff + mf_metropolis_skin(&setup->box, (double)setup->placement.count);
+    const double around = setup->potential ? 2 * mf_stages_pairs_within(setup, reach) : 0;
+    const double energy = setup->potential ? cost.judge + cost.meet * around : 0;
+    mf_stages_add(stages, "moves of beads", true,
+                  cost.propose + energy + (molecules ? cost.hold : 0),
+                  "%s, %.0f neighbours within reach of a move", setup->integrator->name, around);
+    mf_stages_add(stages, "moves of molecules", molecules, cost.hold + energy,
+                  molecules ? "one of each in a sweep: shifted, turned, or an arm of it"
+                            : "no molecules");
+    mf_stages_add(stages, "list building and forces", true,
+                  (mf_stages_cost.sort + (mf_stages_cost.build + mf_stages_cost.go_through +
+                                          cost.pair + cost.conservative) *
+                                             pairs) /
+                      every,
+                  "for what is measured, one sweep in %.0f", every);
+}
+
 static void add_motion(struct stages *stages, const struct simulation_setup *setup) {
-    const bool flies = !simulation_is_overdamped(setup);
+    const bool flies = simulation_has_velocities(setup);
     mf_stages_add(stages, "motion", true, flies ? cost.move : cost.walk,
                   "%s, and a watch over the %s", setup->integrator->name,
                   flies ? "velocities" : "steps");
@@ -167,6 +196,9 @@ void mf_explain_scene(FILE *out, const struct simulation_setup *setup, const str
     struct stages stages = {.units = units};
     if (setup->integrator->events) {
         add_events(&stages, setup);
+        add_interactions(&stages, setup);
+    } else if (setup->integrator->samples) {
+        add_sweeps(&stages, setup, (double)every);
     } else {
         add_motion(&stages, setup);
         add_companions(&stages, setup);
@@ -174,8 +206,8 @@ void mf_explain_scene(FILE *out, const struct simulation_setup *setup, const str
             add_list(&stages, setup);
         add_forces(&stages, setup);
         add_memory(&stages, setup);
+        add_interactions(&stages, setup);
     }
-    add_interactions(&stages, setup);
     add_observables(&stages, setup, uses, (double)every);
     if (!simulation_holds_temperature(setup) && !setup->integrator->events)
         mf_stages_add(&stages, "thermostat", false, 0, "nothing holds the temperature");

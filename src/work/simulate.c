@@ -128,7 +128,7 @@ static void tell(void *context, const struct simulation *simulation, uint64_t do
     const struct units *units = &run->scene.units;
     char text[96], unit[UNITS_NAME_SIZE];
     snprintf(text, sizeof text, "step %llu", (unsigned long long)done);
-    if (!simulation_is_overdamped(&simulation->setup) && simulation->particles.count > 1)
+    if (simulation_has_velocities(&simulation->setup) && simulation->particles.count > 1)
         snprintf(text, sizeof text, "step %llu  T %.*f%s", (unsigned long long)done,
                  !mf_units_speaks(units) ? 3 : 1,
                  mf_simulation_temperature(simulation) * mf_units_factor(units, "T_0"),
@@ -166,6 +166,16 @@ static struct observable_results results_of(const struct run *run) {
                                        .use = run->observables.use};
 }
 
+/// What the integrator tells of itself.
+static void put_numbers(const struct simulation *simulation, struct json_writer *writer) {
+    const struct integrator *integrator = simulation->setup.integrator;
+    struct integrator_number number[INTEGRATOR_NUMBERS];
+    const size_t count =
+        integrator->numbers ? integrator->numbers(simulation->integrator_state, number) : 0;
+    for (size_t k = 0; k < count; k++)
+        mf_json_put_number(writer, number[k].name, number[k].value);
+}
+
 static enum status write_summary(const struct run *run, double seconds) {
     const struct observable_results results = results_of(run);
     struct json_writer *writer = mf_json_writer_create();
@@ -178,6 +188,7 @@ static enum status write_summary(const struct run *run, double seconds) {
     mf_simulate_changes_put(&run->changes, writer);
     mf_json_put_number(writer, "steps_per_second",
                        (double)(run->simulation.step - run->progress.done_before) / seconds);
+    put_numbers(&run->simulation, writer);
     mf_simulate_observables_put(&run->observables, &results, writer);
     mf_json_put_number(writer, "seed", (double)run->heading.seed);
     mf_json_put_text(writer, "version", MESOFIT_VERSION);

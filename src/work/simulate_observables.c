@@ -9,6 +9,15 @@ static bool is_usual(const struct observable *observable, const struct simulatio
            (observable != &mf_rdf_observable || mf_simulation_range(setup) > 0);
 }
 
+/// Monte Carlo goes through configurations in no time.
+static void check_time(const struct observable *observable, const struct integrator *integrator,
+                       struct json_object *root) {
+    if (observable->of_time && integrator && integrator->samples)
+        mf_json_fault(root, observable->name,
+                      "\"%s\" knows neither time nor velocities; leave it out, or take dynamics",
+                      integrator->name);
+}
+
 enum status mf_simulate_observables_read(struct simulate_observables *observables,
                                          struct json_object *root,
                                          const struct simulation_setup *setup) {
@@ -22,6 +31,7 @@ enum status mf_simulate_observables_read(struct simulate_observables *observable
             object = mf_json_child(root, observable->name, false);
         if (object.item == NULL && !is_usual(observable, setup))
             continue;
+        check_time(observable, setup->integrator, root);
         if (lonely && !observable->of_solvent)
             mf_json_fault(root, observable->name, "there are fewer than two particles to measure");
         use->observable = observable;

@@ -143,16 +143,24 @@ static void end_block(struct found *found, double (*sum)[MOST]) {
     }
 }
 
-static void by_dynamics(const struct melt *melt, struct found *found) {
+/// By the integrator of the melt, or another without friction; `every` steps or sweeps.
+static void by_simulation(const struct melt *melt, const struct integrator *integrator,
+                          uint64_t equilibration, uint64_t every, struct found *found) {
+    struct simulation_setup setup = melt->fluid.setup;
     struct simulation simulation;
     found_init(found);
-    assert_ok(mf_simulation_init(&simulation, &melt->fluid.setup, NULL));
-    assert_ok(mf_simulation_run(&simulation, 3000));
+    if (setup.integrator != integrator)
+        setup.omega = NULL;
+    setup.integrator = integrator;
+    assert_ok(mf_simulation_init(&simulation, &setup, NULL));
+    assert_ok(mf_simulation_run(&simulation, equilibration));
+    if (integrator->settle)
+        integrator->settle(simulation.integrator_state);
     for (int block = 0; block < BLOCKS; block++) {
         double sum[KINDS][MOST] = {{0}};
         for (int n = 0; n < SAMPLES; n++) {
             simulation.wants = PAIR_FORCES;
-            assert_ok(mf_simulation_run(&simulation, 60));
+            assert_ok(mf_simulation_run(&simulation, every));
             assert_ok(mf_simulation_compute_potential(&simulation));
             measure(melt, &simulation.particles, &simulation.sums, sum);
         }
@@ -192,7 +200,7 @@ static void by_sampler(const struct melt *melt, enum sampler_kind kind, uint64_t
     mf_sampler_clear(&sampler);
 }
 
-/// 15 probabilities, each below 1e-4 once in 10,000 seeds: a false alarm in some 700.
+/// 20 probabilities, each below 1e-4 once in 10,000 seeds: a false alarm in some 500.
 static void compare(const char *name, const struct found *a, const struct found *b) {
     for (int k = 0; k < KINDS; k++) {
         const double p = hotelling_two_samples(&a->of[k], &b->of[k]);
@@ -205,17 +213,20 @@ static void compare(const char *name, const struct found *a, const struct found 
 static void test_moves_trajectories_and_dynamics_sample_one_melt(void **state) {
     (void)state;
     struct melt melt;
-    struct found dynamics, moves, trajectories;
+    struct found dynamics, moves, trajectories, sweeps;
     make_melt(&melt);
     by_sampler(&melt, SAMPLER_MONTE_CARLO, 15, &moves);
     by_sampler(&melt, SAMPLER_DYNAMICS, 6, &trajectories);
-    by_dynamics(&melt, &dynamics);
+    by_simulation(&melt, &mf_aboba, 3000, 60, &dynamics);
+    by_simulation(&melt, &mf_monte_carlo, 900, 15, &sweeps);
     compare("moves and trajectories", &moves, &trajectories);
     compare("moves and dynamics", &moves, &dynamics);
     compare("trajectories and dynamics", &trajectories, &dynamics);
+    compare("sweeps of a simulation and dynamics", &sweeps, &dynamics);
     found_clear(&moves);
     found_clear(&trajectories);
     found_clear(&dynamics);
+    found_clear(&sweeps);
     clear_melt(&melt);
 }
 

@@ -124,6 +124,27 @@ static void test_own_force_holds_particles_as_equipartition_says(void **state) {
     mesofit_simulation_free(simulation);
 }
 
+static void test_own_force_is_refused_when_moves_would_not_feel_it(void **state) {
+    (void)state;
+    double stiffness = 4;
+    struct mesofit_means means;
+    struct mesofit_scene scene = small_scene();
+    scene.dissipative = (struct mesofit_law){0};
+    scene.integrator = "monte-carlo";
+    struct mesofit_simulation *simulation = mesofit_simulation_create(&scene);
+    assert_non_null(simulation);
+    assert_int_equal(mesofit_simulation_run(simulation, 100), MESOFIT_OK);
+    assert_int_equal(mesofit_simulation_means(simulation, 20, 5, &means), MESOFIT_OK);
+    assert_true(means.energy > 0);
+    mesofit_simulation_set_force(simulation, pull, &stiffness);
+    assert_int_equal(mesofit_simulation_run(simulation, 1), MESOFIT_BAD_INPUT);
+    assert_contains(mesofit_message(), "monte-carlo");
+    assert_int_equal(mesofit_simulation_means(simulation, 20, 5, &means), MESOFIT_BAD_INPUT);
+    mesofit_simulation_set_force(simulation, NULL, NULL);
+    assert_int_equal(mesofit_simulation_run(simulation, 1), MESOFIT_OK);
+    mesofit_simulation_free(simulation);
+}
+
 static double found[2];
 
 static void *run_in_thread(void *number) {
@@ -306,6 +327,7 @@ int main(void) {
         cmocka_unit_test(test_faults_are_told_and_not_printed),
         cmocka_unit_test(test_scene_reads_its_table_from_memory),
         cmocka_unit_test(test_own_force_holds_particles_as_equipartition_says),
+        cmocka_unit_test(test_own_force_is_refused_when_moves_would_not_feel_it),
         cmocka_unit_test(test_simulations_of_two_threads_are_those_of_one),
         cmocka_unit_test(test_inversion_has_no_coefficients),
         cmocka_unit_test(test_fit_begins_at_its_base),
