@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "forces/bonded.h"
 
+#include "base/lanes.h"
 #include "base/simd.h"
 
 #include <math.h>
@@ -13,18 +14,16 @@ __attribute__((simd("notinbranch"))) extern double atan2(double y, double x);
 #endif
 #endif
 
-#define INLINE static inline __attribute__((always_inline))
-
-enum { LANES = BONDED_LANES, TERMS = BONDED_BATCH / BONDED_LANES, MOST_ARMS = BONDED_KINDS };
+enum { WIDTH = BONDED_LANES, TERMS = BONDED_BATCH / WIDTH, MOST_ARMS = BONDED_KINDS };
 
 /// Where a sine, or a product of lengths that it is measured by, is below this there is no
 /// direction: that of a cross product is then rounding.
 static const double no_direction = 1e-9;
 
 /// All lanes, which a compiler spreads over as many registers as it takes.
-typedef double lanes __attribute__((vector_size(sizeof(double) * LANES)));
+typedef double lanes __attribute__((vector_size(sizeof(double) * WIDTH)));
 
-/// Component d of number n is [d][n]; term t in lane l is number t · LANES + l.
+/// Component d of number n is [d][n]; term t in lane l is number t · WIDTH + l.
 typedef double vectors[3][BONDED_BATCH];
 
 /// The arms of a term are differences of its beads: of a bond r_0 − r_1; of an angle that and
@@ -41,25 +40,25 @@ static const struct arm arms[BONDED_KINDS][MOST_ARMS] = {
 
 /// Terms that are worked on together. Forces on the arms take the place of the arms.
 struct batch {
+    _Alignas(MEMORY_ALIGNMENT) vectors arm[MOST_ARMS];
+    double q[BONDED_BATCH], slope[BONDED_BATCH];
     int order;
     int count; ///< of numbers
-    vectors arm[MOST_ARMS];
-    double q[BONDED_BATCH], slope[BONDED_BATCH];
 };
 
 // Vectors -----------------------------------------------------------------------------------------
 
-INLINE double dot(const double a[3], const double b[3]) {
+LANES_INLINE double dot(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-INLINE void cross(const double a[3], const double b[3], double product[3]) {
+LANES_INLINE void cross(const double a[3], const double b[3], double product[3]) {
     product[0] = a[1] * b[2] - a[2] * b[1];
     product[1] = a[2] * b[0] - a[0] * b[2];
     product[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-INLINE void take(const vectors from, int n, double vector[3]) {
+LANES_INLINE void take(const vectors from, int n, double vector[3]) {
     for (int d = 0; d < 3; d++)
         vector[d] = from[d][n];
 }
@@ -72,26 +71,34 @@ SIMD_CLONES void mf_bonded_take(struct bonded_beads *beads, const struct particl
     const double *z = particles->position[2];
     beads->box = &particles->box;
     memset(beads->force, 0, (size_t)count * sizeof *beads->force);
-    for (int b = 0; b < count; b++, place += LANES)
-        for (int l = 0; l < LANES; l++) {
+    for (int b = 0; b < count; b++, place += WIDTH)
+        for (int l = 0; l < WIDTH; l++) {
             beads->position[b][0][l] = x[place[l]];
             beads->position[b][1][l] = y[place[l]];
             beads->position[b][2][l] = z[place[l]];
         }
 }
 
+SIMD_CLONES void mf_bonded_give_sums(const struct bonded_beads *beads, struct particles *particles,
+                                     const int32_t *place, int count, int used) {
+    lanes_double4 *sum = (lanes_double4 *)particles->kernel_force;
+    for (int b = 0; b < count; b++, place += WIDTH)
+        for (int l = 0; l < used; l++)
+            sum[place[l]] += (lanes_double4){beads->force[b][0][l], beads->force[b][1][l],
+                                             beads->force[b][2][l], 0};
+}
+
 void mf_bonded_give(const struct bonded_beads *beads, struct particles *particles,
                     const int32_t *place, int count, int used) {
-    double *const *force = particles->force;
-    for (int b = 0; b < count; b++, place += LANES)
+    for (int b = 0; b < count; b++, place += WIDTH)
         for (int l = 0; l < used; l++)
             for (int d = 0; d < particles->box.dimensions; d++)
-                force[d][place[l]] += beads->force[b][d][l];
+                particles->force[d][place[l]] += beads->force[b][d][l];
 }
 
 /// The arms of terms, to the nearest images (box_nearest).
-INLINE void stretch_arms(struct batch *batch, const struct bonded_beads *beads, const int *bead,
-                         const int order, int terms) {
+LANES_INLINE void stretch_arms(struct batch *batch, const struct bonded_beads *beads,
+                               const int *bead, const int order, int terms) {
     static const double large = 0x1.8p52; // leaves no room for a fraction
     const double *length = beads->box->length;
     const double inverse[3] = {1 / length[0], 1 / length[1], 1 / length[2]};
@@ -103,24 +110,24 @@ INLINE void stretch_arms(struct batch *batch, const struct bonded_beads *beads, 
                 memcpy(&to, beads->position[bead[arms[order][k].to]][d], sizeof to);
                 const lanes apart = from - to, boxes = apart * inverse[d] + large - large;
                 const lanes arm = apart - length[d] * boxes;
-                memcpy(batch->arm[k][d] + t * LANES, &arm, sizeof arm);
+                memcpy(batch->arm[k][d] + t * WIDTH, &arm, sizeof arm);
             }
 }
 
-INLINE void push_bead(double *force, lanes push) {
+LANES_INLINE void push_bead(double *force, lanes push) {
     lanes sum;
     memcpy(&sum, force, sizeof sum);
     sum += push;
     memcpy(force, &sum, sizeof sum);
 }
 
-INLINE void push_beads(const struct batch *batch, struct bonded_beads *beads, const int *bead,
-                       const int order, int terms) {
+LANES_INLINE void push_beads(const struct batch *batch, struct bonded_beads *beads, const int *bead,
+                             const int order, int terms) {
     for (int t = 0; t < terms; t++, bead += order + 2)
         for (int k = 0; k <= order; k++)
             for (int d = 0; d < 3; d++) {
                 lanes push;
-                memcpy(&push, batch->arm[k][d] + t * LANES, sizeof push);
+                memcpy(&push, batch->arm[k][d] + t * WIDTH, sizeof push);
                 push_bead(beads->force[bead[arms[order][k].from]][d], push);
                 push_bead(beads->force[bead[arms[order][k].to]][d], -push);
             }
@@ -128,13 +135,13 @@ INLINE void push_beads(const struct batch *batch, struct bonded_beads *beads, co
 
 // Bonds -------------------------------------------------------------------------------------------
 
-INLINE void measure_bonds(struct batch *batch) {
+LANES_INLINE void measure_bonds(struct batch *batch) {
     const double *x = batch->arm[0][0], *y = batch->arm[0][1], *z = batch->arm[0][2];
     for (int n = 0; n < batch->count; n++)
         batch->q[n] = sqrt(x[n] * x[n] + y[n] * y[n] + z[n] * z[n]);
 }
 
-INLINE void find_pulls(struct batch *batch) {
+LANES_INLINE void find_pulls(struct batch *batch) {
     for (int n = 0; n < batch->count; n++) {
         const double pull = batch->q[n] > 0 ? -batch->slope[n] / batch->q[n] : 0;
         for (int d = 0; d < 3; d++)
@@ -145,7 +152,7 @@ INLINE void find_pulls(struct batch *batch) {
 // Angles ------------------------------------------------------------------------------------------
 
 /// θ between a = r_0 − r_1 and b = r_2 − r_1, by its sine and cosine, exact at all angles.
-INLINE void measure_angles(struct batch *batch) {
+LANES_INLINE void measure_angles(struct batch *batch) {
     for (int n = 0; n < batch->count; n++) {
         double a[3], b[3], normal[3];
         take(batch->arm[0], n, a);
@@ -157,7 +164,7 @@ INLINE void measure_angles(struct batch *batch) {
 
 /// With p = a × b, ∂θ/∂a = a × p/(a² |p|) and ∂θ/∂b = p × b/(b² |p|), away from each other in their
 /// plane.
-INLINE void find_turns(struct batch *batch) {
+LANES_INLINE void find_turns(struct batch *batch) {
     for (int n = 0; n < batch->count; n++) {
         double a[3], b[3], p[3], first[3], last[3];
         take(batch->arm[0], n, a);
@@ -179,7 +186,7 @@ INLINE void find_turns(struct batch *batch) {
 // A. Blondel and M. Karplus, J. Comput. Chem. 17, 1132 (1996): with A = F × G and B = H × G nothing
 // is divided by the sine of φ.
 
-INLINE void measure_dihedrals(struct batch *batch) {
+LANES_INLINE void measure_dihedrals(struct batch *batch) {
     for (int n = 0; n < batch->count; n++) {
         double f[3], g[3], h[3], a[3], b[3], turn[3];
         take(batch->arm[0], n, f);
@@ -193,7 +200,7 @@ INLINE void measure_dihedrals(struct batch *batch) {
 }
 
 /// Their eq. 27.
-INLINE void find_twists(struct batch *batch) {
+LANES_INLINE void find_twists(struct batch *batch) {
     static const double least = no_direction * no_direction;
     for (int n = 0; n < batch->count; n++) {
         double f[3], g[3], h[3], a[3], b[3];
@@ -216,8 +223,8 @@ INLINE void find_twists(struct batch *batch) {
 
 // Terms -------------------------------------------------------------------------------------------
 
-INLINE void measure(struct batch *batch, const struct bonded_beads *beads, const int *bead,
-                    const int order, int terms) {
+LANES_INLINE void measure(struct batch *batch, const struct bonded_beads *beads, const int *bead,
+                          const int order, int terms) {
     stretch_arms(batch, beads, bead, order, terms);
     if (order == BONDED_BOND)
         measure_bonds(batch);
@@ -227,8 +234,8 @@ INLINE void measure(struct batch *batch, const struct bonded_beads *beads, const
         measure_dihedrals(batch);
 }
 
-INLINE void push(struct batch *batch, struct bonded_beads *beads, const int *bead, const int order,
-                 int terms) {
+LANES_INLINE void push(struct batch *batch, struct bonded_beads *beads, const int *bead,
+                       const int order, int terms) {
     if (order == BONDED_BOND)
         find_pulls(batch);
     else if (order == BONDED_ANGLE)
@@ -263,7 +270,7 @@ SIMD_CLONES static void push_terms(struct batch *batch, struct bonded_beads *bea
 static void add_sums(const struct bonded_terms *terms, const struct batch *batch,
                      const double *energy, struct bonded_sums *sums) {
     for (int n = 0; n < batch->count; n++)
-        if (n % LANES < terms->lanes) {
+        if (n % WIDTH < terms->lanes) {
             sums->energy += energy[n];
             if (batch->order == BONDED_BOND)
                 sums->virial -= batch->slope[n] * batch->q[n];
@@ -274,7 +281,7 @@ static void add_transfer(const struct bonded_terms *terms, const vectors *arm,
                          const struct batch *forces, struct bonded_sums *sums) {
     for (int k = 0; k <= forces->order; k++)
         for (int n = 0; n < forces->count; n++)
-            for (int a = 0; a < 3 && n % LANES < terms->lanes; a++)
+            for (int a = 0; a < 3 && n % WIDTH < terms->lanes; a++)
                 for (int b = 0; b < 3; b++)
                     sums->transfer[a][b] += arm[k][a][n] * forces->arm[k][b][n];
 }
@@ -303,7 +310,7 @@ static void add_batch(const struct bonded_terms *terms, const int *bead, int cou
     double energy[BONDED_BATCH];
     vectors arm[MOST_ARMS];
     batch.order = terms->order;
-    batch.count = count * LANES;
+    batch.count = count * WIDTH;
     measure_terms(&batch, beads, bead, count);
     if (law->slopes && !terms->sums)
         law->slopes(terms->curve->parameters, (size_t)batch.count, batch.q, batch.slope);
@@ -339,8 +346,8 @@ void mf_bonded_measure(int order, size_t count, const int32_t *place,
     batch.order = order;
     beads.box = &particles->box;
     memset(beads.position, 0, each * sizeof *beads.position);
-    for (size_t done = 0; done < count; done += LANES) {
-        const size_t some = count - done < LANES ? count - done : LANES;
+    for (size_t done = 0; done < count; done += WIDTH) {
+        const size_t some = count - done < WIDTH ? count - done : WIDTH;
         for (size_t n = 0; n < some * each; n++)
             for (int d = 0; d < 3; d++)
                 beads.position[n % each][d][n / each] =

@@ -19,9 +19,9 @@ enum {
 typedef double bonded_vector[3][BONDED_LANES];
 
 struct bonded_beads {
+    _Alignas(MEMORY_ALIGNMENT) bonded_vector position[BONDED_MOST_BEADS]; ///< [λ]
+    bonded_vector force[BONDED_MOST_BEADS]; ///< of the terms [k_B T_0/λ]
     const struct box *box;
-    bonded_vector position[BONDED_MOST_BEADS]; ///< [λ]
-    bonded_vector force[BONDED_MOST_BEADS];    ///< of the terms [k_B T_0/λ]
 };
 
 /// What is added over terms.
@@ -56,9 +56,12 @@ void mf_bonded_take(struct bonded_beads *beads, const struct particles *particle
 void mf_bonded_add(const struct bonded_terms *terms, struct bonded_beads *beads,
                    struct bonded_sums *sums);
 
-/// Add the forces of beads in the lanes that are used to particles->force.
+/// Add the forces of beads in the lanes that are used to particles->force, or to the sums of the
+/// pair kernels: one place for a bead instead of three.
 void mf_bonded_give(const struct bonded_beads *beads, struct particles *particles,
                     const int32_t *place, int count, int used);
+void mf_bonded_give_sums(const struct bonded_beads *beads, struct particles *particles,
+                         const int32_t *place, int count, int used);
 
 /// Lengths [λ], angles or dihedrals [rad] of terms at the present positions, shape [count]: what
 /// the laws are given. Any of the three orders of terms (beads − 2).

@@ -104,8 +104,8 @@ static void add_blocks(void *context, size_t begin_block, size_t end_block) {
             const int32_t *place = layout->place + bundle->row * BONDED_LANES;
             mf_bonded_take(&beads, sweep->pass->particles, place, bundle->motif->beads);
             add_terms(sweep, bundle, &beads, &sweep->sums[block]);
-            mf_bonded_give(&beads, sweep->pass->particles, place, bundle->motif->beads,
-                           bundle->lanes);
+            (sweep->pass->before_pairs ? mf_bonded_give_sums : mf_bonded_give)(
+                &beads, sweep->pass->particles, place, bundle->motif->beads, bundle->lanes);
         }
 }
 
@@ -155,6 +155,7 @@ const struct interaction mf_molecules = {
     .summary = "bonds, angles and dihedrals",
     .state_size = sizeof(struct state),
     .cost = 6,
+    .before_pairs = true,
     .begin = begin,
     .clear = clear,
     .add = add,
