@@ -63,9 +63,9 @@ static const double straight = 1e-4;
 SIMD_CLONES static void fene_slopes(const void *parameters, size_t count, const double *r,
                                     double *slope) {
     const struct fene p = *(const struct fene *)parameters;
-    const double last = p.longest * sqrt(1 - straight);
+    const double last = p.longest * sqrt(1 - straight), inverse = 1 / p.longest;
     for (size_t n = 0; n < count; n++) {
-        const double x = r[n] < last ? r[n] : last, share = x / p.longest;
+        const double x = r[n] < last ? r[n] : last, share = x * inverse;
         slope[n] = p.k * x / (1 - share * share);
     }
 }
