@@ -60,15 +60,25 @@ struct fene {
 /// a ring that was placed open is closed (mf_relax_overlaps). No bond gets there later.
 static const double straight = 1e-4;
 
+SIMD_CLONES static void fene_slopes(const void *parameters, size_t count, const double *r,
+                                    double *slope) {
+    const struct fene p = *(const struct fene *)parameters;
+    const double last = p.longest * sqrt(1 - straight), inverse = 1 / p.longest;
+    for (size_t n = 0; n < count; n++) {
+        const double x = r[n] < last ? r[n] : last, share = x * inverse;
+        slope[n] = p.k * x / (1 - share * share);
+    }
+}
+
 SIMD_CLONES static void fene_evaluate(const void *parameters, size_t count, const double *r,
                                       double *energy, double *slope) {
     const struct fene p = *(const struct fene *)parameters;
     const double last = p.longest * sqrt(1 - straight);
+    fene_slopes(parameters, count, r, slope);
     for (size_t n = 0; n < count; n++) {
         const double x = r[n] < last ? r[n] : last, share = x / p.longest;
-        const double left = 1 - share * share;
-        slope[n] = p.k * x / left;
-        energy[n] = -0.5 * p.k * p.longest * p.longest * log(left) + slope[n] * (r[n] - x);
+        energy[n] =
+            -0.5 * p.k * p.longest * p.longest * log(1 - share * share) + slope[n] * (r[n] - x);
     }
 }
 
@@ -99,6 +109,7 @@ const struct bonded_law mf_bond_fene = {
     .fields = fene_fields,
     .size = sizeof(struct fene),
     .evaluate = fene_evaluate,
+    .slopes = fene_slopes,
     .rest = fene_rest,
     .longest = fene_longest,
 };

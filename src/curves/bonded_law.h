@@ -20,6 +20,8 @@ struct bonded_law {
     /// Energies U [k_B T_0] and slopes dU/dq at `count` values of q. Finite for all q.
     void (*evaluate)(const void *parameters, size_t count, const double *q, double *energy,
                      double *slope);
+    /// The slopes alone, of the same bits; NULL: energies cost little beside them.
+    void (*slopes)(const void *parameters, size_t count, const double *q, double *slope);
     double (*rest)(const void *parameters); ///< q at which a molecule begins
     /// Length at which a bond tears [λ]; NULL: it never does.
     double (*longest)(const void *parameters);

@@ -295,13 +295,23 @@ static enum status refresh_list(struct simulation *simulation) {
     return STATUS_OK;
 }
 
-/// A pass over the interactions from number `first` on.
-static enum status pass_over(const struct simulation *simulation, int first,
+static enum status act(const struct interaction_use *use, const struct interaction_pass *pass) {
+    return use->choice.kind->add(use->choice.parameters, use->state, pass);
+}
+
+/// A pass over all interactions, which replaces forces and sums.
+static enum status pass_over(const struct simulation *simulation,
                              const struct interaction_pass *pass) {
-    for (int k = first; k < simulation->interactions; k++) {
-        const struct interaction_use *use = &simulation->interaction[k];
-        TRY(use->choice.kind->add(use->choice.parameters, use->state, pass));
-    }
+    struct interaction_pass before = *pass;
+    before.before_pairs = true;
+    *pass->sums = (struct pair_sums){0};
+    mf_pair_clear(pass->particles);
+    for (int k = 0; k < simulation->interactions; k++)
+        if (simulation->interaction[k].choice.kind->before_pairs)
+            TRY(act(&simulation->interaction[k], &before));
+    for (int k = 0; k < simulation->interactions; k++)
+        if (!simulation->interaction[k].choice.kind->before_pairs)
+            TRY(act(&simulation->interaction[k], pass));
     return STATUS_OK;
 }
 
@@ -321,13 +331,13 @@ enum status mf_simulation_compute_forces(struct simulation *simulation, double a
     law.transfer = simulation->transfer;
     begin = count_ticks(simulation, SIMULATION_LIST, begin);
     mf_orientation_clear_torques(particles);
-    const enum status status = pass_over(simulation, 0,
-                                         &(struct interaction_pass){.law = &law,
-                                                                    .particles = particles,
-                                                                    .neighbours = neighbours,
-                                                                    .step = simulation->step,
-                                                                    .wants = simulation->wants,
-                                                                    .sums = &simulation->sums});
+    const enum status status =
+        pass_over(simulation, &(struct interaction_pass){.law = &law,
+                                                         .particles = particles,
+                                                         .neighbours = neighbours,
+                                                         .step = simulation->step,
+                                                         .wants = simulation->wants,
+                                                         .sums = &simulation->sums});
     mf_transfer_collect(law.transfer, neighbours->parts, simulation->setup.time_step);
     count_ticks(simulation, SIMULATION_FORCES, begin);
     return status;
@@ -335,14 +345,13 @@ enum status mf_simulation_compute_forces(struct simulation *simulation, double a
 
 enum status mf_simulation_compute_potential(struct simulation *simulation) {
     TRY(refresh_list(simulation));
-    return pass_over(simulation, 0,
-                     &(struct interaction_pass){.law = &simulation->law,
-                                                .particles = &simulation->particles,
-                                                .neighbours = &simulation->neighbours,
-                                                .step = simulation->step,
-                                                .conservative = true,
-                                                .wants = PAIR_FORCES_AND_SUMS,
-                                                .sums = &simulation->sums});
+    return pass_over(simulation, &(struct interaction_pass){.law = &simulation->law,
+                                                            .particles = &simulation->particles,
+                                                            .neighbours = &simulation->neighbours,
+                                                            .step = simulation->step,
+                                                            .conservative = true,
+                                                            .wants = PAIR_FORCES_AND_SUMS,
+                                                            .sums = &simulation->sums});
 }
 
 enum status mf_simulation_forces_beside(const struct simulation *simulation,
@@ -350,13 +359,15 @@ enum status mf_simulation_forces_beside(const struct simulation *simulation,
     struct particles elsewhere = simulation->particles;
     for (int d = 0; d < elsewhere.box.dimensions; d++)
         elsewhere.force[d] = force[d];
-    return pass_over(simulation, 1,
-                     &(struct interaction_pass){.law = &simulation->law,
-                                                .particles = &elsewhere,
-                                                .neighbours = &simulation->neighbours,
-                                                .step = simulation->step,
-                                                .conservative = true,
-                                                .wants = PAIR_FORCES});
+    const struct interaction_pass pass = {.law = &simulation->law,
+                                          .particles = &elsewhere,
+                                          .neighbours = &simulation->neighbours,
+                                          .step = simulation->step,
+                                          .conservative = true,
+                                          .wants = PAIR_FORCES};
+    for (int k = 1; k < simulation->interactions; k++)
+        TRY(act(&simulation->interaction[k], &pass));
+    return STATUS_OK;
 }
 
 /// Σ m v² tells at once of NaN, overflow and a runaway temperature; what drifts as a whole is asked

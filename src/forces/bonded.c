@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "forces/bonded.h"
 
+#include "base/lanes.h"
 #include "base/simd.h"
 
 #include <math.h>
@@ -13,273 +14,346 @@ __attribute__((simd("notinbranch"))) extern double atan2(double y, double x);
 #endif
 #endif
 
-#define INLINE static inline __attribute__((always_inline))
+enum { WIDTH = BONDED_LANES, TERMS = BONDED_BATCH / WIDTH, MOST_ARMS = BONDED_KINDS };
 
 /// Where a sine, or a product of lengths that it is measured by, is below this there is no
 /// direction: that of a cross product is then rounding.
 static const double no_direction = 1e-9;
 
+/// All lanes, which a compiler spreads over as many registers as it takes.
+typedef double lanes __attribute__((vector_size(sizeof(double) * WIDTH)));
+
+/// Component d of number n is [d][n]; term t in lane l is number t · WIDTH + l.
+typedef double vectors[3][BONDED_BATCH];
+
+/// The arms of a term are differences of its beads: of a bond r_0 − r_1; of an angle that and
+/// r_2 − r_1; of a dihedral F = r_0 − r_1, G = r_1 − r_2 and H = r_3 − r_2. A force on an arm is
+/// one on its first bead, and the opposite one on the other.
+struct arm {
+    int from, to;
+};
+static const struct arm arms[BONDED_KINDS][MOST_ARMS] = {
+    [BONDED_BOND] = {{0, 1}},
+    [BONDED_ANGLE] = {{0, 1}, {2, 1}},
+    [BONDED_DIHEDRAL] = {{0, 1}, {1, 2}, {3, 2}},
+};
+
+/// Terms that are worked on together. Forces on the arms take the place of the arms.
+struct batch {
+    _Alignas(MEMORY_ALIGNMENT) vectors arm[MOST_ARMS];
+    double q[BONDED_BATCH], slope[BONDED_BATCH];
+    int order;
+    int count; ///< of numbers
+};
+
 // Vectors -----------------------------------------------------------------------------------------
 
-INLINE void separate(const struct particles *particles, const int32_t *place, const int beads,
-                     const int a, const int b, size_t count, bonded_vectors to) {
-    for (int d = 0; d < 3; d++) {
-        const double length = particles->box.length[d], inverse = 1 / length;
-        const double *restrict x = particles->position[d];
-        for (size_t n = 0; n < count; n++) {
-            const size_t at = n * (size_t)beads;
-            const double apart = x[place[at + (size_t)a]] - x[place[at + (size_t)b]];
-            to[d][n] = apart - length * rint(apart * inverse);
-        }
-    }
-}
-
-INLINE double dot(const double a[3], const double b[3]) {
+LANES_INLINE double dot(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-INLINE void cross(const double a[3], const double b[3], double product[3]) {
+LANES_INLINE void cross(const double a[3], const double b[3], double product[3]) {
     product[0] = a[1] * b[2] - a[2] * b[1];
     product[1] = a[2] * b[0] - a[0] * b[2];
     product[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-INLINE void take(const bonded_vectors from, size_t n, double vector[3]) {
+LANES_INLINE void take(const vectors from, int n, double vector[3]) {
     for (int d = 0; d < 3; d++)
         vector[d] = from[d][n];
 }
 
-INLINE void push(struct particles *particles, int32_t k, const double force[3]) {
-    for (int d = 0; d < particles->box.dimensions; d++)
-        particles->force[d][k] += force[d];
+// Beads -------------------------------------------------------------------------------------------
+
+SIMD_CLONES void mf_bonded_take(struct bonded_beads *beads, const struct particles *particles,
+                                const int32_t *place, int count) {
+    const double *x = particles->position[0], *y = particles->position[1];
+    const double *z = particles->position[2];
+    beads->box = &particles->box;
+    memset(beads->force, 0, (size_t)count * sizeof *beads->force);
+    for (int b = 0; b < count; b++, place += WIDTH)
+        for (int l = 0; l < WIDTH; l++) {
+            beads->position[b][0][l] = x[place[l]];
+            beads->position[b][1][l] = y[place[l]];
+            beads->position[b][2][l] = z[place[l]];
+        }
 }
 
-INLINE void add_transfer(struct bonded_sums *sums, const double r[3], const double force[3]) {
-    for (int a = 0; a < 3; a++)
-        for (int b = 0; b < 3; b++)
-            sums->transfer[a][b] += r[a] * force[b];
+SIMD_CLONES void mf_bonded_give_sums(const struct bonded_beads *beads, struct particles *particles,
+                                     const int32_t *place, int count, int used) {
+    lanes_double4 *sum = (lanes_double4 *)particles->kernel_force;
+    for (int b = 0; b < count; b++, place += WIDTH)
+        for (int l = 0; l < used; l++)
+            sum[place[l]] += (lanes_double4){beads->force[b][0][l], beads->force[b][1][l],
+                                             beads->force[b][2][l], 0};
 }
 
-/// Energies and slopes of terms, the former summed.
-INLINE void ask_law(const struct bonded_terms *terms, const double *q, double *slope,
-                    struct bonded_sums *sums) {
-    double energy[BONDED_BATCH];
-    terms->curve->law->evaluate(terms->curve->parameters, terms->count, q, energy, slope);
-    for (size_t n = 0; n < terms->count; n++)
-        sums->energy += energy[n];
+void mf_bonded_give(const struct bonded_beads *beads, struct particles *particles,
+                    const int32_t *place, int count, int used) {
+    for (int b = 0; b < count; b++, place += WIDTH)
+        for (int l = 0; l < used; l++)
+            for (int d = 0; d < particles->box.dimensions; d++)
+                particles->force[d][place[l]] += beads->force[b][d][l];
+}
+
+/// The arms of terms, to the nearest images (box_nearest).
+LANES_INLINE void stretch_arms(struct batch *batch, const struct bonded_beads *beads,
+                               const int *bead, const int order, int terms) {
+    static const double large = 0x1.8p52; // leaves no room for a fraction
+    const double *length = beads->box->length;
+    const double inverse[3] = {1 / length[0], 1 / length[1], 1 / length[2]};
+    for (int t = 0; t < terms; t++, bead += order + 2)
+        for (int k = 0; k <= order; k++)
+            for (int d = 0; d < 3; d++) {
+                lanes from, to;
+                memcpy(&from, beads->position[bead[arms[order][k].from]][d], sizeof from);
+                memcpy(&to, beads->position[bead[arms[order][k].to]][d], sizeof to);
+                const lanes apart = from - to, boxes = apart * inverse[d] + large - large;
+                const lanes arm = apart - length[d] * boxes;
+                memcpy(batch->arm[k][d] + t * WIDTH, &arm, sizeof arm);
+            }
+}
+
+LANES_INLINE void push_bead(double *force, lanes push) {
+    lanes sum;
+    memcpy(&sum, force, sizeof sum);
+    sum += push;
+    memcpy(force, &sum, sizeof sum);
+}
+
+LANES_INLINE void push_beads(const struct batch *batch, struct bonded_beads *beads, const int *bead,
+                             const int order, int terms) {
+    for (int t = 0; t < terms; t++, bead += order + 2)
+        for (int k = 0; k <= order; k++)
+            for (int d = 0; d < 3; d++) {
+                lanes push;
+                memcpy(&push, batch->arm[k][d] + t * WIDTH, sizeof push);
+                push_bead(beads->force[bead[arms[order][k].from]][d], push);
+                push_bead(beads->force[bead[arms[order][k].to]][d], -push);
+            }
 }
 
 // Bonds -------------------------------------------------------------------------------------------
 
-SIMD_CLONES static void measure_bonds(const struct particles *particles, const int32_t *place,
-                                      size_t count, bonded_vectors r, double *length) {
-    separate(particles, place, 2, 0, 1, count, r);
-    for (size_t n = 0; n < count; n++)
-        length[n] = sqrt(r[0][n] * r[0][n] + r[1][n] * r[1][n] + r[2][n] * r[2][n]);
+LANES_INLINE void measure_bonds(struct batch *batch) {
+    const double *x = batch->arm[0][0], *y = batch->arm[0][1], *z = batch->arm[0][2];
+    for (int n = 0; n < batch->count; n++)
+        batch->q[n] = sqrt(x[n] * x[n] + y[n] * y[n] + z[n] * z[n]);
 }
 
-/// Forces on the first beads, in the place of the vectors.
-SIMD_CLONES static void find_pulls(const double *length, const double *slope, size_t count,
-                                   bonded_vectors r) {
-    for (size_t n = 0; n < count; n++) {
-        const double pull = length[n] > 0 ? -slope[n] / length[n] : 0;
+LANES_INLINE void find_pulls(struct batch *batch) {
+    for (int n = 0; n < batch->count; n++) {
+        const double pull = batch->q[n] > 0 ? -batch->slope[n] / batch->q[n] : 0;
         for (int d = 0; d < 3; d++)
-            r[d][n] *= pull;
+            batch->arm[0][d][n] *= pull;
     }
-}
-
-static void find_torn(const struct bonded_terms *terms, const double *length,
-                      struct bonded_sums *sums) {
-    const double longest = mf_bonded_longest(terms->curve);
-    for (size_t n = 0; n < terms->count; n++)
-        if (length[n] > longest && length[n] > sums->longest) {
-            sums->longest = length[n];
-            sums->torn = terms->group;
-        }
-}
-
-void mf_bonded_add_bonds(const struct bonded_terms *terms, struct particles *particles,
-                         struct bonded_sums *sums) {
-    const size_t count = terms->count;
-    const int32_t *place = terms->place;
-    double length[BONDED_BATCH], slope[BONDED_BATCH];
-    bonded_vectors force, r;
-    measure_bonds(particles, place, count, force, length);
-    ask_law(terms, length, slope, sums);
-    for (size_t n = 0; n < count; n++)
-        sums->virial -= slope[n] * length[n];
-    if (terms->transfer)
-        memcpy(r, force, sizeof r);
-    find_pulls(length, slope, count, force);
-    for (int d = 0; d < particles->box.dimensions; d++) {
-        double *restrict f = particles->force[d];
-        for (size_t n = 0; n < count; n++) {
-            f[place[2 * n]] += force[d][n];
-            f[place[2 * n + 1]] -= force[d][n];
-        }
-    }
-    for (size_t n = 0; n < count && terms->transfer; n++) {
-        double from[3], pull[3];
-        take(r, n, from);
-        take(force, n, pull);
-        add_transfer(sums, from, pull);
-    }
-    if (terms->curve->law->longest)
-        find_torn(terms, length, sums);
 }
 
 // Angles ------------------------------------------------------------------------------------------
 
 /// θ between a = r_0 − r_1 and b = r_2 − r_1, by its sine and cosine, exact at all angles.
-SIMD_CLONES static void measure_angles(const struct particles *particles, const int32_t *place,
-                                       size_t count, bonded_vectors a, bonded_vectors b,
-                                       double *theta) {
-    separate(particles, place, 3, 0, 1, count, a);
-    separate(particles, place, 3, 2, 1, count, b);
-    for (size_t n = 0; n < count; n++) {
-        double u[3], v[3], normal[3];
-        take(a, n, u);
-        take(b, n, v);
-        cross(u, v, normal);
-        theta[n] = atan2(sqrt(dot(normal, normal)), dot(u, v));
+LANES_INLINE void measure_angles(struct batch *batch) {
+    for (int n = 0; n < batch->count; n++) {
+        double a[3], b[3], normal[3];
+        take(batch->arm[0], n, a);
+        take(batch->arm[1], n, b);
+        cross(a, b, normal);
+        batch->q[n] = atan2(sqrt(dot(normal, normal)), dot(a, b));
     }
 }
 
-/// Forces on the first and the last beads, in the place of the vectors: with p = a × b, ∂θ/∂a = a ×
-/// p/(a² |p|) and ∂θ/∂b = p × b/(b² |p|), away from each other in their plane.
-SIMD_CLONES static void find_turns(const double *slope, size_t count, bonded_vectors a,
-                                   bonded_vectors b) {
-    for (size_t n = 0; n < count; n++) {
-        double u[3], v[3], p[3], first[3], last[3];
-        take(a, n, u);
-        take(b, n, v);
-        cross(u, v, p);
-        const double uu = dot(u, u), vv = dot(v, v), length = sqrt(dot(p, p));
-        const double turn = length > no_direction * sqrt(uu * vv) ? -slope[n] / length : 0;
-        cross(u, p, first);
-        cross(p, v, last);
+/// With p = a × b, ∂θ/∂a = a × p/(a² |p|) and ∂θ/∂b = p × b/(b² |p|), away from each other in their
+/// plane.
+LANES_INLINE void find_turns(struct batch *batch) {
+    for (int n = 0; n < batch->count; n++) {
+        double a[3], b[3], p[3], first[3], last[3];
+        take(batch->arm[0], n, a);
+        take(batch->arm[1], n, b);
+        cross(a, b, p);
+        const double aa = dot(a, a), bb = dot(b, b), length = sqrt(dot(p, p));
+        const double turn = length > no_direction * sqrt(aa * bb) ? -batch->slope[n] / length : 0;
+        cross(a, p, first);
+        cross(p, b, last);
         for (int d = 0; d < 3; d++) {
-            a[d][n] = turn != 0 ? turn / uu * first[d] : 0;
-            b[d][n] = turn != 0 ? turn / vv * last[d] : 0;
+            batch->arm[0][d][n] = turn != 0 ? turn / aa * first[d] : 0;
+            batch->arm[1][d][n] = turn != 0 ? turn / bb * last[d] : 0;
         }
-    }
-}
-
-void mf_bonded_add_angles(const struct bonded_terms *terms, struct particles *particles,
-                          struct bonded_sums *sums) {
-    const size_t count = terms->count;
-    const int32_t *place = terms->place;
-    double theta[BONDED_BATCH], slope[BONDED_BATCH];
-    bonded_vectors first, last, a, b;
-    measure_angles(particles, place, count, first, last, theta);
-    ask_law(terms, theta, slope, sums);
-    if (terms->transfer) {
-        memcpy(a, first, sizeof a);
-        memcpy(b, last, sizeof b);
-    }
-    find_turns(slope, count, first, last);
-    for (int d = 0; d < particles->box.dimensions; d++) {
-        double *restrict f = particles->force[d];
-        for (size_t n = 0; n < count; n++) {
-            f[place[3 * n]] += first[d][n];
-            f[place[3 * n + 1]] -= first[d][n] + last[d][n];
-            f[place[3 * n + 2]] += last[d][n];
-        }
-    }
-    for (size_t n = 0; n < count && terms->transfer; n++) {
-        double from[3], force[3];
-        take(a, n, from);
-        take(first, n, force);
-        add_transfer(sums, from, force);
-        take(b, n, from);
-        take(last, n, force);
-        add_transfer(sums, from, force);
     }
 }
 
 // Dihedrals ---------------------------------------------------------------------------------------
 //
-// A. Blondel and M. Karplus, J. Comput. Chem. 17, 1132 (1996): with F = r_0 − r_1, G = r_1 − r_2,
-// H = r_3 − r_2, A = F × G and B = H × G nothing is divided by the sine of φ.
+// A. Blondel and M. Karplus, J. Comput. Chem. 17, 1132 (1996): with A = F × G and B = H × G nothing
+// is divided by the sine of φ.
 
-SIMD_CLONES static void measure_dihedrals(const struct particles *particles, const int32_t *place,
-                                          size_t count, bonded_vectors f, bonded_vectors g,
-                                          bonded_vectors h, double *phi) {
-    separate(particles, place, 4, 0, 1, count, f);
-    separate(particles, place, 4, 1, 2, count, g);
-    separate(particles, place, 4, 3, 2, count, h);
-    for (size_t n = 0; n < count; n++) {
-        double u[3], v[3], w[3], a[3], b[3], turn[3];
-        take(f, n, u);
-        take(g, n, v);
-        take(h, n, w);
-        cross(u, v, a);
-        cross(w, v, b);
+LANES_INLINE void measure_dihedrals(struct batch *batch) {
+    for (int n = 0; n < batch->count; n++) {
+        double f[3], g[3], h[3], a[3], b[3], turn[3];
+        take(batch->arm[0], n, f);
+        take(batch->arm[1], n, g);
+        take(batch->arm[2], n, h);
+        cross(f, g, a);
+        cross(h, g, b);
         cross(b, a, turn);
-        phi[n] = atan2(dot(turn, v), dot(a, b) * sqrt(dot(v, v)));
+        batch->q[n] = atan2(dot(turn, g), dot(a, b) * sqrt(dot(g, g)));
     }
 }
 
-/// Their eq. 27. Sums of r F are about bead 1.
-static void push_dihedral(const struct bonded_terms *terms, struct particles *particles, size_t n,
-                          const double f[3], const double g[3], const double h[3], double slope,
-                          struct bonded_sums *sums) {
-    const int32_t *place = terms->place + 4 * n;
-    double a[3], b[3], force[4][3], to_third[3], to_last[3];
-    cross(f, g, a);
-    cross(h, g, b);
-    const double aa = dot(a, a), bb = dot(b, b), gg = dot(g, g), length = sqrt(gg);
+/// Their eq. 27.
+LANES_INLINE void find_twists(struct batch *batch) {
     static const double least = no_direction * no_direction;
-    if (!(aa > least * dot(f, f) * gg && bb > least * dot(h, h) * gg))
-        return;
-    const double fg = dot(f, g) / (aa * length), hg = dot(h, g) / (bb * length);
-    for (int d = 0; d < 3; d++) {
-        const double outer_a = length / aa * a[d], outer_b = length / bb * b[d];
-        const double inner = fg * a[d] - hg * b[d];
-        force[0][d] = slope * outer_a;
-        force[1][d] = -slope * (outer_a + inner);
-        force[2][d] = slope * (outer_b + inner);
-        force[3][d] = -slope * outer_b;
-        to_third[d] = -g[d];
-        to_last[d] = h[d] - g[d];
-    }
-    for (int bead = 0; bead < 4; bead++)
-        push(particles, place[bead], force[bead]);
-    if (terms->transfer) {
-        add_transfer(sums, f, force[0]);
-        add_transfer(sums, to_third, force[2]);
-        add_transfer(sums, to_last, force[3]);
+    for (int n = 0; n < batch->count; n++) {
+        double f[3], g[3], h[3], a[3], b[3];
+        take(batch->arm[0], n, f);
+        take(batch->arm[1], n, g);
+        take(batch->arm[2], n, h);
+        cross(f, g, a);
+        cross(h, g, b);
+        const double aa = dot(a, a), bb = dot(b, b), gg = dot(g, g), length = sqrt(gg);
+        const bool directed = aa > least * dot(f, f) * gg && bb > least * dot(h, h) * gg;
+        const double slope = batch->slope[n];
+        const double fg = dot(f, g) / (aa * length), hg = dot(h, g) / (bb * length);
+        for (int d = 0; d < 3; d++) {
+            batch->arm[0][d][n] = directed ? slope * length / aa * a[d] : 0;
+            batch->arm[1][d][n] = directed ? slope * (hg * b[d] - fg * a[d]) : 0;
+            batch->arm[2][d][n] = directed ? -slope * length / bb * b[d] : 0;
+        }
     }
 }
 
-void mf_bonded_add_dihedrals(const struct bonded_terms *terms, struct particles *particles,
-                             struct bonded_sums *sums) {
-    double phi[BONDED_BATCH], slope[BONDED_BATCH];
-    bonded_vectors f, g, h;
-    measure_dihedrals(particles, terms->place, terms->count, f, g, h, phi);
-    ask_law(terms, phi, slope, sums);
-    for (size_t n = 0; n < terms->count; n++) {
-        double u[3], v[3], w[3];
-        take(f, n, u);
-        take(g, n, v);
-        take(h, n, w);
-        push_dihedral(terms, particles, n, u, v, w, slope[n], sums);
-    }
+// Terms -------------------------------------------------------------------------------------------
+
+LANES_INLINE void measure(struct batch *batch, const struct bonded_beads *beads, const int *bead,
+                          const int order, int terms) {
+    stretch_arms(batch, beads, bead, order, terms);
+    if (order == BONDED_BOND)
+        measure_bonds(batch);
+    else if (order == BONDED_ANGLE)
+        measure_angles(batch);
+    else
+        measure_dihedrals(batch);
+}
+
+LANES_INLINE void push(struct batch *batch, struct bonded_beads *beads, const int *bead,
+                       const int order, int terms) {
+    if (order == BONDED_BOND)
+        find_pulls(batch);
+    else if (order == BONDED_ANGLE)
+        find_turns(batch);
+    else
+        find_twists(batch);
+    push_beads(batch, beads, bead, order, terms);
+}
+
+/// The first numbers of terms.
+SIMD_CLONES static void measure_terms(struct batch *batch, const struct bonded_beads *beads,
+                                      const int *bead, int terms) {
+    if (batch->order == BONDED_BOND)
+        measure(batch, beads, bead, BONDED_BOND, terms);
+    else if (batch->order == BONDED_ANGLE)
+        measure(batch, beads, bead, BONDED_ANGLE, terms);
+    else
+        measure(batch, beads, bead, BONDED_DIHEDRAL, terms);
+}
+
+/// From slopes to forces on the arms, and on the beads.
+SIMD_CLONES static void push_terms(struct batch *batch, struct bonded_beads *beads, const int *bead,
+                                   int terms) {
+    if (batch->order == BONDED_BOND)
+        push(batch, beads, bead, BONDED_BOND, terms);
+    else if (batch->order == BONDED_ANGLE)
+        push(batch, beads, bead, BONDED_ANGLE, terms);
+    else
+        push(batch, beads, bead, BONDED_DIHEDRAL, terms);
+}
+
+static void add_sums(const struct bonded_terms *terms, const struct batch *batch,
+                     const double *energy, struct bonded_sums *sums) {
+    for (int n = 0; n < batch->count; n++)
+        if (n % WIDTH < terms->lanes) {
+            sums->energy += energy[n];
+            if (batch->order == BONDED_BOND)
+                sums->virial -= batch->slope[n] * batch->q[n];
+        }
+}
+
+static void add_transfer(const struct bonded_terms *terms, const vectors *arm,
+                         const struct batch *forces, struct bonded_sums *sums) {
+    for (int k = 0; k <= forces->order; k++)
+        for (int n = 0; n < forces->count; n++)
+            for (int a = 0; a < 3 && n % WIDTH < terms->lanes; a++)
+                for (int b = 0; b < 3; b++)
+                    sums->transfer[a][b] += arm[k][a][n] * forces->arm[k][b][n];
+}
+
+SIMD_CLONES static bool is_longer(const struct batch *batch, double longest) {
+    int longer = 0;
+    for (int n = 0; n < batch->count; n++)
+        longer |= batch->q[n] > longest;
+    return longer;
+}
+
+static void find_torn(const struct bonded_terms *terms, const struct batch *batch,
+                      struct bonded_sums *sums) {
+    const double longest = mf_bonded_longest(terms->curve);
+    for (int n = 0; n < batch->count && is_longer(batch, longest); n++)
+        if (batch->q[n] > longest && batch->q[n] > sums->longest) {
+            sums->longest = batch->q[n];
+            sums->torn = terms->group;
+        }
+}
+
+static void add_batch(const struct bonded_terms *terms, const int *bead, int count,
+                      struct bonded_beads *beads, struct bonded_sums *sums) {
+    const struct bonded_law *law = terms->curve->law;
+    struct batch batch;
+    double energy[BONDED_BATCH];
+    vectors arm[MOST_ARMS];
+    batch.order = terms->order;
+    batch.count = count * WIDTH;
+    measure_terms(&batch, beads, bead, count);
+    if (law->slopes && !terms->sums)
+        law->slopes(terms->curve->parameters, (size_t)batch.count, batch.q, batch.slope);
+    else
+        law->evaluate(terms->curve->parameters, (size_t)batch.count, batch.q, energy, batch.slope);
+    if (terms->sums)
+        add_sums(terms, &batch, energy, sums);
+    if (law->longest)
+        find_torn(terms, &batch, sums);
+    if (terms->transfer)
+        memcpy(arm, batch.arm, sizeof arm);
+    push_terms(&batch, beads, bead, count);
+    if (terms->transfer)
+        add_transfer(terms, arm, &batch, sums);
+}
+
+void mf_bonded_add(const struct bonded_terms *terms, struct bonded_beads *beads,
+                   struct bonded_sums *sums) {
+    for (int t = 0; t < terms->count; t += TERMS)
+        add_batch(terms, terms->bead + t * (terms->order + 2),
+                  terms->count - t < TERMS ? terms->count - t : TERMS, beads, sums);
 }
 
 // Measuring ---------------------------------------------------------------------------------------
 
+/// Terms are the lanes of one.
 void mf_bonded_measure(int order, size_t count, const int32_t *place,
                        const struct particles *particles, double *q) {
-    bonded_vectors a, b, c;
-    for (size_t done = 0; done < count; done += BONDED_BATCH) {
-        const size_t some = count - done < BONDED_BATCH ? count - done : BONDED_BATCH;
-        const int32_t *from = place + done * (size_t)(order + 2);
-        if (order == BONDED_BOND)
-            measure_bonds(particles, from, some, a, q + done);
-        else if (order == BONDED_ANGLE)
-            measure_angles(particles, from, some, a, b, q + done);
-        else
-            measure_dihedrals(particles, from, some, a, b, c, q + done);
+    const size_t each = (size_t)order + 2;
+    static const int bead[MOST_ARMS + 1] = {0, 1, 2, 3};
+    struct bonded_beads beads;
+    struct batch batch;
+    batch.order = order;
+    beads.box = &particles->box;
+    memset(beads.position, 0, each * sizeof *beads.position);
+    for (size_t done = 0; done < count; done += WIDTH) {
+        const size_t some = count - done < WIDTH ? count - done : WIDTH;
+        for (size_t n = 0; n < some * each; n++)
+            for (int d = 0; d < 3; d++)
+                beads.position[n % each][d][n / each] =
+                    particles->position[d][place[done * each + n]];
+        batch.count = (int)some;
+        measure_terms(&batch, &beads, bead, 1);
+        memcpy(q + done, batch.q, some * sizeof *q);
     }
 }

@@ -1,15 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file The forces of bonds, angles and dihedrals, some terms of one group at a time.
+/// @file The forces of bonds, angles and dihedrals, of some equal molecules side by side.
+///
+/// A vector holds one bead of as many molecules, which are its lanes. So terms find their beads
+/// where they are for all molecules of a kind, and each bead is read and written once, however many
+/// terms it is in.
 #pragma once
 
 #include "curves/bonded_law.h"
 #include "system/particles.h"
 
-/// Terms that are worked on together: their columns stay in the first-level cache.
-enum { BONDED_BATCH = 64 };
+enum {
+    BONDED_LANES = 8,
+    BONDED_MOST_BEADS = 64, ///< side by side: their columns stay in the first-level cache
+    BONDED_BATCH = 128,     ///< lengths, angles or dihedrals that a law is given together
+};
 
-/// Column n of a vector along axis d is [d][n].
-typedef double bonded_vectors[3][BONDED_BATCH];
+/// A vector of each lane.
+typedef double bonded_vector[3][BONDED_LANES];
+
+struct bonded_beads {
+    _Alignas(MEMORY_ALIGNMENT) bonded_vector position[BONDED_MOST_BEADS]; ///< [λ]
+    bonded_vector force[BONDED_MOST_BEADS]; ///< of the terms [k_B T_0/λ]
+    const struct box *box;
+};
 
 /// What is added over terms.
 struct bonded_sums {
@@ -20,26 +33,38 @@ struct bonded_sums {
     double transfer[3][3]; ///< Σ r_a F_b [k_B T_0]: forces/transfer.h
 };
 
-/// Some terms of a group.
+/// Some terms of a group, in each of the lanes.
 struct bonded_terms {
+    int order; ///< beads of a term − 2
     const struct bonded_curve *curve;
     int group;
-    size_t count;         ///< at most BONDED_BATCH
-    const int32_t *place; ///< shape [count, beads]: of the particles
-    bool transfer;        ///< whether that is to be summed
+    int count;
+    const int *bead; ///< shape [count, beads of a term]
+    int lanes;       ///< that count; those beyond hold any molecules
+    bool sums;       ///< whether energy and virial are to be summed
+    bool transfer;   ///< whether that is
 };
 
-/// Add the forces of terms to particles->force, and their sums. With the nearest images of what is
-/// next to each other in a term. The geometry of a straight angle, or of three beads of a dihedral
-/// in a line, has no direction, and no force.
-void mf_bonded_add_bonds(const struct bonded_terms *terms, struct particles *particles,
-                         struct bonded_sums *sums);
-void mf_bonded_add_angles(const struct bonded_terms *terms, struct particles *particles,
-                          struct bonded_sums *sums);
-void mf_bonded_add_dihedrals(const struct bonded_terms *terms, struct particles *particles,
-                             struct bonded_sums *sums);
+/// Read positions of beads, and begin with no forces.
+/// @param[in] place  shape [beads, BONDED_LANES]: of the particles
+void mf_bonded_take(struct bonded_beads *beads, const struct particles *particles,
+                    const int32_t *place, int count);
+
+/// Add the forces of terms to those of the beads, and their sums. With the nearest images of what
+/// is next to each other in a term. The geometry of a straight angle, or of three beads of a
+/// dihedral in a line, has no direction, and no force.
+void mf_bonded_add(const struct bonded_terms *terms, struct bonded_beads *beads,
+                   struct bonded_sums *sums);
+
+/// Add the forces of beads in the lanes that are used to particles->force, or to the sums of the
+/// pair kernels: one place for a bead instead of three.
+void mf_bonded_give(const struct bonded_beads *beads, struct particles *particles,
+                    const int32_t *place, int count, int used);
+void mf_bonded_give_sums(const struct bonded_beads *beads, struct particles *particles,
+                         const int32_t *place, int count, int used);
 
 /// Lengths [λ], angles or dihedrals [rad] of terms at the present positions, shape [count]: what
 /// the laws are given. Any of the three orders of terms (beads − 2).
+/// @param[in] place  shape [count, beads of a term]: of the particles
 void mf_bonded_measure(int order, size_t count, const int32_t *place,
                        const struct particles *particles, double *q);

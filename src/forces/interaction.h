@@ -17,6 +17,7 @@ struct interaction_pass {
     const struct neighbours *neighbours; ///< complete for the law and all ranges
     uint64_t step;                       ///< the counter of random numbers
     bool conservative;                   ///< potentials alone: no friction, no noise
+    bool before_pairs;                   ///< forces go to the sums of the pair kernels
     enum pair_wants wants;
     struct pair_sums *sums; ///< to be added to, if `wants` asks for them
 };
@@ -33,6 +34,9 @@ struct interaction {
     /// Acts along or on the orientations of particles (system/orientation.h), which they then have,
     /// unless a pass is of potentials alone: it has none.
     bool oriented;
+    /// Acts before the pairs in a pass of both, and then adds its forces to particles->kernel_force
+    /// instead: the pairs hand over the sums of all.
+    bool before_pairs;
     /// Force on each particle that drives it for ever, in a direction of its own [k_B T_0/λ]. NULL:
     /// none.
     double (*push)(const void *parameters);
@@ -66,8 +70,8 @@ INTERACTIONS(INTERACTION_DECLARE)
 /// The same, NULL-terminated.
 extern const struct interaction *const mf_interaction_list[];
 
-/// Φ and ω of the pairs, in one pass, which replaces the forces of the last step: the first of
-/// every simulation's list. Its numbers are those of the pass.
+/// Φ and ω of the pairs, in one pass, which replaces the forces of the last step by the sums of the
+/// pair kernels: the first of every simulation's list. Its numbers are those of the pass.
 extern const struct interaction mf_pairs;
 
 /// Bonds, angles and dihedrals of molecules (forces/molecules.h), of which a scene speaks by

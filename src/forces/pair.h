@@ -76,3 +76,10 @@ double mf_pair_cutoff(const struct pair_law *law);
 void mf_pair_forces(const struct pair_law *law, struct particles *particles,
                     const struct neighbours *neighbours, uint64_t step, enum pair_wants wants,
                     struct pair_sums *sums);
+
+/// @name The same in two parts, between which others may add to the sums of the kernels
+/// Empty the sums, particles->kernel_force; add the pairs, and replace `force` by the sums.
+void mf_pair_clear(struct particles *particles);
+void mf_pair_add(const struct pair_law *law, struct particles *particles,
+                 const struct neighbours *neighbours, uint64_t step, enum pair_wants wants,
+                 struct pair_sums *sums);

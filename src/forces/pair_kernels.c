@@ -46,13 +46,16 @@ static void gather_forces(void *context, size_t begin, size_t end) {
             particles->force[d][k] = particles->kernel_force[k][d];
 }
 
-void mf_pair_forces(const struct pair_law *law, struct particles *particles,
-                    const struct neighbours *neighbours, uint64_t step, enum pair_wants wants,
-                    struct pair_sums *sums) {
+void mf_pair_clear(struct particles *particles) {
+    mf_parallel_for(particles->count, particles->threads, clear_forces, particles);
+}
+
+void mf_pair_add(const struct pair_law *law, struct particles *particles,
+                 const struct neighbours *neighbours, uint64_t step, enum pair_wants wants,
+                 struct pair_sums *sums) {
     const pair_kernel kernel = choose(law, particles->box.dimensions, wants);
     const int parts = kernel ? neighbours->parts : 0, threads = particles->threads;
     struct pair_sums part_sums[NEIGHBOURS_MOST_PARTS] = {{0}};
-    mf_parallel_for(particles->count, threads, clear_forces, particles);
     // A part adds to its own particles and to those of the next one: even parts never meet.
     for (int first = 0; first < 2; first++) {
 #pragma omp parallel for schedule(dynamic) num_threads(threads) if (threads > 1)
@@ -67,4 +70,11 @@ void mf_pair_forces(const struct pair_law *law, struct particles *particles,
         sums->energy += part_sums[p].energy;
         sums->virial += part_sums[p].virial;
     }
+}
+
+void mf_pair_forces(const struct pair_law *law, struct particles *particles,
+                    const struct neighbours *neighbours, uint64_t step, enum pair_wants wants,
+                    struct pair_sums *sums) {
+    mf_pair_clear(particles);
+    mf_pair_add(law, particles, neighbours, step, wants, sums);
 }

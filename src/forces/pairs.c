@@ -6,9 +6,14 @@ static enum status add(const void *parameters, void *state, const struct interac
     (void)parameters;
     (void)state;
     struct pair_law law = *pass->law;
+    struct pair_sums sums;
     if (pass->conservative)
         law.omega = NULL;
-    mf_pair_forces(&law, pass->particles, pass->neighbours, pass->step, pass->wants, pass->sums);
+    mf_pair_add(&law, pass->particles, pass->neighbours, pass->step, pass->wants, &sums);
+    if (pass->sums) {
+        pass->sums->energy += sums.energy;
+        pass->sums->virial += sums.virial;
+    }
     return STATUS_OK;
 }
 

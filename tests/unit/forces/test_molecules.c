@@ -16,8 +16,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { CHAINS = 40, BEADS = 6 };
-static const int type[BEADS] = {0, 1, 1, 0, 1, 0};
+// 45 are no multiple of the lanes (forces/bonded.h).
+enum { CHAINS = 45, BEADS = 6, LONGEST = 150 };
+static const int type[LONGEST] = {0, 1, 1, 0, 1, 0};
 static const struct molecules_number spring[] = {{"k", 80}, {"length", 0.6}, {NULL, 0}};
 static const struct molecules_number bend[] = {{"k", 40}, {"angle", 100}, {NULL, 0}};
 static const struct molecules_number stiff[] = {{"k", 60}, {"angle", 120}, {NULL, 0}};
@@ -37,15 +38,20 @@ struct polymers {
     struct molecules molecules;
 };
 
-static void make(struct polymers *polymers, int exclude) {
-    struct topology_kind chain = molecules_chain(CHAINS, type, BEADS, TOPOLOGY_DIHEDRAL, exclude);
+static struct topology_kind make_chains(int64_t count, int beads, int exclude) {
+    struct topology_kind chain = molecules_chain(count, type, beads, TOPOLOGY_DIHEDRAL, exclude);
     for (int order = 0; order < TOPOLOGY_ORDERS; order++)
         for (int n = 0; n < chain.terms[order]; n++)
             chain.term[order][n].group = n % 2;
+    return chain;
+}
+
+/// Of one kind or two, which are then owned.
+static void make_kinds(struct polymers *polymers, struct topology_kind first,
+                       struct topology_kind second) {
     polymers->molecules = (struct molecules){0};
-    const struct composition composition =
-        molecules_topology(&polymers->molecules.topology, chain, (struct topology_kind){0}, 2,
-                           (const int64_t[]){30, 20});
+    const struct composition composition = molecules_topology(&polymers->molecules.topology, first,
+                                                              second, 2, (const int64_t[]){30, 20});
     molecules_add_group(&polymers->molecules, TOPOLOGY_BOND, &mf_bond_harmonic, spring);
     molecules_add_group(&polymers->molecules, TOPOLOGY_BOND, &mf_bond_fene, weak);
     molecules_add_group(&polymers->molecules, TOPOLOGY_ANGLE, &mf_angle_harmonic, bend);
@@ -56,6 +62,10 @@ static void make(struct polymers *polymers, int exclude) {
     fluid_groot_warren(&polymers->fluid, mf_composition_particles(&composition), 0.005);
     molecules_enter(&polymers->fluid.setup, &polymers->molecules, &composition);
     polymers->fluid.setup.precision = PAIR_DOUBLE;
+}
+
+static void make(struct polymers *polymers, int exclude) {
+    make_kinds(polymers, make_chains(CHAINS, BEADS, exclude), (struct topology_kind){0});
 }
 
 static void clear(struct polymers *polymers) {
@@ -103,8 +113,8 @@ static double slow_q(const struct simulation *simulation, int order, const uint3
     return dot(u, b) > 0 ? phi : -phi; // clockwise, seen along the middle bond
 }
 
-static double slow_energy(const struct simulation *simulation, const struct molecules *molecules) {
-    const struct topology_kind *kind = &molecules->topology.kind[0];
+static double slow_energy_of(const struct simulation *simulation, const struct molecules *molecules,
+                             const struct topology_kind *kind) {
     double sum = 0;
     for (int order = 0; order < TOPOLOGY_ORDERS; order++)
         for (int64_t m = 0; m < kind->count; m++)
@@ -118,6 +128,13 @@ static double slow_energy(const struct simulation *simulation, const struct mole
                                 slow_q(simulation, order, id), &energy, NULL);
                 sum += energy;
             }
+    return sum;
+}
+
+static double slow_energy(const struct simulation *simulation, const struct molecules *molecules) {
+    double sum = 0;
+    for (int k = 0; k < molecules->topology.kinds; k++)
+        sum += slow_energy_of(simulation, molecules, &molecules->topology.kind[k]);
     return sum;
 }
 
@@ -148,34 +165,62 @@ static double energy_of(struct simulation *simulation) {
     return simulation->sums.energy;
 }
 
+/// Of one in `each` particles.
+static void assert_forces_are_slopes(struct simulation *simulation, size_t each) {
+    static const double h = 1e-5;
+    for (int d = 0; d < 3; d++) {
+        double sum = 0;
+        for (size_t k = 0; k < simulation->particles.count; k += each) {
+            double *x = &simulation->particles.position[d][k];
+            const double here = *x;
+            *x = here + h;
+            const double above = energy_of(simulation);
+            *x = here - h;
+            const double below = energy_of(simulation);
+            *x = here;
+            energy_of(simulation);
+            const double force = simulation->particles.force[d][k];
+            assert_close(force, (below - above) / (2 * h), 2e-5 * (10 + fabs(force)));
+        }
+        for (size_t k = 0; k < simulation->particles.count; k++)
+            sum += simulation->particles.force[d][k];
+        assert_close(sum, 0, 1e-9); // momentum
+    }
+}
+
 static void test_forces_are_minus_the_slopes_of_the_energy(void **state) {
     (void)state;
-    static const double h = 1e-5;
     struct polymers polymers;
     struct simulation simulation;
     make(&polymers, 2);
     assert_ok(mf_simulation_init(&simulation, &polymers.fluid.setup, NULL));
     assert_ok(mf_simulation_run(&simulation, 60));
-    double sum[3] = {0};
-    for (int d = 0; d < 3; d++) {
-        for (size_t k = 0; k < simulation.particles.count; k += 7) {
-            double *x = &simulation.particles.position[d][k];
-            const double here = *x;
-            *x = here + h;
-            const double above = energy_of(&simulation);
-            *x = here - h;
-            const double below = energy_of(&simulation);
-            *x = here;
-            energy_of(&simulation);
-            const double force = simulation.particles.force[d][k];
-            assert_close(force, (below - above) / (2 * h), 2e-5 * (10 + fabs(force)));
-        }
-        for (size_t k = 0; k < simulation.particles.count; k++)
-            sum[d] += simulation.particles.force[d][k];
-        assert_close(sum[d], 0, 1e-9); // momentum
-    }
+    assert_forces_are_slopes(&simulation, 7);
     mf_simulation_clear(&simulation);
     clear(&polymers);
+}
+
+/// Molecules of more beads than are worked on together, and fewer of them than there are lanes.
+static void test_long_and_few_molecules_have_energies_and_forces_like_others(void **state) {
+    (void)state;
+    static const int count[][2] = {{5, 1}, {9, 3}, {4, 2}};
+    for (size_t n = 0; n < sizeof count / sizeof *count; n++) {
+        struct polymers polymers;
+        struct simulation simulation;
+        make_kinds(&polymers, make_chains(count[n][0], LONGEST, 0),
+                   make_chains(count[n][1], LONGEST - 20, 0));
+        polymers.fluid.setup.potential = NULL;
+        polymers.fluid.setup.omega = NULL;
+        polymers.fluid.setup.integrator = &mf_velocity_verlet;
+        assert_ok(mf_simulation_init(&simulation, &polymers.fluid.setup, NULL));
+        simulation.wants = PAIR_FORCES_AND_SUMS;
+        assert_ok(mf_simulation_run(&simulation, 30));
+        assert_close_relative(simulation.sums.energy, slow_energy(&simulation, &polymers.molecules),
+                              1e-10);
+        assert_forces_are_slopes(&simulation, 3);
+        mf_simulation_clear(&simulation);
+        clear(&polymers);
+    }
 }
 
 /// dU/d ln L = −Σ r·F, and all of it from the bonds and the pairs: the slope of the whole energy.
@@ -348,6 +393,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_energy_is_that_of_a_slow_sum_over_terms),
         cmocka_unit_test(test_forces_are_minus_the_slopes_of_the_energy),
+        cmocka_unit_test(test_long_and_few_molecules_have_energies_and_forces_like_others),
         cmocka_unit_test(test_virial_is_the_slope_of_the_energy_with_the_volume),
         cmocka_unit_test(test_forces_are_finite_where_geometry_has_no_direction),
         cmocka_unit_test(test_transfer_is_the_slope_of_the_energy_with_shear),
