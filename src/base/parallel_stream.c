@@ -6,7 +6,6 @@
 #include "base/parallel_times.h"
 
 #include <pthread.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -19,7 +18,6 @@ struct worker {
     pthread_t thread;
     pthread_cond_t given;
     enum work work;
-    uint64_t ended; ///< how many tasks had ended before
     void *task, *result;
     double seconds;
     enum status status;
@@ -28,9 +26,8 @@ struct worker {
 
 struct parallel_stream {
     struct parallel_stream_tasks tasks;
-    pthread_mutex_t lock; ///< of `work` of all, `ended` and `over`
+    pthread_mutex_t lock; ///< of `work` of all, and `over`
     pthread_cond_t done;
-    uint64_t ended;
     bool over;
     int begun; ///< threads
     struct worker *worker;
@@ -59,7 +56,6 @@ static void *work(void *memory) {
         do_task(worker);
         pthread_mutex_lock(&stream->lock);
         worker->work = DONE;
-        worker->ended = stream->ended++;
         pthread_cond_signal(&stream->done);
     }
     pthread_mutex_unlock(&stream->lock);
@@ -151,17 +147,17 @@ void mf_parallel_stream_give(struct parallel_stream *stream, const void *task) {
     pthread_mutex_unlock(&stream->lock);
 }
 
-/// Who ended first of those that are done; `open` is how many have a task or a result.
+/// One that is done, or NULL; `open` is how many have a task or a result.
 static struct worker *find_done(const struct parallel_stream *stream, int *open) {
-    struct worker *first = NULL;
+    struct worker *done = NULL;
     *open = 0;
     for (int k = 0; k < stream->begun; k++) {
         struct worker *worker = &stream->worker[k];
         *open += worker->work != IDLE;
-        if (worker->work == DONE && (first == NULL || worker->ended < first->ended))
-            first = worker;
+        if (worker->work == DONE)
+            done = worker;
     }
-    return first;
+    return done;
 }
 
 enum status mf_parallel_stream_take(struct parallel_stream *stream,

@@ -38,7 +38,6 @@ struct parallel_stream_result {
     const void *task, *result; ///< until the next task is given; NULL: no task was being done
 };
 
-/// Wait for the next task to be done; they are taken in the order in which they end. Fails: as the
-/// task. Tested: test_parallel_stream.
+/// Wait until a task is done. Fails: as the task. Tested: test_parallel_stream.
 enum status mf_parallel_stream_take(struct parallel_stream *stream,
                                     struct parallel_stream_result *taken) MUST_USE;

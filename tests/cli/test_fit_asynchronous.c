@@ -5,6 +5,7 @@
 #include "shared/small_inputs.h"
 #include "shared/testing.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 
 #define SCENE                                                                                      \
@@ -43,6 +44,25 @@ static int count_rows(const char *path) {
     return rows;
 }
 
+/// Simulations have seeds of their own: no two of them have the same error, though elites and
+/// challengers are measured again.
+static void check_errors(void) {
+    enum { MOST = 200 };
+    char *text = temporary_folder_read("out/individuals.tsv"), *rest;
+    double error[MOST];
+    int rows = 0;
+    for (char *line = strtok_r(text, "\n", &rest); line; line = strtok_r(NULL, "\n", &rest)) {
+        if (line[0] == '#')
+            continue;
+        assert_true(rows < MOST);
+        assert_int_equal(sscanf(line, "%*d %*d %lf", &error[rows]), 1);
+        for (int k = 0; k < rows; k++)
+            assert_true(error[k] != error[rows]);
+        rows++;
+    }
+    free(text);
+}
+
 /// A row a generation, one for the last challenger, and an individual for each evaluation that is
 /// no check; whoever reads the folder sees that another run gives other bits.
 static void check_folder(int generations, int population) {
@@ -55,6 +75,7 @@ static void check_folder(int generations, int population) {
     assert_int_equal(count_rows("out/history.tsv"), generations + 1);
     assert_true(count_rows("out/individuals.tsv") >= generations * population);
     assert_true(count_rows("out/population_potential.tsv") > 0);
+    check_errors();
 }
 
 static void test_fit_has_a_row_a_generation_when_asynchronous(void **state) {

@@ -135,6 +135,14 @@ static void copy_state(struct landscape_run *from, struct landscape_run *to) {
     }
 }
 
+static void check_incumbents(const struct landscape_run *first,
+                             const struct landscape_run *second) {
+    double one[VARIABLES] = {0}, other[VARIABLES] = {0};
+    assert_int_equal(first->optimiser->incumbent(first->state, one),
+                     second->optimiser->incumbent(second->state, other));
+    assert_memory_equal(one, other, sizeof one);
+}
+
 /// Wherever it is interrupted, it finds the minimum without what was then being measured.
 static void test_asynchronous_goes_on_when_restarted(void **state) {
     const struct landscape_workers workers = {16, 1};
@@ -154,6 +162,7 @@ static void test_asynchronous_goes_on_when_restarted(void **state) {
             if (stop > 0)
                 landscape_stream(&first, &drive, &workers, &result);
             copy_state(&first, &second);
+            check_incumbents(&first, &second);
             drive.evaluations = EVALUATIONS;
             landscape_stream(&second, &drive, &workers, &result);
             assert_true(result.incumbent <= v->sphere);
