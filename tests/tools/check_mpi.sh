@@ -67,6 +67,7 @@ expect() {
 # Tasks that sleep, against the model of how long they take.
 for number in 1 2 4 8; do
     mpirun --bind-to none -np "$number" "$share" || failed=1
+    "$share" "$number" || failed=1
 done
 
 cat >scene.json <<'SCENE'

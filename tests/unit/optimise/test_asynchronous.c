@@ -239,6 +239,38 @@ static void test_steady_state_refuses_islands(void **unused) {
     mf_memory_free(state);
 }
 
+/// A plateau ends the first descent. What was asked for before makes up no round of the second.
+static void test_cmaes_leaves_candidates_out_when_their_descent_has_ended(void **unused) {
+    const struct optimiser_space space = {.variables = GENES, .maximum = 1, .seed = 3};
+    const struct optimiser *cmaes = &mf_cmaes_optimiser;
+    struct cmaes_parameters parameters;
+    struct optimiser_candidate *old = mf_memory_zeroed(1, optimiser_candidate_size(GENES)),
+                               *now = mf_memory_zeroed(1, optimiser_candidate_size(GENES));
+    void *state = mf_memory_zeroed(1, cmaes->state_size);
+    bool ended;
+    (void)unused;
+    assert_true(old && now && state);
+    mf_fields_set_defaults(mf_cmaes_fields, &parameters);
+    parameters.population = INDIVIDUALS;
+    parameters.restarts = 1;
+    parameters.asynchronous = 1;
+    assert_ok(cmaes->create(state, &space, &parameters));
+    assert_true(cmaes->stream->ask(state, old));
+    do {
+        assert_true(cmaes->stream->ask(state, now));
+        if (now->origin == old->origin)
+            assert_ok(cmaes->stream->tell(state, now, 1, 0, &ended));
+    } while (now->origin == old->origin);
+    for (int k = 0; k < 10 * INDIVIDUALS; k++) {
+        assert_ok(cmaes->stream->tell(state, old, 0, 0, &ended));
+        assert_false(ended);
+    }
+    cmaes->destroy(state);
+    mf_memory_free(state);
+    mf_memory_free(old);
+    mf_memory_free(now);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_asynchronous_finds_a_known_minimum),
@@ -249,6 +281,7 @@ int main(void) {
         cmocka_unit_test(test_asynchronous_goes_on_when_restarted),
         cmocka_unit_test(test_steady_state_believes_challengers_by_fresh_measurements_alone),
         cmocka_unit_test(test_steady_state_refuses_islands),
+        cmocka_unit_test(test_cmaes_leaves_candidates_out_when_their_descent_has_ended),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
