@@ -175,23 +175,34 @@ static void add(struct population_survey *survey, double error) {
         survey->least = fmin(survey->least, error);
 }
 
+/// Tell what a survey of this iteration knows, which had `before` evaluations when its round began.
+static void tell_survey(const struct population *population, const struct population_survey *survey,
+                        uint64_t before, size_t total, const struct inverse_listener *to) {
+    const struct inverse_progress progress = {
+        .iteration = population->iteration,
+        .iterations = population->iterations,
+        .done = survey->evaluations - before,
+        .total = total,
+        .best = population->best,
+        .least = survey->least,
+        .mean = survey->alive.count > 0 ? survey->alive.mean : NAN,
+        .failures = survey->failures,
+    };
+    to->tell(to->context, &progress);
+}
+
 static void report(const struct population *population, size_t count,
                    const struct inverse_listener *to) {
     struct population_survey survey = population->survey;
     for (size_t k = 0; k < count; k++)
         if (population->errors[k] != UNMEASURED)
             add(&survey, population->errors[k]);
-    const struct inverse_progress progress = {
-        .iteration = population->iteration,
-        .iterations = population->iterations,
-        .done = survey.evaluations - population->survey.evaluations,
-        .total = count,
-        .best = population->best,
-        .least = survey.least,
-        .mean = survey.alive.count > 0 ? survey.alive.mean : NAN,
-        .failures = survey.failures,
-    };
-    to->tell(to->context, &progress);
+    tell_survey(population, &survey, population->survey.evaluations, count, to);
+}
+
+void mf_population_report(const struct population *population, size_t total,
+                          const struct inverse_listener *listener) {
+    tell_survey(population, &population->survey, 0, total, listener);
 }
 
 /// Take over a measurement. Called by one thread at a time, in any order.
@@ -297,8 +308,8 @@ void mf_population_remember(struct population *population, const double *variabl
         mf_surrogate_add(&population->surrogate, variables, features);
 }
 
-/// Keep a round to be written, but for copies, which are a challenger measured again.
-static void show(struct population *population, const struct optimiser_round *round) {
+// Copies, which are a challenger measured again, are left out.
+void mf_population_show(struct population *population, const struct optimiser_round *round) {
     enum { LEAST = 8 };
     const size_t bytes = population->parametrisation->variables * sizeof(double);
     size_t distinct = 0;
@@ -314,6 +325,20 @@ static void show(struct population *population, const struct optimiser_round *ro
                (const char *)round->variables + k * bytes, bytes);
         population->shown_error[population->shown_count++] = population->errors[k];
     }
+}
+
+void mf_population_take_streamed(struct population *population, const double *variables,
+                                 const struct evaluate_result *result, const double *features,
+                                 size_t here) {
+    population->totals.evaluations++;
+    population->totals.steps += result->engine_steps;
+    add(&population->survey, result->error);
+    mf_population_remember(population, variables, result->error, features);
+    if (here == 0)
+        memcpy(population->first, variables,
+               population->parametrisation->variables * sizeof *variables);
+    if (here < POPULATION_MOST)
+        population->errors[here] = result->error;
 }
 
 enum status mf_population_measure(struct population *population,
@@ -346,7 +371,7 @@ enum status mf_population_measure(struct population *population,
             population, round->variables + k * population->parametrisation->variables,
             population->errors[k], population->features + k * population->surrogate.features);
     }
-    show(population, round);
+    mf_population_show(population, round);
     return STATUS_OK;
 }
 

@@ -6,6 +6,7 @@
 #include "work/fit.h"
 #include "input/fit_states.h"
 #include "work/fit_tasks.h"
+#include "work/fit_tell.h"
 
 #include <string.h>
 
@@ -119,6 +120,8 @@ static void print_advice(const struct fit_file *fit, int workers) {
     static const double little = 0.1;
     int64_t count = 0;
     const struct field *field = find_handed_out(fit, &count);
+    if (mf_fit_tell_timing(fit))
+        return; // nobody waits for a round
     if (field == NULL || count <= 0)
         return; // none, or chosen by the method
     const int64_t rounds = (count + workers - 1) / workers;
@@ -144,6 +147,10 @@ enum status mf_fit_explain(const char *file, const struct run_options *options, 
         CHECK(print_targets(mf_fit_states_at(&fit, s)));
     print_numbers(&fit);
     CHECK(print_simulations(&fit));
+    if (mf_fit_tell_timing(&fit)) {
+        printf("%s; such a fit runs in one process.\n", mf_fit_tell_timing(&fit));
+        ranks = ranks > 1 ? 1 : ranks;
+    }
     if (ranks > 0) {
         print_advice(&fit, ranks * options->threads);
         CHECK(mf_fit_tasks_explain(stdout, file, options, ranks));

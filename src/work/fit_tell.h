@@ -8,3 +8,6 @@
 /// Say what is to be fitted, so that a wrong column or unit is seen before the work. Fails: as
 /// mf_target_sanity_tell.
 enum status mf_fit_tell_targets(struct progress *to, const struct fit_file *fit) MUST_USE;
+
+/// A sentence if the results of a fit depend on timing, else NULL.
+const char *mf_fit_tell_timing(const struct fit_file *fit);

@@ -163,3 +163,83 @@ struct landscape_result landscape_minimise(const struct optimiser *optimiser, vo
     landscape_end(&run);
     return result;
 }
+
+// One by one --------------------------------------------------------------------------------------
+
+struct worker {
+    struct optimiser_candidate *candidate;
+    double ends; ///< HUGE_VAL: idle
+};
+
+static double duration(uint64_t seed, uint64_t number, double spread) {
+    const double width = sqrt(log1p(spread * spread));
+    double normal[4];
+    mf_rng_normal4(mf_rng_philox(seed, RNG_EVALUATION, (uint32_t)number, 2, 0), normal);
+    return exp(width * (normal[0] - width / 2));
+}
+
+static void ask_for_idle(struct landscape_run *run, const struct landscape_drive *drive,
+                         const struct landscape_workers *workers, struct worker *worker, double now,
+                         uint64_t *asked) {
+    for (struct worker *w = worker; w < worker + workers->count; w++) {
+        if (w->ends < HUGE_VAL || !run->optimiser->stream->ask(run->state, w->candidate))
+            continue;
+        check_round(drive, &(struct optimiser_round){w->candidate->numbers, 1});
+        w->ends = now + duration(drive->seed, (*asked)++, workers->spread);
+    }
+}
+
+static struct worker *find_first(struct worker *worker, int count) {
+    struct worker *first = worker;
+    for (struct worker *w = worker; w < worker + count; w++)
+        if (w->ends < first->ends)
+            first = w;
+    return first;
+}
+
+void landscape_stream(struct landscape_run *run, const struct landscape_drive *drive,
+                      const struct landscape_workers *workers, struct landscape_result *result) {
+    struct worker *worker = mf_memory_zeroed((size_t)workers->count, sizeof *worker);
+    uint64_t asked = result->evaluations;
+    assert_non_null(worker);
+    for (int k = 0; k < workers->count; k++) {
+        worker[k].ends = HUGE_VAL;
+        worker[k].candidate = mf_memory_zeroed(1, optimiser_candidate_size(drive->variables));
+        assert_non_null(worker[k].candidate);
+    }
+    double now = 0;
+    while ((drive->evaluations == 0 || result->evaluations < drive->evaluations) &&
+           result->incumbent > drive->target) {
+        ask_for_idle(run, drive, workers, worker, now, &asked);
+        struct worker *first = find_first(worker, workers->count);
+        result->finished = first->ends == HUGE_VAL;
+        if (result->finished)
+            break;
+        now = first->ends;
+        first->ends = HUGE_VAL;
+        const double exact = drive->landscape->error(first->candidate->numbers, drive->variables);
+        const double error = measure(drive, exact, result->evaluations++);
+        bool ended;
+        assert_ok(run->optimiser->stream->tell(run->state, first->candidate, error,
+                                               drive->noise * drive->noise, &ended));
+        result->least = fmin(result->least, exact);
+        result->rounds += ended;
+        look_at_incumbent(run, drive, result);
+    }
+    for (int k = 0; k < workers->count; k++)
+        mf_memory_free(worker[k].candidate);
+    mf_memory_free(worker);
+}
+
+struct landscape_result landscape_minimise_by_stream(const struct optimiser *optimiser,
+                                                     void *parameters,
+                                                     const struct landscape_drive *drive,
+                                                     const struct landscape_workers *workers) {
+    struct landscape_result result = {.least = HUGE_VAL, .incumbent = HUGE_VAL};
+    landscape_set(optimiser, parameters, "asynchronous", 1);
+    struct landscape_run run = landscape_begin(optimiser, parameters, drive);
+    landscape_stream(&run, drive, workers, &result);
+    assert_true(result.rounds <= optimiser->most_rounds(parameters, drive->variables));
+    landscape_end(&run);
+    return result;
+}

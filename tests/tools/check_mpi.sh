@@ -67,6 +67,7 @@ expect() {
 # Tasks that sleep, against the model of how long they take.
 for number in 1 2 4 8; do
     mpirun --bind-to none -np "$number" "$share" || failed=1
+    "$share" "$number" || failed=1
 done
 
 cat >scene.json <<'SCENE'
@@ -212,6 +213,10 @@ expect "a folder that holds a fit" "mesofit: long holds a finished fit"
 sed 's/"seed": 1/"seed": 2/' long.json >other.json
 ranks 3 bash -c 'exec "$0" fit $([ $OMPI_COMM_WORLD_RANK = 2 ] && echo other.json || echo long.json) -o mixed --quiet' "$program"
 expect "a rank with another input" "rank 2 on .* has computed other numbers"
+sed 's/"racing": 2, "warm_start": "yes"/"asynchronous": "yes"/' genetic.json >asynchronous.json
+ranks 2 "$program" fit asynchronous.json -o asynchronous
+expect "an asynchronous fit among ranks" "runs in one process, with threads"
+[ "$(grep -c "runs in one process" words)" = 1 ] || failed=1
 ranks 2 "$program" fit long.json -o live --live
 expect "the live view among ranks" "--live is for a fit in one process"
 

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file Tasks that come one by one, so that no thread waits for the end of a round.
+///
+/// One thread, which owns the stream, makes tasks and takes what was found; the threads of the
+/// stream do them. Which result comes first depends on the machine.
+#pragma once
+
+#include "base/status.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+struct parallel_stream;
+
+struct parallel_stream_tasks {
+    int threads;
+    size_t task_size, result_size;
+    /// Do one task; several run at once. `result` is zeroed, of result_size bytes.
+    enum status (*run)(void *context, const void *task, void *result);
+    void *context;
+};
+
+/// Begin threads, which wait for tasks. Fails: NO_MEMORY, also if there are no more threads.
+enum status mf_parallel_stream_begin(struct parallel_stream **stream,
+                                     const struct parallel_stream_tasks *tasks) MUST_USE;
+
+/// Wait for the tasks that are being done, and forget them. NULL: nothing.
+void mf_parallel_stream_end(struct parallel_stream *stream);
+
+/// Whether a thread has neither a task nor a result that was not taken.
+bool mf_parallel_stream_has_idle(struct parallel_stream *stream);
+
+/// Give a task of task_size bytes, which is copied, to an idle thread; there must be one.
+void mf_parallel_stream_give(struct parallel_stream *stream, const void *task);
+
+/// What a thread has done.
+struct parallel_stream_result {
+    const void *task, *result; ///< until the next task is given; NULL: no task was being done
+};
+
+/// Wait until a task is done. Fails: as the task. Tested: test_parallel_stream.
+enum status mf_parallel_stream_take(struct parallel_stream *stream,
+                                    struct parallel_stream_result *taken) MUST_USE;
