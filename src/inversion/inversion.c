@@ -6,14 +6,6 @@
 
 const double mf_inversion_least_damping = 1.0 / 64;
 
-/// Largest change of the potential in one iteration where the target is well known [k_B T_0].
-static const double largest_change = 1;
-
-/// The same of a single bin where it is not [k_B T_0]. A bin at the edge of the core that the
-/// samples have hardly seen responds to nothing: to fill it, one step lowered the potential by
-/// 26,000 there.
-static const double largest_unknown_change = 3;
-
 /// Samples are doubled until their noise is this share of the error, or as small as was asked for.
 static const double noise_share = 1.0 / 3;
 
@@ -86,30 +78,6 @@ static enum status assess_response(struct inversion *inversion) {
 
 static bool goes_by_gradient(const struct inversion *inversion) {
     return inversion->basis.count > 0;
-}
-
-/// phi = best + damping · best_step, bounded as a whole where the target is well known, and bin by
-/// bin elsewhere; as a whole everywhere if it is made of coefficients.
-static void take_step(struct inversion *inversion) {
-    const struct potential_grid *grid = &inversion->grid;
-    const bool whole = goes_by_gradient(inversion);
-    double largest = 0;
-    for (size_t a = 0; a < grid->known; a++) {
-        const double size = fabs(inversion->best_step[grid->known_point[a]]);
-        if (grid->well_known[a] || whole)
-            largest =
-                fmax(largest,
-                     grid->well_known[a] ? size : size * largest_change / largest_unknown_change);
-    }
-    const double share = fmin(inversion->progress.damping, largest_change / fmax(largest, 1e-300));
-    for (size_t a = 0; a < grid->known; a++) {
-        const size_t point = grid->known_point[a];
-        double change = share * inversion->best_step[point];
-        if (!grid->well_known[a] && !whole)
-            change = fmax(-largest_unknown_change, fmin(largest_unknown_change, change));
-        inversion->phi[point] = inversion->best[point] + change;
-    }
-    mf_potential_grid_complete(grid, inversion->phi);
 }
 
 /// Whether the samples are as exact as was asked for.
@@ -257,7 +225,7 @@ static enum status judge(struct inversion *inversion, bool *kept) {
 static enum status go_on(struct inversion *inversion, bool kept) {
     struct inversion_progress *progress = &inversion->progress;
     if (!mf_inversion_start_is_poor(inversion, kept)) {
-        take_step(inversion);
+        mf_inversion_take_step(inversion);
         return STATUS_OK;
     }
     progress->best[TARGET_RDF].rms = progress->least_decrement = INFINITY;
@@ -396,7 +364,7 @@ static enum status join_integrals(struct inversion *inversion) {
 enum status mf_inversion_advance(struct inversion *inversion, struct inverse_step *step) {
     struct inversion_progress *progress = &inversion->progress;
     double own[INVERSION_OWN_COLUMNS] = {0};
-    bool kept;
+    bool kept, converged;
     const struct inversion_rule *rule = inversion->method->own;
     inversion->has_other = inversion->settling = false;
     TRY(join_integrals(inversion));
@@ -406,7 +374,10 @@ enum status mf_inversion_advance(struct inversion *inversion, struct inverse_ste
     mf_inversion_drift_add(&progress->drift, find_ramp(inversion),
                            inversion->distance[TARGET_RDF].rms);
     TRY(judge(inversion, &kept));
-    describe(inversion, own, has_converged(inversion, kept), step);
+    converged = has_converged(inversion, kept);
+    if (converged)
+        mf_inversion_take_last_step(inversion);
+    describe(inversion, own, converged, step);
     if (!step->finished)
         TRY(go_on(inversion, kept));
     progress->iteration++;

@@ -215,6 +215,15 @@ struct imc_system mf_inversion_system(const struct inversion *inversion);
 /// NO_MEMORY.
 enum status mf_inversion_restrict(struct inversion *inversion) MUST_USE;
 
+/// phi = best + damping · best_step, bounded as a whole where the target is well known, and bin by
+/// bin elsewhere; as a whole everywhere if it is made of coefficients.
+void mf_inversion_take_step(struct inversion *inversion);
+
+/// The same as the end of a fit that has converged, where the step is the most probable one: the
+/// potential that the samples ask for is the result, and not the one that they were taken of, which
+/// lies on the side that the fit came from. Tested: test_inversion_keeps.
+void mf_inversion_take_last_step(struct inversion *inversion);
+
 /// Whether the present potential is kept: unless it is farther from the targets than the nearest so
 /// far, by two of the present noises. The nearest, not the last: samples are no more precise than a
 /// third of the error, so that each could be 1.67 times as far as the one before, and so on.

@@ -12,7 +12,7 @@
 ///
 /// What the most probable step from there would still change of the ramp is an error too. `imc` and
 /// `auto` take this step near the noise, and end when it is below half of the errors of A and of
-/// the pressure.
+/// the pressure. They take it then, too; it still counts, as the response is not exactly linear.
 ///
 /// Errors of bins count as independent. Those by sampling are correlated as S is, and with that
 /// F = n C/(k_B T)² (n independent configurations; the canonical ensemble is an exponential family)

@@ -123,12 +123,34 @@ static void test_inversion_pool_steps_with_a_fifth_of_the_noise(void **state) {
     gsl_rng_free(rng);
 }
 
+/// The result is what the last samples ask for, if the step is the most probable one; other methods
+/// end with the potential that was sampled.
+static void test_inversion_ends_with_the_step_that_is_left_when_it_settles(void **state) {
+    (void)state;
+    size_t known_point[] = {0, 1};
+    bool well_known[] = {true, true};
+    double phi[2], best[] = {2, 1}, best_step[] = {0.3, -0.1};
+    struct inversion inversion = {
+        .grid = {.known = 2, .points = 2, .known_point = known_point, .well_known = well_known},
+        .progress.damping = 1,
+        .phi = phi,
+        .best = best,
+        .best_step = best_step};
+    mf_inversion_take_last_step(&inversion);
+    assert_true(best[0] == 2 && best[1] == 1);
+    inversion.settling = true;
+    mf_inversion_take_last_step(&inversion);
+    assert_close(best[0], 2.3, 1e-15);
+    assert_close(best[1], 0.9, 1e-15);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_inversion_keeps_what_is_worse_by_chance),
         cmocka_unit_test(test_inversion_keeps_no_slow_divergence),
         cmocka_unit_test(test_inversion_keeps_by_all_targets_since_its_start),
         cmocka_unit_test(test_inversion_pool_steps_with_a_fifth_of_the_noise),
+        cmocka_unit_test(test_inversion_ends_with_the_step_that_is_left_when_it_settles),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

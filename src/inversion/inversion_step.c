@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// From the best potential of an inversion to the next one.
+#include "inversion/inversion.h"
+
+#include <math.h>
+#include <string.h>
+
+/// Largest change of the potential in one iteration where the target is well known [k_B T_0].
+static const double largest_change = 1;
+
+/// The same of a single bin where it is not [k_B T_0]. A bin at the edge of the core that the
+/// samples have hardly seen responds to nothing: to fill it, one step lowered the potential by
+/// 26,000 there.
+static const double largest_unknown_change = 3;
+
+void mf_inversion_take_step(struct inversion *inversion) {
+    const struct potential_grid *grid = &inversion->grid;
+    const bool whole = inversion->basis.count > 0;
+    double largest = 0;
+    for (size_t a = 0; a < grid->known; a++) {
+        const double size = fabs(inversion->best_step[grid->known_point[a]]);
+        if (grid->well_known[a] || whole)
+            largest =
+                fmax(largest,
+                     grid->well_known[a] ? size : size * largest_change / largest_unknown_change);
+    }
+    const double share = fmin(inversion->progress.damping, largest_change / fmax(largest, 1e-300));
+    for (size_t a = 0; a < grid->known; a++) {
+        const size_t point = grid->known_point[a];
+        double change = share * inversion->best_step[point];
+        if (!grid->well_known[a] && !whole)
+            change = fmax(-largest_unknown_change, fmin(largest_unknown_change, change));
+        inversion->phi[point] = inversion->best[point] + change;
+    }
+    mf_potential_grid_complete(grid, inversion->phi);
+}
+
+void mf_inversion_take_last_step(struct inversion *inversion) {
+    if (!inversion->settling)
+        return;
+    mf_inversion_take_step(inversion);
+    memcpy(inversion->best, inversion->phi, inversion->grid.points * sizeof(double));
+}
