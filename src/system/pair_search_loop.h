@@ -107,22 +107,25 @@ LANES_INLINE int32_t *search_around(const struct pair_search search,
     return list;
 }
 
-/// Take those out of the neighbours of particle k that molecules exclude: the last one takes the
-/// place of each.
+/// Take those out of the neighbours of particle k that molecules exclude. Whole vectors are read
+/// and written, as by search_select, without asking where an excluded one is: no branch to be
+/// mistaken.
 /// @return the end of what is left
-static int32_t *search_exclude(const struct particles *particles, size_t k, int32_t *list,
-                               int32_t *end) {
+LANES_INLINE int32_t *search_exclude(const struct particles *particles, size_t k, int32_t *list,
+                                     const int32_t *end) {
     const struct topology *topology = particles->topology;
     const uint32_t id = particles->id[k];
-    for (size_t n = topology->excluded_start[id]; n < topology->excluded_start[id + 1]; n++) {
-        const int32_t excluded = (int32_t)particles->place[topology->excluded[n]];
-        int32_t *found = list;
-        while (found < end && *found != excluded)
-            found++;
-        if (found < end)
-            *found = *--end;
+    for (const int32_t *next = list; next < end; next += LANES) {
+        const lanes_int entries = lanes_load_int(next);
+        lanes_int excluded = lanes_all_int(0); // −1 in the lanes where it is
+        for (size_t n = topology->excluded_start[id]; n < topology->excluded_start[id + 1]; n++)
+            excluded |= entries == lanes_all_int((int32_t)particles->place[topology->excluded[n]]);
+        unsigned left = ~lanes_below(lanes_to_real(excluded), lanes_all(0));
+        left &= end - next < LANES ? (1u << (end - next)) - 1 : (1u << LANES) - 1;
+        lanes_store_int(list, lanes_permute_int(entries, lanes_set_bits(left)));
+        list += __builtin_popcount(left);
     }
-    return end;
+    return list;
 }
 
 LANES_INLINE struct pair_search search_prepare(const struct neighbours *neighbours,
