@@ -138,11 +138,13 @@ SHARED    = $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/shared/*.c))
 TESTS     = $(UNIT) $(REFERENCE) $(CLI) $(PHYSICS)
 .SECONDARY: $(TESTS:=.o) $(STRESS:=.o) $(SHARED)
 
+# 250 programs of 33 MB are 8 GB; without what debuggers read of the library, an eighth.
+STRIP_TEST = $(if $(SANITIZE),,-Wl,--strip-debug)
 $(TESTS) $(STRESS): CFLAGS += -Itests
 $(filter $(BUILD)/tests/unit/live/%,$(UNIT)): $(LIVE)
 $(TESTS) $(STRESS): %: %.o $(SHARED) $(LIBRARY)
 	@echo "ld $@"
-	$(AT)$(CC) $(LDFLAGS) -o $@ $(filter %.o,$^) $(filter $(LIVE),$^) $(LIBRARY) -lcmocka $(if $(filter $(LIVE),$^),$(LIVE_LIBS)) $(LDLIBS)
+	$(AT)$(CC) $(LDFLAGS) $(STRIP_TEST) -o $@ $(filter %.o,$^) $(filter $(LIVE),$^) $(LIBRARY) -lcmocka $(if $(filter $(LIVE),$^),$(LIVE_LIBS)) $(LDLIBS)
 
 .PHONY: test tests
 tests: all $(TESTS)

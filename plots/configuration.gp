@@ -9,8 +9,8 @@ table = "configuration.tsv"
 angle = column_of(table, "orientation")
 radius = column_of(table, "radius")
 rows = int(system("grep -cv '^#'" . from(table)))
-edge(n) = real(system(sprintf("awk '/\"box\":/ { gsub(/[^0-9.eE, -]/, \"\"); split($0, e, \",\"); \
-    print e[%d] + 0; exit }' used.json", n)))
+box = system("awk '/\"box\":/ { gsub(/[^0-9.eE, -]/, \"\"); gsub(/,/, \" \"); print; exit }' used.json")
+edge(n) = real(word(box, n))
 
 # Radius and centre of an obstacle; 0 without one.
 obstacle(n) = real(system(sprintf("awk '/\"obstacle_centre\":/ { sub(/.*\\[/, \"\"); split($0, centre, \",\") } \

@@ -7,6 +7,11 @@
 
 _Static_assert(sizeof(struct letter) % sizeof(uint64_t) == 0, "a head of whole words");
 
+uint64_t mf_letter_turn(void) {
+    static uint64_t turns;
+    return ++turns;
+}
+
 static size_t words_of(const struct letter *letter) {
     return (sizeof *letter + letter->bytes + sizeof(uint64_t) - 1) / sizeof(uint64_t);
 }
@@ -95,4 +100,11 @@ const void *mf_letter_unpack(const struct letter *letter, const struct parallel_
                       "something else",
                       (unsigned long long)letter->task);
     return tasks->result_size > 0 ? letter_bytes(letter) : NULL;
+}
+
+void mf_letter_stop_strayed(int from, const struct letter *letter) {
+    const bool failed = letter->kind == LETTER_ARRIVED && letter->status != STATUS_OK;
+    mf_ranks_stop(2, "rank %d on %s %s", from, mf_ranks_host(from),
+                  failed ? (const char *)letter_bytes(letter)
+                         : "does not do the same as rank 0: its program or its input is another");
 }

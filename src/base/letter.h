@@ -31,6 +31,9 @@ struct letter {
     int32_t status;
 };
 
+/// The number of the next call of mf_parallel_try or mf_parallel_agree: the same on all ranks.
+uint64_t mf_letter_turn(void);
+
 static inline void *letter_bytes(const struct letter *letter) {
     return (void *)(letter + 1);
 }
@@ -53,3 +56,6 @@ struct letter *mf_letter_receive(uint64_t turn, int *from);
 /// Put what a task left on another rank into the context.
 /// @return its result in the letter; NULL if it has none. The job ends where it does not fit.
 const void *mf_letter_unpack(const struct letter *letter, const struct parallel_tasks *tasks);
+
+/// A rank that does not do what rank 0 does has failed alone, or is of another mind: end the job.
+_Noreturn void mf_letter_stop_strayed(int from, const struct letter *letter);

@@ -8,13 +8,11 @@
 #include "base/letter.h"
 #include "base/parallel_times.h"
 #include "base/ranks.h"
+#include "base/ranks_pause.h"
 #include "base/ranks_watch.h"
 
 #include <pthread.h>
 #include <string.h>
-
-/// Which call of mf_parallel_try_together or mf_parallel_agree this is: the same on all ranks.
-static uint64_t turns;
 
 /// Tasks that are being done. What threads share is behind the lock.
 struct round {
@@ -23,6 +21,7 @@ struct round {
     struct ranks_watch watch;
     pthread_mutex_t lock;
     pthread_cond_t changed; ///< a task has come, or has been finished
+    struct ranks_pause pause;
     // of rank 0
     size_t next, open;               ///< task to be handed out; tasks that are being done
     struct parallel_failure failure; ///< of all ranks
@@ -63,6 +62,7 @@ static uint64_t hand_out(struct round *round) {
 static void collect(struct round *round, struct letter *letter, const void *result) {
     pthread_mutex_lock(&round->lock);
     mf_parallel_times_add(round->tasks->count, letter->seconds);
+    mf_ranks_pause_note(letter->seconds);
     if (letter->status == STATUS_OK) {
         if (round->tasks->take)
             round->tasks->take(round->tasks->context, letter->task, result);
@@ -87,14 +87,6 @@ static void stop_all(const struct round *round, int signal_number) {
     mf_interrupt_agree(signal_number);
     tell_all(&(struct letter){
         .kind = LETTER_STOP, .turn = round->turn, .task = (uint64_t)signal_number});
-}
-
-/// One that does not do what rank 0 does has failed alone, or is of another mind.
-_Noreturn static void stop_strayed(int rank, const struct letter *letter) {
-    const bool failed = letter->kind == LETTER_ARRIVED && letter->status != STATUS_OK;
-    mf_ranks_stop(2, "rank %d on %s %s", rank, mf_ranks_host(rank),
-                  failed ? (const char *)letter_bytes(letter)
-                         : "does not do the same as rank 0: its program or its input is another");
 }
 
 static bool is_over(struct round *round) {
@@ -130,7 +122,7 @@ static void serve(struct round *round, int from, struct letter *letter) {
         round->ready++;
         break;
     default:
-        stop_strayed(from, letter);
+        mf_letter_stop_strayed(from, letter);
     }
     mf_memory_free(letter);
 }
@@ -141,7 +133,7 @@ static void listen_once(struct round *round) {
     if (letter)
         serve(round, from, letter);
     else
-        mf_ranks_rest();
+        mf_ranks_pause(&round->pause, is_over(round));
     mf_ranks_watch_look(&round->watch);
 }
 
@@ -165,6 +157,7 @@ static void wait_for_all(struct round *round) {
     while (round->open > 0)
         pthread_cond_wait(&round->changed, &round->lock);
     round->over = true;
+    mf_ranks_pause_end(&round->pause);
     pthread_mutex_unlock(&round->lock);
 }
 
@@ -175,6 +168,7 @@ static uint64_t ask(struct round *round) {
     uint64_t task = LETTER_NO_TASK;
     pthread_mutex_lock(&round->lock);
     round->waiting++;
+    mf_ranks_pause_end(&round->pause);
     while (round->begun == round->received && !round->none_left)
         pthread_cond_wait(&round->changed, &round->lock);
     round->waiting--;
@@ -187,6 +181,8 @@ static uint64_t ask(struct round *round) {
 static void deliver(struct round *round, struct letter *letter) {
     pthread_mutex_lock(&round->lock);
     round->told[round->finished++] = letter;
+    mf_ranks_pause_note(letter->seconds);
+    mf_ranks_pause_end(&round->pause);
     pthread_mutex_unlock(&round->lock);
 }
 
@@ -248,7 +244,7 @@ static void *follow(void *memory) {
         if (letter)
             hear(round, letter);
         else if (!told)
-            mf_ranks_rest();
+            mf_ranks_pause(&round->pause, round->asked > 0);
         mf_memory_free(letter);
         mf_ranks_watch_look(&round->watch);
     }
@@ -340,10 +336,11 @@ static void share_letters(const struct round *round) {
 }
 
 static void round_init(struct round *round, const struct parallel_tasks *tasks) {
-    *round = (struct round){.tasks = tasks, .turn = ++turns, .failure.task = tasks->count};
+    *round = (struct round){.tasks = tasks, .turn = mf_letter_turn(), .failure.task = tasks->count};
     mf_ranks_watch_init(&round->watch);
     pthread_mutex_init(&round->lock, NULL);
     pthread_cond_init(&round->changed, NULL);
+    mf_ranks_pause_init(&round->pause, &round->lock);
     round->left = or_stop(mf_memory_zeroed(tasks->count, sizeof *round->left));
     round->told = or_stop(mf_memory_zeroed(tasks->count, sizeof *round->told));
     round->task = or_stop(mf_memory_zeroed(tasks->count, sizeof *round->task));
@@ -357,6 +354,7 @@ static void round_clear(struct round *round) {
     mf_memory_free(round->task);
     pthread_mutex_destroy(&round->lock);
     pthread_cond_destroy(&round->changed);
+    mf_ranks_pause_clear(&round->pause);
     mf_ranks_watch_clear(&round->watch);
 }
 
@@ -369,76 +367,4 @@ enum status mf_parallel_try_together(const struct parallel_tasks *tasks) {
     const enum status status = parallel_failure_status(&round.failure);
     round_clear(&round);
     return status;
-}
-
-// Between tasks -----------------------------------------------------------------------------------
-
-/// The next letter of this turn, however long that takes.
-static struct letter *await(uint64_t turn, struct ranks_watch *watch, int *from) {
-    struct letter *letter;
-    while ((letter = mf_letter_receive(turn, from)) == NULL) {
-        mf_ranks_watch_look(watch);
-        mf_ranks_rest();
-    }
-    mf_ranks_watch_hear(watch, *from);
-    return letter;
-}
-
-/// What all go on with: rank 0's failure, else that of the lowest rank.
-struct verdict {
-    int rank; ///< the number of ranks while nobody has failed
-    enum status status;
-    char message[STATUS_MESSAGE_SIZE];
-};
-
-static void weigh(struct verdict *verdict, int rank, const struct letter *letter, uint64_t digest) {
-    const bool alike = letter->task == digest;
-    if (rank >= verdict->rank || (letter->status == STATUS_OK && alike))
-        return;
-    verdict->rank = rank;
-    verdict->status = letter->status == STATUS_OK ? STATUS_BAD_INPUT : letter->status;
-    snprintf(verdict->message, sizeof verdict->message, "rank %d on %s: %s", rank,
-             mf_ranks_host(rank),
-             letter->status != STATUS_OK
-                 ? (const char *)letter_bytes(letter)
-                 : "it has computed other numbers than rank 0: all must have the same program, the "
-                   "same input and processors of one kind");
-}
-
-/// Rank 0: wait for all.
-static void judge(uint64_t turn, uint64_t digest, struct verdict *verdict) {
-    struct ranks_watch watch;
-    mf_ranks_watch_init(&watch);
-    for (int missing = mf_ranks_count() - 1, from; missing > 0; missing--) {
-        struct letter *letter = await(turn, &watch, &from);
-        if (letter->turn != turn || letter->kind != LETTER_ARRIVED) {
-            if (verdict->status != STATUS_OK) // and the others have gone on
-                mf_ranks_stop(2, "%s", verdict->message);
-            stop_strayed(from, letter);
-        }
-        weigh(verdict, from, letter, digest);
-        mf_memory_free(letter);
-    }
-    mf_ranks_watch_clear(&watch);
-}
-
-enum status mf_parallel_agree(enum status status, uint64_t digest) {
-    if (mf_ranks_count() == 1)
-        return status;
-    const uint64_t turn = ++turns;
-    struct verdict verdict = {.rank = status == STATUS_OK ? mf_ranks_count() : 0, .status = status};
-    if (status != STATUS_OK)
-        snprintf(verdict.message, sizeof verdict.message, "%s", mf_status_message());
-    const struct letter head = {
-        .kind = LETTER_ARRIVED, .turn = turn, .task = digest, .status = (int32_t)status};
-    if (ranks_lead()) {
-        judge(turn, digest, &verdict);
-    } else {
-        struct letter *letter = mf_letter_of_message(&head, verdict.message);
-        mf_letter_send(0, letter);
-        mf_memory_free(letter);
-    }
-    mf_ranks_share(&verdict, sizeof verdict);
-    return verdict.status == STATUS_OK ? STATUS_OK
-                                       : mf_status_fail(verdict.status, "%s", verdict.message);
 }

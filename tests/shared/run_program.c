@@ -6,6 +6,7 @@
 
 #include <ftw.h>
 #include <libgen.h>
+#include <math.h>
 #include <poll.h>
 #include <signal.h>
 #include <spawn.h>
@@ -123,11 +124,12 @@ static void take(int *file, char *text, size_t size, size_t *length) {
     *file = -1;
 }
 
-/// Wait at most ten milliseconds for something to read, and take it.
-static void listen_to(struct child *child, struct run_program_result *result) {
+/// Wait at most so long [s], and never longer than ten milliseconds, for something to read, and
+/// take it.
+static void listen_to(struct child *child, double seconds, struct run_program_result *result) {
     struct pollfd ends[] = {{.fd = child->out, .events = POLLIN},
                             {.fd = child->err, .events = POLLIN}};
-    if (poll(ends, 2, 10) <= 0)
+    if (poll(ends, 2, (int)(1e3 * fmin(fmax(seconds, 0), 0.01))) <= 0)
         return;
     if (ends[0].revents)
         take(&child->out, result->out, sizeof result->out, &child->out_length);
@@ -147,20 +149,26 @@ static void kill_if_late(const struct child *child, const struct run_program_how
     fail_msg("the program has not ended after %g s; it says: %s", limit, result->err);
 }
 
+/// [s]; infinite before its first words, if they are what counts.
+static double until_interruption(const struct child *child, const struct run_program_how *how) {
+    const double since = how->interrupt_from_start ? child->started : child->first_words;
+    return since > 0 ? since + how->interrupt_after - clock_seconds() : HUGE_VAL;
+}
+
 void run_program(struct run_program_result *result, const struct run_program_how *how,
                  const char *const *words) {
     *result = (struct run_program_result){0};
     struct child child = start(how, words);
-    double interrupt_after = how->interrupt_after;
+    bool interrupted = !(how->interrupt_after > 0);
     int status;
     while (child.out >= 0 || child.err >= 0) {
-        listen_to(&child, result);
-        kill_if_late(&child, how, result);
-        const double since = how->interrupt_from_start ? child.started : child.first_words;
-        if (interrupt_after > 0 && since > 0 && clock_seconds() - since >= interrupt_after) {
-            interrupt_after = 0;
+        const double left = interrupted ? HUGE_VAL : until_interruption(&child, how);
+        if (left <= 0) {
+            interrupted = true;
             kill(child.process, how->interrupt_with ? how->interrupt_with : SIGINT);
         }
+        listen_to(&child, left, result);
+        kill_if_late(&child, how, result);
     }
     assert_int_equal(waitpid(child.process, &status, 0), child.process);
     result->code = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
