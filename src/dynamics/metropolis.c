@@ -59,6 +59,7 @@ void mf_metropolis_clear(struct metropolis *metropolis) {
     mf_neighbours_clear(&metropolis->neighbours);
     mf_memory_free(metropolis->order);
     mf_molecule_moves_clear(&metropolis->molecules);
+    mf_reptation_clear(&metropolis->reptation);
     *metropolis = (struct metropolis){0};
 }
 
@@ -87,6 +88,8 @@ enum status mf_metropolis_join(struct metropolis *metropolis, const struct molec
         return STATUS_OK;
     TRY(mf_particles_join(&metropolis->particles, &molecules->topology));
     TRY(mf_molecule_moves_init(&metropolis->molecules, molecules, &metropolis->particles));
+    TRY(mf_reptation_init(&metropolis->reptation, &molecules->topology,
+                          metropolis->particles.box.dimensions));
     TRY(place_molecules(metropolis));
     memcpy(metropolis->order, metropolis->particles.id,
            metropolis->particles.count * sizeof *metropolis->order);
@@ -169,6 +172,8 @@ static enum status sweep(struct metropolis *metropolis) {
     TRY(mf_metropolis_move_beads(metropolis));
     if (metropolis->molecules.molecules)
         TRY(mf_molecule_moves_pass(metropolis, next_move(metropolis)));
+    if (mf_reptation_is_on(&metropolis->reptation))
+        TRY(mf_reptation_pass(metropolis));
     metropolis->sweep++;
     return STATUS_OK;
 }
@@ -191,6 +196,7 @@ enum status mf_metropolis_equilibrate(struct metropolis *metropolis, uint32_t sw
     for (uint32_t s = 0; s < sweeps; s++) {
         const enum molecule_move move = next_move(metropolis);
         forget_tallies(metropolis);
+        mf_reptation_tune(&metropolis->reptation, s);
         TRY(sweep(metropolis));
         const double accepted = (double)metropolis->accepted / (double)metropolis->tried;
         metropolis->step = fmin(metropolis->step * metropolis_tuning(accepted),
@@ -199,6 +205,8 @@ enum status mf_metropolis_equilibrate(struct metropolis *metropolis, uint32_t sw
             mf_molecule_moves_tune(metropolis, move);
     }
     forget_tallies(metropolis);
+    if (sweeps > 0)
+        mf_reptation_choose(&metropolis->reptation);
     return STATUS_OK;
 }
 

@@ -188,6 +188,14 @@ static void by_sampler(const struct melt *melt, enum sampler_kind kind, uint64_t
         }
         end_block(found, sum);
     }
+    const struct reptation_kind *reptation = &sampler.chain.reptation.kind[0];
+    if (kind == SAMPLER_MONTE_CARLO) { // it is among the moves that are compared
+        assert_true(mf_reptation_is_on(&sampler.chain.reptation));
+        print_message("reptation: %.3f accepted, k = %d\n",
+                      (double)reptation->tally[reptation->choice].accepted /
+                          (double)reptation->tally[reptation->choice].tried,
+                      reptation_places(reptation->choice));
+    }
     print_message("%s: %.2f accepted\n", mf_sampler_kinds[kind], mf_sampler_acceptance(&sampler));
     mf_sampler_clear(&sampler);
 }
