@@ -2,12 +2,13 @@
 /// @file Reptation: a chain creeps along itself like a snake, as one more Metropolis move.
 ///
 /// F. T. Wall and F. Mandel, J. Chem. Phys. 63, 4592 (1975): the last bead of a chain is taken off
-/// and put before its first, or the other way round, so that the rest moves along by one bond. The
-/// end-to-end vector is forgotten after about 2 N²/π² accepted moves. The new place is chosen among
-/// k with configurational bias (D. Frenkel and B. Smit, Understanding Molecular Simulation, 2nd
-/// ed., 2002, ch. 13): k places are drawn from densities q near exp(−U/k_B T) of bond and angle,
-/// each weighs w = exp(−U/k_B T)/q, one is chosen by its weight, and k − 1 others are drawn beside
-/// the old place. The move is accepted with min(1, Σ w new / Σ w old).
+/// and put before its first, or the other way round, so that the rest moves along by one bond. Were
+/// moves independent of each other, the end-to-end vector would be forgotten after 2 N²/π² accepted
+/// ones; in a melt chains often creep back. The new place is chosen among k with configurational
+/// bias (D. Frenkel and B. Smit, Understanding Molecular Simulation, 2nd ed., 2002, ch. 13): k
+/// places are drawn from densities q near exp(−U/k_B T) of bond and angle, each weighs w =
+/// exp(−U/k_B T)/q, one is chosen by its weight, and k − 1 others are drawn beside the old place.
+/// The move is accepted with min(1, Σ w new / Σ w old).
 ///
 /// Only linear chains of one type of beads, all of whose bonds are of one group, and so their
 /// angles and dihedrals if they have any, of REPTATION_LEAST_BEADS or more, in three dimensions.
