@@ -256,8 +256,8 @@ static bool creep(struct snake *snake) {
     const double before =
         weigh(snake, k, &behind) + draw_places(snake, k, &behind, snake->places - 1, unused);
     const double after = draw_places(snake, k, &ahead, snake->places, there);
-    // Written so that a NaN is refused, and where no bead is put, none leaves.
-    const bool accepted = uniform(snake) * before < after;
+    // Written so that a NaN is refused, and so is what could never have been drawn.
+    const bool accepted = uniform(snake) * before < after && isfinite(after);
     put(snake, k, accepted ? there : here);
     mf_reptation_grid_insert(grid, particles, k);
     if (accepted)
