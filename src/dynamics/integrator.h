@@ -85,7 +85,7 @@ struct integrator {
     enum status (*step)(struct simulation *simulation);
 };
 
-enum { INTEGRATOR_SPANS = PARTICLES_SPANS + 10, INTEGRATOR_NUMBERS = 4 };
+enum { INTEGRATOR_SPANS = PARTICLES_SPANS + 10, INTEGRATOR_NUMBERS = 5 };
 
 /// All integrators, in the order in which they are listed.
 #define INTEGRATORS(EACH)                                                                          \

@@ -196,6 +196,14 @@ static void by_sampler(const struct melt *melt, enum sampler_kind kind, uint64_t
         }
         end_block(found, sum);
     }
+    const struct reptation_kind *reptation = &sampler.chain.reptation.kind[0];
+    if (kind == SAMPLER_MONTE_CARLO) { // it is among the moves that are compared
+        assert_true(mf_reptation_is_on(&sampler.chain.reptation));
+        print_message("reptation: %.3f accepted, k = %d\n",
+                      (double)reptation->tally[reptation->choice].accepted /
+                          (double)reptation->tally[reptation->choice].tried,
+                      reptation_places(reptation->choice));
+    }
     print_message("%s: %.2f accepted\n", mf_sampler_kinds[kind], mf_sampler_acceptance(&sampler));
     mf_sampler_clear(&sampler);
 }
@@ -265,9 +273,50 @@ static void test_an_ideal_gas_of_molecules_has_its_pressure(void **state) {
     }
 }
 
+/// What a checkpoint keeps of a sampler, put into another one: reptation goes on as it was tuned.
+static void test_moves_go_on_with_the_same_bits_when_restarted(void **state) {
+    (void)state;
+    enum { MOST_SPANS = 16 };
+    struct melt melt;
+    struct sampler sampler[2];
+    struct memory_span from[MOST_SPANS], to[MOST_SPANS];
+    double sample[2][SAMPLER_SUMS];
+    make_melt(&melt);
+    for (int n = 0; n < 2; n++)
+        assert_ok(mf_sampler_init(&sampler[n], SAMPLER_MONTE_CARLO,
+                                  &(struct sampler_system){.box = &melt.fluid.setup.box,
+                                                           .composition = &melt.composition,
+                                                           .potential = &melt.fluid.potential,
+                                                           .temperature = 1,
+                                                           .molecules = &melt.molecules,
+                                                           .seed = 8}));
+    assert_ok(mf_sampler_begin(&sampler[0]));
+    assert_ok(mf_sampler_equilibrate(&sampler[0], 200));
+    assert_true(mf_reptation_is_on(&sampler[0].chain.reptation));
+    assert_ok(mf_sampler_sample(&sampler[0], 20, sample[0]));
+    const size_t spans = mf_sampler_spans(&sampler[0], from);
+    assert_int_equal(mf_sampler_spans(&sampler[1], to), spans);
+    for (size_t n = 0; n < spans; n++)
+        memcpy(to[n].memory, from[n].memory, from[n].bytes);
+    for (int n = 0; n < 2; n++) {
+        assert_ok(mf_sampler_begin(&sampler[n]));
+        assert_ok(mf_sampler_equilibrate(&sampler[n], 0));
+        assert_ok(mf_sampler_sample(&sampler[n], 20, sample[n]));
+    }
+    assert_memory_equal(sample[0], sample[1], sizeof sample[0]);
+    mf_sampler_spans(&sampler[0], from);
+    mf_sampler_spans(&sampler[1], to);
+    for (size_t n = 0; n < spans; n++)
+        assert_memory_equal(from[n].memory, to[n].memory, from[n].bytes);
+    for (int n = 0; n < 2; n++)
+        mf_sampler_clear(&sampler[n]);
+    clear_melt(&melt);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_moves_trajectories_and_dynamics_sample_one_melt),
+        cmocka_unit_test(test_moves_go_on_with_the_same_bits_when_restarted),
         cmocka_unit_test(test_an_ideal_gas_of_molecules_has_its_pressure),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
