@@ -10,6 +10,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 #define BY_MONTE_CARLO "\"dynamics\": {\"integrator\": \"monte-carlo\"}"
 
@@ -85,6 +86,56 @@ static void test_interrupted_monte_carlo_of_a_mixture_goes_on_with_the_same_bits
     check_pieces(*state, small_scenes_mixture,
                  "\"dissipative\": {\"law\": \"power\", \"sigma\": 2.1213}", BY_MONTE_CARLO,
                  small_scenes_mixture_tables);
+}
+
+/// Frames of extended XYZ: beads in the order of their ids, eight of each chain.
+static void check_chains_are_whole(const char *file, int chains, double edge) {
+    enum { BEADS = 8 };
+    FILE *stream = fopen(file, "r");
+    assert_non_null(stream);
+    char line[1024];
+    int frames = 0;
+    for (; fgets(line, sizeof line, stream); frames++) {
+        double before[3] = {0};
+        assert_int_equal(atoi(line), chains * BEADS);
+        assert_non_null(fgets(line, sizeof line, stream));
+        for (int bead = 0; bead < chains * BEADS; bead++) {
+            double at[3], bond = 0;
+            long image[3];
+            assert_non_null(fgets(line, sizeof line, stream));
+            assert_int_equal(sscanf(line, "A %lf %lf %lf %ld %ld %ld", &at[0], &at[1], &at[2],
+                                    &image[0], &image[1], &image[2]),
+                             6);
+            for (int d = 0; d < 3; d++) {
+                at[d] += edge * (double)image[d];
+                bond += (at[d] - before[d]) * (at[d] - before[d]);
+                before[d] = at[d];
+            }
+            assert_true(bead % BEADS == 0 || bond < 4);
+        }
+    }
+    assert_true(frames > 3);
+    fclose(stream);
+}
+
+/// A bead that creeps to the other end of its chain goes to the image of the box where that is.
+static void test_chains_that_creep_stay_whole_and_have_the_same_bits_again(void **state) {
+    static const char chains[] =
+        "{\"seed\": 5, \"box\": [5, 5, 5],\n"
+        "\"bonds\": {\"spring\": {\"law\": \"harmonic\", \"k\": 20, \"length\": 0.7}},\n"
+        "\"molecules\": {\"chain\": {\"count\": 45, \"exclude\": 0,\n"
+        "  \"chain\": {\"type\": \"A\", \"length\": 8, \"bond\": \"spring\"}}},\n"
+        "\"conservative\": {\"law\": \"soft-repulsion\"},\n"
+        "\"rdf\": {\"range\": 2, \"bins\": 20}, \"molecule_sizes\": {},\n"
+        "\"snapshots\": {\"every\": 40, \"formats\": [\"extxyz\"]},\n" BY_MONTE_CARLO ",\n"
+        "\"measure\": {\"equilibration\": 200, \"samples\": 40, \"every\": 10}}\n";
+    static const char *const expected[] = {"thermodynamics.tsv", "rdf.tsv", "molecule_sizes.tsv",
+                                           "snapshots/trajectory.extxyz", NULL};
+    check_pieces(*state, chains, NULL, NULL, expected);
+    const double accepted = results_number("whole/summary.json", "acceptance_reptation");
+    assert_true(accepted > 0.02 && accepted < 0.5);
+    results_assert_number("pieces/summary.json", "acceptance_reptation", accepted);
+    check_chains_are_whole("whole/snapshots/trajectory.extxyz", 45, 5);
 }
 
 /// Each shift of a free dimer is accepted. Beads alone feel the bond: their moves are tuned to 40
@@ -205,6 +256,7 @@ int main(void) {
             test_monte_carlo_has_the_same_bits_with_threads_and_from_used_settings),
         TEST_WITHOUT_FIGURES(test_interrupted_monte_carlo_goes_on_with_the_same_bits),
         TEST_WITHOUT_FIGURES(test_interrupted_monte_carlo_of_a_mixture_goes_on_with_the_same_bits),
+        TEST_WITHOUT_FIGURES(test_chains_that_creep_stay_whole_and_have_the_same_bits_again),
         TEST_WITHOUT_FIGURES(test_the_summary_tells_how_many_moves_were_accepted),
         TEST_WITHOUT_FIGURES(test_monte_carlo_refuses_what_it_does_not_know),
         TEST_WITHOUT_FIGURES(test_a_bond_that_is_torn_at_the_start_is_refused),
