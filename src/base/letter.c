@@ -13,16 +13,19 @@ uint64_t mf_letter_turn(void) {
     return ++turns;
 }
 
+void *mf_letter_or_stop(void *memory) {
+    if (memory == NULL)
+        mf_ranks_stop(3, "%s", mf_status_message());
+    return memory;
+}
+
 static size_t words_of(const struct letter *letter) {
     return (sizeof *letter + letter->bytes + sizeof(uint64_t) - 1) / sizeof(uint64_t);
 }
 
 struct letter *mf_letter_new(const struct letter *head) {
-    struct letter *letter = mf_memory_zeroed(words_of(head), sizeof(uint64_t));
-    if (letter)
-        *letter = *head;
-    else
-        mf_ranks_stop(3, "%s", mf_status_message());
+    struct letter *letter = mf_letter_or_stop(mf_memory_zeroed(words_of(head), sizeof(uint64_t)));
+    *letter = *head;
     return letter;
 }
 

@@ -40,6 +40,9 @@ static inline void *letter_bytes(const struct letter *letter) {
     return (void *)(letter + 1);
 }
 
+/// New memory, or the end of the job where there is none: the others would wait for this rank.
+void *mf_letter_or_stop(void *memory);
+
 /// A letter with this head and room for its bytes, to be freed by mf_memory_free. The job ends
 /// where there is no memory for it.
 struct letter *mf_letter_new(const struct letter *head);

@@ -37,12 +37,6 @@ struct round {
     bool none_left;
 };
 
-static void *or_stop(void *memory) {
-    if (memory == NULL)
-        mf_ranks_stop(3, "%s", mf_status_message());
-    return memory;
-}
-
 // Rank 0 ------------------------------------------------------------------------------------------
 
 /// The next task, or LETTER_NO_TASK. Tasks go in their order: all below one that failed have begun.
@@ -238,7 +232,8 @@ static void *follow(void *memory) {
 static void do_task(struct round *round, uint64_t task) {
     const struct parallel_tasks *tasks = round->tasks;
     struct letter head = {.kind = LETTER_RESULT, .turn = round->turn, .task = task};
-    void *result = tasks->result_size > 0 ? or_stop(mf_memory_zeroed(1, tasks->result_size)) : NULL;
+    void *result =
+        tasks->result_size > 0 ? mf_letter_or_stop(mf_memory_zeroed(1, tasks->result_size)) : NULL;
     const double begin = clock_thread_seconds();
     head.status = tasks->run(tasks->context, task, result);
     head.seconds = clock_thread_seconds() - begin;
@@ -287,7 +282,7 @@ static void take_over(const struct round *round, const struct letter *letter) {
 /// Letters first … end − 1, one behind the other, from rank 0 to all.
 static void share_piece(const struct round *round, const uint64_t *bytes, size_t first, size_t end,
                         size_t total) {
-    char *piece = or_stop(mf_memory_zeroed(total, 1)), *at = piece;
+    char *piece = mf_letter_or_stop(mf_memory_zeroed(total, 1)), *at = piece;
     for (size_t k = first; k < end; at += room(bytes[k++]))
         if (ranks_lead() && bytes[k] > 0)
             memcpy(at, round->left[k], bytes[k]);
@@ -303,7 +298,7 @@ static void share_piece(const struct round *round, const uint64_t *bytes, size_t
 static void share_letters(const struct round *round) {
     enum { PIECE = 1 << 25 };
     const size_t count = round->tasks->count;
-    uint64_t *bytes = or_stop(mf_memory_zeroed(count, sizeof *bytes));
+    uint64_t *bytes = mf_letter_or_stop(mf_memory_zeroed(count, sizeof *bytes));
     for (size_t k = 0; ranks_lead() && k < count; k++)
         bytes[k] = round->left[k] ? sizeof(struct letter) + round->left[k]->bytes : 0;
     mf_ranks_share(bytes, count * sizeof *bytes);
@@ -322,9 +317,9 @@ static void round_init(struct round *round, const struct parallel_tasks *tasks) 
     pthread_mutex_init(&round->lock, NULL);
     pthread_cond_init(&round->changed, NULL);
     mf_ranks_pause_init(&round->pause, &round->lock);
-    round->left = or_stop(mf_memory_zeroed(tasks->count, sizeof *round->left));
-    round->told = or_stop(mf_memory_zeroed(tasks->count, sizeof *round->told));
-    round->task = or_stop(mf_memory_zeroed(tasks->count, sizeof *round->task));
+    round->left = mf_letter_or_stop(mf_memory_zeroed(tasks->count, sizeof *round->left));
+    round->told = mf_letter_or_stop(mf_memory_zeroed(tasks->count, sizeof *round->told));
+    round->task = mf_letter_or_stop(mf_memory_zeroed(tasks->count, sizeof *round->task));
 }
 
 static void round_clear(struct round *round) {

@@ -83,9 +83,7 @@ void mf_parallel_stream_others_give(struct parallel_stream *stream, const void *
 
 /// Keep a letter until its result is taken.
 static void keep(struct stream_others *others, struct letter *letter) {
-    struct stream_mail *mail = mf_memory_zeroed(1, sizeof *mail);
-    if (mail == NULL)
-        mf_ranks_stop(3, "%s", mf_status_message());
+    struct stream_mail *mail = mf_letter_or_stop(mf_memory_zeroed(1, sizeof *mail));
     mail->letter = letter;
     if (others->first)
         others->last->next = mail;
