@@ -15,9 +15,11 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { TASKS = 32, ROUNDS = 6 };
 static const double mean = 0.1, spread = 0.05; // [s]
+static const char failure[] = "a task has failed";
 
 struct round {
     int number;
@@ -72,36 +74,65 @@ static double in_rounds(int threads) {
     return right ? clock_seconds() - begin : 0;
 }
 
-/// Task number of all rounds.
+/// Task number of all rounds; the one behind the last fails.
 static enum status run_streamed(void *context, const void *task, void *result) {
     const size_t number = *(const size_t *)task;
     struct round round = {.number = (int)(number / TASKS)};
     (void)context;
-    return run_task(&round, number % TASKS, result);
+    return number < ROUNDS * TASKS ? run_task(&round, number % TASKS, result)
+                                   : mf_status_fail(STATUS_UNSTABLE, "%s", failure);
 }
 
-/// Give the tasks of all rounds one by one. Returns whether each was done once, with its result.
-static bool give_all(struct parallel_stream *stream) {
-    struct parallel_stream_result taken;
-    int seen[ROUNDS * TASKS] = {0};
-    size_t given = 0;
+/// What was given and taken of the tasks of all rounds.
+struct streamed {
+    size_t given;
+    int seen[ROUNDS * TASKS];
+};
+
+static void give(struct parallel_stream *stream, struct streamed *streamed) {
+    for (; streamed->given < ROUNDS * TASKS && mf_parallel_stream_has_idle(stream);
+         streamed->given++)
+        mf_parallel_stream_give(stream, &streamed->given);
+}
+
+/// Take as many results as a round has, while others are worked for. Returns whether each is right
+/// and new.
+static bool take_round(struct parallel_stream *stream, struct streamed *streamed) {
     bool right = true;
-    for (int left = ROUNDS * TASKS; left > 0; left--) {
-        for (; given < ROUNDS * TASKS && mf_parallel_stream_has_idle(stream); given++)
-            mf_parallel_stream_give(stream, &given);
+    give(stream, streamed);
+    for (int left = TASKS; left > 0; left--, give(stream, streamed)) {
+        struct parallel_stream_result taken;
         if (mf_parallel_stream_take(stream, &taken) != STATUS_OK || taken.task == NULL)
             return false;
         const size_t number = *(const size_t *)taken.task;
-        right = right && seen[number]++ == 0 &&
+        right = right && streamed->seen[number]++ == 0 &&
                 *(const double *)taken.result == duration((int)(number / TASKS), number % TASKS);
     }
     return right;
 }
 
-/// Do the tasks of all rounds one by one, with threads of all ranks. Returns seconds; on rank 0,
-/// 0 if one went wrong.
+/// Whether each thread of each rank tells a failure with its message, and then nothing is left.
+static bool tells_failures(struct parallel_stream *stream) {
+    const size_t fails = ROUNDS * TASKS;
+    struct parallel_stream_result taken;
+    int given = 0;
+    bool right = true;
+    for (; mf_parallel_stream_has_idle(stream); given++)
+        mf_parallel_stream_give(stream, &fails);
+    for (int left = given; left > 0; left--)
+        right = mf_parallel_stream_take(stream, &taken) == STATUS_UNSTABLE &&
+                strcmp(mf_status_message(), failure) == 0 && right;
+    right = mf_parallel_stream_take(stream, &taken) == STATUS_OK && taken.task == NULL && right;
+    return right && given >= mf_ranks_count();
+}
+
+/// Do the tasks of all rounds one by one, with so many threads a rank. Results are taken in turns,
+/// from each of which to the next tasks go on. Returns seconds; on rank 0, 0 if one went wrong.
 static double without_rounds(int threads) {
     struct parallel_stream *stream;
+    struct streamed streamed = {0};
+    const double begin = clock_seconds();
+    double seconds = 0;
     bool right = true;
     if (mf_parallel_stream_begin(&stream,
                                  &(struct parallel_stream_tasks){.threads = threads,
@@ -109,15 +140,17 @@ static double without_rounds(int threads) {
                                                                  .result_size = sizeof(double),
                                                                  .run = run_streamed}) != STATUS_OK)
         return 0;
-    const double begin = clock_seconds();
-    if (ranks_lead()) {
-        mf_parallel_stream_open(stream);
-        right = give_all(stream);
-        mf_parallel_stream_close(stream);
-    } else {
-        mf_parallel_stream_follow(stream);
+    for (int turn = 0; turn <= ROUNDS; turn++) {
+        seconds = turn == ROUNDS ? clock_seconds() - begin : 0;
+        if (ranks_lead()) {
+            mf_parallel_stream_open(stream);
+            right =
+                (turn < ROUNDS ? take_round(stream, &streamed) : tells_failures(stream)) && right;
+            mf_parallel_stream_close(stream);
+        } else {
+            mf_parallel_stream_follow(stream);
+        }
     }
-    const double seconds = clock_seconds() - begin;
     mf_parallel_stream_end(stream);
     return right ? seconds : 0;
 }
