@@ -28,16 +28,19 @@ enum status mf_parallel_stream_begin(struct parallel_stream **stream,
 /// Wait for the tasks that are being done here, and forget them. NULL: nothing.
 void mf_parallel_stream_end(struct parallel_stream *stream);
 
-/// @name Between these two rank 0 gives and takes; alone it may always. In between, and not before
-/// or behind, ranks may not do together anything else, and what is being done goes on afterwards,
-/// to be taken when the stream is open again.
+/// @name Turns of ranks
+/// Rank 0 gives and takes while the stream is open, and the others follow until it closes. Between
+/// such turns ranks may do other things together; tasks that have begun go on meanwhile, and are
+/// taken in a later turn. A process alone may give and take at any time.
 
-/// Rank 0: wait until all ranks are there.
+/// Rank 0: begin a turn, once all ranks are there, and end it.
 void mf_parallel_stream_open(struct parallel_stream *stream);
 void mf_parallel_stream_close(struct parallel_stream *stream);
 
-/// Another rank, while rank 0 has the stream open: do what it gives, with all threads.
+/// Another rank, in place of both: do what rank 0 gives, with all threads.
 void mf_parallel_stream_follow(struct parallel_stream *stream);
+
+/// @name Rank 0, or a process alone
 
 /// Whether a thread has neither a task nor a result that was not taken.
 bool mf_parallel_stream_has_idle(struct parallel_stream *stream);
