@@ -64,3 +64,6 @@ enum status mf_parallel_try(const struct parallel_tasks *tasks) MUST_USE;
 /// of the lowest rank that did, with its name. Each rank calls it between the same tasks.
 /// @param[in] digest  of what all ranks must have computed alike; BAD_INPUT if one has not
 enum status mf_parallel_agree(enum status status, uint64_t digest) MUST_USE;
+
+/// Give all ranks this state of rank 0. All call it, with as many spans of the same lengths.
+void mf_parallel_share(const struct memory_span *spans, size_t count);

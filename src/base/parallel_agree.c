@@ -56,6 +56,11 @@ static void judge(uint64_t turn, uint64_t digest, struct verdict *verdict) {
     mf_ranks_watch_clear(&watch);
 }
 
+void mf_parallel_share(const struct memory_span *spans, size_t count) {
+    for (size_t k = 0; k < count; k++)
+        mf_ranks_share(spans[k].memory, spans[k].bytes);
+}
+
 enum status mf_parallel_agree(enum status status, uint64_t digest) {
     if (mf_ranks_count() == 1)
         return status;

@@ -37,12 +37,6 @@ struct round {
     bool none_left;
 };
 
-static void *or_stop(void *memory) {
-    if (memory == NULL)
-        mf_ranks_stop(3, "%s", mf_status_message());
-    return memory;
-}
-
 // Rank 0 ------------------------------------------------------------------------------------------
 
 /// The next task, or LETTER_NO_TASK. Tasks go in their order: all below one that failed have begun.
@@ -76,19 +70,6 @@ static void collect(struct round *round, struct letter *letter, const void *resu
     pthread_mutex_unlock(&round->lock);
 }
 
-static void tell_all(const struct letter *letter) {
-    for (int rank = 1; rank < mf_ranks_count(); rank++)
-        mf_letter_send(rank, letter);
-}
-
-static void stop_all(const struct round *round, int signal_number) {
-    if (mf_interrupt_requested())
-        return;
-    mf_interrupt_agree(signal_number);
-    tell_all(&(struct letter){
-        .kind = LETTER_STOP, .turn = round->turn, .task = (uint64_t)signal_number});
-}
-
 static bool is_over(struct round *round) {
     pthread_mutex_lock(&round->lock);
     const bool over = round->over;
@@ -116,7 +97,7 @@ static void serve(struct round *round, int from, struct letter *letter) {
         break;
     case LETTER_WISH: // who has gone on hears of it in the next round
         if (!is_over(round))
-            stop_all(round, (int)letter->task);
+            mf_letter_stop_all(round->turn, (int)letter->task);
         break;
     case LETTER_READY:
         round->ready++;
@@ -142,9 +123,9 @@ static void *lead(void *memory) {
     while (!is_over(round)) {
         listen_once(round);
         if (mf_interrupt_signal() != 0)
-            stop_all(round, mf_interrupt_signal());
+            mf_letter_stop_all(round->turn, mf_interrupt_signal());
     }
-    tell_all(&(struct letter){.kind = LETTER_OVER, .turn = round->turn});
+    mf_letter_send_all(&(struct letter){.kind = LETTER_OVER, .turn = round->turn});
     // What all do together cannot tell who is missing.
     while (round->ready < mf_ranks_count() - 1)
         listen_once(round);
@@ -224,13 +205,7 @@ static bool tell_leader(struct round *round, bool *wished) {
     if (letter)
         mf_letter_send(0, letter);
     mf_memory_free(letter);
-    if (mf_interrupt_signal() != 0 && !*wished)
-        mf_letter_send(0, &(struct letter){.kind = LETTER_WISH,
-                                           .turn = round->turn,
-                                           .task = (uint64_t)mf_interrupt_signal()});
-    *wished = mf_interrupt_signal() != 0;
-    if (mf_ranks_watch_is_due(&round->watch))
-        mf_letter_send(0, &(struct letter){.kind = LETTER_ALIVE, .turn = round->turn});
+    mf_letter_tell_standing(round->turn, &round->watch, wished);
     return letter != NULL;
 }
 
@@ -257,7 +232,8 @@ static void *follow(void *memory) {
 static void do_task(struct round *round, uint64_t task) {
     const struct parallel_tasks *tasks = round->tasks;
     struct letter head = {.kind = LETTER_RESULT, .turn = round->turn, .task = task};
-    void *result = tasks->result_size > 0 ? or_stop(mf_memory_zeroed(1, tasks->result_size)) : NULL;
+    void *result =
+        tasks->result_size > 0 ? mf_letter_or_stop(mf_memory_zeroed(1, tasks->result_size)) : NULL;
     const double begin = clock_thread_seconds();
     head.status = tasks->run(tasks->context, task, result);
     head.seconds = clock_thread_seconds() - begin;
@@ -306,7 +282,7 @@ static void take_over(const struct round *round, const struct letter *letter) {
 /// Letters first … end − 1, one behind the other, from rank 0 to all.
 static void share_piece(const struct round *round, const uint64_t *bytes, size_t first, size_t end,
                         size_t total) {
-    char *piece = or_stop(mf_memory_zeroed(total, 1)), *at = piece;
+    char *piece = mf_letter_or_stop(mf_memory_zeroed(total, 1)), *at = piece;
     for (size_t k = first; k < end; at += room(bytes[k++]))
         if (ranks_lead() && bytes[k] > 0)
             memcpy(at, round->left[k], bytes[k]);
@@ -322,7 +298,7 @@ static void share_piece(const struct round *round, const uint64_t *bytes, size_t
 static void share_letters(const struct round *round) {
     enum { PIECE = 1 << 25 };
     const size_t count = round->tasks->count;
-    uint64_t *bytes = or_stop(mf_memory_zeroed(count, sizeof *bytes));
+    uint64_t *bytes = mf_letter_or_stop(mf_memory_zeroed(count, sizeof *bytes));
     for (size_t k = 0; ranks_lead() && k < count; k++)
         bytes[k] = round->left[k] ? sizeof(struct letter) + round->left[k]->bytes : 0;
     mf_ranks_share(bytes, count * sizeof *bytes);
@@ -341,9 +317,9 @@ static void round_init(struct round *round, const struct parallel_tasks *tasks) 
     pthread_mutex_init(&round->lock, NULL);
     pthread_cond_init(&round->changed, NULL);
     mf_ranks_pause_init(&round->pause, &round->lock);
-    round->left = or_stop(mf_memory_zeroed(tasks->count, sizeof *round->left));
-    round->told = or_stop(mf_memory_zeroed(tasks->count, sizeof *round->told));
-    round->task = or_stop(mf_memory_zeroed(tasks->count, sizeof *round->task));
+    round->left = mf_letter_or_stop(mf_memory_zeroed(tasks->count, sizeof *round->left));
+    round->told = mf_letter_or_stop(mf_memory_zeroed(tasks->count, sizeof *round->told));
+    round->task = mf_letter_or_stop(mf_memory_zeroed(tasks->count, sizeof *round->task));
 }
 
 static void round_clear(struct round *round) {

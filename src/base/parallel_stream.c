@@ -3,37 +3,14 @@
 
 #include "base/clock.h"
 #include "base/memory.h"
+#include "base/parallel_stream_state.h"
 #include "base/parallel_times.h"
+#include "base/ranks.h"
 
-#include <pthread.h>
 #include <stdio.h>
 #include <string.h>
 
-enum work { IDLE, GIVEN, DONE };
-
-/// A thread and its task. All but `work` belongs to the thread while the task is GIVEN, and else to
-/// the owner of the stream.
-struct worker {
-    struct parallel_stream *stream;
-    pthread_t thread;
-    pthread_cond_t given;
-    enum work work;
-    void *task, *result;
-    double seconds;
-    enum status status;
-    char message[STATUS_MESSAGE_SIZE];
-};
-
-struct parallel_stream {
-    struct parallel_stream_tasks tasks;
-    pthread_mutex_t lock; ///< of `work` of all, and `over`
-    pthread_cond_t done;
-    bool over;
-    int begun; ///< threads
-    struct worker *worker;
-};
-
-static void do_task(struct worker *worker) {
+static void do_task(struct stream_worker *worker) {
     const struct parallel_stream_tasks *tasks = &worker->stream->tasks;
     const double begin = clock_thread_seconds();
     memset(worker->result, 0, tasks->result_size);
@@ -44,19 +21,19 @@ static void do_task(struct worker *worker) {
 }
 
 static void *work(void *memory) {
-    struct worker *worker = memory;
+    struct stream_worker *worker = memory;
     struct parallel_stream *stream = worker->stream;
     pthread_mutex_lock(&stream->lock);
     for (;;) {
-        while (worker->work != GIVEN && !stream->over)
+        while (worker->work != STREAM_GIVEN && !stream->over)
             pthread_cond_wait(&worker->given, &stream->lock);
         if (stream->over)
             break;
         pthread_mutex_unlock(&stream->lock);
         do_task(worker);
         pthread_mutex_lock(&stream->lock);
-        worker->work = DONE;
-        pthread_cond_signal(&stream->done);
+        worker->work = STREAM_DONE;
+        mf_ranks_pause_end(&stream->pause);
     }
     pthread_mutex_unlock(&stream->lock);
     return NULL;
@@ -64,7 +41,7 @@ static void *work(void *memory) {
 
 static enum status begin_worker(struct parallel_stream *stream) {
     enum status status = STATUS_OK;
-    struct worker *worker = &stream->worker[stream->begun];
+    struct stream_worker *worker = &stream->worker[stream->begun];
     worker->stream = stream;
     worker->task = mf_memory_zeroed(1, stream->tasks.task_size);
     worker->result = mf_memory_zeroed(1, stream->tasks.result_size);
@@ -89,11 +66,13 @@ enum status mf_parallel_stream_begin(struct parallel_stream **made,
     NEW_ARRAY(stream, 1);
     stream->tasks = *tasks;
     pthread_mutex_init(&stream->lock, NULL);
-    pthread_cond_init(&stream->done, NULL);
+    mf_ranks_pause_init(&stream->pause, &stream->lock);
     *made = stream;
     NEW_ARRAY(stream->worker, (size_t)tasks->threads);
     for (int k = 0; k < tasks->threads; k++)
         CHECK(begin_worker(stream));
+    if (mf_ranks_count() > 1 && ranks_lead())
+        CHECK(mf_parallel_stream_others_begin(stream));
 done:
     if (status != STATUS_OK) {
         mf_parallel_stream_end(*made);
@@ -118,64 +97,107 @@ void mf_parallel_stream_end(struct parallel_stream *stream) {
         mf_memory_free(stream->worker[k].task);
         mf_memory_free(stream->worker[k].result);
     }
-    pthread_cond_destroy(&stream->done);
+    mf_parallel_stream_others_end(stream->others);
+    mf_ranks_pause_clear(&stream->pause);
     pthread_mutex_destroy(&stream->lock);
     mf_memory_free(stream->worker);
     mf_memory_free(stream);
 }
 
-static struct worker *find_idle(const struct parallel_stream *stream) {
+static struct stream_worker *find(const struct parallel_stream *stream, enum stream_work work) {
     for (int k = 0; k < stream->begun; k++)
-        if (stream->worker[k].work == IDLE) // which the owner alone makes it, or changes
+        if (stream->worker[k].work == work)
             return &stream->worker[k];
     return NULL;
 }
 
-bool mf_parallel_stream_has_idle(struct parallel_stream *stream) {
+static size_t count(struct parallel_stream *stream, enum stream_work work) {
+    size_t found = 0;
     pthread_mutex_lock(&stream->lock);
-    const bool has = find_idle(stream) != NULL;
+    for (int k = 0; k < stream->begun; k++)
+        found += stream->worker[k].work == work;
     pthread_mutex_unlock(&stream->lock);
-    return has;
+    return found;
 }
 
-void mf_parallel_stream_give(struct parallel_stream *stream, const void *task) {
+size_t mf_parallel_stream_count_idle(struct parallel_stream *stream) {
+    return count(stream, STREAM_IDLE);
+}
+
+void mf_parallel_stream_give_own(struct parallel_stream *stream, const void *task) {
     pthread_mutex_lock(&stream->lock);
-    struct worker *worker = find_idle(stream);
+    struct stream_worker *worker = find(stream, STREAM_IDLE);
     memcpy(worker->task, task, stream->tasks.task_size);
-    worker->work = GIVEN;
+    worker->work = STREAM_GIVEN;
     pthread_cond_signal(&worker->given);
     pthread_mutex_unlock(&stream->lock);
 }
 
-/// One that is done, or NULL; `open` is how many have a task or a result.
-static struct worker *find_done(const struct parallel_stream *stream, int *open) {
-    struct worker *done = NULL;
-    *open = 0;
-    for (int k = 0; k < stream->begun; k++) {
-        struct worker *worker = &stream->worker[k];
-        *open += worker->work != IDLE;
-        if (worker->work == DONE)
-            done = worker;
+bool mf_parallel_stream_take_own(struct parallel_stream *stream, struct stream_outcome *outcome) {
+    pthread_mutex_lock(&stream->lock);
+    struct stream_worker *worker = find(stream, STREAM_DONE);
+    if (worker) {
+        worker->work = STREAM_IDLE;
+        *outcome = (struct stream_outcome){worker->task, worker->result, worker->seconds,
+                                           worker->status, worker->message};
     }
-    return done;
+    pthread_mutex_unlock(&stream->lock);
+    return worker != NULL;
+}
+
+bool mf_parallel_stream_has_idle(struct parallel_stream *stream) {
+    return mf_parallel_stream_count_idle(stream) > 0 ||
+           (stream->others && mf_parallel_stream_others_have_idle(stream->others));
+}
+
+void mf_parallel_stream_give(struct parallel_stream *stream, const void *task) {
+    if (mf_parallel_stream_count_idle(stream) > 0)
+        mf_parallel_stream_give_own(stream, task);
+    else
+        mf_parallel_stream_others_give(stream, task);
+}
+
+/// Wait until a thread has done its task, or for a moment where there are letters to look at.
+static void wait_for_news(struct parallel_stream *stream) {
+    if (stream->others) {
+        mf_ranks_pause(&stream->pause, false);
+        return;
+    }
+    pthread_mutex_lock(&stream->lock);
+    while (find(stream, STREAM_DONE) == NULL)
+        pthread_cond_wait(&stream->pause.spoken, &stream->lock);
+    pthread_mutex_unlock(&stream->lock);
+}
+
+static bool take_any(struct parallel_stream *stream, struct stream_outcome *outcome) {
+    if (stream->others && mf_parallel_stream_others_take(stream, outcome))
+        return true;
+    return mf_parallel_stream_take_own(stream, outcome);
+}
+
+static bool is_busy(struct parallel_stream *stream) {
+    return mf_parallel_stream_count_idle(stream) < (size_t)stream->begun ||
+           (stream->others && stream->others->open > 0);
 }
 
 enum status mf_parallel_stream_take(struct parallel_stream *stream,
                                     struct parallel_stream_result *taken) {
     const double begin = clock_seconds();
-    int open;
-    struct worker *worker;
+    struct stream_outcome outcome;
     *taken = (struct parallel_stream_result){NULL, NULL};
-    pthread_mutex_lock(&stream->lock);
-    while ((worker = find_done(stream, &open)) == NULL && open > 0)
-        pthread_cond_wait(&stream->done, &stream->lock);
-    if (worker)
-        worker->work = IDLE;
-    pthread_mutex_unlock(&stream->lock);
-    if (worker == NULL)
-        return STATUS_OK;
-    mf_parallel_times_add_streamed(worker->seconds, clock_seconds() - begin);
-    *taken = (struct parallel_stream_result){worker->task, worker->result};
-    return worker->status == STATUS_OK ? STATUS_OK
-                                       : mf_status_fail(worker->status, "%s", worker->message);
+    if (stream->others)
+        mf_parallel_stream_others_listen(stream);
+    while (!take_any(stream, &outcome)) {
+        if (!is_busy(stream))
+            return STATUS_OK;
+        wait_for_news(stream);
+        if (stream->others)
+            mf_parallel_stream_others_listen(stream);
+    }
+    if (stream->others)
+        mf_ranks_pause_note(outcome.seconds);
+    mf_parallel_times_add_streamed(outcome.seconds, clock_seconds() - begin);
+    *taken = (struct parallel_stream_result){outcome.task, outcome.result};
+    return outcome.status == STATUS_OK ? STATUS_OK
+                                       : mf_status_fail(outcome.status, "%s", outcome.message);
 }

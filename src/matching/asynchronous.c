@@ -2,6 +2,7 @@
 #include "matching/asynchronous.h"
 
 #include "base/memory.h"
+#include "base/parallel.h"
 #include "base/ranks.h"
 #include "base/rng.h"
 
@@ -23,11 +24,6 @@ enum status mf_asynchronous_check(const struct population_parameters *parameters
         return mf_status_fail(STATUS_BAD_INPUT,
                               "\"%s\" is of rounds, which an \"asynchronous\" search does not have",
                               name);
-    if (mf_ranks_count() > 1)
-        return mf_status_fail(STATUS_BAD_INPUT,
-                              "an \"asynchronous\" search runs in one process, with threads, and "
-                              "not in %d ranks",
-                              mf_ranks_count());
     return STATUS_OK;
 }
 
@@ -118,15 +114,11 @@ static void end_round(struct asynchronous *asynchronous) {
     asynchronous->standing.here = 0;
 }
 
-enum status mf_asynchronous_take_round(struct asynchronous *asynchronous,
-                                       const struct inverse_listener *listener, bool *finished) {
+/// Of a process alone, or of rank 0.
+static enum status lead_round(struct asynchronous *asynchronous,
+                              const struct inverse_listener *listener, bool *finished) {
     struct parallel_stream_result taken;
     bool ended = false;
-    *finished = false;
-    if (asynchronous->standing.here == 0 && asynchronous->population->survey.evaluations > 0)
-        return STATUS_OK; // what came after the round was interrupted
-    if (asynchronous->threads == NULL)
-        TRY(begin_threads(asynchronous));
     give(asynchronous);
     for (; !ended; give(asynchronous)) {
         TRY(mf_parallel_stream_take(asynchronous->threads, &taken));
@@ -141,6 +133,25 @@ enum status mf_asynchronous_take_round(struct asynchronous *asynchronous,
                              listener);
     }
     return STATUS_OK;
+}
+
+enum status mf_asynchronous_take_round(struct asynchronous *asynchronous,
+                                       const struct inverse_listener *listener, bool *finished) {
+    enum status status = STATUS_OK;
+    *finished = false;
+    if (asynchronous->standing.here == 0 && asynchronous->population->survey.evaluations > 0)
+        return STATUS_OK; // what came after the round was interrupted
+    if (asynchronous->threads == NULL)
+        TRY(mf_parallel_agree(begin_threads(asynchronous), 0));
+    if (ranks_lead()) {
+        mf_parallel_stream_open(asynchronous->threads);
+        status = lead_round(asynchronous, listener, finished);
+        mf_parallel_stream_close(asynchronous->threads);
+    } else {
+        mf_parallel_stream_follow(asynchronous->threads);
+    }
+    mf_ranks_share(finished, sizeof *finished);
+    return mf_parallel_agree(status, 0);
 }
 
 size_t mf_asynchronous_spans(struct asynchronous *asynchronous, struct memory_span *spans) {

@@ -22,7 +22,7 @@ struct asynchronous {
     } standing;
 };
 
-/// Fails with BAD_INPUT if a setting of the population belongs to rounds, or with several ranks.
+/// Fails with BAD_INPUT if a setting of the population belongs to rounds.
 enum status mf_asynchronous_check(const struct population_parameters *parameters) MUST_USE;
 
 /// What it is given is borrowed. Fails: NO_MEMORY.
@@ -34,7 +34,9 @@ enum status mf_asynchronous_init(struct asynchronous *asynchronous, struct popul
 void mf_asynchronous_clear(struct asynchronous *asynchronous);
 
 /// Measure candidates until the optimiser has a whole round, while others go on; `finished` once
-/// it wants no more and all are measured. What was measured is kept if it fails.
+/// it wants no more and all are measured. What was measured is kept if it fails. Among ranks
+/// (base/ranks.h) threads of all measure, while the states of rank 0 alone, its population's,
+/// individuals' and optimiser's too, follow: they are to be shared next, also if it fails.
 /// Fails: INTERRUPTED, NO_MEMORY, BAD_INPUT.
 enum status mf_asynchronous_take_round(struct asynchronous *asynchronous,
                                        const struct inverse_listener *listener,

@@ -6,6 +6,7 @@
 #include "problem/inverse.h"
 
 #include "base/memory.h"
+#include "base/parallel.h"
 #include "matching/asynchronous.h"
 #include "matching/individuals.h"
 #include "matching/population.h"
@@ -326,12 +327,36 @@ static enum status check(struct state *state, bool last) {
     return STATUS_OK;
 }
 
+static size_t spans(void *memory, struct memory_span *span) {
+    struct state *state = memory;
+    const size_t bytes = state->parametrisation.variables * sizeof(double);
+    size_t n = 0;
+    span[n++] = (struct memory_span){&state->progress, sizeof state->progress};
+    span[n++] = (struct memory_span){state->best, bytes};
+    n += mf_parametrisation_curves_spans(&state->parametrisation, &state->curves, span + n);
+    n += mf_population_spans(&state->population, span + n);
+    n += mf_individuals_spans(&state->individuals, span + n);
+    n += state->optimiser->spans(state->optimiser_state, span + n);
+    if (state->asynchronous)
+        n += mf_asynchronous_spans(state->asynchronous, span + n);
+    return n;
+}
+
+/// A round without barriers, after which all ranks have the state of rank 0, which drove it.
+static enum status take_streamed_round(struct state *state, const struct inverse_listener *listener,
+                                       bool *finished) {
+    struct memory_span span[INVERSE_MAX_SPANS];
+    const enum status status = mf_asynchronous_take_round(state->asynchronous, listener, finished);
+    mf_parallel_share(span, spans(state, span));
+    return status;
+}
+
 /// Rounds of the optimiser, until an iteration has the evaluations that it should.
 static enum status take_rounds(struct state *state, const struct inverse_listener *listener,
                                bool *finished) {
     struct optimiser_round round;
     if (state->asynchronous)
-        return mf_asynchronous_take_round(state->asynchronous, listener, finished);
+        return take_streamed_round(state, listener, finished);
     TRY(state->optimiser->ask(state->optimiser_state, &round));
     while (round.count > 0 && !is_full(&state->population.survey, round.count)) {
         TRY(take_round(state, &round, listener));
@@ -359,21 +384,6 @@ static enum status write(const void *memory, const struct inverse_folder *folder
     const struct state *state = memory;
     TRY(mf_individuals_write(&state->individuals, &state->parametrisation, folder));
     return mf_population_write(&state->population, folder);
-}
-
-static size_t spans(void *memory, struct memory_span *span) {
-    struct state *state = memory;
-    const size_t bytes = state->parametrisation.variables * sizeof(double);
-    size_t n = 0;
-    span[n++] = (struct memory_span){&state->progress, sizeof state->progress};
-    span[n++] = (struct memory_span){state->best, bytes};
-    n += mf_parametrisation_curves_spans(&state->parametrisation, &state->curves, span + n);
-    n += mf_population_spans(&state->population, span + n);
-    n += mf_individuals_spans(&state->individuals, span + n);
-    n += state->optimiser->spans(state->optimiser_state, span + n);
-    if (state->asynchronous)
-        n += mf_asynchronous_spans(state->asynchronous, span + n);
-    return n;
 }
 
 #define MATCHING(record, its_name, its_summary)                                                    \

@@ -136,6 +136,11 @@ static void split(const struct population *population, double *position, double 
         column[d] = position + (size_t)d * (size_t)scene->placement.count;
 }
 
+/// Without "warm_start" simulations read nothing that changes while they go on.
+static bool is_warm(const struct population *population) {
+    return population->parameters.warm_start && population->totals.warm;
+}
+
 enum status mf_population_simulate(const struct population *population, const double *variables,
                                    const struct population_task *task,
                                    struct evaluate_result *result) {
@@ -147,7 +152,7 @@ enum status mf_population_simulate(const struct population *population, const do
     const struct evaluate_candidate candidate = {
         .potential = laws.table[UNKNOWN_POTENTIAL],
         .omega = laws.table[UNKNOWN_OMEGA],
-        .position = population->totals.warm ? (const double *const *)begin_column : NULL,
+        .position = is_warm(population) ? (const double *const *)begin_column : NULL,
         .discard_above = task->discard_above,
         .threads = task->threads,
         .seed = task->seed,

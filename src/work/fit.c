@@ -160,7 +160,7 @@ static enum status prepare(struct run *run, const char *file, const struct run_o
     TRY(mf_parallel_agree(read_and_create(run, file, options), mf_fit_ranks_digest(&run->fit)));
     TRY(mf_parallel_agree(ranks_lead() ? begin_folder(run, options) : STATUS_OK, 0));
     if (options->resume)
-        mf_fit_ranks_share(spans, run_spans(run, spans));
+        mf_parallel_share(spans, run_spans(run, spans));
     mf_progress_tell_run(&run->progress, &(struct watcher_run){RUN_FIT, run->folder.path,
                                                                .units = &run->fit.scene.units});
     return mf_fit_tell_targets(&run->progress, &run->fit);

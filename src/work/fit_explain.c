@@ -147,10 +147,8 @@ enum status mf_fit_explain(const char *file, const struct run_options *options, 
         CHECK(print_targets(mf_fit_states_at(&fit, s)));
     print_numbers(&fit);
     CHECK(print_simulations(&fit));
-    if (mf_fit_tell_timing(&fit)) {
-        printf("%s; such a fit runs in one process.\n", mf_fit_tell_timing(&fit));
-        ranks = ranks > 1 ? 1 : ranks;
-    }
+    if (mf_fit_tell_timing(&fit))
+        printf("%s.\n", mf_fit_tell_timing(&fit));
     if (ranks > 0) {
         print_advice(&fit, ranks * options->threads);
         CHECK(mf_fit_tasks_explain(stdout, file, options, ranks));

@@ -2,7 +2,6 @@
 #include "work/fit_ranks.h"
 
 #include "base/digest.h"
-#include "base/ranks.h"
 #include "base/simd.h"
 
 #include <math.h>
@@ -30,9 +29,4 @@ uint64_t mf_fit_ranks_digest_curves(const struct unknowns *unknowns, double *con
         mf_digest_add(&digest, curve[kind],
                       mf_unknowns_points(unknowns, kind) * sizeof *curve[kind]);
     return digest;
-}
-
-void mf_fit_ranks_share(const struct memory_span *spans, size_t count) {
-    for (size_t k = 0; k < count; k++)
-        mf_ranks_share(spans[k].memory, spans[k].bytes);
 }

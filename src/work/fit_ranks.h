@@ -2,7 +2,6 @@
 /// @file What the ranks of a fit (base/ranks.h) must have in common.
 #pragma once
 
-#include "base/memory.h"
 #include "input/fit_file.h"
 #include "problem/unknowns.h"
 
@@ -14,6 +13,3 @@ uint64_t mf_fit_ranks_digest(const struct fit_file *fit);
 /// Digest of the curves after an iteration.
 /// @param[in] curve  shape [UNKNOWNS][mf_unknowns_points]
 uint64_t mf_fit_ranks_digest_curves(const struct unknowns *unknowns, double *const *curve);
-
-/// Give all ranks the state of rank 0.
-void mf_fit_ranks_share(const struct memory_span *spans, size_t count);

@@ -88,9 +88,7 @@ static void test_fit_has_a_row_a_generation_when_asynchronous(void **state) {
     RUN_PROGRAM(&result, "fit", "run.json", "--explain", "--ranks", "8", "--threads", "2");
     run_program_assert_code(&result, 0);
     assert_contains(result.out, sentence);
-    assert_contains(result.out, "such a fit runs in one process");
-    assert_contains(result.out, " 1 ranks: ");
-    assert_null(strstr(result.out, " 2 ranks: "));
+    assert_contains(result.out, " 8 ranks: ");
 }
 
 static void test_fit_has_a_row_a_round_when_cmaes_is_asynchronous(void **state) {

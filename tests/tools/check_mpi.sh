@@ -3,8 +3,8 @@
 #
 # check_mpi.sh WITHOUT PROGRAM SHARE KILLS: a short fit of each method has the same bits in one process,
 # WITHOUT MPI, and among ranks of PROGRAM; it goes on with another layout after it was stopped or a
-# rank was killed, KILLS times; what is wrong is said; and tasks of SHARE take as long as the
-# model says. METHODS="imc genetic" checks these alone.
+# rank was killed, KILLS times; so do fits without rounds, whose bits differ; what is wrong is said;
+# and tasks of SHARE take as long as the model says. METHODS="imc genetic" checks these alone.
 set -u
 without=$(realpath "$1")
 program=$2
@@ -64,7 +64,7 @@ expect() {
     fi
 }
 
-# Tasks that sleep, against the model of how long they take.
+# Tasks that sleep, in rounds and without, against the model of how long they take.
 for number in 1 2 4 8; do
     mpirun --bind-to none -np "$number" "$share" || failed=1
     "$share" "$number" || failed=1
@@ -154,6 +154,13 @@ begun() {
     until [ -e "$1/history.tsv" ]; do sleep 0.02; done
 }
 
+# ranks_of COMMAND: process numbers of the ranks that run it.
+ranks_of() {
+    pgrep -f "$1" | while read -r process; do
+        [ "$(readlink "/proc/$process/exe")" = "$program" ] && echo "$process"
+    done
+}
+
 # A rank is killed at some moment: the job ends, its checkpoint is whole, and another layout goes on.
 for kill in $(seq "$kills"); do
     rm -rf killed
@@ -161,9 +168,7 @@ for kill in $(seq "$kills"); do
     job=$!
     until [ -e killed/checkpoint.bin ]; do sleep 0.01; done
     sleep "0.$((RANDOM % 90 + 10))"
-    mapfile -t processes < <(pgrep -f "$program fit long.json -o killed" | while read -r process; do
-        [ "$(readlink "/proc/$process/exe")" = "$program" ] && echo "$process"
-    done)
+    mapfile -t processes < <(ranks_of "$program fit long.json -o killed")
     if [ ${#processes[@]} -gt 0 ]; then
         kill -KILL "${processes[RANDOM % ${#processes[@]}]}"
     fi
@@ -182,10 +187,7 @@ for signal in USR1 TERM INT; do
     ranks 3 "$program" fit long.json -o stopped --quiet --threads 1 &
     job=$!
     begun stopped
-    process=$(pgrep -f "$program fit long.json -o stopped" | while read -r process; do
-        [ "$(readlink "/proc/$process/exe")" = "$program" ] && echo "$process"
-    done | tail -1)
-    kill -"$signal" "$process"
+    kill -"$signal" "$(ranks_of "$program fit long.json -o stopped" | tail -1)"
     wait "$job"
     code=$?
     expect "SIG$signal of one rank" "interrupted after"
@@ -201,6 +203,62 @@ for signal in USR1 TERM INT; do
     same "resumed after SIG$signal" long stopped
 done
 
+# Without rounds results depend on timing, but whatever the layout tables are whole: a row an
+# iteration, an individual for each evaluation that is no check, each with a seed and so an error
+# of its own unless it failed, and the error falls.
+# whole NAME FOLDER ROUNDS EVALUATIONS
+whole() {
+    local rows individuals measured errors fell
+    rows=$(grep -vc '#' "$2/history.tsv")
+    individuals=$(grep -vc '#' "$2/individuals.tsv")
+    measured=$(cut -f 3 "$2/individuals.tsv" | grep -vc '#\|nan\|error')
+    errors=$(cut -f 3 "$2/individuals.tsv" | grep -v '#\|nan\|error' | sort -u | wc -l)
+    fell=$(grep -v '#' "$2/history.tsv" | awk 'NR == 1 { first = $4 } END { print ($4 < first) }')
+    if [ -s "$2/summary.json" ] && [ "$rows" = $(($3 + 1)) ] && [ "$individuals" -ge "$4" ] &&
+        [ "$errors" = "$measured" ] && [ "$fell" = 1 ]; then
+        echo "$1: $individuals individuals, the error falls"
+    else
+        echo "$1: $rows rows, $individuals individuals, $measured measured, $errors errors; the error falls: $fell"
+        failed=1
+    fi
+}
+
+streamed='"asynchronous": "yes", "population": 20'
+run genetic-streamed "$rdf" "$potential" "\"name\": \"genetic\", $streamed, \"generations\": 20, \"patience\": 0, $simulated"
+run cma-es-streamed "$rdf" "$potential" "\"name\": \"cma-es\", $streamed, \"rounds\": 20, $simulated"
+for fit in genetic-streamed cma-es-streamed; do
+    for layout in 3x2 2x1; do
+        ranks "${layout%x*}" "$program" fit $fit.json -o "$fit-$layout" --quiet --threads "${layout#*x}"
+        code=$?
+        [ $code -le 1 ] || {
+            echo "$fit, $layout: exit code $code"
+            cat words
+            failed=1
+        }
+        whole "$fit, ${layout%x*} ranks of ${layout#*x} threads" "$fit-$layout" 20 400
+    done
+    # One rank is told to stop, and later one is killed; another layout goes on each time.
+    for signal in USR1 KILL; do
+        rm -rf streamed
+        ranks 3 "$program" fit $fit.json -o streamed --quiet --threads 1 &
+        job=$!
+        begun streamed
+        kill -"$signal" "$(ranks_of "$program fit $fit.json -o streamed" | tail -1)"
+        wait "$job"
+        code=$?
+        if [ $signal = USR1 ]; then
+            expect "$fit, SIGUSR1 of one rank" "interrupted after"
+            [ $code = 0 ] || failed=1
+            grep -q '"interrupted"' streamed/summary.json || failed=1
+        elif [ $code = 0 ]; then
+            echo "$fit: a job goes on without a rank that was killed"
+            failed=1
+        fi
+        ranks 2 "$program" fit $fit.json -o streamed --quiet --resume --threads 2
+        whole "$fit, resumed after SIG$signal" streamed 20 400
+    done
+done
+
 # What is wrong is said once, by rank 0 or with the rank's name, and all end.
 ranks 3 "$program" fit missing.json -o nowhere
 expect "a run file that is not there" "mesofit: missing.json: No such file"
@@ -213,10 +271,6 @@ expect "a folder that holds a fit" "mesofit: long holds a finished fit"
 sed 's/"seed": 1/"seed": 2/' long.json >other.json
 ranks 3 bash -c 'exec "$0" fit $([ $OMPI_COMM_WORLD_RANK = 2 ] && echo other.json || echo long.json) -o mixed --quiet' "$program"
 expect "a rank with another input" "rank 2 on .* has computed other numbers"
-sed 's/"racing": 2, "warm_start": "yes"/"asynchronous": "yes"/' genetic.json >asynchronous.json
-ranks 2 "$program" fit asynchronous.json -o asynchronous
-expect "an asynchronous fit among ranks" "runs in one process, with threads"
-[ "$(grep -c "runs in one process" words)" = 1 ] || failed=1
 ranks 2 "$program" fit long.json -o live --live
 expect "the live view among ranks" "--live is for a fit in one process"
 
