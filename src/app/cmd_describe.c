@@ -8,6 +8,7 @@
 #include "input/fit_file.h"
 #include "observe/kirkwood_buff_observable.h"
 #include "observe/measure.h"
+#include "observe/rdf_observable.h"
 #include "trajectory/mapping_plan.h"
 
 #include <string.h>
@@ -291,9 +292,10 @@ static size_t add_targets(struct topic_object *objects, size_t n) {
         char topic[sizeof objects->topic];
         const bool of_groups = mf_bonded_distribution_order(kind) < TOPOLOGY_ORDERS;
         snprintf(topic, sizeof topic, "%s-target",
-                 of_groups                             ? "distribution"
-                 : target->form == OBSERVABLE_OWN_FORM ? target->name
-                                                       : forms[target->form]);
+                 of_groups                              ? "distribution"
+                 : kind == mf_rdf_intermolecular_kind() ? mf_targets_name(TARGET_RDF)
+                 : target->form == OBSERVABLE_OWN_FORM  ? target->name
+                                                        : forms[target->form]);
         n = add_object(objects, n, target->name, target->summary, topic);
     }
     return n;

@@ -347,7 +347,7 @@ static enum status find_bins(struct export_model *model) {
     char path[OUTPUT_PATH_SIZE];
     model->rdf_bins = 100;
     model->rdf_range = mf_export_model_cutoff(model);
-    mf_rdf_observable_file(model->folder, &model->setup.composition, 0, path);
+    mf_rdf_observable_file(model->folder, "rdf", &model->setup.composition, 0, path);
     if (!exists(path))
         return STATUS_OK;
     struct export_columns columns;

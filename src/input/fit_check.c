@@ -4,6 +4,7 @@
 #include "input/target_sanity.h"
 #include "io/units_scale.h"
 #include "observe/kirkwood_buff_observable.h"
+#include "observe/rdf_observable.h"
 #include "inversion/inversion.h"
 #include "problem/measurement.h"
 #include "problem/unknowns.h"
@@ -102,6 +103,19 @@ static enum status check_integrals(const struct fit_file *fit, const char *file)
                           "\"joint-imc\", \"gauss-newton\" and the optimisers do; with "
                           "\"fitted\": \"no\" it is compared with",
                           file, fit->method->name);
+}
+
+/// An inversion changes the potential of all pairs by the response of all pairs.
+static enum status check_intermolecular(const struct fit_file *fit, const char *file) {
+    if (fit->method->kind != INVERSE_INVERSION ||
+        !targets_ask(&fit->problem.targets, mf_rdf_intermolecular_kind()))
+        return STATUS_OK;
+    return mf_status_fail(
+        STATUS_BAD_INPUT,
+        "%s: target.intermolecular_rdf.fitted: \"%s\" does not fit it; where molecules exclude all "
+        "their own pairs it is the same count as rdf: name the file under \"rdf\"; "
+        "\"gauss-newton\" and the optimisers fit it, and \"no\" compares it with the result",
+        file, fit->method->name);
 }
 
 static enum status check_unknowns(const struct fit_file *fit, const char *file) {
@@ -251,9 +265,13 @@ enum status mf_fit_check(const struct fit_file *fit, const char *file) {
     const struct target_files *files = &fit->files;
     TRY(check_molecules(fit, file));
     TRY(check_integrals(fit, file));
+    TRY(check_intermolecular(fit, file));
     TRY(check_unknowns(fit, file));
     if (files->given[TARGET_RDF])
-        TRY(check_range(fit, file, "rdf", mf_rdf_bins_range(&files->rdf[0].bins)));
+        TRY(check_range(fit, file, "rdf", mf_rdf_bins_range(target_pairs_bins(&files->rdf))));
+    if (files->given[mf_rdf_intermolecular_kind()])
+        TRY(check_range(fit, file, "intermolecular_rdf",
+                        mf_rdf_bins_range(target_pairs_bins(&files->apart))));
     if (files->given[TARGET_ETD])
         TRY(check_range(fit, file, "etd", files->etd.grid.r_maximum));
     if (mf_targets_count(&fit->problem.targets) == 0)

@@ -42,7 +42,7 @@ static double find_cutoff(const struct fit_choice *c, const char **why) {
     *why = joined ? "beyond, g differs from 1 by less than 0.03, which forces up to here make, too"
                   : "beyond, g - 1 is within its noise";
     if (c->leader) {
-        const struct rdf_bins *bins = &c->leader->files.rdf[0].bins;
+        const struct rdf_bins *bins = target_pairs_bins(&c->leader->files.rdf);
         *why = "as the first state has it";
         return mf_rdf_bins_centre(bins, bins->count - 1);
     }
@@ -101,7 +101,7 @@ static enum status choose_count(struct fit_choice *c) {
         c, "%.0f particles: %s%s", c->count,
         c->count > least ? "the box is 2.2 times as wide as the range of the targets"
                          : "enough for the statistics, and the box is wider than twice the range",
-        c->read->files.rdf[0].parameters.particles > 0
+        c->read->files.rdf.member[0].parameters.particles > 0
             ? ""
             : "; g(r) is taken for that of as many, since its \"particles\" are not said");
     return mf_fit_choice_give(c, "scene.particles", mf_placement_count_fields, "count", c->count);

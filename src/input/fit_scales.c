@@ -213,9 +213,9 @@ enum status mf_fit_scales_rdf_init(struct fit_scales_rdf *rdf, const struct targ
                                    .density =
                                        (double)setup->placement.count / mf_box_volume(&setup->box)};
     if (files->given[TARGET_RDF]) {
-        rdf->bins = files->rdf[0].bins;
-        rdf->g = files->rdf_g;
-        rdf->error = files->rdf_error;
+        rdf->bins = *target_pairs_bins(&files->rdf);
+        rdf->g = files->rdf.g;
+        rdf->error = files->rdf.error;
     }
     return files->given[TARGET_RDF] || scene->potential.curves == 0 ? STATUS_OK
                                                                     : make_rdf(rdf, scene);

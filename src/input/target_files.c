@@ -4,6 +4,7 @@
 #include "base/digest.h"
 #include "base/memory.h"
 #include "observe/kirkwood_buff_observable.h"
+#include "observe/rdf_observable.h"
 
 #include <math.h>
 #include <string.h>
@@ -25,91 +26,6 @@ const struct field mf_target_files_use_fields[] = {
      .help = "no: only compared with the result"},
     FIELD_END,
 };
-
-/// All end with the shortest; where they would have ended is kept.
-static void cut_to_shortest(struct target_files *files) {
-    size_t shortest = SIZE_MAX;
-    for (size_t pair = 0; pair < files->pairs; pair++) {
-        const size_t count = files->rdf[pair].bins.count;
-        shortest = count > 0 && count < shortest ? count : shortest;
-    }
-    for (size_t pair = 0; pair < files->pairs; pair++) {
-        struct rdf_bins *bins = &files->rdf[pair].bins;
-        files->rdf_ends[pair] = mf_rdf_bins_edge(bins, bins->count);
-        if (bins->count > shortest)
-            bins->count = shortest;
-    }
-}
-
-/// All pair types must have the bins of the first.
-static void check_bins(const struct target_files *files, struct json_object *object) {
-    const struct rdf_bins *first = &files->rdf[0].bins;
-    for (size_t pair = 1; pair < files->pairs; pair++) {
-        const struct rdf_bins *bins = &files->rdf[pair].bins;
-        char name[COMPOSITION_PAIR_NAME_SIZE], first_name[COMPOSITION_PAIR_NAME_SIZE];
-        mf_composition_pair_name(&files->composition, (int)pair, name);
-        mf_composition_pair_name(&files->composition, 0, first_name);
-        // A file that could not be read has its own fault.
-        if (first->count > 0 && bins->count > 0 &&
-            (bins->count != first->count || fabs(bins->width / first->width - 1) > 1e-6 ||
-             fabs(bins->low - first->low) > 1e-6 * first->width))
-            mf_json_fault(object, name, "must have the bins of \"%s\"", first_name);
-    }
-}
-
-/// What the file calls a pair type: "A-B" or "B-A".
-static const char *pair_key(const struct composition *composition, int pair,
-                            const struct json_object *object,
-                            char name[COMPOSITION_PAIR_NAME_SIZE]) {
-    const char *key;
-    mf_composition_pair_name(composition, pair, name);
-    for (size_t n = 0; (key = mf_json_key(object, n)); n++)
-        if (mf_composition_find_pair(composition, key) == pair)
-            return key;
-    return name;
-}
-
-/// g and errors of all pair types in the numbers of the scene, one behind the other, if all
-/// could be read.
-static enum status collect_rdf(struct target_files *files, const struct box *box) {
-    enum status status = STATUS_OK;
-    const size_t bins = files->rdf[0].bins.count;
-    for (size_t pair = 0; pair < files->pairs; pair++)
-        if (files->rdf[pair].bins.count != bins)
-            return STATUS_OK;
-    NEW_ARRAY(files->rdf_g, files->pairs * bins);
-    NEW_ARRAY(files->rdf_error, files->pairs * bins);
-    NEW_ARRAY(files->rdf_given, files->pairs * bins);
-    for (size_t pair = 0; pair < files->pairs; pair++)
-        mf_target_rdf_convert(&files->rdf[pair], box, &files->composition, (int)pair,
-                              files->rdf_g + pair * bins, files->rdf_error + pair * bins);
-    memcpy(files->rdf_given, files->rdf_g, files->pairs * bins * sizeof(double));
-done:
-    return status;
-}
-
-/// g(r), or in a mixture that of each pair type: {"A-A": {"file": …}, …}.
-static enum status read_rdf(struct target_files *files, struct json_object *object,
-                            const struct box *box, const struct units *units) {
-    if (files->composition.types == 0)
-        return STATUS_OK; // a fault of the types is told, those of their pairs would mislead
-    if (!composition_is_mixed(&files->composition)) {
-        TRY(mf_target_rdf_read(&files->rdf[0], object, units, box->dimensions));
-        return collect_rdf(files, box);
-    }
-    // The object remembers what it was asked for until it is finished.
-    char name[COMPOSITION_MOST_PAIRS][COMPOSITION_PAIR_NAME_SIZE];
-    for (size_t pair = 0; pair < files->pairs; pair++) {
-        struct json_object child = mf_json_child(
-            object, pair_key(&files->composition, (int)pair, object, name[pair]), true);
-        if (child.item)
-            TRY(mf_target_rdf_read(&files->rdf[pair], &child, units, box->dimensions));
-    }
-    mf_json_finish(object);
-    cut_to_shortest(files);
-    check_bins(files, object);
-    return collect_rdf(files, box);
-}
 
 /// Settings that stand beside the values. Two targets of one observable must say the same.
 static enum status read_settings(struct target_files *files, const struct observable_kind *kind,
@@ -151,6 +67,20 @@ enum status mf_target_files_widen(struct target_files *files, enum topology_orde
     return STATUS_OK;
 }
 
+/// g of different molecules, and the bins in which it is measured.
+static enum status read_apart(struct target_files *files, size_t place, struct json_object *object,
+                              const struct box *box, const struct units *units) {
+    struct rdf_settings *settings = mf_memory_zeroed(1, sizeof *settings);
+    if (settings == NULL)
+        return STATUS_NO_MEMORY;
+    files->settings[place] = settings;
+    TRY(mf_target_pairs_read(&files->apart, object, box, &files->composition, units));
+    *settings = (struct rdf_settings){.of_target = true,
+                                      .estimator = RDF_FORCE_NOT_USED,
+                                      .target = *target_pairs_bins(&files->apart)};
+    return STATUS_OK;
+}
+
 static enum status read_kind(struct target_files *files, int number, struct json_object *object,
                              const struct box *box, const struct molecules *molecules,
                              const struct units *units) {
@@ -162,7 +92,9 @@ static enum status read_kind(struct target_files *files, int number, struct json
     if (kind.target->has_settings)
         TRY(read_settings(files, &kind, object));
     if (number == TARGET_RDF)
-        return read_rdf(files, object, box, units);
+        return mf_target_pairs_read(&files->rdf, object, box, &files->composition, units);
+    if (number == mf_rdf_intermolecular_kind())
+        return read_apart(files, kind.place, object, box, units);
     if (number == TARGET_ETD)
         return mf_target_etd_read(&files->etd, object);
     if (number == mf_kirkwood_buff_kind()) {
@@ -224,11 +156,8 @@ enum status mf_target_files_read(struct target_files *files, struct json_object 
 }
 
 void mf_target_files_clear(struct target_files *files) {
-    for (size_t pair = 0; pair < files->pairs; pair++)
-        mf_target_rdf_clear(&files->rdf[pair]);
-    mf_memory_free(files->rdf_g);
-    mf_memory_free(files->rdf_error);
-    mf_memory_free(files->rdf_given);
+    mf_target_pairs_clear(&files->rdf);
+    mf_target_pairs_clear(&files->apart);
     mf_target_etd_clear(&files->etd);
     for (int order = 0; order < TOPOLOGY_ORDERS; order++)
         mf_target_groups_clear(&files->groups[order]);
@@ -237,20 +166,6 @@ void mf_target_files_clear(struct target_files *files) {
     for (size_t place = 0; place < OBSERVABLES_MOST; place++)
         mf_memory_free(files->settings[place]);
     *files = (struct target_files){0};
-}
-
-static void write_rdf(const struct target_files *files, struct json_writer *writer) {
-    if (!composition_is_mixed(&files->composition)) {
-        mf_json_put_fields(writer, mf_target_rdf_fields, &files->rdf[0].parameters);
-        return;
-    }
-    for (size_t pair = 0; pair < files->pairs; pair++) {
-        char name[COMPOSITION_PAIR_NAME_SIZE];
-        mf_composition_pair_name(&files->composition, (int)pair, name);
-        mf_json_begin(writer, name);
-        mf_json_put_fields(writer, mf_target_rdf_fields, &files->rdf[pair].parameters);
-        mf_json_end(writer);
-    }
 }
 
 static void write_number(const struct target_number *number, const char *unit,
@@ -269,7 +184,9 @@ static void write_kind(const struct target_files *files, int number, struct json
     if (order < TOPOLOGY_ORDERS)
         mf_target_groups_write(&files->groups[order], writer);
     else if (number == TARGET_RDF)
-        write_rdf(files, writer);
+        mf_target_pairs_write(&files->rdf, &files->composition, writer);
+    else if (number == mf_rdf_intermolecular_kind())
+        mf_target_pairs_write(&files->apart, &files->composition, writer);
     else if (number == TARGET_ETD)
         mf_json_put_fields(writer, mf_target_etd_fields, &files->etd.parameters);
     else if (number == mf_kirkwood_buff_kind())
@@ -303,8 +220,10 @@ static void digest(const double *values, size_t count, uint64_t *digest) {
 
 void mf_target_files_digest(const struct target_files *files, uint64_t *into) {
     const size_t cells = (size_t)(files->etd.grid.times * files->etd.grid.bins);
-    digest(files->rdf_g, files->pairs * files->rdf[0].bins.count, into);
-    digest(files->rdf_error, files->pairs * files->rdf[0].bins.count, into);
+    digest(files->rdf.g, target_pairs_values(&files->rdf), into);
+    digest(files->rdf.error, target_pairs_values(&files->rdf), into);
+    digest(files->apart.g, target_pairs_values(&files->apart), into);
+    digest(files->apart.error, target_pairs_values(&files->apart), into);
     digest(files->etd.survival, cells, into);
     digest(files->etd.error, cells, into);
     for (int order = 0; order < TOPOLOGY_ORDERS; order++) {
@@ -339,37 +258,28 @@ static void set_motion(const struct target_files *files, struct targets *targets
     }
 }
 
-/// Divide g of a pair type.
-static void divide(struct target_files *files, size_t pair, double factor) {
-    const size_t bins = files->rdf[0].bins.count;
-    for (size_t n = pair * bins; n < (pair + 1) * bins; n++) {
-        files->rdf_g[n] /= factor;
-        files->rdf_error[n] /= factor;
-    }
-}
-
 enum status mf_target_files_normalise(struct target_files *files, const struct box *box,
                                       bool joined) {
-    size_t given = 0;
+    struct target_pairs *rdf = &files->rdf;
     double width = 0;
     files->normalisation = (struct normalisation){.factor = 1};
-    if (!files->given[TARGET_RDF])
-        return STATUS_OK;
-    for (size_t pair = 0; pair < files->pairs; pair++) {
-        const struct target_rdf_parameters *p = &files->rdf[pair].parameters;
-        if (p->normalisation > 0)
-            divide(files, pair, p->normalisation);
-        given += p->normalisation > 0;
-        width = fmax(width, p->normalisation_error);
-    }
+    mf_target_pairs_normalise(&files->apart);
+    const size_t given = mf_target_pairs_normalise(rdf);
     // What all together say tells nothing of a part of them.
-    if (given > 0 || joined)
+    if (!files->given[TARGET_RDF] || given > 0 || joined)
         return STATUS_OK;
-    TRY(mf_normalisation_find(&files->rdf[0].bins, box, &files->composition, files->rdf_g,
-                              files->rdf_error, width, &files->normalisation));
-    for (size_t pair = 0; pair < files->pairs; pair++)
-        divide(files, pair, files->normalisation.factor);
+    for (size_t pair = 0; pair < rdf->pairs; pair++)
+        width = fmax(width, rdf->member[pair].parameters.normalisation_error);
+    TRY(mf_normalisation_find(target_pairs_bins(rdf), box, &files->composition, rdf->g, rdf->error,
+                              width, &files->normalisation));
+    for (size_t pair = 0; pair < rdf->pairs; pair++)
+        mf_target_pairs_divide(rdf, pair, files->normalisation.factor);
     return STATUS_OK;
+}
+
+static struct target target_of_pairs(const struct target_pairs *pairs) {
+    return (struct target){
+        .count = target_pairs_values(pairs), .value = pairs->g, .error = pairs->error};
 }
 
 static struct target target_of(const struct target_files *files, int kind) {
@@ -384,9 +294,9 @@ static struct target target_of(const struct target_files *files, int kind) {
                                .block = files->groups[order].block,
                                .blocks = files->groups[order].blocks};
     if (kind == TARGET_RDF)
-        return (struct target){.count = files->pairs * files->rdf[0].bins.count,
-                               .value = files->rdf_g,
-                               .error = files->rdf_error};
+        return target_of_pairs(&files->rdf);
+    if (kind == mf_rdf_intermolecular_kind())
+        return target_of_pairs(&files->apart);
     if (kind == TARGET_ETD)
         return (struct target){.count = (size_t)(files->etd.grid.times * files->etd.grid.bins),
                                .value = files->etd.survival,
@@ -408,7 +318,7 @@ void mf_target_files_targets(struct target_files *files, bool moves, struct targ
                              struct targets *compared) {
     static const double unknown = NAN;
     const struct target_etd *etd = &files->etd;
-    *compared = (struct targets){.bins = files->rdf[0].bins,
+    *compared = (struct targets){.bins = *target_pairs_bins(&files->rdf),
                                  .etd = etd->grid,
                                  .etd_interval = etd->interval,
                                  .etd_origins = origin_intervals * etd->interval};

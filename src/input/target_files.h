@@ -9,20 +9,17 @@
 #include "input/target_etd.h"
 #include "input/target_groups.h"
 #include "input/target_kirkwood_buff.h"
-#include "input/target_rdf.h"
+#include "input/target_pairs.h"
 
 extern const struct field mf_target_files_use_fields[];
 
 struct target_files {
     bool given[TARGETS];
-    struct target_rdf rdf[COMPOSITION_MOST_PAIRS]; ///< of each pair type
-    struct composition composition;                ///< of the scene
-    size_t pairs;                                  ///< its pair types
-    /// Of all, one behind the other, in the numbers of the scene: shape [pairs, bins].
-    double *rdf_g, *rdf_error;
-    double rdf_ends[COMPOSITION_MOST_PAIRS]; ///< where the file of each would end [λ]
-    double *rdf_given;                       ///< g before it was divided by its normalisation
-    struct normalisation normalisation;      ///< by which those that do not say theirs are divided
+    struct composition composition;     ///< of the scene
+    size_t pairs;                       ///< its pair types
+    struct target_pairs rdf;            ///< g(r) of all pairs
+    struct target_pairs apart;          ///< of beads of different molecules
+    struct normalisation normalisation; ///< by which g(r) of all that do not say theirs are divided
     struct target_etd etd;
     struct target_groups groups[TOPOLOGY_ORDERS]; ///< of bonds, angles and dihedrals
     struct target_kirkwood_buff kirkwood_buff;
@@ -55,8 +52,8 @@ enum status mf_target_files_widen(struct target_files *files, enum topology_orde
 
 /// Divide g(r) by its normalisation: what the file says, else what mf_normalisation_find makes of
 /// the target in this box, and 1 of beads that are `joined` to molecules, of which it knows
-/// nothing. If the file says some of a mixture's, the others are 1. Fails:
-/// NO_MEMORY.
+/// nothing. If the file says some of a mixture's, the others are 1. That of different molecules is
+/// divided by what the file says alone. Fails: NO_MEMORY.
 enum status mf_target_files_normalise(struct target_files *files, const struct box *box,
                                       bool joined) MUST_USE;
 

@@ -3,6 +3,7 @@
 
 #include "base/memory.h"
 #include "observe/kirkwood_buff.h"
+#include "observe/rdf_observable.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -30,9 +31,11 @@ static const double dilute = 0.01;
 
 /// g(r) of one pair type, and how many beads there are.
 struct view {
-    char name[sizeof "rdf." + COMPOSITION_PAIR_NAME_SIZE];
-    const struct target_files *files; ///< of all pair types
+    char name[sizeof "intermolecular_rdf." + COMPOSITION_PAIR_NAME_SIZE];
+    const struct target_pairs *all; ///< pair types
     const struct target_rdf *target;
+    int kind;    ///< of the target
+    double ends; ///< where its file would end [λ]
     const struct rdf_bins *bins;
     const double *g, *error; ///< shape [bins->count]
     const struct scene *scene;
@@ -40,18 +43,21 @@ struct view {
     double density; ///< of beads of all types [λ^-d]
 };
 
-static struct view view_of(const struct target_files *files, const struct scene *scene,
+/// @param[in] kind  the number of the target
+static struct view view_of(const struct target_pairs *all, int kind, const struct scene *scene,
                            size_t pair) {
-    const size_t bins = files->rdf[0].bins.count;
-    const struct composition *composition = &files->composition;
-    struct view view = {.name = "rdf",
-                        .files = files,
-                        .target = &files->rdf[pair],
-                        .bins = &files->rdf[0].bins,
-                        .g = files->rdf_given + pair * bins,
-                        .error = files->rdf_error + pair * bins,
+    const size_t bins = target_pairs_bins(all)->count;
+    const struct composition *composition = &scene->setup.composition;
+    struct view view = {.kind = kind,
+                        .all = all,
+                        .target = &all->member[pair],
+                        .bins = target_pairs_bins(all),
+                        .ends = all->ends[pair],
+                        .g = all->given + pair * bins,
+                        .error = all->error + pair * bins,
                         .scene = scene};
     int type[2];
+    snprintf(view.name, sizeof view.name, "%s", mf_targets_name(kind));
     mf_composition_pair_types(composition, (int)pair, type);
     if (type[0] == type[1])
         view.like = (size_t)composition->count[type[0]];
@@ -59,7 +65,7 @@ static struct view view_of(const struct target_files *files, const struct scene 
     if (composition_is_mixed(composition)) {
         char pair_name[COMPOSITION_PAIR_NAME_SIZE];
         mf_composition_pair_name(composition, (int)pair, pair_name);
-        snprintf(view.name, sizeof view.name, "rdf.%s", pair_name);
+        snprintf(view.name, sizeof view.name, "%s.%s", mf_targets_name(kind), pair_name);
     }
     return view;
 }
@@ -84,8 +90,8 @@ static void print_density(const struct view *view, char *text, size_t size) {
 
 /// ∫ (g − 1) d³r of the pairs of two types.
 static double integral_of(const struct view *view, int a, int b) {
-    const int pair = mf_composition_pair(&view->files->composition, a, b);
-    const struct view own = view_of(view->files, view->scene, (size_t)pair);
+    const int pair = mf_composition_pair(&view->scene->setup.composition, a, b);
+    const struct view own = view_of(view->all, view->kind, view->scene, (size_t)pair);
     return mf_kirkwood_buff_integrate(own.bins, own.g, own.error, &own.scene->setup.box, 0)
         .integral;
 }
@@ -93,7 +99,7 @@ static double integral_of(const struct view *view, int a, int b) {
 /// What a fault goes on with if two types look demixed, else "": each has more beads of its own
 /// around it than on the whole, and fewer of the other's, as within the phases of a box with two.
 static void print_demixing(const struct view *view, char *text, size_t size) {
-    const struct composition *composition = &view->files->composition;
+    const struct composition *composition = &view->scene->setup.composition;
     text[0] = '\0';
     for (int b = 1; b < composition->types && view->scene->setup.box.dimensions == 3; b++)
         for (int a = 0; a < b && text[0] == '\0'; a++) {
@@ -221,14 +227,22 @@ static enum status check_compressibility(const struct view *view, const char *fi
         file, view->name, density, value, demixing);
 }
 
+/// Of all g(r) one behind the other.
 static size_t views(const struct target_files *files) {
-    return files->given[TARGET_RDF] ? files->pairs : 0;
+    return files->rdf.pairs + files->apart.pairs;
+}
+
+static struct view view_at(const struct target_files *files, const struct scene *scene,
+                           size_t number) {
+    return number < files->rdf.pairs ? view_of(&files->rdf, TARGET_RDF, scene, number)
+                                     : view_of(&files->apart, mf_rdf_intermolecular_kind(), scene,
+                                               number - files->rdf.pairs);
 }
 
 enum status mf_target_sanity_check(const struct target_files *files, const struct scene *scene,
                                    const char *file) {
-    for (size_t pair = 0; pair < views(files); pair++) {
-        const struct view view = view_of(files, scene, pair);
+    for (size_t n = 0; n < views(files); n++) {
+        const struct view view = view_at(files, scene, n);
         TRY(check_tail(&view, file));
         if (scene_has_molecules(&scene->molecules))
             continue; // beads of a molecule are no particles of a fluid
@@ -280,13 +294,12 @@ static void tell_origin(const struct view *view, const struct target_sanity_list
     const struct target_rdf *target = view->target;
     double length;
     const char *unit = unit_of(view, &length);
-    const double ends = view->files->rdf_ends[view->target - view->files->rdf];
-    if (ends > mf_rdf_bins_edge(view->bins, view->bins->count) * (1 + 1e-9))
+    if (view->ends > mf_rdf_bins_edge(view->bins, view->bins->count) * (1 + 1e-9))
         mf_target_sanity_say(
             listener,
             "target %s: it goes on to %.4g %s and is cut at %.4g %s, where the shortest ends: "
             "all g(r) of a mixture end together",
-            view->name, ends * length, unit,
+            view->name, view->ends * length, unit,
             mf_rdf_bins_edge(view->bins, view->bins->count) * length, unit);
     if (target->joined > 1)
         mf_target_sanity_say(listener, "target %s: %zu rows of the file make a bin of %.4g %s",
@@ -383,8 +396,8 @@ static void tell_normalisation(const struct normalisation *n,
 
 enum status mf_target_sanity_tell(const struct target_files *files, const struct scene *scene,
                                   const struct target_sanity_listener *listener) {
-    for (size_t pair = 0; pair < views(files); pair++) {
-        const struct view view = view_of(files, scene, pair);
+    for (size_t n = 0; n < views(files); n++) {
+        const struct view view = view_at(files, scene, n);
         tell_view(&view, listener);
         tell_origin(&view, listener);
         if (scene_has_molecules(&scene->molecules))

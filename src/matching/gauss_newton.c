@@ -11,6 +11,7 @@
 #include "base/rng.h"
 #include "matching/population.h"
 #include "observe/kirkwood_buff_observable.h"
+#include "observe/rdf_observable.h"
 
 #include <assert.h>
 #include <math.h>
@@ -292,8 +293,8 @@ static void tell_reason(const struct state *state, char reason[INVERSE_REASON_SI
 static bool can_be_met(const struct inverse_problem *problem) {
     const struct targets *targets = &problem->targets;
     for (int kind = 0; mf_targets_name(kind); kind++) {
-        const bool of_pairs =
-            kind == TARGET_RDF || kind == TARGET_PRESSURE || kind == mf_kirkwood_buff_kind();
+        const bool of_pairs = kind == TARGET_RDF || kind == mf_rdf_intermolecular_kind() ||
+                              kind == TARGET_PRESSURE || kind == mf_kirkwood_buff_kind();
         const bool of_groups = mf_bonded_distribution_order(kind) < TOPOLOGY_ORDERS;
         if (targets_ask(targets, kind) &&
             !(of_pairs && problem->unknown[UNKNOWN_POTENTIAL].wanted) &&

@@ -4,13 +4,14 @@
 #include "observe/flow_field.h"
 #include "observe/flow_profile.h"
 #include "observe/kirkwood_buff_observable.h"
+#include "observe/rdf_observable.h"
 #include "observe/shear_viscosity.h"
 
 /// Of which nothing else knows.
 extern const struct observable mf_structure_factor, mf_snapshots, mf_polarity_observable;
 extern const struct observable mf_clusters, mf_local_density, mf_collisions;
 extern const struct observable mf_bonded_lengths, mf_bonded_angles, mf_bonded_dihedrals;
-extern const struct observable mf_molecule_sizes, mf_molecule_motion, mf_rdf_intermolecular;
+extern const struct observable mf_molecule_sizes, mf_molecule_motion;
 
 const struct observable *const mf_observables[] = {
     &mf_rdf_observable,

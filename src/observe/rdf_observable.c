@@ -138,19 +138,13 @@ static size_t spans(void *state, struct memory_span *spans) {
     return n;
 }
 
-/// Path of a table of that name, or of it and a pair type.
-static void file_of(const char *folder, const char *name, const struct composition *composition,
-                    int pair, char *path) {
+void mf_rdf_observable_file(const char *folder, const char *name,
+                            const struct composition *composition, int pair, char *path) {
     char kind[COMPOSITION_PAIR_NAME_SIZE];
     mf_composition_pair_name(composition, pair, kind);
     snprintf(path, OUTPUT_PATH_SIZE, "%.*s/%.20s%s%s.tsv",
              OUTPUT_PATH_SIZE - COMPOSITION_PAIR_NAME_SIZE - 32, folder, name, kind[0] ? "_" : "",
              kind);
-}
-
-void mf_rdf_observable_file(const char *folder, const struct composition *composition, int pair,
-                            char *path) {
-    file_of(folder, "rdf", composition, pair, path);
 }
 
 /// rdf.tsv, or in a mixture rdf_A-A.tsv, rdf_A-B.tsv and so on: r, g as the estimator tells it, g
@@ -191,8 +185,8 @@ static enum status write(const void *state, const struct observable_results *res
             {"g_histogram_error[1]", counted_error + first, "%.3g"}};
         if (mf_units_beside(units))
             columns[count++] = (struct data_column){"r[nm]", nanometres, NULL};
-        file_of(results->folder, rdf->apart ? "intermolecular_rdf" : "rdf", &rdf->composition,
-                (int)pair, path);
+        mf_rdf_observable_file(results->folder, rdf->apart ? "intermolecular_rdf" : "rdf",
+                               &rdf->composition, (int)pair, path);
         CHECK(mf_data_table_write_in(path, results->units, NULL, columns, count, bins->count));
     }
 done:
@@ -313,6 +307,12 @@ static const struct field apart_fields[] = {
     FIELD_END,
 };
 
+static const struct observable_target apart_targets[] = {
+    {.name = "intermolecular_rdf",
+     .summary = "g(r) of beads of different molecules; in a mixture one for each pair type",
+     .form = OBSERVABLE_OWN_FORM},
+    {.name = NULL}};
+
 static const char *const apart_files[] = {"intermolecular_rdf.tsv", "intermolecular_rdf_*-*.tsv",
                                           NULL};
 
@@ -329,5 +329,14 @@ const struct observable mf_rdf_intermolecular = {
     .write = write,
     .explain = explain_apart,
     .stage = "g(r) between molecules",
+    .targets = apart_targets,
+    .result = result,
     .files = apart_files,
 };
+
+int mf_rdf_intermolecular_kind(void) {
+    int kind = 0;
+    while (mf_observable_kind(kind).observable != &mf_rdf_intermolecular)
+        kind++;
+    return kind;
+}

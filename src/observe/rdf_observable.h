@@ -20,7 +20,15 @@ struct rdf_observed {
     struct rdf_force force;
 };
 
+/// Of beads of different molecules, and of single ones.
+extern const struct observable mf_rdf_intermolecular;
+
+/// Its target's number (mf_observable_kind): values of the shape [pairs, bins], as those of g(r) of
+/// all pairs.
+int mf_rdf_intermolecular_kind(void);
+
 /// Path of the table of a pair type, rdf.tsv or in a mixture rdf_A-B.tsv, into OUTPUT_PATH_SIZE
 /// bytes.
-void mf_rdf_observable_file(const char *folder, const struct composition *composition, int pair,
-                            char *path);
+/// @param[in] name  "rdf" or "intermolecular_rdf"
+void mf_rdf_observable_file(const char *folder, const char *name,
+                            const struct composition *composition, int pair, char *path);

@@ -189,12 +189,12 @@ enum status mf_fit_output_curves(const struct fit_file *fit, const struct unknow
     return STATUS_OK;
 }
 
-/// g(r) of a pair type: rdf.tsv, or rdf_A-B.tsv in a mixture.
-static enum status write_rdf(const struct fit_file *fit, const struct observed *observed,
-                             size_t pair, const struct run_folder *folder) {
+/// g(r) of a pair type, of the target number `kind`: rdf.tsv, or rdf_A-B.tsv in a mixture.
+static enum status write_rdf(const struct fit_file *fit, const struct target_pairs *target,
+                             int kind, const struct observed *observed, size_t pair,
+                             const struct run_folder *folder) {
     enum status status = STATUS_OK;
-    const struct target_files *files = &fit->files;
-    const struct rdf_bins *bins = &files->rdf[0].bins;
+    const struct rdf_bins *bins = target_pairs_bins(target);
     const struct units *units = &fit->scene.units;
     const size_t first = pair * bins->count;
     double *r = NULL, *nanometres = NULL;
@@ -206,12 +206,13 @@ static enum status write_rdf(const struct fit_file *fit, const struct observed *
     CHECK(nanometres ? STATUS_OK : STATUS_NO_MEMORY);
     const struct data_column columns[] = {
         {"r[lambda]", r, NULL},
-        {"target[1]", files->rdf_g + first, "%.8g"},
-        {"target_error[1]", files->rdf_error + first, "%.3g"},
-        {"result[1]", observed->value[TARGET_RDF] + first, "%.8g"},
-        {"result_error[1]", observed->error[TARGET_RDF] + first, "%.3g"},
+        {"target[1]", target->g + first, "%.8g"},
+        {"target_error[1]", target->error + first, "%.3g"},
+        {"result[1]", observed->value[kind] + first, "%.8g"},
+        {"result_error[1]", observed->error[kind] + first, "%.3g"},
         {"r[nm]", nanometres, NULL}};
-    mf_rdf_observable_file(folder->path, &files->composition, (int)pair, path);
+    mf_rdf_observable_file(folder->path, mf_targets_name(kind), &fit->files.composition, (int)pair,
+                           path);
     CHECK(mf_data_table_write_in(path, &fit->scene.units, NULL, columns,
                                  mf_units_beside(units) ? 6 : 5, bins->count));
 done:
@@ -379,8 +380,10 @@ enum status mf_fit_output_observables(const struct fit_file *fit,
                                       const struct run_folder *folder) {
     const struct target_files *files = &fit->files;
     const struct observed *observed = &verification->observed;
-    for (size_t pair = 0; files->given[TARGET_RDF] && pair < files->pairs; pair++)
-        TRY(write_rdf(fit, observed, pair, folder));
+    for (size_t pair = 0; pair < files->rdf.pairs; pair++)
+        TRY(write_rdf(fit, &files->rdf, TARGET_RDF, observed, pair, folder));
+    for (size_t pair = 0; pair < files->apart.pairs; pair++)
+        TRY(write_rdf(fit, &files->apart, mf_rdf_intermolecular_kind(), observed, pair, folder));
     if (files->given[TARGET_ETD])
         TRY(write_etd(fit, observed, folder));
     for (int order = 0; order < TOPOLOGY_ORDERS; order++)

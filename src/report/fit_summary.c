@@ -243,7 +243,7 @@ static void put_truth(struct json_writer *writer, const struct fit_file *fit,
 /// What the targets g(r) were divided by. In a mixture those that the file states are left out.
 static void put_normalisation(struct json_writer *writer, const struct fit_file *fit) {
     const struct normalisation *found = &fit->files.normalisation;
-    const double given = fit->files.rdf[0].parameters.normalisation;
+    const double given = fit->files.rdf.member[0].parameters.normalisation;
     const bool mixed = composition_is_mixed(&fit->scene.setup.composition);
     if (!fit->files.given[TARGET_RDF])
         return;
@@ -269,14 +269,14 @@ static void put_integrals(struct json_writer *writer, const struct fit_file *fit
 static void put_compressibility(struct json_writer *writer, const struct fit_file *fit,
                                 const struct verification *v) {
     const struct box *box = &fit->scene.setup.box;
-    const struct rdf_bins *bins = &fit->files.rdf[0].bins;
+    const struct rdf_bins *bins = target_pairs_bins(&fit->files.rdf);
     const size_t count = (size_t)fit->scene.setup.placement.count;
     if (!fit->files.given[TARGET_RDF] || box->dimensions != 3 ||
         composition_is_mixed(&fit->scene.setup.composition) ||
         scene_has_molecules(&fit->scene.molecules))
         return;
     const struct kirkwood_buff target =
-        mf_kirkwood_buff_integrate(bins, fit->files.rdf_g, fit->files.rdf_error, box, count);
+        mf_kirkwood_buff_integrate(bins, fit->files.rdf.g, fit->files.rdf.error, box, count);
     const struct kirkwood_buff found = mf_kirkwood_buff_integrate(
         bins, v->observed.value[TARGET_RDF], v->observed.error[TARGET_RDF], box, count);
     put_quantity(writer, "target_kirkwood_buff", "lambda^d", target.integral);

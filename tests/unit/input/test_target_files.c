@@ -3,6 +3,7 @@
 
 #include "io/units_scale.h"
 #include "observe/kirkwood_buff_observable.h"
+#include "observe/rdf_observable.h"
 #include "shared/is_close.h"
 #include "shared/temporary_folder.h"
 #include "shared/testing.h"
@@ -15,7 +16,11 @@ static const char escape[] = "# t E E\n0 1 1\n0.1 0.9 0.5\n0.2 nan 0\n";
 static const char vacf[] = "# t vacf e\n0 3 0.01\n0.1 1 0.02\n0.2 -0.1 0.03\n";
 static const char msd[] = "# t msd e\n0 0 0\n0.1 0.02 0.001\n0.2 0.06 0.002\n";
 
+static const char apart[] =
+    "# r g e\n0.1 0.2 0.1\n0.3 1.2 0.2\n0.5 1.1 0.1\n0.7 1 0.1\n0.9 1 0.2\n";
+
 #define RDF "\"rdf\": {\"file\": \"g.tsv\"}"
+#define APART "\"intermolecular_rdf\": {\"file\": \"apart.tsv\"}"
 #define ETD "\"etd\": {\"file\": \"e.tsv\", \"r_minimum\": 0.5, \"r_maximum\": 1}"
 #define VACF "\"vacf\": {\"file\": \"v.tsv\"}"
 #define MSD "\"msd\": {\"file\": \"m.tsv\"}"
@@ -48,9 +53,33 @@ static enum status read(void **state, const char *members, struct target_files *
 
 static void write_tables(void **state) {
     put(state, "g.tsv", g);
+    put(state, "apart.tsv", apart);
     put(state, "e.tsv", escape);
     put(state, "v.tsv", vacf);
     put(state, "m.tsv", msd);
+}
+
+/// The file has other bins than that of all pairs: what measures it is told.
+static void test_targets_read_gives_the_structure_between_molecules_its_own_bins(void **state) {
+    static const double wanted[] = {0.2, 1.2, 1.1, 1, 1}, errors[] = {0.1, 0.2, 0.1, 0.1, 0.2};
+    const int kind = mf_rdf_intermolecular_kind();
+    struct target_files t;
+    struct targets fitted, compared;
+    write_tables(state);
+    assert_ok(read(state, RDF ", " APART, &t));
+    mf_target_files_targets(&t, false, &fitted, &compared);
+    const struct rdf_settings *settings = compared.settings[mf_observable_kind(kind).place];
+    assert_int_equal(compared.bins.count, 4);
+    assert_int_equal(settings->target.count, 5);
+    assert_close(settings->target.width, 0.2, 1e-12);
+    assert_int_equal(compared.target[kind].count, 5);
+    assert_int_equal(fitted.target[kind].count, 5);
+    for (int k = 0; k < 5; k++) {
+        assert_close(fitted.target[kind].value[k], wanted[k], 1e-12);
+        assert_close(fitted.target[kind].error[k], errors[k], 1e-12);
+    }
+    assert_close(fitted.target[TARGET_RDF].value[2], 1.5, 1e-12);
+    mf_target_files_clear(&t);
 }
 
 /// A λ of half a nanometre: 1 nm³ is 8 λ³.
@@ -254,10 +283,12 @@ static void test_targets_digest_knows_every_number(void **state) {
     struct target_files t;
     uint64_t before = 1, after;
     write_tables(state);
-    assert_ok(read(state, RDF ", " ETD ", " VACF ", " MSD, &t));
+    assert_ok(read(state, RDF ", " APART ", " ETD ", " VACF ", " MSD, &t));
     mf_target_files_digest(&t, &before);
-    double *const numbers[] = {t.rdf_g,
-                               t.rdf_error,
+    double *const numbers[] = {t.rdf.g,
+                               t.rdf.error,
+                               t.apart.g,
+                               t.apart.error,
                                t.etd.survival,
                                t.etd.error,
                                t.curve[TARGET_VACF].value,
@@ -281,6 +312,7 @@ static void test_targets_digest_knows_every_number(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(test_targets_read_takes_all_kinds),
+        TEST(test_targets_read_gives_the_structure_between_molecules_its_own_bins),
         TEST(test_targets_read_converts_integrals_of_kirkwood_and_buff),
         TEST(test_targets_read_takes_the_columns_of_a_curve),
         TEST(test_targets_read_finds_the_columns_of_a_curve_by_their_names),

@@ -3,6 +3,7 @@
 // "rdf" of a mixture in a run file: a partial g(r) for each pair type.
 #include "input/target_files.h"
 
+#include "observe/rdf_observable.h"
 #include "shared/is_close.h"
 #include "shared/temporary_folder.h"
 #include "shared/testing.h"
@@ -27,11 +28,12 @@ static void write_tables(void **state) {
     put(state, "bb.tsv", "0.05 0.2 0\n0.15 0.7 0.1\n0.25 1.7 0.2\n0.35 1.2 0.3\n");
 }
 
-/// Read "rdf" with `members`; the status is that of the document.
-static enum status read(void **state, const char *members, struct target_files *targets) {
+/// Read a target of pairs with `members`; the status is that of the document.
+static enum status read_as(void **state, const char *name, const char *members,
+                           struct target_files *targets) {
     char text[1024];
     struct json_document *document;
-    const int length = snprintf(text, sizeof text, "{\"target\": {\"rdf\": {%s}}}", members);
+    const int length = snprintf(text, sizeof text, "{\"target\": {\"%s\": {%s}}}", name, members);
     assert_in_range(length, 1, sizeof text - 1);
     assert_ok(
         mf_json_open(&document, temporary_folder_write(*state, "a.json", text, (size_t)length)));
@@ -39,6 +41,10 @@ static enum status read(void **state, const char *members, struct target_files *
     assert_ok(mf_target_files_read(targets, &root, &box, &binary, NULL, &units));
     mf_json_finish(&root);
     return mf_json_close(document, STATUS_OK);
+}
+
+static enum status read(void **state, const char *members, struct target_files *targets) {
+    return read_as(state, "rdf", members, targets);
 }
 
 #define AA "\"A-A\": {\"file\": \"aa.tsv\"}"
@@ -80,8 +86,8 @@ static void test_targets_read_cuts_pairs_to_the_shortest(void **state) {
     assert_ok(read(state, AA ", \"B-A\": {\"file\": \"more.tsv\"}, " BB, &t));
     mf_target_files_targets(&t, false, &fitted, &compared);
     assert_int_equal(fitted.bins.count, 4);
-    assert_close(t.rdf_ends[0], 0.4, 1e-12);
-    assert_close(t.rdf_ends[1], 0.5, 1e-12);
+    assert_close(t.rdf.ends[0], 0.4, 1e-12);
+    assert_close(t.rdf.ends[1], 0.5, 1e-12);
     assert_int_equal(fitted.target[TARGET_RDF].count, 12);
     assert_close(fitted.target[TARGET_RDF].value[4 + 2], 1.25, 1e-12);
     mf_target_files_clear(&t);
@@ -157,6 +163,23 @@ static void test_targets_read_converts_every_pair_by_all_particles(void **state)
     mf_target_files_clear(&t);
 }
 
+static void test_targets_read_takes_the_structure_between_molecules_of_every_pair(void **state) {
+    const int kind = mf_rdf_intermolecular_kind();
+    struct target_files t;
+    struct targets fitted, compared;
+    write_tables(state);
+    assert_ok(read_as(state, "intermolecular_rdf", BB ", " BA ", " AA, &t));
+    mf_target_files_targets(&t, false, &fitted, &compared);
+    assert_int_equal(fitted.target[TARGET_RDF].count, 0);
+    assert_int_equal(fitted.target[kind].count, 3 * BINS);
+    for (int pair = 0; pair < 3; pair++)
+        assert_close(fitted.target[kind].value[pair * BINS + 2], 1.5 + 0.1 * pair, 1e-12);
+    mf_target_files_clear(&t);
+    assert_fails(read_as(state, "intermolecular_rdf", AA ", " BB, &t), STATUS_BAD_INPUT,
+                 "a.json: target.intermolecular_rdf.A-B: missing");
+    mf_target_files_clear(&t);
+}
+
 static void test_targets_digest_knows_every_pair(void **state) {
     struct target_files t;
     uint64_t before = 1;
@@ -165,10 +188,10 @@ static void test_targets_digest_knows_every_pair(void **state) {
     mf_target_files_digest(&t, &before);
     for (int n = 0; n < 3 * BINS; n++) {
         uint64_t after = 1;
-        t.rdf_g[n] += 1;
+        t.rdf.g[n] += 1;
         mf_target_files_digest(&t, &after);
         assert_true(after != before);
-        t.rdf_g[n] -= 1;
+        t.rdf.g[n] -= 1;
     }
     mf_target_files_clear(&t);
 }
@@ -183,6 +206,7 @@ int main(void) {
         TEST(test_targets_read_refuses_a_mixture_that_is_not_complete),
         TEST(test_targets_write_gives_a_mixture_back),
         TEST(test_targets_read_converts_every_pair_by_all_particles),
+        TEST(test_targets_read_takes_the_structure_between_molecules_of_every_pair),
         TEST(test_targets_digest_knows_every_pair),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

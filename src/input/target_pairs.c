@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "input/target_pairs.h"
+
+#include "base/memory.h"
+
+#include <math.h>
+#include <string.h>
+
+/// All end with the shortest; where they would have ended is kept.
+static void cut_to_shortest(struct target_pairs *target) {
+    size_t shortest = SIZE_MAX;
+    for (size_t pair = 0; pair < target->pairs; pair++) {
+        const size_t count = target->member[pair].bins.count;
+        shortest = count > 0 && count < shortest ? count : shortest;
+    }
+    for (size_t pair = 0; pair < target->pairs; pair++) {
+        struct rdf_bins *bins = &target->member[pair].bins;
+        target->ends[pair] = mf_rdf_bins_edge(bins, bins->count);
+        if (bins->count > shortest)
+            bins->count = shortest;
+    }
+}
+
+/// All pair types must have the bins of the first.
+static void check_bins(const struct target_pairs *target, const struct composition *composition,
+                       struct json_object *object) {
+    const struct rdf_bins *first = target_pairs_bins(target);
+    for (size_t pair = 1; pair < target->pairs; pair++) {
+        const struct rdf_bins *bins = &target->member[pair].bins;
+        char name[COMPOSITION_PAIR_NAME_SIZE], first_name[COMPOSITION_PAIR_NAME_SIZE];
+        mf_composition_pair_name(composition, (int)pair, name);
+        mf_composition_pair_name(composition, 0, first_name);
+        // A file that could not be read has its own fault.
+        if (first->count > 0 && bins->count > 0 &&
+            (bins->count != first->count || fabs(bins->width / first->width - 1) > 1e-6 ||
+             fabs(bins->low - first->low) > 1e-6 * first->width))
+            mf_json_fault(object, name, "must have the bins of \"%s\"", first_name);
+    }
+}
+
+/// What the file calls a pair type: "A-B" or "B-A".
+static const char *pair_key(const struct composition *composition, int pair,
+                            const struct json_object *object,
+                            char name[COMPOSITION_PAIR_NAME_SIZE]) {
+    const char *key;
+    mf_composition_pair_name(composition, pair, name);
+    for (size_t n = 0; (key = mf_json_key(object, n)); n++)
+        if (mf_composition_find_pair(composition, key) == pair)
+            return key;
+    return name;
+}
+
+/// g and errors of all pair types in the numbers of the scene, one behind the other, if all
+/// could be read.
+static enum status collect(struct target_pairs *target, const struct box *box,
+                           const struct composition *composition) {
+    enum status status = STATUS_OK;
+    const size_t bins = target_pairs_bins(target)->count;
+    for (size_t pair = 0; pair < target->pairs; pair++)
+        if (target->member[pair].bins.count != bins)
+            return STATUS_OK;
+    NEW_ARRAY(target->g, target->pairs * bins);
+    NEW_ARRAY(target->error, target->pairs * bins);
+    NEW_ARRAY(target->given, target->pairs * bins);
+    for (size_t pair = 0; pair < target->pairs; pair++)
+        mf_target_rdf_convert(&target->member[pair], box, composition, (int)pair,
+                              target->g + pair * bins, target->error + pair * bins);
+    memcpy(target->given, target->g, target->pairs * bins * sizeof(double));
+done:
+    return status;
+}
+
+enum status mf_target_pairs_read(struct target_pairs *target, struct json_object *object,
+                                 const struct box *box, const struct composition *composition,
+                                 const struct units *units) {
+    *target = (struct target_pairs){0};
+    if (composition->types == 0)
+        return STATUS_OK; // a fault of the types is told, those of their pairs would mislead
+    target->pairs = (size_t)mf_composition_pairs(composition);
+    if (!composition_is_mixed(composition)) {
+        TRY(mf_target_rdf_read(&target->member[0], object, units, box->dimensions));
+        return collect(target, box, composition);
+    }
+    // The object remembers what it was asked for until it is finished.
+    char name[COMPOSITION_MOST_PAIRS][COMPOSITION_PAIR_NAME_SIZE];
+    for (size_t pair = 0; pair < target->pairs; pair++) {
+        struct json_object child =
+            mf_json_child(object, pair_key(composition, (int)pair, object, name[pair]), true);
+        if (child.item)
+            TRY(mf_target_rdf_read(&target->member[pair], &child, units, box->dimensions));
+    }
+    mf_json_finish(object);
+    cut_to_shortest(target);
+    check_bins(target, composition, object);
+    return collect(target, box, composition);
+}
+
+void mf_target_pairs_clear(struct target_pairs *target) {
+    for (size_t pair = 0; pair < target->pairs; pair++)
+        mf_target_rdf_clear(&target->member[pair]);
+    mf_memory_free(target->g);
+    mf_memory_free(target->error);
+    mf_memory_free(target->given);
+    *target = (struct target_pairs){0};
+}
+
+void mf_target_pairs_write(const struct target_pairs *target, const struct composition *composition,
+                           struct json_writer *writer) {
+    if (!composition_is_mixed(composition)) {
+        mf_json_put_fields(writer, mf_target_rdf_fields, &target->member[0].parameters);
+        return;
+    }
+    for (size_t pair = 0; pair < target->pairs; pair++) {
+        char name[COMPOSITION_PAIR_NAME_SIZE];
+        mf_composition_pair_name(composition, (int)pair, name);
+        mf_json_begin(writer, name);
+        mf_json_put_fields(writer, mf_target_rdf_fields, &target->member[pair].parameters);
+        mf_json_end(writer);
+    }
+}
+
+void mf_target_pairs_divide(struct target_pairs *target, size_t pair, double factor) {
+    const size_t bins = target_pairs_bins(target)->count;
+    for (size_t n = pair * bins; n < (pair + 1) * bins; n++) {
+        target->g[n] /= factor;
+        target->error[n] /= factor;
+    }
+}
+
+size_t mf_target_pairs_normalise(struct target_pairs *target) {
+    size_t given = 0;
+    for (size_t pair = 0; pair < target->pairs; pair++) {
+        const double factor = target->member[pair].parameters.normalisation;
+        if (factor > 0)
+            mf_target_pairs_divide(target, pair, factor);
+        given += factor > 0;
+    }
+    return given;
+}
