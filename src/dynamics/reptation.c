@@ -298,31 +298,36 @@ bool mf_reptation_is_on(const struct reptation *reptation) {
     return false;
 }
 
-enum status mf_reptation_pass(struct metropolis *metropolis) {
+/// Try the chains of one kind.
+static void creep_kind(struct snake *snake, const struct molecules *molecules, int k) {
     enum { COUNTER = 16 }; // of random numbers; other moves of molecules have smaller ones
-    const struct molecules *molecules = metropolis->molecules.molecules;
+    const struct metropolis *metropolis = snake->metropolis;
     const struct topology *topology = &molecules->topology;
+    struct reptation_kind *kind = &snake->reptation->kind[k];
+    prepare(snake, molecules, k);
+    for (size_t n = 0; n < metropolis->particles.count; n++) {
+        const uint32_t id = metropolis->order[n], molecule = topology->molecule[id];
+        if (metropolis->molecules.bead_of[id] != 0 ||
+            mf_molecule_moves_kind(topology, molecule) != k)
+            continue;
+        snake->random =
+            mf_rng_sequence_begin(metropolis->seed, RNG_METROPOLIS, metropolis->sweep, molecule);
+        snake->random.c = COUNTER;
+        creep_along(snake, &topology->kind[k], molecule - (uint32_t)topology->kind[k].first,
+                    &kind->tally[kind->choice]);
+    }
+}
+
+enum status mf_reptation_pass(struct metropolis *metropolis) {
+    const struct molecules *molecules = metropolis->molecules.molecules;
     const struct table *potential = metropolis->law.potential;
     struct reptation *reptation = &metropolis->reptation;
     struct snake snake = {.metropolis = metropolis, .reptation = reptation};
-    int prepared = -1;
     mf_reptation_grid_fill(&reptation->grid, &metropolis->particles,
                            potential ? potential->cutoff : 0);
-    for (size_t n = 0; n < metropolis->particles.count; n++) {
-        const uint32_t id = metropolis->order[n], molecule = topology->molecule[id];
-        const int k = mf_molecule_moves_kind(topology, molecule);
-        struct reptation_kind *kind = &reptation->kind[k];
-        if (metropolis->molecules.bead_of[id] != 0 || !reptation->can[k] || kind->choice < 0)
-            continue;
-        if (prepared != k)
-            prepare(&snake, molecules, k);
-        prepared = k;
-        snake.random =
-            mf_rng_sequence_begin(metropolis->seed, RNG_METROPOLIS, metropolis->sweep, molecule);
-        snake.random.c = COUNTER;
-        creep_along(&snake, &topology->kind[k], molecule - (uint32_t)topology->kind[k].first,
-                    &kind->tally[kind->choice]);
-    }
+    for (int k = 0; k < molecules->topology.kinds; k++)
+        if (reptation->can[k] && reptation->kind[k].choice >= 0)
+            creep_kind(&snake, molecules, k);
     return mf_metropolis_refresh(metropolis);
 }
 

@@ -57,8 +57,8 @@ void mf_reptation_clear(struct reptation *reptation);
 /// Whether a kind reptates.
 bool mf_reptation_is_on(const struct reptation *reptation);
 
-/// Try to move each chain N/4k times, at least once, in the order in which a sweep takes their
-/// first beads; then build the list anew. Fails: NO_MEMORY. Tested: test_reptation,
+/// Try to move each chain N/4k times, at least once, kind by kind, in the order in which a sweep
+/// takes their first beads; then build the list anew. Fails: NO_MEMORY. Tested: test_reptation,
 /// physics/test_molecule_moves.
 enum status mf_reptation_pass(struct metropolis *metropolis) MUST_USE;
 

@@ -37,7 +37,8 @@ void mf_inversion_take_step(struct inversion *inversion) {
 }
 
 void mf_inversion_take_last_step(struct inversion *inversion) {
-    if (!inversion->settling)
+    // A step of relative entropy is a part of its way.
+    if (!inversion->settling || inversion->basis.count > 0)
         return;
     mf_inversion_take_step(inversion);
     memcpy(inversion->best, inversion->phi, inversion->grid.points * sizeof(double));

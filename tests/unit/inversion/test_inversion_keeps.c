@@ -139,6 +139,10 @@ static void test_inversion_ends_with_the_step_that_is_left_when_it_settles(void 
     mf_inversion_take_last_step(&inversion);
     assert_true(best[0] == 2 && best[1] == 1);
     inversion.settling = true;
+    inversion.basis.count = 2; // relative entropy: a part of the way
+    mf_inversion_take_last_step(&inversion);
+    assert_true(best[0] == 2 && best[1] == 1);
+    inversion.basis.count = 0;
     mf_inversion_take_last_step(&inversion);
     assert_close(best[0], 2.3, 1e-15);
     assert_close(best[1], 0.9, 1e-15);
