@@ -169,16 +169,19 @@ static void say_integrals(struct progress *to, const struct fit_file *fit,
     }
 }
 
+/// @param[in] open  how far off the pressure may be by what g(r) leaves open; 0: by nothing
 static void say_thermodynamics(struct progress *to, const struct units *units,
-                               const struct thermodynamics_summary *t) {
+                               const struct thermodynamics_summary *t, double open) {
     const double factor = mf_units_factor(units, "T_0");
     const double kinetic = factor * t->temperature;
     const double configurational = factor * t->temperature_configurational;
-    char kelvin[UNITS_NAME_SIZE], unit[UNITS_NAME_SIZE], pressure[160];
+    const double scale = mf_units_factor(units, "k_B T_0/lambda^d");
+    char kelvin[UNITS_NAME_SIZE], unit[UNITS_NAME_SIZE], left[64] = "", pressure[160];
     mf_units_suffix(units, "T_0", kelvin);
-    snprintf(pressure, sizeof pressure, "pressure %.3f%s",
-             t->pressure * mf_units_factor(units, "k_B T_0/lambda^d"),
-             mf_units_suffix(units, "k_B T_0/lambda^d", unit));
+    if (open > 0)
+        snprintf(left, sizeof left, ", which g(r) leaves open by %.2g", scale * open);
+    snprintf(pressure, sizeof pressure, "pressure %.3f%s%s", t->pressure * scale,
+             mf_units_suffix(units, "k_B T_0/lambda^d", unit), left);
     if (isnan(kinetic) && isnan(configurational)) // no particles
         return;
     if (isnan(kinetic)) // no velocities
@@ -191,8 +194,9 @@ static void say_thermodynamics(struct progress *to, const struct units *units,
 }
 
 /// What was found of a state, or of the only one.
-static void say_state(struct progress *to, const struct fit_file *fit,
-                      const struct verification *v) {
+/// @param[in] open  as say_thermodynamics
+static void say_state(struct progress *to, const struct fit_file *fit, const struct verification *v,
+                      double open) {
     const struct units *units = &fit->scene.units;
     if (fit->name[0])
         mf_progress_say(to, "state \"%s\":", fit->name);
@@ -200,7 +204,7 @@ static void say_state(struct progress *to, const struct fit_file *fit,
     if (targets_ask(&fit->problem.compared, TARGET_DIFFUSION))
         say_diffusion(to, units, v);
     say_integrals(to, fit, v);
-    say_thermodynamics(to, units, &v->thermodynamics);
+    say_thermodynamics(to, units, &v->thermodynamics, open);
 }
 
 void mf_fit_report_say(struct progress *to, const struct fit_file *fit,
@@ -211,6 +215,10 @@ void mf_fit_report_say(struct progress *to, const struct fit_file *fit,
         mf_progress_say(to, "formula: %s", result->formula);
     say_parameters(to, fit, result->parameter);
     say_numbers(to, fit, result->number);
+    // Of several states that of the first is known, and together they leave less open.
+    const bool is_open = fit->others == 0 && result->ramp.error > 0 &&
+                         !targets_ask(&fit->problem.compared, TARGET_PRESSURE);
     for (size_t s = 0; s <= fit->others; s++)
-        say_state(to, s == 0 ? fit : &fit->other[s - 1], &result->verification[s]);
+        say_state(to, s == 0 ? fit : &fit->other[s - 1], &result->verification[s],
+                  is_open ? result->ramp.pressure_open : 0);
 }
