@@ -50,6 +50,7 @@ static void judge(uint64_t turn, uint64_t digest, struct verdict *verdict) {
                 mf_ranks_stop(2, "%s", verdict->message);
             mf_letter_stop_strayed(from, letter);
         }
+        mf_ranks_watch_leave(&watch, from);
         weigh(verdict, from, letter, digest);
         mf_memory_free(letter);
     }

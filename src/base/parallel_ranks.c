@@ -101,6 +101,7 @@ static void serve(struct round *round, int from, struct letter *letter) {
         break;
     case LETTER_READY:
         round->ready++;
+        mf_ranks_watch_leave(&round->watch, from);
         break;
     default:
         mf_letter_stop_strayed(from, letter);

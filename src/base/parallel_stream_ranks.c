@@ -142,6 +142,7 @@ static void serve(struct parallel_stream *stream, int from, struct letter *lette
         break;
     case LETTER_READY:
         others->ready++;
+        mf_ranks_watch_leave(&others->watch, from);
         others->told += letter->task;
         break;
     default:

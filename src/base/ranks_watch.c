@@ -27,6 +27,10 @@ void mf_ranks_watch_hear(struct ranks_watch *watch, int rank) {
     *one = (struct ranks_watch_one){.heard = clock_seconds()};
 }
 
+void mf_ranks_watch_leave(struct ranks_watch *watch, int rank) {
+    watch->one[rank].left = true;
+}
+
 bool mf_ranks_watch_is_due(struct ranks_watch *watch) {
     const double now = clock_seconds();
     const bool due = now - watch->said > RANKS_WATCH_WORD;
@@ -45,7 +49,7 @@ void mf_ranks_watch_look(struct ranks_watch *watch) {
         watch->one[rank].heard = now;
     for (int rank = own == 0; own <= 1 && rank < (own == 0 ? count : 1); rank++) {
         struct ranks_watch_one *one = &watch->one[rank];
-        if (one->named || now - one->heard < RANKS_WATCH_PATIENCE)
+        if (one->named || one->left || now - one->heard < RANKS_WATCH_PATIENCE)
             continue;
         one->named = true;
         mf_ranks_warn("rank %d on %s has not been heard of for %d s: it hangs, or its computer or "

@@ -14,7 +14,7 @@ enum { RANKS_WATCH_PATIENCE = 60, RANKS_WATCH_WORD = 5 };
 struct ranks_watch {
     struct ranks_watch_one {
         double heard; ///< clock [s]
-        bool named;
+        bool named, left;
     } * one;       ///< shape [ranks]
     double said;   ///< clock of this rank's last word [s]
     double looked; ///< clock of the last look at the others [s]
@@ -25,6 +25,9 @@ void mf_ranks_watch_init(struct ranks_watch *watch);
 void mf_ranks_watch_clear(struct ranks_watch *watch);
 
 void mf_ranks_watch_hear(struct ranks_watch *watch, int rank);
+
+/// This rank waits for the others and says nothing until then: it is not named.
+void mf_ranks_watch_leave(struct ranks_watch *watch, int rank);
 
 /// Whether this rank is to say that it works.
 bool mf_ranks_watch_is_due(struct ranks_watch *watch);
