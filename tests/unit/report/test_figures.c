@@ -78,6 +78,32 @@ static void test_draws_no_generations_without_diversity(void **state) {
     assert_false(figure_folders_drawn(folder, "generations"));
 }
 
+/// Where all candidates of a generation fail, nothing is known of its errors but that they are bad.
+static void test_draws_generations_of_which_all_failed(void **state) {
+    (void)state;
+    figure_folders_skip_without_gnuplot();
+    char folder[FIGURE_PATH], table[1024];
+    static const char names[] =
+        "# iteration\tevaluations\tengine_steps\terror[1]\tnoise[1]\tleast[1]"
+        "\tmean[1]\tdiversity[1]\tfailures\n";
+    static const char failed[] = "2\t30\t3000\tnan\t0\tinf\tnan\t0.2\t10\n"
+                                 "3\t40\t4000\tnan\t0\tinf\tinf\tnan\t10\n";
+    static const char known[] = "0\t10\t1000\tnan\t0\t70\t80\t0.1\t7\n"
+                                "1\t20\t2000\tnan\t0\t60\t70\t0.1\t8\n";
+    figure_folders_make(folder, "failed");
+    snprintf(table, sizeof table, "%s%s", names, failed);
+    figure_folders_write(folder, "history.tsv", table);
+    figure_folders_write(folder, "timing.tsv", "# iteration\tseconds[s]\n2\t3\n3\t4\n");
+    figure_folders_draw(folder);
+    assert_true(figure_folders_drawn(folder, "generations"));
+    assert_true(figure_folders_drawn(folder, "error"));
+    snprintf(table, sizeof table, "%s%s%s", names, known, failed);
+    figure_folders_write(folder, "history.tsv", table);
+    figure_folders_draw(folder);
+    assert_true(figure_folders_say(folder, "generations", ">50<"));
+    assert_true(figure_folders_say(folder, "generations", ">100<"));
+}
+
 static void test_draws_simulation_and_no_fit(void **state) {
     (void)state;
     figure_folders_skip_without_gnuplot();
@@ -372,6 +398,7 @@ int main(void) {
         cmocka_unit_test(test_draws_what_the_tables_allow),
         cmocka_unit_test(test_draws_the_front_of_several_targets),
         cmocka_unit_test(test_draws_no_generations_without_diversity),
+        cmocka_unit_test(test_draws_generations_of_which_all_failed),
         cmocka_unit_test(test_draws_simulation_and_no_fit),
         cmocka_unit_test(test_draws_simulation_of_a_mixture_in_its_units),
         cmocka_unit_test(test_potential_is_shown_up_to_its_barrier),
