@@ -119,12 +119,32 @@ static void test_pressure_is_over_lengths_of_as_many_dimensions(void **state) {
     }
 }
 
+/// Sweeps of Monte Carlo are no times, and have no unit.
+static void test_vectors_of_molecules_live_for_times_or_sweeps(void **state) {
+    (void)state;
+    figure_folders_skip_without_gnuplot();
+    for (int sweeps = 0; sweeps < 2; sweeps++) {
+        char folder[FIGURE_PATH], text[256];
+        figure_folders_make(folder, sweeps ? "sampled" : "moved");
+        snprintf(text, sizeof text, "# %s\tchain[1]\tchain_error[1]\n0\t1\t0.01\n10\t0.6\t0.02\n",
+                 sweeps ? "sweeps[1]" : "time[tau]");
+        figure_folders_write(folder, "end_to_end.tsv", text);
+        figure_folders_write(folder, "molecule_sizes.tsv", text);
+        figure_folders_draw(folder);
+        assert_true(figure_folders_drawn(folder, "molecule_sizes"));
+        assert_int_equal(figure_folders_say(folder, "molecule_sizes", "sweeps"), sweeps);
+        assert_int_equal(figure_folders_say(folder, "molecule_sizes", "τ"), !sweeps);
+        assert_true(figure_folders_say(folder, "molecule_sizes", "⟨"));
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_particles_are_discs_of_their_size_and_type),
         cmocka_unit_test(test_particles_without_radii_are_as_large_as_their_forces_reach),
         cmocka_unit_test(test_flow_shows_its_obstacle),
         cmocka_unit_test(test_pressure_is_over_lengths_of_as_many_dimensions),
+        cmocka_unit_test(test_vectors_of_molecules_live_for_times_or_sweeps),
     };
     return cmocka_run_group_tests(tests, figure_folders_begin, figure_folders_end);
 }
