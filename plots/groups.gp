@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Curves of several groups or kinds of molecules in one panel, each with its 95 % band.
+# Curves of several groups or kinds of molecules in one panel, each with its 95 % band, or the
+# result of a fit for one of them on its target.
 # Reads the table that MESOFIT_TABLE names: x, then columns of each group, those that end with
-# _error behind what they belong to; what ends with _boltzmann is left out.
+# _error behind what they belong to; what ends with _boltzmann is left out. Of a fit: x, target,
+# target_error, result, result_error.
 
 load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
 
@@ -24,6 +26,9 @@ do for [k = 1:words(drawn)] {
     highest = high(highest, Y_max)
     lowest = low(lowest, Y_min)
 }
+# In the colours of rdf.gp.
+of_fit = word(heads, 2) eq "target" && word(heads, 4) eq "result"
+if (of_fit) { drawn = "4" }
 
 do for [kind in kinds] {
     eval open(kind, figure, 720, 440)
@@ -35,6 +40,8 @@ do for [kind in kinds] {
     plot for [k = 1:words(drawn)] table using 1:(band_low(int(word(drawn, k)), int(word(drawn, k)) + 1)):(band_high(int(word(drawn, k)), int(word(drawn, k)) + 1)) \
             with filledcurves @band linecolor rgb colour_of(k - 1), \
         for [k = 1:words(drawn)] table using 1:int(word(drawn, k)) with lines \
-            title word(heads, int(word(drawn, k))) linewidth 2.2 linecolor rgb colour_of(k - 1)
+            title word(heads, int(word(drawn, k))) linewidth 2.2 linecolor rgb colour_of(k - 1), \
+        for [k = 1:of_fit] table using 1:2 with points title "target" \
+            pointtype 7 pointsize 0.38 linecolor rgb ink
     eval close
 }
