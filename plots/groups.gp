@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Curves of several groups or kinds of molecules in one panel, each with its 95 % band.
+# Curves of several groups or kinds of molecules in one panel, each with its 95 % band, or the
+# result of a fit for one of them on its target.
 # Reads the table that MESOFIT_TABLE names: x, then columns of each group, those that end with
-# _error behind what they belong to; what ends with _boltzmann is left out.
+# _error behind what they belong to; what ends with _boltzmann is left out. Of a fit: x, target,
+# target_error, result, result_error.
 
 load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
 
@@ -10,9 +12,10 @@ figure = system("printf %s \"$MESOFIT_FIGURE\"")
 # The names of columns without their units, and the numbers of those that are drawn.
 heads = system("awk -F '\t' '/^#/ { sub(/^# */, \"\"); for (n = 1; n <= NF; n++) { sub(/\\[.*/, \"\", $n); printf \"%s \", $n } exit }'" . from(table))
 drawn = system("awk -F '\t' '/^#/ { sub(/^# */, \"\"); for (n = 2; n <= NF; n++) if ($n !~ /(_error|_boltzmann)\\[/) printf \"%d \", n; exit }'" . from(table))
-unit = system("awk -F '\t' '/^#/ { h = $1; sub(/^[^[]*\\[/, \"\", h); sub(/\\].*/, \"\", h); gsub(/lambda/, \"λ\", h); gsub(/tau/, \"τ\", h); print h; exit }'" . from(table))
-squared = system("awk -F '\t' '/^#/ { h = $2; sub(/^[^[]*\\[/, \"\", h); sub(/\\].*/, \"\", h); gsub(/lambda/, \"λ\", h); print h; exit }'" . from(table))
+unit = system("awk -F '\t' '/^#/ { h = $1; sub(/^[^[]*\\[/, \"\", h); sub(/\\].*/, \"\", h); gsub(/lambda/, \"{/:Italic λ}\", h); gsub(/tau/, \"{/:Italic τ}\", h); print h; exit }'" . from(table))
+squared = system("awk -F '\t' '/^#/ { h = $2; sub(/^[^[]*\\[/, \"\", h); sub(/\\].*/, \"\", h); gsub(/lambda/, \"{/:Italic λ}\", h); print h; exit }'" . from(table))
 first = word(heads, 1)
+of_time = first eq "time" || first eq "sweeps"
 symbol = first eq "theta" ? "{/:Italic θ}" : first eq "phi" ? "{/:Italic φ}" : first eq "time" ? "{/:Italic t}" : "{/:Italic r}"
 
 stats table using 1 name "X" nooutput
@@ -23,17 +26,22 @@ do for [k = 1:words(drawn)] {
     highest = high(highest, Y_max)
     lowest = low(lowest, Y_min)
 }
+# In the colours of rdf.gp.
+of_fit = word(heads, 2) eq "target" && word(heads, 4) eq "result"
+if (of_fit) { drawn = "4" }
 
 do for [kind in kinds] {
     eval open(kind, figure, 720, 440)
     set xrange [X_min > X_max / 4 ? X_min : low(0, X_min):X_max]
     set yrange [1.04 * lowest:end_of(highest)]
-    set xlabel symbol . " / " . unit
-    set ylabel figure eq "molecule_motion" ? "⟨|Δ{/:Bold R}({/:Italic t})|^2⟩ / " . squared : first eq "time" ? "⟨{/:Bold R}({/:Italic t})·{/:Bold R}(0)⟩ / ⟨{/:Italic R}²⟩" : "{/:Italic p}(" . symbol . ")"
+    set xlabel first eq "sweeps" ? first : symbol . " / " . unit
+    set ylabel figure eq "molecule_motion" ? "⟨|Δ{/:Bold R}({/:Italic t})|^2⟩ / " . squared : of_time ? "⟨{/:Bold R}({/:Italic t})·{/:Bold R}(0)⟩ / ⟨{/:Italic R}²⟩" : "{/:Italic p}(" . symbol . ")"
     set key right top vertical
     plot for [k = 1:words(drawn)] table using 1:(band_low(int(word(drawn, k)), int(word(drawn, k)) + 1)):(band_high(int(word(drawn, k)), int(word(drawn, k)) + 1)) \
             with filledcurves @band linecolor rgb colour_of(k - 1), \
         for [k = 1:words(drawn)] table using 1:int(word(drawn, k)) with lines \
-            title word(heads, int(word(drawn, k))) linewidth 2.2 linecolor rgb colour_of(k - 1)
+            title word(heads, int(word(drawn, k))) linewidth 2.2 linecolor rgb colour_of(k - 1), \
+        for [k = 1:of_fit] table using 1:2 with points title "target" \
+            pointtype 7 pointsize 0.38 linecolor rgb ink
     eval close
 }

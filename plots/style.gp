@@ -55,9 +55,10 @@ name_axis(text, x) = (axis_name = text, \
 low(a, b)  = a < b ? a : b
 high(a, b) = a > b ? a : b
 
-# Columns that may hold nan, which makes every expression around it undefined: 0 where the number
-# is not known, and, for the lower end of a logarithmic axis, the numbers that it can show.
-known(n) = valid(n) ? column(n) : 0
+# Columns that may hold nan, which makes every expression around it undefined, or inf, of candidates
+# that failed: 0 where the number is not known, and, for the lower end of a logarithmic axis, the
+# numbers that it can show.
+known(n) = valid(n) ? (abs(column(n)) < 1e300 ? column(n) : 0) : 0
 positive(n) = known(n) > 0 ? column(n) : 1e300
 
 # Ends of the 95 % band of column n with the standard errors of column m; nan where not known.

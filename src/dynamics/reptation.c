@@ -34,8 +34,9 @@ static int find_group(const struct topology_kind *kind, int order) {
     return term[0].group;
 }
 
-static bool can_reptate(const struct topology_kind *kind, int group[TOPOLOGY_ORDERS]) {
-    bool can = kind->beads >= REPTATION_LEAST_BEADS;
+static bool can_reptate(const struct topology_kind *kind, int dimensions,
+                        int group[TOPOLOGY_ORDERS]) {
+    bool can = kind->beads >= REPTATION_LEAST_BEADS && dimensions == 3;
     for (int order = 0; order < TOPOLOGY_ORDERS; order++) {
         group[order] = find_group(kind, order);
         can &= group[order] >= (order == TOPOLOGY_BOND ? 0 : -1);
@@ -43,6 +44,11 @@ static bool can_reptate(const struct topology_kind *kind, int group[TOPOLOGY_ORD
     for (int bead = 1; bead < kind->beads; bead++)
         can &= kind->type[bead] == kind->type[0];
     return can;
+}
+
+bool mf_reptation_is_possible(const struct topology_kind *kind, int dimensions) {
+    int group[TOPOLOGY_ORDERS];
+    return can_reptate(kind, dimensions, group);
 }
 
 enum status mf_reptation_init(struct reptation *reptation, const struct topology *topology,
@@ -53,7 +59,7 @@ enum status mf_reptation_init(struct reptation *reptation, const struct topology
     for (int k = 0; k < topology->kinds; k++) {
         const struct topology_kind *kind = &topology->kind[k];
         reptation->kind[k].choice = -1;
-        reptation->can[k] = can_reptate(kind, reptation->group[k]) && dimensions == 3;
+        reptation->can[k] = can_reptate(kind, dimensions, reptation->group[k]);
         reptation->chains |= reptation->can[k];
         most = kind->beads > most ? kind->beads : most;
     }

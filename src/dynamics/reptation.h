@@ -48,6 +48,10 @@ struct reptation {
     int32_t *bead; ///< shape [most beads]: numbers of one chain's particles, as a ring
 };
 
+/// Whether molecules of a kind are chains that can reptate, in space; whether it pays is not said.
+/// Tested: test_explanation_counts_sweeps_and_names_chains.
+bool mf_reptation_is_possible(const struct topology_kind *kind, int dimensions);
+
 /// Which kinds can reptate; none does so until it has been tuned. Must be cleared. Fails:
 /// NO_MEMORY. Tested: test_reptation.
 enum status mf_reptation_init(struct reptation *reptation, const struct topology *topology,

@@ -19,7 +19,7 @@
 
 struct json_document;
 
-enum { JSON_PATH_SIZE = 256, JSON_MAX_KEYS = 64, JSON_MOST_MEMBERS = 1000 };
+enum { JSON_PATH_SIZE = 256, JSON_MAX_KEYS = 128, JSON_MOST_MEMBERS = 1000 };
 
 /// One object of a document while it is read. Plain data; lives on the reader's stack.
 struct json_object {

@@ -11,9 +11,9 @@
 
 enum {
     PATH_SIZE = OUTPUT_PATH_SIZE + 64,
-    CELL_SIZE = 64,    ///< one entry of the printed table
-    MOST_NUMBERS = 64, ///< in a summary
-    HEADER_SIZE = 96,  ///< of one column of compare.tsv
+    CELL_SIZE = 64,     ///< one entry of the printed table
+    MOST_NUMBERS = 128, ///< in a summary
+    HEADER_SIZE = 96,   ///< of one column of compare.tsv
 };
 
 // Columns of the printed table --------------------------------------------------------------------
@@ -71,6 +71,9 @@ static const struct column columns[] = {
     {"noise(E)", false, AT(etd_noise), "%.2g", 0},
     {"rmse(VACF)", false, AT(vacf_rmse), NULL, AT(vacf_rmse_error)},
     {"rmse(MSD)", false, AT(msd_rmse), NULL, AT(msd_rmse_error)},
+    {"rmse(bonds)", false, AT(bond_lengths_rmse), NULL, AT(bond_lengths_rmse_error)},
+    {"rmse(angles)", false, AT(bond_angles_rmse), NULL, AT(bond_angles_rmse_error)},
+    {"rmse(dihedrals)", false, AT(dihedral_angles_rmse), NULL, AT(dihedral_angles_rmse_error)},
     {"D", false, AT(diffusion), NULL, AT(diffusion_error)},
     {"truth(phi)", false, AT(truth_rms), "%.3g", 0},
     {"truth(omega)", false, AT(omega_truth_rms), "%.3g", 0},

@@ -28,13 +28,13 @@ static const double drawing_time = 300;
 struct figure {
     const char *name;      ///< of the script and of the figure
     const char *tables[4]; ///< that the script cannot do without; NULL-terminated
-    const char *column;    ///< that the first table must have, or NULL
+    const char *column;    ///< that the first table must have and its like has not, or NULL
     bool by_pairs;         ///< in a mixture one for each pair type, by the first table
 };
 
 static const struct figure figures[] = {
-    {"rdf", {"rdf.tsv"}, "target", true},
-    {"potential", {"potential.tsv"}, NULL, true},
+    {"rdf", {"rdf.tsv"}, "target_error", true},
+    {"potential", {"potential.tsv"}, "phi", true},
     {"omega", {"omega.tsv"}, "omega_error", false},
     {"etd_cells", {"etd_cells.tsv"}, "target", false},
     {"vacf", {"vacf.tsv"}, "target", false},
@@ -192,12 +192,12 @@ static bool take_pair(const char *name, const char *table, char pair[PAIR_SIZE])
 static enum status draw_pair(const char *folder, const char *plots, const struct figure *figure,
                              const char *name, size_t *count) {
     char path[PATH_SIZE], pair[PAIR_SIZE];
-    // What follows the name of a pair type, as "_history", makes another table.
-    if (!take_pair(name, figure->tables[0], pair) || strstr(name, "_history.tsv") ||
-        strstr(name, "_flat.tsv"))
+    if (!take_pair(name, figure->tables[0], pair))
         return STATUS_OK;
+    // A name such as "rdf_now_A-B" or "potential_A-B_history" could be of types "now_A" and
+    // "B_history"; the columns tell another table.
     snprintf(path, sizeof path, "%s/%s", folder, name);
-    if (!is_table(path) || (figure->column && !has_column(path, figure->column)))
+    if (!is_table(path) || !has_column(path, figure->column))
         return STATUS_OK;
     ++*count;
     return draw(folder, plots, figure->name, pair);

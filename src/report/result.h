@@ -18,6 +18,17 @@ struct result_summary {
     double msd_rmse, msd_rmse_error, msd_noise;
     double diffusion_rmse, diffusion_rmse_error, diffusion_noise;
     double pressure_rmse, pressure_rmse_error, pressure_noise;
+    double intermolecular_rdf_rmse, intermolecular_rdf_rmse_error, intermolecular_rdf_noise;
+    double bond_lengths_rmse, bond_lengths_rmse_error, bond_lengths_noise;
+    double bond_angles_rmse, bond_angles_rmse_error, bond_angles_noise;
+    double dihedral_angles_rmse, dihedral_angles_rmse_error, dihedral_angles_noise;
+    double structure_factor_rmse, structure_factor_rmse_error, structure_factor_noise;
+    double kirkwood_buff_rmse, kirkwood_buff_rmse_error, kirkwood_buff_noise;
+    double polarity_correlation_rmse, polarity_correlation_rmse_error, polarity_correlation_noise;
+    double polar_order_rmse, polar_order_rmse_error, polar_order_noise;
+    double viscosity_rmse, viscosity_rmse_error, viscosity_noise;
+    double schmidt_number_rmse, schmidt_number_rmse_error, schmidt_number_noise;
+    double shear_viscosity_rmse, shear_viscosity_rmse_error, shear_viscosity_noise;
     double diffusion, diffusion_error, diffusion_cm2_per_s, diffusion_error_cm2_per_s;
     double truth_rms, truth_ramp, truth_rms_without_ramp; ///< of a potential
     double omega_truth_rms;                               ///< of a friction weight

@@ -6,6 +6,8 @@
 #include "observe/hard_theory.h"
 
 #include <math.h>
+#include <stdio.h>
+#include <string.h>
 
 /// Nanoseconds, as those of observe/stages.h: of a particle and step, also with noise for each
 /// (`walk`); of a collision of hard particles with the crossings on the way to it; of a pair in
@@ -50,9 +52,25 @@ static void add_events(struct stages *stages, const struct simulation_setup *set
                   setup->integrator->name, rate * setup->time_step);
 }
 
+/// Moves of molecules; chains that may creep along themselves are named, whose cost none knows
+/// before the equilibration.
+static void add_moves_of_molecules(struct stages *stages, const struct simulation_setup *setup,
+                                   const struct topology *topology, double nanoseconds) {
+    char chains[128] = "";
+    for (int k = 0; k < topology->kinds; k++)
+        if (mf_reptation_is_possible(&topology->kind[k], setup->box.dimensions)) {
+            const size_t end = strlen(chains);
+            snprintf(chains + end, sizeof chains - end, "%s%s",
+                     end ? ", " : "; not counted: reptation, if it pays, of ",
+                     topology->kind[k].name);
+        }
+    mf_stages_add(stages, "moves of molecules", true, nanoseconds,
+                  "one of each in a sweep: shifted, turned, or an arm of it%s", chains);
+}
+
 /// Sweeps, and what is computed for a sample besides.
 static void add_sweeps(struct stages *stages, const struct simulation_setup *setup, double every) {
-    const bool molecules = mf_molecules_find(setup->interaction, setup->interactions) != NULL;
+    const struct molecules *molecules = mf_molecules_find(setup->interaction, setup->interactions);
     const double cutoff = mf_stages_cutoff(setup), pairs = mf_stages_pairs_within(setup, cutoff);
     const double reach = cutoff + mf_metropolis_skin(&setup->box, (double)setup->placement.count);
     const double around = setup->potential ? 2 * mf_stages_pairs_within(setup, reach) : 0;
@@ -60,9 +78,10 @@ static void add_sweeps(struct stages *stages, const struct simulation_setup *set
     mf_stages_add(stages, "moves of beads", true,
                   cost.propose + energy + (molecules ? cost.hold : 0),
                   "%s, %.0f neighbours within reach of a move", setup->integrator->name, around);
-    mf_stages_add(stages, "moves of molecules", molecules, cost.hold + energy,
-                  molecules ? "one of each in a sweep: shifted, turned, or an arm of it"
-                            : "no molecules");
+    if (molecules)
+        add_moves_of_molecules(stages, setup, &molecules->topology, cost.hold + energy);
+    else
+        mf_stages_add(stages, "moves of molecules", false, 0, "no molecules");
     mf_stages_add(stages, "list building and forces", true,
                   (mf_stages_cost.sort + (mf_stages_cost.build + mf_stages_cost.go_through +
                                           cost.pair + cost.conservative) *
@@ -216,8 +235,9 @@ void mf_explain_scene(FILE *out, const struct simulation_setup *setup, const str
         total += stages.stage[k].nanoseconds;
     const double rate = 1e9 / (total * counted(setup));
     const double digits = pow(10, floor(log10(rate)) - 1);
-    fprintf(out, "%.0f particles: about %.4g steps/s with one thread of a processor of 2024\n",
-            simulation_moved(setup), digits * round(rate / digits));
+    fprintf(out, "%.0f particles: about %.4g %s/s with one thread of a processor of 2024\n",
+            simulation_moved(setup), digits * round(rate / digits),
+            setup->integrator->samples ? "sweeps" : "steps");
     for (int k = 0; k < stages.count; k++) {
         const struct stage *stage = &stages.stage[k];
         const double share = 100 * stage->nanoseconds / total;

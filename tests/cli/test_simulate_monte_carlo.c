@@ -250,6 +250,38 @@ static void test_a_fit_is_verified_by_monte_carlo_when_its_scene_says_so(void **
 #define TEST_WITHOUT_FIGURES(name)                                                                 \
     cmocka_unit_test_setup_teardown(name, small_inputs_enter_without_gnuplot, small_inputs_leave)
 
+/// Chains of one type, five beads or more, may creep; sweeps are no steps.
+static void test_explanation_counts_sweeps_and_names_chains(void **state) {
+    static struct run_program_result result;
+    static const char chains[] =
+        "{\"box\": [8, 8, 8], \"time_step\": 0.005,\n"
+        "\"bonds\": {\"backbone\": {\"law\": \"harmonic\", \"k\": 100, \"length\": 0.8}},\n"
+        "\"molecules\": {\n"
+        "\"short\": {\"count\": 9, \"chain\": {\"type\": \"A\", \"length\": 4, \"bond\": "
+        "\"backbone\"}},\n"
+        "\"worm\": {\"count\": 9, \"chain\": {\"type\": \"A\", \"length\": 5, \"bond\": "
+        "\"backbone\"}},\n"
+        "\"mixed\": {\"count\": 9, \"chain\": {\"beads\": [\"A\", \"A\", \"B\", \"A\", \"A\"],\n"
+        "  \"bond\": \"backbone\"}},\n"
+        "\"snake\": {\"count\": 9, \"chain\": {\"type\": \"B\", \"length\": 12, \"bond\": "
+        "\"backbone\"}}},\n"
+        "\"conservative\": {\"law\": \"soft-repulsion\"}%s,\n"
+        "\"rdf\": {\"range\": 2, \"bins\": 20}, \"measure\": {\"samples\": 30, \"every\": 5}}\n";
+    char text[2048];
+    snprintf(text, sizeof text, chains, ", " BY_MONTE_CARLO);
+    small_inputs_write(*state, "chains.json", text, NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "chains.json", "--explain");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.out, " sweeps/s ");
+    assert_contains(result.out, "reptation, if it pays, of worm, snake\n");
+    snprintf(text, sizeof text, chains, "");
+    small_inputs_write(*state, "moved.json", text, NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "moved.json", "--explain");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.out, " steps/s ");
+    assert_null(strstr(result.out, "reptation"));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         TEST_WITHOUT_FIGURES(
@@ -257,6 +289,7 @@ int main(void) {
         TEST_WITHOUT_FIGURES(test_interrupted_monte_carlo_goes_on_with_the_same_bits),
         TEST_WITHOUT_FIGURES(test_interrupted_monte_carlo_of_a_mixture_goes_on_with_the_same_bits),
         TEST_WITHOUT_FIGURES(test_chains_that_creep_stay_whole_and_have_the_same_bits_again),
+        TEST_WITHOUT_FIGURES(test_explanation_counts_sweeps_and_names_chains),
         TEST_WITHOUT_FIGURES(test_the_summary_tells_how_many_moves_were_accepted),
         TEST_WITHOUT_FIGURES(test_monte_carlo_refuses_what_it_does_not_know),
         TEST_WITHOUT_FIGURES(test_a_bond_that_is_torn_at_the_start_is_refused),

@@ -3,14 +3,11 @@
 
 #include "io/data_table.h"
 #include "io/output.h"
-
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
+#include "io/units.h"
+#include "problem/targets.h"
+#include "report/result.h"
+#include "shared/is_close.h"
+#include "shared/testing.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -91,11 +88,6 @@ static char *read_text(const char *path) {
     return text;
 }
 
-static void assert_contains(const char *text, const char *part) {
-    if (strstr(text, part) == NULL)
-        fail_msg("\"%s\" is not in:\n%s", part, text);
-}
-
 /// Compare up to two folders of the root into <root>/cmp.
 static enum status compare(const char *first, const char *second, bool quiet) {
     char paths[2][PATH], out[PATH];
@@ -134,6 +126,59 @@ static void test_numbers_are_those_of_the_summary(void **state) {
     assert_contains(table.header, "index[1]\tseconds[s]\tthreads[1]");
     assert_contains(table.comments, "# 1\tb\timc\tok\t0.1\n");
     mf_data_table_clear(&table);
+}
+
+static const struct field *summary_field(const char *target, const char *ending) {
+    char name[FIELD_TEXT_SIZE];
+    snprintf(name, sizeof name, "%s%s", target, ending);
+    for (const struct field *field = mf_result_summary_fields; field->name; field++)
+        if (strcmp(field->name, name) == 0)
+            return field;
+    fail_msg("%s is not compared", name);
+    return NULL;
+}
+
+/// Whatever can be a target, its distance is read from summaries, in the unit that it has there.
+static void test_distances_from_all_targets_are_known(void **state) {
+    (void)state;
+    static const char *const endings[] = {"_rmse", "_rmse_error", "_noise"};
+    const struct units units = {.system = UNITS_ANGSTROM_FS,
+                                .dimensions = 3,
+                                .length = 0.7,
+                                .temperature = 310,
+                                .mass = 5e-26};
+    for (int kind = 0; mf_targets_name(kind); kind++) {
+        const char *own = mf_observable_kind(kind).target->unit, *unit = own ? own : "1";
+        for (size_t k = 0; k < sizeof endings / sizeof endings[0]; k++)
+            assert_close_relative(
+                mf_units_factor(&units, summary_field(mf_targets_name(kind), endings[k])->unit) /
+                    mf_units_factor(&units, unit),
+                1, 1e-12);
+    }
+}
+
+/// A fit of g(r) and of bonds, whose error is a sum of both by their weights.
+static void test_distances_of_bonds_are_compared(void **state) {
+    (void)state;
+    make_fit("bonds/out",
+             "{\"rdf_rmse\": 0.1, \"bond_lengths_rmse\": 0.155, \"bond_lengths_rmse_error\": 0.007,"
+             " \"bond_lengths_noise\": 0.06, \"bond_angles_rmse\": 0.0008}",
+             -0.5);
+    char *text = names_of("bonds/out", "little");
+    assert_contains(text, "\tbond_lengths_rmse[1/lambda]\tbond_lengths_rmse_error[1/lambda]\t"
+                          "bond_lengths_noise[1/lambda]\tbond_angles_rmse[1/degrees]\n");
+    assert_contains(text, "\n0\t0.1\t0.155\t0.007\t0.06\t0.0008\n1\t0.5\tnan\tnan\tnan\tnan\n");
+    free(text);
+    if (system("gnuplot --version >/dev/null 2>&1") != 0)
+        skip();
+    text = compare_text("figures/compare.svg");
+    assert_contains(text, "error of the fit");
+    assert_null(strstr(text, "rmse of"));
+    free(text);
+    assert_int_equal(compare("a/out", "little", true), STATUS_OK);
+    text = compare_text("figures/compare.svg");
+    assert_contains(text, "rmse of");
+    free(text);
 }
 
 static void test_missing_numbers_are_nan(void **state) {
@@ -395,6 +440,8 @@ static int remove_all(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_numbers_are_those_of_the_summary),
+        cmocka_unit_test(test_distances_from_all_targets_are_known),
+        cmocka_unit_test(test_distances_of_bonds_are_compared),
         cmocka_unit_test(test_missing_numbers_are_nan),
         cmocka_unit_test(test_blocks_hold_each_fit_once),
         cmocka_unit_test(test_fits_without_a_table_keep_their_block),

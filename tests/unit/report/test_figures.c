@@ -78,6 +78,32 @@ static void test_draws_no_generations_without_diversity(void **state) {
     assert_false(figure_folders_drawn(folder, "generations"));
 }
 
+/// Where all candidates of a generation fail, nothing is known of its errors but that they are bad.
+static void test_draws_generations_of_which_all_failed(void **state) {
+    (void)state;
+    figure_folders_skip_without_gnuplot();
+    char folder[FIGURE_PATH], table[1024];
+    static const char names[] =
+        "# iteration\tevaluations\tengine_steps\terror[1]\tnoise[1]\tleast[1]"
+        "\tmean[1]\tdiversity[1]\tfailures\n";
+    static const char failed[] = "2\t30\t3000\tnan\t0\tinf\tnan\t0.2\t10\n"
+                                 "3\t40\t4000\tnan\t0\tinf\tinf\tnan\t10\n";
+    static const char known[] = "0\t10\t1000\tnan\t0\t70\t80\t0.1\t7\n"
+                                "1\t20\t2000\tnan\t0\t60\t70\t0.1\t8\n";
+    figure_folders_make(folder, "failed");
+    snprintf(table, sizeof table, "%s%s", names, failed);
+    figure_folders_write(folder, "history.tsv", table);
+    figure_folders_write(folder, "timing.tsv", "# iteration\tseconds[s]\n2\t3\n3\t4\n");
+    figure_folders_draw(folder);
+    assert_true(figure_folders_drawn(folder, "generations"));
+    assert_true(figure_folders_drawn(folder, "error"));
+    snprintf(table, sizeof table, "%s%s%s", names, known, failed);
+    figure_folders_write(folder, "history.tsv", table);
+    figure_folders_draw(folder);
+    assert_true(figure_folders_say(folder, "generations", ">50<"));
+    assert_true(figure_folders_say(folder, "generations", ">100<"));
+}
+
 static void test_draws_simulation_and_no_fit(void **state) {
     (void)state;
     figure_folders_skip_without_gnuplot();
@@ -287,6 +313,36 @@ static void test_error_is_named_after_what_was_fitted(void **state) {
     assert_true(figure_folders_say(folder, "error", "τ")); // its unit
 }
 
+/// Of a mixture's inversion: tables whose names look like those of a pair type have other columns,
+/// and types may have names that look like those of such tables.
+static void test_pairs_are_drawn_of_their_own_tables_only(void **state) {
+    (void)state;
+    figure_folders_skip_without_gnuplot();
+    char folder[FIGURE_PATH];
+    static const char now[] =
+        "# r[lambda]\ttarget[1]\tresult[1]\tresult_error[1]\texcess[1]\n0.5\t0\t0\t0\t0\n"
+        "1\t1\t1.1\t0.1\t30\n";
+    static const char history[] = "# r[lambda]\t0\t1\t2\n0.5\t1\t1\t1\n1\t0\t0\t0\n";
+    static const char flat[] = "# changes\n# r[lambda]\t3\t0.2\n0.5\t0.1\t0.2\n1\t0.1\t0.1\n";
+    static const char potential[] =
+        "# r[lambda]\tphi[k_B.T_0]\tforce[k_B.T_0/lambda]\tphi_error[k_B.T_0]\n"
+        "0.5\t1\t2\t0.1\n1\t0\t2\t0.1\n";
+    figure_folders_make(folder, "alike");
+    figure_folders_write(folder, "rdf_A-B.tsv", figure_folders_fit_rdf);
+    figure_folders_write(folder, "rdf_now_A-B.tsv", now);
+    figure_folders_write(folder, "potential_A-B.tsv", potential);
+    figure_folders_write(folder, "potential_A-B_history.tsv", history);
+    figure_folders_write(folder, "potential_A-B_flat.tsv", flat);
+    figure_folders_write(folder, "potential_A-of_history.tsv", potential);
+    figure_folders_draw(folder);
+    assert_true(figure_folders_drawn(folder, "rdf_A-B"));
+    assert_true(figure_folders_drawn(folder, "potential_A-B"));
+    assert_true(figure_folders_drawn(folder, "potential_A-of_history"));
+    assert_false(figure_folders_drawn(folder, "rdf_now_A-B"));
+    assert_false(figure_folders_drawn(folder, "potential_A-B_history"));
+    assert_false(figure_folders_drawn(folder, "potential_A-B_flat"));
+}
+
 static void test_draws_nothing_without_tables(void **state) {
     (void)state;
     char folder[FIGURE_PATH], figures[FIGURE_PATH + 64];
@@ -342,6 +398,7 @@ int main(void) {
         cmocka_unit_test(test_draws_what_the_tables_allow),
         cmocka_unit_test(test_draws_the_front_of_several_targets),
         cmocka_unit_test(test_draws_no_generations_without_diversity),
+        cmocka_unit_test(test_draws_generations_of_which_all_failed),
         cmocka_unit_test(test_draws_simulation_and_no_fit),
         cmocka_unit_test(test_draws_simulation_of_a_mixture_in_its_units),
         cmocka_unit_test(test_potential_is_shown_up_to_its_barrier),
@@ -351,6 +408,7 @@ int main(void) {
         cmocka_unit_test(test_draws_etd_of_no_known_result),
         cmocka_unit_test(test_draws_bands_and_truth_where_they_are_known),
         cmocka_unit_test(test_error_is_named_after_what_was_fitted),
+        cmocka_unit_test(test_pairs_are_drawn_of_their_own_tables_only),
         cmocka_unit_test(test_draws_nothing_without_tables),
         cmocka_unit_test(test_broken_tables_spoil_their_figures_only),
         cmocka_unit_test(test_missing_gnuplot_is_one_clear_line),

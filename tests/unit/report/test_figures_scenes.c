@@ -119,12 +119,60 @@ static void test_pressure_is_over_lengths_of_as_many_dimensions(void **state) {
     }
 }
 
+/// Sweeps of Monte Carlo are no times, and have no unit.
+static void test_vectors_of_molecules_live_for_times_or_sweeps(void **state) {
+    (void)state;
+    figure_folders_skip_without_gnuplot();
+    for (int sweeps = 0; sweeps < 2; sweeps++) {
+        char folder[FIGURE_PATH], text[256];
+        figure_folders_make(folder, sweeps ? "sampled" : "moved");
+        snprintf(text, sizeof text, "# %s\tchain[1]\tchain_error[1]\n0\t1\t0.01\n10\t0.6\t0.02\n",
+                 sweeps ? "sweeps[1]" : "time[tau]");
+        figure_folders_write(folder, "end_to_end.tsv", text);
+        figure_folders_write(folder, "molecule_sizes.tsv", text);
+        figure_folders_draw(folder);
+        assert_true(figure_folders_drawn(folder, "molecule_sizes"));
+        assert_int_equal(figure_folders_say(folder, "molecule_sizes", "sweeps"), sweeps);
+        assert_int_equal(figure_folders_say(folder, "molecule_sizes", "τ"), !sweeps);
+        assert_true(figure_folders_say(folder, "molecule_sizes", "⟨"));
+    }
+}
+
+/// A fit's distribution of a group has the result in blue and no second colour, as its g(r).
+static void test_groups_of_a_fit_have_the_colours_of_its_rdf(void **state) {
+    (void)state;
+    figure_folders_skip_without_gnuplot();
+    char folder[FIGURE_PATH];
+    figure_folders_make(folder, "groups");
+    figure_folders_write(folder, "rdf.tsv", figure_folders_fit_rdf);
+    figure_folders_write(folder, "bond_lengths_arm.tsv",
+                         "# r[lambda]\ttarget[1/lambda]\ttarget_error[1/lambda]\t"
+                         "result[1/lambda]\tresult_error[1/lambda]\n0.5\t1\t0.1\t1.2\t0.1\n"
+                         "0.6\t2\t0.1\t1.8\t0.1\n0.7\t1\t0.1\t1.1\t0.1\n");
+    // The same numbers of two groups of a simulation, which are apart by colour.
+    figure_folders_write(folder, "bond_lengths.tsv",
+                         "# r[lambda]\tarm[1/lambda]\tarm_error[1/lambda]\tleg[1/lambda]\t"
+                         "leg_error[1/lambda]\n0.5\t1\t0.1\t1.2\t0.1\n0.6\t2\t0.1\t1.8\t0.1\n");
+    figure_folders_draw(folder);
+    static const char *const names[] = {"rdf", "bond_lengths_arm"};
+    for (int k = 0; k < 2; k++) {
+        assert_true(figure_folders_say(folder, names[k], ">target<"));
+        assert_true(figure_folders_say(folder, names[k], blue));
+        assert_true(figure_folders_say(folder, names[k], "xlink:href='#gpPt6'"));
+        assert_false(figure_folders_say(folder, names[k], vermillion));
+    }
+    assert_true(figure_folders_say(folder, "bond_lengths", vermillion));
+    assert_false(figure_folders_say(folder, "bond_lengths", "xlink:href='#gpPt6'"));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_particles_are_discs_of_their_size_and_type),
         cmocka_unit_test(test_particles_without_radii_are_as_large_as_their_forces_reach),
         cmocka_unit_test(test_flow_shows_its_obstacle),
         cmocka_unit_test(test_pressure_is_over_lengths_of_as_many_dimensions),
+        cmocka_unit_test(test_vectors_of_molecules_live_for_times_or_sweeps),
+        cmocka_unit_test(test_groups_of_a_fit_have_the_colours_of_its_rdf),
     };
     return cmocka_run_group_tests(tests, figure_folders_begin, figure_folders_end);
 }
