@@ -45,6 +45,8 @@ static enum status create(void *memory, const struct optimiser_space *space,
         CHECK(mf_genetic_begin_stream(state));
 done:
     mf_memory_free(start);
+    if (status != STATUS_OK)
+        destroy(state);
     return status;
 }
 
