@@ -6,6 +6,7 @@
 #include "input/scene_topology.h"
 #include "io/json_list.h"
 
+#include <stdarg.h>
 #include <string.h>
 
 enum { AS_FAR_AS_TERMS = -1 }; ///< of "exclude"
@@ -252,25 +253,48 @@ static enum status open_groups(struct reading *reading) {
 
 // Kinds -------------------------------------------------------------------------------------------
 
-static void warn_of(struct reading *reading) {
-    char *warning = reading->molecules->warning;
-    const struct topology_kind *kind = &reading->kind;
-    int order;
-    const struct topology_term *term = mf_topology_unbonded(kind, &order);
-    if (term)
-        snprintf(warning, SCENE_MOLECULES_WARNING_SIZE,
-                 "molecules.%s: no bonds join the beads of the %s %d-%d-%d…", kind->name,
-                 mf_topology_order_names[order], term->bead[0] + 1, term->bead[1] + 1,
-                 term->bead[2] + 1);
+/// Add to the warning, behind what it says already; what has no room is cut.
+static void warn(struct scene_molecules *molecules, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+static void warn(struct scene_molecules *molecules, const char *format, ...) {
+    char *warning = molecules->warning;
+    const size_t length = strlen(warning);
+    const char *between = length > 0 && length + 3 < SCENE_MOLECULES_WARNING_SIZE ? "; " : "";
+    va_list list;
+    strcpy(warning + length, between);
+    va_start(list, format);
+    vsnprintf(warning + length + strlen(between),
+              SCENE_MOLECULES_WARNING_SIZE - length - strlen(between), format, list);
+    va_end(list);
+}
+
+static void warn_of_terms(struct scene_molecules *molecules, const struct topology_kind *kind) {
+    int order, pair[2];
+    char name[TOPOLOGY_TERM_SIZE];
+    const struct topology_term *term = mf_topology_unbonded(kind, &order, pair);
+    if (term == NULL)
+        return;
+    mf_topology_name_term(term, order, name);
+    warn(molecules, "molecules.%s: %s %s has no bond %d-%d", kind->name,
+         mf_topology_order_names[order], name, pair[0] + 1, pair[1] + 1);
+}
+
+static void warn_of_fene(struct scene_molecules *molecules, const struct topology_kind *kind) {
     for (int n = 0; n < kind->terms[TOPOLOGY_BOND] && kind->exclude > 0; n++) {
         const int group = kind->term[TOPOLOGY_BOND][n].group;
-        if (reading->molecules->molecules.group[TOPOLOGY_BOND][group].curve.law == &mf_bond_fene)
-            snprintf(
-                warning, SCENE_MOLECULES_WARNING_SIZE,
-                "molecules.%s: \"fene\" only pulls, and \"exclude\": %d takes the repulsion of "
-                "its beads away; 0 leaves it",
-                kind->name, kind->exclude);
+        if (molecules->molecules.group[TOPOLOGY_BOND][group].curve.law != &mf_bond_fene)
+            continue;
+        warn(molecules,
+             "molecules.%s: \"fene\" only pulls, and \"exclude\": %d takes the repulsion of "
+             "its beads away; 0 leaves it",
+             kind->name, kind->exclude);
+        return;
     }
+}
+
+static void warn_of(struct reading *reading) {
+    warn_of_terms(reading->molecules, &reading->kind);
+    warn_of_fene(reading->molecules, &reading->kind);
 }
 
 /// Number of the highest order of terms that there are: what "exclude" is without a number.

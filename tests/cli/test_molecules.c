@@ -285,7 +285,7 @@ static void test_what_looks_wrong_is_warned_of(void **state) {
     write_inputs(*state, "\"bonds\": {\"spring\": " RING,
                  "\"angles\": {\"bend\": [[1, 2, 3]]}, \"bonds\": {\"spring\": [[1, 2]]");
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "loose");
-    assert_contains(result.err, "molecules.ring: no bonds join the beads of the angle 1-2-3");
+    assert_contains(result.err, "molecules.ring: angle 1-2-3 has no bond 2-3");
 }
 
 #define TEST(test)                                                                                 \

@@ -87,6 +87,15 @@ static void test_what_is_not_taken_is_told(void **state) {
     assert_contains(result.err, "types.itp:8: parameters of pairs are not taken");
 }
 
+/// 1-2 and 2-3 are bonded, and the angle 1-3-2 begins with a pair that is not.
+static void test_an_angle_without_its_bonds_is_warned_of(void **state) {
+    static struct run_program_result result;
+    write_inputs(*state, "1 2 3 1 110 30.0", "1 3 2 1 110 30.0");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    assert_contains(result.err,
+                    "molecules.hexane: angle 1-3-2 has no bond 1-3; molecules.hexane: \"fene\"");
+}
+
 /// What is exported is read again with the same laws.
 static void test_our_own_export_is_read_again(void **state) {
     static struct run_program_result result;
@@ -230,6 +239,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(test_a_topology_says_what_molecules_are),
         TEST(test_what_is_not_taken_is_told),
+        TEST(test_an_angle_without_its_bonds_is_warned_of),
         TEST(test_our_own_export_is_read_again),
         TEST(test_coordinates_come_with_a_topology),
         TEST(test_what_has_no_room_in_memory_is_refused),

@@ -108,12 +108,13 @@ static void test_terms_that_cannot_be_are_refused(void **state) {
 
 static void test_a_term_without_its_bonds_is_found(void **state) {
     (void)state;
-    int order;
+    int order, pair[2];
     struct topology_kind kind = molecules_chain(1, abba, 4, TOPOLOGY_DIHEDRAL, 1);
-    assert_null(mf_topology_unbonded(&kind, &order));
+    assert_null(mf_topology_unbonded(&kind, &order, pair));
     kind.terms[TOPOLOGY_BOND] = 2; // without the last
-    assert_ptr_equal(mf_topology_unbonded(&kind, &order), &kind.term[TOPOLOGY_ANGLE][1]);
+    assert_ptr_equal(mf_topology_unbonded(&kind, &order, pair), &kind.term[TOPOLOGY_ANGLE][1]);
     assert_int_equal(order, TOPOLOGY_ANGLE);
+    assert_memory_equal(pair, ((const int[]){2, 3}), sizeof pair);
     mf_topology_kind_clear(&kind);
 }
 
