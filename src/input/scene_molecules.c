@@ -292,9 +292,20 @@ static void warn_of_fene(struct scene_molecules *molecules, const struct topolog
     }
 }
 
-static void warn_of(struct reading *reading) {
+static enum status warn_of_pieces(struct scene_molecules *molecules,
+                                  const struct topology_kind *kind) {
+    int bead;
+    TRY(mf_topology_apart(kind, &bead));
+    if (bead > 0)
+        warn(molecules, "molecules.%s: it is in pieces: no bonds join its beads 1 and %d",
+             kind->name, bead + 1);
+    return STATUS_OK;
+}
+
+static enum status warn_of(struct reading *reading) {
     warn_of_terms(reading->molecules, &reading->kind);
     warn_of_fene(reading->molecules, &reading->kind);
+    return warn_of_pieces(reading->molecules, &reading->kind);
 }
 
 /// Number of the highest order of terms that there are: what "exclude" is without a number.
@@ -306,7 +317,7 @@ static int reach_of(const struct topology_kind *kind) {
 }
 
 /// Check a kind and hand it over to the topology, or forget it if there was a fault.
-static void enter_kind(struct reading *reading, size_t faults) {
+static enum status enter_kind(struct reading *reading, size_t faults) {
     struct topology *topology = &reading->molecules->molecules.topology;
     struct topology_kind *kind = &reading->kind;
     const struct json_document *document = reading->object.document;
@@ -314,13 +325,14 @@ static void enter_kind(struct reading *reading, size_t faults) {
         mf_json_fault(&reading->object, NULL, "%s", mf_status_message());
     if (mf_json_fault_count(document) > faults) {
         mf_topology_kind_clear(kind);
-        return;
+        return STATUS_OK;
     }
-    warn_of(reading);
+    const enum status status = warn_of(reading);
     for (int k = 0; k < kind->beads; k++)
         reading->composition->count[kind->type[k]] += kind->count;
     reading->molecules->told[topology->kinds] = reading->told;
     topology->kind[topology->kinds++] = *kind;
+    return status;
 }
 
 static enum status read_kind(struct reading *reading, struct json_object *molecules,
@@ -352,8 +364,8 @@ static enum status read_kind(struct reading *reading, struct json_object *molecu
     reading->kind.exclude =
         told.exclude == AS_FAR_AS_TERMS ? reach_of(&reading->kind) : (int)told.exclude;
     mf_json_finish(object);
-    enter_kind(reading, faults);
-    return status;
+    const enum status entered = enter_kind(reading, faults);
+    return status == STATUS_OK ? entered : status;
 }
 
 /// Groups that no molecule has, and types of one bead: a pair of it there is not.
@@ -396,7 +408,7 @@ static enum status read_file(struct reading *reading, struct json_object *object
     for (int k = 0; k < topology->kinds; k++) {
         own->told[k] = (struct scene_molecule){.group = {-1, -1, -1}};
         reading->kind = topology->kind[k]; // borrowed
-        warn_of(reading);
+        TRY(warn_of(reading));
     }
     find_used(reading);
     return STATUS_OK;

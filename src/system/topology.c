@@ -175,6 +175,29 @@ done:
     return status;
 }
 
+enum status mf_topology_apart(const struct topology_kind *kind, int *bead) {
+    enum status status = STATUS_OK;
+    struct topology_bonds bonds = {0};
+    struct topology_kind whole = *kind;
+    int *distance = NULL, *reached = NULL;
+    *bead = -1;
+    whole.exclude = kind->beads;
+    NEW_ARRAY(distance, kind->beads);
+    NEW_ARRAY(reached, kind->beads);
+    CHECK(mf_topology_bonds(kind, &bonds));
+    memset(distance, 0xff, (size_t)kind->beads * sizeof *distance);
+    const int others = reach(&whole, &bonds, 0, distance, reached);
+    if (others + 1 < kind->beads)
+        for (*bead = 1; *bead <= others && reached[*bead] == *bead;)
+            ++*bead;
+done:
+    mf_memory_free(distance);
+    mf_memory_free(reached);
+    mf_memory_free(bonds.start);
+    mf_memory_free(bonds.to);
+    return status;
+}
+
 enum status mf_topology_count_excluded(const struct topology_kind *kind, int exclude,
                                        size_t *count) {
     struct topology_kind other = *kind;

@@ -86,6 +86,10 @@ enum status mf_topology_check_term(const struct topology_kind *kind, int order, 
 const struct topology_term *mf_topology_unbonded(const struct topology_kind *kind, int *order,
                                                  int pair[2]);
 
+/// The first bead that no bonds join to the first one of its kind, through whichever beads, or −1.
+/// Fails: NO_MEMORY. Tested: test_topology.
+enum status mf_topology_apart(const struct topology_kind *kind, int *bead) MUST_USE;
+
 /// How many beads are excluded from pairs with each bead of a kind, in all, if pairs at most
 /// `exclude` bonds apart are. Fails: NO_MEMORY. Tested: test_topology.
 enum status mf_topology_count_excluded(const struct topology_kind *kind, int exclude,

@@ -286,6 +286,7 @@ static void test_what_looks_wrong_is_warned_of(void **state) {
                  "\"angles\": {\"bend\": [[1, 2, 3]]}, \"bonds\": {\"spring\": [[1, 2]]");
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "loose");
     assert_contains(result.err, "molecules.ring: angle 1-2-3 has no bond 2-3");
+    assert_contains(result.err, "molecules.ring: it is in pieces: no bonds join its beads 1 and 3");
 }
 
 #define TEST(test)                                                                                 \
