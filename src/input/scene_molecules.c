@@ -126,6 +126,8 @@ done:
 static enum status read_chain_of_one(struct reading *reading, struct json_object *object,
                                      const struct told_chain *chain) {
     enum status status = STATUS_OK;
+    if (mf_json_has(object, "length") && chain->length == 0)
+        return STATUS_OK; // out of range, which is told
     if (chain->type[0] == '\0' || chain->length == 0) {
         mf_json_fault(object, chain->type[0] ? "length" : "type",
                       "missing: a chain has \"type\" and \"length\", or \"beads\"");
@@ -167,6 +169,9 @@ static enum status read_chain(struct reading *reading) {
         TRY(read_chain_of_one(reading, &object, &chain));
     else
         TRY(read_beads(reading, &object));
+    for (const char *const *key = (const char *const[]){"type", "length", NULL}; *key; key++)
+        if (!reading->told.of_one_type && mf_json_has(&object, *key))
+            mf_json_fault(&object, *key, "\"beads\" says it already; leave one of them out");
     for (int order = 0; order < TOPOLOGY_ORDERS; order++) {
         const char *name = chain.group[order];
         reading->told.group[order] =
