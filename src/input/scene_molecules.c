@@ -380,7 +380,8 @@ static void check_use(const struct reading *reading, struct json_object *scene) 
         struct json_object groups = mf_json_child(scene, mf_scene_group_keys[order], false);
         for (int g = 0; g < molecules->groups[order]; g++)
             if (!reading->used[order][g])
-                mf_json_fault(&groups, molecules->group[order][g].name, "no molecule has such a %s",
+                mf_json_fault(&groups, molecules->group[order][g].name,
+                              "no molecule has such %s %s", order == TOPOLOGY_ANGLE ? "an" : "a",
                               mf_topology_order_names[order]);
     }
     const struct composition *composition = reading->composition;
@@ -401,13 +402,24 @@ static void find_used(struct reading *reading) {
                 reading->used[order][topology->kind[k].term[order][n].group] = true;
 }
 
+/// A topology of GROMACS has the laws of all its groups; a data file of LAMMPS, which leaves an
+/// order of its atoms, may have types whose laws the scene says.
+static void check_laws_told_twice(const struct scene_molecules *own, struct json_object *scene) {
+    for (int order = 0; order < TOPOLOGY_ORDERS && own->order == NULL; order++)
+        if (mf_json_has(scene, mf_scene_group_keys[order]))
+            mf_json_fault(scene, mf_scene_group_keys[order],
+                          "the topology of \"molecules\" has them; leave them out");
+}
+
 /// "molecules": {"file": "topol.top"}: kinds and groups of a topology.
 static enum status read_file(struct reading *reading, struct json_object *object,
-                             const struct units *units) {
+                             struct json_object *scene, const struct units *units) {
     const size_t faults = mf_json_fault_count(object->document);
     struct scene_molecules *own = reading->molecules;
     struct topology *topology = &own->molecules.topology;
     TRY(mf_scene_topology_read(own, object, reading->composition, units));
+    if (mf_json_fault_count(object->document) == faults)
+        check_laws_told_twice(own, scene);
     if (mf_json_fault_count(object->document) > faults)
         return STATUS_OK;
     for (int k = 0; k < topology->kinds; k++) {
@@ -425,7 +437,7 @@ static enum status read_kinds(struct reading *reading, struct json_object *scene
     struct json_object object = mf_json_child(scene, "molecules", required);
     if (mf_json_key(&object, 0) && !mf_json_is_object(&object, "file") &&
         mf_json_has(&object, "file"))
-        return read_file(reading, &object, units);
+        return read_file(reading, &object, scene, units);
     for (size_t n = 0; (name = mf_json_key(&object, n)); n++) {
         if (n >= TOPOLOGY_MOST_KINDS || !mf_topology_is_name(name)) {
             mf_json_fault(&object, name,

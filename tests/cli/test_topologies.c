@@ -155,6 +155,21 @@ static void test_topologies_that_cannot_be_are_refused(void **state) {
     }
 }
 
+static void test_laws_beside_a_topology_are_refused(void **state) {
+    static struct run_program_result result;
+    static const char *const laws[] = {
+        "\"bonds\": {\"C1-C2\": {\"law\": \"harmonic\", \"k\": 9, \"length\": 0.8}}, \"molecules\"",
+        "\"angles\": {\"bend\": {\"law\": \"harmonic\", \"k\": 9, \"angle\": 120}}, \"molecules\""};
+    static const char *const keys[] = {"scene.json: bonds: the topology of \"molecules\" has them",
+                                       "scene.json: angles: the topology of \"molecules\" has"};
+    write_inputs(*state, NULL, NULL);
+    for (int k = 0; k < 2; k++) {
+        small_inputs_write(*state, "scene.json", scene, "\"molecules\"", laws[k]);
+        RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+        run_program_assert_refused(&result, ".", laws[k], 1, (const char *const[]){keys[k], NULL});
+    }
+}
+
 /// Nothing is allocated for 10^11 pairs: it is told in less time than that would take.
 static void test_what_has_no_room_in_memory_is_refused(void **state) {
     static struct run_program_result result;
@@ -241,6 +256,7 @@ int main(void) {
         TEST(test_what_is_not_taken_is_told),
         TEST(test_an_angle_without_its_bonds_is_warned_of),
         TEST(test_our_own_export_is_read_again),
+        TEST(test_laws_beside_a_topology_are_refused),
         TEST(test_coordinates_come_with_a_topology),
         TEST(test_what_has_no_room_in_memory_is_refused),
         TEST(test_topologies_that_cannot_be_are_refused),
