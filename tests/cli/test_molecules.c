@@ -208,6 +208,25 @@ static void test_sizes_of_a_rod_are_those_of_geometry(void **state) {
     assert_close(correlation[1], 1, 1e-5);
 }
 
+/// A dimer at rest across the box, and one of 2.5, more than three times 0.8.
+static void test_a_table_with_stretched_bonds_is_refused(void **state) {
+    static struct run_program_result result;
+    small_inputs_write(*state, "beads.tsv", "1 1 1\n1.8 1 1\n5.8 3 3\n2.3 3 3\n", NULL, NULL);
+    small_inputs_write(
+        *state, "dimer.json",
+        "{\"box\": [6, 6, 6], \"bonds\": {" BACKBONE
+        "}, \"molecules\": {\"dimer\": {\"count\": 2,\n"
+        "\"chain\": {\"type\": \"A\", \"length\": 2, \"bond\": \"backbone\"}}}, \"particles\":\n"
+        "{\"placement\": \"file\", \"file\": \"beads.tsv\"}, \"rdf\": {\"range\": 2},\n"
+        "\"measure\": {\"equilibration\": 1, \"samples\": 2, \"every\": 1}}\n",
+        NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "dimer.json", "-o", "bad");
+    run_program_assert_refused(
+        &result, ".", "beads.tsv", 1,
+        (const char *const[]){"particles.file: ", "the bond of atoms 3 and 4, of dimer number 2",
+                              "is 2.5 long, and at rest 0.8", NULL});
+}
+
 // What cannot be ----------------------------------------------------------------------------------
 
 static const struct fault {
@@ -306,6 +325,7 @@ int main(void) {
         TEST(test_sizes_of_a_rod_are_those_of_geometry),
         TEST(test_molecules_that_cannot_be_are_refused_in_one_line),
         TEST(test_tables_of_dihedrals_must_close),
+        TEST(test_a_table_with_stretched_bonds_is_refused),
         TEST(test_what_looks_wrong_is_warned_of),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
