@@ -62,9 +62,8 @@ static double length_of(const struct scene *scene, uint32_t i, uint32_t j) {
     return sqrt(square);
 }
 
-/// Whether bonds are no longer than they can be.
-static void check_bonds(const struct scene *scene, struct json_object *particles,
-                        const size_t *number) {
+void mf_scene_coordinates_check_bonds(const struct scene *scene, struct json_object *particles,
+                                      const size_t *number) {
     const struct molecules *molecules = &scene->molecules.molecules;
     const double unit = mf_units_known(&scene->units) ? scene->units.length : 1;
     for (int k = 0; k < molecules->topology.kinds; k++) {
@@ -82,10 +81,12 @@ static void check_bonds(const struct scene *scene, struct json_object *particles
                 if (length_of(scene, i, j) <= most)
                     continue;
                 mf_json_fault(particles, "file",
-                              "%s: the bond of atoms %zu and %zu, of %s number %lld, is %.3g nm "
+                              "%s: the bond of atoms %zu and %zu, of %s number %lld, is %.3g%s "
                               "long, and at rest %.3g: do the coordinates belong to the topology?",
-                              scene->setup.placement.file, number[i] + 1, number[j] + 1, kind->name,
-                              (long long)m + 1, unit * length_of(scene, i, j), unit * rest);
+                              scene->setup.placement.file, (number ? number[i] : i) + 1,
+                              (number ? number[j] : j) + 1, kind->name, (long long)m + 1,
+                              unit * length_of(scene, i, j),
+                              mf_units_known(&scene->units) ? " nm" : "", unit * rest);
                 return;
             }
     }
@@ -117,7 +118,7 @@ static enum status take_frame(struct scene *scene, struct json_object *particles
             scene->start.velocity[d] = v;
     }
     if (is_box(scene, particles, frame, length))
-        check_bonds(scene, particles, number);
+        mf_scene_coordinates_check_bonds(scene, particles, number);
 done:
     mf_memory_free(number);
     return status;

@@ -6,6 +6,7 @@
 #include "input/scene_topology.h"
 #include "io/json_list.h"
 
+#include <stdarg.h>
 #include <string.h>
 
 enum { AS_FAR_AS_TERMS = -1 }; ///< of "exclude"
@@ -125,6 +126,8 @@ done:
 static enum status read_chain_of_one(struct reading *reading, struct json_object *object,
                                      const struct told_chain *chain) {
     enum status status = STATUS_OK;
+    if (mf_json_has(object, "length") && chain->length == 0)
+        return STATUS_OK; // out of range, which is told
     if (chain->type[0] == '\0' || chain->length == 0) {
         mf_json_fault(object, chain->type[0] ? "length" : "type",
                       "missing: a chain has \"type\" and \"length\", or \"beads\"");
@@ -166,6 +169,9 @@ static enum status read_chain(struct reading *reading) {
         TRY(read_chain_of_one(reading, &object, &chain));
     else
         TRY(read_beads(reading, &object));
+    for (const char *const *key = (const char *const[]){"type", "length", NULL}; *key; key++)
+        if (!reading->told.of_one_type && mf_json_has(&object, *key))
+            mf_json_fault(&object, *key, "\"beads\" says it already; leave one of them out");
     for (int order = 0; order < TOPOLOGY_ORDERS; order++) {
         const char *name = chain.group[order];
         reading->told.group[order] =
@@ -252,25 +258,59 @@ static enum status open_groups(struct reading *reading) {
 
 // Kinds -------------------------------------------------------------------------------------------
 
-static void warn_of(struct reading *reading) {
-    char *warning = reading->molecules->warning;
-    const struct topology_kind *kind = &reading->kind;
-    int order;
-    const struct topology_term *term = mf_topology_unbonded(kind, &order);
-    if (term)
-        snprintf(warning, SCENE_MOLECULES_WARNING_SIZE,
-                 "molecules.%s: no bonds join the beads of the %s %d-%d-%d…", kind->name,
-                 mf_topology_order_names[order], term->bead[0] + 1, term->bead[1] + 1,
-                 term->bead[2] + 1);
+/// Add to the warning, behind what it says already; what has no room is cut.
+static void warn(struct scene_molecules *molecules, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+static void warn(struct scene_molecules *molecules, const char *format, ...) {
+    char *warning = molecules->warning;
+    const size_t length = strlen(warning);
+    const char *between = length > 0 && length + 3 < SCENE_MOLECULES_WARNING_SIZE ? "; " : "";
+    va_list list;
+    strcpy(warning + length, between);
+    va_start(list, format);
+    vsnprintf(warning + length + strlen(between),
+              SCENE_MOLECULES_WARNING_SIZE - length - strlen(between), format, list);
+    va_end(list);
+}
+
+static void warn_of_terms(struct scene_molecules *molecules, const struct topology_kind *kind) {
+    int order, pair[2];
+    char name[TOPOLOGY_TERM_SIZE];
+    const struct topology_term *term = mf_topology_unbonded(kind, &order, pair);
+    if (term == NULL)
+        return;
+    mf_topology_name_term(term, order, name);
+    warn(molecules, "molecules.%s: %s %s has no bond %d-%d", kind->name,
+         mf_topology_order_names[order], name, pair[0] + 1, pair[1] + 1);
+}
+
+static void warn_of_fene(struct scene_molecules *molecules, const struct topology_kind *kind) {
     for (int n = 0; n < kind->terms[TOPOLOGY_BOND] && kind->exclude > 0; n++) {
         const int group = kind->term[TOPOLOGY_BOND][n].group;
-        if (reading->molecules->molecules.group[TOPOLOGY_BOND][group].curve.law == &mf_bond_fene)
-            snprintf(
-                warning, SCENE_MOLECULES_WARNING_SIZE,
-                "molecules.%s: \"fene\" only pulls, and \"exclude\": %d takes the repulsion of "
-                "its beads away; 0 leaves it",
-                kind->name, kind->exclude);
+        if (molecules->molecules.group[TOPOLOGY_BOND][group].curve.law != &mf_bond_fene)
+            continue;
+        warn(molecules,
+             "molecules.%s: \"fene\" only pulls, and \"exclude\": %d takes the repulsion of "
+             "its beads away; 0 leaves it",
+             kind->name, kind->exclude);
+        return;
     }
+}
+
+static enum status warn_of_pieces(struct scene_molecules *molecules,
+                                  const struct topology_kind *kind) {
+    int bead;
+    TRY(mf_topology_apart(kind, &bead));
+    if (bead > 0)
+        warn(molecules, "molecules.%s: it is in pieces: no bonds join its beads 1 and %d",
+             kind->name, bead + 1);
+    return STATUS_OK;
+}
+
+static enum status warn_of(struct reading *reading) {
+    warn_of_terms(reading->molecules, &reading->kind);
+    warn_of_fene(reading->molecules, &reading->kind);
+    return warn_of_pieces(reading->molecules, &reading->kind);
 }
 
 /// Number of the highest order of terms that there are: what "exclude" is without a number.
@@ -282,7 +322,7 @@ static int reach_of(const struct topology_kind *kind) {
 }
 
 /// Check a kind and hand it over to the topology, or forget it if there was a fault.
-static void enter_kind(struct reading *reading, size_t faults) {
+static enum status enter_kind(struct reading *reading, size_t faults) {
     struct topology *topology = &reading->molecules->molecules.topology;
     struct topology_kind *kind = &reading->kind;
     const struct json_document *document = reading->object.document;
@@ -290,13 +330,14 @@ static void enter_kind(struct reading *reading, size_t faults) {
         mf_json_fault(&reading->object, NULL, "%s", mf_status_message());
     if (mf_json_fault_count(document) > faults) {
         mf_topology_kind_clear(kind);
-        return;
+        return STATUS_OK;
     }
-    warn_of(reading);
+    const enum status status = warn_of(reading);
     for (int k = 0; k < kind->beads; k++)
         reading->composition->count[kind->type[k]] += kind->count;
     reading->molecules->told[topology->kinds] = reading->told;
     topology->kind[topology->kinds++] = *kind;
+    return status;
 }
 
 static enum status read_kind(struct reading *reading, struct json_object *molecules,
@@ -328,8 +369,8 @@ static enum status read_kind(struct reading *reading, struct json_object *molecu
     reading->kind.exclude =
         told.exclude == AS_FAR_AS_TERMS ? reach_of(&reading->kind) : (int)told.exclude;
     mf_json_finish(object);
-    enter_kind(reading, faults);
-    return status;
+    const enum status entered = enter_kind(reading, faults);
+    return status == STATUS_OK ? entered : status;
 }
 
 /// Groups that no molecule has, and types of one bead: a pair of it there is not.
@@ -339,7 +380,8 @@ static void check_use(const struct reading *reading, struct json_object *scene) 
         struct json_object groups = mf_json_child(scene, mf_scene_group_keys[order], false);
         for (int g = 0; g < molecules->groups[order]; g++)
             if (!reading->used[order][g])
-                mf_json_fault(&groups, molecules->group[order][g].name, "no molecule has such a %s",
+                mf_json_fault(&groups, molecules->group[order][g].name,
+                              "no molecule has such %s %s", order == TOPOLOGY_ANGLE ? "an" : "a",
                               mf_topology_order_names[order]);
     }
     const struct composition *composition = reading->composition;
@@ -360,19 +402,30 @@ static void find_used(struct reading *reading) {
                 reading->used[order][topology->kind[k].term[order][n].group] = true;
 }
 
+/// A topology of GROMACS has the laws of all its groups; a data file of LAMMPS, which leaves an
+/// order of its atoms, may have types whose laws the scene says.
+static void check_laws_told_twice(const struct scene_molecules *own, struct json_object *scene) {
+    for (int order = 0; order < TOPOLOGY_ORDERS && own->order == NULL; order++)
+        if (mf_json_has(scene, mf_scene_group_keys[order]))
+            mf_json_fault(scene, mf_scene_group_keys[order],
+                          "the topology of \"molecules\" has them; leave them out");
+}
+
 /// "molecules": {"file": "topol.top"}: kinds and groups of a topology.
 static enum status read_file(struct reading *reading, struct json_object *object,
-                             const struct units *units) {
+                             struct json_object *scene, const struct units *units) {
     const size_t faults = mf_json_fault_count(object->document);
     struct scene_molecules *own = reading->molecules;
     struct topology *topology = &own->molecules.topology;
     TRY(mf_scene_topology_read(own, object, reading->composition, units));
+    if (mf_json_fault_count(object->document) == faults)
+        check_laws_told_twice(own, scene);
     if (mf_json_fault_count(object->document) > faults)
         return STATUS_OK;
     for (int k = 0; k < topology->kinds; k++) {
         own->told[k] = (struct scene_molecule){.group = {-1, -1, -1}};
         reading->kind = topology->kind[k]; // borrowed
-        warn_of(reading);
+        TRY(warn_of(reading));
     }
     find_used(reading);
     return STATUS_OK;
@@ -384,7 +437,7 @@ static enum status read_kinds(struct reading *reading, struct json_object *scene
     struct json_object object = mf_json_child(scene, "molecules", required);
     if (mf_json_key(&object, 0) && !mf_json_is_object(&object, "file") &&
         mf_json_has(&object, "file"))
-        return read_file(reading, &object, units);
+        return read_file(reading, &object, scene, units);
     for (size_t n = 0; (name = mf_json_key(&object, n)); n++) {
         if (n >= TOPOLOGY_MOST_KINDS || !mf_topology_is_name(name)) {
             mf_json_fault(&object, name,

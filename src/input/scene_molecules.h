@@ -10,7 +10,7 @@
 #include "forces/molecules.h"
 #include "input/scene_law.h"
 
-enum { SCENE_MOLECULES_WARNING_SIZE = 256 };
+enum { SCENE_MOLECULES_WARNING_SIZE = 1024 };
 
 /// How a file tells of a kind, which is written so, too.
 struct scene_molecule {

@@ -108,6 +108,8 @@ static enum status read_positions(struct scene *scene, struct json_object *parti
         else
             mf_scene_attributes_column(scene, particles, &table, column, values);
     }
+    if (mf_json_fault_count(particles->document) == 0)
+        mf_scene_coordinates_check_bonds(scene, particles, NULL);
 done:
     mf_data_table_clear(&table);
     return status;

@@ -19,7 +19,8 @@ static void fault_unknown(const struct target_groups *groups, struct json_object
     for (size_t g = 0; g < groups->groups; g++)
         known[g] = groups->name[g];
     mf_nearest_hint(key, known, groups->groups, hint, sizeof hint);
-    mf_json_fault(object, key, "no molecule has such a %s%s%s",
+    mf_json_fault(object, key, "no molecule has such %s %s%s%s",
+                  groups->order == TOPOLOGY_ANGLE ? "an" : "a",
                   mf_topology_order_names[groups->order], groups->groups ? "; " : "",
                   groups->groups ? hint : "");
     mf_json_has(object, key);

@@ -30,12 +30,12 @@ static bool are_same(const struct topology_term *a, const struct topology_term *
     return forward || backward;
 }
 
-/// "1-2-3", beads from 1 on.
-static void name_term(const struct topology_term *term, int beads, char *text, size_t size) {
+void mf_topology_name_term(const struct topology_term *term, int order,
+                           char text[TOPOLOGY_TERM_SIZE]) {
     size_t length = 0;
-    for (int k = 0; k < beads && length < size; k++)
-        length +=
-            (size_t)snprintf(text + length, size - length, "%s%d", k ? "-" : "", term->bead[k] + 1);
+    for (int k = 0; k < topology_beads(order); k++)
+        length += (size_t)snprintf(text + length, TOPOLOGY_TERM_SIZE - length, "%s%d", k ? "-" : "",
+                                   term->bead[k] + 1);
 }
 
 static enum status check_beads(const struct topology_kind *kind, int order,
@@ -57,8 +57,8 @@ static enum status check_beads(const struct topology_kind *kind, int order,
 enum status mf_topology_check_term(const struct topology_kind *kind, int order, int n) {
     const struct topology_term *term = &kind->term[order][n];
     const int beads = topology_beads(order);
-    char name[64];
-    name_term(term, beads, name, sizeof name);
+    char name[TOPOLOGY_TERM_SIZE];
+    mf_topology_name_term(term, order, name);
     TRY(check_beads(kind, order, term, name));
     for (int m = 0; m < n; m++) {
         const struct topology_term *other = &kind->term[order][m];
@@ -84,13 +84,16 @@ static bool are_bonded(const struct topology_kind *kind, int a, int b) {
     return false;
 }
 
-const struct topology_term *mf_topology_unbonded(const struct topology_kind *kind, int *order) {
+const struct topology_term *mf_topology_unbonded(const struct topology_kind *kind, int *order,
+                                                 int pair[2]) {
     for (*order = TOPOLOGY_ANGLE; *order < TOPOLOGY_ORDERS; ++*order)
         for (int n = 0; n < kind->terms[*order]; n++) {
             const struct topology_term *term = &kind->term[*order][n];
-            for (int k = 0; k + 1 < topology_beads(*order); k++)
-                if (!are_bonded(kind, term->bead[k], term->bead[k + 1]))
+            for (int k = 0; k + 1 < topology_beads(*order); k++) {
+                memcpy(pair, term->bead + k, 2 * sizeof *pair);
+                if (!are_bonded(kind, pair[0], pair[1]))
                     return term;
+            }
         }
     return NULL;
 }
@@ -164,6 +167,29 @@ static enum status find_near(struct topology_kind *kind) {
         if (pass == 0)
             NEW_ARRAY(kind->near, found);
     }
+done:
+    mf_memory_free(distance);
+    mf_memory_free(reached);
+    mf_memory_free(bonds.start);
+    mf_memory_free(bonds.to);
+    return status;
+}
+
+enum status mf_topology_apart(const struct topology_kind *kind, int *bead) {
+    enum status status = STATUS_OK;
+    struct topology_bonds bonds = {0};
+    struct topology_kind whole = *kind;
+    int *distance = NULL, *reached = NULL;
+    *bead = -1;
+    whole.exclude = kind->beads;
+    NEW_ARRAY(distance, kind->beads);
+    NEW_ARRAY(reached, kind->beads);
+    CHECK(mf_topology_bonds(kind, &bonds));
+    memset(distance, 0xff, (size_t)kind->beads * sizeof *distance);
+    const int others = reach(&whole, &bonds, 0, distance, reached);
+    if (others + 1 < kind->beads)
+        for (*bead = 1; *bead <= others && reached[*bead] == *bead;)
+            ++*bead;
 done:
     mf_memory_free(distance);
     mf_memory_free(reached);

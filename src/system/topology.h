@@ -19,6 +19,7 @@ enum {
     TOPOLOGY_MOST_KINDS = 16,
     TOPOLOGY_MOST_EXCLUDE = 3,
     TOPOLOGY_NAME_SIZE = 32,
+    TOPOLOGY_TERM_SIZE = 64, ///< of its beads as a text
 };
 
 /// Beads of a term: 2, 3 or 4.
@@ -67,6 +68,10 @@ struct topology {
 /// Whether a kind or a group can be called so: letters, digits, _ and -, not too many.
 bool mf_topology_is_name(const char *name);
 
+/// The beads of a term as a text, "1-2-3", from 1 on.
+void mf_topology_name_term(const struct topology_term *term, int order,
+                           char text[TOPOLOGY_TERM_SIZE]);
+
 /// Whether a kind's terms are of its beads and stand there once.
 /// Fails: BAD_INPUT, naming the beads from 1 on: a bead that is not there or twice in a term, a
 /// bond that stands there twice, another term twice in a group. Tested: test_topology.
@@ -77,7 +82,13 @@ enum status mf_topology_check_term(const struct topology_kind *kind, int order, 
 
 /// The first angle or dihedral two neighbouring beads of which no bond joins, or NULL.
 /// @param[out] order  of the term
-const struct topology_term *mf_topology_unbonded(const struct topology_kind *kind, int *order);
+/// @param[out] pair   the two beads, from 0
+const struct topology_term *mf_topology_unbonded(const struct topology_kind *kind, int *order,
+                                                 int pair[2]);
+
+/// The first bead that no bonds join to the first one of its kind, through whichever beads, or −1.
+/// Fails: NO_MEMORY. Tested: test_topology.
+enum status mf_topology_apart(const struct topology_kind *kind, int *bead) MUST_USE;
 
 /// How many beads are excluded from pairs with each bead of a kind, in all, if pairs at most
 /// `exclude` bonds apart are. Fails: NO_MEMORY. Tested: test_topology.

@@ -208,6 +208,25 @@ static void test_sizes_of_a_rod_are_those_of_geometry(void **state) {
     assert_close(correlation[1], 1, 1e-5);
 }
 
+/// A dimer at rest across the box, and one of 2.5, more than three times 0.8.
+static void test_a_table_with_stretched_bonds_is_refused(void **state) {
+    static struct run_program_result result;
+    small_inputs_write(*state, "beads.tsv", "1 1 1\n1.8 1 1\n5.8 3 3\n2.3 3 3\n", NULL, NULL);
+    small_inputs_write(
+        *state, "dimer.json",
+        "{\"box\": [6, 6, 6], \"bonds\": {" BACKBONE
+        "}, \"molecules\": {\"dimer\": {\"count\": 2,\n"
+        "\"chain\": {\"type\": \"A\", \"length\": 2, \"bond\": \"backbone\"}}}, \"particles\":\n"
+        "{\"placement\": \"file\", \"file\": \"beads.tsv\"}, \"rdf\": {\"range\": 2},\n"
+        "\"measure\": {\"equilibration\": 1, \"samples\": 2, \"every\": 1}}\n",
+        NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "dimer.json", "-o", "bad");
+    run_program_assert_refused(
+        &result, ".", "beads.tsv", 1,
+        (const char *const[]){"particles.file: ", "the bond of atoms 3 and 4, of dimer number 2",
+                              "is 2.5 long, and at rest 0.8", NULL});
+}
+
 // What cannot be ----------------------------------------------------------------------------------
 
 static const struct fault {
@@ -243,6 +262,11 @@ static const struct fault {
     {"\"exclude\": 0", "\"exclude\": 4", {"molecules.ring.exclude: 4 is out of range"}},
     {"\"count\": 20", "\"count\": 0", {"molecules.ring.count: 0 is out of range"}},
     {CHAIN, "\"type\": \"A\"", {"molecules.chain.chain.length: missing"}},
+    {CHAIN, CHAIN ", \"length\": 4", {"molecules.chain.chain.length: \"beads\" says it already"}},
+    {CHAIN, CHAIN ", \"type\": \"A\"", {"molecules.chain.chain.type: \"beads\" says it already"}},
+    {CHAIN,
+     "\"type\": \"A\", \"length\": 1",
+     {"molecules.chain.chain.length: 1 is out of range; allowed: 2 to"}},
     {CHAIN, "\"beads\": [\"A\", \"a b\"]", {"molecules.chain.chain.beads: \"a b\": a type is"}},
     {"\"types\": {\"W\": 60},",
      "\"count\": 60,",
@@ -285,7 +309,8 @@ static void test_what_looks_wrong_is_warned_of(void **state) {
     write_inputs(*state, "\"bonds\": {\"spring\": " RING,
                  "\"angles\": {\"bend\": [[1, 2, 3]]}, \"bonds\": {\"spring\": [[1, 2]]");
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "loose");
-    assert_contains(result.err, "molecules.ring: no bonds join the beads of the angle 1-2-3");
+    assert_contains(result.err, "molecules.ring: angle 1-2-3 has no bond 2-3");
+    assert_contains(result.err, "molecules.ring: it is in pieces: no bonds join its beads 1 and 3");
 }
 
 #define TEST(test)                                                                                 \
@@ -300,6 +325,7 @@ int main(void) {
         TEST(test_sizes_of_a_rod_are_those_of_geometry),
         TEST(test_molecules_that_cannot_be_are_refused_in_one_line),
         TEST(test_tables_of_dihedrals_must_close),
+        TEST(test_a_table_with_stretched_bonds_is_refused),
         TEST(test_what_looks_wrong_is_warned_of),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

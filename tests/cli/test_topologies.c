@@ -87,6 +87,15 @@ static void test_what_is_not_taken_is_told(void **state) {
     assert_contains(result.err, "types.itp:8: parameters of pairs are not taken");
 }
 
+/// 1-2 and 2-3 are bonded, and the angle 1-3-2 begins with a pair that is not.
+static void test_an_angle_without_its_bonds_is_warned_of(void **state) {
+    static struct run_program_result result;
+    write_inputs(*state, "1 2 3 1 110 30.0", "1 3 2 1 110 30.0");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    assert_contains(result.err,
+                    "molecules.hexane: angle 1-3-2 has no bond 1-3; molecules.hexane: \"fene\"");
+}
+
 /// What is exported is read again with the same laws.
 static void test_our_own_export_is_read_again(void **state) {
     static struct run_program_result result;
@@ -143,6 +152,21 @@ static void test_topologies_that_cannot_be_are_refused(void **state) {
         RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
         run_program_assert_refused(&result, ".", cases[k].to, 1,
                                    (const char *const[]){cases[k].place, cases[k].what, NULL});
+    }
+}
+
+static void test_laws_beside_a_topology_are_refused(void **state) {
+    static struct run_program_result result;
+    static const char *const laws[] = {
+        "\"bonds\": {\"C1-C2\": {\"law\": \"harmonic\", \"k\": 9, \"length\": 0.8}}, \"molecules\"",
+        "\"angles\": {\"bend\": {\"law\": \"harmonic\", \"k\": 9, \"angle\": 120}}, \"molecules\""};
+    static const char *const keys[] = {"scene.json: bonds: the topology of \"molecules\" has them",
+                                       "scene.json: angles: the topology of \"molecules\" has"};
+    write_inputs(*state, NULL, NULL);
+    for (int k = 0; k < 2; k++) {
+        small_inputs_write(*state, "scene.json", scene, "\"molecules\"", laws[k]);
+        RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+        run_program_assert_refused(&result, ".", laws[k], 1, (const char *const[]){keys[k], NULL});
     }
 }
 
@@ -230,7 +254,9 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(test_a_topology_says_what_molecules_are),
         TEST(test_what_is_not_taken_is_told),
+        TEST(test_an_angle_without_its_bonds_is_warned_of),
         TEST(test_our_own_export_is_read_again),
+        TEST(test_laws_beside_a_topology_are_refused),
         TEST(test_coordinates_come_with_a_topology),
         TEST(test_what_has_no_room_in_memory_is_refused),
         TEST(test_topologies_that_cannot_be_are_refused),

@@ -108,12 +108,31 @@ static void test_terms_that_cannot_be_are_refused(void **state) {
 
 static void test_a_term_without_its_bonds_is_found(void **state) {
     (void)state;
-    int order;
+    int order, pair[2];
     struct topology_kind kind = molecules_chain(1, abba, 4, TOPOLOGY_DIHEDRAL, 1);
-    assert_null(mf_topology_unbonded(&kind, &order));
+    assert_null(mf_topology_unbonded(&kind, &order, pair));
     kind.terms[TOPOLOGY_BOND] = 2; // without the last
-    assert_ptr_equal(mf_topology_unbonded(&kind, &order), &kind.term[TOPOLOGY_ANGLE][1]);
+    assert_ptr_equal(mf_topology_unbonded(&kind, &order, pair), &kind.term[TOPOLOGY_ANGLE][1]);
     assert_int_equal(order, TOPOLOGY_ANGLE);
+    assert_memory_equal(pair, ((const int[]){2, 3}), sizeof pair);
+    mf_topology_kind_clear(&kind);
+}
+
+/// 1-2 and 3-4 are two pieces; 1-2, 2-4 leave bead 3 alone.
+static void test_a_kind_in_pieces_is_found(void **state) {
+    (void)state;
+    int bead;
+    struct topology_kind kind = molecules_chain(1, abba, 4, TOPOLOGY_BOND, 1);
+    assert_ok(mf_topology_apart(&kind, &bead));
+    assert_int_equal(bead, -1);
+    kind.terms[TOPOLOGY_BOND] = 2;
+    kind.term[TOPOLOGY_BOND][1].bead[0] = 2;
+    kind.term[TOPOLOGY_BOND][1].bead[1] = 3;
+    assert_ok(mf_topology_apart(&kind, &bead));
+    assert_int_equal(bead, 2);
+    kind.term[TOPOLOGY_BOND][1].bead[0] = 1;
+    assert_ok(mf_topology_apart(&kind, &bead));
+    assert_int_equal(bead, 2);
     mf_topology_kind_clear(&kind);
 }
 
@@ -191,6 +210,7 @@ int main(void) {
         cmocka_unit_test(test_rings_exclude_each_bead_once),
         cmocka_unit_test(test_terms_that_cannot_be_are_refused),
         cmocka_unit_test(test_a_term_without_its_bonds_is_found),
+        cmocka_unit_test(test_a_kind_in_pieces_is_found),
         cmocka_unit_test(test_excluded_pairs_are_on_no_list),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
