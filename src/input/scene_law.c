@@ -180,6 +180,15 @@ enum status mf_scene_law_read(struct scene_law *law, struct json_object *parent,
         if (!mf_json_has(&object, "law"))
             return read_pairs(law, &object, list, composition, units);
     }
+    struct json_object only = mf_json_child_of(parent, key, false, "law");
+    const char *pair = mf_json_key(&only, 0);
+    if (pair && strchr(pair, '-') && !mf_json_has(&only, "law")) {
+        mf_json_fault(&only, pair,
+                      "pairs are named in mixtures alone, and there is one type: write "
+                      "\"%s\": {\"law\": …}",
+                      key);
+        return STATUS_OK;
+    }
     TRY(mf_scene_read_curve(&law->curve[0], parent, key, list, units));
     law->curves = law->curve[0].family != NULL;
     return STATUS_OK;

@@ -6,7 +6,6 @@
 #include "input/scene_topology.h"
 #include "io/json_list.h"
 
-#include <stdarg.h>
 #include <string.h>
 
 enum { AS_FAR_AS_TERMS = -1 }; ///< of "exclude"
@@ -258,61 +257,6 @@ static enum status open_groups(struct reading *reading) {
 
 // Kinds -------------------------------------------------------------------------------------------
 
-/// Add to the warning, behind what it says already; what has no room is cut.
-static void warn(struct scene_molecules *molecules, const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
-static void warn(struct scene_molecules *molecules, const char *format, ...) {
-    char *warning = molecules->warning;
-    const size_t length = strlen(warning);
-    const char *between = length > 0 && length + 3 < SCENE_MOLECULES_WARNING_SIZE ? "; " : "";
-    va_list list;
-    strcpy(warning + length, between);
-    va_start(list, format);
-    vsnprintf(warning + length + strlen(between),
-              SCENE_MOLECULES_WARNING_SIZE - length - strlen(between), format, list);
-    va_end(list);
-}
-
-static void warn_of_terms(struct scene_molecules *molecules, const struct topology_kind *kind) {
-    int order, pair[2];
-    char name[TOPOLOGY_TERM_SIZE];
-    const struct topology_term *term = mf_topology_unbonded(kind, &order, pair);
-    if (term == NULL)
-        return;
-    mf_topology_name_term(term, order, name);
-    warn(molecules, "molecules.%s: %s %s has no bond %d-%d", kind->name,
-         mf_topology_order_names[order], name, pair[0] + 1, pair[1] + 1);
-}
-
-static void warn_of_fene(struct scene_molecules *molecules, const struct topology_kind *kind) {
-    for (int n = 0; n < kind->terms[TOPOLOGY_BOND] && kind->exclude > 0; n++) {
-        const int group = kind->term[TOPOLOGY_BOND][n].group;
-        if (molecules->molecules.group[TOPOLOGY_BOND][group].curve.law != &mf_bond_fene)
-            continue;
-        warn(molecules,
-             "molecules.%s: \"fene\" only pulls, and \"exclude\": %d takes the repulsion of "
-             "its beads away; 0 leaves it",
-             kind->name, kind->exclude);
-        return;
-    }
-}
-
-static enum status warn_of_pieces(struct scene_molecules *molecules,
-                                  const struct topology_kind *kind) {
-    int bead;
-    TRY(mf_topology_apart(kind, &bead));
-    if (bead > 0)
-        warn(molecules, "molecules.%s: it is in pieces: no bonds join its beads 1 and %d",
-             kind->name, bead + 1);
-    return STATUS_OK;
-}
-
-static enum status warn_of(struct reading *reading) {
-    warn_of_terms(reading->molecules, &reading->kind);
-    warn_of_fene(reading->molecules, &reading->kind);
-    return warn_of_pieces(reading->molecules, &reading->kind);
-}
-
 /// Number of the highest order of terms that there are: what "exclude" is without a number.
 static int reach_of(const struct topology_kind *kind) {
     int reach = 0;
@@ -332,7 +276,7 @@ static enum status enter_kind(struct reading *reading, size_t faults) {
         mf_topology_kind_clear(kind);
         return STATUS_OK;
     }
-    const enum status status = warn_of(reading);
+    const enum status status = mf_scene_molecules_warn(reading->molecules, &reading->kind);
     for (int k = 0; k < kind->beads; k++)
         reading->composition->count[kind->type[k]] += kind->count;
     reading->molecules->told[topology->kinds] = reading->told;
@@ -425,7 +369,7 @@ static enum status read_file(struct reading *reading, struct json_object *object
     for (int k = 0; k < topology->kinds; k++) {
         own->told[k] = (struct scene_molecule){.group = {-1, -1, -1}};
         reading->kind = topology->kind[k]; // borrowed
-        TRY(warn_of(reading));
+        TRY(mf_scene_molecules_warn(reading->molecules, &reading->kind));
     }
     find_used(reading);
     return STATUS_OK;

@@ -59,6 +59,11 @@ enum status mf_scene_kinds_read(struct scene_molecules *molecules, struct json_o
                                 struct composition *composition) MUST_USE;
 void mf_scene_molecules_clear(struct scene_molecules *molecules);
 
+/// Add to the warning what looks wrong in a kind that can be: terms without bonds, fene bonds whose
+/// beads do not repel, pieces that no bonds join. Fails: NO_MEMORY. Tested: cli/test_molecules.
+enum status mf_scene_molecules_warn(struct scene_molecules *molecules,
+                                    const struct topology_kind *kind) MUST_USE;
+
 /// Whether there are any.
 static inline bool scene_has_molecules(const struct scene_molecules *molecules) {
     return molecules->molecules.topology.kinds > 0;

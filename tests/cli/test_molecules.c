@@ -208,6 +208,20 @@ static void test_sizes_of_a_rod_are_those_of_geometry(void **state) {
     assert_close(correlation[1], 1, 1e-5);
 }
 
+static void test_a_pair_named_in_a_scene_of_one_type_is_refused(void **state) {
+    static struct run_program_result result;
+    small_inputs_write(*state, "one.json",
+                       "{\"box\": [6, 6, 6], \"particles\": {\"count\": 100}, \"conservative\":\n"
+                       "{\"A-A\": {\"law\": \"soft-repulsion\"}}, \"rdf\": {\"range\": 2},\n"
+                       "\"measure\": {\"equilibration\": 1, \"samples\": 2, \"every\": 1}}\n",
+                       NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "one.json", "-o", "bad");
+    run_program_assert_refused(
+        &result, ".", "A-A", 1,
+        (const char *const[]){"conservative.A-A: pairs are named in mixtures",
+                              "write \"conservative\": {\"law\"", NULL});
+}
+
 /// A dimer at rest across the box, and one of 2.5, more than three times 0.8.
 static void test_a_table_with_stretched_bonds_is_refused(void **state) {
     static struct run_program_result result;
@@ -325,6 +339,7 @@ int main(void) {
         TEST(test_sizes_of_a_rod_are_those_of_geometry),
         TEST(test_molecules_that_cannot_be_are_refused_in_one_line),
         TEST(test_tables_of_dihedrals_must_close),
+        TEST(test_a_pair_named_in_a_scene_of_one_type_is_refused),
         TEST(test_a_table_with_stretched_bonds_is_refused),
         TEST(test_what_looks_wrong_is_warned_of),
     };
