@@ -191,7 +191,7 @@ static void test_a_bond_that_is_torn_at_the_start_is_refused(void **state) {
         "\"molecules\": {\"dimer\": {\"count\": 1, \"chain\": {\"beads\": [\"A\", \"A\"],\n"
         "  \"bond\": \"rope\"}}}, \"bond_lengths\": {},\n"
         "\"particles\": {\"placement\": \"file\", \"file\": \"start.tsv\"},\n" BY_MONTE_CARLO "}\n";
-    static const char start[] = "1 1 1\n1 1 4\n";
+    static const char start[] = "1 1 1\n1 1 3.5\n";
     temporary_folder_write(*state, "start.tsv", start, strlen(start));
     small_inputs_write(*state, "scene.json", dimer, NULL, NULL);
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "refused");
