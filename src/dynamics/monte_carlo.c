@@ -3,23 +3,7 @@
 
 #include "dynamics/simulation.h"
 
-#include <math.h>
 #include <string.h>
-
-/// A move out of a torn bond would have no energy to be judged by.
-static enum status check_bonds(const struct metropolis *chain) {
-    const struct molecule_moves *moves = &chain->molecules;
-    const struct topology *topology = &moves->molecules->topology;
-    for (int k = 0; k < topology->kinds; k++)
-        for (uint32_t m = 0; m < topology->kind[k].count; m++)
-            for (int bead = 0; bead < topology->kind[k].beads; bead++)
-                if (!isfinite(mf_molecule_moves_bead_energy(moves, k, m, bead, &chain->particles)))
-                    return mf_status_fail(STATUS_BAD_INPUT,
-                                          "molecules.%s: bead %d of molecule %u has no finite "
-                                          "energy at the start: is a bond too long?",
-                                          topology->kind[k].name, bead + 1, m + 1);
-    return STATUS_OK;
-}
 
 static enum status begin(struct simulation *simulation) {
     const struct simulation_setup *setup = &simulation->setup;
@@ -30,7 +14,7 @@ static enum status begin(struct simulation *simulation) {
     TRY(mf_metropolis_init_at(&state->chain, particles, &simulation->law,
                               mf_molecules_find(setup->interaction, setup->interactions)));
     state->chain.cancel = setup->cancel;
-    return state->chain.molecules.molecules ? check_bonds(&state->chain) : STATUS_OK;
+    return STATUS_OK;
 }
 
 static void clear(void *state) {

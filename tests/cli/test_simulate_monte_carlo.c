@@ -191,12 +191,12 @@ static void test_a_bond_that_is_torn_at_the_start_is_refused(void **state) {
         "\"molecules\": {\"dimer\": {\"count\": 1, \"chain\": {\"beads\": [\"A\", \"A\"],\n"
         "  \"bond\": \"rope\"}}}, \"bond_lengths\": {},\n"
         "\"particles\": {\"placement\": \"file\", \"file\": \"start.tsv\"},\n" BY_MONTE_CARLO "}\n";
-    static const char start[] = "1 1 1\n1 1 3.5\n";
+    static const char start[] = "1 1 1\n1 1 4\n";
     temporary_folder_write(*state, "start.tsv", start, strlen(start));
     small_inputs_write(*state, "scene.json", dimer, NULL, NULL);
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "refused");
     run_program_assert_refused(&result, ".", "torn", 1,
-                               (const char *const[]){"scene.json: molecules.dimer", NULL});
+                               (const char *const[]){"start.tsv: the bond of atoms 1 and 2", NULL});
 }
 
 /// Figures, too, are of sweeps, also where a scene has units beside.
