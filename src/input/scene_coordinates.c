@@ -8,8 +8,9 @@
 #include <math.h>
 #include <string.h>
 
-/// Files have three decimals; a bond that is so many times as long is of other beads.
-static const double box_tolerance = 2e-3, longest_share = 3;
+/// Files have three decimals; a bond that is so many times as long as at rest is of other beads,
+/// unless less than so many k_B T stretch it in a table, which may be the end of a run.
+static const double box_tolerance = 2e-3, longest_share = 3, largest_energy = 30;
 
 bool mf_scene_coordinates_are_of_engine(const char *file) {
     const char *dot = strrchr(file, '.');
@@ -62,6 +63,18 @@ static double length_of(const struct scene *scene, uint32_t i, uint32_t j) {
     return sqrt(square);
 }
 
+/// Whether a bond can be so long.
+static bool can_be(const struct bonded_curve *curve, double length, double temperature) {
+    const double rest = mf_bonded_rest(curve);
+    double at_rest, energy;
+    if (length > mf_bonded_longest(curve))
+        return false;
+    mf_bonded_value(curve, rest, &at_rest, NULL);
+    mf_bonded_value(curve, length, &energy, NULL);
+    return length <= longest_share * rest || rest == 0 ||
+           energy - at_rest <= largest_energy * temperature;
+}
+
 void mf_scene_coordinates_check_bonds(const struct scene *scene, struct json_object *particles,
                                       const size_t *number) {
     const struct molecules *molecules = &scene->molecules.molecules;
@@ -73,12 +86,9 @@ void mf_scene_coordinates_check_bonds(const struct scene *scene, struct json_obj
                 const struct topology_term *term = &kind->term[TOPOLOGY_BOND][n];
                 const struct bonded_curve *curve =
                     &molecules->group[TOPOLOGY_BOND][term->group].curve;
-                const double rest = mf_bonded_rest(curve);
-                const double most = rest > 0 ? fmin(longest_share * rest, mf_bonded_longest(curve))
-                                             : mf_bonded_longest(curve);
                 const uint32_t i = topology_id(kind, m, term->bead[0]);
                 const uint32_t j = topology_id(kind, m, term->bead[1]);
-                if (length_of(scene, i, j) <= most)
+                if (can_be(curve, length_of(scene, i, j), number ? 0 : scene->setup.temperature))
                     continue;
                 mf_json_fault(particles, "file",
                               "%s: the bond of atoms %zu and %zu, of %s number %lld, is %.3g%s "
@@ -86,7 +96,8 @@ void mf_scene_coordinates_check_bonds(const struct scene *scene, struct json_obj
                               scene->setup.placement.file, (number ? number[i] : i) + 1,
                               (number ? number[j] : j) + 1, kind->name, (long long)m + 1,
                               unit * length_of(scene, i, j),
-                              mf_units_known(&scene->units) ? " nm" : "", unit * rest);
+                              mf_units_known(&scene->units) ? " nm" : "",
+                              unit * mf_bonded_rest(curve));
                 return;
             }
     }

@@ -12,12 +12,12 @@ bool mf_scene_coordinates_are_of_engine(const char *file);
 /// after molecule, kind after kind, then single beads, type after type. With units nm and ps become
 /// λ and τ; without, these are 1 nm and 1 ps.
 /// Faults go to the document, one line: another number of atoms, another box, a bond that is more
-/// than three times as long as at rest or longer than it can be. Fails: NO_MEMORY. Tested:
-/// cli/test_topologies.
+/// than three times as long as at rest, or longer than it can be.
+/// Fails: NO_MEMORY. Tested: cli/test_topologies.
 enum status mf_scene_coordinates_read(struct scene *scene, struct json_object *particles) MUST_USE;
 
-/// A fault for the first bond of a scene's first coordinates that is longer than it can be, or than
-/// three times its length at rest.
+/// A fault for the first bond of a scene's first coordinates that is as long as
+/// mf_scene_coordinates_read refuses.
 /// @param[in] number  shape [beads]: of each id in the file; NULL: the ids themselves
 void mf_scene_coordinates_check_bonds(const struct scene *scene, struct json_object *particles,
                                       const size_t *number);

@@ -241,6 +241,26 @@ static void test_a_table_with_stretched_bonds_is_refused(void **state) {
                               "is 2.5 long, and at rest 0.8", NULL});
 }
 
+/// The end of a run is a beginning: a soft bond is often many times as long as at rest.
+static void test_a_snapshot_of_soft_bonds_is_no_stretched_one(void **state) {
+    static struct run_program_result result;
+    static const char soft[] =
+        "{\"box\": [5, 5, 5], \"bonds\": {\"spring\": {\"law\": \"harmonic\", \"k\": 4,\n"
+        "  \"length\": 0.2}}, \"molecules\": {\"chain\": {\"count\": 30, \"exclude\": 0,\n"
+        "  \"chain\": {\"type\": \"A\", \"length\": 8, \"bond\": \"spring\"}}},\n"
+        "\"conservative\": {\"law\": \"soft-repulsion\"}, \"dissipative\": {\"law\": \"power\"},\n"
+        "\"snapshots\": {\"every\": 100, \"formats\": [\"json\"]},\n"
+        "\"measure\": {\"equilibration\": 100, \"samples\": 5, \"every\": 20}}\n";
+    small_inputs_write(*state, "first.json", soft, NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "first.json", "-o", "first");
+    run_program_assert_code(&result, 0);
+    small_inputs_write(*state, "second.json", soft, "\"box\"",
+                       "\"particles\": {\"placement\": \"file\",\n"
+                       "  \"file\": \"first/snapshots/step_000000200.json\"}, \"box\"");
+    RUN_PROGRAM(&result, "simulate", "second.json", "-o", "second");
+    run_program_assert_code(&result, 0);
+}
+
 // What cannot be ----------------------------------------------------------------------------------
 
 static const struct fault {
@@ -340,6 +360,7 @@ int main(void) {
         TEST(test_molecules_that_cannot_be_are_refused_in_one_line),
         TEST(test_tables_of_dihedrals_must_close),
         TEST(test_a_pair_named_in_a_scene_of_one_type_is_refused),
+        TEST(test_a_snapshot_of_soft_bonds_is_no_stretched_one),
         TEST(test_a_table_with_stretched_bonds_is_refused),
         TEST(test_what_looks_wrong_is_warned_of),
     };
