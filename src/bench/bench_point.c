@@ -3,6 +3,7 @@
 
 #include "base/statistics.h"
 #include "dynamics/dpd_verlet.h"
+#include "dynamics/respa.h"
 #include "observe/motion.h"
 #include "observe/rdf_observable.h"
 #include "observe/thermodynamics.h"
@@ -19,7 +20,7 @@ enum {
 };
 
 /// Groot and Warren's optimum is the second.
-static const struct dpd_verlet_parameters predictions[] = {{0.5}, {0.65}};
+static const struct dpd_verlet_parameters predictions[] = {{0.5, 1}, {0.65, 1}};
 static const double equilibration_share = 0.05;
 
 /// Window of the diffusion coefficient, in times in which a particle flies the mean distance: in
@@ -38,9 +39,22 @@ static void add_method(struct bench_method *methods, size_t *count,
     snprintf(method->name, sizeof method->name, "%s", integrator->name);
 }
 
+/// The scene's integrator without its inner steps is among all, and with them by itself.
+static void add_inner_steps(struct bench_method *methods, size_t *count,
+                            const struct simulation_setup *setup) {
+    if (setup->omega == NULL || !mf_respa_acts(setup))
+        return;
+    for (size_t k = 0; k < *count; k++)
+        if (methods[k].parameters == setup->integrator_parameters)
+            methods[k].parameters = NULL;
+    add_method(methods, count, setup, setup->integrator);
+    snprintf(methods[*count - 1].name, BENCH_METHOD_SIZE, "%s, inner steps",
+             setup->integrator->name);
+}
+
 size_t mf_bench_methods(const struct simulation_setup *setup, struct bench_method *methods) {
     size_t count = 0;
-    for (size_t k = 0; mf_integrator_list[k] && count + 2 <= BENCH_MOST_METHODS; k++) {
+    for (size_t k = 0; mf_integrator_list[k] && count + 3 <= BENCH_MOST_METHODS; k++) {
         const struct integrator *integrator = mf_integrator_list[k];
         if (integrator->dissipative != (setup->omega != NULL) || integrator->mobility ||
             integrator->events || integrator->companions || integrator->samples)
@@ -56,6 +70,7 @@ size_t mf_bench_methods(const struct simulation_setup *setup, struct bench_metho
                      predictions[l].lambda);
         }
     }
+    add_inner_steps(methods, &count, setup);
     return count;
 }
 

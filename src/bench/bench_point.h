@@ -17,8 +17,9 @@ struct bench_method {
 
 enum { BENCH_MOST_METHODS = 16, BENCH_MOST_BINS = 4096 };
 
-/// Integrators that suit a scene: those with friction for a scene with ω, dpd-verlet with two λ,
-/// and those without for one without. Returns how many. Tested: test_bench_point.
+/// Integrators that suit a scene: those with friction for a scene with ω, dpd-verlet with two λ
+/// and, if the scene has them, with its inner steps, and those without for one without. Returns how
+/// many. Tested: test_bench_point.
 size_t mf_bench_methods(const struct simulation_setup *setup, struct bench_method *methods);
 
 /// The one that others are compared with: it has an error of order Δt² and an unbiased kinetic

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "dynamics/aboba.h"
 
+#include "dynamics/respa.h"
 #include "dynamics/simulation.h"
 
 static double exact_damping(double omega, double time_step) {
@@ -66,26 +67,59 @@ static enum status step_with(struct simulation *simulation, friction_change *cha
     return STATUS_OK;
 }
 
+/// The same with flights along bonds instead of the drifts.
+static enum status step_with_flights(struct simulation *simulation, int64_t inner_steps) {
+    struct respa *respa = simulation->integrator_state;
+    const double half = 0.5 * simulation->setup.time_step;
+    const int64_t steps = (inner_steps + 1) / 2;
+    TRY(mf_respa_find(respa, simulation));
+    TRY(mf_respa_fly(respa, simulation, half, steps));
+    TRY(mf_respa_compute_forces(respa, simulation));
+    mf_respa_kick(respa, simulation, half);
+    TRY(sweep(simulation));
+    mf_simulation_take_temperature(simulation);
+    mf_respa_kick(respa, simulation, half);
+    return mf_respa_fly(respa, simulation, half, steps);
+}
+
+static int64_t inner_steps_of(const struct simulation *simulation) {
+    const struct respa_parameters *parameters = simulation->setup.integrator_parameters;
+    return parameters->inner_steps;
+}
+
+static enum status begin_exact(struct simulation *simulation) {
+    return mf_respa_init(simulation->integrator_state, simulation, inner_steps_of(simulation));
+}
+
 static enum status step_exact(struct simulation *simulation) {
-    return step_with(simulation, sweep);
+    return inner_steps_of(simulation) > 1
+               ? step_with_flights(simulation, inner_steps_of(simulation))
+               : step_with(simulation, sweep);
 }
 
 static enum status step_implicit(struct simulation *simulation) {
     return step_with(simulation, solve);
 }
 
-static const struct field no_fields[] = {FIELD_END};
+static const struct field exact_fields[] = {
+    RESPA_FIELD(offsetof(struct respa_parameters, inner_steps)),
+    FIELD_END,
+};
 
 const struct integrator mf_aboba = {
     .name = "aboba",
     .summary = "drift, kick, exact friction pair by pair, kick, drift, the default with friction; "
                "X. Shang, Comput. Phys. Commun. 262, 107834 (2021)",
-    .fields = no_fields,
+    .fields = exact_fields,
+    .parameters_size = sizeof(struct respa_parameters),
+    .state_size = sizeof(struct respa),
     .dissipative = true,
     .remembers = true,
     .tells_transfer = true,
     .friction = &exact,
     .forces_midway = true,
+    .begin = begin_exact,
+    .clear = mf_respa_clear,
     .step = step_exact,
 };
 

@@ -33,16 +33,14 @@ enum status mf_hybrid_init(struct hybrid *hybrid, const struct box *box,
         .time_step = step.first,
         .temperature_limit = 1e6,
         .integrator = &mf_velocity_verlet,
+        .integrator_parameters = &respa,
         .potential = potential,
         .seed = seed,
         .threads = 1,
     };
-    if (molecules) {
+    if (molecules)
         setup.interaction[setup.interactions++] =
             (struct interaction_choice){&mf_molecules, molecules};
-        setup.integrator = &mf_respa;
-        setup.integrator_parameters = &respa;
-    }
     *hybrid = (struct hybrid){.trial = *bins, .longest = step.longest};
     NEW_ARRAY(hybrid->trial.counts, NEIGHBOURS_MOST_PARTS * (pair_histogram_size(bins)));
     NEW_ARRAY(hybrid->kept, pair_histogram_size(bins));

@@ -1,97 +1,121 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-//
-// Tested: physics/test_molecules_hybrid.
 #include "dynamics/respa.h"
 
+#include "base/parallel.h"
 #include "base/simd.h"
 #include "dynamics/simulation.h"
 
-struct state {
-    double *fast[3]; ///< forces beside the pairs, shape [particles]
-};
-
-static const struct field fields[] = {
-    {"inner", FIELD_INTEGER, .offset = offsetof(struct respa_parameters, inner), .initial = 1,
-     .minimum = 1, .maximum = 1000, .unit = "", .help = "steps of the forces beside the pairs"},
-    FIELD_END,
-};
-
-static enum status begin(struct simulation *simulation) {
+enum status mf_respa_init(struct respa *respa, const struct simulation *simulation,
+                          int64_t inner_steps) {
     enum status status = STATUS_OK;
-    struct state *s = simulation->integrator_state;
+    if (inner_steps <= 1)
+        return STATUS_OK;
+    if (simulation->setup.interactions == 0)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "dynamics.inner_steps: there is nothing beside the pairs, as bonds, "
+                              "that could take them; leave it out");
     for (int d = 0; d < simulation->setup.box.dimensions; d++)
-        NEW_ARRAY(s->fast[d], simulation->particles.count);
+        NEW_ARRAY(respa->fast[d], simulation->particles.count);
 done:
     return status;
 }
 
-static void clear(void *state) {
-    struct state *s = state;
+void mf_respa_clear(void *state) {
+    struct respa *respa = state;
     for (int d = 0; d < 3; d++)
-        mf_memory_free(s->fast[d]);
+        mf_memory_free(respa->fast[d]);
 }
 
-static enum status find_fast(const struct simulation *simulation) {
-    struct state *s = simulation->integrator_state;
+enum status mf_respa_find(struct respa *respa, const struct simulation *simulation) {
     for (int d = 0; d < simulation->setup.box.dimensions; d++)
-        memset(s->fast[d], 0, simulation->particles.count * sizeof *s->fast[d]);
-    return mf_simulation_forces_beside(simulation, s->fast);
+        memset(respa->fast[d], 0, simulation->particles.count * sizeof *respa->fast[d]);
+    return mf_simulation_forces_beside(simulation, respa->fast);
 }
 
-/// v += time · (F − fast).
-SIMD_CLONES static void kick_slow(struct simulation *simulation, double time) {
-    struct particles *particles = &simulation->particles;
-    const struct state *s = simulation->integrator_state;
-    for (int d = 0; d < particles->box.dimensions; d++) {
-        double *restrict v = particles->velocity[d];
-        const double *restrict force = particles->force[d], *restrict fast = s->fast[d];
-        for (size_t k = 0; k < particles->count; k++)
-            v[k] += time * (force[k] - fast[k]);
+/// A kick of all particles.
+struct kick {
+    struct particles *particles;
+    double *const *fast;
+    double time, drift;
+};
+
+/// v += time · (F − fast)/m.
+SIMD_CLONES static void kick_slow(void *context, size_t begin, size_t end) {
+    const struct kick *kick = context;
+    const double *restrict mass = particles_masses(kick->particles);
+    const double time = kick->time;
+    for (int d = 0; d < kick->particles->box.dimensions; d++) {
+        double *restrict v = kick->particles->velocity[d];
+        const double *restrict force = kick->particles->force[d], *restrict fast = kick->fast[d];
+        if (mass)
+            for (size_t k = begin; k < end; k++)
+                v[k] += time * (force[k] - fast[k]) / mass[k];
+        else
+            for (size_t k = begin; k < end; k++)
+                v[k] += time * (force[k] - fast[k]);
     }
 }
 
-/// v += time · fast, then x += drift · v.
-SIMD_CLONES static void kick_fast(struct simulation *simulation, double time, double drift) {
-    struct particles *particles = &simulation->particles;
-    const struct state *s = simulation->integrator_state;
-    for (int d = 0; d < particles->box.dimensions; d++) {
-        double *restrict v = particles->velocity[d], *restrict x = particles->position[d];
-        const double *restrict fast = s->fast[d];
-        for (size_t k = 0; k < particles->count; k++) {
-            v[k] += time * fast[k];
+/// v += time · fast/m, then x += drift · v.
+SIMD_CLONES static void kick_fast(void *context, size_t begin, size_t end) {
+    const struct kick *kick = context;
+    const double *restrict mass = particles_masses(kick->particles);
+    const double time = kick->time, drift = kick->drift;
+    for (int d = 0; d < kick->particles->box.dimensions; d++) {
+        double *restrict v = kick->particles->velocity[d];
+        double *restrict x = kick->particles->position[d];
+        const double *restrict fast = kick->fast[d];
+        for (size_t k = begin; k < end; k++)
+            v[k] += time * (mass ? fast[k] / mass[k] : fast[k]);
+        for (size_t k = begin; k < end; k++)
             x[k] += drift * v[k];
-        }
     }
 }
 
-/// Forces of others than the last step's may stand at its beginning, where it was refused, and what
-/// was fast is found anew; a new list brings the particles into another order.
-static enum status step(struct simulation *simulation) {
-    const struct respa_parameters *p = simulation->integrator_parameters;
-    const double outer = simulation->setup.time_step, inner = outer / (double)p->inner;
-    const uint64_t list_builds = simulation->list_builds;
-    TRY(find_fast(simulation));
-    kick_slow(simulation, 0.5 * outer);
-    for (int64_t k = 0; k < p->inner; k++) {
-        kick_fast(simulation, 0.5 * inner, inner);
-        TRY(find_fast(simulation));
-        kick_fast(simulation, 0.5 * inner, 0);
+static void act(const struct respa *respa, struct simulation *simulation,
+                void (*part)(void *, size_t, size_t), double time, double drift) {
+    struct kick kick = {&simulation->particles, respa->fast, time, drift};
+    mf_parallel_for(simulation->particles.count, simulation->particles.threads, part, &kick);
+}
+
+void mf_respa_kick(const struct respa *respa, struct simulation *simulation, double time) {
+    act(respa, simulation, kick_slow, time, 0);
+}
+
+enum status mf_respa_fly(struct respa *respa, struct simulation *simulation, double time,
+                         int64_t steps) {
+    const double each = time / (double)steps;
+    for (int64_t k = 0; k < steps; k++) {
+        act(respa, simulation, kick_fast, 0.5 * each, each);
+        TRY(mf_respa_find(respa, simulation));
+        act(respa, simulation, kick_fast, 0.5 * each, 0);
     }
-    TRY(mf_simulation_compute_forces(simulation, 0));
-    if (simulation->list_builds != list_builds)
-        TRY(find_fast(simulation));
-    kick_slow(simulation, 0.5 * outer);
     return STATUS_OK;
 }
 
-const struct integrator mf_respa = {
-    .name = "respa",
-    .summary = "reversible multiple time steps; M. Tuckerman, B. J. Berne and G. J. Martyna, J. "
-               "Chem. Phys. 97, 1990 (1992)",
-    .fields = fields,
-    .parameters_size = sizeof(struct respa_parameters),
-    .state_size = sizeof(struct state),
-    .begin = begin,
-    .clear = clear,
-    .step = step,
-};
+enum status mf_respa_compute_forces(struct respa *respa, struct simulation *simulation) {
+    const uint64_t list_builds = simulation->list_builds;
+    TRY(mf_simulation_compute_forces(simulation, 0));
+    return simulation->list_builds == list_builds ? STATUS_OK : mf_respa_find(respa, simulation);
+}
+
+/// Forces of others than the last step's may stand at its beginning, where it was refused, and what
+/// was fast is found anew.
+enum status mf_respa_step(struct respa *respa, struct simulation *simulation, int64_t inner_steps) {
+    const double time_step = simulation->setup.time_step;
+    TRY(mf_respa_find(respa, simulation));
+    mf_respa_kick(respa, simulation, 0.5 * time_step);
+    TRY(mf_respa_fly(respa, simulation, time_step, inner_steps));
+    TRY(mf_respa_compute_forces(respa, simulation));
+    mf_respa_kick(respa, simulation, 0.5 * time_step);
+    return STATUS_OK;
+}
+
+bool mf_respa_acts(const struct simulation_setup *setup) {
+    const void *parameters = setup->integrator_parameters;
+    const struct field *field = setup->integrator->fields;
+    while (field->name && strcmp(field->name, "inner_steps") != 0)
+        field++;
+    return parameters && field->name &&
+           *(const int64_t *)((const char *)parameters + field->offset) > 1;
+}

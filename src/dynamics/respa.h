@@ -5,14 +5,58 @@
 /// steps of their own (reversible reference system propagator: M. Tuckerman, B. J. Berne and G. J.
 /// Martyna, J. Chem. Phys. 97, 1990 (1992), eq. 2.20). It is reversible and keeps volumes in phase
 /// space, as a proposal of hybrid Monte Carlo must. A step must stay well below half a period of
-/// the fastest bond, where the impulses of the pairs resonate with it. Particles of mass 1.
+/// the fastest bond, where the impulses of the pairs resonate with it. Friction and noise of pairs
+/// are impulses of theirs.
 #pragma once
 
 #include "dynamics/integrator.h"
 
-struct respa_parameters {
-    int64_t inner; ///< steps of the other forces in one of the pairs, at least 1
+/// What an integrator that does so keeps.
+struct respa {
+    double *fast[3]; ///< forces beside the pairs, shape [particles]
 };
 
-/// No scene names it.
-extern const struct integrator mf_respa;
+/// Parameters of integrators that have no others.
+struct respa_parameters {
+    int64_t inner_steps;
+};
+
+/// The field of this, at its place in the parameters.
+#define RESPA_FIELD(place)                                                                         \
+    {                                                                                              \
+        "inner_steps", FIELD_INTEGER,                                                              \
+            .offset = place, .initial = 1, .minimum = 1, .maximum = 1000, .unit = "",              \
+            .help =                                                                                \
+                "steps of bonds, angles and dihedrals in one of the pairs (r-RESPA, Tuckerman et " \
+                "al. 1992)"                                                                        \
+    }
+
+/// Make room, if there is more than one inner step; else nothing.
+/// Fails: BAD_INPUT if there is nothing beside the pairs; NO_MEMORY.
+enum status mf_respa_init(struct respa *respa, const struct simulation *simulation,
+                          int64_t inner_steps) MUST_USE;
+void mf_respa_clear(void *respa);
+
+/// @name The parts of a step, between which positions and fast forces belong to each other
+
+/// Find the fast forces at the present positions.
+enum status mf_respa_find(struct respa *respa, const struct simulation *simulation) MUST_USE;
+
+/// v += time · (F − fast)/m, F the forces of all.
+void mf_respa_kick(const struct respa *respa, struct simulation *simulation, double time);
+
+/// So many steps of the fast forces alone, in this time.
+enum status mf_respa_fly(struct respa *respa, struct simulation *simulation, double time,
+                         int64_t steps) MUST_USE;
+
+/// The forces of all, at the present positions; a new list brings the particles into another order,
+/// and the fast forces with them.
+enum status mf_respa_compute_forces(struct respa *respa, struct simulation *simulation) MUST_USE;
+
+/// Kick, fly, kick: a step of velocity Verlet. Tested: test_respa, physics/test_molecules_hybrid,
+/// physics/test_molecules.
+enum status mf_respa_step(struct respa *respa, struct simulation *simulation,
+                          int64_t inner_steps) MUST_USE;
+
+/// Whether the integrator of a setup has inner steps.
+bool mf_respa_acts(const struct simulation_setup *setup);

@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "base/number_text.h"
 #include "base/statistics.h"
+#include "dynamics/respa.h"
 #include "forces/shear_wave.h"
 #include "forces/transfer.h"
 #include "io/data_table.h"
@@ -81,6 +82,10 @@ static enum status check(const struct simulation *simulation, bool driven) {
             "shear_viscosity: \"%s\" does not tell what pairs exchange; \"aboba\" "
             "and \"velocity-verlet\" do, and \"shear-wave\" needs no stress",
             name);
+    if (!driven && mf_respa_acts(setup))
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "shear_viscosity: what bonds exchange is counted once a step; leave "
+                              "out \"inner_steps\" of \"dynamics\"");
     return STATUS_OK;
 }
 

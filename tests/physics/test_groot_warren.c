@@ -201,7 +201,7 @@ static void check_heating(const struct heating *heating) {
     double temperature;
     fluid_groot_warren(&fluid, PARTICLES, heating->time_step);
     fluid.setup.integrator = heating->integrator;
-    const struct dpd_verlet_parameters prediction = {heating->lambda};
+    const struct dpd_verlet_parameters prediction = {.lambda = heating->lambda};
     if (heating->integrator == &mf_dpd_verlet)
         fluid.setup.integrator_parameters = &prediction;
     assert_ok(mf_simulation_init(&simulation, &fluid.setup, NULL));

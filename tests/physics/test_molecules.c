@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "base/statistics.h"
 #include "curves/formula.h"
+#include "dynamics/respa.h"
 #include "forces/bonded.h"
 #include "shared/fluids.h"
 #include "shared/is_close.h"
@@ -29,7 +30,8 @@ struct gas {
 
 /// Chains without pair potentials, with friction between all beads in range, bonded or not.
 static void make_gas(struct gas *gas, int64_t count, int beads, int highest,
-                     const struct integrator *integrator, double time_step) {
+                     const struct integrator *integrator, const void *parameters,
+                     double time_step) {
     gas->molecules = (struct molecules){0};
     const struct composition composition = molecules_topology(
         &gas->molecules.topology, molecules_chain(count, type, beads, highest, 0),
@@ -41,6 +43,7 @@ static void make_gas(struct gas *gas, int64_t count, int beads, int highest,
         molecules_add_group(&gas->molecules, TOPOLOGY_DIHEDRAL, &mf_dihedral_periodic, twist);
     fluid_ideal_gas(&gas->fluid, 3, count * beads, time_step);
     gas->fluid.setup.integrator = integrator;
+    gas->fluid.setup.integrator_parameters = parameters;
     if (!integrator->dissipative)
         gas->fluid.setup.omega = NULL;
     gas->fluid.setup.placement.kind = PLACEMENT_LATTICE;
@@ -125,14 +128,15 @@ static double largest_deviation(const struct gas *gas, int order, double (*histo
     return largest;
 }
 
-/// 3 distributions of at most 24 bins and 2 integrators: 144 deviations, of which one beyond 4.5
+/// 3 distributions of at most 24 bins and 3 integrators: 216 deviations, of which one beyond 4.5
 /// comes about once in a thousand seeds.
-static void check_distributions(const struct integrator *integrator, double time_step, int every) {
+static void check_distributions(const struct integrator *integrator, const void *parameters,
+                                double time_step, int every) {
     enum { MOLECULES = 1000, SAMPLES = 200 };
     static double histogram[TOPOLOGY_ORDERS][MOLECULES][BINS];
     struct gas gas;
     memset(histogram, 0, sizeof histogram);
-    make_gas(&gas, MOLECULES, BEADS, TOPOLOGY_DIHEDRAL, integrator, time_step);
+    make_gas(&gas, MOLECULES, BEADS, TOPOLOGY_DIHEDRAL, integrator, parameters, time_step);
     assert_ok(mf_simulation_run(&gas.simulation, (uint64_t)(20 * every)));
     for (int n = 0; n < SAMPLES; n++) {
         assert_ok(mf_simulation_run(&gas.simulation, (uint64_t)every));
@@ -150,12 +154,19 @@ static void check_distributions(const struct integrator *integrator, double time
 
 static void test_ideal_chains_have_exact_distributions_with_friction(void **state) {
     (void)state;
-    check_distributions(&mf_aboba, 0.01, 40);
+    check_distributions(&mf_aboba, NULL, 0.01, 40);
+}
+
+/// Friction and noise act once in a step that is as long as a tenth of the period of a bond.
+static void test_ideal_chains_have_exact_distributions_with_inner_steps(void **state) {
+    (void)state;
+    static const struct respa_parameters inner = {6};
+    check_distributions(&mf_aboba, &inner, 0.04, 10);
 }
 
 static void test_ideal_chains_have_exact_distributions_without_velocities(void **state) {
     (void)state;
-    check_distributions(&mf_brownian, 0.0005, 100);
+    check_distributions(&mf_brownian, NULL, 0.0005, 100);
 }
 
 // Sizes -------------------------------------------------------------------------------------------
@@ -189,7 +200,7 @@ static void test_freely_jointed_chains_have_exact_sizes(void **state) {
     struct running_mean ends = {0}, gyrations = {0};
     struct gas gas;
     double upper = 0, lower = 0;
-    make_gas(&gas, CHAINS, LENGTH, TOPOLOGY_BOND, &mf_aboba, 0.01);
+    make_gas(&gas, CHAINS, LENGTH, TOPOLOGY_BOND, &mf_aboba, NULL, 0.01);
     for (double r = 0.0005; r < 2; r += 0.001) {
         const double w = weight(&gas.molecules.group[TOPOLOGY_BOND][0].curve, TOPOLOGY_BOND, r);
         upper += r * r * w;
@@ -230,7 +241,7 @@ static void test_energy_of_molecules_is_kept_without_friction(void **state) {
         struct gas gas;
         const double time_step = n == 0 ? 0.004 : 0.002;
         struct running_mean first = {0}, last = {0};
-        make_gas(&gas, 200, BEADS, TOPOLOGY_DIHEDRAL, &mf_velocity_verlet, time_step);
+        make_gas(&gas, 200, BEADS, TOPOLOGY_DIHEDRAL, &mf_velocity_verlet, NULL, time_step);
         gas.simulation.wants = PAIR_FORCES_AND_SUMS;
         const int blocks = 400, each = n == 0 ? 10 : 20;
         assert_ok(mf_simulation_run(&gas.simulation, 200));
@@ -253,8 +264,8 @@ static void test_energy_of_molecules_is_kept_without_friction(void **state) {
 
 /// Beads of masses 1 and 8 in a dimer share the kinetic energy alike, and the bond length does not
 /// know of them.
-static void test_unlike_masses_have_the_same_temperature(void **state) {
-    (void)state;
+static void check_masses(double time_step, int64_t inner_steps) {
+    const struct respa_parameters parameters = {inner_steps};
     static const int ab[] = {0, 1};
     enum { DIMERS = 1500 };
     struct molecules molecules = {0};
@@ -265,17 +276,19 @@ static void test_unlike_masses_have_the_same_temperature(void **state) {
         molecules_topology(&molecules.topology, molecules_chain(DIMERS, ab, 2, TOPOLOGY_BOND, 0),
                            (struct topology_kind){0}, 2, NULL);
     molecules_add_group(&molecules, TOPOLOGY_BOND, &mf_bond_harmonic, spring);
-    fluid_groot_warren(&fluid, 2 * DIMERS, 0.005);
+    fluid_groot_warren(&fluid, 2 * DIMERS, time_step);
     fluid.setup.omega = NULL;
     fluid.setup.integrator = &mf_velocity_verlet;
+    fluid.setup.integrator_parameters = &parameters;
     fluid.setup.attribute[ATTRIBUTES_MASS] =
         (struct attributes_source){.ranges = 2, .range = {{1, 1}, {8, 8}}};
     molecules_enter(&fluid.setup, &molecules, &composition);
     assert_ok(mf_simulation_init(&simulation, &fluid.setup, NULL));
-    assert_ok(mf_simulation_run(&simulation, 4000));
+    const uint64_t every = (uint64_t)llround(0.25 / time_step);
+    assert_ok(mf_simulation_run(&simulation, 80 * every));
     for (int n = 0; n < 200; n++) {
         double sum[2] = {0};
-        assert_ok(mf_simulation_run(&simulation, 50));
+        assert_ok(mf_simulation_run(&simulation, every));
         for (size_t k = 0; k < simulation.particles.count; k++) {
             const int heavy = simulation.particles.id[k] >= DIMERS;
             for (int d = 0; d < 3; d++)
@@ -290,6 +303,12 @@ static void test_unlike_masses_have_the_same_temperature(void **state) {
     mf_simulation_clear(&simulation);
     mf_molecules_clear(&molecules);
     fluid_clear(&fluid);
+}
+
+static void test_unlike_masses_have_the_same_temperature(void **state) {
+    (void)state;
+    check_masses(0.005, 1);
+    check_masses(0.02, 4);
 }
 
 // A melt ------------------------------------------------------------------------------------------
@@ -360,6 +379,7 @@ static void test_melt_of_kremer_and_grest_has_its_bonds(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_ideal_chains_have_exact_distributions_with_friction),
+        cmocka_unit_test(test_ideal_chains_have_exact_distributions_with_inner_steps),
         cmocka_unit_test(test_ideal_chains_have_exact_distributions_without_velocities),
         cmocka_unit_test(test_freely_jointed_chains_have_exact_sizes),
         cmocka_unit_test(test_energy_of_molecules_is_kept_without_friction),

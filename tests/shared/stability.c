@@ -57,7 +57,7 @@ enum stability stability_of(const struct stability_case *what, int64_t count) {
     assert_ok(mf_table_init_omega(&omega, &curve));
     fluid.setup.omega = &omega;
     fluid.setup.integrator = what->integrator;
-    const struct dpd_verlet_parameters prediction = {what->lambda};
+    const struct dpd_verlet_parameters prediction = {.lambda = what->lambda};
     if (what->integrator == &mf_dpd_verlet)
         fluid.setup.integrator_parameters = &prediction;
     fluid.setup.temperature_limit = 20;

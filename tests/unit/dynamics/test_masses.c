@@ -79,7 +79,7 @@ static void test_masses_with_friction_are_at_the_temperature(void **state) {
     (void)state;
     enum { STEPS = 2000, EVERY = 20, EQUILIBRATION = 1000 };
     static const double mass_of[] = {1, 5, 0.5};
-    static const struct dpd_verlet_parameters half = {0.5};
+    static const struct dpd_verlet_parameters half = {.lambda = 0.5};
     struct fluid fluid;
     struct simulation simulation;
     double sum[3] = {0}, count[3] = {0};

@@ -6,6 +6,8 @@
 #include "forces/molecules.h"
 
 #include "base/memory.h"
+#include "dynamics/dpd_verlet.h"
+#include "dynamics/respa.h"
 #include "dynamics/simulation.h"
 #include "shared/fluids.h"
 #include "shared/is_close.h"
@@ -332,12 +334,15 @@ static void test_transfer_is_the_slope_of_the_energy_with_shear(void **state) {
 
 // Bits --------------------------------------------------------------------------------------------
 
-static void test_threads_and_restarts_leave_the_bits_as_they_are(void **state) {
-    (void)state;
+static void check_bits(const struct integrator *integrator, const void *parameters) {
     struct polymers polymers;
     struct simulation one, three;
     make(&polymers, 1);
     polymers.fluid.setup.precision = PAIR_MIXED;
+    polymers.fluid.setup.integrator = integrator;
+    polymers.fluid.setup.integrator_parameters = parameters;
+    if (!integrator->dissipative)
+        polymers.fluid.setup.omega = NULL;
     assert_ok(mf_simulation_init(&one, &polymers.fluid.setup, NULL));
     polymers.fluid.setup.threads = 3;
     assert_ok(mf_simulation_init(&three, &polymers.fluid.setup, NULL));
@@ -353,6 +358,16 @@ static void test_threads_and_restarts_leave_the_bits_as_they_are(void **state) {
     mf_simulation_clear(&one);
     mf_simulation_clear(&three);
     clear(&polymers);
+}
+
+static void test_threads_and_restarts_leave_the_bits_as_they_are(void **state) {
+    (void)state;
+    static const struct respa_parameters inner = {3};
+    static const struct dpd_verlet_parameters plain = {0.5, 1}, split = {0.5, 3};
+    check_bits(&mf_dpd_verlet, &plain);
+    check_bits(&mf_dpd_verlet, &split);
+    check_bits(&mf_aboba, &inner);
+    check_bits(&mf_velocity_verlet, &inner);
 }
 
 // What cannot be ----------------------------------------------------------------------------------
