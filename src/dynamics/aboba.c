@@ -36,8 +36,10 @@ typedef enum status friction_change(struct simulation *simulation);
 static enum status sweep(struct simulation *simulation) {
     struct particles *particles = &simulation->particles;
     struct pair_memory *memory = &simulation->memory;
-    if (simulation->setup.omega)
+    if (simulation->setup.omega) {
+        mf_friction_weigh(&simulation->friction, particles);
         mf_friction_sweep(&simulation->friction, particles, simulation->transfer);
+    }
     if (!pair_memory_acts(&simulation->setup.memory))
         return STATUS_OK;
     TRY(mf_pair_memory_follow(memory, particles, &simulation->neighbours, simulation->list_builds));
@@ -116,6 +118,7 @@ const struct integrator mf_aboba = {
     .dissipative = true,
     .remembers = true,
     .tells_transfer = true,
+    .masses = true,
     .friction = &exact,
     .forces_midway = true,
     .begin = begin_exact,

@@ -5,12 +5,12 @@
 /// becomes of the velocities is the integrator's: with u = e·(v_i − v_j) along the unit vector e of
 /// a pair, they make
 ///   v_i += (kick − damping·u) e,   v_j −= the same,   kick = amplitude ζ,
-/// with a damping d and an amplitude that depend on ω, and so on r, alone. ω² is the friction, so
-/// that u obeys du = −2 ω² u dt + 2 sqrt(2 k_B T) ω dW, with variance 2 k_B T. ζ is normal
-/// (base/normal.h): where friction is thin and strong a pair gets one or two kicks on its way
-/// through, and a uniform ζ leaves it too little energy, by a fifth of the temperature. The
-/// amplitude is made of the damping, amplitude² = A d (1 − B d), so that the two agree at every r,
-/// also in the interval where ω jumps. Tested: test_friction, physics/test_shell.
+/// with a damping d and an amplitude that depend on ω, and so on r, alone, and with masses on
+/// these. ω² is the friction, so that u obeys du = −2 ω² u dt + 2 sqrt(2 k_B T) ω dW, with variance
+/// 2 k_B T. ζ is normal (base/normal.h): where friction is thin and strong a pair gets one or two
+/// kicks on its way through, and a uniform ζ leaves it too little energy, by a fifth of the
+/// temperature. The amplitude is made of the damping, amplitude² = A d (1 − B d), so that the two
+/// agree at every r, also in the interval where ω jumps. Tested: test_friction, physics/test_shell.
 #pragma once
 
 #include "base/normal.h"
@@ -71,6 +71,11 @@ enum status mf_friction_reserve_work(struct friction *friction, size_t count) MU
 /// @name For sweeps: the velocities into kernel_force, shape [count, 4], and back.
 void mf_friction_load_velocities(struct particles *particles);
 void mf_friction_store_velocities(struct particles *particles);
+
+/// Where particles have masses, make damping and kick of the pairs those of their masses. They are
+/// kept as if all were 1, u decaying by 1 − 2 d = exp(−2 ω² Δt) and the amplitude keeping 2 k_B T:
+/// for a method that is exact for one pair. Tested: test_friction.
+void mf_friction_weigh(struct friction *friction, const struct particles *particles);
 
 /// Change the velocities pair after pair, in an order that depends on the list alone: the same bits
 /// for any number of threads.

@@ -192,13 +192,17 @@ static enum status read_dynamics(struct scene *scene, struct json_object *object
         check_moves(scene, object);
     check_orientation(scene, object);
     struct attributes_source *mass = &scene->setup.attribute[ATTRIBUTES_MASS];
-    if (mass->ranges > 0 && !integrator->masses && attributes_are(mass, 1))
+    if (attributes_are(mass, 1))
         mass->ranges = 0; // they are the unit
-    else if (mass->ranges > 0 && !integrator->masses)
+    else if (!integrator->masses)
+        mf_json_fault(
+            object, "particles.mass",
+            "%s moves particles of mass 1 only; \"aboba\" and \"dpd-verlet\" move others, "
+            "and without \"dissipative\" \"velocity-verlet\"",
+            integrator->name);
+    else if (remembers)
         mf_json_fault(object, "particles.mass",
-                      "%s moves particles of mass 1 only; \"dpd-verlet\" moves others, and without "
-                      "\"dissipative\" \"velocity-verlet\"",
-                      integrator->name);
+                      "friction that remembers, or acts across pairs, is of particles of mass 1");
     return STATUS_OK;
 }
 

@@ -140,8 +140,13 @@ static const struct fault scene_faults[] = {
     FAULT("clusters beyond the list", PARTICLES, PARTICLES ", \"clusters\": {\"distance\": 40}",
           "input.json: clusters.distance: 40 is beyond"),
     FAULT("masses for an integrator that knows none", PARTICLES,
-          "\"particles\": {\"count\": 81, \"mass\": 2}",
-          "input.json: particles.mass: aboba moves particles of mass 1 only"),
+          "\"particles\": {\"count\": 81, \"mass\": 2}, \"dynamics\": {\"integrator\": "
+          "\"shardlow\"}",
+          "input.json: particles.mass: shardlow moves particles of mass 1 only"),
+    FAULT("masses of pairs that remember", PARTICLES,
+          "\"particles\": {\"count\": 81, \"mass\": 2}, \"dissipative_transverse\": {\"law\": "
+          "\"power\"}",
+          "input.json: particles.mass: friction that remembers, or acts across pairs"),
     WITH_TABLE("radii twice", PARTICLES,
                "\"particles\": {\"count\": 2, \"radius\": 2, \"placement\": \"file\", "
                "\"file\": \"table.tsv\"}",

@@ -200,6 +200,55 @@ static void test_sweep_follows_the_formula_when_there_are_two_particles(void **s
         }
 }
 
+/// Give the two particles these masses.
+static void give_masses(struct particles *particles, const double mass[2]) {
+    const struct particles_attribute attribute = {.name = "mass", .components = 1};
+    int number;
+    assert_ok(mf_particles_add_attribute(particles, &attribute, &number));
+    for (size_t k = 0; k < 2; k++)
+        ((double *)particles->attribute[number].value[0])[k] = mass[k];
+}
+
+/// du = −ω²/μ u dt + sqrt(2 k_B T) ω/μ dW with 1/μ = 1/m_1 + 1/m_2 has the decay exp(−ω² Δt/μ) and
+/// the variance k_B T/μ (1 − decay²).
+static void check_masses(const double mass[2], double r, double time_step) {
+    struct kept_pairs kept = {.law = kept_pairs_law(NULL, &omega_table, time_step)};
+    make_pair(&kept, r);
+    give_masses(&kept.particles, mass);
+    kept_pairs_use(&kept, &mf_aboba);
+    struct particles *particles = &kept.particles;
+    const double inverse = 1 / mass[0] + 1 / mass[1], omega = sqrt(4.5) * (1 - r);
+    const double decay = exp(-omega * omega * time_step * inverse);
+    const double kick = sqrt(kept.law.temperature * inverse * (1 - decay * decay));
+    const double size = 2 * fmax(1, inverse);
+    for (uint64_t step = 7; step < 27; step++) {
+        mf_particles_draw_velocities(particles, PARTICLES_MAXWELL, 1, step);
+        const double u = relative(particles);
+        double before = 0, after = 0;
+        for (size_t k = 0; k < 2; k++)
+            before += mass[k] * particles->velocity[0][k];
+        kept_pairs_keep(&kept, step);
+        mf_friction_weigh(&kept.friction, particles);
+        mf_friction_sweep(&kept.friction, particles, NULL);
+        for (size_t k = 0; k < 2; k++)
+            after += mass[k] * particles->velocity[0][k];
+        assert_close(relative(particles), decay * u + kick * noise(&kept, step),
+                     size * factor_tolerance * (fabs(u) + size));
+        assert_close(after, before, 1e-12 * (mass[0] + mass[1]) * size);
+    }
+    kept_pairs_clear(&kept);
+}
+
+static void test_sweep_follows_the_formula_when_masses_differ(void **state) {
+    (void)state;
+    static const double masses[][2] = {{1, 1}, {3, 3}, {0.5, 8}, {20, 0.2}};
+    static const double r[] = {0.003, 0.31, 0.8, 0.9995}, time_steps[] = {1e-4, 0.04, 1};
+    for (int m = 0; m < 4; m++)
+        for (int n = 0; n < 4; n++)
+            for (int t = 0; t < 3; t++)
+                check_masses(masses[m], r[n], time_steps[t]);
+}
+
 /// Moments of u after one step from the same u, over many steps' noise. Those of a normal number z:
 /// z² has a variance of 2, z⁴ a mean of 3 and a variance of 96. A uniform one has 1.8 for the 3.
 static void test_exact_friction_leaves_a_normal_number_when_drawn_often(void **state) {
@@ -332,6 +381,7 @@ int main(void) {
         cmocka_unit_test(test_kept_pairs_add_up_to_friction_and_noise_when_they_are_forces),
         cmocka_unit_test(test_kept_pairs_add_up_to_friction_and_noise_when_types_differ),
         cmocka_unit_test(test_sweep_follows_the_formula_when_there_are_two_particles),
+        cmocka_unit_test(test_sweep_follows_the_formula_when_masses_differ),
         cmocka_unit_test(test_exact_friction_leaves_a_normal_number_when_drawn_often),
         cmocka_unit_test(test_factors_keep_the_temperature_when_the_time_step_is_anything),
         cmocka_unit_test(test_kick_balances_the_damping_when_friction_jumps),
