@@ -67,7 +67,7 @@ double mf_hybrid_step_squared_frequency(enum topology_order order, double varian
     return joints * temperature / variance;
 }
 
-static double fastest_of_molecules(const struct molecules *molecules, double temperature) {
+double mf_hybrid_step_fastest(const struct molecules *molecules, double temperature) {
     double length = INFINITY, fastest = 0;
     for (int g = 0; g < molecules->groups[TOPOLOGY_BOND]; g++)
         length =
@@ -94,7 +94,7 @@ struct hybrid_step mf_hybrid_step_find(const struct table *potential,
     }
     if (molecules == NULL)
         return step;
-    const double fast = share / sqrt(fastest_of_molecules(molecules, temperature));
+    const double fast = share / sqrt(mf_hybrid_step_fastest(molecules, temperature));
     step.inner = (int64_t)fmax(1, fmin(MOST, ceil(step.first / fast)));
     step.first = fmin(step.first, (double)step.inner * fast);
     return step;

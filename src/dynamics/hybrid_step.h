@@ -21,6 +21,9 @@ double mf_hybrid_step_variance(const struct bonded_curve *curve, enum topology_o
 double mf_hybrid_step_squared_frequency(enum topology_order order, double variance, double length,
                                         double temperature);
 
+/// ω² of the fastest group of molecules of mass 1 [1/τ²].
+double mf_hybrid_step_fastest(const struct molecules *molecules, double temperature);
+
 /// By the fastest pairs and the fastest terms of molecules of mass 1. Either may be NULL. Tested:
 /// test_hybrid.
 struct hybrid_step mf_hybrid_step_find(const struct table *potential,

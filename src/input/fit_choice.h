@@ -51,7 +51,8 @@ enum status mf_fit_choice_give_omega(const struct fit_choice *choice, const char
                                      double sigma, double cutoff) MUST_USE;
 enum status mf_fit_choice_give_empty(const struct json_object *root, const char *path) MUST_USE;
 
-/// The time step that bonds, angles and dihedrals ask for by their targets [τ]; infinite without.
+/// The time step that bonds, angles and dihedrals ask for by their targets and the integrator [τ];
+/// infinite without.
 double mf_fit_defaults_stiff_step(const struct fit_choice *choice);
 
 /// The choices of the method and of the verification (input/fit_defaults_method.c).

@@ -238,13 +238,10 @@ static enum status choose_omega(struct fit_choice *c) {
 
 /// It holds the temperature against what the integrator heats, and leaves g(r) as it is.
 static enum status choose_friction(struct fit_choice *c) {
-    const struct simulation_setup *setup = &c->read->scene.setup;
     if (c->finds[UNKNOWN_OMEGA] || !mf_fit_choice_lacks(c->root, "scene", "dissipative") ||
         !mf_fit_choice_lacks(c->root, "scene", "dynamics") ||
         !mf_fit_choice_lacks(c->root, "scene", "memory"))
         return STATUS_OK;
-    if (!attributes_are(&setup->attribute[ATTRIBUTES_MASS], 1))
-        TRY(mf_fit_choice_give_text(c->root, "scene.dynamics", "integrator", "dpd-verlet"));
     const double cutoff = c->scales.shell, sigma = moderate_friction(c, cutoff);
     const double time = c->mass / (mf_fit_scales_friction(c->rdf, cutoff) * sigma * sigma);
     char size[FIT_CHOICE_TEXT_SIZE], end[FIT_CHOICE_TEXT_SIZE], memory[FIT_CHOICE_TEXT_SIZE];
