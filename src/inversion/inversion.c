@@ -45,6 +45,7 @@ static void assess_covariance(struct inversion *inversion) {
                 mf_comoments_covariance(counts, grid->known_bin[a], grid->known_bin[b]);
             *c = (1 - share) * *c + share * now;
         }
+    mf_inversion_response_find(inversion);
     mf_inversion_kirkwood_buff_respond(inversion, share);
     inversion->progress.responses = near ? inversion->behind : 0;
 }
@@ -56,7 +57,7 @@ struct imc_system mf_inversion_system(const struct inversion *inversion) {
                                .block = inversion->grid.known_of,
                                .blocks = inversion->grid.blocks,
                                .shape = inversion->shape,
-                               .covariance = inversion->covariance,
+                               .covariance = mf_inversion_response_values(inversion),
                                .excess = inversion->excess,
                                .variance = inversion->variance,
                                .temperature = inversion->problem->scene.temperature,

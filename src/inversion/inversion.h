@@ -21,6 +21,7 @@
 #include "inversion/inversion_drift.h"
 #include "inversion/inversion_kirkwood_buff.h"
 #include "inversion/inversion_pressure.h"
+#include "inversion/inversion_response.h"
 #include "inversion/inversion_rows.h"
 #include "inversion/inversion_trail.h"
 #include "problem/potential_grid.h"
@@ -114,8 +115,9 @@ struct inversion {
     double *excess, *variance;                     ///< of S in the known bins, shape [known]
     double *pooled, *pooled_variance, *pooled_phi; ///< of iterations near the target, see
                                                    ///< mf_inversion_pool
-    double *covariance; ///< C of S in the known bins, shape [known, known]
-    double *doubt;      ///< variances with those of C, of fits with groups
+    double *covariance;                 ///< C of S in the known bins, shape [known, known]
+    struct inversion_response response; ///< of S to the potential, by C
+    double *doubt;                      ///< variances with those of C, of fits with groups
     const struct inversion_joint
         *joint;          ///< of the first of several states, or with integrals; or NULL
     double behind;       ///< samples behind C

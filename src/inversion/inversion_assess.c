@@ -100,6 +100,7 @@ bool mf_inversion_is_near(const struct inversion *inversion) {
 /// The mean excess of the pool, S̄ at the mean potential Φ̄, at the present one: S̄ − C (Φ − Φ̄)/k_B T.
 static void move_pool(struct inversion *inversion) {
     const struct potential_grid *grid = &inversion->grid;
+    const double *response = mf_inversion_response_values(inversion);
     const double temperature = inversion->problem->scene.temperature;
     for (size_t a = 0; a < grid->known; a++)
         inversion->excess[a] = inversion->pooled[a];
@@ -107,7 +108,7 @@ static void move_pool(struct inversion *inversion) {
         const size_t point = grid->known_point[b];
         const double change = (inversion->phi[point] - inversion->pooled_phi[point]) / temperature;
         for (size_t a = 0; a < grid->known; a++)
-            inversion->excess[a] -= inversion->covariance[a * grid->known + b] * change;
+            inversion->excess[a] -= response[a * grid->known + b] * change;
     }
 }
 
