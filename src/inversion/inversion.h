@@ -260,11 +260,12 @@ void mf_inversion_reason_tell(const struct inversion *inversion, char reason[INV
 void mf_inversion_assess(struct inversion *inversion);
 
 /// Near the target, replace the excess and its variance by those of all iterations since it was
-/// reached: what the earlier ones saw, moved to the present potential by C. A step from the present
-/// samples alone carries their noise into the next potential, so that its error is sqrt(2) times
-/// the noise, iteration after iteration; Kushner and Yin, Stochastic Approximation (2003),
-/// section 1.1. Present samples weigh a third at least, for what C does not tell. Not of a method
-/// that goes by a gradient. Tested: test_inversion_keeps.
+/// reached: what the earlier ones saw, moved to the present potential by the newest response, which
+/// is the best known: each moved by that of its time took for gone what a noisy C had promised. A
+/// step from the present samples alone carries their noise into the next potential, so that its
+/// error is sqrt(2) times the noise, iteration after iteration; Kushner and Yin, Stochastic
+/// Approximation (2003), section 1.1. Present samples weigh a third at least, for what C does not
+/// tell. Not of a method that goes by a gradient. Tested: test_inversion_keeps.
 void mf_inversion_pool(struct inversion *inversion);
 
 /// Whether g, and p of all groups, are so near to their targets, by their noise, that C hardly
