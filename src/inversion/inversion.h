@@ -278,7 +278,8 @@ bool mf_inversion_is_near(const struct inversion *inversion);
 /// each step goes a part of it, and an iteration that finds it over by chance would end there, and
 /// take the same chance into the last step: the pressures of 16 twins were 0.6 errors too low.
 /// Targets that cannot be met so well, since their errors are too small, must only agree for long,
-/// four times. Tested: test_inversion_converged.
+/// four times. Iterations
+/// that are not kept do not count. Tested: test_inversion_converged.
 bool mf_inversion_has_converged(struct inversion *inversion, bool kept);
 
 /// Whether the ramp of the potential grows without end; never with a pressure, which holds it.

@@ -12,8 +12,8 @@ static const double settled_way = 0.5;
 /// χ² by bin of what agrees but for noise.
 static const double probable_misfit = 2;
 
-/// Iterations running that must agree: where some bins hide others, and where C is that of few
-/// samples, so that a step goes a part of its way.
+/// Iterations running, of those that are kept, that must agree: where some bins hide others, and
+/// where C is that of few samples, so that a step goes a part of its way.
 enum { LONG_AGREEMENT = 4, AGREEMENT_WITH_GROUPS = 2 };
 
 /// Whether the present potential meets all targets as far as their noise lets see; of few
@@ -56,7 +56,9 @@ static bool hides(const struct inversion *inversion) {
 bool mf_inversion_has_converged(struct inversion *inversion, bool kept) {
     uint32_t *agreed = &inversion->progress.agreed;
     const bool settles = must_settle(inversion);
-    const bool agrees = kept && inversion->progress.best_precise && meets_targets(inversion) &&
+    if (!kept) // it goes back to the one before
+        return false;
+    const bool agrees = inversion->progress.best_precise && meets_targets(inversion) &&
                         (!settles || has_settled(inversion));
     *agreed = agrees ? *agreed + 1 : 0;
     return *agreed >= (hides(inversion)                        ? LONG_AGREEMENT

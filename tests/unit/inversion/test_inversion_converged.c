@@ -45,6 +45,7 @@ static void test_fit_with_groups_ends_when_it_has_settled_twice_running(void **s
     assert_false(mf_inversion_has_converged(&inversion, true));
     inversion.band.ramp.way = 0.04;
     assert_false(mf_inversion_has_converged(&inversion, true));
+    assert_false(mf_inversion_has_converged(&inversion, false)); // back to the one before
     assert_true(mf_inversion_has_converged(&inversion, true));
 }
 
