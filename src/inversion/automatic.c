@@ -24,6 +24,7 @@ static const char *const columns[] = {INVERSION_COLUMNS, "newton", "misfit[1]", 
 /// noise, but for the noise of both.
 static bool predicts(const struct inversion *inversion) {
     const struct potential_grid *grid = &inversion->grid;
+    const double *response = mf_inversion_response_values(inversion);
     double miss = 0, change = 0;
     for (size_t a = 0; a < grid->known; a++) {
         const size_t bin = grid->known_bin[a];
@@ -31,7 +32,7 @@ static bool predicts(const struct inversion *inversion) {
         double predicted = 0;
         for (size_t b = 0; b < grid->known; b++) {
             const size_t point = grid->known_point[b];
-            predicted -= inversion->covariance[a * grid->known + b] *
+            predicted -= response[a * grid->known + b] *
                          (inversion->phi[point] - inversion->best[point]) /
                          inversion->problem->scene.temperature;
         }

@@ -15,14 +15,6 @@ static const double near_miss = 2;
 /// Samples of an iteration double at most so often.
 enum { MOST_DOUBLINGS = 7 };
 
-/// The way that is left of the ramp, and of the pressure, in their errors, at which both have
-/// settled.
-static const double settled_way = 0.5;
-
-/// χ² by bin of what agrees but for noise, and the iterations running that are long.
-static const double probable_misfit = 2;
-enum { LONG_AGREEMENT = 4 };
-
 /// Replicas that are placed anew are equilibrated so many times as long.
 enum { ANEW_EQUILIBRATION = 5 };
 
@@ -45,6 +37,7 @@ static void assess_covariance(struct inversion *inversion) {
                 mf_comoments_covariance(counts, grid->known_bin[a], grid->known_bin[b]);
             *c = (1 - share) * *c + share * now;
         }
+    mf_inversion_response_find(inversion);
     mf_inversion_kirkwood_buff_respond(inversion, share);
     inversion->progress.responses = near ? inversion->behind : 0;
 }
@@ -56,7 +49,7 @@ struct imc_system mf_inversion_system(const struct inversion *inversion) {
                                .block = inversion->grid.known_of,
                                .blocks = inversion->grid.blocks,
                                .shape = inversion->shape,
-                               .covariance = inversion->covariance,
+                               .covariance = mf_inversion_response_values(inversion),
                                .excess = inversion->excess,
                                .variance = inversion->variance,
                                .temperature = inversion->problem->scene.temperature,
@@ -235,49 +228,9 @@ static enum status go_on(struct inversion *inversion, bool kept) {
     return mf_inversion_start_again(inversion);
 }
 
-/// Whether the present potential meets all targets as far as their noise lets see; of few
-/// coefficients, whether no change of these makes it better.
-static bool meets_targets(const struct inversion *inversion) {
-    if (goes_by_gradient(inversion))
-        return inversion->basis.miss <= mf_inverse_noise_margin;
-    for (int kind = 0; kind < TARGETS; kind++)
-        if (targets_ask(&inversion->problem->targets, kind) &&
-            inversion->distance[kind].rms >
-                mf_inverse_noise_margin * inversion->distance[kind].noise)
-            return false;
-    // Each group, too: of several, a stiff one would hide what a soft one misses.
-    for (int k = 0; k < inversion->sections; k++)
-        if (inversion->section[k].rms > mf_inverse_noise_margin * inversion->section[k].noise)
-            return false;
-    return true;
-}
-
-/// Whether a method that takes the most probable step has gone all of the way that g hardly sees.
-static bool has_settled(const struct inversion *inversion) {
-    const struct inversion_band *band = &inversion->band;
-    return !inversion->settling || inversion->grid.pairs == 0 ||
-           targets_ask(&inversion->problem->targets, TARGET_PRESSURE) ||
-           (fabs(band->ramp.way) <= settled_way * band->ramp.error &&
-            fabs(band->farthest.way) <= settled_way * band->farthest.open);
-}
-
 bool mf_inversion_runs_away(const struct inversion *inversion) {
     return !targets_ask(&inversion->problem->targets, TARGET_PRESSURE) &&
            mf_inversion_drifts(&inversion->progress.drift, inversion->problem->scene.temperature);
-}
-
-/// Whether this iteration ends the fit. With groups the rms over all bins is that of the noisiest,
-/// behind which others hide: propane's g agreed within 1.6 times its noise when χ² by bin was still
-/// 3.3, and was off by 1.8 times the noise in the verification; the next steps took χ² to 1.2.
-/// Targets that cannot be met so well, since their errors are too small, must only agree for long.
-static bool has_converged(struct inversion *inversion, bool kept) {
-    uint32_t *agreed = &inversion->progress.agreed;
-    const bool hides = inversion->grid.groups > 0 && !goes_by_gradient(inversion) &&
-                       inversion->misfit > probable_misfit;
-    const bool agrees = kept && inversion->progress.best_precise && meets_targets(inversion) &&
-                        has_settled(inversion);
-    *agreed = agrees ? *agreed + 1 : 0;
-    return *agreed >= (hides ? LONG_AGREEMENT : 1);
 }
 
 /// Amplitude A of the present potential's ramp over the well-known bins.
@@ -374,7 +327,7 @@ enum status mf_inversion_advance(struct inversion *inversion, struct inverse_ste
     mf_inversion_drift_add(&progress->drift, find_ramp(inversion),
                            inversion->distance[TARGET_RDF].rms);
     TRY(judge(inversion, &kept));
-    converged = has_converged(inversion, kept);
+    converged = mf_inversion_has_converged(inversion, kept);
     if (converged)
         mf_inversion_take_last_step(inversion);
     describe(inversion, own, converged, step);

@@ -21,6 +21,7 @@
 #include "inversion/inversion_drift.h"
 #include "inversion/inversion_kirkwood_buff.h"
 #include "inversion/inversion_pressure.h"
+#include "inversion/inversion_response.h"
 #include "inversion/inversion_rows.h"
 #include "inversion/inversion_trail.h"
 #include "problem/potential_grid.h"
@@ -114,8 +115,9 @@ struct inversion {
     double *excess, *variance;                     ///< of S in the known bins, shape [known]
     double *pooled, *pooled_variance, *pooled_phi; ///< of iterations near the target, see
                                                    ///< mf_inversion_pool
-    double *covariance; ///< C of S in the known bins, shape [known, known]
-    double *doubt;      ///< variances with those of C, of fits with groups
+    double *covariance;                 ///< C of S in the known bins, shape [known, known]
+    struct inversion_response response; ///< of S to the potential, by C
+    double *doubt;                      ///< variances with those of C, of fits with groups
     const struct inversion_joint
         *joint;          ///< of the first of several states, or with integrals; or NULL
     double behind;       ///< samples behind C
@@ -258,16 +260,27 @@ void mf_inversion_reason_tell(const struct inversion *inversion, char reason[INV
 void mf_inversion_assess(struct inversion *inversion);
 
 /// Near the target, replace the excess and its variance by those of all iterations since it was
-/// reached: what the earlier ones saw, moved to the present potential by C. A step from the present
-/// samples alone carries their noise into the next potential, so that its error is sqrt(2) times
-/// the noise, iteration after iteration; Kushner and Yin, Stochastic Approximation (2003),
-/// section 1.1. Present samples weigh a third at least, for what C does not tell. Not of a method
-/// that goes by a gradient. Tested: test_inversion_keeps.
+/// reached: what the earlier ones saw, moved to the present potential by the newest response, which
+/// is the best known: each moved by that of its time took for gone what a noisy C had promised. A
+/// step from the present samples alone carries their noise into the next potential, so that its
+/// error is sqrt(2) times the noise, iteration after iteration; Kushner and Yin, Stochastic
+/// Approximation (2003), section 1.1. Present samples weigh a third at least, for what C does not
+/// tell. Not of a method that goes by a gradient. Tested: test_inversion_keeps.
 void mf_inversion_pool(struct inversion *inversion);
 
 /// Whether g, and p of all groups, are so near to their targets, by their noise, that C hardly
 /// changes any more.
 bool mf_inversion_is_near(const struct inversion *inversion);
+
+/// Whether this iteration, whose potential was kept or not, ends the fit: its samples are as exact
+/// as was asked for, agree with all targets, and leave no way that g hardly sees. In fits with
+/// groups that must settle two iterations running say so. The way is short from one side, since
+/// each step goes a part of it, and an iteration that finds it over by chance would end there, and
+/// take the same chance into the last step: the pressures of 16 twins were 0.6 errors too low.
+/// Targets that cannot be met so well, since their errors are too small, must only agree for long,
+/// four times. Iterations
+/// that are not kept do not count. Tested: test_inversion_converged.
+bool mf_inversion_has_converged(struct inversion *inversion, bool kept);
 
 /// Whether the ramp of the potential grows without end; never with a pressure, which holds it.
 bool mf_inversion_runs_away(const struct inversion *inversion);

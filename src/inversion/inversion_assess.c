@@ -97,15 +97,18 @@ bool mf_inversion_is_near(const struct inversion *inversion) {
     return true;
 }
 
-/// The pooled excess at the present potential: S − C ΔΦ/k_B T.
+/// The mean excess of the pool, S̄ at the mean potential Φ̄, at the present one: S̄ − C (Φ − Φ̄)/k_B T.
 static void move_pool(struct inversion *inversion) {
     const struct potential_grid *grid = &inversion->grid;
+    const double *response = mf_inversion_response_values(inversion);
     const double temperature = inversion->problem->scene.temperature;
+    for (size_t a = 0; a < grid->known; a++)
+        inversion->excess[a] = inversion->pooled[a];
     for (size_t b = 0; b < grid->known; b++) {
         const size_t point = grid->known_point[b];
         const double change = (inversion->phi[point] - inversion->pooled_phi[point]) / temperature;
         for (size_t a = 0; a < grid->known; a++)
-            inversion->pooled[a] -= inversion->covariance[a * grid->known + b] * change;
+            inversion->excess[a] -= response[a * grid->known + b] * change;
     }
 }
 
@@ -119,16 +122,16 @@ void mf_inversion_pool(struct inversion *inversion) {
         return;
     }
     const double share = fmax(least_share, now / (*pool + now));
-    if (*pool > 0)
-        move_pool(inversion);
     for (size_t a = 0; a < grid->known; a++) {
         const double target = pow(inversion->target_error[grid->known_bin[a]], 2);
         double *excess = &inversion->pooled[a], *sampled = &inversion->pooled_variance[a];
         *excess = (1 - share) * *excess + share * inversion->excess[a];
         *sampled = pow(1 - share, 2) * *sampled + pow(share, 2) * (inversion->variance[a] - target);
-        inversion->excess[a] = *excess;
         inversion->variance[a] = *sampled + target;
     }
-    memcpy(inversion->pooled_phi, inversion->phi, grid->points * sizeof(double));
+    for (size_t k = 0; k < grid->points; k++)
+        inversion->pooled_phi[k] =
+            (1 - share) * inversion->pooled_phi[k] + share * inversion->phi[k];
+    move_pool(inversion);
     *pool = 1 / (pow(1 - share, 2) / fmax(*pool, 1) + share * share / now);
 }

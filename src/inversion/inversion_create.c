@@ -62,6 +62,7 @@ void mf_inversion_destroy(void *memory) {
     mf_inversion_trail_clear(&inversion->trail);
     mf_inversion_kirkwood_buff_clear(&inversion->kirkwood_buff);
     mf_inversion_rows_clear(&inversion->rows);
+    mf_inversion_response_clear(&inversion->response);
     mf_memory_free(inversion->shape);
     mf_memory_free(inversion->groups);
     mf_memory_free(inversion->doubt);
@@ -104,6 +105,7 @@ static enum status allocate(struct inversion *inversion) {
     NEW_ARRAY(inversion->best_other, points);
     NEW_ARRAY(inversion->best_counts, bins);
     CHECK(mf_inversion_band_init(&inversion->band, known, points));
+    CHECK(mf_inversion_response_init(inversion));
     CHECK(mf_inversion_trail_init(&inversion->trail, (size_t)inversion->settings.common.iterations,
                                   bins, inversion->settings.imc.regularisation == 0 ? 0 : known));
 done:

@@ -65,6 +65,7 @@ static enum status smooth(struct inversion *inversion) {
         for (size_t b = 0; b < known; b++)
             inversion->covariance[a * known + b] = a == b ? system.temperature : 0;
     }
+    system.covariance = inversion->covariance;
     system.excess = phi;
     system.variance = variance;
     CHECK(mf_imc_solve(&system, 0, x, &solution));

@@ -6,6 +6,7 @@
 #include "base/memory.h"
 #include "curves/bonded_table.h"
 
+#include <gsl/gsl_spline.h>
 #include <math.h>
 
 const double mf_bonded_grid_seen = 1e-3;
@@ -135,6 +136,50 @@ bool mf_bonded_grid_is_above(const struct bonded_grid *grid, const struct invers
         above = above || target[bin] > part * largest_of(grid, target);
     }
     return above;
+}
+
+/// Mean of a spline from one q to another: either may be beyond the ends of a circle, and where the
+/// points of another curve end, so does the mean.
+static double mean_between(const gsl_spline *spline, double low, double high) {
+    const double first = spline->x[0], last = spline->x[spline->size - 1];
+    const double from = fmax(low, first), to = fmin(high, last), round = last - first;
+    double sum = gsl_spline_eval_integ(spline, from, to, NULL);
+    if (spline->interp->type != gsl_interp_cspline_periodic)
+        return sum / (to - from);
+    if (low < first)
+        sum += gsl_spline_eval_integ(spline, low + round, last, NULL);
+    if (high > last)
+        sum += gsl_spline_eval_integ(spline, first, high - round, NULL);
+    return sum / (high - low);
+}
+
+enum status mf_bonded_grid_means(const struct bonded_grid *grid, double *means) {
+    enum status status = STATUS_OK;
+    const double half = 0.5 * grid->unknown->bins.width;
+    double *q = NULL, *unit = NULL;
+    gsl_spline *spline = gsl_spline_alloc(
+        is_periodic(grid) ? gsl_interp_cspline_periodic : gsl_interp_cspline, grid->points);
+    CHECK(spline ? STATUS_OK : STATUS_NO_MEMORY);
+    NEW_ARRAY(q, grid->points);
+    NEW_ARRAY(unit, grid->points);
+    for (size_t k = 0; k < grid->points; k++)
+        q[k] = mf_bonded_grid_place(grid, k);
+    for (size_t b = 0; b < grid->known; b++) {
+        for (size_t k = 0; k < grid->points; k++)
+            unit[k] = k == grid->below + b;
+        if (is_periodic(grid))
+            unit[grid->known] = unit[0];
+        gsl_spline_init(spline, q, unit, grid->points);
+        for (size_t a = 0; a < grid->known; a++) {
+            const double centre = q[grid->below + a];
+            means[a * grid->known + b] = mean_between(spline, centre - half, centre + half);
+        }
+    }
+done:
+    mf_memory_free(q);
+    mf_memory_free(unit);
+    gsl_spline_free(spline);
+    return status;
 }
 
 double mf_bonded_grid_mean(const struct bonded_grid *grid) {

@@ -49,5 +49,10 @@ enum status mf_bonded_grid_curve(const struct bonded_grid *grid, const double *e
 bool mf_bonded_grid_is_above(const struct bonded_grid *grid, const struct inverse_problem *problem,
                              size_t bin, double part);
 
+/// What a unit at one of the known points makes of U, whose curve is a spline through all points,
+/// in the mean over a known bin: M_ab of bin a and point b, shape [known, known]. Σ_b M_ab is 1
+/// but at the ends. Fails: NO_MEMORY. Tested: test_bonded_grid.
+enum status mf_bonded_grid_means(const struct bonded_grid *grid, double *means) MUST_USE;
+
 /// Mean of p over the known bins.
 double mf_bonded_grid_mean(const struct bonded_grid *grid);

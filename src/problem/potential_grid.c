@@ -7,6 +7,9 @@
 
 #include <math.h>
 
+/// A g above this is well known.
+static const double well = 0.1;
+
 /// g of a bin, of several states the largest: what one of them tells is known.
 static double most_pairs(const struct inverse_problem *problem, size_t bin) {
     double most = problem->targets.target[TARGET_RDF].value[bin];
@@ -15,12 +18,26 @@ static double most_pairs(const struct inverse_problem *problem, size_t bin) {
     return most;
 }
 
+/// The first bin from `k` on of a pair type with a g above this, or their number.
+static size_t first_above(const struct inverse_problem *problem, size_t pair, size_t k,
+                          double threshold) {
+    const size_t bins = problem->targets.bins.count;
+    while (k < bins && most_pairs(problem, pair * bins + k) <= threshold)
+        k++;
+    return k;
+}
+
+/// The core goes on to the last empty bin before g is well known. Of a pair that a target has seen
+/// further inside by chance the fit would make a hole, by 10 k_B T, in which beads stick together.
 static enum status find_core(struct potential_grid *grid, const struct inverse_problem *problem,
                              size_t pair) {
+    const double empty = problem->core_threshold;
     size_t *core = &grid->core[pair];
-    while (*core < grid->bins &&
-           most_pairs(problem, pair * grid->bins + *core) <= problem->core_threshold)
-        (*core)++;
+    *core = first_above(problem, pair, 0, empty);
+    const size_t end = first_above(problem, pair, *core, fmax(well, empty));
+    for (size_t k = *core; end < grid->bins && k < end; k++)
+        if (most_pairs(problem, pair * grid->bins + k) <= empty)
+            *core = k + 1;
     if (*core + 3 > grid->bins) {
         char name[COMPOSITION_PAIR_NAME_SIZE];
         mf_composition_pair_name(&problem->scene.composition, (int)pair, name);
@@ -44,7 +61,6 @@ static size_t first_seen(const struct potential_grid *grid, const struct inverse
 
 /// Where the known bins are.
 static void index_known(struct potential_grid *grid, const struct inverse_problem *problem) {
-    static const double well = 0.1;
     size_t n = 0;
     for (size_t pair = 0; pair < grid->pairs; pair++) {
         const size_t seen = first_seen(grid, problem, pair);

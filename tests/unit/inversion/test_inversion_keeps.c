@@ -74,6 +74,50 @@ static void test_inversion_keeps_by_all_targets_since_its_start(void **state) {
     assert_false(keeps(&inversion, 0.6, 0.01));
 }
 
+/// An inversion of one bin near its target, with 50 samples.
+struct one_bin {
+    size_t bin, point;
+    double target_error, covariance, excess, variance, pooled, pooled_variance, phi, pooled_phi;
+    struct inverse_problem problem;
+    struct inversion inversion;
+};
+
+static void make_one_bin(struct one_bin *one, double response) {
+    *one = (struct one_bin){.covariance = response, .problem.scene.temperature = 1};
+    one->inversion = (struct inversion){
+        .problem = &one->problem,
+        .grid = {.known = 1, .points = 1, .known_bin = &one->bin, .known_point = &one->point},
+        .sections = 1,
+        .section[0] = {.rms = 1, .noise = 1},
+        .target_error = &one->target_error,
+        .covariance = &one->covariance,
+        .excess = &one->excess,
+        .variance = &one->variance,
+        .pooled = &one->pooled,
+        .pooled_variance = &one->pooled_variance,
+        .phi = &one->phi,
+        .pooled_phi = &one->pooled_phi,
+        .replicas.counts.count = 50};
+}
+
+/// S = S* − 4 (Φ − 2)/k_B T without noise, of which two iterations tell a response twice as large:
+/// what the third one knows better holds for all.
+static void test_inversion_pool_is_moved_by_the_newest_response(void **state) {
+    (void)state;
+    static const double phi[] = {0, 1, 1.5}, response[] = {8, 8, 4};
+    struct one_bin one;
+    make_one_bin(&one, 0);
+    for (int n = 0; n < 3; n++) {
+        one.phi = phi[n];
+        one.covariance = response[n];
+        one.excess = -4 * (one.phi - 2);
+        one.variance = 1;
+        mf_inversion_pool(&one.inversion);
+    }
+    assert_close(one.excess, 2, 1e-12);
+    assert_close(one.variance, 1.0 / 3, 1e-12);
+}
+
 /// One bin that responds as C says, S = S* − C Φ/k_B T + noise of unit variance, and full Newton
 /// steps x = k_B T excess/C. Of such steps, of which each goes w of the way of its noise, the
 /// variance of what is left is w/(2 − w) of that of one sample (an autoregressive process, G. E. P.
@@ -84,42 +128,29 @@ static void test_inversion_pool_steps_with_a_fifth_of_the_noise(void **state) {
     (void)state;
     enum { STEPS = 30000, FIRST = 100 };
     static const double response = 4;
-    size_t known_bin[] = {0}, known_point[] = {0};
-    double target_error[] = {0}, covariance[] = {response}, excess[1], variance[1], pooled[1];
-    double pooled_variance[1], phi[] = {0}, pooled_phi[1], sum = 0, worth;
-    struct inverse_problem problem = {.scene.temperature = 1};
-    struct inversion inversion = {
-        .problem = &problem,
-        .grid = {.known = 1, .points = 1, .known_bin = known_bin, .known_point = known_point},
-        .sections = 1,
-        .section[0] = {.rms = 1, .noise = 1},
-        .target_error = target_error,
-        .covariance = covariance,
-        .excess = excess,
-        .variance = variance,
-        .pooled = pooled,
-        .pooled_variance = pooled_variance,
-        .phi = phi,
-        .pooled_phi = pooled_phi,
-        .replicas.counts.count = 50};
+    struct one_bin one;
+    struct inversion *inversion = &one.inversion;
+    double sum = 0;
+    make_one_bin(&one, response);
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
     for (int n = 0; n < STEPS; n++) {
-        excess[0] = -response * phi[0] + gsl_ran_gaussian(rng, 1);
-        variance[0] = 1;
-        mf_inversion_pool(&inversion);
+        one.excess = -response * one.phi + gsl_ran_gaussian(rng, 1);
+        one.variance = 1;
+        mf_inversion_pool(inversion);
         if (n >= FIRST)
-            sum += pow(response * phi[0], 2) / (STEPS - FIRST);
-        phi[0] += excess[0] / response;
+            sum += pow(response * one.phi, 2) / (STEPS - FIRST);
+        one.phi += one.excess / response;
     }
-    worth = inversion.progress.pool / inversion.replicas.counts.count;
-    print_message("variance left %.4f, stated %.4f, worth %.3f samples\n", sum, variance[0], worth);
+    const double worth = inversion->progress.pool / inversion->replicas.counts.count;
+    print_message("variance left %.4f, stated %.4f, worth %.3f samples\n", sum, one.variance,
+                  worth);
     assert_close(sum, 0.2, 0.02);
-    assert_close(variance[0], 0.2, 1e-6);
+    assert_close(one.variance, 0.2, 1e-6);
     assert_close(worth, 5, 1e-6);
     // What is far off begins anew.
-    inversion.section[0].rms = 3.1;
-    mf_inversion_pool(&inversion);
-    assert_true(inversion.progress.pool == 0);
+    inversion->section[0].rms = 3.1;
+    mf_inversion_pool(inversion);
+    assert_true(inversion->progress.pool == 0);
     gsl_rng_free(rng);
 }
 
@@ -154,6 +185,7 @@ int main(void) {
         cmocka_unit_test(test_inversion_keeps_no_slow_divergence),
         cmocka_unit_test(test_inversion_keeps_by_all_targets_since_its_start),
         cmocka_unit_test(test_inversion_pool_steps_with_a_fifth_of_the_noise),
+        cmocka_unit_test(test_inversion_pool_is_moved_by_the_newest_response),
         cmocka_unit_test(test_inversion_ends_with_the_step_that_is_left_when_it_settles),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -163,6 +163,60 @@ static void test_bonded_grid_closes_the_circle(void **state) {
     clear_twin(&twin);
 }
 
+/// The mean of a curve over a bin, by its energies at many places; it is straight beyond its ends.
+static double mean_over(const struct bonded_grid *grid, const double *values, double unit,
+                        size_t bin) {
+    enum { PLACES = 200 };
+    struct bonded_curve curve = {0};
+    const double centre = mf_bonded_grid_place(grid, grid->below + bin);
+    const double first = mf_bonded_grid_place(grid, 0),
+                 last = mf_bonded_grid_place(grid, grid->points - 1);
+    double sum = 0, count = 0;
+    assert_ok(mf_bonded_grid_curve(grid, values, &curve));
+    for (int k = 0; k < PLACES; k++) {
+        const double q = centre + grid->unknown->bins.width * ((k + 0.5) / PLACES - 0.5);
+        double energy;
+        mf_bonded_value(&curve, unit * q, &energy, NULL);
+        const bool inside = (q >= first && q <= last) || grid->unknown->order == TOPOLOGY_DIHEDRAL;
+        sum += inside ? energy : 0;
+        count += inside;
+    }
+    mf_bonded_clear(&curve);
+    return sum / count;
+}
+
+/// Of the points at an end, beside it and in the middle, against the curve that the engine reads.
+static void assert_means(enum topology_order order, struct bonded_bins bins, double unit,
+                         double (*energy)(double)) {
+    enum { MOST = 60 };
+    static struct twin twin;
+    struct bonded_grid grid;
+    double values[POINTS], means[MOST * MOST];
+    make_twin(&twin, order, bins, energy);
+    assert_ok(mf_bonded_grid_init(&grid, &twin.problem, &twin.problem.group[0]));
+    assert_true(grid.known <= MOST);
+    assert_ok(mf_bonded_grid_means(&grid, means));
+    const size_t points[] = {0, 1, grid.known / 2, grid.known - 1};
+    for (size_t n = 0; n < sizeof points / sizeof *points; n++) {
+        for (size_t k = 0; k < grid.points; k++)
+            values[k] = k == grid.below + points[n];
+        if (order == TOPOLOGY_DIHEDRAL)
+            values[grid.known] = values[0];
+        for (size_t a = 0; a < grid.known; a++)
+            assert_close(means[a * grid.known + points[n]], mean_over(&grid, values, unit, a),
+                         2e-4);
+    }
+    clear_twin(&twin);
+}
+
+static void test_bonded_grid_means_are_those_of_the_curve(void **state) {
+    (void)state;
+    assert_means(TOPOLOGY_BOND, (struct bonded_bins){0.6, 0.01, 40}, 1, bond_energy);
+    assert_means(TOPOLOGY_ANGLE, (struct bonded_bins){0, 4, 45}, M_PI / 180, angle_energy);
+    assert_means(TOPOLOGY_DIHEDRAL, (struct bonded_bins){-180, 10, 36}, M_PI / 180,
+                 dihedral_energy);
+}
+
 static void test_bonded_grid_refuses_what_tells_nothing(void **state) {
     (void)state;
     static struct twin twin;
@@ -247,6 +301,7 @@ int main(void) {
         cmocka_unit_test(test_bonded_grid_holds_what_leaves_the_target),
         cmocka_unit_test(test_bonded_grid_lets_an_angle_be_straight),
         cmocka_unit_test(test_bonded_grid_closes_the_circle),
+        cmocka_unit_test(test_bonded_grid_means_are_those_of_the_curve),
         cmocka_unit_test(test_bonded_grid_refuses_what_tells_nothing),
         cmocka_unit_test(test_potential_grid_has_groups_behind_the_pairs),
         cmocka_unit_test(test_bins_of_two_states_are_those_of_both),

@@ -46,6 +46,34 @@ static void test_potential_grid_has_three_parts_when_the_target_has_a_core(void 
     mf_potential_grid_clear(&grid);
 }
 
+/// Pairs that were seen inside by chance, with an empty bin between them and the others, do not end
+/// the core; nor does a hole beyond what is well known begin it anew.
+static void test_potential_grid_takes_stray_pairs_for_the_core(void **state) {
+    (void)state;
+    double target[BINS];
+    struct potential_grid grid;
+    make_target(target);
+    target[CORE - 4] = 0.002;
+    target[CORE - 3] = 0.09;
+    target[CORE - 1] = 0.05;
+    target[20] = 0;
+    struct inverse_problem problem = make_problem(target);
+    assert_ok(mf_potential_grid_init(&grid, &problem));
+    assert_int_equal(grid.core[0], CORE - 1);
+    mf_potential_grid_clear(&grid);
+    // A well-known g is no chance.
+    target[CORE - 3] = 0.11;
+    assert_ok(mf_potential_grid_init(&grid, &problem));
+    assert_int_equal(grid.core[0], CORE - 4);
+    mf_potential_grid_clear(&grid);
+    // Nor is it if nothing is well known.
+    for (int k = 0; k < BINS; k++)
+        target[k] = k == 0 || k == 8 ? 0.01 : 0;
+    assert_ok(mf_potential_grid_init(&grid, &problem));
+    assert_int_equal(grid.core[0], 0);
+    mf_potential_grid_clear(&grid);
+}
+
 /// Two states: the second one has pairs two bins nearer to each other.
 static void test_potential_grid_of_states_knows_which_one_saw_a_bin(void **state) {
     (void)state;
@@ -231,6 +259,7 @@ static void test_potential_grid_virials_are_those_of_a_changed_table(void **stat
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_potential_grid_has_three_parts_when_the_target_has_a_core),
+        cmocka_unit_test(test_potential_grid_takes_stray_pairs_for_the_core),
         cmocka_unit_test(test_potential_grid_of_states_knows_which_one_saw_a_bin),
         cmocka_unit_test(test_potential_grid_has_no_core_when_the_target_begins_at_once),
         cmocka_unit_test(test_potential_grid_refuses_when_the_target_is_empty),

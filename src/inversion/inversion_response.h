@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file How S responds to the values at the points of a potential.
+///
+/// U of a group is a cubic spline through its points. A value there acts upon the bins beside its
+/// own, and where values alternate, the mean of U over a bin is as low as 0.64 of them. So a p with
+/// noise of its own in each bin asks for a U with 1.22 times the noise of −k_B T ln p: with a U
+/// that is constant in each bin, errors of bonds and angles were stated too small by so much.
+/// Φ of pairs, which their prior keeps smooth, counts as constant in a bin.
+#pragma once
+
+#include "base/status.h"
+
+#include <stddef.h>
+
+struct inversion;
+
+/// −k_B T ∂⟨S_a⟩/∂Φ_b = Σ_c C_ac M_cb, shape [known, known]: C is that of the samples, and M_cb
+/// the mean over bin c of what a unit at point b makes of the curve. Without groups this is C.
+struct inversion_response {
+    double *means;  ///< M of each group, one behind the other; NULL without groups
+    double *values; ///< shape [known, known]
+};
+
+/// Fails: NO_MEMORY.
+enum status mf_inversion_response_init(struct inversion *inversion) MUST_USE;
+void mf_inversion_response_clear(struct inversion_response *response);
+
+/// Fill the response from the present C. Tested: test_inversion_response.
+void mf_inversion_response_find(struct inversion *inversion);
+
+/// The response, C itself without groups.
+const double *mf_inversion_response_values(const struct inversion *inversion);

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// When a fit has come to its end.
+#include "inversion/inversion.h"
+
+#include "shared/testing.h"
+
+/// A fit of pairs, and perhaps of groups, that agrees with its targets and has settled.
+static struct inversion make_end(const struct inverse_problem *problem, size_t groups) {
+    return (struct inversion){
+        .problem = problem,
+        .grid = {.pairs = 1, .groups = groups},
+        .sections = 1,
+        .section[0] = {.rms = 1.5, .noise = 1},
+        .misfit = 1.5,
+        .settling = true,
+        .band = {.ramp = {.way = -0.04, .error = 0.1}, .farthest = {.way = 0.4, .open = 1}},
+        .progress.best_precise = true};
+}
+
+static void test_fit_of_pairs_ends_when_it_agrees_once(void **state) {
+    (void)state;
+    const struct inverse_problem problem = {0};
+    struct inversion inversion = make_end(&problem, 0);
+    inversion.section[0].rms = 1.8;
+    assert_false(mf_inversion_has_converged(&inversion, true));
+    inversion.section[0].rms = 1.5;
+    assert_false(mf_inversion_has_converged(&inversion, false));
+    inversion.band.ramp.way = -0.06;
+    assert_false(mf_inversion_has_converged(&inversion, true));
+    inversion.band.ramp.way = -0.04;
+    inversion.band.farthest.way = 0.6;
+    assert_false(mf_inversion_has_converged(&inversion, true));
+    inversion.band.farthest.way = 0.4;
+    assert_true(mf_inversion_has_converged(&inversion, true));
+}
+
+/// What has settled once, by chance or not, must be found so again; what is between begins anew.
+static void test_fit_with_groups_ends_when_it_has_settled_twice_running(void **state) {
+    (void)state;
+    const struct inverse_problem problem = {0};
+    struct inversion inversion = make_end(&problem, 1);
+    assert_false(mf_inversion_has_converged(&inversion, true));
+    inversion.band.ramp.way = -0.06;
+    assert_false(mf_inversion_has_converged(&inversion, true));
+    inversion.band.ramp.way = 0.04;
+    assert_false(mf_inversion_has_converged(&inversion, true));
+    assert_false(mf_inversion_has_converged(&inversion, false)); // back to the one before
+    assert_true(mf_inversion_has_converged(&inversion, true));
+}
+
+/// A pressure among the targets holds what g hardly sees, and groups alone have no ramp.
+static void test_fit_with_groups_ends_at_once_where_nothing_must_settle(void **state) {
+    (void)state;
+    struct inverse_problem problem = {0};
+    struct inversion inversion = make_end(&problem, 1);
+    inversion.grid.pairs = 0;
+    inversion.band.ramp.way = 1;
+    assert_true(mf_inversion_has_converged(&inversion, true));
+    inversion = make_end(&problem, 1);
+    problem.targets.target[TARGET_PRESSURE].count = 1;
+    inversion.band.ramp.way = 1;
+    assert_true(mf_inversion_has_converged(&inversion, true));
+}
+
+/// χ² by bin above 2: some bins are off, and the noise of the others hides them.
+static void test_fit_with_groups_ends_after_four_agreements_where_noise_hides_bins(void **state) {
+    (void)state;
+    const struct inverse_problem problem = {0};
+    struct inversion inversion = make_end(&problem, 1);
+    inversion.misfit = 2.1;
+    for (int n = 0; n < 3; n++)
+        assert_false(mf_inversion_has_converged(&inversion, true));
+    assert_true(mf_inversion_has_converged(&inversion, true));
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_fit_of_pairs_ends_when_it_agrees_once),
+        cmocka_unit_test(test_fit_with_groups_ends_when_it_has_settled_twice_running),
+        cmocka_unit_test(test_fit_with_groups_ends_at_once_where_nothing_must_settle),
+        cmocka_unit_test(test_fit_with_groups_ends_after_four_agreements_where_noise_hides_bins),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// How a distribution follows the values of U, against bonds that nothing else acts upon: their p is
+// r² exp(−U/k_B T), by quadrature.
+#include "inversion/inversion.h"
+
+#include "curves/bonded_law.h"
+#include "shared/is_close.h"
+#include "shared/molecules.h"
+#include "shared/testing.h"
+
+#include <math.h>
+
+enum { BINS = 24, POINTS = 3 * BINS };
+
+static const double temperature = 1.5, terms = 50;
+static const struct bonded_bins bins = {0.6, 0.4 / BINS, BINS};
+static const int types[2] = {0};
+
+struct twin {
+    struct molecules molecules;
+    struct inverse_problem problem;
+    struct potential_group group;
+    struct inversion inversion;
+    double target[BINS], error[BINS], covariance[BINS * BINS];
+};
+
+/// S of `terms` bonds with this completed U, in the known bins.
+static void count_bonds(const struct bonded_grid *grid, const double *values, double *counts) {
+    enum { PLACES = 100 };
+    struct bonded_curve curve = {0};
+    double sum = 0;
+    assert_ok(mf_bonded_grid_curve(grid, values, &curve));
+    for (size_t a = 0; a < grid->known; a++) {
+        const double centre = mf_bonded_grid_place(grid, grid->below + a);
+        counts[a] = 0;
+        for (int k = 0; k < PLACES; k++) {
+            const double r = centre + bins.width * ((k + 0.5) / PLACES - 0.5);
+            double energy;
+            mf_bonded_value(&curve, r, &energy, NULL);
+            counts[a] += r * r * exp(-energy / temperature);
+        }
+        sum += counts[a];
+    }
+    for (size_t a = 0; a < grid->known; a++)
+        counts[a] *= terms / sum;
+    mf_bonded_clear(&curve);
+}
+
+/// A fit of bonds alone, whose U is a parabola, with the C of independent bonds.
+static void make_twin(struct twin *twin, double *values, double *counts) {
+    *twin = (struct twin){.problem = {.scene = {.temperature = temperature,
+                                                .box = {.dimensions = 3, .length = {9, 9, 9}}}}};
+    const struct composition composition =
+        molecules_topology(&twin->molecules.topology, molecules_chain(20, types, 2, 1, 0),
+                           (struct topology_kind){0}, 1, NULL);
+    molecules_add_group(&twin->molecules, TOPOLOGY_BOND, &mf_bond_harmonic, NULL);
+    molecules_enter(&twin->problem.scene, &twin->molecules, &composition);
+    for (size_t k = 0; k < BINS; k++)
+        twin->target[k] = 1;
+    twin->problem.group[0] = (struct bonded_unknown){TOPOLOGY_BOND, 0, bins, 0, {0}};
+    twin->problem.targets.target[mf_bonded_distribution_kind(TOPOLOGY_BOND)] =
+        (struct target){.count = BINS, .value = twin->target, .error = twin->error};
+    struct bonded_grid *grid = &twin->group.own;
+    assert_ok(mf_bonded_grid_init(grid, &twin->problem, &twin->problem.group[0]));
+    assert_true(grid->known == BINS && grid->points <= POINTS);
+    for (size_t k = 0; k < grid->points; k++)
+        values[k] = 75 * pow(mf_bonded_grid_place(grid, k) - 0.8, 2);
+    count_bonds(grid, values, counts);
+    for (size_t a = 0; a < BINS; a++)
+        for (size_t b = 0; b < BINS; b++)
+            twin->covariance[a * BINS + b] =
+                (a == b ? counts[a] : 0) - counts[a] * counts[b] / terms;
+    twin->inversion =
+        (struct inversion){.problem = &twin->problem,
+                           .covariance = twin->covariance,
+                           .grid = {.groups = 1, .known = BINS, .group = &twin->group}};
+    assert_ok(mf_inversion_response_init(&twin->inversion));
+    mf_inversion_response_find(&twin->inversion);
+}
+
+static void clear_twin(struct twin *twin) {
+    mf_inversion_response_clear(&twin->inversion.response);
+    mf_molecules_clear(&twin->molecules);
+}
+
+/// rms over the bins of the change of S/sqrt(S) that these equations miss, over that of the change.
+static double miss(const double *equations, const double *before, const double *after,
+                   const double *change) {
+    double missed = 0, all = 0;
+    for (size_t a = 0; a < BINS; a++) {
+        double left = after[a] - before[a];
+        all += left * left / before[a];
+        for (size_t b = 0; b < BINS; b++)
+            left += equations[a * BINS + b] * change[b] / temperature;
+        missed += left * left / before[a];
+    }
+    return sqrt(missed / all);
+}
+
+/// Values that alternate move the mean over a bin by 0.64 of them alone, so that a U that is
+/// constant in each bin would move p by 1/0.64 − 1 = 0.57 too much. What is left is that p is not
+/// constant in a bin, and that the change is no differential.
+static void test_inversion_response_tells_how_lengths_follow_their_values(void **state) {
+    static struct twin twin;
+    double values[POINTS], before[BINS], after[BINS], change[BINS];
+    (void)state;
+    make_twin(&twin, values, before);
+    for (size_t b = 0; b < BINS; b++) {
+        change[b] = b > 1 && b + 2 < BINS ? (b % 2 ? 0.01 : -0.01) : 0;
+        values[twin.group.own.below + b] += change[b];
+    }
+    count_bonds(&twin.group.own, values, after);
+    const double by_curve = miss(twin.inversion.response.values, before, after, change),
+                 by_bins = miss(twin.covariance, before, after, change);
+    print_message("missed with the curve %.4f, with constant bins %.4f\n", by_curve, by_bins);
+    assert_true(by_curve < 0.05);
+    assert_close(by_bins, 0.57, 0.06);
+    clear_twin(&twin);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_inversion_response_tells_how_lengths_follow_their_values),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
