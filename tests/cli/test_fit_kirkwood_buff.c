@@ -215,7 +215,7 @@ static void test_fit_refuses_integrals_that_cannot_be_met(void **state) {
                    "kirkwood_buff.A-B.error");
     assert_refused(*state, GOOD ", \"B-A\": {\"value\": 0.1, \"error\": 0.01}", NULL, NULL,
                    "under its other name");
-    assert_refused(*state, "\"q_maximum\": 2.2", NULL, NULL, "names no pair type");
+    assert_refused(*state, "\"q_maximum\": 2.2", NULL, NULL, "names no pair of the scene");
     assert_refused(*state, "\"value\": 0.1, \"error\": 0.01", NULL, NULL, "target.kirkwood_buff");
     assert_refused(*state, "\"q_maximum\": 0.9, \"A-B\": {\"value\": 0.1, \"error\": 0.01}", NULL,
                    NULL, "all have one length");
