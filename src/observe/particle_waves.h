@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// @file The density's waves (observe/density_waves.h) of a simulation's particles in its box: of
-/// its beads, or of the sites of its components (system/components.h).
+/// its beads, or of the sites of its components (system/component_sites.h).
 #pragma once
 
 #include "observe/density_waves.h"
-#include "system/components.h"
+#include "system/component_sites.h"
 
 struct particle_waves {
     struct density_waves waves;

@@ -2,16 +2,11 @@
 /// @file Components of a system, as experiments know them: its kinds of molecules, and the types of
 /// its single beads.
 ///
-/// They are a composition of sites: kinds come first, in their order, then the types of which there
-/// are single beads. A molecule is one site, at the mean place of its beads, which masses do not
-/// change; a single bead is one. Without molecules sites are beads and components are types.
-///
-/// Waves of sites tell the same at q → 0 whichever site of a molecule is taken. The way there
-/// differs: a bead at r_i from the mean turns with its molecule, which adds about q²⟨r_i²⟩/3 to S.
+/// They are a composition of sites: kinds come first, in their order, a site a molecule, then the
+/// types of which there are single beads. Without molecules components are types.
 #pragma once
 
-#include "system/particles.h"
-#include "system/whole_molecules.h"
+#include "system/topology.h"
 
 /// Names of the components and how many sites each has. One component alone needs no name.
 /// @param[in] beads     types and numbers of all beads; `count` of one type where it is not mixed
@@ -21,24 +16,6 @@
 enum status mf_components_find(struct composition *components, const struct composition *beads,
                                size_t count, const struct topology *topology) MUST_USE;
 
-/// Where the sites of a configuration are.
-struct component_sites {
-    struct composition components;
-    struct whole_molecules whole;            ///< without molecules all zero
-    int kinds;                               ///< of molecules: the first components
-    uint32_t single[COMPOSITION_MOST_TYPES]; ///< id of each component's first single bead
-    size_t beads;
-    uint32_t *place; ///< shape [beads]: of an id among the particles; NULL with molecules
-    double *site[3]; ///< shape [sites], component after component [λ]
-};
-
-/// Must be cleared, also after a failure. Fails: as mf_components_find; NO_MEMORY.
-enum status mf_component_sites_init(struct component_sites *sites, int dimensions,
-                                    const struct composition *beads, size_t count,
-                                    const struct topology *topology) MUST_USE;
-void mf_component_sites_clear(struct component_sites *sites);
-
-/// Find the sites. The particles are joined (mf_particles_join) if there are molecules. Sites may
-/// be outside of the box, by the size of a molecule.
-/// Tested: test_components, test_kirkwood_buff_waves.
-void mf_component_sites_find(struct component_sites *sites, const struct particles *particles);
+/// How many single beads of a type there are. @param[in] beads, count, topology  as above
+int64_t mf_components_single(const struct composition *beads, size_t count,
+                             const struct topology *topology, int type);

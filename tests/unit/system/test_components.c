@@ -5,7 +5,7 @@
 #include "shared/is_close.h"
 #include "shared/molecules.h"
 #include "shared/testing.h"
-#include "system/components.h"
+#include "system/component_sites.h"
 
 #include <stdio.h>
 #include <string.h>
