@@ -21,7 +21,8 @@ const struct field mf_kirkwood_buff_observable_fields[] = {
     {"q_maximum", FIELD_NUMBER, .offset = offsetof(struct kirkwood_buff_settings, q_maximum),
      .initial = 0, .minimum = 0, .maximum = DBL_MAX, .unit = "1/lambda",
      .help = "longest waves of the density, up to this wave number, from which S(q) goes to q = 0 "
-             "as a line in q^2; 0: a fifth of 2 pi density^(1/d)"},
+             "as a line in q^2; 0: a fifth of 2 pi density^(1/d), and not more than one over the "
+             "size of molecules"},
     FIELD_END,
 };
 
@@ -182,15 +183,16 @@ static void explain(const void *settings, const struct simulation_setup *setup, 
                     struct stages *stages) {
     const double wish = ((const struct kirkwood_buff_settings *)settings)->q_maximum;
     const struct molecules *molecules = mf_molecules_find(setup->interaction, setup->interactions);
+    const struct topology *topology = molecules ? &molecules->topology : NULL;
     const size_t beads = (size_t)setup->placement.count;
     struct composition components;
-    if (mf_components_find(&components, &setup->composition, beads,
-                           molecules ? &molecules->topology : NULL) != STATUS_OK)
+    if (mf_components_find(&components, &setup->composition, beads, topology) != STATUS_OK)
         return; // which the scene's beginning tells
-    const double sites = (double)mf_composition_particles(&components);
-    const double waves = mf_kirkwood_buff_waves_expected(&setup->box, (size_t)sites, wish);
+    const size_t sites = (size_t)mf_composition_particles(&components);
+    const double waves = mf_kirkwood_buff_waves_expected(
+        &setup->box, mf_kirkwood_buff_waves_maximum(&setup->box, sites, beads, topology, wish));
     mf_stages_add(stages, "Kirkwood-Buff integrals", true,
-                  wave_cost * waves * sites / ((double)beads * every),
+                  wave_cost * waves * (double)sites / ((double)beads * every),
                   "about %.0f wave vectors, one step in %.0f", waves, every);
 }
 

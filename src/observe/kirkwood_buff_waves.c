@@ -5,16 +5,26 @@
 
 #include <math.h>
 
-/// Of 2π ρ^(1/d), near the first peak of S.
-static const double longest_part = 0.2;
-
-static double choose_maximum(const struct box *box, size_t sites, double wish) {
-    const double density = (double)sites / mf_box_volume(box);
-    return wish > 0 ? wish : longest_part * 2 * M_PI * pow(density, 1.0 / box->dimensions);
+/// R_g of the largest molecules, as of a random walk whose steps are the mean distance of all
+/// beads.
+static double guess_size(const struct box *box, size_t beads, const struct topology *topology) {
+    const double step = pow(mf_box_volume(box) / (double)beads, 1.0 / box->dimensions);
+    int most = 1;
+    for (int k = 0; topology && k < topology->kinds; k++)
+        most = topology->kind[k].beads > most ? topology->kind[k].beads : most;
+    return step * sqrt(most / 6.0);
 }
 
-double mf_kirkwood_buff_waves_expected(const struct box *box, size_t sites, double q_maximum) {
-    const double ball = mf_box_shell_volume(box, 0, choose_maximum(box, sites, q_maximum));
+double mf_kirkwood_buff_waves_maximum(const struct box *box, size_t sites, size_t beads,
+                                      const struct topology *topology, double wish) {
+    static const double part = 0.2; // of 2π ρ^(1/d), near the first peak of S
+    const double density = (double)sites / mf_box_volume(box);
+    const double of_sites = part * 2 * M_PI * pow(density, 1.0 / box->dimensions);
+    return wish > 0 ? wish : fmin(of_sites, 1 / guess_size(box, beads, topology));
+}
+
+double mf_kirkwood_buff_waves_expected(const struct box *box, double q_maximum) {
+    const double ball = mf_box_shell_volume(box, 0, q_maximum);
     return ball * mf_box_volume(box) / pow(2 * M_PI, box->dimensions) / 2;
 }
 
@@ -59,7 +69,8 @@ enum status mf_kirkwood_buff_waves_init(struct kirkwood_buff_waves *kb, const st
     struct composition components;
     *kb = (struct kirkwood_buff_waves){.box = *box};
     CHECK(mf_components_find(&components, composition, count, topology));
-    kb->q_maximum = choose_maximum(box, (size_t)mf_composition_particles(&components), q_maximum);
+    kb->q_maximum = mf_kirkwood_buff_waves_maximum(
+        box, (size_t)mf_composition_particles(&components), count, topology, q_maximum);
     CHECK(mf_particle_waves_init(&kb->waves, box, composition, count, topology, kb->q_maximum, 1));
     NEW_ARRAY(kb->weight, kb->waves.waves.vectors);
     CHECK(find_weights(kb));

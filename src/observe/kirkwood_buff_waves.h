@@ -29,7 +29,9 @@ struct kirkwood_buff_waves {
 };
 
 /// Waves up to q_maximum [1/λ], or, if that is 0, up to a fifth of 2π ρ^(1/d), ρ that of all sites:
-/// about N/60 waves in three dimensions. Must be cleared, also after a failure.
+/// about N/60 waves in three dimensions; but not farther than 1/R_g of the largest molecules, taken
+/// as random walks whose steps are the mean distance of all beads. Must be cleared, also after a
+/// failure.
 /// @param[in] topology  of the molecules, or NULL
 /// Fails: BAD_INPUT, without a place, if they have fewer than two lengths, or if they are too many,
 /// or as mf_components_find; NO_MEMORY.
@@ -38,8 +40,12 @@ enum status mf_kirkwood_buff_waves_init(struct kirkwood_buff_waves *kb, const st
                                         const struct topology *topology, double q_maximum) MUST_USE;
 void mf_kirkwood_buff_waves_clear(struct kirkwood_buff_waves *kb);
 
-/// About how many waves it takes of so many sites.
-double mf_kirkwood_buff_waves_expected(const struct box *box, size_t sites, double q_maximum);
+/// Up to which wave number waves are taken, if a file wishes this one, or 0: none.
+double mf_kirkwood_buff_waves_maximum(const struct box *box, size_t sites, size_t beads,
+                                      const struct topology *topology, double wish);
+
+/// About how many waves there are up to a wave number.
+double mf_kirkwood_buff_waves_expected(const struct box *box, double q_maximum);
 
 /// What the integrals are of: their pair types are those of G.
 const struct composition *mf_kirkwood_buff_waves_components(const struct kirkwood_buff_waves *kb);

@@ -157,6 +157,30 @@ static void test_kirkwood_buff_waves_of_molecules_are_those_of_their_sites(void 
     mf_topology_clear(&topology);
 }
 
+/// A few of Kremer and Grest's chains of 50 beads, R_g² = 13.7 at density 0.85 (docs/molecules.md),
+/// among single beads: the mean distance of sites is that of beads, but the waves stay longer than
+/// a chain. Those of dimers are as without the bond.
+static void test_kirkwood_buff_waves_are_longer_than_the_molecules(void **state) {
+    (void)state;
+    enum { CHAIN = 50, ALL = 20000 };
+    static const int types[CHAIN] = {0};
+    static const double density = 0.85, size = 3.7;
+    const double edge = cbrt(ALL / density);
+    const struct box large = {3, {edge, edge, edge}};
+    struct topology chains, dimers;
+    molecules_topology(&chains, molecules_chain(10, types, CHAIN, TOPOLOGY_BOND, 1),
+                       (struct topology_kind){0}, 1, (const int64_t[]){ALL - 10 * CHAIN});
+    molecules_topology(&dimers, molecules_chain(10, types, 2, TOPOLOGY_BOND, 1),
+                       (struct topology_kind){0}, 1, (const int64_t[]){ALL - 10 * 2});
+    const double free = mf_kirkwood_buff_waves_maximum(&large, ALL, ALL, NULL, 0);
+    assert_true(free * size > 4);
+    assert_true(mf_kirkwood_buff_waves_maximum(&large, ALL - 490, ALL, &chains, 0) * size < 1.3);
+    assert_true(mf_kirkwood_buff_waves_maximum(&large, ALL, ALL, &dimers, 0) == free);
+    assert_true(mf_kirkwood_buff_waves_maximum(&large, ALL - 490, ALL, &chains, 2) == 2);
+    mf_topology_clear(&chains);
+    mf_topology_clear(&dimers);
+}
+
 static void test_kirkwood_buff_waves_need_two_lengths(void **state) {
     (void)state;
     const struct composition few = mf_composition_of_one(300);
@@ -175,6 +199,7 @@ int main(void) {
         cmocka_unit_test(test_kirkwood_buff_waves_of_an_ideal_gas_have_no_integral),
         cmocka_unit_test(test_kirkwood_buff_waves_of_bound_pairs_count_the_partner),
         cmocka_unit_test(test_kirkwood_buff_waves_of_molecules_are_those_of_their_sites),
+        cmocka_unit_test(test_kirkwood_buff_waves_are_longer_than_the_molecules),
         cmocka_unit_test(test_kirkwood_buff_waves_need_two_lengths),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
