@@ -193,7 +193,7 @@ static const struct topic fixed_topics[] = {
      {mf_target_curve_number_fields, mf_target_files_use_fields}},
     {"target",
      "kirkwood_buff-target",
-     "\"kirkwood_buff\": Kirkwood and Buff's integrals, of a mixture by pair types",
+     "\"kirkwood_buff\": Kirkwood and Buff's integrals, of a mixture by pairs of components",
      {mf_target_kirkwood_buff_fields, mf_kirkwood_buff_observable_fields,
       mf_target_files_use_fields}},
     {"target", "diffusion-target", "\"diffusion\" besides", {mf_target_curve_diffusion_fields}},

@@ -98,7 +98,8 @@ static enum status read_kind(struct target_files *files, int number, struct json
     if (number == TARGET_ETD)
         return mf_target_etd_read(&files->etd, object);
     if (number == mf_kirkwood_buff_kind()) {
-        mf_target_kirkwood_buff_read(&files->kirkwood_buff, object, &files->composition);
+        mf_target_kirkwood_buff_read(&files->kirkwood_buff, object, &files->composition,
+                                     molecules ? &molecules->topology : NULL);
         return STATUS_OK;
     }
     if (form != OBSERVABLE_NUMBER)
@@ -190,7 +191,7 @@ static void write_kind(const struct target_files *files, int number, struct json
     else if (number == TARGET_ETD)
         mf_json_put_fields(writer, mf_target_etd_fields, &files->etd.parameters);
     else if (number == mf_kirkwood_buff_kind())
-        mf_target_kirkwood_buff_write(&files->kirkwood_buff, &files->composition, writer);
+        mf_target_kirkwood_buff_write(&files->kirkwood_buff, writer);
     else if (form == OBSERVABLE_NUMBER)
         write_number(&files->number[number], kind.target->unit, writer);
     else

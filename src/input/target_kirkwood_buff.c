@@ -8,7 +8,8 @@ const struct field mf_target_kirkwood_buff_fields[] = {
     {"value", FIELD_NUMBER, NUMBER(value), .required = true, .minimum = -DBL_MAX,
      .maximum = DBL_MAX, .unit = "lambda^d",
      .help = "integral of g - 1 over all space, of the open system; of a mixture in an object of "
-             "each pair type that is to be met, as \"A-B\""},
+             "each pair of components (kinds of molecules, types of single beads) that is to be "
+             "met, as \"A-B\""},
     {"error", FIELD_NUMBER, NUMBER(error), .required = true, .minimum = FIELD_ABOVE_ZERO,
      .maximum = DBL_MAX, .unit = "lambda^d", .help = "its standard error"},
     FIELD_END,
@@ -22,27 +23,35 @@ static void read_number(struct target_kirkwood_buff *target, int pair, struct js
 }
 
 void mf_target_kirkwood_buff_read(struct target_kirkwood_buff *target, struct json_object *object,
-                                  const struct composition *composition) {
+                                  const struct composition *composition,
+                                  const struct topology *topology) {
+    const struct composition *components = &target->components;
     char name[COMPOSITION_MOST_PAIRS]
              [COMPOSITION_PAIR_NAME_SIZE]; // remembered until it is finished
     const char *key;
     size_t named = 0;
-    *target = (struct target_kirkwood_buff){.pairs = (size_t)mf_composition_pairs(composition)};
-    for (size_t pair = 0; pair < target->pairs; pair++)
-        target->value[pair] = target->error[pair] = NAN;
+    *target = (struct target_kirkwood_buff){0};
     if (composition->types == 0)
         return; // a fault of the types is told, those of their pairs would mislead
-    if (!composition_is_mixed(composition)) {
+    if (mf_components_find(&target->components, composition,
+                           (size_t)mf_composition_particles(composition), topology) != STATUS_OK) {
+        mf_json_fault(object, NULL, "%s", mf_status_message());
+        return;
+    }
+    target->pairs = (size_t)mf_composition_pairs(components);
+    for (size_t pair = 0; pair < target->pairs; pair++)
+        target->value[pair] = target->error[pair] = NAN;
+    if (!composition_is_mixed(components)) {
         read_number(target, 0, object);
         mf_json_finish(object);
         return;
     }
     for (size_t pair = 0; pair < target->pairs; pair++) {
-        mf_composition_pair_name(composition, (int)pair, name[pair]);
+        mf_composition_pair_name(components, (int)pair, name[pair]);
         mf_json_has(object, name[pair]);
     }
     for (size_t n = 0; (key = mf_json_key(object, n)); n++) {
-        const int pair = mf_composition_find_pair(composition, key);
+        const int pair = mf_composition_find_pair(components, key);
         if (pair < 0)
             continue;
         if (!isnan(target->value[pair]))
@@ -55,14 +64,13 @@ void mf_target_kirkwood_buff_read(struct target_kirkwood_buff *target, struct js
     }
     if (named == 0)
         mf_json_fault(object, NULL,
-                      "names no pair type of the scene, as {\"%s-%s\": {\"value\": "
+                      "names no pair of the scene's components, as {\"%s-%s\": {\"value\": "
                       "0.1, \"error\": 0.01}}",
-                      composition->name[0], composition->name[1]);
+                      components->name[0], components->name[1]);
     mf_json_finish(object);
 }
 
 void mf_target_kirkwood_buff_write(const struct target_kirkwood_buff *target,
-                                   const struct composition *composition,
                                    struct json_writer *writer) {
     for (size_t pair = 0; pair < target->pairs; pair++) {
         const struct target_kirkwood_buff_number number = {target->value[pair],
@@ -70,7 +78,7 @@ void mf_target_kirkwood_buff_write(const struct target_kirkwood_buff *target,
         char name[COMPOSITION_PAIR_NAME_SIZE];
         if (isnan(number.value))
             continue;
-        mf_composition_pair_name(composition, (int)pair, name);
+        mf_composition_pair_name(&target->components, (int)pair, name);
         if (target->pairs > 1)
             mf_json_begin(writer, name);
         mf_json_put_fields(writer, mf_target_kirkwood_buff_fields, &number);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "inversion/inversion.h"
+#include "inversion/inversion_coarse.h"
 
 #include <math.h>
 #include <string.h>
@@ -308,8 +309,12 @@ static enum status join_integrals(struct inversion *inversion) {
     if (inversion->kirkwood_buff.pairs == 0 || inversion->joint)
         return STATUS_OK;
     TRY(mf_inversion_rows_reduce(&inversion->rows, inversion, 1, false));
-    inversion->together =
-        (struct inversion_joint){.state = inversion, .states = 1, .system = inversion->rows.system};
+    if (inversion->doubt && !mf_inversion_is_coarse(inversion))
+        TRY(mf_inversion_rows_reduce(&inversion->doubted, inversion, 1, true));
+    inversion->together = (struct inversion_joint){.state = inversion,
+                                                   .states = 1,
+                                                   .system = inversion->rows.system,
+                                                   .doubted = inversion->doubted.system};
     inversion->joint = &inversion->together;
     return STATUS_OK;
 }

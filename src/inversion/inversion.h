@@ -91,7 +91,7 @@ struct inversion_joint {
     size_t states;
     struct imc_system system;  ///< the equations of all, with their pressures and integrals
     struct imc_system doubted; ///< the same with the variances of mf_imc_doubt, of fits with groups
-    const double *coarse;      ///< the step far from the targets of groups, shape [points]
+    const double *coarse; ///< the step of several states far from the targets of groups, or NULL
 };
 
 struct inversion {
@@ -130,6 +130,7 @@ struct inversion {
     struct inversion_pressure pressure;
     struct inversion_kirkwood_buff kirkwood_buff;
     struct inversion_rows rows;      ///< with the integrals, if they are asked for
+    struct inversion_rows doubted;   ///< the same with the variances of mf_imc_doubt, with groups
     struct inversion_joint together; ///< these, as of one state
     double *phi, *step;              ///< present potential and the step from it, shape [points]
     double *other_step;              ///< what to do if the step makes it worse

@@ -63,6 +63,7 @@ void mf_inversion_destroy(void *memory) {
     mf_inversion_kirkwood_buff_clear(&inversion->kirkwood_buff);
     mf_inversion_rows_clear(&inversion->rows);
     mf_inversion_response_clear(&inversion->response);
+    mf_inversion_rows_clear(&inversion->doubted);
     mf_memory_free(inversion->shape);
     mf_memory_free(inversion->groups);
     mf_memory_free(inversion->doubt);
@@ -241,6 +242,8 @@ enum status mf_inversion_create(void *memory, const struct inverse_method *metho
     TRY(mf_inversion_kirkwood_buff_init(inversion));
     if (inversion->kirkwood_buff.pairs > 0)
         TRY(mf_inversion_rows_init(&inversion->rows, inversion));
+    if (inversion->kirkwood_buff.pairs > 0 && inversion->doubt)
+        TRY(mf_inversion_rows_init(&inversion->doubted, inversion));
     const struct simulation_setup *scene = &problem->scene;
     const bool joined = mf_molecules_find(scene->interaction, scene->interactions) != NULL;
     const bool pairs = inversion->grid.pairs > 0;
@@ -262,7 +265,7 @@ enum status mf_inversion_create(void *memory, const struct inverse_method *metho
                                  .molecules = joined ? &inversion->molecules : NULL,
                                  .group = inversion->groups,
                                  .groups = inversion->grid.groups,
-                                 .kirkwood_buff = inversion->kirkwood_buff.pairs > 0,
+                                 .integrals = inversion->kirkwood_buff.pairs,
                                  .q_maximum = inversion->kirkwood_buff.q_maximum,
                                  .seed = problem->seed}));
     inversion->progress = (struct inversion_progress){.anew = true,

@@ -10,7 +10,7 @@
 
 struct inversion;
 
-/// By pair types, as the target has them.
+/// By pairs of components, as the target has them.
 struct inversion_kirkwood_buff {
     size_t pairs;     ///< 0: not asked for
     double q_maximum; ///< of the waves, as the target has it [1/λ]

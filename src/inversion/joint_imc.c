@@ -118,10 +118,10 @@ static enum status iterate(void *memory, struct inverse_step *step,
 }
 
 static enum status update(struct inversion *inversion, double *extra) {
-    if (inversion->joint == NULL || !mf_inversion_is_coarse(inversion))
+    const double *coarse = inversion->joint ? inversion->joint->coarse : NULL;
+    if (coarse == NULL || !mf_inversion_is_coarse(inversion))
         return mf_imc_step(inversion, &(const struct imc_parameters){0}, inversion->step, extra);
-    memcpy(inversion->step, inversion->joint->coarse,
-           inversion->grid.points * sizeof *inversion->step);
+    memcpy(inversion->step, coarse, inversion->grid.points * sizeof *inversion->step);
     return STATUS_OK;
 }
 

@@ -13,18 +13,18 @@ size_t mf_sampler_bins(const struct sampler_system *system) {
 }
 
 size_t mf_sampler_numbers(const struct sampler_system *system) {
-    const size_t pairs = (size_t)mf_composition_pairs(system->composition);
-    return mf_sampler_bins(system) + SAMPLER_SUMS + (system->kirkwood_buff ? pairs : 0);
+    return mf_sampler_bins(system) + SAMPLER_SUMS + system->integrals;
 }
 
 /// The waves whose integrals are asked for.
 static enum status begin_waves(struct sampler *sampler, const struct sampler_system *system) {
-    if (!system->kirkwood_buff)
+    if (system->integrals == 0)
         return STATUS_OK;
     sampler->waves = true;
     const enum status status = mf_kirkwood_buff_waves_init(
         &sampler->kirkwood_buff, system->box, system->composition,
-        (size_t)mf_composition_particles(system->composition), system->q_maximum);
+        (size_t)mf_composition_particles(system->composition),
+        system->molecules ? &system->molecules->topology : NULL, system->q_maximum);
     return status == STATUS_BAD_INPUT ? mf_status_prefix(status, "target.kirkwood_buff") : status;
 }
 

@@ -51,8 +51,8 @@ struct sampler_system {
     const struct molecules *molecules; ///< or NULL; its laws may be exchanged as the potential may
     const struct sampler_group *group; ///< to be counted behind the pairs, shape [groups]
     size_t groups;
-    bool kirkwood_buff; ///< Kirkwood and Buff's integrals are asked for
-    double q_maximum;   ///< of their waves, as of mf_kirkwood_buff_waves_init [1/λ]
+    size_t integrals; ///< of Kirkwood and Buff: pairs of components, if they are asked for, or 0
+    double q_maximum; ///< of their waves, as of mf_kirkwood_buff_waves_init [1/λ]
     uint64_t seed;
     const atomic_bool *cancel; ///< stops the sweeps once it is set, or NULL
 };
@@ -60,7 +60,7 @@ struct sampler_system {
 /// Bins that are counted: of all pair types, and of the groups.
 size_t mf_sampler_bins(const struct sampler_system *system);
 
-/// Numbers of a sample: the bins, the sums, and the integrals of all pair types.
+/// Numbers of a sample: the bins, the sums, and the integrals of all pairs of components.
 size_t mf_sampler_numbers(const struct sampler_system *system);
 
 /// Particles on a lattice, molecules as a scene places them. Must be cleared. Fails: as

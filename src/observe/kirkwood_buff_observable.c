@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Means of G of each pair type over blocks of samples. Errors see the correlation of the blocks:
-// long waves decay slowly, with the collective diffusion D/S(q) times q². Tested:
+// Means of G of each pair of components over blocks of samples. Errors see the correlation of the
+// blocks: long waves decay slowly, with the collective diffusion D/S(q) times q². Tested:
 // test_kirkwood_buff_waves.
 #include "observe/kirkwood_buff_observable.h"
 
@@ -21,7 +21,8 @@ const struct field mf_kirkwood_buff_observable_fields[] = {
     {"q_maximum", FIELD_NUMBER, .offset = offsetof(struct kirkwood_buff_settings, q_maximum),
      .initial = 0, .minimum = 0, .maximum = DBL_MAX, .unit = "1/lambda",
      .help = "longest waves of the density, up to this wave number, from which S(q) goes to q = 0 "
-             "as a line in q^2; 0: a fifth of 2 pi density^(1/d)"},
+             "as a line in q^2; 0: a fifth of 2 pi density^(1/d), and not more than one over the "
+             "size of molecules"},
     FIELD_END,
 };
 
@@ -40,15 +41,14 @@ static enum status begin(void *state, const void *settings, const struct simulat
     struct state *s = state;
     const struct simulation_setup *setup = &simulation->setup;
     const size_t count = simulation->particles.count;
-    if (mf_molecules_find(setup->interaction, setup->interactions))
-        return mf_status_fail(STATUS_BAD_INPUT,
-                              "kirkwood_buff: beads of molecules have no integrals of their own");
-    status =
-        mf_kirkwood_buff_waves_init(&s->waves, &setup->box, &setup->composition, count,
-                                    ((const struct kirkwood_buff_settings *)settings)->q_maximum);
+    const struct molecules *molecules = mf_molecules_find(setup->interaction, setup->interactions);
+    status = mf_kirkwood_buff_waves_init(
+        &s->waves, &setup->box, &setup->composition, count, molecules ? &molecules->topology : NULL,
+        ((const struct kirkwood_buff_settings *)settings)->q_maximum);
     CHECK(status == STATUS_BAD_INPUT ? mf_status_prefix(status, "kirkwood_buff") : status);
-    s->pairs = mf_kirkwood_buff_waves_pairs(&s->waves);
-    s->density = (double)count / mf_box_volume(&setup->box);
+    const struct composition *components = mf_kirkwood_buff_waves_components(&s->waves);
+    s->pairs = (size_t)mf_composition_pairs(components);
+    s->density = (double)mf_composition_particles(components) / mf_box_volume(&setup->box);
     CHECK(mf_sample_blocks_init(&s->blocks, (size_t)plan->samples));
     NEW_ARRAY(s->integral, s->pairs);
     NEW_ARRAY(s->sums, s->blocks.count * s->pairs);
@@ -132,22 +132,23 @@ static void put_known(struct json_writer *writer, const char *what, const char *
 }
 
 void mf_kirkwood_buff_put(struct json_writer *writer, const char *what,
-                          const struct composition *composition, size_t pair, double value,
+                          const struct composition *components, size_t pair, double value,
                           double error) {
     char name[COMPOSITION_PAIR_NAME_SIZE];
-    mf_composition_pair_name(composition, (int)pair, name);
+    mf_composition_pair_name(components, (int)pair, name);
     put_known(writer, what, "", name, value);
     put_known(writer, what, "_error", name, error > 0 ? error : NAN);
 }
 
 static void put(const void *state, const struct observable_results *results,
                 struct json_writer *writer) {
+    (void)results;
     const struct state *s = state;
     double value, error;
     for (size_t pair = 0; pair < s->pairs; pair++) {
         find(s, pair, &value, &error);
-        mf_kirkwood_buff_put(writer, "kirkwood_buff", &results->setup->composition, pair, value,
-                             error);
+        mf_kirkwood_buff_put(writer, "kirkwood_buff", mf_kirkwood_buff_waves_components(&s->waves),
+                             pair, value, error);
     }
     if (s->pairs == 1) {
         mf_json_put_number(writer, "compressibility", 1 + s->density * value);
@@ -167,7 +168,7 @@ static void say(const void *state, const struct observable_results *results, cha
         char name[COMPOSITION_PAIR_NAME_SIZE], text[NUMBER_TEXT_SIZE];
         double value, error;
         find(s, pair, &value, &error);
-        mf_composition_pair_name(&results->setup->composition, (int)pair, name);
+        mf_composition_pair_name(mf_kirkwood_buff_waves_components(&s->waves), (int)pair, name);
         mf_number_text(factor * value, factor * error, text);
         length +=
             snprintf(line + length, size - (size_t)length, "%s %s%s%s%s", pair ? "," : "", name,
@@ -175,21 +176,29 @@ static void say(const void *state, const struct observable_results *results, cha
     }
 }
 
-/// Nanoseconds of a particle and wave vector.
+/// Nanoseconds of a site and wave vector.
 static const double wave_cost = 1.1;
 
 static void explain(const void *settings, const struct simulation_setup *setup, double every,
                     struct stages *stages) {
     const double wish = ((const struct kirkwood_buff_settings *)settings)->q_maximum;
-    const double waves =
-        mf_kirkwood_buff_waves_expected(&setup->box, (size_t)setup->placement.count, wish);
-    mf_stages_add(stages, "Kirkwood-Buff integrals", true, wave_cost * waves / every,
+    const struct molecules *molecules = mf_molecules_find(setup->interaction, setup->interactions);
+    const struct topology *topology = molecules ? &molecules->topology : NULL;
+    const size_t beads = (size_t)setup->placement.count;
+    struct composition components;
+    if (mf_components_find(&components, &setup->composition, beads, topology) != STATUS_OK)
+        return; // which the scene's beginning tells
+    const size_t sites = (size_t)mf_composition_particles(&components);
+    const double waves = mf_kirkwood_buff_waves_expected(
+        &setup->box, mf_kirkwood_buff_waves_maximum(&setup->box, sites, beads, topology, wish));
+    mf_stages_add(stages, "Kirkwood-Buff integrals", true,
+                  wave_cost * waves * (double)sites / ((double)beads * every),
                   "about %.0f wave vectors, one step in %.0f", waves, every);
 }
 
 static const struct observable_target targets[] = {
     {.name = "kirkwood_buff",
-     .summary = "Kirkwood and Buff's integrals of pair types, of the open system",
+     .summary = "Kirkwood and Buff's integrals of pairs of components, of the open system",
      .form = OBSERVABLE_OWN_FORM,
      .unit = unit,
      .has_settings = true},

@@ -11,13 +11,13 @@ struct kirkwood_buff_settings {
 extern const struct field mf_kirkwood_buff_observable_fields[]; ///< of the settings
 extern const struct observable mf_kirkwood_buff_observable;
 
-/// Add a value and its error of a pair type to a summary, as "kirkwood_buff_A-B" and
+/// Add a value and its error of a pair of components to a summary, as "kirkwood_buff_A-B" and
 /// "kirkwood_buff_error_A-B"; without types "kirkwood_buff" and "kirkwood_buff_error". What is not
 /// known is left out.
 /// @param[in] what  "kirkwood_buff", or what begins so
 void mf_kirkwood_buff_put(struct json_writer *writer, const char *what,
-                          const struct composition *composition, size_t pair, double value,
+                          const struct composition *components, size_t pair, double value,
                           double error);
 
-/// Its target's number (mf_observable_kind): one value a pair type, in their order.
+/// Its target's number (mf_observable_kind): one value a pair of components, in their order.
 int mf_kirkwood_buff_kind(void);

@@ -5,16 +5,26 @@
 
 #include <math.h>
 
-/// Of 2π ρ^(1/d), near the first peak of S.
-static const double longest_part = 0.2;
-
-static double choose_maximum(const struct box *box, size_t count, double wish) {
-    const double density = (double)count / mf_box_volume(box);
-    return wish > 0 ? wish : longest_part * 2 * M_PI * pow(density, 1.0 / box->dimensions);
+/// R_g of the largest molecules, as of a random walk whose steps are the mean distance of all
+/// beads.
+static double guess_size(const struct box *box, size_t beads, const struct topology *topology) {
+    const double step = pow(mf_box_volume(box) / (double)beads, 1.0 / box->dimensions);
+    int most = 1;
+    for (int k = 0; topology && k < topology->kinds; k++)
+        most = topology->kind[k].beads > most ? topology->kind[k].beads : most;
+    return step * sqrt(most / 6.0);
 }
 
-double mf_kirkwood_buff_waves_expected(const struct box *box, size_t count, double q_maximum) {
-    const double ball = mf_box_shell_volume(box, 0, choose_maximum(box, count, q_maximum));
+double mf_kirkwood_buff_waves_maximum(const struct box *box, size_t sites, size_t beads,
+                                      const struct topology *topology, double wish) {
+    static const double part = 0.2; // of 2π ρ^(1/d), near the first peak of S
+    const double density = (double)sites / mf_box_volume(box);
+    const double of_sites = part * 2 * M_PI * pow(density, 1.0 / box->dimensions);
+    return wish > 0 ? wish : fmin(of_sites, 1 / guess_size(box, beads, topology));
+}
+
+double mf_kirkwood_buff_waves_expected(const struct box *box, double q_maximum) {
+    const double ball = mf_box_shell_volume(box, 0, q_maximum);
     return ball * mf_box_volume(box) / pow(2 * M_PI, box->dimensions) / 2;
 }
 
@@ -54,11 +64,14 @@ static enum status find_weights(struct kirkwood_buff_waves *kb) {
 
 enum status mf_kirkwood_buff_waves_init(struct kirkwood_buff_waves *kb, const struct box *box,
                                         const struct composition *composition, size_t count,
-                                        double q_maximum) {
+                                        const struct topology *topology, double q_maximum) {
     enum status status = STATUS_OK;
-    *kb = (struct kirkwood_buff_waves){.box = *box,
-                                       .q_maximum = choose_maximum(box, count, q_maximum)};
-    CHECK(mf_particle_waves_init(&kb->waves, box, composition, count, kb->q_maximum, 1));
+    struct composition components;
+    *kb = (struct kirkwood_buff_waves){.box = *box};
+    CHECK(mf_components_find(&components, composition, count, topology));
+    kb->q_maximum = mf_kirkwood_buff_waves_maximum(
+        box, (size_t)mf_composition_particles(&components), count, topology, q_maximum);
+    CHECK(mf_particle_waves_init(&kb->waves, box, composition, count, topology, kb->q_maximum, 1));
     NEW_ARRAY(kb->weight, kb->waves.waves.vectors);
     CHECK(find_weights(kb));
 done:
@@ -71,8 +84,8 @@ void mf_kirkwood_buff_waves_clear(struct kirkwood_buff_waves *kb) {
     *kb = (struct kirkwood_buff_waves){0};
 }
 
-size_t mf_kirkwood_buff_waves_pairs(const struct kirkwood_buff_waves *kb) {
-    return (size_t)mf_composition_pairs(&kb->waves.waves.plan.composition);
+const struct composition *mf_kirkwood_buff_waves_components(const struct kirkwood_buff_waves *kb) {
+    return &kb->waves.sites.components;
 }
 
 /// Σ weight Re ρ_a ρ_b*.
@@ -90,14 +103,14 @@ static double extrapolate(const struct kirkwood_buff_waves *kb, const int type[2
 
 void mf_kirkwood_buff_waves_take(struct kirkwood_buff_waves *kb, const struct particles *particles,
                                  int threads, double *integral) {
-    const struct composition *composition = &kb->waves.waves.plan.composition;
+    const struct composition *components = mf_kirkwood_buff_waves_components(kb);
     const double volume = mf_box_volume(&kb->box);
     mf_particle_waves_find(&kb->waves, particles, threads);
-    for (size_t pair = 0; pair < mf_kirkwood_buff_waves_pairs(kb); pair++) {
+    for (int pair = 0; pair < mf_composition_pairs(components); pair++) {
         int type[2];
-        mf_composition_pair_types(composition, (int)pair, type);
-        const double a = (double)composition->count[type[0]];
-        const double b = (double)composition->count[type[1]];
+        mf_composition_pair_types(components, pair, type);
+        const double a = (double)components->count[type[0]];
+        const double b = (double)components->count[type[1]];
         integral[pair] =
             volume * (extrapolate(kb, type) / (a * b) - (type[0] == type[1] ? 1 / a : 0));
     }

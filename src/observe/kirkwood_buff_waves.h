@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file Kirkwood and Buff's integrals of a configuration in a closed box, by its longest waves.
+/// @file Kirkwood and Buff's integrals of the components of a configuration (system/components.h)
+/// in a closed box, by its longest waves.
 ///
 ///   G_ab = ∫ (g_ab − 1) d^dr = [S_ab(q → 0) − δ_ab]/sqrt(ρ_a ρ_b)
 ///
@@ -14,6 +15,7 @@
 /// Systematic error: of a term c q⁴ in S the intercept keeps −(5/21) c q_maximum⁴ (in three
 /// dimensions, of many waves); where S = S(0)/(1 + ξ² q²), S is too small by the part
 /// (5/21) (ξ q_maximum)⁴. Terms of 1/N from the dependence of g on the density are left out.
+/// Molecules are points at their middle: what is within them makes no part of S.
 /// Statistical error: that of S(0) of n waves is 2.5 S/sqrt(n) a configuration.
 #pragma once
 
@@ -26,20 +28,27 @@ struct kirkwood_buff_waves {
     double *weight;   ///< shape [waves]: the intercept is Σ weight S
 };
 
-/// Waves up to q_maximum [1/λ], or, if that is 0, up to a fifth of 2π ρ^(1/d): about N/60 waves in
-/// three dimensions. Must be cleared, also after a failure.
-/// Fails: BAD_INPUT, without a place, if they have fewer than two lengths, or if they are too many;
-/// NO_MEMORY.
+/// Waves up to q_maximum [1/λ], or, if that is 0, up to a fifth of 2π ρ^(1/d), ρ that of all sites:
+/// about N/60 waves in three dimensions; but not farther than 1/R_g of the largest molecules, taken
+/// as random walks whose steps are the mean distance of all beads. Must be cleared, also after a
+/// failure.
+/// @param[in] topology  of the molecules, or NULL
+/// Fails: BAD_INPUT, without a place, if they have fewer than two lengths, or if they are too many,
+/// or as mf_components_find; NO_MEMORY.
 enum status mf_kirkwood_buff_waves_init(struct kirkwood_buff_waves *kb, const struct box *box,
                                         const struct composition *composition, size_t count,
-                                        double q_maximum) MUST_USE;
+                                        const struct topology *topology, double q_maximum) MUST_USE;
 void mf_kirkwood_buff_waves_clear(struct kirkwood_buff_waves *kb);
 
-/// About how many waves it takes.
-double mf_kirkwood_buff_waves_expected(const struct box *box, size_t count, double q_maximum);
+/// Up to which wave number waves are taken, if a file wishes this one, or 0: none.
+double mf_kirkwood_buff_waves_maximum(const struct box *box, size_t sites, size_t beads,
+                                      const struct topology *topology, double wish);
 
-/// Pair types, 1 of beads that are alike.
-size_t mf_kirkwood_buff_waves_pairs(const struct kirkwood_buff_waves *kb);
+/// About how many waves there are up to a wave number.
+double mf_kirkwood_buff_waves_expected(const struct box *box, double q_maximum);
+
+/// What the integrals are of: their pair types are those of G.
+const struct composition *mf_kirkwood_buff_waves_components(const struct kirkwood_buff_waves *kb);
 
 /// G of one configuration. The same bits for any number of threads.
 /// @param[out] integral  shape [pairs] [λ^d]

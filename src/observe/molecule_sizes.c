@@ -12,6 +12,7 @@
 #include "io/data_table.h"
 #include "observe/measure.h"
 #include "observe/sample_blocks.h"
+#include "system/whole_molecules.h"
 
 #include <math.h>
 #include <string.h>
@@ -26,16 +27,13 @@ struct state {
     const struct molecules *molecules;
     struct sample_blocks blocks;
     size_t room, lags, every; ///< room: for samples
-    size_t most_beads;
-    double begin, time_step; ///< step of the first sample, Δt or 1 sweep
-    const char *clock;       ///< what tables call it
-    double *gyration, *end;  ///< shape [kinds, room]: means over the molecules [λ²]
-    double *ends;            ///< shape [lags + 1, molecules, 3]: the last end-to-end vectors [λ]
-    double *products;        ///< shape [blocks, kinds, lags + 1]: sums of R(t)·R(0) [λ²]
-    double *origins;         ///< shape [blocks, lags + 1]: samples in them
-    double (*place)[3];      ///< shape [beads] of one molecule, whole
-    int *parent;             ///< shape [kinds, beads]: placed before it and bonded to it, or −1
-    int *order;              ///< shape [kinds, beads]: bead that is placed as number n
+    double begin, time_step;  ///< step of the first sample, Δt or 1 sweep
+    const char *clock;        ///< what tables call it
+    double *gyration, *end;   ///< shape [kinds, room]: means over the molecules [λ²]
+    double *ends;             ///< shape [lags + 1, molecules, 3]: the last end-to-end vectors [λ]
+    double *products;         ///< shape [blocks, kinds, lags + 1]: sums of R(t)·R(0) [λ²]
+    double *origins;          ///< shape [blocks, lags + 1]: samples in them
+    struct whole_molecules whole;
 };
 
 static const struct field fields[] = {
@@ -44,25 +42,6 @@ static const struct field fields[] = {
      .help = "as far as the correlation of the end-to-end vector goes"},
     FIELD_END,
 };
-
-// Whole molecules ---------------------------------------------------------------------------------
-
-/// Places of a molecule's beads relative to its first, along its bonds.
-static void make_whole(const struct state *s, const struct particles *particles, int k, int64_t m) {
-    const struct topology_kind *kind = &s->molecules->topology.kind[k];
-    const int *order = s->order + (size_t)k * s->most_beads;
-    const int *parent = s->parent + (size_t)k * s->most_beads;
-    for (int n = 0; n < kind->beads; n++) {
-        const int bead = order[n], from = parent[bead] < 0 ? order[0] : parent[bead];
-        const size_t here = particles->place[topology_id(kind, m, bead)];
-        const size_t there = particles->place[topology_id(kind, m, from)];
-        for (int d = 0; d < particles->box.dimensions; d++)
-            s->place[bead][d] =
-                (n > 0 ? s->place[from][d] : 0) +
-                box_nearest(particles->position[d][here] - particles->position[d][there],
-                            particles->box.length[d]);
-    }
-}
 
 /// R_g² of the molecule that was made whole.
 static double find_gyration(const struct state *s, const struct particles *particles,
@@ -73,8 +52,8 @@ static double find_gyration(const struct state *s, const struct particles *parti
         const double own = mass ? mass[particles->place[topology_id(kind, m, bead)]] : 1;
         all += own;
         for (int d = 0; d < 3; d++) {
-            centre[d] += own * s->place[bead][d];
-            gyration += own * s->place[bead][d] * s->place[bead][d];
+            centre[d] += own * s->whole.place[bead][d];
+            gyration += own * s->whole.place[bead][d] * s->whole.place[bead][d];
         }
     }
     gyration /= all;
@@ -104,21 +83,13 @@ static enum status begin(void *state, const void *settings, const struct simulat
                         .begin = (double)plan->equilibration,
                         .time_step = sweeps ? 1 : setup->time_step,
                         .clock = sweeps ? "sweeps[1]" : "time[tau]"};
-    for (size_t k = 0; k < kinds; k++)
-        if ((size_t)topology->kind[k].beads > s->most_beads)
-            s->most_beads = (size_t)topology->kind[k].beads;
     CHECK(mf_sample_blocks_init(&s->blocks, planned));
     NEW_ARRAY(s->gyration, kinds * s->room);
     NEW_ARRAY(s->end, kinds * s->room);
     NEW_ARRAY(s->ends, 3 * (s->lags + 1) * (size_t)topology->molecules);
     NEW_ARRAY(s->products, s->blocks.count * kinds * (s->lags + 1));
     NEW_ARRAY(s->origins, s->blocks.count * (s->lags + 1));
-    NEW_ARRAY(s->place, s->most_beads);
-    NEW_ARRAY(s->parent, kinds * s->most_beads);
-    NEW_ARRAY(s->order, kinds * s->most_beads);
-    for (size_t k = 0; k < kinds; k++)
-        mf_topology_walk(&topology->kind[k], s->order + k * s->most_beads,
-                         s->parent + k * s->most_beads);
+    CHECK(mf_whole_molecules_init(&s->whole, topology));
 done:
     return status;
 }
@@ -130,9 +101,7 @@ static void clear(void *state) {
     mf_memory_free(s->ends);
     mf_memory_free(s->products);
     mf_memory_free(s->origins);
-    mf_memory_free(s->place);
-    mf_memory_free(s->parent);
-    mf_memory_free(s->order);
+    mf_whole_molecules_clear(&s->whole);
     mf_sample_blocks_clear(&s->blocks);
     *s = (struct state){0};
 }
@@ -204,10 +173,10 @@ static enum status sample(void *state, struct simulation *simulation) {
         double gyration = 0, end = 0;
         for (int64_t m = 0; m < kind->count; m++) {
             double *vector = vectors + 3 * (kind->first + m);
-            make_whole(s, &simulation->particles, k, m);
+            mf_whole_molecules_make(&s->whole, &simulation->particles, k, m);
             gyration += find_gyration(s, &simulation->particles, kind, m);
             for (int d = 0; d < 3; d++) {
-                vector[d] = s->place[kind->beads - 1][d] - s->place[0][d];
+                vector[d] = s->whole.place[kind->beads - 1][d] - s->whole.place[0][d];
                 end += vector[d] * vector[d];
             }
         }

@@ -1,23 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file The density's waves (observe/density_waves.h) of a simulation's particles in its box.
+/// @file The density's waves (observe/density_waves.h) of a simulation's particles in its box: of
+/// its beads, or of the sites of its components (system/component_sites.h).
 #pragma once
 
 #include "observe/density_waves.h"
-#include "system/particles.h"
+#include "system/component_sites.h"
 
 struct particle_waves {
     struct density_waves waves;
-    uint32_t *place;                   ///< shape [count]: of an id among the particles
-    double unit[3];                    ///< 2π/L [1/λ]; 0 along what is no dimension
-    const struct particles *particles; ///< of the configuration that is looked at
+    struct component_sites sites;
+    double unit[3]; ///< 2π/L [1/λ]; 0 along what is no dimension
 };
 
 /// List the waves up to q_maximum [1/λ] of a box, in so many bins. `count` beads are of one type
-/// where the composition is not mixed. Must be cleared, also after a failure.
-/// Fails: as mf_density_waves_list; NO_MEMORY.
+/// where the composition is not mixed.
+/// @param[in] topology  of molecules that are one site each, or NULL: of beads
+/// Must be cleared, also after a failure. Fails: as mf_density_waves_list and mf_components_find;
+/// NO_MEMORY.
 enum status mf_particle_waves_init(struct particle_waves *waves, const struct box *box,
                                    const struct composition *composition, size_t count,
-                                   double q_maximum, size_t bins) MUST_USE;
+                                   const struct topology *topology, double q_maximum,
+                                   size_t bins) MUST_USE;
 void mf_particle_waves_clear(struct particle_waves *waves);
 
 /// Find ρ of all waves of a configuration. The same bits for any number of threads.

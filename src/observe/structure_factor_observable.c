@@ -41,9 +41,9 @@ static enum status begin(void *state, const void *settings, const struct simulat
     enum status status = STATUS_OK;
     struct state *s = state;
     const struct settings *const wish = settings;
-    status =
-        mf_particle_waves_init(&s->waves, &simulation->setup.box, &simulation->setup.composition,
-                               simulation->particles.count, wish->q_maximum, (size_t)wish->bins);
+    status = mf_particle_waves_init(&s->waves, &simulation->setup.box,
+                                    &simulation->setup.composition, simulation->particles.count,
+                                    NULL, wish->q_maximum, (size_t)wish->bins);
     CHECK(status == STATUS_BAD_INPUT ? mf_status_prefix(status, "structure_factor") : status);
     CHECK(mf_structure_factor_init(&s->factor, &s->waves.waves.plan, (size_t)plan->samples));
     NEW_ARRAY(s->numbers, mf_structure_factor_numbers(&s->factor));

@@ -255,12 +255,12 @@ static void put_normalisation(struct json_writer *writer, const struct fit_file 
 static void put_integrals(struct json_writer *writer, const struct fit_file *fit,
                           const struct verification *v) {
     const int kind = mf_kirkwood_buff_kind();
-    const struct composition *composition = &fit->scene.setup.composition;
+    const struct composition *components = &fit->files.kirkwood_buff.components;
     const struct target *target = &fit->problem.compared.target[kind];
     for (size_t pair = 0; pair < target->count; pair++) {
-        mf_kirkwood_buff_put(writer, "target_kirkwood_buff", composition, pair, target->value[pair],
+        mf_kirkwood_buff_put(writer, "target_kirkwood_buff", components, pair, target->value[pair],
                              target->error[pair]);
-        mf_kirkwood_buff_put(writer, "kirkwood_buff", composition, pair,
+        mf_kirkwood_buff_put(writer, "kirkwood_buff", components, pair,
                              v->observed.value[kind][pair], v->observed.error[kind][pair]);
     }
 }

@@ -3,6 +3,7 @@
 // Integrals of Kirkwood and Buff as targets. A mixture with known potentials; its g(r) is known to
 // their cutoff, and tilted within its errors. By g alone the fit's integrals are several errors
 // off; with those of a simulation of the truth they agree. And what is refused.
+#include "shared/integrals.h"
 #include "shared/results.h"
 #include "shared/run_program.h"
 #include "shared/small_inputs.h"
@@ -44,27 +45,9 @@ static const char head[] =
     "\"method\": {" PLAN
     "},\n\"target\": {\"rdf\": {" RDF("A-A") ", " RDF("A-B") ", " RDF("B-B") "}";
 
-static const char *const pairs[] = {"A-A", "A-B", "B-B"};
-static const double tilt = 0.06, wanted_error = 0.04;
+static const struct integrals integrals = {{"A-A", "A-B", "B-B"}, 3, 0.04};
+static const double tilt = 0.06;
 static struct run_program_result result;
-
-/// g of a pair type, larger or smaller than it was measured, with an error as large.
-static void write_tilted(struct temporary_folder *folder, const char *pair, double factor) {
-    char name[64], out[8192] = "";
-    snprintf(name, sizeof name, "truth/rdf_%s.tsv", pair);
-    char *text = temporary_folder_read(name);
-    size_t length = 0;
-    for (const char *line = text; line && *line; line = strchr(line, '\n')) {
-        double r, g;
-        line += *line == '\n';
-        if (sscanf(line, "%lf %lf", &r, &g) == 2)
-            length += (size_t)snprintf(out + length, sizeof out - length, "%g %g %g\n", r,
-                                       g * factor, tilt);
-    }
-    snprintf(name, sizeof name, "g_%s.tsv", pair);
-    temporary_folder_write(folder, name, out, length);
-    free(text);
-}
 
 static int enter(void **state) {
     if (small_inputs_enter_without_gnuplot(state) != 0)
@@ -72,60 +55,37 @@ static int enter(void **state) {
     small_inputs_write(*state, "truth.json", scene, NULL, NULL);
     RUN_PROGRAM(&result, "simulate", "truth.json", "-o", "truth");
     run_program_assert_code(&result, 0);
-    write_tilted(*state, "A-A", 1 - tilt);
-    write_tilted(*state, "A-B", 1 + tilt);
-    write_tilted(*state, "B-B", 1 - tilt);
+    integrals_tilt(*state, "A-A", 1 - tilt, tilt);
+    integrals_tilt(*state, "A-B", 1 + tilt, tilt);
+    integrals_tilt(*state, "B-B", 1 - tilt, tilt);
     return 0;
 }
 
 /// The run with the truth's integrals, fitted or not.
 static void write_run(struct temporary_folder *folder, const char *file, const char *fitted,
                       double error, const char *plan) {
-    char text[4096], key[64];
-    int length = snprintf(text, sizeof text, "%s, \"kirkwood_buff\": {\"q_maximum\": 2.2, ", head);
-    for (int k = 0; k < 3; k++) {
-        snprintf(key, sizeof key, "kirkwood_buff_%s", pairs[k]);
-        length += snprintf(text + length, sizeof text - (size_t)length,
-                           "\"%s\": {\"value\": %.6g, \"error\": %g}, ", pairs[k],
-                           results_number("truth/summary.json", key), error);
-    }
-    snprintf(text + length, sizeof text - (size_t)length, "\"fitted\": \"%s\"}}}\n", fitted);
+    char text[4096], members[1024];
+    integrals_of_truth(&integrals, error, members, sizeof members);
+    snprintf(text, sizeof text,
+             "%s, \"kirkwood_buff\": {\"q_maximum\": 2.2, %s, \"fitted\": \"%s\"}}}\n", head,
+             members, fitted);
     small_inputs_write(folder, file, text, PLAN, plan);
 }
 
-/// The integral that is farthest off, in standard errors of both.
-static double find_farthest(const char *folder) {
-    double farthest = 0;
-    for (int k = 0; k < 3; k++) {
-        char file[64], key[64];
-        snprintf(file, sizeof file, "%s/summary.json", folder);
-        snprintf(key, sizeof key, "kirkwood_buff_%s", pairs[k]);
-        const double found = results_number(file, key);
-        snprintf(key, sizeof key, "target_kirkwood_buff_%s", pairs[k]);
-        const double wanted = results_number(file, key);
-        snprintf(key, sizeof key, "kirkwood_buff_error_%s", pairs[k]);
-        const double error = results_number(file, key);
-        print_message("%s: G of %s = %.3f(%.3f), truth %.3f\n", folder, pairs[k], found, error,
-                      wanted);
-        farthest = fmax(farthest, fabs(found - wanted) / hypot(error, wanted_error));
-    }
-    return farthest;
-}
-
 static void test_g_alone_leaves_the_integrals_of_a_mixture_off(void **state) {
-    write_run(*state, "alone.json", "no", wanted_error, PLAN);
+    write_run(*state, "alone.json", "no", integrals.error, PLAN);
     RUN_PROGRAM(&result, "fit", "alone.json", "-o", "alone");
     run_program_assert_code(&result, 0);
-    assert_true(find_farthest("alone") > 3);
+    assert_true(integrals_farthest(&integrals, "alone") > 3);
 }
 
 /// 3 errors: as often as the verification itself would say that the fit has not converged.
 static void test_fit_meets_the_integrals_of_a_mixture(void **state) {
-    write_run(*state, "both.json", "yes", wanted_error, PLAN);
+    write_run(*state, "both.json", "yes", integrals.error, PLAN);
     RUN_PROGRAM(&result, "fit", "both.json", "-o", "both", "--threads", "2");
     run_program_assert_code(&result, 0);
     assert_contains(result.err, "Kirkwood-Buff integral of A-B = ");
-    assert_true(find_farthest("both") < 3);
+    assert_true(integrals_farthest(&integrals, "both") < 3);
     assert_true(results_number("both/summary.json", "rdf_rmse") < 1.5 * tilt);
 }
 
@@ -134,7 +94,7 @@ static void test_fit_of_integrals_has_the_same_bits_when_it_is_resumed(void **st
     static const char *const same[] = {"potential_A-B.tsv", "rdf_A-B.tsv", "history.tsv", NULL};
     static const char *const pieces[] = {"fit",       "coarse.json", "-o", "pieces",
                                          "--threads", "1",           NULL};
-    write_run(*state, "coarse.json", "yes", 10 * wanted_error, SHORT_PLAN);
+    write_run(*state, "coarse.json", "yes", 10 * integrals.error, SHORT_PLAN);
     RUN_PROGRAM(&result, "fit", "coarse.json", "-o", "coarse", "--threads", "2");
     print_message("%s", result.err);
     run_program_in_pieces(result.code, pieces);
@@ -145,7 +105,7 @@ static void test_fit_of_integrals_has_the_same_bits_when_it_is_resumed(void **st
 static void test_integrals_of_one_state_are_fitted_with_the_bits_of_imc(void **state) {
     static const char *const same[] = {"potential_A-B.tsv", "rdf_A-B.tsv", "history.tsv", NULL};
     char *text;
-    write_run(*state, "plain.json", "yes", 10 * wanted_error, SHORT_PLAN);
+    write_run(*state, "plain.json", "yes", 10 * integrals.error, SHORT_PLAN);
     RUN_PROGRAM(&result, "fit", "plain.json", "-o", "plain", "--threads", "2");
     const int code = result.code;
     assert_contains(result.err, "Kirkwood-Buff integral of A-B = ");
@@ -174,15 +134,10 @@ static void test_optimiser_finds_a_repulsion_from_the_integrals_alone(void **sta
                 "\"equilibration\": 300, \"samples\": 150, \"every\": 20},\n"
                 "\"verification\": {\"replicas\": 2, \"equilibration\": 300, \"samples\": 400, "
                 "\"every\": 20},\n"
-                "\"target\": {\"kirkwood_buff\": {\"q_maximum\": 2.2, %s, %s, %s}}}\n";
-    char run[4096], member[3][128];
-    for (int k = 0; k < 3; k++) {
-        char key[64];
-        snprintf(key, sizeof key, "kirkwood_buff_%s", pairs[k]);
-        snprintf(member[k], sizeof member[k], "\"%s\": {\"value\": %.6g, \"error\": 0.015}",
-                 pairs[k], results_number("truth/summary.json", key));
-    }
-    snprintf(run, sizeof run, text, member[0], member[1], member[2]);
+                "\"target\": {\"kirkwood_buff\": {\"q_maximum\": 2.2, %s}}}\n";
+    char run[4096], members[1024];
+    integrals_of_truth(&integrals, 0.015, members, sizeof members);
+    snprintf(run, sizeof run, text, members);
     small_inputs_write(*state, "number.json", run, NULL, NULL);
     RUN_PROGRAM(&result, "fit", "number.json", "-o", "number");
     run_program_assert_code(&result, 0);
@@ -192,11 +147,11 @@ static void test_optimiser_finds_a_repulsion_from_the_integrals_alone(void **sta
         fail_msg("conservative.A-B.a = %g +- %g, not 14", a, error);
 }
 
-/// One line that names file and key. @param[in] integrals  the members of the target
-static void assert_refused(struct temporary_folder *folder, const char *integrals,
+/// One line that names file and key. @param[in] members  of the target
+static void assert_refused(struct temporary_folder *folder, const char *members,
                            const char *replaced, const char *by, const char *words) {
     char text[4096];
-    snprintf(text, sizeof text, "%s, \"kirkwood_buff\": {%s}}}\n", head, integrals);
+    snprintf(text, sizeof text, "%s, \"kirkwood_buff\": {%s}}}\n", head, members);
     small_inputs_write(folder, "bad.json", text, replaced, by);
     RUN_PROGRAM(&result, "fit", "bad.json", "-o", "bad");
     print_message("%s", result.err);
@@ -215,7 +170,7 @@ static void test_fit_refuses_integrals_that_cannot_be_met(void **state) {
                    "kirkwood_buff.A-B.error");
     assert_refused(*state, GOOD ", \"B-A\": {\"value\": 0.1, \"error\": 0.01}", NULL, NULL,
                    "under its other name");
-    assert_refused(*state, "\"q_maximum\": 2.2", NULL, NULL, "names no pair type");
+    assert_refused(*state, "\"q_maximum\": 2.2", NULL, NULL, "names no pair of the scene");
     assert_refused(*state, "\"value\": 0.1, \"error\": 0.01", NULL, NULL, "target.kirkwood_buff");
     assert_refused(*state, "\"q_maximum\": 0.9, \"A-B\": {\"value\": 0.1, \"error\": 0.01}", NULL,
                    NULL, "all have one length");

@@ -32,7 +32,7 @@ static const char scene[] =
     "    \"bonds\": {\"spring\": " RING "}}},\n" SINGLE ",\n"
     "\"conservative\": {\"law\": \"soft-repulsion\"},\n"
     "\"rdf\": {\"range\": 2, \"bins\": 20}, \"bond_lengths\": {\"bins\": 50},\n"
-    "\"intermolecular_rdf\": {\"range\": 2, \"bins\": 20},\n"
+    "\"intermolecular_rdf\": {\"range\": 2, \"bins\": 20}, \"kirkwood_buff\": {\"q_maximum\": 2},\n"
     "\"bond_angles\": {\"bins\": 30}, \"dihedral_angles\": {\"bins\": 36},\n"
     "\"molecule_sizes\": {\"lags\": 10}, \"snapshots\": {\"every\": 400, \"formats\": [\"json\",\n"
     "\"lammps-dump\"]},\n"
@@ -54,6 +54,8 @@ static void write_inputs(struct temporary_folder *folder, const char *from, cons
 }
 
 static void test_molecules_go_on_with_the_same_bits(void **state) {
+    static const char *const integrals[] = {"kirkwood_buff_chain-chain", "kirkwood_buff_chain-W",
+                                            "kirkwood_buff_error_ring-W"};
     static struct run_program_result result;
     write_inputs(*state, NULL, NULL);
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "whole");
@@ -61,6 +63,9 @@ static void test_molecules_go_on_with_the_same_bits(void **state) {
     const char *const words[] = {"simulate", "scene.json", "-o", "pieces", NULL};
     run_program_in_pieces(0, words);
     results_assert_same("whole", "pieces", tables);
+    for (size_t k = 0; k < sizeof integrals / sizeof *integrals; k++)
+        results_assert_number("pieces/summary.json", integrals[k],
+                              results_number("whole/summary.json", integrals[k]));
     RUN_PROGRAM(&result, "simulate", "whole/used.json", "-o", "again", "--threads", "2");
     run_program_assert_code(&result, 0);
     results_assert_same("whole", "again", tables);

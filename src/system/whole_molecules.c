@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "system/whole_molecules.h"
+
+#include "base/memory.h"
+
+enum status mf_whole_molecules_init(struct whole_molecules *whole,
+                                    const struct topology *topology) {
+    enum status status = STATUS_OK;
+    const size_t kinds = (size_t)topology->kinds;
+    *whole = (struct whole_molecules){.topology = topology};
+    for (size_t k = 0; k < kinds; k++)
+        if ((size_t)topology->kind[k].beads > whole->most_beads)
+            whole->most_beads = (size_t)topology->kind[k].beads;
+    NEW_ARRAY(whole->place, whole->most_beads);
+    NEW_ARRAY(whole->parent, kinds * whole->most_beads);
+    NEW_ARRAY(whole->order, kinds * whole->most_beads);
+    for (size_t k = 0; k < kinds; k++)
+        mf_topology_walk(&topology->kind[k], whole->order + k * whole->most_beads,
+                         whole->parent + k * whole->most_beads);
+done:
+    return status;
+}
+
+void mf_whole_molecules_clear(struct whole_molecules *whole) {
+    mf_memory_free(whole->place);
+    mf_memory_free(whole->parent);
+    mf_memory_free(whole->order);
+    *whole = (struct whole_molecules){0};
+}
+
+void mf_whole_molecules_make(struct whole_molecules *whole, const struct particles *particles,
+                             int k, int64_t m) {
+    const struct topology_kind *kind = &whole->topology->kind[k];
+    const int *order = whole->order + (size_t)k * whole->most_beads;
+    const int *parent = whole->parent + (size_t)k * whole->most_beads;
+    for (int n = 0; n < kind->beads; n++) {
+        const int bead = order[n], from = parent[bead] < 0 ? order[0] : parent[bead];
+        const size_t here = particles->place[topology_id(kind, m, bead)];
+        const size_t there = particles->place[topology_id(kind, m, from)];
+        for (int d = 0; d < particles->box.dimensions; d++)
+            whole->place[bead][d] =
+                (n > 0 ? whole->place[from][d] : 0) +
+                box_nearest(particles->position[d][here] - particles->position[d][there],
+                            particles->box.length[d]);
+    }
+}
