@@ -121,14 +121,6 @@ void mf_population_forget_survey(struct population *population) {
     population->survey = (struct population_survey){.least = INFINITY};
 }
 
-void mf_population_tell_failure(const struct population *population, const char *why,
-                                char reason[INVERSE_REASON_SIZE]) {
-    if (population->surrogate.rows.added > 0)
-        snprintf(reason, INVERSE_REASON_SIZE, "%llu of %llu simulations succeeded, %s",
-                 (unsigned long long)population->surrogate.rows.added,
-                 (unsigned long long)population->totals.evaluations, why);
-}
-
 /// Columns of positions, one a dimension.
 static void split(const struct population *population, double *position, double *column[3]) {
     const struct simulation_setup *scene = &population->parametrisation->unknowns.problem->scene;
@@ -219,6 +211,7 @@ static void take(struct population *population, size_t index, const struct evalu
     memcpy(population->distances + index * TARGETS, result->distance, sizeof result->distance);
     totals->evaluations++;
     totals->steps += result->engine_steps;
+    mf_population_add_failure(&totals->failures, result);
     const bool better = result->error < totals->best_error ||
                         (result->error == totals->best_error && index < totals->best_index);
     if (!better || result->error >= OPTIMISER_FAILED)
@@ -337,6 +330,7 @@ void mf_population_take_streamed(struct population *population, const double *va
                                  size_t here) {
     population->totals.evaluations++;
     population->totals.steps += result->engine_steps;
+    mf_population_add_failure(&population->totals.failures, result);
     add(&population->survey, result->error);
     mf_population_remember(population, variables, result->error, features);
     if (here == 0)
