@@ -194,7 +194,10 @@ static void report(const struct population *population, size_t count,
     for (size_t k = 0; k < count; k++)
         if (population->errors[k] != UNMEASURED)
             add(&survey, population->errors[k]);
-    tell_survey(population, &survey, population->survey.evaluations, count, to);
+    if (count == 1 && population->singles > 0)
+        tell_survey(population, &survey, 0, population->singles, to);
+    else
+        tell_survey(population, &survey, population->survey.evaluations, count, to);
 }
 
 void mf_population_report(const struct population *population, size_t total,

@@ -56,6 +56,7 @@ struct population {
     double *best_position;          ///< where the best of this round ended
     uint32_t iteration, iterations; ///< for progress: of the method, at most
     double best;                    ///< for progress: the method's error so far, or NaN
+    size_t singles; ///< for progress: rounds of one candidate in an iteration; 0: that is one
     struct population_survey survey;
     struct population_totals {
         uint64_t rounds, evaluations, steps;

@@ -242,7 +242,7 @@ struct inverse_progress {
     uint32_t iteration;
     uint32_t iterations;  ///< at most
     uint64_t done, total; ///< parts of this iteration
-    double best;          ///< error of the best so far; not finite if not known yet
+    double best;          ///< inverse_step.error so far; not finite if not known yet
     double least, mean;   ///< of this iteration's candidates; not finite without
     uint64_t failures;    ///< simulations that left their temperature or blew up
 };

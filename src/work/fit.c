@@ -169,19 +169,16 @@ static enum status prepare(struct run *run, const char *file, const struct run_o
 /// Progress inside an iteration, and a checkpoint now and then.
 static void tell(void *context, const struct inverse_progress *p) {
     struct run *run = context;
-    char text[160], best[48] = "", least[48] = "", mean[64] = "";
-    const uint64_t done = p->iteration * p->total + p->done, total = p->iterations * p->total;
+    char text[160], error[64] = "", least[48] = "", mean[64] = "";
     if (isfinite(p->best))
-        snprintf(best, sizeof best, "  best %.4f", p->best);
+        snprintf(error, sizeof error, "  error %.4f so far", p->best);
     if (isfinite(p->least))
         snprintf(least, sizeof least, "  now least %.4f", p->least);
     if (isfinite(p->mean))
         snprintf(mean, sizeof mean, "  mean %.4f  failed %llu", p->mean,
                  (unsigned long long)p->failures);
-    snprintf(text, sizeof text, "iteration %u%s%s%s", p->iteration, best, least, mean);
-    if (run->progress.done_before == 0)
-        run->progress.done_before = done - 1;
-    mf_progress_tell(&run->progress, done, total, "evaluations", text);
+    snprintf(text, sizeof text, "iteration %u%s%s%s", p->iteration, error, least, mean);
+    mf_progress_tell_iteration(&run->progress, p, text);
     if (run->fit.method->keeps_parts &&
         mf_progress_seconds(&run->progress) - run->last_checkpoint > checkpoint_interval &&
         save(run) != STATUS_OK)
