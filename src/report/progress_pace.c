@@ -21,13 +21,17 @@ void mf_progress_pace_tell(struct progress_pace *pace, double clock, uint64_t do
 
 double mf_progress_pace_left(const struct progress_pace *pace, double clock, uint64_t done,
                              uint64_t total) {
+    // A period that takes longer than those before is said to be near its end until it is there.
+    static const double near = 0.1;
     const uint64_t last = pace->last.done;
+    if (done >= total)
+        return 0;
     if (last > pace->begin.done) {
         const double each =
             (pace->last.clock - pace->half.clock) / (double)(last - pace->half.done);
-        const uint64_t after = total > last + pace->period ? total - last - pace->period : 0;
+        const double now = fmin((double)pace->period, (double)(total - last));
         return fmax(each * (double)(total - last) - (clock - pace->last.clock),
-                    each * (double)after);
+                    each * ((double)(total - last) - now + near * (now - (double)(done - last))));
     }
     return done > pace->begin.done ? (clock - pace->begin.clock) * (double)(total - done) /
                                          (double)(done - pace->begin.done)
