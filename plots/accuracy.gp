@@ -9,9 +9,6 @@
 load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
 
 set datafile separator tab
-# A name that begins with < or | would be a command.
-table = "./" . system("printf %s \"$MESOFIT_TABLE\"")
-figure = system("printf %s \"$MESOFIT_FIGURE\"")
 wanted = real(system("awk '/^# wanted/ { print $3; exit }' < \"$MESOFIT_TABLE\""))
 names = system("awk -F '\t' '!/^#/ && NF > 1 && !seen[$1]++ { print $1 }' < \"$MESOFIT_TABLE\"")
 count = words(names)

@@ -1,11 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Where the particles are in the last snapshot, seen along z: discs of their size, in the colour of
-# their orientation or of their type, which fades with the distance in three dimensions.
-# Reads configuration.tsv, and of used.json the box, an obstacle, the types, and what the size of those without radii is.
+# their orientation or of their type, which fades with the distance in three dimensions, and bonds of
+# molecules as lines between them.
+# Reads configuration.tsv, whose comment tells how many rows are of each type, perhaps
+# configuration_bonds.tsv: the rows of the two beads of each bond, and of used.json the box, an obstacle,
+# and what the size of those without radii is.
 
 load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
 
 table = "configuration.tsv"
+bonds = "configuration_bonds.tsv"
+with_bonds = has(bonds)
 angle = column_of(table, "orientation")
 radius = column_of(table, "radius")
 rows = int(system("grep -cv '^#'" . from(table)))
@@ -18,8 +23,7 @@ obstacle(n) = real(system(sprintf("awk '/\"obstacle_centre\":/ { sub(/.*\\[/, \"
     END { print %d ? centre[%d] + 0 : radius + 0 }' used.json", n, n)))
 
 # How many there are of each type, in the order of their rows, and their names: "large 10 small 20".
-types = system("awk '/\"types\":/ { inside = 1; next } inside && /}/ { exit } \
-    inside { gsub(/[\",:]/, \" \"); print }' used.json")
+types = system("awk 'sub(/^# types: /, \"\") { gsub(/[^A-Za-z0-9_ ]/, \"\"); print; exit }'" . from(table))
 mixed = words(types) > 0
 
 # Hard particles without radii have 0.5; those that repel each other touch at the cutoff. Others are
@@ -30,16 +34,35 @@ usual = real(system(sprintf("awk '/\"conservative\":/ { inside = 1; next } /}/ {
     inside && repels && /\"cutoff\":/ { gsub(/[^0-9.eE-]/, \"\", $2); radius = $2 / 2 } \
     END { print radius ? radius : %g }' used.json", free)))
 
-# x, y, radius, and the orientation as a part of a turn or the number of the type; the highest last.
-discs = sprintf("< awk -v usual=%g -v angle=%d -v radius=%d -v types='%s' '\
-    BEGIN { n = split(types, t, \" \"); for (k = 2; k <= n; k += 2) end[k / 2] = (total += t[k]) } \
-    /^#/ { next } \
-    { row++; while (row > end[type + 1] && type + 1 < n / 2) type++; \
-      turn = angle ? $angle / 6.283185307179586 : 0; \
-      print $1, $2, radius ? $radius : usual, angle ? turn - int(turn) + (turn < int(turn)) : type + 0, $3 + 0 }'", \
-    usual, angle, radius, types) . from(table) . (dimensions == 3 ? " | LC_ALL=C sort -s -g -k 5" : "")
+# The box and the rows of both tables, as the programs below need them. The nearest image counts.
+both = sprintf("awk -v deep=%d -v X=%g -v Y=%g -v Z=%g ", dimensions == 3, edge(1), edge(2), dimensions == 3 ? edge(3) : 1)
+places = "function near(d, edge) { return d - edge * int(d / edge + (d < 0 ? -0.5 : 0.5)) } \
+    /^#/ { next } NR == FNR { row++; x[row] = $1; y[row] = $2; z[row] = deep ? $3 : 0 } "
+tables = table . (with_bonds ? " " . bonds : "")
+# Beads are small enough to see their bonds: a fifth of their mean length.
+fifth = !with_bonds ? 1e300 : real(system(both . "'" . places . "NR > FNR { count++; \
+    sum += sqrt(near(x[$2] - x[$1], X)^2 + near(y[$2] - y[$1], Y)^2 + near(z[$2] - z[$1], Z)^2) } \
+    END { print sum / count / 5 }' " . tables))
+size = low(usual, fifth)
+
+# Layers from the bottom up, so that bonds are behind what is in front of them. Of one that lies in
+# the part number `layer` of the depth:
+# x, y, radius, and the orientation as a part of a turn or the number of the type; the highest last;
+layers = with_bonds && dimensions == 3 ? 12 : 1
+shades = sprintf("BEGIN { n = split(\"%s\", t, \" \"); for (k = 2; k <= n; k += 2) end[k / 2] = (total += t[k]) } \
+    function here(z) { k = int(%d * z / Z); return (k < 0 ? 0 : k < %d ? k : %d) == layer } \
+    NR == FNR { while (row > end[type + 1] && type + 1 < n / 2) type++; turn = %d ? $%d / 6.283185307179586 : 0; \
+    shade[row] = %d ? turn - int(turn) + (turn < int(turn)) : type + 0 } ", types, layers, layers, layers - 1, angle, angle, angle)
+discs(layer) = "< " . both . sprintf("-v layer=%d '", layer) . places . shades . \
+    sprintf("here(z[row]) { print $1, $2, %d ? $%d : %g, shade[row], z[row] }' ", radius, radius, size) . table . \
+    (dimensions == 3 ? " | LC_ALL=C sort -s -g -k 5" : "")
+# x, y and the way to the middle of the bond, the same shade, and the depth: half a bond from each bead.
+halves(layer) = "< " . both . sprintf("-v layer=%d '", layer) . places . shades . \
+    "function half(a, b, c) { c = near(z[b] - z[a], Z) / 2; \
+    if (here(z[a] + c / 2)) print x[a], y[a], near(x[b] - x[a], X) / 2, near(y[b] - y[a], Y) / 2, shade[a], z[a] + c / 2 } \
+    NR > FNR { half($1, $2); half($2, $1) }' " . tables . " | LC_ALL=C sort -s -g -k 6"
 # Each once more before, white and a little larger, where there are few enough to see it.
-outlined = rows <= 5000 ? discs . " | awk '{ print $0, -1; print $0, 0 }'" : discs . " | awk '{ print $0, 0 }'"
+outlined(layer) = discs(layer) . (rows <= 5000 ? " | awk '{ print $0, -1; print $0, 0 }'" : " | awk '{ print $0, 0 }'")
 rim = 0.3
 # Of what is behind the rest the colour is a sixth, of what is in front all of it.
 strength(z) = dimensions == 3 ? (1 + 5 * low(1, high(0, z / edge(3)))) / 6 : 1
@@ -56,12 +79,19 @@ across = 640
 tall = high(180, low(1200, (across - left - right) * edge(2) / edge(1) + top + bottom))
 scale = low((across - left - right) / edge(1), (tall - top - bottom) / edge(2))
 # Discs at an edge of the box reach so far beyond it: the figure grows by that, the scale stays.
-if (radius > 0) { stats table using radius name "RADIUS" nooutput } else { RADIUS_max = usual }
+if (radius > 0) { stats table using radius name "RADIUS" nooutput } else { RADIUS_max = size }
 beyond = low(RADIUS_max, low(edge(1), edge(2)) / 4)
 across = ceil(across + 2 * beyond * scale)
 tall = ceil(tall + 2 * beyond * scale)
 # What pointsize makes a point of so many pixels' radius: measured.
 pointsize_of(kind, pixels) = kind eq "svg" ? pixels / 4.875 : high(0.05, (2 * pixels - 1) / 6)
+
+# The bonds and the beads of each layer.
+drawn_halves(layer) = !with_bonds ? "" : sprintf(", halves(%d) using 1:2:3:4:(faded(paint($5), strength($6))) " . \
+    "with vectors nohead linewidth %g linecolor rgb variable", layer, high(0.5, 0.9 * size * scale))
+drawn_discs(layer) = sprintf(", outlined(%d) using 1:2:(pointsize_of(kind, $3 * scale - (1 + $6) * rim)):($6 < 0 ? 0xffffff : faded(paint($4), strength($5))) " . \
+    "with points pointtype 7 pointsize variable linecolor rgb variable", layer)
+drawn(layer) = layer == layers ? "" : drawn_halves(layer) . drawn_discs(layer) . drawn(layer + 1)
 
 do for [kind in kinds] {
     eval open(kind, "configuration", across, tall)
@@ -85,9 +115,8 @@ do for [kind in kinds] {
     set cblabel "orientation"
     set key on outside right top vertical Left reverse noautotitle
     if (angle > 0) { set colorbox } else { unset colorbox }
-    plot NaN with points palette, \
-        for [k = 1:words(types) / 2] NaN with points pointtype 7 linecolor rgb colour_of(k - 1) title word(types, 2 * k - 1), \
-        outlined using 1:2:(pointsize_of(kind, $3 * scale - (1 + $6) * rim)):($6 < 0 ? 0xffffff : faded(paint($4), strength($5))) \
-            with points pointtype 7 pointsize variable linecolor rgb variable
+    eval "plot NaN with points palette, " . \
+        "for [k = 1:words(types) / 2] NaN with points pointtype 7 linecolor rgb colour_of(k - 1) title word(types, 2 * k - 1)" . \
+        drawn(0)
     eval close
 }

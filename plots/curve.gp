@@ -6,9 +6,6 @@
 
 load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
 
-# A name that begins with < or | would be a command.
-table = "./" . system("printf %s \"$MESOFIT_TABLE\"")
-figure = system("printf %s \"$MESOFIT_FIGURE\"")
 y = column_of(table, "result") > 0 ? 4 : 2
 # Symbols as the other figures have them, for what heads of columns call by plain letters.
 names = "of[\"r\"] = \"{/:Italic r}\"; of[\"q\"] = \"{/:Italic q}\"; of[\"time\"] = \"{/:Italic t}\"; " . \

@@ -39,7 +39,7 @@ do for [kind in kinds] {
     set bmargin at screen 0.125
     unset logscale y
     set yrange [0:V_max > 0 ? 1.1 * V_max : 1]
-    set ytics autofreq
+    set ytics step_of(V_max / 2)
     set format x "%h"
     set xlabel "generation"
     eval name_axis("diversity", 0.024)

@@ -7,16 +7,12 @@
 
 load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
 
-table = "./" . system("printf %s \"$MESOFIT_TABLE\"")
-figure = system("printf %s \"$MESOFIT_FIGURE\"")
 # The names of columns without their units, and the numbers of those that are drawn.
 heads = system("awk -F '\t' '/^#/ { sub(/^# */, \"\"); for (n = 1; n <= NF; n++) { sub(/\\[.*/, \"\", $n); printf \"%s \", $n } exit }'" . from(table))
 drawn = system("awk -F '\t' '/^#/ { sub(/^# */, \"\"); for (n = 2; n <= NF; n++) if ($n !~ /(_error|_boltzmann)\\[/) printf \"%d \", n; exit }'" . from(table))
-unit = system("awk -F '\t' '/^#/ { h = $1; sub(/^[^[]*\\[/, \"\", h); sub(/\\].*/, \"\", h); gsub(/lambda/, \"{/:Italic λ}\", h); gsub(/tau/, \"{/:Italic τ}\", h); print h; exit }'" . from(table))
-squared = system("awk -F '\t' '/^#/ { h = $2; sub(/^[^[]*\\[/, \"\", h); sub(/\\].*/, \"\", h); gsub(/lambda/, \"{/:Italic λ}\", h); print h; exit }'" . from(table))
-first = word(heads, 1)
+first = first_of(table)
 of_time = first eq "time" || first eq "sweeps"
-symbol = first eq "theta" ? "{/:Italic θ}" : first eq "phi" ? "{/:Italic φ}" : first eq "time" ? "{/:Italic t}" : "{/:Italic r}"
+symbol = symbol_of(first)
 
 stats table using 1 name "X" nooutput
 highest = 0
@@ -34,9 +30,9 @@ do for [kind in kinds] {
     eval open(kind, figure, 720, 440)
     set xrange [X_min > X_max / 4 ? X_min : low(0, X_min):X_max]
     set yrange [1.04 * lowest:end_of(highest)]
-    set xlabel first eq "sweeps" ? first : symbol . " / " . unit
-    set ylabel figure eq "molecule_motion" ? "⟨|Δ{/:Bold R}({/:Italic t})|^2⟩ / " . squared : of_time ? "⟨{/:Bold R}({/:Italic t})·{/:Bold R}(0)⟩ / ⟨{/:Italic R}²⟩" : "{/:Italic p}(" . symbol . ")"
-    set key right top vertical
+    set xlabel first eq "sweeps" ? first : per_unit(symbol, table, 1)
+    set ylabel figure eq "molecule_motion" ? per_unit("⟨|Δ{/:Bold R}({/:Italic t})|^2⟩", table, 2) : of_time ? "⟨{/:Bold R}({/:Italic t})·{/:Bold R}(0)⟩ / ⟨{/:Italic R}²⟩" : per_unit("{/:Italic p}(" . symbol . ")", table, 2)
+    set key tmargin right horizontal
     plot for [k = 1:words(drawn)] table using 1:(band_low(int(word(drawn, k)), int(word(drawn, k)) + 1)):(band_high(int(word(drawn, k)), int(word(drawn, k)) + 1)) \
             with filledcurves @band linecolor rgb colour_of(k - 1), \
         for [k = 1:words(drawn)] table using 1:int(word(drawn, k)) with lines \

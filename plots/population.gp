@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The potentials of the last generation, and what was found among and by them.
-# Reads population_potential.tsv: r, then one column a candidate, the best first; and potential.tsv:
-# r, phi, force, phi_error, perhaps r[nm], phi[kJ/mol].
+# Reads population_potential.tsv, which MESOFIT_TABLE names: r, then one column a candidate, the best
+# first; and potential.tsv: r, phi, force, phi_error, perhaps r[nm], phi[kJ/mol]. Of a mixture those of
+# one pair type.
 
 load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
 
-table = "potential.tsv"
-all = "population_potential.tsv"
-columns = int(system("awk -F '\t' '/^# *r/ { print NF; exit }' " . all))
+all = table
+table = "./" . all[strlen("./population_") + 1:strlen(all)]
+columns = int(system("awk -F '\t' '/^# *r/ { print NF; exit }'" . from(all)))
 nm = factor_of(table, "r[nm]", 1)
 kJ = factor_of(table, "phi[kJ/mol]", 2)
 phi_axis = in_units(table, "phi[kJ/mol]", "{/:Italic Φ}({/:Italic r}) / (kJ/mol)", phi_label)
@@ -26,7 +27,7 @@ do for [k = 2:columns] {
 bottom = bottom - 0.06 * (top - bottom)
 
 do for [kind in kinds] {
-    eval open(kind, "population", 720, 480)
+    eval open(kind, figure, 720, 480)
     set lmargin at screen 0.13
     set rmargin at screen 0.97
     set tmargin at screen 0.97

@@ -4,26 +4,7 @@
 # and, if it is there, potential_history.tsv: r, then one column an iteration.
 
 load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
-
-# Of a mixture "_A-B", the pair type.
-pair = system("printf %s \"$MESOFIT_PAIR\"")
-table = "potential" . pair . ".tsv"
-history = "potential" . pair . "_history.tsv"
-
-# Number of columns, and of the first and last iteration, from the header. Of many iterations
-# every n-th is drawn: more than `most_lines` cannot be told apart.
-most_lines = 16
-columns = 1
-if (has(history)) {
-    found = system("awk -F '\t' '/^#/ { count = split($0, name, FS) } END { \
-        gsub(/\\[.*|[^0-9]/, \"\", name[2]); gsub(/\\[.*|[^0-9]/, \"\", name[count]); \
-        print count, name[2] + 0, name[count] + 0 }'" . from(history))
-    columns = int(word(found, 1))
-    first = real(word(found, 2))
-    last = columns > 2 ? real(word(found, 3)) : first + 1
-}
-every = high(1, ceil((columns - 1) / real(most_lines)))
-iteration_of(column) = first + (last - first) * (column - 2.0) / high(1, columns - 2)
+load system("printf %s \"$MESOFIT_PLOTS\"") . "/iterations.gp"
 
 # In nm and kJ/mol where the table has them.
 nm = factor_of(table, "r[nm]", 1)
@@ -60,7 +41,7 @@ show_truth = !truth ? "" : ", table using ($1 * nm):(kJ * column(truth)) " . \
     "with lines title 'truth' @true_line"
 
 do for [kind in kinds] {
-    eval open(kind, "potential" . pair, 720, 480)
+    eval open(kind, figure, 720, 480)
     set lmargin at screen 0.13
     set rmargin at screen 0.97
     set tmargin at screen 0.97
@@ -70,15 +51,8 @@ do for [kind in kinds] {
     set xlabel r_axis_of(table)
     eval name_axis(phi_axis, 0.024)
     set key at graph 0.985, graph 0.97 right top
-    if (columns > 1) {
-        set palette defined (0 "#d9e0e6", 1 "#41749c")
-        set cbrange [first:last]
-        set colorbox horizontal user origin graph 0.765, graph 0.74 - lower size graph 0.2, graph 0.02 \
-            noborder
-        set cbtics (first, last) scale 0 offset 0, 0.5
-        set label 2 "iteration" at graph 0.865, graph 0.785 - lower center
-    }
-    plot for [k = 2 + (columns - 2) % every:columns:every] history \
+    if (columns > 1) { eval iteration_bar(0.765, 0.74 - lower) }
+    plot for [k = oldest:columns:every] history \
             using ($1 * nm):(kJ * column(k)):(iteration_of(k)) with lines linewidth 0.9 linecolor palette, \
         0 linewidth 0.8 linecolor rgb ink, \
         @show_band table using ($1 * nm):(kJ * $2) with lines title "result" \

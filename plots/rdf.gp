@@ -4,10 +4,6 @@
 
 load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
 
-# Of a mixture "_A-B", the pair type.
-pair = system("printf %s \"$MESOFIT_PAIR\"")
-table = "rdf" . pair . ".tsv"
-
 combined(a, b) = sqrt(known(a)**2 + known(b)**2)
 
 nm = factor_of(table, "r[nm]", 1)
@@ -17,7 +13,7 @@ stats table using (high(abs($4 - $2), combined(3, 5))) name "D" nooutput
 limit = D_max > 0 ? 1.15 * D_max : 1
 
 do for [kind in kinds] {
-    eval open(kind, "rdf" . pair, 720, 560)
+    eval open(kind, figure, 720, 560)
     set multiplot
     set lmargin at screen 0.17
     set rmargin at screen 0.97

@@ -4,6 +4,11 @@
 set encoding utf8
 set minussign
 
+# What the program tells: the table, where a script draws one of several, and what the figure is to be
+# called. A name that begins with < or | would be a command.
+table = "./" . system("printf %s \"$MESOFIT_TABLE\"")
+figure = system("printf %s \"$MESOFIT_FIGURE\"")
+
 # A figure is drawn once for each kind, between eval open(…) and eval close: its file is
 # figures/<name>.<kind>, width and height count pixels of the SVG. The PNG has twice as many, for
 # print.
@@ -110,6 +115,16 @@ in_units(file, name, physical, reduced) = system(sprintf("awk -F '\t' -v name='%
 axis_of(file, name, symbol, reduced) = in_units(file, name . "[]", symbol . " / ", reduced)
 r_axis_of(file) = in_units(file, "r[nm]", "{/:Italic r} / nm", r_label)
 t_axis_of(file) = in_units(file, "sweeps[1]", "sweeps", in_units(file, "time[ps]", "{/:Italic t} / ps", t_label))
+
+# The unit of column n as a text, "nm^{-1}" for "1/nm", or "" where there is none.
+unit_of(file, n) = system(sprintf("awk -F '\t' '/^#/ && NF > 1 { h = $%d; if (!sub(/^[^[]*\\[/, \"\", h)) h = \"1]\"; sub(/\\].*/, \"\", h); \
+    if (h == \"1\") h = \"\"; if (sub(/^1\\//, \"\", h)) h = h \"^{-1}\"; gsub(/angstrom/, \"Å\", h); \
+    gsub(/lambda/, \"{/:Italic λ}\", h); gsub(/tau/, \"{/:Italic τ}\", h); print h; exit }'", n) . from(file))
+per_unit(symbol, file, n) = unit_of(file, n) eq "" ? symbol : symbol . " / " . unit_of(file, n)
+# How the first column of a molecule's table is called.
+symbol_of(first) = first eq "theta" ? "{/:Italic θ}" : first eq "phi" ? "{/:Italic φ}" : first eq "time" ? "{/:Italic t}" : "{/:Italic r}"
+# The first word of a table's heads, without its unit.
+first_of(file) = system("awk -F '\t' '/^#/ && NF > 1 { sub(/^# */, \"\"); sub(/\\[.*/, \"\", $1); print $1; exit }'" . from(file))
 
 # Dimensions of the scene whose results these are.
 dimensions = has("used.json") && int(system("grep -c '\"dimensions\":.*2' used.json || true")) ? 2 : 3

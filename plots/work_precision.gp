@@ -7,7 +7,6 @@
 load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
 
 set datafile separator tab
-table = "./" . system("printf %s \"$MESOFIT_TABLE\"")
 set logscale xy
 set format y "10^{%T}"
 set key top right

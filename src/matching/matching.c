@@ -185,6 +185,7 @@ static enum status create(void *memory, const struct inverse_method *method,
     CHECK(mf_individuals_init(&state->individuals, state->parametrisation.variables));
     if (is_asynchronous(method, parameters))
         CHECK(create_asynchronous(state));
+    state->population.singles = least_evaluations;
     state->population.iterations = most_iterations(method, problem, parameters);
 done:
     return status;

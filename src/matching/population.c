@@ -121,14 +121,6 @@ void mf_population_forget_survey(struct population *population) {
     population->survey = (struct population_survey){.least = INFINITY};
 }
 
-void mf_population_tell_failure(const struct population *population, const char *why,
-                                char reason[INVERSE_REASON_SIZE]) {
-    if (population->surrogate.rows.added > 0)
-        snprintf(reason, INVERSE_REASON_SIZE, "%llu of %llu simulations succeeded, %s",
-                 (unsigned long long)population->surrogate.rows.added,
-                 (unsigned long long)population->totals.evaluations, why);
-}
-
 /// Columns of positions, one a dimension.
 static void split(const struct population *population, double *position, double *column[3]) {
     const struct simulation_setup *scene = &population->parametrisation->unknowns.problem->scene;
@@ -202,7 +194,10 @@ static void report(const struct population *population, size_t count,
     for (size_t k = 0; k < count; k++)
         if (population->errors[k] != UNMEASURED)
             add(&survey, population->errors[k]);
-    tell_survey(population, &survey, population->survey.evaluations, count, to);
+    if (count == 1 && population->singles > 0)
+        tell_survey(population, &survey, 0, population->singles, to);
+    else
+        tell_survey(population, &survey, population->survey.evaluations, count, to);
 }
 
 void mf_population_report(const struct population *population, size_t total,
@@ -219,6 +214,7 @@ static void take(struct population *population, size_t index, const struct evalu
     memcpy(population->distances + index * TARGETS, result->distance, sizeof result->distance);
     totals->evaluations++;
     totals->steps += result->engine_steps;
+    mf_population_add_failure(&totals->failures, result);
     const bool better = result->error < totals->best_error ||
                         (result->error == totals->best_error && index < totals->best_index);
     if (!better || result->error >= OPTIMISER_FAILED)
@@ -337,6 +333,7 @@ void mf_population_take_streamed(struct population *population, const double *va
                                  size_t here) {
     population->totals.evaluations++;
     population->totals.steps += result->engine_steps;
+    mf_population_add_failure(&population->totals.failures, result);
     add(&population->survey, result->error);
     mf_population_remember(population, variables, result->error, features);
     if (here == 0)

@@ -33,6 +33,13 @@ struct population_survey {
     uint64_t failures;
 };
 
+/// What failed, and of which causes, since the fit began. What is added in another order is the
+/// same.
+struct population_failures {
+    uint64_t count[EVALUATE_FAILURES];
+    double coldest, hottest; ///< of those whose temperature was off, over what it should be
+};
+
 struct population {
     const struct parametrisation *parametrisation;
     struct population_parameters parameters;
@@ -49,6 +56,7 @@ struct population {
     double *best_position;          ///< where the best of this round ended
     uint32_t iteration, iterations; ///< for progress: of the method, at most
     double best;                    ///< for progress: the method's error so far, or NaN
+    size_t singles; ///< for progress: rounds of one candidate in an iteration; 0: that is one
     struct population_survey survey;
     struct population_totals {
         uint64_t rounds, evaluations, steps;
@@ -56,6 +64,7 @@ struct population {
         bool warm;           ///< whether there is a position to begin with
         double best_error;   ///< of this round
         uint64_t best_index;
+        struct population_failures failures;
     } totals;
 };
 
@@ -128,7 +137,14 @@ enum status mf_population_write(const struct population *population,
 
 void mf_population_forget_survey(struct population *population);
 
-/// Say into `reason` that simulations succeeded, but `why` there is no result; nothing if none did.
+/// @name What failed, and why (matching/population_failures.c)
+
+/// Add a simulation, if it failed.
+void mf_population_add_failure(struct population_failures *failures,
+                               const struct evaluate_result *result);
+
+/// Say into `reason` how many simulations succeeded, but `why` there is no result, and what most of
+/// those that failed have failed of. Tested: test_population_failures.
 void mf_population_tell_failure(const struct population *population, const char *why,
                                 char reason[INVERSE_REASON_SIZE]);
 

@@ -120,6 +120,7 @@ enum status mf_population_check(struct population *population, const double *var
                                fresh.features + k * population->surrogate.features);
         population->totals.evaluations++;
         population->totals.steps += result->engine_steps;
+        mf_population_add_failure(&population->totals.failures, result);
     }
     for (int kind = 0; kind < TARGETS; kind++)
         check->each[kind] = mean_distance(fresh.results, count, kind);

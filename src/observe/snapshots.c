@@ -4,7 +4,7 @@
 // leaves the files of one that was not.
 #include "base/memory.h"
 #include "dynamics/solvent.h"
-#include "io/data_table.h"
+#include "io/configuration.h"
 #include "io/snapshot.h"
 #include "observe/measure.h"
 
@@ -19,8 +19,9 @@ struct state {
     struct observable_results results;
     int64_t begin, steps; ///< of the measurement
     int64_t taken;
-    int64_t size[SNAPSHOT_FORMATS]; ///< of the file of all snapshots of a format [bytes]
-    struct snapshot last;           ///< or the state before the first
+    int64_t size[SNAPSHOT_FORMATS];  ///< of the file of all snapshots of a format [bytes]
+    struct snapshot last;            ///< or the state before the first
+    const struct topology *topology; ///< of the simulation, or NULL
 };
 
 static enum status take(struct state *s, const struct simulation *simulation) {
@@ -43,7 +44,8 @@ static enum status begin(void *state, const void *settings, const struct simulat
     struct state *s = state;
     *s = (struct state){.settings = *(const struct settings *)settings,
                         .begin = plan->equilibration,
-                        .steps = plan->samples * plan->every};
+                        .steps = plan->samples * plan->every,
+                        .topology = simulation->particles.topology};
     if (s->settings.solvent && mf_collision_dynamics_solvent(simulation) == NULL)
         return mf_status_fail(STATUS_BAD_INPUT,
                               "snapshots.solvent: %s has no solvent; use \"collision-dynamics\", "
@@ -96,9 +98,10 @@ static bool is_given(const struct snapshot_column *column) {
 /// configuration.tsv: the last snapshot as a placement file, with which another scene can begin.
 static enum status write(const void *state, const struct observable_results *results) {
     enum { MOST = 3 * SNAPSHOT_MOST_COLUMNS };
-    const struct snapshot *snapshot = &((const struct state *)state)->last;
+    const struct state *s = state;
+    const struct snapshot *snapshot = &s->last;
     struct data_column columns[MOST];
-    char names[MOST][SNAPSHOT_NAME_SIZE + 16], path[OUTPUT_PATH_SIZE];
+    char names[MOST][SNAPSHOT_NAME_SIZE + 16], path[OUTPUT_PATH_SIZE], bonds[OUTPUT_PATH_SIZE];
     size_t n = 0;
     if (snapshot->own == 0)
         return STATUS_OK; // a solvent starts no scene
@@ -117,8 +120,10 @@ static enum status write(const void *state, const struct observable_results *res
             n++;
         }
     }
-    mf_observable_file(results, "configuration.tsv", path);
-    return mf_data_table_write_in(path, results->units, NULL, columns, n, snapshot->own);
+    mf_observable_file(results, CONFIGURATION_FILE, path);
+    mf_observable_file(results, CONFIGURATION_BONDS_FILE, bonds);
+    return mf_configuration_write(path, bonds, results->units, snapshot->composition, s->topology,
+                                  columns, n, snapshot->own);
 }
 
 static enum status sample(void *state, struct simulation *simulation) {
@@ -177,7 +182,7 @@ static const struct field fields[] = {
     FIELD_END,
 };
 
-static const char *const files[] = {"configuration.tsv", NULL};
+static const char *const files[] = {CONFIGURATION_FILE, NULL};
 
 const struct observable mf_snapshots = {
     .name = "snapshots",

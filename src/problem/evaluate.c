@@ -24,18 +24,21 @@ static bool has_collapsed(const struct simulation *simulation) {
 }
 
 static enum status equilibrate(struct simulation *simulation, const struct measure_plan *plan,
-                               double tolerance) {
+                               double tolerance, struct evaluate_result *result) {
     struct measure_temperature found;
     TRY(mf_measure_settle(simulation, plan, &found, NULL));
     const double wanted = simulation->setup.temperature;
     if (!mf_simulation_is_thermal(&simulation->setup))
         return STATUS_OK;
+    result->temperature = found.mean / wanted;
     // What is not known is not held against it.
+    result->failure = EVALUATE_TEMPERATURE;
     if (fabs(found.mean / wanted - 1) > tolerance + deviations * found.error / wanted)
         return mf_status_fail(STATUS_UNSTABLE,
                               "the temperature is %.3g after equilibration, not %.3g", found.mean,
                               wanted);
     // Only what is uniform by itself must stay so.
+    result->failure = EVALUATE_COLLAPSED;
     if (simulation->setup.interactions == 0 && has_collapsed(simulation))
         return mf_status_fail(STATUS_UNSTABLE, "the particles have collapsed into a drop");
     return STATUS_OK;
@@ -125,8 +128,10 @@ enum status mf_evaluate(const struct inverse_problem *problem,
         observed = &own;
     }
     CHECK(mf_measurement_init(&measurement, problem, &setup));
-    CHECK(equilibrate(&measurement.simulation, &plan, parameters->temperature_tolerance));
+    CHECK(equilibrate(&measurement.simulation, &plan, parameters->temperature_tolerance, result));
+    result->failure = EVALUATE_BLEW_UP;
     CHECK(sample(&measurement, candidate->discard_above, parameters, observed, result));
+    result->failure = EVALUATE_UNMEASURED;
     if (features)
         mf_targets_take_features(&problem->targets, observed->value, features, NULL);
     if (position)

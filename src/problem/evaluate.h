@@ -24,14 +24,25 @@ struct evaluate_candidate {
     uint64_t seed;
 };
 
+/// Why a simulation has no error.
+enum evaluate_failure {
+    EVALUATE_BLEW_UP,
+    EVALUATE_TEMPERATURE, ///< off after equilibration
+    EVALUATE_COLLAPSED,   ///< into a drop
+    EVALUATE_UNMEASURED,  ///< it went well, and yet some target has no distance
+    EVALUATE_FAILURES
+};
+
 /// Result of one short simulation.
 struct evaluate_result {
     struct target_distance distance[TARGETS];
-    double error;          ///< mf_targets_error
-    double noise;          ///< expected from the statistical errors of both
-    double variance;       ///< of the error
-    bool stopped;          ///< before its time
-    uint64_t engine_steps; ///< also when it failed
+    double error;                  ///< mf_targets_error
+    double noise;                  ///< expected from the statistical errors of both
+    double variance;               ///< of the error
+    bool stopped;                  ///< before its time
+    enum evaluate_failure failure; ///< if there is no error
+    double temperature;            ///< after equilibration over what it should be; 0: not reached
+    uint64_t engine_steps;         ///< also when it failed
 };
 
 /// One simulation of the problem's scene.

@@ -179,7 +179,7 @@ extern const double mf_inverse_noise_margin;
 enum { INVERSE_FLAT = 2 };
 
 /// Numbers of a method's own in a row of the history, and characters of its reason.
-enum { INVERSE_EXTRA = 12, INVERSE_REASON_SIZE = 256 };
+enum { INVERSE_EXTRA = 12, INVERSE_REASON_SIZE = 384 };
 
 /// What g(r) leaves open of a potential: the ramp A (1 − r/r_c).
 struct inverse_ramp {
@@ -242,7 +242,7 @@ struct inverse_progress {
     uint32_t iteration;
     uint32_t iterations;  ///< at most
     uint64_t done, total; ///< parts of this iteration
-    double best;          ///< error of the best so far; not finite if not known yet
+    double best;          ///< inverse_step.error so far; not finite if not known yet
     double least, mean;   ///< of this iteration's candidates; not finite without
     uint64_t failures;    ///< simulations that left their temperature or blew up
 };

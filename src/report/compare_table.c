@@ -65,12 +65,18 @@ static const struct column columns[] = {
     {"simulations", false, AT(evaluations), "%.0f", 0},
     {"steps", false, AT(engine_steps), "%.0f", 0},
     {"time/s", false, AT(seconds), "%.1f", 0},
+    {"error/noise", false, AT(error_over_noise), "%.2f", 0},
+    {"worst", true, AT(worst), NULL, 0},
     {"rmse(g)", false, AT(rdf_rmse), NULL, AT(rdf_rmse_error)},
     {"noise", false, AT(rdf_noise), "%.2g", 0},
+    {"rmse(g_inter)", false, AT(intermolecular_rdf_rmse), NULL, AT(intermolecular_rdf_rmse_error)},
     {"rmse(E)", false, AT(etd_rmse), NULL, AT(etd_rmse_error)},
     {"noise(E)", false, AT(etd_noise), "%.2g", 0},
     {"rmse(VACF)", false, AT(vacf_rmse), NULL, AT(vacf_rmse_error)},
     {"rmse(MSD)", false, AT(msd_rmse), NULL, AT(msd_rmse_error)},
+    {"rmse(D)", false, AT(diffusion_rmse), NULL, AT(diffusion_rmse_error)},
+    {"rmse(p)", false, AT(pressure_rmse), NULL, AT(pressure_rmse_error)},
+    {"rmse(S)", false, AT(structure_factor_rmse), NULL, AT(structure_factor_rmse_error)},
     {"rmse(bonds)", false, AT(bond_lengths_rmse), NULL, AT(bond_lengths_rmse_error)},
     {"rmse(angles)", false, AT(bond_angles_rmse), NULL, AT(bond_angles_rmse_error)},
     {"rmse(dihedrals)", false, AT(dihedral_angles_rmse), NULL, AT(dihedral_angles_rmse_error)},
@@ -103,11 +109,14 @@ static void fill_cell(char *cell, const struct column *column,
                      value);
 }
 
-/// A number that no fit has gets no column.
+/// What no fit has gets no column.
 static bool is_shown(const struct column *column, const struct compared *fits, size_t count) {
-    for (size_t k = 0; k < count; k++)
-        if (column->is_text || isfinite(number_at(&fits[k].result.summary, column->value)))
+    for (size_t k = 0; k < count; k++) {
+        const struct result_summary *summary = &fits[k].result.summary;
+        if (column->is_text ? ((const char *)summary)[column->value] != '\0'
+                            : isfinite(number_at(summary, column->value)))
             return true;
+    }
     return false;
 }
 

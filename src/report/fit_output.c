@@ -2,7 +2,7 @@
 #include "report/fit_output.h"
 
 #include "base/memory.h"
-#include "io/data_table.h"
+#include "io/configuration.h"
 #include "io/votca.h"
 #include "observe/rdf_observable.h"
 
@@ -363,15 +363,17 @@ static enum status write_configuration(const struct fit_file *fit,
     const struct simulation_setup *setup = &fit->scene.setup;
     const int kinds = !simulation_has_velocities(setup) ? 1 : 2;
     struct data_column columns[6];
-    char path[OUTPUT_PATH_SIZE];
+    char path[OUTPUT_PATH_SIZE], bonds[OUTPUT_PATH_SIZE];
     size_t n = 0;
     for (size_t kind = 0; kind < (size_t)kinds; kind++)
         for (size_t d = 0; d < (size_t)setup->box.dimensions; d++)
             columns[n++] = (struct data_column){
                 names[kind][d],
                 verification->configuration + (3 * kind + d) * verification->particles, "%.17g"};
-    mf_run_folder_file(folder, "configuration.tsv", path);
-    return mf_data_table_write_in(path, &fit->scene.units, NULL, columns, n,
+    mf_run_folder_file(folder, CONFIGURATION_FILE, path);
+    mf_run_folder_file(folder, CONFIGURATION_BONDS_FILE, bonds);
+    return mf_configuration_write(path, bonds, &fit->scene.units, &setup->composition,
+                                  &fit->scene.molecules.molecules.topology, columns, n,
                                   verification->particles);
 }
 

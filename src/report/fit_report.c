@@ -80,8 +80,11 @@ static void say_changes(struct progress *to, const struct units *units,
                         const struct unknowns *unknowns, const struct fit_result *result) {
     const double energy = mf_units_factor(units, "k_B T_0");
     const double length = mf_units_factor(units, "lambda");
-    mf_progress_say(to, "error of the fit: %.4g at first, %.4g at the end", result->first_error,
-                    result->error);
+    if (isfinite(result->first_error))
+        mf_progress_say(to, "error of the fit: %.4g at first, %.4g at the end", result->first_error,
+                        result->error);
+    else if (isfinite(result->error))
+        mf_progress_say(to, "error of the fit: %.4g at the end", result->error);
     for (int kind = 0; kind < UNKNOWNS; kind++)
         for (size_t n = 0; result->first[kind] && n < mf_unknowns_curve_count(unknowns, kind);
              n++) {

@@ -75,11 +75,15 @@ void mf_progress_tell(struct progress *progress, uint64_t done, uint64_t total, 
     const double now = clock_seconds(), elapsed = now - progress->started;
     const double fresh = (double)(done - progress->done_before);
     const double rate = elapsed > 0 ? fresh / elapsed : 0;
+    if (progress->pace.period == 0)
+        progress->pace = mf_progress_pace_begin(progress->started, progress->done_before, 1);
+    mf_progress_pace_tell(&progress->pace, now, done);
+    const double seconds = mf_progress_pace_left(&progress->pace, now, done, total);
     const struct watcher *watcher = progress->watcher;
     const struct watcher_progress told = {done, total, unit, text, rate};
     char time[32] = "?", left[48];
-    if (fresh > 0)
-        format_duration(elapsed * (double)(total - done) / fresh, time);
+    if (!isnan(seconds))
+        format_duration(seconds, time);
     snprintf(left, sizeof left, "%s%s", progress->may_end_early ? "at most " : "", time);
     write_file(progress, &told, left);
     if (watcher)
@@ -93,6 +97,22 @@ void mf_progress_tell(struct progress *progress, uint64_t done, uint64_t total, 
             progress->terminal ? "" : "\n");
     fflush(stderr);
     progress->open_line = progress->terminal;
+}
+
+void mf_progress_tell_iteration(struct progress *progress, const struct inverse_progress *now,
+                                const char *text) {
+    if (progress->round == 0) {
+        progress->round = now->total;
+        progress->done_before = now->iteration * now->total + now->done - 1;
+        progress->pace =
+            mf_progress_pace_begin(progress->started, progress->done_before, now->total);
+    }
+    const uint64_t done =
+        now->iteration * progress->round + progress->round * now->done / now->total;
+    const uint64_t total = now->iterations * progress->round;
+    progress->told = done > progress->told ? done : progress->told;
+    mf_progress_tell(progress, progress->told, total > progress->told ? total : progress->told,
+                     "simulations", text);
 }
 
 void mf_progress_say(struct progress *progress, const char *format, ...) {

@@ -5,6 +5,8 @@
 #pragma once
 
 #include "io/units_scale.h"
+#include "problem/inverse.h"
+#include "report/progress_pace.h"
 #include "report/watcher.h"
 
 #include <stdbool.h>
@@ -17,6 +19,8 @@ struct progress {
     const char *folder;            ///< where progress.json is to be, or NULL; borrowed
     double next;                   ///< clock of the next one [s]
     uint64_t done_before;          ///< parts that a run before a restart had done
+    struct progress_pace pace;     ///< from the first word on
+    uint64_t round, told;          ///< of a fit: parts of an iteration, and the most that were told
     bool open_line;                ///< the terminal's line has no end yet
     bool may_end_early;            ///< the time left is the most that it may take
     const struct watcher *watcher; ///< told of the same, or NULL; borrowed
@@ -31,6 +35,12 @@ double mf_progress_seconds(const struct progress *progress);
 /// Tell that `done` of `total` parts are done; `text` says the rest. Adds rate and time left.
 void mf_progress_tell(struct progress *progress, uint64_t done, uint64_t total, const char *unit,
                       const char *text);
+
+/// The same of a fit inside an iteration, whose passes or rounds may be of any size: an iteration
+/// counts as many simulations as its first one, and what is done never becomes less.
+/// Tested: test_progress.
+void mf_progress_tell_iteration(struct progress *progress, const struct inverse_progress *now,
+                                const char *text);
 
 /// Remove progress.json, if there is a folder for it: nothing works there any more.
 void mf_progress_end(const struct progress *progress);

@@ -6,6 +6,7 @@
 #include "io/json.h"
 #include "io/output.h"
 #include "io/text_file.h"
+#include "report/result_distance.h"
 
 #include <errno.h>
 #include <math.h>
@@ -40,6 +41,7 @@ const struct field mf_result_summary_fields[] = {
     NUMBER(iterations, "1"),
     NUMBER(evaluations, "1"),
     NUMBER(engine_steps, "1"),
+    NUMBER(error_over_noise, "1"),
     DISTANCE(rdf, "1"),
     DISTANCE(etd, "1"),
     DISTANCE(vacf, "lambda^2/tau^2"),
@@ -212,6 +214,7 @@ static enum status read_summary(struct result_summary *summary, const char *file
     read_length_unit(&root, summary);
     read_units(&root, &summary->units);
     read_old_truth(&root, summary);
+    mf_result_distance_find(summary);
     if (is_simulation(summary))
         read_simulated_diffusion(&root, summary);
     else if (root.item && !has_distance(&root))

@@ -12,6 +12,8 @@
 struct result_summary {
     char status[FIELD_TEXT_SIZE], method[FIELD_TEXT_SIZE], version[FIELD_TEXT_SIZE];
     double seconds, threads, iterations, evaluations, engine_steps;
+    double error_over_noise; ///< of all targets: see report/result_distance.h
+    char worst[64];          ///< the target that is farthest off by its noise, and how far
     double rdf_rmse, rdf_rmse_error, rdf_noise;
     double etd_rmse, etd_rmse_error, etd_noise;
     double vacf_rmse, vacf_rmse_error, vacf_noise;

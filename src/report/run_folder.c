@@ -2,6 +2,7 @@
 #include "report/run_folder.h"
 
 #include "base/ranks.h"
+#include "io/configuration.h"
 #include "io/json.h"
 #include "io/snapshot.h"
 #include "observe/observable.h"
@@ -30,6 +31,7 @@ enum {
 static const char *const results[] = {
     "summary.json",
     PROGRESS_FILE,
+    CONFIGURATION_BONDS_FILE,
     "target.json",
     "history.tsv",
     "timing.tsv",

@@ -169,19 +169,16 @@ static enum status prepare(struct run *run, const char *file, const struct run_o
 /// Progress inside an iteration, and a checkpoint now and then.
 static void tell(void *context, const struct inverse_progress *p) {
     struct run *run = context;
-    char text[160], best[48] = "", least[48] = "", mean[64] = "";
-    const uint64_t done = p->iteration * p->total + p->done, total = p->iterations * p->total;
+    char text[160], error[64] = "", least[48] = "", mean[64] = "";
     if (isfinite(p->best))
-        snprintf(best, sizeof best, "  best %.4f", p->best);
+        snprintf(error, sizeof error, "  error %.4f so far", p->best);
     if (isfinite(p->least))
         snprintf(least, sizeof least, "  now least %.4f", p->least);
     if (isfinite(p->mean))
         snprintf(mean, sizeof mean, "  mean %.4f  failed %llu", p->mean,
                  (unsigned long long)p->failures);
-    snprintf(text, sizeof text, "iteration %u%s%s%s", p->iteration, best, least, mean);
-    if (run->progress.done_before == 0)
-        run->progress.done_before = done - 1;
-    mf_progress_tell(&run->progress, done, total, "evaluations", text);
+    snprintf(text, sizeof text, "iteration %u%s%s%s", p->iteration, error, least, mean);
+    mf_progress_tell_iteration(&run->progress, p, text);
     if (run->fit.method->keeps_parts &&
         mf_progress_seconds(&run->progress) - run->last_checkpoint > checkpoint_interval &&
         save(run) != STATUS_OK)
@@ -314,11 +311,12 @@ static void tell_unconverged(const struct run *run) {
 /// A result whose verification blows up leaves a summary that says so.
 static enum status write_unstable(struct run *run) {
     const struct fit_result result = result_so_far(run, STATUS_UNSTABLE);
-    mf_status_prefix(STATUS_UNSTABLE, "the verification of what was fitted%s",
-                     isfinite(run->standing.error) ? ""
-                     : run->standing.reason[0]     ? " (the fit has no result)"
-                                                   : " (not one simulation of the fit succeeded)");
-    char reason[512];
+    if (isfinite(run->standing.error))
+        mf_status_prefix(STATUS_UNSTABLE, "the verification of what was fitted");
+    else
+        mf_status_prefix(STATUS_UNSTABLE, "the verification of what was fitted (no result%s%s)",
+                         run->standing.reason[0] ? ": " : "", run->standing.reason);
+    char reason[1024];
     snprintf(reason, sizeof reason, "%s", mf_status_message());
     TRY(mf_fit_output_summary(&run->fit, &run->unknowns, &result, &run->folder));
     mf_run_folder_draw(&run->folder);

@@ -2,7 +2,6 @@
 #include "base/memory.h"
 #include "problem/unknowns.h"
 #include "work/explain.h"
-#include "input/target_sanity.h"
 #include "work/fit.h"
 #include "input/fit_states.h"
 #include "work/fit_tasks.h"
@@ -86,8 +85,7 @@ static enum status print_targets(const struct fit_file *state) {
         printf("State \"%s\":\n", state->name);
     for (size_t k = 0; k < state->choices.count; k++)
         printf("chosen: %s\n", state->choices.line[k]);
-    return mf_target_sanity_tell(&state->files, &state->scene,
-                                 &(struct target_sanity_listener){print_line, stdout});
+    return mf_fit_tell_state(state, &(struct target_sanity_listener){print_line, stdout});
 }
 
 /// The method refuses what it cannot fit when it is created.

@@ -1,10 +1,62 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "work/fit_tell.h"
 
-#include "input/target_sanity.h"
+#include "system/attributes.h"
+
+#include <math.h>
+#include <stdio.h>
 
 static void say_line(void *progress, const char *line) {
     mf_progress_say(progress, "%s", line);
+}
+
+static double variance_of(const struct target_bonded *bond) {
+    double sum = 0, mean = 0, square = 0;
+    for (size_t k = 0; k < bond->bins.count; k++) {
+        const double q = bonded_bins_centre(&bond->bins, k);
+        sum += bond->value[k];
+        mean += bond->value[k] * q;
+        square += bond->value[k] * q * q;
+    }
+    return square / sum - pow(mean / sum, 2);
+}
+
+/// A bond whose length has the variance s² oscillates with Omega^2 = 2 k_B T/(m s²). Steps Delta t
+/// of Verlet's kind make the variance too large by a share of (Omega Delta t)²/4, and blow up at 1.
+static void warn_of_step(const struct fit_file *fit,
+                         const struct target_sanity_listener *listener) {
+    static const double coarse = 0.05, fine = 0.003;
+    const struct simulation_setup *setup = &fit->scene.setup;
+    const struct units *units = &fit->scene.units;
+    const struct target_groups *bonds = &fit->files.groups[TOPOLOGY_BOND];
+    const struct attributes_range masses = mf_attributes_span(&setup->attribute[ATTRIBUTES_MASS]);
+    const double mass = masses.maximum > 0 ? masses.minimum : 1;
+    const bool own = fit->verification.time_step > 0;
+    const double step = own ? fit->verification.time_step : setup->time_step;
+    const double time = mf_units_factor(units, "tau");
+    char unit[UNITS_NAME_SIZE], harm[64];
+    mf_units_suffix(units, "tau", unit);
+    for (size_t g = 0; simulation_has_velocities(setup) && g < bonds->groups; g++) {
+        if (!target_groups_have(bonds, g))
+            continue;
+        const double share =
+            setup->temperature * step * step / (2 * mass * variance_of(&bonds->member[g]));
+        if (share < coarse)
+            continue;
+        snprintf(harm, sizeof harm, "make their variance too large by %.0f %%", 100 * share);
+        mf_target_sanity_say(
+            listener,
+            "mesofit: warning: %s.time_step: with %.3g%s the bonds \"%s\" %s in the "
+            "verification; %.2g%s would make their variance right within 0.3 %%",
+            own ? "verification" : "scene", step * time, unit, bonds->name[g],
+            share < 1 ? harm : "blow up", sqrt(fine / share) * step * time, unit);
+    }
+}
+
+enum status mf_fit_tell_state(const struct fit_file *fit,
+                              const struct target_sanity_listener *listener) {
+    warn_of_step(fit, listener);
+    return mf_target_sanity_tell(&fit->files, &fit->scene, listener);
 }
 
 static enum status tell_state(struct progress *to, const struct fit_file *fit) {
@@ -19,8 +71,7 @@ static enum status tell_state(struct progress *to, const struct fit_file *fit) {
     if (etd->left_out > 0)
         mf_progress_say(to, "target.etd: %zu of %zu cells of the target are not known and left out",
                         etd->left_out, (size_t)(etd->grid.times * etd->grid.bins));
-    return mf_target_sanity_tell(&fit->files, &fit->scene,
-                                 &(struct target_sanity_listener){say_line, to});
+    return mf_fit_tell_state(fit, &(struct target_sanity_listener){say_line, to});
 }
 
 const char *mf_fit_tell_timing(const struct fit_file *fit) {

@@ -3,11 +3,17 @@
 #pragma once
 
 #include "input/fit_file.h"
+#include "input/target_sanity.h"
 #include "report/progress.h"
 
 /// Say what is to be fitted, so that a wrong column or unit is seen before the work. Fails: as
 /// mf_target_sanity_tell.
 enum status mf_fit_tell_targets(struct progress *to, const struct fit_file *fit) MUST_USE;
+
+/// The lines about the targets of one state, and a warning if the steps of the verification are too
+/// long for the bonds among them. Fails: as mf_target_sanity_tell. Tested: test_fit_molecules.
+enum status mf_fit_tell_state(const struct fit_file *fit,
+                              const struct target_sanity_listener *listener) MUST_USE;
 
 /// A sentence if the results of a fit depend on timing, else NULL.
 const char *mf_fit_tell_timing(const struct fit_file *fit);

@@ -366,7 +366,8 @@ static void test_genetic_without_a_survivor_ends_and_says_so(void **state) {
     write_fit(*state, GENETIC("1e-9"));
     RUN_PROGRAM(&result, "fit", "run.json", "--quiet", "--force");
     run_program_assert_code(&result, UNCONVERGED);
-    assert_contains(result.err, "not one simulation of the fit succeeded");
+    assert_contains(result.err, "not one simulation of the fit succeeded; all ");
+    assert_contains(result.err, "times their temperature after \"equilibration\"");
     results_assert_table("out/history.tsv", 9, 3);
     char *history = temporary_folder_read("out/history.tsv");
     assert_contains(history, "\tnan\t");
@@ -381,7 +382,8 @@ static void test_genetic_without_a_survivor_ends_and_says_so(void **state) {
     free(text);
     RUN_PROGRAM(&result, "fit", "run.json", "--quiet", "--force");
     run_program_assert_code(&result, 1);
-    assert_contains(result.err, "not one simulation of the fit succeeded");
+    assert_contains(result.err, "not one simulation of the fit succeeded; all ");
+    assert_contains(result.err, " blew up: ");
     assert_contains(result.err, "unstable at step 1");
     results_assert_text("out/summary.json", "status", "unstable");
 }

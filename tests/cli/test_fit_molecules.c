@@ -216,6 +216,26 @@ static void test_fit_molecules_default_time_step_knows_stiff_laws(void **state) 
     assert_contains(result.out, "time step 0.0002 tau");
 }
 
+/// Bonds of k = 100 and mass 1: Omega² = 200, so that a step of 0.04 adds 8 % to their variance,
+/// and 0.005 hardly anything.
+static void test_fit_warns_of_steps_too_long_for_bonds(void **state) {
+    static const struct {
+        const char *step, *word;
+    } steps[] = {{"\"time_step\": 0.04", "too large by 8 %"}, {"\"time_step\": 0.2", "blow up"}};
+    static struct run_program_result result;
+    small_inputs_write(*state, "run.json", run, NULL, NULL);
+    RUN_PROGRAM(&result, "fit", "run.json", "--explain");
+    run_program_assert_code(&result, 0);
+    assert_null(strstr(result.out, "time_step"));
+    for (size_t k = 0; k < 2; k++) {
+        small_inputs_write(*state, "run.json", run, "\"time_step\": 0.005", steps[k].step);
+        RUN_PROGRAM(&result, "fit", "run.json", "--explain");
+        run_program_assert_code(&result, 0);
+        assert_contains(result.out, "warning: scene.time_step: with 0.");
+        assert_contains(result.out, steps[k].word);
+    }
+}
+
 struct wrong {
     const char *from, *to, *words[3];
 };
@@ -265,6 +285,8 @@ int main(void) {
                                         small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_fit_molecules_default_time_step_knows_stiff_laws,
                                         enter, small_inputs_leave),
+        cmocka_unit_test_setup_teardown(test_fit_warns_of_steps_too_long_for_bonds, enter,
+                                        small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_fit_molecules_refuses_what_cannot_be, enter,
                                         small_inputs_leave),
     };

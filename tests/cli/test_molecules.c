@@ -153,6 +153,23 @@ static void test_a_free_joint_has_the_distribution_of_a_sphere(void **state) {
     }
 }
 
+/// The bonds beside the last configuration are those of 50 chains and 20 rings, by how far their
+/// beads are apart; beads of a box of 6 that nothing binds are twice as far.
+static void check_bonds(const char *file, const char *bonds_file) {
+    enum { BONDS = 50 * 3 + 20 * 3, BEADS = 320 };
+    double x[3][BEADS], ends[2][BONDS];
+    for (int d = 0; d < 3; d++)
+        assert_int_equal(read_column(file, d, x[d], BEADS), BEADS);
+    for (int n = 0; n < 2; n++)
+        assert_int_equal(read_column(bonds_file, n, ends[n], BONDS), BONDS);
+    for (int k = 0; k < BONDS; k++) {
+        double square = 0;
+        for (int d = 0; d < 3; d++)
+            square += pow(remainder(x[d][(int)ends[0][k] - 1] - x[d][(int)ends[1][k] - 1], 6), 2);
+        assert_close(sqrt(square), 0.8, 0.55);
+    }
+}
+
 /// Snapshots tell the molecules, and a run can begin where another ended.
 static void test_configurations_carry_molecules_on(void **state) {
     static struct run_program_result result;
@@ -165,6 +182,7 @@ static void test_configurations_carry_molecules_on(void **state) {
     while (fgets(line, sizeof line, dump) && strncmp(line, "ITEM: ATOMS", 11) != 0)
         ;
     assert_string_equal(line, "ITEM: ATOMS id mol type x y z ix iy iz vx vy vz\n");
+    check_bonds("out/configuration.tsv", "out/configuration_bonds.tsv");
     // Types are W, A, B: the first of 60 single beads, behind 70 molecules, is molecule 71.
     assert_non_null(fgets(first, sizeof first, dump));
     assert_int_equal(strncmp(first, "1 71 1 ", 7), 0);

@@ -250,6 +250,7 @@ static void test_evaluate_is_a_score_when_the_potential_is_wild(void **state) {
             .threads = 1};
         assert_int_equal(measure(&problem, &table, &parameters, &result), STATUS_UNSTABLE);
         assert_in_range(result.engine_steps, 1, FEW_STEPS);
+        assert_int_equal(result.failure, EVALUATE_BLEW_UP);
         mf_table_clear(&table);
         fluid_clear(&fluid);
     }
@@ -276,6 +277,7 @@ static void test_evaluate_is_a_score_when_particles_collapse(void **state) {
         .threads = 1};
     assert_int_equal(measure(&problem, &table, &parameters, &result), STATUS_UNSTABLE);
     assert_contains(mf_status_message(), "collapsed");
+    assert_int_equal(result.failure, EVALUATE_COLLAPSED);
     mf_table_clear(&table);
     fluid_clear(&fluid);
 }

@@ -51,7 +51,7 @@ faults=$(
     only_in src/base/ranks.c 'include.*mpi\.h' 'MPI'
     only_in src/live/live_server.c 'include.*microhttpd\.h' 'libmicrohttpd'
     only_in src/optimise/nlopt_driver.c 'include.*nlopt\.h' 'NLopt'
-    only_in src/report/figures.c '"([^" ]*/)?gnuplot[" ]' 'gnuplot'
+    only_in src/report/figure_script.c '"([^" ]*/)?gnuplot[" ]' 'gnuplot'
     only_in src/bench/bench_lammps.c '"([^" ]*/)?lmp[" ]' 'LAMMPS'
     only_in src/report/program.c '\b(fork|vfork|popen|system|exec[lv]p?e?|posix_spawnp?) ?\(' \
         'starting a program'

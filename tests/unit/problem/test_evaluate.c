@@ -170,6 +170,8 @@ static void test_evaluate_fails_when_the_temperature_is_another(void **state) {
         mf_evaluate(&made.problem, &candidate, &made.parameters, NULL, NULL, NULL, &result),
         STATUS_UNSTABLE, "the temperature is");
     assert_int_equal(result.engine_steps, 20);
+    assert_int_equal(result.failure, EVALUATE_TEMPERATURE);
+    assert_close(result.temperature, 1, 0.5);
     fluid_clear(&made.fluid);
 }
 

@@ -118,11 +118,12 @@ static void test_numbers_are_those_of_the_summary(void **state) {
     snprintf(path, sizeof path, "%s/cmp/compare.tsv", root);
     assert_int_equal(mf_data_table_read(&table, path, 2), STATUS_OK);
     assert_int_equal(table.rows, 2);
-    assert_int_equal(table.columns, 13);
-    const double expected[] = {1,      12.25, 2,     3,    4,    80000, 0.01234,
-                               0.0004, 0.003, 1.001, 1.02, 3.25, 7.0};
-    for (size_t k = 0; k < 13; k++)
-        assert_true(table.values[13 + k] == expected[k]);
+    assert_int_equal(table.columns, 14);
+    const double ratio = 0.01234 / 0.003;
+    const double expected[] = {1,       12.25,  2,     3,     4,    80000, ratio,
+                               0.01234, 0.0004, 0.003, 1.001, 1.02, 3.25,  7.0};
+    for (size_t k = 0; k < 14; k++)
+        assert_close(table.values[14 + k], expected[k], 1e-14);
     assert_contains(table.header, "index[1]\tseconds[s]\tthreads[1]");
     assert_contains(table.comments, "# 1\tb\timc\tok\t0.1\n");
     mf_data_table_clear(&table);
@@ -167,7 +168,9 @@ static void test_distances_of_bonds_are_compared(void **state) {
     char *text = names_of("bonds/out", "little");
     assert_contains(text, "\tbond_lengths_rmse[1/lambda]\tbond_lengths_rmse_error[1/lambda]\t"
                           "bond_lengths_noise[1/lambda]\tbond_angles_rmse[1/degrees]\n");
-    assert_contains(text, "\n0\t0.1\t0.155\t0.007\t0.06\t0.0008\n1\t0.5\tnan\tnan\tnan\tnan\n");
+    // Nothing is known of the noise of g(r) and of the angles: 0.155/0.06 is all that there is.
+    assert_contains(text, "\n0\t2.583333333333333");
+    assert_contains(text, "\t0.1\t0.155\t0.007\t0.06\t0.0008\n1\tnan\t0.5\tnan\tnan\tnan\tnan\n");
     free(text);
     if (system("gnuplot --version >/dev/null 2>&1") != 0)
         skip();
@@ -184,7 +187,7 @@ static void test_distances_of_bonds_are_compared(void **state) {
 static void test_missing_numbers_are_nan(void **state) {
     (void)state;
     char *text = names_of("a/out", "little");
-    assert_contains(text, "\n1\tnan\tnan\tnan\tnan\tnan\t0.5\tnan");
+    assert_contains(text, "\n1\tnan\tnan\tnan\tnan\tnan\tnan\t0.5\tnan");
     free(text);
 }
 
@@ -320,25 +323,40 @@ static char *printed_by(const char *first, const char *second, bool quiet) {
 static void test_printed_table_is_rounded_and_aligned(void **state) {
     (void)state;
     char *text = printed_by("a/out", "little", false);
-    assert_string_equal(
-        text, "name    method  status  threads  iterations  simulations  steps  time/s    rmse(g)"
-              "  noise      T  T_conf     p\n"
-              "a       imc     ok            2           3            4  80000    12.2  0.0123(4)"
-              "  0.003  1.001   1.020  3.25\n"
-              "little  -       -             -           -            -      -       -        0.5"
-              "      -      -       -     -\n"
-              "the end\n");
+    assert_string_equal(text,
+                        "name    method  status  threads  iterations  simulations  steps  time/s"
+                        "  error/noise  worst      rmse(g)  noise      T  T_conf     p\n"
+                        "a       imc     ok            2           3            4  80000    12.2"
+                        "         4.11  rdf 4.1  0.0123(4)  0.003  1.001   1.020  3.25\n"
+                        "little  -       -             -           -            -      -       -"
+                        "            -  -              0.5      -      -       -     -\n"
+                        "the end\n");
     free(text);
 }
 
 static void test_printed_table_has_the_columns_of_any_fit(void **state) {
     (void)state;
     char *text = printed_by("weight/out", "little", false);
-    assert_string_equal(
-        text, "name    method  status     rmse(g)  rmse(E)  noise(E)          D  truth(omega)\n"
-              "weight  cma-es  converged        -    0.056    0.0027  0.0263(2)          0.42\n"
-              "little  -       -              0.5        -         -          -             -\n"
-              "the end\n");
+    assert_string_equal(text,
+                        "name    method  status     error/noise  worst   rmse(g)  rmse(E)  noise(E)"
+                        "          D  truth(omega)\n"
+                        "weight  cma-es  converged        20.74  etd 21        -    0.056    0.0027"
+                        "  0.0263(2)          0.42\n"
+                        "little  -       -                    -  -           0.5        -         -"
+                        "          -             -\n"
+                        "the end\n");
+    free(text);
+}
+
+/// Bonds off by 4 and angles by 2 of their noises; D has no noise, so that it has no place in it.
+static void test_targets_count_by_their_noise(void **state) {
+    (void)state;
+    make_fit("noisy/out",
+             "{\"bond_lengths_rmse\": 8, \"bond_lengths_noise\": 2, \"bond_angles_rmse\": 0.001,"
+             " \"bond_angles_noise\": 0.0005, \"diffusion_rmse\": 7, \"diffusion_noise\": 0}",
+             -0.5);
+    char *text = printed_by("noisy/out", "little", false);
+    assert_contains(text, " 3.16  bond_lengths 4 "); // sqrt((16 + 4)/2)
     free(text);
 }
 
@@ -451,6 +469,7 @@ int main(void) {
         cmocka_unit_test(test_names_tell_fits_apart),
         cmocka_unit_test(test_printed_table_is_rounded_and_aligned),
         cmocka_unit_test(test_printed_table_has_the_columns_of_any_fit),
+        cmocka_unit_test(test_targets_count_by_their_noise),
         cmocka_unit_test(test_error_in_brackets_has_sensible_digits),
         cmocka_unit_test(test_quiet_prints_nothing),
         cmocka_unit_test(test_faults_name_the_file),

@@ -85,6 +85,24 @@ static void test_words_of_tables_are_no_commands(void **state) {
     assert_true(figure_folders_drawn(folder, "pareto"));
 }
 
+/// Nor are the names of types that a configuration tells.
+static void test_names_of_types_are_no_commands(void **state) {
+    (void)state;
+    figure_folders_skip_without_gnuplot();
+    char folder[FIGURE_PATH];
+    figure_folders_make(folder, "types");
+    figure_folders_write(folder, "used.json", "{\n\t\"box\":\t[4, 4, 4]\n}\n");
+    figure_folders_write(folder, "configuration.tsv",
+                         "# types: A'; touch pwned; ' 1 \"; system('touch pwned'); \"B 1\n"
+                         "# x\ty\tz\n1\t1\t1\n2\t2\t2\n");
+    figure_folders_write(folder, "configuration_bonds.tsv",
+                         "# first\tsecond\n1\t2\n1\t900\nsystem(\"touch pwned\")\t-1\n");
+    if (mf_figures_draw(folder) != STATUS_OK)
+        fail_msg("%s", mf_status_message());
+    assert_false(has_come(folder, "pwned"));
+    assert_true(figure_folders_drawn(folder, "configuration"));
+}
+
 /// The table of a benchmark has the name that the user gave.
 static void test_names_of_a_benchmark_are_no_commands(void **state) {
     static const char table[] =
@@ -177,6 +195,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_names_of_tables_are_no_commands),
         cmocka_unit_test(test_words_of_tables_are_no_commands),
+        cmocka_unit_test(test_names_of_types_are_no_commands),
         cmocka_unit_test(test_names_of_a_benchmark_are_no_commands),
         cmocka_unit_test(test_unfinished_figures_are_none),
         cmocka_unit_test(test_figures_do_not_follow_links),

@@ -6,8 +6,10 @@
 #include "shared/is_close.h"
 #include "shared/testing.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 static const char blue[] = "rgb(  0, 114, 178)", vermillion[] = "rgb(213,  94,   0)";
 
@@ -34,12 +36,11 @@ static void test_particles_are_discs_of_their_size_and_type(void **state) {
     figure_folders_skip_without_gnuplot();
     char folder[FIGURE_PATH];
     figure_folders_make(folder, "types");
+    figure_folders_write(folder, "used.json",
+                         "{\n\t\"dimensions\":\t2,\n\t\"box\":\t[10, 20]\n}\n");
     figure_folders_write(
-        folder, "used.json",
-        "{\n\t\"dimensions\":\t2,\n\t\"box\":\t[10, 20],\n\t\"particles\":\t{\n"
-        "\t\t\"types\":\t{\n\t\t\t\"Big\":\t1,\n\t\t\t\"small\":\t2\n\t\t}\n\t}\n}\n");
-    figure_folders_write(folder, "configuration.tsv",
-                         "# x[lambda]\ty[lambda]\tradius\n5\t5\t2\n2\t2\t0.5\n8\t9\t0.5\n");
+        folder, "configuration.tsv",
+        "# types: Big 1 small 2\n# x[lambda]\ty[lambda]\tradius\n5\t5\t2\n2\t2\t0.5\n8\t9\t0.5\n");
     figure_folders_draw(folder);
     assert_true(figure_folders_drawn(folder, "configuration"));
     const double big = radius_of(folder, blue), small = radius_of(folder, vermillion);
@@ -69,6 +70,59 @@ static void test_particles_without_radii_are_as_large_as_their_forces_reach(void
         width[k] = radius_of(folder, blue) + 0.3;
     }
     assert_close_relative(width[1] / width[0], 3, 0.01);
+}
+
+/// Count the halves of bonds that begin at each of two colours; returns the longest [pixels].
+static double halves_of(const char *folder, int count[2]) {
+    char path[FIGURE_PATH + 64], line[16384];
+    double longest = 0;
+    snprintf(path, sizeof path, "%s/figures/configuration.svg", folder);
+    FILE *stream = fopen(path, "r");
+    assert_non_null(stream);
+    count[0] = count[1] = 0;
+    while (fgets(line, sizeof line, stream))
+        for (const char *at = line; (at = strstr(at, "<path stroke='rgb(")); at++) {
+            double x[2], y[2];
+            const int colour =
+                strncmp(at + strlen("<path stroke='"), blue, strlen(blue)) == 0 ? 0 : 1;
+            if (sscanf(strstr(at, "d='M"), "d='M%lf,%lf L%lf,%lf", &x[0], &y[0], &x[1], &y[1]) !=
+                    4 ||
+                (colour == 1 &&
+                 strncmp(at + strlen("<path stroke='"), vermillion, strlen(vermillion)) != 0))
+                continue;
+            count[colour]++;
+            longest = fmax(longest, hypot(x[1] - x[0], y[1] - y[0]));
+        }
+    fclose(stream);
+    return longest;
+}
+
+/// Bonds of 0.5 and 1.5, one of them over an edge of the box: beads are a fifth of the mean, and
+/// half a bond begins at each bead in the colour of its type.
+static void test_bonds_are_drawn_over_the_edges_of_the_box(void **state) {
+    (void)state;
+    figure_folders_skip_without_gnuplot();
+    for (int dimensions = 2; dimensions <= 3; dimensions++) {
+        char folder[FIGURE_PATH], text[256];
+        figure_folders_make(folder, dimensions == 2 ? "bonds-plane" : "bonds-space");
+        snprintf(text, sizeof text, "{\n\t\"dimensions\":\t%d,\n\t\"box\":\t[10, 10%s]\n}\n",
+                 dimensions, dimensions == 2 ? "" : ", 10");
+        figure_folders_write(folder, "used.json", text);
+        figure_folders_write(folder, "configuration.tsv",
+                             "# types: A 2 B 2\n# x[lambda]\ty[lambda]\tz[lambda]\n"
+                             "0.2\t5\t9.99\n4\t5\t9.99\n9.7\t5\t9.99\n5.5\t5\t9.99\n");
+        figure_folders_write(folder, "configuration_bonds.tsv",
+                             "# rows\n# first\tsecond\n1\t3\n2\t4\n");
+        figure_folders_draw(folder);
+        assert_true(figure_folders_drawn(folder, "configuration"));
+        assert_true(figure_folders_say(folder, "configuration", ">B<"));
+        int halves[2];
+        const double radius = radius_of(folder, blue) + 0.3, longest = halves_of(folder, halves);
+        assert_int_equal(halves[0], 2);
+        assert_int_equal(halves[1], 2);
+        // Half of the bond of 1.5 is 3.75 times a radius of a fifth of (0.5 + 1.5)/2.
+        assert_close_relative(longest / radius, 3.75, 0.02);
+    }
 }
 
 static const char grey[] = "<polygon fill = 'rgb(217, 217, 217)'";
@@ -169,6 +223,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_particles_are_discs_of_their_size_and_type),
         cmocka_unit_test(test_particles_without_radii_are_as_large_as_their_forces_reach),
+        cmocka_unit_test(test_bonds_are_drawn_over_the_edges_of_the_box),
         cmocka_unit_test(test_flow_shows_its_obstacle),
         cmocka_unit_test(test_pressure_is_over_lengths_of_as_many_dimensions),
         cmocka_unit_test(test_vectors_of_molecules_live_for_times_or_sweeps),

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file One figure, drawn by gnuplot with one of the scripts in plots/.
+#pragma once
+
+#include "base/status.h"
+#include "io/output.h"
+
+enum { FIGURE_SCRIPT_PATH_SIZE = OUTPUT_PATH_SIZE + 64 };
+
+/// Find the folder of the scripts. Fails: IO.
+enum status mf_figure_script_find(char plots[FIGURE_SCRIPT_PATH_SIZE]) MUST_USE;
+
+/// Draw figures/`figure`.svg and .png in `folder` with the script `plots`/`script`.gp, which finds
+/// the names of the table and of the figure in MESOFIT_TABLE and MESOFIT_FIGURE. A figure that
+/// fails is not there at all. Fails: IO with one line, NO_MEMORY. Tested: test_figures.
+enum status mf_figure_script_draw(const char *folder, const char *plots, const char *script,
+                                  const char *table, const char *figure) MUST_USE;

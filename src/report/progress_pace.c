@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "report/progress_pace.h"
+
+#include <math.h>
+
+struct progress_pace mf_progress_pace_begin(double clock, uint64_t done, uint64_t period) {
+    const struct progress_mark now = {clock, done};
+    return (struct progress_pace){period, now, now, now, now};
+}
+
+void mf_progress_pace_tell(struct progress_pace *pace, double clock, uint64_t done) {
+    const struct progress_mark now = {clock, done};
+    if (done / pace->period == pace->last.done / pace->period)
+        return;
+    pace->last = now;
+    if (now.done - pace->between.done < pace->between.done - pace->begin.done)
+        return;
+    pace->half = pace->between;
+    pace->between = now;
+}
+
+double mf_progress_pace_left(const struct progress_pace *pace, double clock, uint64_t done,
+                             uint64_t total) {
+    // A period that takes longer than those before is said to be near its end until it is there.
+    static const double near = 0.1;
+    const uint64_t last = pace->last.done;
+    if (done >= total)
+        return 0;
+    if (last > pace->begin.done) {
+        const double each =
+            (pace->last.clock - pace->half.clock) / (double)(last - pace->half.done);
+        const double now = fmin((double)pace->period, (double)(total - last));
+        return fmax(each * (double)(total - last) - (clock - pace->last.clock),
+                    each * ((double)(total - last) - now + near * (now - (double)(done - last))));
+    }
+    return done > pace->begin.done ? (clock - pace->begin.clock) * (double)(total - done) /
+                                         (double)(done - pace->begin.done)
+                                   : NAN;
+}

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// How long work still takes, by clocks that are made up.
+#include "report/progress.h"
+
+#include "shared/is_close.h"
+#include "shared/testing.h"
+
+#include <math.h>
+
+static void test_pace_is_unknown_before_the_first_part(void **state) {
+    (void)state;
+    const struct progress_pace pace = mf_progress_pace_begin(100, 0, 4);
+    assert_true(isnan(mf_progress_pace_left(&pace, 105, 0, 10)));
+}
+
+/// Ten seconds a part, also where a run before has done 50 of them.
+static void test_pace_of_even_parts_is_their_time(void **state) {
+    (void)state;
+    for (uint64_t before = 0; before <= 50; before += 50) {
+        struct progress_pace pace = mf_progress_pace_begin(100, before, 1);
+        for (uint64_t k = 1; k <= 20; k++) {
+            const double clock = 100 + 10 * (double)k;
+            mf_progress_pace_tell(&pace, clock, before + k);
+            assert_close(mf_progress_pace_left(&pace, clock, before + k, before + 20),
+                         200 - 10 * (double)k, 1e-9);
+        }
+    }
+}
+
+/// Eight simulations side by side end together: the time left runs down with the clock, not in
+/// jumps as they come in.
+static void test_pace_runs_down_inside_a_period(void **state) {
+    (void)state;
+    struct progress_pace pace = mf_progress_pace_begin(0, 0, 8);
+    for (uint64_t period = 1; period <= 2; period++)
+        for (uint64_t k = 1; k <= 8; k++)
+            mf_progress_pace_tell(&pace, 10 * (double)period, 8 * (period - 1) + k);
+    assert_close(mf_progress_pace_left(&pace, 20, 16, 40), 30, 1e-9);
+    assert_close(mf_progress_pace_left(&pace, 25, 16, 40), 25, 1e-9);
+    mf_progress_pace_tell(&pace, 29, 17);
+    assert_close(mf_progress_pace_left(&pace, 29, 17, 40), 21, 1e-9);
+    // One that takes longer than those before leaves the periods after it, and some of itself.
+    assert_true(mf_progress_pace_left(&pace, 90, 17, 40) > 20);
+    assert_true(mf_progress_pace_left(&pace, 90, 17, 40) < 25);
+    assert_true(mf_progress_pace_left(&pace, 90, 23, 24) > 0);
+    assert_close(mf_progress_pace_left(&pace, 90, 24, 24), 0, 0);
+}
+
+/// The first of ten periods takes ten times as long as the rest.
+static void test_pace_forgets_a_slow_beginning(void **state) {
+    (void)state;
+    struct progress_pace pace = mf_progress_pace_begin(0, 0, 2);
+    for (uint64_t period = 1; period <= 4; period++)
+        mf_progress_pace_tell(&pace, 90 + 10 * (double)period, 2 * period);
+    assert_close(mf_progress_pace_left(&pace, 130, 8, 20), 60, 1e-9);
+}
+
+static void keep(void *context, const struct watcher_progress *now) {
+    *(struct watcher_progress *)context = *now;
+}
+
+/// Passes of an iteration, which may be more than one and of other sizes, never take back what is
+/// done.
+static void test_iterations_go_on_when_their_passes_begin_anew(void **state) {
+    (void)state;
+    static const struct {
+        uint32_t iteration;
+        uint64_t done, total, told;
+    } words[] = {{0, 1, 4, 1}, {0, 4, 4, 4}, {0, 1, 4, 4}, {0, 4, 4, 4},
+                 {1, 1, 2, 6}, {1, 2, 2, 8}, {2, 1, 8, 8}, {2, 8, 8, 12}};
+    struct watcher_progress last = {0};
+    const struct watcher watcher = {.context = &last, .tell = keep};
+    struct progress progress = mf_progress_begin(true, &watcher);
+    for (size_t k = 0; k < sizeof words / sizeof *words; k++) {
+        const struct inverse_progress now = {.iteration = words[k].iteration,
+                                             .iterations = 3,
+                                             .done = words[k].done,
+                                             .total = words[k].total};
+        mf_progress_tell_iteration(&progress, &now, "");
+        assert_int_equal(last.done, words[k].told);
+        assert_int_equal(last.total, 12);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_pace_is_unknown_before_the_first_part),
+        cmocka_unit_test(test_pace_of_even_parts_is_their_time),
+        cmocka_unit_test(test_pace_runs_down_inside_a_period),
+        cmocka_unit_test(test_pace_forgets_a_slow_beginning),
+        cmocka_unit_test(test_iterations_go_on_when_their_passes_begin_anew),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
