@@ -67,6 +67,10 @@ double mf_hybrid_step_squared_frequency(enum topology_order order, double varian
     return joints * temperature / variance;
 }
 
+double mf_hybrid_step_wrong(const struct integrator *integrator) {
+    return integrator == &mf_aboba ? 0.025 : 0.25;
+}
+
 double mf_hybrid_step_fastest(const struct molecules *molecules, double temperature) {
     double length = INFINITY, fastest = 0;
     for (int g = 0; g < molecules->groups[TOPOLOGY_BOND]; g++)

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "curves/table.h"
+#include "dynamics/integrator.h"
 #include "forces/molecules.h"
 
 struct hybrid_step {
@@ -20,6 +21,11 @@ double mf_hybrid_step_variance(const struct bonded_curve *curve, enum topology_o
 /// a straight angle and more than that of others.
 double mf_hybrid_step_squared_frequency(enum topology_order order, double variance, double length,
                                         double temperature);
+
+/// The share of (Ω Δt)² by which an integrator makes the variance of a stiff bond wrong: a quarter
+/// for Verlet's kind (of harmonic bonds, exactly). Of aboba it was 0.015 in a melt of stiff bonds
+/// and angles (docs/results/molecules.md); more is reckoned with.
+double mf_hybrid_step_wrong(const struct integrator *integrator);
 
 /// ω² of the fastest group of molecules of mass 1 [1/τ²].
 double mf_hybrid_step_fastest(const struct molecules *molecules, double temperature);

@@ -66,20 +66,19 @@ static double shortest_bond(const struct fit_choice *c) {
     return length;
 }
 
-/// The variance of a bond's length is off by a share of (Ω Δt)²: a quarter by Verlet integrators
-/// (harmonic bonds, exactly), hardly by aboba, whose shares were 0.015 of stiff bonds and less of
-/// angles (docs/results/molecules.md).
 double mf_fit_defaults_stiff_step(const struct fit_choice *c) {
-    static const double allowed = 0.003, verlet = 0.25, aboba = 0.025;
-    const bool exact = mf_fit_choice_lacks(c->root, "scene", "dynamics") ||
-                       c->read->scene.setup.integrator == &mf_aboba;
+    static const double allowed = 0.003;
+    // Friction is chosen later, and then aboba is the default.
+    const struct integrator *integrator = mf_fit_choice_lacks(c->root, "scene", "dynamics")
+                                              ? &mf_aboba
+                                              : c->read->scene.setup.integrator;
     const struct molecules *molecules = &c->read->scene.molecules.molecules;
     const double length = shortest_bond(c);
     double fastest = 0;
     for (int order = 0; order < TOPOLOGY_ORDERS; order++)
         for (size_t g = 0; g < (size_t)molecules->groups[order]; g++)
             fastest = fmax(fastest, fastest_of(c, (enum topology_order)order, g, length));
-    return sqrt(allowed / ((exact ? aboba : verlet) * fastest));
+    return sqrt(allowed / (mf_hybrid_step_wrong(integrator) * fastest));
 }
 
 /// How candidates for ω are simulated: from the last configuration, as long as their targets look.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "work/fit_tell.h"
 
+#include "dynamics/hybrid_step.h"
 #include "system/attributes.h"
 
 #include <math.h>
@@ -21,8 +22,8 @@ static double variance_of(const struct target_bonded *bond) {
     return square / sum - pow(mean / sum, 2);
 }
 
-/// A bond whose length has the variance s² oscillates with Omega^2 = 2 k_B T/(m s²). Steps Delta t
-/// of Verlet's kind make the variance too large by a share of (Omega Delta t)²/4, and blow up at 1.
+/// A bond whose length has the variance s² oscillates with Ω² = 2 k_B T/(m s²). Steps Δt make the
+/// variance wrong by a share of (Ω Δt)², and blow up where that is 4.
 static void warn_of_step(const struct fit_file *fit,
                          const struct target_sanity_listener *listener) {
     static const double coarse = 0.05, fine = 0.003;
@@ -39,17 +40,18 @@ static void warn_of_step(const struct fit_file *fit,
     for (size_t g = 0; simulation_has_velocities(setup) && g < bonds->groups; g++) {
         if (!target_groups_have(bonds, g))
             continue;
-        const double share =
-            setup->temperature * step * step / (2 * mass * variance_of(&bonds->member[g]));
-        if (share < coarse)
+        const double turn =
+            2 * setup->temperature * step * step / (mass * variance_of(&bonds->member[g]));
+        const double share = turn * mf_hybrid_step_wrong(setup->integrator);
+        if (share < coarse && turn < 4)
             continue;
-        snprintf(harm, sizeof harm, "make their variance too large by %.0f %%", 100 * share);
+        snprintf(harm, sizeof harm, "make their variance wrong by %.0f %%", 100 * share);
         mf_target_sanity_say(
             listener,
             "mesofit: warning: %s.time_step: with %.3g%s the bonds \"%s\" %s in the "
             "verification; %.2g%s would make their variance right within 0.3 %%",
             own ? "verification" : "scene", step * time, unit, bonds->name[g],
-            share < 1 ? harm : "blow up", sqrt(fine / share) * step * time, unit);
+            turn < 4 ? harm : "blow up", sqrt(fine / share) * step * time, unit);
     }
 }
 
