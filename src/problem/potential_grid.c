@@ -15,16 +15,42 @@ static double most_pairs(const struct inverse_problem *problem, size_t bin) {
     return most;
 }
 
+/// Whether a target knows that there are pairs in a bin. A single pair of a whole measurement does
+/// not tell how rare they are: its g is as large as its error.
+static bool knows_pairs(const struct inverse_problem *problem, size_t bin) {
+    static const double errors = 2;
+    const struct target *rdf = &problem->targets.target[TARGET_RDF];
+    const double error = rdf->error ? rdf->error[bin] : 0;
+    return rdf->value[bin] > fmax(problem->core_threshold, errors * error);
+}
+
+/// The same of this problem's target or that of another state.
+static bool one_knows_pairs(const struct inverse_problem *problem, size_t bin) {
+    bool known = knows_pairs(problem, bin);
+    for (size_t s = 0; s < problem->states; s++)
+        known = known || knows_pairs(problem->state[s], bin);
+    return known;
+}
+
+/// Where the target is well known.
+static const double well = 0.1;
+
+/// The core ends where the bins begin that know of pairs, without a gap up to the first that is
+/// well known, or to the last one: few pairs nearer than that tell nothing of the bins between.
 static enum status find_core(struct potential_grid *grid, const struct inverse_problem *problem,
                              size_t pair) {
+    const size_t first = pair * grid->bins;
     size_t *core = &grid->core[pair];
     while (*core < grid->bins &&
-           most_pairs(problem, pair * grid->bins + *core) <= problem->core_threshold)
+           (most_pairs(problem, first + *core) <= well || !one_knows_pairs(problem, first + *core)))
         (*core)++;
+    while (*core > 0 && one_knows_pairs(problem, first + *core - 1))
+        (*core)--;
     if (*core + 3 > grid->bins) {
         char name[COMPOSITION_PAIR_NAME_SIZE];
         mf_composition_pair_name(&problem->scene.composition, (int)pair, name);
-        return mf_status_fail(STATUS_BAD_INPUT, "the target%s%s is nowhere above %g",
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "the target%s%s is nowhere above %g and two of its errors",
                               name[0] ? " of " : "", name, problem->core_threshold);
     }
     grid->known_of[pair] = grid->bins - *core;
@@ -35,16 +61,14 @@ static enum status find_core(struct potential_grid *grid, const struct inverse_p
 /// The first bin in which this problem's own target has pairs.
 static size_t first_seen(const struct potential_grid *grid, const struct inverse_problem *problem,
                          size_t pair) {
-    const double *g = problem->targets.target[TARGET_RDF].value + pair * grid->bins;
     size_t k = grid->core[pair];
-    while (k < grid->bins && g[k] <= problem->core_threshold)
+    while (k < grid->bins && !knows_pairs(problem, pair * grid->bins + k))
         k++;
     return k;
 }
 
 /// Where the known bins are.
 static void index_known(struct potential_grid *grid, const struct inverse_problem *problem) {
-    static const double well = 0.1;
     size_t n = 0;
     for (size_t pair = 0; pair < grid->pairs; pair++) {
         const size_t seen = first_seen(grid, problem, pair);

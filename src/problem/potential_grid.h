@@ -3,7 +3,8 @@
 /// behind them one for each group of bonds, angles or dihedrals (problem/bonded_grid.h).
 ///
 /// In each block of pairs the bin centres of the target, in three parts: the core, where the target
-/// is 0 and the potential is continued (mf_core_fill); the known bins; and the cutoff, the upper
+/// has no more pairs than two of its standard errors and the potential is continued (mf_core_fill);
+/// the known bins; and the cutoff, the upper
 /// edge of the last bin, where the potential is 0. It has one point more than bins.
 #pragma once
 

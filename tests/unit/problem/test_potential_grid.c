@@ -46,6 +46,47 @@ static void test_potential_grid_has_three_parts_when_the_target_has_a_core(void 
     mf_potential_grid_clear(&grid);
 }
 
+/// A bin with a single pair of a whole measurement: g is its own error. One in which there are
+/// more, but beyond which there is a gap, tells nothing of the gap.
+static void test_potential_grid_core_takes_in_single_pairs_when_errors_tell(void **state) {
+    (void)state;
+    double target[BINS], error[BINS];
+    struct potential_grid grid;
+    make_target(target);
+    struct inverse_problem problem = make_problem(target);
+    problem.targets.target[TARGET_RDF].error = error;
+    for (int k = 0; k < BINS; k++)
+        error[k] = 1e-3;
+    target[CORE - 1] = error[CORE - 1] = 0.05;
+    target[0] = error[0] = 0.3; // the least volume
+    assert_ok(mf_potential_grid_init(&grid, &problem));
+    assert_int_equal(grid.core[0], CORE);
+    mf_potential_grid_clear(&grid);
+    target[CORE - 3] = 0.05;
+    assert_ok(mf_potential_grid_init(&grid, &problem));
+    assert_int_equal(grid.core[0], CORE);
+    mf_potential_grid_clear(&grid);
+    error[CORE - 1] = 0.02;
+    target[CORE - 2] = 0.01;
+    assert_ok(mf_potential_grid_init(&grid, &problem));
+    assert_int_equal(grid.core[0], CORE - 3);
+    mf_potential_grid_clear(&grid);
+}
+
+/// Types that hardly meet have a core as others do.
+static void test_potential_grid_has_a_core_when_pairs_are_rare_everywhere(void **state) {
+    (void)state;
+    double target[BINS];
+    struct potential_grid grid;
+    make_target(target);
+    for (int k = 0; k < BINS; k++)
+        target[k] *= 0.01;
+    const struct inverse_problem problem = make_problem(target);
+    assert_ok(mf_potential_grid_init(&grid, &problem));
+    assert_int_equal(grid.core[0], CORE);
+    mf_potential_grid_clear(&grid);
+}
+
 /// Two states: the second one has pairs two bins nearer to each other.
 static void test_potential_grid_of_states_knows_which_one_saw_a_bin(void **state) {
     (void)state;
@@ -231,6 +272,8 @@ static void test_potential_grid_virials_are_those_of_a_changed_table(void **stat
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_potential_grid_has_three_parts_when_the_target_has_a_core),
+        cmocka_unit_test(test_potential_grid_core_takes_in_single_pairs_when_errors_tell),
+        cmocka_unit_test(test_potential_grid_has_a_core_when_pairs_are_rare_everywhere),
         cmocka_unit_test(test_potential_grid_of_states_knows_which_one_saw_a_bin),
         cmocka_unit_test(test_potential_grid_has_no_core_when_the_target_begins_at_once),
         cmocka_unit_test(test_potential_grid_refuses_when_the_target_is_empty),
