@@ -67,6 +67,11 @@ void mf_scene_molecules_clear(struct scene_molecules *molecules);
 enum status mf_scene_molecules_warn(struct scene_molecules *molecules,
                                     const struct topology_kind *kind) MUST_USE;
 
+/// The same of bonds that thermal motion alone makes longer than half of the box, more often than
+/// once in 10^5: a term sees nearest images. Tested: cli/test_molecules.
+void mf_scene_molecules_warn_of_box(struct scene_molecules *molecules, const struct box *box,
+                                    double temperature);
+
 /// Whether there are any.
 static inline bool scene_has_molecules(const struct scene_molecules *molecules) {
     return molecules->molecules.topology.kinds > 0;
