@@ -46,6 +46,9 @@ static enum status find_core(struct potential_grid *grid, const struct inverse_p
         (*core)++;
     while (*core > 0 && one_knows_pairs(problem, first + *core - 1))
         (*core)--;
+    size_t *empty = &grid->empty[pair];
+    while (*empty < *core && most_pairs(problem, first + *empty) <= problem->core_threshold)
+        (*empty)++;
     if (*core + 3 > grid->bins) {
         char name[COMPOSITION_PAIR_NAME_SIZE];
         mf_composition_pair_name(&problem->scene.composition, (int)pair, name);
@@ -133,6 +136,7 @@ enum status mf_potential_grid_init(struct potential_grid *grid,
     grid->points = grid->pair_points = grid->pairs * (bins->count + 1);
     grid->all_bins = grid->pair_bins = grid->pairs * bins->count;
     NEW_ARRAY(grid->core, grid->pairs);
+    NEW_ARRAY(grid->empty, grid->pairs);
     NEW_ARRAY(grid->known_of, grid->blocks);
     NEW_ARRAY(grid->group, grid->groups);
     for (size_t pair = 0; pair < grid->pairs; pair++)
@@ -154,6 +158,7 @@ done:
 
 void mf_potential_grid_clear(struct potential_grid *grid) {
     mf_memory_free(grid->core);
+    mf_memory_free(grid->empty);
     mf_memory_free(grid->known_of);
     mf_memory_free(grid->known_point);
     mf_memory_free(grid->known_bin);
@@ -174,11 +179,13 @@ bool mf_potential_grid_in_core(const struct potential_grid *grid, size_t point) 
 
 void mf_potential_grid_complete_pairs(const struct potential_grid *grid, double *phi) {
     for (size_t pair = 0; pair < grid->pairs; pair++) {
-        const size_t begin = mf_potential_grid_block(grid, pair), first = grid->core[pair];
+        const size_t begin = mf_potential_grid_block(grid, pair);
+        const size_t first = grid->core[pair], empty = grid->empty[pair];
         const double *r = grid->r + begin;
         double *block = phi + begin;
         const double slope = (block[first + 1] - block[first]) / (r[first + 1] - r[first]);
-        mf_core_fill(r, block, first, slope, grid->stiffness);
+        mf_core_fill(r + empty, block + empty, first - empty, slope, 0);
+        mf_core_fill(r, block, empty, slope, grid->stiffness);
         block[grid->bins] = 0;
     }
 }

@@ -65,6 +65,14 @@ static void test_potential_grid_core_takes_in_single_pairs_when_errors_tell(void
     target[CORE - 3] = 0.05;
     assert_ok(mf_potential_grid_init(&grid, &problem));
     assert_int_equal(grid.core[0], CORE);
+    // Without the bin at 0 some pairs come as near as CORE − 3: a line as far, then a parabola.
+    mf_potential_grid_clear(&grid);
+    target[0] = 0;
+    assert_ok(mf_potential_grid_init(&grid, &problem));
+    double phi[BINS + 1] = {[CORE] = 5, [CORE + 1] = 4};
+    mf_potential_grid_complete(&grid, phi);
+    assert_close(phi[CORE - 3], 8, rounding);
+    assert_close(phi[CORE - 5], 10 + 0.5 * 2000 * 0.2 * 0.2, 1e-9);
     mf_potential_grid_clear(&grid);
     error[CORE - 1] = 0.02;
     target[CORE - 2] = 0.01;
