@@ -163,8 +163,8 @@ struct inverse_problem {
     struct bonded_unknown group[INVERSE_MOST_BONDED];
     const char *mode[PAIR_MEMORY_MOST_MODES]; ///< names of the modes of memory; borrowed
     struct simulation_setup scene;            ///< all but the unknowns; its composition is set
-    double core_threshold; ///< g* beyond the core is above this, and two errors
-    double core_stiffness; ///< of the core (mf_core_fill) [k_B T_0/λ²]
+    double core_threshold;                    ///< g* beyond the core is above this, and two errors
+    double core_stiffness;                    ///< of the core (mf_core_fill) [k_B T_0/λ²]
     uint64_t seed;
     int threads;
 };

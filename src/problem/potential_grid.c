@@ -177,13 +177,27 @@ bool mf_potential_grid_in_core(const struct potential_grid *grid, size_t point) 
     return point % (grid->bins + 1) < grid->core[point / (grid->bins + 1)];
 }
 
+/// The slope with which Φ goes on into the core: between the first two known bins, or, where some
+/// pairs come nearer and these are noisy, to the first bin that is well known.
+static double find_slope(const struct potential_grid *grid, size_t pair, const double *r,
+                         const double *block) {
+    const size_t first = grid->core[pair];
+    const bool *well_known = grid->well_known;
+    size_t last = first + 1;
+    for (size_t before = 0; before < pair; before++)
+        well_known += grid->known_of[before];
+    while (grid->empty[pair] < first && last + 1 < grid->bins && !well_known[last - first])
+        last++;
+    return (block[last] - block[first]) / (r[last] - r[first]);
+}
+
 void mf_potential_grid_complete_pairs(const struct potential_grid *grid, double *phi) {
     for (size_t pair = 0; pair < grid->pairs; pair++) {
         const size_t begin = mf_potential_grid_block(grid, pair);
         const size_t first = grid->core[pair], empty = grid->empty[pair];
         const double *r = grid->r + begin;
         double *block = phi + begin;
-        const double slope = (block[first + 1] - block[first]) / (r[first + 1] - r[first]);
+        const double slope = find_slope(grid, pair, r, block);
         mf_core_fill(r + empty, block + empty, first - empty, slope, 0);
         mf_core_fill(r, block, empty, slope, grid->stiffness);
         block[grid->bins] = 0;
