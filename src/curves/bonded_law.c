@@ -61,3 +61,29 @@ double mf_bonded_reach(const struct bonded_curve *curve, double height) {
     }
     return fmin(rest + way, most);
 }
+
+/// ∫ r^(d−1) e^(−(U − U_rest)/k_B T) dr, by midpoints.
+static double integrate_lengths(const struct bonded_curve *curve, double from, double to,
+                                double temperature, int dimensions) {
+    enum { POINTS = 4000 };
+    double least, sum = 0;
+    mf_bonded_value(curve, mf_bonded_rest(curve), &least, NULL);
+    for (int k = 0; k < POINTS; k++) {
+        const double r = from + (k + 0.5) * (to - from) / POINTS;
+        double energy;
+        mf_bonded_value(curve, r, &energy, NULL);
+        sum += pow(r, dimensions - 1) * exp((least - energy) / temperature);
+    }
+    return sum * (to - from) / POINTS;
+}
+
+double mf_bonded_share_beyond(const struct bonded_curve *curve, double length, double temperature,
+                              int dimensions) {
+    static const double highest = 40;
+    const double reach = mf_bonded_reach(curve, highest * temperature);
+    if (reach <= length)
+        return 0;
+    const double below = integrate_lengths(curve, 0, length, temperature, dimensions);
+    const double beyond = integrate_lengths(curve, length, reach, temperature, dimensions);
+    return beyond / (below + beyond);
+}

@@ -54,6 +54,11 @@ double mf_bonded_longest(const struct bonded_curve *curve);
 /// the way from its rest, which may be at 0; at most its longest [λ].
 double mf_bonded_reach(const struct bonded_curve *curve, double height);
 
+/// Share of bonds that are longer than `length` [λ] if their law alone acts: of r^(d−1) e^(−U/k_B
+/// T), or 0 where that takes more than 40 k_B T. Tested: test_bonded_law.
+double mf_bonded_share_beyond(const struct bonded_curve *curve, double length, double temperature,
+                              int dimensions);
+
 #define BONDED_RADIANS (M_PI / 180) ///< of a degree
 
 extern const struct bonded_law mf_bond_harmonic, mf_bond_fene, mf_bonded_table_bond;

@@ -32,9 +32,9 @@ int mf_fit_unknowns_left_out(struct json_object *root) {
 
 /// A group is looked for, unless the scene knows its law.
 static void enter_group(struct scene_fitted *fitted, enum topology_order order, const char *name,
-                        const struct json_object *known, struct json_object *from, bool told) {
+                        const struct json_object *known, struct json_object *from) {
     const bool has_law = mf_json_is_member(known, name);
-    if (has_law && told)
+    if (has_law && fitted->told)
         mf_json_fault(from, name, "it is to be found, and \"scene.%s\" has a law for it",
                       mf_scene_group_keys[order]);
     if (has_law || fitted->count[order] == MOLECULES_MOST_GROUPS)
@@ -60,7 +60,7 @@ void mf_fit_unknowns_groups(struct json_object *root, struct json_object *scene,
                             struct scene_fitted *fitted) {
     const bool told = tells_groups(root);
     struct json_object parent = mf_json_child(root, told ? "unknowns" : "target", false);
-    *fitted = (struct scene_fitted){0};
+    *fitted = (struct scene_fitted){.told = told};
     for (enum topology_order order = 0; order < TOPOLOGY_ORDERS; order++) {
         const struct json_object known = mf_json_child(scene, mf_scene_group_keys[order], false);
         const char *key =
@@ -68,10 +68,11 @@ void mf_fit_unknowns_groups(struct json_object *root, struct json_object *scene,
                    *name;
         if (!mf_json_is_object(&parent, key))
             continue;
-        struct json_object from = mf_json_child(&parent, key, false);
-        for (size_t n = 0; (name = mf_json_key(&from, n)); n++)
+        struct json_object *from = &fitted->from[order];
+        *from = mf_json_child(&parent, key, false);
+        for (size_t n = 0; (name = mf_json_key(from, n)); n++)
             if (told || (strcmp(name, "weight") != 0 && strcmp(name, "fitted") != 0))
-                enter_group(fitted, order, name, &known, &from, told);
+                enter_group(fitted, order, name, &known, from);
     }
 }
 

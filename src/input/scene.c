@@ -282,9 +282,12 @@ static void enter_molecules(struct scene *scene, struct json_object *object) {
     struct simulation_setup *setup = &scene->setup;
     if (!scene_has_molecules(&scene->molecules))
         return;
-    if (mf_json_fault_count(object->document) == 0 &&
-        mf_molecules_check(molecules, &setup->box) != STATUS_OK)
-        mf_json_fault(object, NULL, "%s", mf_status_message());
+    if (mf_json_fault_count(object->document) == 0) {
+        if (mf_molecules_check(molecules, &setup->box) != STATUS_OK)
+            mf_json_fault(object, NULL, "%s", mf_status_message());
+        else
+            mf_scene_molecules_warn_of_box(&scene->molecules, &setup->box, setup->temperature);
+    }
     setup->interaction[setup->interactions++] =
         (struct interaction_choice){&mf_molecules, molecules};
 }

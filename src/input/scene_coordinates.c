@@ -9,7 +9,7 @@
 #include <string.h>
 
 /// Files have three decimals; a bond that is so many times as long as at rest is of other beads,
-/// unless less than so many k_B T stretch it in a table, which may be the end of a run.
+/// unless less than so many k_B T stretch it, as the soft bonds of a run.
 static const double box_tolerance = 2e-3, longest_share = 3, largest_energy = 30;
 
 bool mf_scene_coordinates_are_of_engine(const char *file) {
@@ -88,7 +88,7 @@ void mf_scene_coordinates_check_bonds(const struct scene *scene, struct json_obj
                     &molecules->group[TOPOLOGY_BOND][term->group].curve;
                 const uint32_t i = topology_id(kind, m, term->bead[0]);
                 const uint32_t j = topology_id(kind, m, term->bead[1]);
-                if (can_be(curve, length_of(scene, i, j), number ? 0 : scene->setup.temperature))
+                if (can_be(curve, length_of(scene, i, j), scene->setup.temperature))
                     continue;
                 mf_json_fault(particles, "file",
                               "%s: the bond of atoms %zu and %zu, of %s number %lld, is %.3g%s "

@@ -12,7 +12,7 @@ bool mf_scene_coordinates_are_of_engine(const char *file);
 /// after molecule, kind after kind, then single beads, type after type. With units nm and ps become
 /// λ and τ; without, these are 1 nm and 1 ps.
 /// Faults go to the document, one line: another number of atoms, another box, a bond that is more
-/// than three times as long as at rest, or longer than it can be.
+/// than three times as long as at rest, by more than 30 k_B T, or longer than it can be.
 /// Fails: NO_MEMORY. Tested: cli/test_topologies.
 enum status mf_scene_coordinates_read(struct scene *scene, struct json_object *particles) MUST_USE;
 

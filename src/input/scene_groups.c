@@ -2,6 +2,7 @@
 #include "base/digest.h"
 #include "base/memory.h"
 #include "base/names.h"
+#include "base/nearest.h"
 #include "curves/bonded_table.h"
 #include "input/scene_molecules.h"
 
@@ -102,6 +103,82 @@ enum status mf_scene_groups_read(struct molecules *molecules, int order, struct 
     for (int n = 0; fitted && n < fitted->count[order]; n++)
         TRY(add_fitted(molecules, order, fitted->name[order][n], scene));
     return STATUS_OK;
+}
+
+/// Add a group without a law of its own: the first one, of strength 0.
+static enum status open_group(struct molecules *molecules, struct json_object *object, int order,
+                              const char *name) {
+    struct molecules_group *group = &molecules->group[order][molecules->groups[order]];
+    for (int g = 0; g < molecules->groups[order]; g++)
+        if (strcmp(molecules->group[order][g].name, name) == 0)
+            return STATUS_OK;
+    if (molecules->groups[order] == MOLECULES_MOST_GROUPS || !mf_topology_is_name(name)) {
+        mf_json_fault(object, name,
+                      "there are at most %d groups, called by up to %d letters, digits, _ and -",
+                      MOLECULES_MOST_GROUPS, TOPOLOGY_NAME_SIZE - 1);
+        return STATUS_OK;
+    }
+    TRY(mf_bonded_create(&group->curve, mf_bonded_laws[order][0]));
+    snprintf(group->name, sizeof group->name, "%s", name);
+    molecules->groups[order]++;
+    return STATUS_OK;
+}
+
+enum status mf_scene_groups_open(struct molecules *molecules, struct json_object *kind) {
+    struct json_object chain = mf_json_child(kind, "chain", false);
+    for (int order = 0; order < TOPOLOGY_ORDERS; order++) {
+        struct json_object terms = mf_json_child(kind, mf_scene_group_keys[order], false);
+        const char *name =
+            chain.item ? mf_json_choice(&chain, mf_topology_order_names[order], NULL, "") : "";
+        if (name && name[0])
+            TRY(open_group(molecules, &chain, order, name));
+        for (size_t n = 0; terms.item && (name = mf_json_key(&terms, n)); n++)
+            TRY(open_group(molecules, &terms, order, name));
+    }
+    return STATUS_OK;
+}
+
+/// A fault for each group that is fitted and not among those of the kinds.
+static void fault_unnamed(const struct scene_fitted *fitted, int order,
+                          const struct molecules *named) {
+    const char *known[MOLECULES_MOST_GROUPS];
+    const size_t count = (size_t)named->groups[order];
+    struct json_object from = fitted->from[order];
+    char hint[1024];
+    for (size_t g = 0; g < count; g++)
+        known[g] = named->group[order][g].name;
+    for (int n = 0; n < fitted->count[order]; n++) {
+        size_t g = 0;
+        while (g < count && strcmp(known[g], fitted->name[order][n]) != 0)
+            g++;
+        if (g < count)
+            continue;
+        mf_nearest_hint(fitted->name[order][n], known, count, hint, sizeof hint);
+        mf_json_fault(&from, fitted->name[order][n], "no molecule has such %s %s%s%s",
+                      order == TOPOLOGY_ANGLE ? "an" : "a", mf_topology_order_names[order],
+                      count > 0 ? "; " : "", count > 0 ? hint : "");
+    }
+}
+
+enum status mf_scene_groups_check_fitted(const struct scene_fitted *fitted,
+                                         struct json_object *scene) {
+    enum status status = STATUS_OK;
+    struct molecules named = {0};
+    const char *name;
+    struct json_object kinds = mf_json_child(scene, "molecules", false);
+    if (kinds.item == NULL || scene_molecules_are_of_file(&kinds))
+        return STATUS_OK;
+    for (size_t n = 0; (name = mf_json_key(&kinds, n)); n++) {
+        if (!mf_json_is_object(&kinds, name))
+            continue;
+        struct json_object kind = mf_json_child(&kinds, name, false);
+        CHECK(mf_scene_groups_open(&named, &kind));
+    }
+    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+        fault_unnamed(fitted, order, &named);
+done:
+    mf_molecules_clear(&named);
+    return status;
 }
 
 void mf_scene_groups_write(const struct molecules *molecules, int order,

@@ -5,6 +5,7 @@
 #include "base/nearest.h"
 #include "input/scene_topology.h"
 #include "io/json_list.h"
+#include "observe/bonded_distribution.h"
 
 #include <string.h>
 
@@ -57,6 +58,7 @@ struct reading {
     struct scene_molecule told;
     bool used[TOPOLOGY_ORDERS][MOLECULES_MOST_GROUPS];
     bool open; ///< groups are those that kinds name, and counts may be missing
+    const struct scene_fitted *fitted; ///< or NULL
 };
 
 // Names -------------------------------------------------------------------------------------------
@@ -75,9 +77,17 @@ static int find_group(struct reading *reading, struct json_object *object, const
         }
     }
     mf_nearest_hint(name, known, (size_t)molecules->groups[order], hint, sizeof hint);
-    mf_json_fault(object, key, "\"%.60s\" is no group of \"%s\"%s%s", name,
-                  mf_scene_group_keys[order], molecules->groups[order] ? "; " : "",
-                  molecules->groups[order] ? hint : "");
+    if (reading->fitted)
+        mf_json_fault(object, key,
+                      "\"%.60s\" has no law in \"scene.%s\" and is not in \"%s.%s\"%s%s", name,
+                      mf_scene_group_keys[order], reading->fitted->told ? "unknowns" : "target",
+                      reading->fitted->told ? mf_scene_group_keys[order]
+                                            : mf_bonded_distribution_of(order)->name,
+                      molecules->groups[order] ? "; " : "", molecules->groups[order] ? hint : "");
+    else
+        mf_json_fault(object, key, "\"%.60s\" is no group of \"%s\"%s%s", name,
+                      mf_scene_group_keys[order], molecules->groups[order] ? "; " : "",
+                      molecules->groups[order] ? hint : "");
     return -1;
 }
 
@@ -156,7 +166,19 @@ done:
     return status;
 }
 
+/// Whether a chain is too short for the terms of an order, which is a fault.
+static bool is_too_short(const struct reading *reading, struct json_object *chain, int order) {
+    const int beads = reading->kind.beads, needed = topology_beads(order);
+    const char *name = mf_topology_order_names[order];
+    if (beads >= needed)
+        return false;
+    mf_json_fault(chain, name, "%s %s is of %d beads, and the chain has %d",
+                  order == TOPOLOGY_ANGLE ? "an" : "a", name, needed, beads);
+    return true;
+}
+
 static enum status read_chain(struct reading *reading) {
+    const size_t faults = mf_json_fault_count(reading->object.document);
     struct json_object object = mf_json_child(&reading->object, "chain", true);
     struct told_chain chain;
     if (object.item == NULL)
@@ -173,6 +195,9 @@ static enum status read_chain(struct reading *reading) {
             mf_json_fault(&object, *key, "\"beads\" says it already; leave one of them out");
     for (int order = 0; order < TOPOLOGY_ORDERS; order++) {
         const char *name = chain.group[order];
+        if (name[0] && mf_json_fault_count(object.document) == faults &&
+            is_too_short(reading, &object, order))
+            break;
         reading->told.group[order] =
             name[0] ? find_group(reading, &object, mf_topology_order_names[order], order, name)
                     : -1;
@@ -215,44 +240,6 @@ static enum status read_terms(struct reading *reading, int order) {
 done:
     mf_memory_free(rows);
     return status;
-}
-
-// Groups that kinds name
-// ---------------------------------------------------------------------------
-
-/// Add a group without a law of its own: the first one, of strength 0.
-static enum status open_group(struct molecules *molecules, struct json_object *object, int order,
-                              const char *name) {
-    struct molecules_group *group = &molecules->group[order][molecules->groups[order]];
-    for (int g = 0; g < molecules->groups[order]; g++)
-        if (strcmp(molecules->group[order][g].name, name) == 0)
-            return STATUS_OK;
-    if (molecules->groups[order] == MOLECULES_MOST_GROUPS || !mf_topology_is_name(name)) {
-        mf_json_fault(object, name,
-                      "there are at most %d groups, called by up to %d letters, digits, _ and -",
-                      MOLECULES_MOST_GROUPS, TOPOLOGY_NAME_SIZE - 1);
-        return STATUS_OK;
-    }
-    TRY(mf_bonded_create(&group->curve, mf_bonded_laws[order][0]));
-    snprintf(group->name, sizeof group->name, "%s", name);
-    molecules->groups[order]++;
-    return STATUS_OK;
-}
-
-static enum status open_groups(struct reading *reading) {
-    struct molecules *molecules = &reading->molecules->molecules;
-    struct json_object chain = mf_json_child(&reading->object, "chain", false);
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++) {
-        struct json_object terms =
-            mf_json_child(&reading->object, mf_scene_group_keys[order], false);
-        const char *name =
-            chain.item ? mf_json_choice(&chain, mf_topology_order_names[order], NULL, "") : "";
-        if (name && name[0])
-            TRY(open_group(molecules, &chain, order, name));
-        for (size_t n = 0; terms.item && (name = mf_json_key(&terms, n)); n++)
-            TRY(open_group(molecules, &terms, order, name));
-    }
-    return STATUS_OK;
 }
 
 // Kinds -------------------------------------------------------------------------------------------
@@ -300,7 +287,7 @@ static enum status read_kind(struct reading *reading, struct json_object *molecu
     fields[0].required = !reading->open;
     mf_json_fields(object, fields, &told);
     if (reading->open)
-        TRY(open_groups(reading));
+        TRY(mf_scene_groups_open(&reading->molecules->molecules, object));
     snprintf(reading->kind.name, sizeof reading->kind.name, "%s", name);
     reading->kind.count = told.count;
     if (mf_json_has(object, "chain")) {
@@ -379,8 +366,7 @@ static enum status read_kinds(struct reading *reading, struct json_object *scene
                               const struct units *units) {
     const char *name;
     struct json_object object = mf_json_child(scene, "molecules", required);
-    if (mf_json_key(&object, 0) && !mf_json_is_object(&object, "file") &&
-        mf_json_has(&object, "file"))
+    if (scene_molecules_are_of_file(&object))
         return read_file(reading, &object, scene, units);
     for (size_t n = 0; (name = mf_json_key(&object, n)); n++) {
         if (n >= TOPOLOGY_MOST_KINDS || !mf_topology_is_name(name)) {
@@ -407,10 +393,12 @@ enum status mf_scene_molecules_read(struct scene_molecules *molecules, struct js
                                     const struct scene_fitted *fitted,
                                     struct composition *composition, const struct units *units) {
     static const double most = 1e8;
-    struct reading reading = {.molecules = molecules, .composition = composition};
+    struct reading reading = {.molecules = molecules, .composition = composition, .fitted = fitted};
     const size_t faults = mf_json_fault_count(scene->document);
     for (int order = 0; order < TOPOLOGY_ORDERS; order++)
         TRY(mf_scene_groups_read(&molecules->molecules, order, scene, fitted, units));
+    if (fitted)
+        TRY(mf_scene_groups_check_fitted(fitted, scene));
     if (mf_json_fault_count(scene->document) > faults)
         return STATUS_OK; // that kinds lack such a group would mislead
     TRY(read_kinds(&reading, scene, false, units));

@@ -22,6 +22,9 @@ struct scene_molecule {
 struct scene_fitted {
     int count[TOPOLOGY_ORDERS];
     char name[TOPOLOGY_ORDERS][MOLECULES_MOST_GROUPS][TOPOLOGY_NAME_SIZE];
+    bool told; ///< by "unknowns"; else what has a target is fitted
+    struct json_object
+        from[TOPOLOGY_ORDERS]; ///< the objects that name them, of those that there are
 };
 
 /// Owns the molecules; a scene's interactions borrow them. All zero: there are none.
@@ -64,9 +67,19 @@ void mf_scene_molecules_clear(struct scene_molecules *molecules);
 enum status mf_scene_molecules_warn(struct scene_molecules *molecules,
                                     const struct topology_kind *kind) MUST_USE;
 
+/// The same of bonds that thermal motion alone makes longer than half of the box, more often than
+/// once in 10^5: a term sees nearest images. Tested: cli/test_molecules.
+void mf_scene_molecules_warn_of_box(struct scene_molecules *molecules, const struct box *box,
+                                    double temperature);
+
 /// Whether there are any.
 static inline bool scene_has_molecules(const struct scene_molecules *molecules) {
     return molecules->molecules.topology.kinds > 0;
+}
+
+/// Whether "molecules" names a topology's file, and not kinds, of which one may be called "file".
+static inline bool scene_molecules_are_of_file(const struct json_object *molecules) {
+    return mf_json_is_member(molecules, "file") && !mf_json_is_object(molecules, "file");
 }
 
 /// Write the kinds alone, a share of each one's molecules, or groups with their laws and the kinds.
@@ -84,6 +97,16 @@ void mf_scene_molecules_digest(const struct scene_molecules *molecules, uint64_t
 enum status mf_scene_groups_read(struct molecules *molecules, int order, struct json_object *scene,
                                  const struct scene_fitted *fitted,
                                  const struct units *units) MUST_USE;
+
+/// Add the groups that a kind names, each with a law of strength 0. Faults go to the document.
+/// Fails: NO_MEMORY.
+enum status mf_scene_groups_open(struct molecules *molecules, struct json_object *kind) MUST_USE;
+
+/// A fault for each group that a fit looks for and that no kind of the scene names, where it is
+/// named. Those of a topology's file are found later. Fails: NO_MEMORY. Tested:
+/// cli/test_fit_molecules.
+enum status mf_scene_groups_check_fitted(const struct scene_fitted *fitted,
+                                         struct json_object *scene) MUST_USE;
 
 /// Whether a group has no law, since a fit looks for it.
 bool mf_scene_groups_are_fitted(const struct molecules_group *group);

@@ -60,3 +60,22 @@ enum status mf_scene_molecules_warn(struct scene_molecules *molecules,
     warn_of_fene(molecules, kind);
     return warn_of_pieces(molecules, kind);
 }
+
+void mf_scene_molecules_warn_of_box(struct scene_molecules *molecules, const struct box *box,
+                                    double temperature) {
+    static const double seldom = 1e-5;
+    const struct molecules *own = &molecules->molecules;
+    const double half = 0.5 * mf_box_shortest(box);
+    for (int g = 0; g < own->groups[TOPOLOGY_BOND]; g++) {
+        const struct molecules_group *group = &own->group[TOPOLOGY_BOND][g];
+        if (mf_scene_groups_are_fitted(group))
+            continue;
+        const double share =
+            mf_bonded_share_beyond(&group->curve, half, temperature, box->dimensions);
+        if (share > seldom)
+            warn(molecules,
+                 "bonds.%s: %.2g %% of them would be longer than half of the box, and its nearest "
+                 "images cut them off: take a larger box",
+                 group->name, 100 * share);
+    }
+}

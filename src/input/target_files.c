@@ -52,6 +52,8 @@ static enum status read_groups(struct target_files *files, const struct observab
     if (settings == NULL)
         return STATUS_NO_MEMORY;
     files->settings[kind->place] = settings;
+    if (files->composition.types == 0)
+        return STATUS_OK; // a fault of the molecules is told, those of their groups would mislead
     TRY(mf_target_groups_read(&files->groups[order], order, object, molecules, units,
                               box->dimensions));
     *settings = mf_target_groups_settings(&files->groups[order]);

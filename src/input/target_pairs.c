@@ -70,6 +70,20 @@ done:
     return status;
 }
 
+/// A pair type that is named, as "A-A", where all beads are alike: one line tells it.
+static bool refuse_pair_name(struct json_object *object, const struct composition *composition) {
+    const char *key;
+    for (size_t n = 0; (key = mf_json_key(object, n)); n++) {
+        if (!mf_json_is_object(object, key))
+            continue;
+        mf_json_fault(object, key,
+                      "pairs are named in mixtures, and all beads are %s%s; write {\"file\": …}",
+                      composition->name[0][0] ? "of type " : "alike", composition->name[0]);
+        return true;
+    }
+    return false;
+}
+
 enum status mf_target_pairs_read(struct target_pairs *target, struct json_object *object,
                                  const struct box *box, const struct composition *composition,
                                  const struct units *units) {
@@ -78,6 +92,8 @@ enum status mf_target_pairs_read(struct target_pairs *target, struct json_object
         return STATUS_OK; // a fault of the types is told, those of their pairs would mislead
     target->pairs = (size_t)mf_composition_pairs(composition);
     if (!composition_is_mixed(composition)) {
+        if (refuse_pair_name(object, composition))
+            return STATUS_OK;
         TRY(mf_target_rdf_read(&target->member[0], object, units, box->dimensions));
         return collect(target, box, composition);
     }

@@ -163,8 +163,8 @@ struct inverse_problem {
     struct bonded_unknown group[INVERSE_MOST_BONDED];
     const char *mode[PAIR_MEMORY_MOST_MODES]; ///< names of the modes of memory; borrowed
     struct simulation_setup scene;            ///< all but the unknowns; its composition is set
-    double core_threshold; ///< bins with g* up to this, before g* > 0.1, end the hard core
-    double core_stiffness; ///< of the core (mf_core_fill) [k_B T_0/λ²]
+    double core_threshold;                    ///< g* beyond the core is above this, and two errors
+    double core_stiffness;                    ///< of the core (mf_core_fill) [k_B T_0/λ²]
     uint64_t seed;
     int threads;
 };
@@ -179,7 +179,7 @@ extern const double mf_inverse_noise_margin;
 enum { INVERSE_FLAT = 2 };
 
 /// Numbers of a method's own in a row of the history, and characters of its reason.
-enum { INVERSE_EXTRA = 12, INVERSE_REASON_SIZE = 384 };
+enum { INVERSE_EXTRA = 12, INVERSE_REASON_SIZE = 256 };
 
 /// What g(r) leaves open of a potential: the ramp A (1 − r/r_c).
 struct inverse_ramp {
@@ -242,7 +242,7 @@ struct inverse_progress {
     uint32_t iteration;
     uint32_t iterations;  ///< at most
     uint64_t done, total; ///< parts of this iteration
-    double best;          ///< inverse_step.error so far; not finite if not known yet
+    double best;          ///< error of the best so far; not finite if not known yet
     double least, mean;   ///< of this iteration's candidates; not finite without
     uint64_t failures;    ///< simulations that left their temperature or blew up
 };

@@ -7,9 +7,6 @@
 
 #include <math.h>
 
-/// A g above this is well known.
-static const double well = 0.1;
-
 /// g of a bin, of several states the largest: what one of them tells is known.
 static double most_pairs(const struct inverse_problem *problem, size_t bin) {
     double most = problem->targets.target[TARGET_RDF].value[bin];
@@ -18,30 +15,45 @@ static double most_pairs(const struct inverse_problem *problem, size_t bin) {
     return most;
 }
 
-/// The first bin from `k` on of a pair type with a g above this, or their number.
-static size_t first_above(const struct inverse_problem *problem, size_t pair, size_t k,
-                          double threshold) {
-    const size_t bins = problem->targets.bins.count;
-    while (k < bins && most_pairs(problem, pair * bins + k) <= threshold)
-        k++;
-    return k;
+/// Whether a target knows that there are pairs in a bin. A single pair of a whole measurement does
+/// not tell how rare they are: its g is as large as its error.
+static bool knows_pairs(const struct inverse_problem *problem, size_t bin) {
+    static const double errors = 2;
+    const struct target *rdf = &problem->targets.target[TARGET_RDF];
+    const double error = rdf->error ? rdf->error[bin] : 0;
+    return rdf->value[bin] > fmax(problem->core_threshold, errors * error);
 }
 
-/// The core goes on to the last empty bin before g is well known. Of a pair that a target has seen
-/// further inside by chance the fit would make a hole, by 10 k_B T, in which beads stick together.
+/// The same of this problem's target or that of another state.
+static bool one_knows_pairs(const struct inverse_problem *problem, size_t bin) {
+    bool known = knows_pairs(problem, bin);
+    for (size_t s = 0; s < problem->states; s++)
+        known = known || knows_pairs(problem->state[s], bin);
+    return known;
+}
+
+/// Where the target is well known.
+static const double well = 0.1;
+
+/// The core ends where the bins begin that know of pairs, without a gap up to the first that is
+/// well known, or to the last one: few pairs nearer than that tell nothing of the bins between.
 static enum status find_core(struct potential_grid *grid, const struct inverse_problem *problem,
                              size_t pair) {
-    const double empty = problem->core_threshold;
+    const size_t first = pair * grid->bins;
     size_t *core = &grid->core[pair];
-    *core = first_above(problem, pair, 0, empty);
-    const size_t end = first_above(problem, pair, *core, fmax(well, empty));
-    for (size_t k = *core; end < grid->bins && k < end; k++)
-        if (most_pairs(problem, pair * grid->bins + k) <= empty)
-            *core = k + 1;
+    while (*core < grid->bins &&
+           (most_pairs(problem, first + *core) <= well || !one_knows_pairs(problem, first + *core)))
+        (*core)++;
+    while (*core > 0 && one_knows_pairs(problem, first + *core - 1))
+        (*core)--;
+    size_t *empty = &grid->empty[pair];
+    while (*empty < *core && most_pairs(problem, first + *empty) <= problem->core_threshold)
+        (*empty)++;
     if (*core + 3 > grid->bins) {
         char name[COMPOSITION_PAIR_NAME_SIZE];
         mf_composition_pair_name(&problem->scene.composition, (int)pair, name);
-        return mf_status_fail(STATUS_BAD_INPUT, "the target%s%s is nowhere above %g",
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "the target%s%s is nowhere above %g and two of its errors",
                               name[0] ? " of " : "", name, problem->core_threshold);
     }
     grid->known_of[pair] = grid->bins - *core;
@@ -52,9 +64,8 @@ static enum status find_core(struct potential_grid *grid, const struct inverse_p
 /// The first bin in which this problem's own target has pairs.
 static size_t first_seen(const struct potential_grid *grid, const struct inverse_problem *problem,
                          size_t pair) {
-    const double *g = problem->targets.target[TARGET_RDF].value + pair * grid->bins;
     size_t k = grid->core[pair];
-    while (k < grid->bins && g[k] <= problem->core_threshold)
+    while (k < grid->bins && !knows_pairs(problem, pair * grid->bins + k))
         k++;
     return k;
 }
@@ -125,6 +136,7 @@ enum status mf_potential_grid_init(struct potential_grid *grid,
     grid->points = grid->pair_points = grid->pairs * (bins->count + 1);
     grid->all_bins = grid->pair_bins = grid->pairs * bins->count;
     NEW_ARRAY(grid->core, grid->pairs);
+    NEW_ARRAY(grid->empty, grid->pairs);
     NEW_ARRAY(grid->known_of, grid->blocks);
     NEW_ARRAY(grid->group, grid->groups);
     for (size_t pair = 0; pair < grid->pairs; pair++)
@@ -146,6 +158,7 @@ done:
 
 void mf_potential_grid_clear(struct potential_grid *grid) {
     mf_memory_free(grid->core);
+    mf_memory_free(grid->empty);
     mf_memory_free(grid->known_of);
     mf_memory_free(grid->known_point);
     mf_memory_free(grid->known_bin);
@@ -164,13 +177,29 @@ bool mf_potential_grid_in_core(const struct potential_grid *grid, size_t point) 
     return point % (grid->bins + 1) < grid->core[point / (grid->bins + 1)];
 }
 
+/// The slope with which Φ goes on into the core: between the first two known bins, or, where some
+/// pairs come nearer and these are noisy, to the first bin that is well known.
+static double find_slope(const struct potential_grid *grid, size_t pair, const double *r,
+                         const double *block) {
+    const size_t first = grid->core[pair];
+    const bool *well_known = grid->well_known;
+    size_t last = first + 1;
+    for (size_t before = 0; before < pair; before++)
+        well_known += grid->known_of[before];
+    while (grid->empty[pair] < first && last + 1 < grid->bins && !well_known[last - first])
+        last++;
+    return (block[last] - block[first]) / (r[last] - r[first]);
+}
+
 void mf_potential_grid_complete_pairs(const struct potential_grid *grid, double *phi) {
     for (size_t pair = 0; pair < grid->pairs; pair++) {
-        const size_t begin = mf_potential_grid_block(grid, pair), first = grid->core[pair];
+        const size_t begin = mf_potential_grid_block(grid, pair);
+        const size_t first = grid->core[pair], empty = grid->empty[pair];
         const double *r = grid->r + begin;
         double *block = phi + begin;
-        const double slope = (block[first + 1] - block[first]) / (r[first + 1] - r[first]);
-        mf_core_fill(r, block, first, slope, grid->stiffness);
+        const double slope = find_slope(grid, pair, r, block);
+        mf_core_fill(r + empty, block + empty, first - empty, slope, 0);
+        mf_core_fill(r, block, empty, slope, grid->stiffness);
         block[grid->bins] = 0;
     }
 }

@@ -3,9 +3,10 @@
 /// behind them one for each group of bonds, angles or dihedrals (problem/bonded_grid.h).
 ///
 /// In each block of pairs the bin centres of the target, in three parts: the core, where the target
-/// is 0, but for stray pairs, and the potential is continued (mf_core_fill); the known bins; and
-/// the cutoff, the upper edge of the last bin, where the potential is 0. It has one point more than
-/// bins.
+/// has no more pairs than two of its standard errors and the potential is continued, as a straight
+/// line where there are some pairs and as a parabola where there are none (mf_core_fill); the known
+/// bins; and the cutoff, the upper
+/// edge of the last bin, where the potential is 0. It has one point more than bins.
 #pragma once
 
 #include "problem/bonded_grid.h"
@@ -20,6 +21,7 @@ struct potential_grid {
     size_t points;       ///< of all blocks
     size_t all_bins;     ///< of all blocks
     size_t *core;        ///< shape [pairs]: points in the core = the first known bin
+    size_t *empty;       ///< shape [pairs]: points below the first with any pairs; core at most
     size_t *known_of;    ///< shape [blocks]: bins with a value of their own
     size_t known;        ///< bins with a value of their own, of all blocks
     size_t pairs_known;  ///< those of pairs

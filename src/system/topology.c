@@ -124,11 +124,35 @@ static int compare_beads(const void *a, const void *b) {
     return x < y ? -1 : x > y;
 }
 
+/// A search along the bonds of a kind.
+struct search {
+    struct topology_bonds bonds;
+    int *distance; ///< shape [beads]: −1 of all between two searches
+    int *reached;  ///< shape [beads]
+};
+
+static enum status search_begin(struct search *search, const struct topology_kind *kind) {
+    enum status status = STATUS_OK;
+    *search = (struct search){0};
+    NEW_ARRAY(search->distance, kind->beads);
+    NEW_ARRAY(search->reached, kind->beads);
+    CHECK(mf_topology_bonds(kind, &search->bonds));
+    memset(search->distance, 0xff, (size_t)kind->beads * sizeof *search->distance);
+done:
+    return status;
+}
+
+static void search_end(struct search *search) {
+    mf_memory_free(search->distance);
+    mf_memory_free(search->reached);
+    mf_memory_free(search->bonds.start);
+    mf_memory_free(search->bonds.to);
+}
+
 /// The beads at most kind->exclude bonds from one, by growing number, behind it in `reached`.
-/// @param[in,out] distance  shape [beads], −1 of all
-static int reach(const struct topology_kind *kind, const struct topology_bonds *bonds, int bead,
-                 int *distance, int *reached) {
-    int count = 1;
+static int reach(const struct topology_kind *kind, struct search *search, int bead) {
+    const struct topology_bonds *bonds = &search->bonds;
+    int *distance = search->distance, *reached = search->reached, count = 1;
     reached[0] = bead;
     distance[bead] = 0;
     for (int n = 0; n < count && distance[reached[n]] < kind->exclude; n++)
@@ -148,19 +172,16 @@ static int reach(const struct topology_kind *kind, const struct topology_bonds *
 /// The beads at most `exclude` bonds from each.
 static enum status find_near(struct topology_kind *kind) {
     enum status status = STATUS_OK;
-    struct topology_bonds bonds = {0};
-    int *distance = NULL, *reached = NULL;
-    NEW_ARRAY(distance, kind->beads);
-    NEW_ARRAY(reached, kind->beads);
+    struct search search;
+    CHECK(search_begin(&search, kind));
     NEW_ARRAY(kind->near_start, kind->beads + 1);
-    CHECK(mf_topology_bonds(kind, &bonds));
-    memset(distance, 0xff, (size_t)kind->beads * sizeof *distance);
     for (int pass = 0; pass < 2; pass++) {
         int found = 0;
         for (int bead = 0; bead < kind->beads; bead++) {
-            const int count = reach(kind, &bonds, bead, distance, reached);
+            const int count = reach(kind, &search, bead);
             if (pass == 1)
-                memcpy(kind->near + found, reached + 1, (size_t)count * sizeof *reached);
+                memcpy(kind->near + found, search.reached + 1,
+                       (size_t)count * sizeof *search.reached);
             found += count;
             kind->near_start[bead + 1] = found;
         }
@@ -168,33 +189,23 @@ static enum status find_near(struct topology_kind *kind) {
             NEW_ARRAY(kind->near, found);
     }
 done:
-    mf_memory_free(distance);
-    mf_memory_free(reached);
-    mf_memory_free(bonds.start);
-    mf_memory_free(bonds.to);
+    search_end(&search);
     return status;
 }
 
 enum status mf_topology_apart(const struct topology_kind *kind, int *bead) {
     enum status status = STATUS_OK;
-    struct topology_bonds bonds = {0};
+    struct search search;
     struct topology_kind whole = *kind;
-    int *distance = NULL, *reached = NULL;
     *bead = -1;
     whole.exclude = kind->beads;
-    NEW_ARRAY(distance, kind->beads);
-    NEW_ARRAY(reached, kind->beads);
-    CHECK(mf_topology_bonds(kind, &bonds));
-    memset(distance, 0xff, (size_t)kind->beads * sizeof *distance);
-    const int others = reach(&whole, &bonds, 0, distance, reached);
+    CHECK(search_begin(&search, kind));
+    const int others = reach(&whole, &search, 0);
     if (others + 1 < kind->beads)
-        for (*bead = 1; *bead <= others && reached[*bead] == *bead;)
+        for (*bead = 1; *bead <= others && search.reached[*bead] == *bead;)
             ++*bead;
 done:
-    mf_memory_free(distance);
-    mf_memory_free(reached);
-    mf_memory_free(bonds.start);
-    mf_memory_free(bonds.to);
+    search_end(&search);
     return status;
 }
 

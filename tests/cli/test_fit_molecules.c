@@ -247,9 +247,6 @@ struct wrong {
 
 static void test_fit_molecules_refuses_what_cannot_be(void **state) {
     static const struct wrong wrong[] = {
-        {"\"bend\": {\"file\"",
-         "\"bond\": {\"file\"",
-         {"scene.molecules.trimer.chain.angle", "\"bend\" is no group", NULL}},
         {"\"imc\"", "\"hnc\"", {"method.name: \"hnc\" knows no molecules", NULL}},
         {"\"name\": \"imc\", \"replicas\": 2, \"equilibration\": 40, \"samples\": 60,\n"
          "  \"iterations\": 4, \"precision\": 0.02",
@@ -261,9 +258,6 @@ static void test_fit_molecules_refuses_what_cannot_be(void **state) {
         {"\"replicas\": 2, \"equilibration\": 40",
          "\"particles\": 120",
          {"method.particles: molecules are sampled in the scene's box", NULL}},
-        {"\"method\"",
-         "\"unknowns\": {\"potential\": {}, \"bonds\": {\"backbone\": {}}}, \"method\"",
-         {"scene.molecules.trimer.chain.angle", "\"bend\" is no group", NULL}},
     };
     static struct run_program_result result;
     for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++) {
@@ -272,6 +266,41 @@ static void test_fit_molecules_refuses_what_cannot_be(void **state) {
         run_program_assert_code(&result, 2);
         for (size_t w = 0; wrong[k].words[w]; w++)
             assert_contains(result.err, wrong[k].words[w]);
+    }
+}
+
+/// Groups and types that the molecules do not have, or that nothing finds: one line for each.
+static void test_fit_molecules_tells_a_wrong_name_in_one_line(void **state) {
+    static const struct {
+        const char *from, *to, *words;
+    } wrong[] = {
+        {"\"bend\": {\"file\"", "\"bond\": {\"file\"",
+         "target.bond_angles.bond: no molecule has such an angle; did you mean \"bend\"?"},
+        {"\"bond_lengths\": {",
+         "\"bond_lengths\": {\"leg\": {\"file\": \"truth/bond_lengths.tsv\"}, ",
+         "run.json: target.bond_lengths.leg: no molecule has such a bond; known: backbone"},
+        {",\n \"bond_angles\": {\"bend\": {\"file\": \"truth/bond_angles.tsv\"}}", "",
+         "scene.molecules.trimer.chain.angle: \"bend\" has no law in \"scene.angles\" and is not "
+         "in \"target.bond_angles\""},
+        {"\"method\"",
+         "\"unknowns\": {\"potential\": {}, \"bonds\": {\"backbones\": {}}}, \"method\"",
+         "unknowns.bonds.backbones: no molecule has such a bond; did you mean \"backbone\"?"},
+        {"\"method\"",
+         "\"unknowns\": {\"potential\": {}, \"bonds\": {\"backbone\": {}}}, \"method\"",
+         "scene.molecules.trimer.chain.angle: \"bend\" has no law in \"scene.angles\" and is not "
+         "in \"unknowns.angles\""},
+        {"[\"A\", \"B\", \"A\"]", "[\"A\"]",
+         "scene.molecules.trimer.chain.bond: a bond is of 2 beads, and the chain has 1"},
+        {"[\"A\", \"B\", \"A\"]", "[\"A\", \"A\", \"A\"]",
+         "target.rdf.A-A: pairs are named in mixtures, and all beads are of type A"},
+    };
+    static struct run_program_result result;
+    for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++) {
+        small_inputs_write(*state, "run.json", run, wrong[k].from, wrong[k].to);
+        RUN_PROGRAM(&result, "fit", "run.json", "-o", "refused");
+        run_program_assert_code(&result, 2);
+        assert_int_equal(run_program_lines(result.err), 1);
+        assert_contains(result.err, wrong[k].words);
     }
 }
 
@@ -293,6 +322,8 @@ int main(void) {
         cmocka_unit_test_setup_teardown(test_fit_warns_of_steps_too_long_for_bonds, enter,
                                         small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_fit_molecules_refuses_what_cannot_be, enter,
+                                        small_inputs_leave),
+        cmocka_unit_test_setup_teardown(test_fit_molecules_tells_a_wrong_name_in_one_line, enter,
                                         small_inputs_leave),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

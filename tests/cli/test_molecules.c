@@ -324,6 +324,9 @@ static const struct fault {
     {CHAIN,
      "\"type\": \"A\", \"length\": 1",
      {"molecules.chain.chain.length: 1 is out of range; allowed: 2 to"}},
+    {CHAIN,
+     "\"beads\": [\"A\", \"A\", \"B\"]",
+     {"molecules.chain.chain.dihedral: a dihedral is of 4 beads, and the chain has 3"}},
     {CHAIN, "\"beads\": [\"A\", \"a b\"]", {"molecules.chain.chain.beads: \"a b\": a type is"}},
     {"\"types\": {\"W\": 60},",
      "\"count\": 60,",
@@ -362,12 +365,18 @@ static void test_what_looks_wrong_is_warned_of(void **state) {
     static struct run_program_result result;
     write_inputs(*state, "\"exclude\": 0,", "\"exclude\": 1,");
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "fene");
+    assert_null(strstr(result.err, "half of the box"));
     assert_contains(result.err, "molecules.ring: \"fene\" only pulls");
     write_inputs(*state, "\"bonds\": {\"spring\": " RING,
                  "\"angles\": {\"bend\": [[1, 2, 3]]}, \"bonds\": {\"spring\": [[1, 2]]");
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "loose");
     assert_contains(result.err, "molecules.ring: angle 1-2-3 has no bond 2-3");
     assert_contains(result.err, "molecules.ring: it is in pieces: no bonds join its beads 1 and 3");
+    // Half of the box is 3: one standard deviation of 0.1 beyond the rest.
+    write_inputs(*state, BACKBONE, BACKBONE_OF("2.9"));
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "long");
+    assert_contains(result.err,
+                    "bonds.backbone: 18 % of them would be longer than half of the box");
 }
 
 #define TEST(test)                                                                                 \

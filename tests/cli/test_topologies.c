@@ -225,13 +225,19 @@ static void test_coordinates_come_with_a_topology(void **state) {
     RUN_PROGRAM(&result, "export", "placed", "--engine", "gromacs", "-o", "second");
     run_program_assert_code(&result, 0);
     compare_coordinates("conf.gro", "second/conf.gro");
+    // A soft bond at four times its rest, for 2.4 k_B T, is no other bead's.
+    small_inputs_write(*state, "types.itp", types, "0.38 1500", "0.1 150");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "soft");
+    run_program_assert_code(&result, 0);
+    small_inputs_write(*state, "types.itp", types, NULL, NULL);
     static const struct {
         const char *file, *text, *from, *to, *what;
     } cases[] = {
         {"topol.top", topology, NULL, NULL, "each moleculetype once"},
         {"topol.top", topology, counts, "hexane 29\nW 5", "125 atoms; the scene has 121"},
         {"topol.top", topology, counts, "hexane 30\nW 5", NULL},
-        {"types.itp", types, "0.38", "0.1", "the bond of atoms 1 and 2, of hexane number 1"},
+        {"types.itp", types, "0.38 1500", "0.1 2500",
+         "the bond of atoms 1 and 2, of hexane number 1"},
         {"types.itp", types, NULL, NULL, NULL},
         {"conf.gro", "beads\n1\n    1HEX     C1    1   1.000   1.000\n", NULL, NULL, "conf.gro:3"},
     };

@@ -115,7 +115,7 @@ static void assert_truth_is_found(const struct inverse_method *method, const str
     compare_with_truth(&problem, start, &ramp, &rms);
     print_message("-ln g: rms without the ramp %.3f, ramp %.3f\n", rms, ramp);
     assert_true(rms > least_start_error);
-    inversions_run(method, &problem, precision, phi, &step);
+    inversions_run(method, &problem, precision, phi, NULL, &step);
     compare_with_truth(&problem, phi, &ramp, &rms);
     print_message("found: rms without the ramp %.4f, ramp %.3f(%.3f), dP/dA %.2f\n", rms, ramp,
                   step.ramp.error, step.ramp.pressure);
@@ -147,7 +147,7 @@ static void test_imc_and_auto_have_the_pressure_when_g_reaches_far(void **state)
         .threads = 2};
     for (int run = 0; run < 4; run++) {
         problem.seed = 5 + run / 2;
-        inversions_run(run % 2 ? &mf_automatic : &mf_imc, &problem, 0.003, phi, &step);
+        inversions_run(run % 2 ? &mf_automatic : &mf_imc, &problem, 0.003, phi, NULL, &step);
         const double found = step.extra[4], open = step.ramp.pressure_open;
         print_message("pressure %.2f(%.2f), truth %.2f\n", found, open, pressure);
         assert_true(step.converged);

@@ -132,7 +132,7 @@ static void check_truth(const struct inverse_method *method) {
         print_message("-ln g: rms without the ramp %.3f, ramp %.3f\n", rms[pair], ramp[pair]);
         assert_true(pair == 0 || rms[pair] > least_start_error);
     }
-    inversions_run(method, &problem, 0, phi, &step);
+    inversions_run(method, &problem, 0, phi, NULL, &step);
     compare_with_truth(&mixture, phi, BINS + 1, ramp, rms);
     for (int pair = 0; pair < PAIRS; pair++)
         print_message("found: rms without the ramp %.4f, ramp %.3f (%.3f)\n", rms[pair], ramp[pair],
@@ -174,12 +174,12 @@ static void test_imc_finds_equal_potentials_when_the_types_are_alike(void **stat
     double phi[PAIRS * (BINS + 1)], alone[BINS + 1], ramp, rms;
     measure(&mixture, equal, 78);
     struct inverse_problem problem = problem_of(&mixture);
-    inversions_run(&mf_imc, &problem, 0, phi, &step);
+    inversions_run(&mf_imc, &problem, 0, phi, NULL, &step);
     assert_true(step.converged);
     problem.scene.composition = mf_composition_of_one(PARTICLES);
     problem.targets.target[TARGET_RDF] =
         (struct target){.count = BINS, .value = mixture.all, .error = mixture.all_error};
-    inversions_run(&mf_imc, &problem, 0, alone, &step);
+    inversions_run(&mf_imc, &problem, 0, alone, NULL, &step);
     assert_true(step.converged);
     for (size_t pair = 0; pair < PAIRS; pair++) {
         compare(mixture.all, phi + pair * (BINS + 1), alone, &ramp, &rms);

@@ -10,7 +10,7 @@ static void ignore(void *context, const struct inverse_progress *progress) {
 }
 
 void inversions_run(const struct inverse_method *method, const struct inverse_problem *problem,
-                    double precision, double *phi, struct inverse_step *step) {
+                    double precision, double *phi, double *phi_error, struct inverse_step *step) {
     const struct inverse_listener listener = {ignore, NULL};
     const size_t pairs = (size_t)mf_composition_pairs(&problem->scene.composition);
     const size_t points = pairs * (problem->targets.bins.count + 1);
@@ -33,6 +33,8 @@ void inversions_run(const struct inverse_method *method, const struct inverse_pr
                       step->iteration, step->error, step->noise);
     } while (!step->finished);
     memcpy(phi, step->curve[UNKNOWN_POTENTIAL], points * sizeof *phi);
+    if (phi_error)
+        memcpy(phi_error, step->curve_error[UNKNOWN_POTENTIAL], points * sizeof *phi_error);
     method->destroy(state);
     free(state);
     free(settings);

@@ -7,6 +7,7 @@
 /// Invert until the method says that it is done, or 40 iterations.
 /// @param[in]  precision  of g; 0: the method's default
 /// @param[out] phi        of the best, shape [pairs, bins + 1]
+/// @param[out] phi_error  its standard errors, the same shape; may be NULL
 /// @param[out] step       the last
 void inversions_run(const struct inverse_method *method, const struct inverse_problem *problem,
-                    double precision, double *phi, struct inverse_step *step);
+                    double precision, double *phi, double *phi_error, struct inverse_step *step);

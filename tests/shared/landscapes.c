@@ -65,6 +65,14 @@ void landscape_set(const struct optimiser *optimiser, void *parameters, const ch
     fail_msg("%s has no field %s", optimiser->name, name);
 }
 
+void *landscape_parameters_with(const struct optimiser *optimiser,
+                                const struct landscape_setting *settings, int most) {
+    void *parameters = landscape_parameters(optimiser);
+    for (int k = 0; k < most && settings[k].name; k++)
+        landscape_set(optimiser, parameters, settings[k].name, settings[k].value);
+    return parameters;
+}
+
 struct landscape_run landscape_begin(const struct optimiser *optimiser, void *parameters,
                                      const struct landscape_drive *drive) {
     const struct optimiser_space space = {.variables = drive->variables,

@@ -50,6 +50,16 @@ void *landscape_parameters(const struct optimiser *optimiser);
 void landscape_set(const struct optimiser *optimiser, void *parameters, const char *name,
                    double value);
 
+/// A parameter by its field's name.
+struct landscape_setting {
+    const char *name;
+    double value;
+};
+
+/// The default parameters with some settings, up to `most` of them or the first without a name.
+void *landscape_parameters_with(const struct optimiser *optimiser,
+                                const struct landscape_setting *settings, int most);
+
 /// A new state. `parameters` are borrowed; landscape_end frees the state.
 struct landscape_run landscape_begin(const struct optimiser *optimiser, void *parameters,
                                      const struct landscape_drive *drive);

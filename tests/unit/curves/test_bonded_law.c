@@ -171,10 +171,31 @@ static void test_tables_that_make_no_sense_are_refused(void **state) {
     mf_bonded_clear(&angle);
 }
 
+/// A spring at rest at 0 has Maxwell's distribution: with x = R sqrt(k/2 T) the share beyond R is
+/// erfc(x) + 2 x e^(−x²)/sqrt(π) in space, and e^(−x²) in the plane. What tears before is not
+/// beyond.
+static void test_share_of_long_springs_is_that_of_maxwell(void **state) {
+    (void)state;
+    static const double length = 1.5, k = 6, temperature = 0.8;
+    struct bonded_curve spring = make(&mf_bond_harmonic), fene = make(&mf_bond_fene);
+    const double x = length * sqrt(k / (2 * temperature)), gauss = exp(-x * x);
+    set(&spring, "k", k);
+    set(&spring, "length", 0);
+    assert_close(mf_bonded_share_beyond(&spring, length, temperature, 3),
+                 erfc(x) + 2 * x * gauss / sqrt(M_PI), 1e-6);
+    assert_close(mf_bonded_share_beyond(&spring, length, temperature, 2), gauss, 1e-6);
+    assert_true(mf_bonded_share_beyond(&spring, 10 * length, temperature, 3) == 0);
+    set(&fene, "longest", length);
+    assert_true(mf_bonded_share_beyond(&fene, length, temperature, 3) == 0);
+    mf_bonded_clear(&spring);
+    mf_bonded_clear(&fene);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_bonds_have_the_energies_of_their_formulas),
         cmocka_unit_test(test_angles_have_the_energies_of_their_formulas),
+        cmocka_unit_test(test_share_of_long_springs_is_that_of_maxwell),
         cmocka_unit_test(test_ryckaert_bellemans_is_butane),
         cmocka_unit_test(test_periodic_dihedrals_count_from_cis),
         cmocka_unit_test(test_tables_go_through_functions),

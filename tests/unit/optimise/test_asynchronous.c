@@ -11,16 +11,13 @@
 #include <math.h>
 #include <string.h>
 
-enum { VARIABLES = 4, EVALUATIONS = 3000, SEEDS = 3 };
+enum { VARIABLES = 4, EVALUATIONS = 3000, SETTINGS = 6, SEEDS = 3 };
 
 /// Errors are bounds of the incumbent's: twice what was the worst of ten seeds with 1, 3 and 16
 /// workers.
 static const struct variant {
     const struct optimiser *optimiser;
-    struct setting {
-        const char *name;
-        double value;
-    } settings[6];
+    struct landscape_setting settings[SETTINGS];
     double sphere, edge, noisy, failing;
 } variants[] = {
     {&mf_genetic_optimiser,
@@ -42,11 +39,7 @@ static const struct variant {
     v++
 
 static void *parameters_of(const struct variant *variant) {
-    void *parameters = landscape_parameters(variant->optimiser);
-    for (int k = 0; k < 6 && variant->settings[k].name; k++)
-        landscape_set(variant->optimiser, parameters, variant->settings[k].name,
-                      variant->settings[k].value);
-    return parameters;
+    return landscape_parameters_with(variant->optimiser, variant->settings, SETTINGS);
 }
 
 /// The incumbent's error is at most `bound`, for one worker and for more than a few.

@@ -12,17 +12,14 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { VARIABLES = 4, EVALUATIONS = 3000, SEEDS = 3 };
+enum { VARIABLES = 4, EVALUATIONS = 3000, SETTINGS = 8, SEEDS = 3 };
 
 /// An optimiser with its settings, and the largest error of its incumbent that is right: twice what
 /// was the worst of ten seeds, or 1e-9. Those of the GN_ and of Rosenbrock's and Rastrigin's
 /// functions are of local minima, or of a search that was not over.
 static const struct variant {
     const struct optimiser *optimiser;
-    struct setting {
-        const char *name;
-        double value;
-    } settings[8];
+    struct landscape_setting settings[SETTINGS];
     double sphere, rosenbrock, rastrigin, edge, noisy, failing;
 } variants[] = {
 #define GENETIC(crossover, mutation)                                                               \
@@ -60,11 +57,7 @@ static const struct variant {
 enum { VARIANTS = sizeof variants / sizeof *variants };
 
 static void *parameters_of(const struct variant *variant) {
-    void *parameters = landscape_parameters(variant->optimiser);
-    for (int k = 0; k < 8 && variant->settings[k].name; k++)
-        landscape_set(variant->optimiser, parameters, variant->settings[k].name,
-                      variant->settings[k].value);
-    return parameters;
+    return landscape_parameters_with(variant->optimiser, variant->settings, SETTINGS);
 }
 
 /// The incumbent's error is at most `bound` for each of some seeds.

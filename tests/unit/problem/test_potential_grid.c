@@ -46,6 +46,41 @@ static void test_potential_grid_has_three_parts_when_the_target_has_a_core(void 
     mf_potential_grid_clear(&grid);
 }
 
+/// A bin with a single pair of a whole measurement: g is its own error. One in which there are
+/// more, but beyond which there is a gap, tells nothing of the gap.
+static void test_potential_grid_core_takes_in_single_pairs_when_errors_tell(void **state) {
+    (void)state;
+    double target[BINS], error[BINS];
+    struct potential_grid grid;
+    make_target(target);
+    struct inverse_problem problem = make_problem(target);
+    problem.targets.target[TARGET_RDF].error = error;
+    for (int k = 0; k < BINS; k++)
+        error[k] = 1e-3;
+    target[CORE - 1] = error[CORE - 1] = 0.05;
+    target[0] = error[0] = 0.3; // the least volume
+    assert_ok(mf_potential_grid_init(&grid, &problem));
+    assert_int_equal(grid.core[0], CORE);
+    mf_potential_grid_clear(&grid);
+    target[CORE - 3] = 0.05;
+    assert_ok(mf_potential_grid_init(&grid, &problem));
+    assert_int_equal(grid.core[0], CORE);
+    // Without the bin at 0 some pairs come as near as CORE − 3: a line as far, then a parabola.
+    mf_potential_grid_clear(&grid);
+    target[0] = 0;
+    assert_ok(mf_potential_grid_init(&grid, &problem));
+    double phi[BINS + 1] = {[CORE] = 5, [CORE + 1] = 4};
+    mf_potential_grid_complete(&grid, phi);
+    assert_close(phi[CORE - 3], 8, rounding);
+    assert_close(phi[CORE - 5], 10 + 0.5 * 2000 * 0.2 * 0.2, 1e-9);
+    mf_potential_grid_clear(&grid);
+    error[CORE - 1] = 0.02;
+    target[CORE - 2] = 0.01;
+    assert_ok(mf_potential_grid_init(&grid, &problem));
+    assert_int_equal(grid.core[0], CORE - 3);
+    mf_potential_grid_clear(&grid);
+}
+
 /// Pairs that were seen inside by chance, with an empty bin between them and the others, do not end
 /// the core; nor does a hole beyond what is well known begin it anew.
 static void test_potential_grid_takes_stray_pairs_for_the_core(void **state) {
@@ -66,11 +101,19 @@ static void test_potential_grid_takes_stray_pairs_for_the_core(void **state) {
     assert_ok(mf_potential_grid_init(&grid, &problem));
     assert_int_equal(grid.core[0], CORE - 4);
     mf_potential_grid_clear(&grid);
-    // Nor is it if nothing is well known.
+}
+
+/// Types that hardly meet have a core as others do.
+static void test_potential_grid_has_a_core_when_pairs_are_rare_everywhere(void **state) {
+    (void)state;
+    double target[BINS];
+    struct potential_grid grid;
+    make_target(target);
     for (int k = 0; k < BINS; k++)
-        target[k] = k == 0 || k == 8 ? 0.01 : 0;
+        target[k] *= 0.01;
+    const struct inverse_problem problem = make_problem(target);
     assert_ok(mf_potential_grid_init(&grid, &problem));
-    assert_int_equal(grid.core[0], 0);
+    assert_int_equal(grid.core[0], CORE);
     mf_potential_grid_clear(&grid);
 }
 
@@ -259,7 +302,9 @@ static void test_potential_grid_virials_are_those_of_a_changed_table(void **stat
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_potential_grid_has_three_parts_when_the_target_has_a_core),
+        cmocka_unit_test(test_potential_grid_core_takes_in_single_pairs_when_errors_tell),
         cmocka_unit_test(test_potential_grid_takes_stray_pairs_for_the_core),
+        cmocka_unit_test(test_potential_grid_has_a_core_when_pairs_are_rare_everywhere),
         cmocka_unit_test(test_potential_grid_of_states_knows_which_one_saw_a_bin),
         cmocka_unit_test(test_potential_grid_has_no_core_when_the_target_begins_at_once),
         cmocka_unit_test(test_potential_grid_refuses_when_the_target_is_empty),
