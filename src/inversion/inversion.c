@@ -333,6 +333,8 @@ enum status mf_inversion_advance(struct inversion *inversion, struct inverse_ste
                            inversion->distance[TARGET_RDF].rms);
     TRY(judge(inversion, &kept));
     converged = mf_inversion_has_converged(inversion, kept);
+    if (inversion->walked)
+        TRY(mf_inversion_band_find(inversion));
     if (converged)
         mf_inversion_take_last_step(inversion);
     describe(inversion, own, converged, step);

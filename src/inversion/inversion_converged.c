@@ -4,6 +4,7 @@
 #include "inversion/inversion.h"
 
 #include <math.h>
+#include <string.h>
 
 /// The way that is left of the ramp, and of the pressure, in their errors, at which both have
 /// settled.
@@ -15,6 +16,10 @@ static const double probable_misfit = 2;
 /// Iterations running, of those that are kept, that must agree: where some bins hide others, and
 /// where C is that of few samples, so that a step goes a part of its way.
 enum { LONG_AGREEMENT = 4, AGREEMENT_WITH_GROUPS = 2 };
+
+/// As many that meet the targets of a fit which does not settle: of several pair types,
+/// combinations of Φ that g hardly sees may go on for ever. Twins that do settle take five at most.
+enum { LONG_WALK = 6 };
 
 /// Whether the present potential meets all targets as far as their noise lets see; of few
 /// coefficients, whether no change of these makes it better.
@@ -53,15 +58,26 @@ static bool hides(const struct inversion *inversion) {
            inversion->misfit > probable_misfit;
 }
 
+/// Count the iterations running that meet the targets, settled or not.
+static void count_met(struct inversion *inversion, bool meets) {
+    uint32_t *met = &inversion->progress.met;
+    *met = meets && !hides(inversion) ? *met + 1 : 0;
+    if (*met == 1)
+        memcpy(inversion->met_phi, inversion->phi, inversion->grid.points * sizeof(double));
+}
+
 bool mf_inversion_has_converged(struct inversion *inversion, bool kept) {
     uint32_t *agreed = &inversion->progress.agreed;
-    const bool settles = must_settle(inversion);
+    const bool with_groups = must_settle(inversion) && inversion->grid.groups > 0;
     if (!kept) // it goes back to the one before
         return false;
-    const bool agrees = inversion->progress.best_precise && meets_targets(inversion) &&
-                        (!settles || has_settled(inversion));
+    const bool meets = inversion->progress.best_precise && meets_targets(inversion);
+    const bool agrees = meets && (!must_settle(inversion) || has_settled(inversion));
+    count_met(inversion, meets);
     *agreed = agrees ? *agreed + 1 : 0;
-    return *agreed >= (hides(inversion)                        ? LONG_AGREEMENT
-                       : settles && inversion->grid.groups > 0 ? AGREEMENT_WITH_GROUPS
-                                                               : 1);
+    const bool settled = *agreed >= (hides(inversion) ? LONG_AGREEMENT
+                                     : with_groups    ? AGREEMENT_WITH_GROUPS
+                                                      : 1);
+    inversion->walked = !settled && with_groups && inversion->progress.met >= LONG_WALK;
+    return settled || inversion->walked;
 }

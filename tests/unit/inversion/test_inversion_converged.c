@@ -74,12 +74,41 @@ static void test_fit_with_groups_ends_after_four_agreements_where_noise_hides_bi
     assert_true(mf_inversion_has_converged(&inversion, true));
 }
 
+/// Six iterations running that meet the targets are enough, and the way since then is an error.
+static void test_fit_with_groups_ends_though_it_walks_on(void **state) {
+    (void)state;
+    const struct inverse_problem problem = {0};
+    double phi[2] = {0, 0}, met[2] = {0, 0};
+    struct inversion inversion = make_end(&problem, 1);
+    inversion.grid.points = 2;
+    inversion.phi = phi;
+    inversion.met_phi = met;
+    inversion.band.ramp.way = -0.06;
+    for (int n = 0; n < 4; n++, phi[0] += 1)
+        assert_false(mf_inversion_has_converged(&inversion, true));
+    inversion.section[0].rms = 1.8;
+    assert_false(mf_inversion_has_converged(&inversion, true));
+    inversion.section[0].rms = 1.5;
+    for (int n = 0; n < 5; n++, phi[0] += 1)
+        assert_false(mf_inversion_has_converged(&inversion, true));
+    assert_true(mf_inversion_has_converged(&inversion, true));
+    assert_true(inversion.walked);
+    assert_true(met[0] == 4);
+    inversion.band.ramp.way = -0.04;
+    assert_false(mf_inversion_has_converged(&inversion, false));
+    inversion.progress.met = 0;
+    assert_false(mf_inversion_has_converged(&inversion, true));
+    assert_true(mf_inversion_has_converged(&inversion, true));
+    assert_false(inversion.walked);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_fit_of_pairs_ends_when_it_agrees_once),
         cmocka_unit_test(test_fit_with_groups_ends_when_it_has_settled_twice_running),
         cmocka_unit_test(test_fit_with_groups_ends_at_once_where_nothing_must_settle),
         cmocka_unit_test(test_fit_with_groups_ends_after_four_agreements_where_noise_hides_bins),
+        cmocka_unit_test(test_fit_with_groups_ends_though_it_walks_on),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
