@@ -68,7 +68,7 @@ double mf_hybrid_step_squared_frequency(enum topology_order order, double varian
 }
 
 double mf_hybrid_step_wrong(const struct integrator *integrator) {
-    return integrator == &mf_aboba ? 0.025 : 0.25;
+    return integrator == &mf_aboba ? 0.1 : 0.25;
 }
 
 double mf_hybrid_step_fastest(const struct molecules *molecules, double temperature) {

@@ -141,6 +141,23 @@ static void check_moves(const struct scene *scene, struct json_object *object) {
                       setup->integrator->name);
 }
 
+/// Masses of 1 are the unit, and not told to the particles.
+static void check_masses(struct scene *scene, struct json_object *object, bool remembers) {
+    const struct integrator *integrator = scene->setup.integrator;
+    struct attributes_source *mass = &scene->setup.attribute[ATTRIBUTES_MASS];
+    if (attributes_are(mass, 1))
+        mass->ranges = 0;
+    else if (!integrator->masses)
+        mf_json_fault(
+            object, "particles.mass",
+            "%s moves particles of mass 1 only; \"aboba\" and \"dpd-verlet\" move others, "
+            "and without \"dissipative\" \"velocity-verlet\"",
+            integrator->name);
+    else if (remembers)
+        mf_json_fault(object, "particles.mass",
+                      "friction that remembers, or acts across pairs, is of particles of mass 1");
+}
+
 static enum status read_dynamics(struct scene *scene, struct json_object *object, int unknown) {
     const char **names;
     TRY(mf_names_collect(mf_integrator_list, NULL, &names));
@@ -191,18 +208,7 @@ static enum status read_dynamics(struct scene *scene, struct json_object *object
     if (integrator->samples)
         check_moves(scene, object);
     check_orientation(scene, object);
-    struct attributes_source *mass = &scene->setup.attribute[ATTRIBUTES_MASS];
-    if (attributes_are(mass, 1))
-        mass->ranges = 0; // they are the unit
-    else if (!integrator->masses)
-        mf_json_fault(
-            object, "particles.mass",
-            "%s moves particles of mass 1 only; \"aboba\" and \"dpd-verlet\" move others, "
-            "and without \"dissipative\" \"velocity-verlet\"",
-            integrator->name);
-    else if (remembers)
-        mf_json_fault(object, "particles.mass",
-                      "friction that remembers, or acts across pairs, is of particles of mass 1");
+    check_masses(scene, object, remembers);
     return STATUS_OK;
 }
 

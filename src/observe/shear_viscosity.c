@@ -76,16 +76,12 @@ static enum status check(const struct simulation *simulation, bool driven) {
                               "shear_viscosity: a wave heats the fluid, and \"%s\" has no friction "
                               "between pairs here that would cool it",
                               name);
-    if (!driven && !setup->integrator->tells_transfer)
-        return mf_status_fail(
-            STATUS_BAD_INPUT,
-            "shear_viscosity: \"%s\" does not tell what pairs exchange; \"aboba\" "
-            "and \"velocity-verlet\" do, and \"shear-wave\" needs no stress",
-            name);
-    if (!driven && mf_respa_acts(setup))
+    if (!driven && (!setup->integrator->tells_transfer || mf_respa_acts(setup)))
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "shear_viscosity: what bonds exchange is counted once a step; leave "
-                              "out \"inner_steps\" of \"dynamics\"");
+                              "shear_viscosity: \"%s\"%s does not tell what pairs exchange; "
+                              "\"aboba\" and \"velocity-verlet\" do without \"inner_steps\", and "
+                              "\"shear-wave\" needs no stress",
+                              name, mf_respa_acts(setup) ? " with \"inner_steps\"" : "");
     return STATUS_OK;
 }
 

@@ -193,8 +193,8 @@ static void test_fit_molecules_leaves_known_laws_alone(void **state) {
 }
 
 /// A Verlet step makes the variance of a harmonic length too large by (ω Δt)²/4, ω² = 2 k/m: 0.003
-/// with k = 10⁵ at Δt = 0.000245, and one digit of that is taken. With aboba, the default, 0.025
-/// instead of a quarter is reckoned with, and 0.00077 is allowed.
+/// with k = 10⁵ at Δt = 0.000245, and one digit of that is taken. With aboba, the default, a
+/// tenth instead of a quarter is reckoned with, and 0.00039 is allowed.
 static void test_fit_molecules_default_time_step_knows_stiff_laws(void **state) {
     static const char stiff[] =
         "{\"target\": {\"rdf\": {\"A-A\": {\"file\": \"truth/rdf_A-A.tsv\"},\n"
@@ -208,7 +208,7 @@ static void test_fit_molecules_default_time_step_knows_stiff_laws(void **state) 
     small_inputs_write(*state, "run.json", stiff, NULL, NULL);
     RUN_PROGRAM(&result, "fit", "run.json", "--explain");
     run_program_assert_code(&result, 0);
-    assert_contains(result.out, "time step 0.0006 tau");
+    assert_contains(result.out, "time step 0.0003 tau");
     small_inputs_write(*state, "run.json", stiff, "\"box\"",
                        "\"dynamics\": {\"integrator\": \"dpd-verlet\"}, " FRICTION ", \"box\"");
     RUN_PROGRAM(&result, "fit", "run.json", "--explain");
