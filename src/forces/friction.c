@@ -108,15 +108,14 @@ static void store_velocities(void *context, size_t begin, size_t end) {
             particles->velocity[d][k] = particles->kernel_force[k][d];
 }
 
-/// Without masses they are 1; returns the impulse of i.
-static inline lanes_double4 change_pair(const float direction[4], const struct friction_pair *pair,
-                                        const double *mass, lanes_double4 *v) {
+/// Without masses they are 1.
+static inline void change_pair(const float direction[4], const struct friction_pair *pair,
+                               const double *mass, lanes_double4 *v) {
     const lanes_double4 e = lanes_load_double4(direction);
     const double u = sum_of(e * (v[pair->i] - v[pair->j]));
     const lanes_double4 change = (pair->kick - pair->damping * u) * e;
     v[pair->i] += mass ? change / mass[pair->i] : change;
     v[pair->j] -= mass ? change / mass[pair->j] : change;
-    return change;
 }
 
 enum { SWEEP_BLOCK = 1024, SWEEP_STRIDE = 633 };
@@ -161,19 +160,30 @@ static inline double distance_of(const struct particles *particles, int32_t i, i
     return sqrt(square);
 }
 
-/// The same sweep, with the same bits, which adds up what the pairs exchange.
-SIMD_CLONES static void sweep_and_tell(const struct friction *friction,
-                                       const struct particles *particles, int p, lanes_double4 *v,
-                                       double transfer[3][3]) {
+static inline void sweep_and_add(const struct friction *friction, const struct particles *particles,
+                                 int p, const double *mass, lanes_double4 *v,
+                                 double transfer[3][3]) {
     const size_t begin = friction->begin[p], count = friction->end[p] - begin;
-    const double *mass = particles_masses(particles);
     for (size_t n = 0; n < count; n++) {
         const size_t k = begin + place_of(n, count);
         const struct friction_pair *pair = &friction->pair[k];
-        const lanes_double4 impulse = change_pair(friction->direction[k], pair, mass, v);
+        const lanes_double4 before = v[pair->i];
+        change_pair(friction->direction[k], pair, mass, v);
+        const lanes_double4 impulse = (v[pair->i] - before) * (mass ? mass[pair->i] : 1);
         transfer_add(transfer, distance_of(particles, pair->i, pair->j), friction->direction[k],
                      (double[]){impulse[0], impulse[1], impulse[2]});
     }
+}
+
+/// The same sweep, with the same bits, which adds up what the pairs exchange. As above, what has no
+/// masses has instructions of its own: with a choice between two the last bits would be others.
+SIMD_CLONES static void sweep_and_tell(const struct friction *friction,
+                                       const struct particles *particles, int p, const double *mass,
+                                       lanes_double4 *v, double transfer[3][3]) {
+    if (mass)
+        sweep_and_add(friction, particles, p, mass, v, transfer);
+    else
+        sweep_and_add(friction, particles, p, NULL, v, transfer);
 }
 
 void mf_friction_load_velocities(struct particles *particles) {
@@ -187,11 +197,12 @@ void mf_friction_store_velocities(struct particles *particles) {
 static void sweep_all_and_tell(const struct friction *friction, struct particles *particles,
                                struct transfer *transfer) {
     lanes_double4 *v = (lanes_double4 *)particles->kernel_force;
+    const double *mass = particles_masses(particles);
     const int threads = particles->threads;
     for (int first = 0; first < 2; first++) {
 #pragma omp parallel for schedule(dynamic) num_threads(threads) if (threads > 1)
         for (int p = first; p < friction->parts; p += 2)
-            sweep_and_tell(friction, particles, p, v, transfer->part[p]);
+            sweep_and_tell(friction, particles, p, mass, v, transfer->part[p]);
     }
     mf_transfer_collect(transfer, friction->parts, 1);
 }

@@ -141,19 +141,20 @@ static void check_moves(const struct scene *scene, struct json_object *object) {
                       setup->integrator->name);
 }
 
-/// Masses of 1 are the unit, and not told to the particles.
+/// Masses of 1 are the unit; particles are not told of them where these would not be read, or cost
+/// time in a sweep of the friction.
 static void check_masses(struct scene *scene, struct json_object *object, bool remembers) {
     const struct integrator *integrator = scene->setup.integrator;
     struct attributes_source *mass = &scene->setup.attribute[ATTRIBUTES_MASS];
-    if (attributes_are(mass, 1))
+    if (attributes_are(mass, 1) && (!integrator->masses || integrator->friction))
         mass->ranges = 0;
-    else if (!integrator->masses)
+    else if (mass->ranges > 0 && !integrator->masses)
         mf_json_fault(
             object, "particles.mass",
             "%s moves particles of mass 1 only; \"aboba\" and \"dpd-verlet\" move others, "
             "and without \"dissipative\" \"velocity-verlet\"",
             integrator->name);
-    else if (remembers)
+    else if (mass->ranges > 0 && remembers)
         mf_json_fault(object, "particles.mass",
                       "friction that remembers, or acts across pairs, is of particles of mass 1");
 }

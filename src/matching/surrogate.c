@@ -121,9 +121,9 @@ static double leverage(const struct surrogate_work *work, const double *delta) {
 /// What the noise of the target and that of the model where the solution lies do to it. The
 /// target's noise is taken to be correlated as that of the simulations is, which the residuals
 /// show, with the standard errors that it has.
-/// @param[in] lever  of the model that the solution is from
-static void add_noise(const struct surrogate_work *work, double lever, double *covariance) {
+static void add_noise(const struct surrogate_work *work, double *covariance) {
     const struct surrogate *s = work->surrogate;
+    const double lever = leverage(work, work->delta);
     double weights = 0;
     for (size_t k = 0; k < work->rows; k++)
         weights += work->weight[k];
@@ -371,9 +371,8 @@ static void bound(double *scratch, double *covariance, size_t variables) {
 }
 
 /// Where the target is met best, by the rows near the centre.
-/// @param[out] lever  of the step
 static enum status find_best(const struct surrogate *surrogate, const double *centre, size_t kept,
-                             double reach, struct surrogate_model *model, double *lever) {
+                             double reach, struct surrogate_model *model) {
     struct surrogate_work work = {0};
     double *held = NULL;
     const size_t most = MOST_ROWS_PER_GENE * surrogate->variables + MORE_ROWS;
@@ -382,7 +381,6 @@ static enum status find_best(const struct surrogate *surrogate, const double *ce
     CHECK(status);
     NEW_ARRAY(held, surrogate->variables);
     take_step(&work, centre, held, reach);
-    *lever = leverage(&work, work.delta);
     for (size_t n = 0; n < surrogate->variables; n++)
         model->best[n] = fmin(1, fmax(0, centre[n] + work.delta[n]));
 done:
@@ -391,16 +389,16 @@ done:
     return status;
 }
 
-/// How well it is known. Slopes and scatter are those of all rows: those of a region that has
-/// become narrow do not differ by more than their noise, and would say nothing of slopes. The noise
-/// of the step is that of the fewer rows that it is from.
+/// How well it is known, by all rows: those of a region that has become narrow do not differ by
+/// more than their noise, and would say nothing of slopes.
 static enum status find_covariance(const struct surrogate *surrogate, const double *centre,
-                                   size_t kept, double lever, struct surrogate_model *model) {
+                                   size_t kept, struct surrogate_model *model) {
     struct surrogate_work work = {0};
     enum status status = mf_surrogate_fit_rows(&work, surrogate, centre, kept, kept, true);
     if (status == STATUS_OK) {
         factor_hessian(&work, 1 / (prior_width * prior_width));
-        add_noise(&work, lever, model->covariance);
+        solve(&work, work.miss, NULL);
+        add_noise(&work, model->covariance);
         status = correct(&work, model->covariance);
         add_held(&work, model->covariance);
         bound(work.hessian, model->covariance, surrogate->variables);
@@ -414,15 +412,14 @@ enum status mf_surrogate_fit(const struct surrogate *surrogate, const double *ce
     enum status status = STATUS_OK;
     const size_t variables = surrogate->variables, added = (size_t)surrogate->rows.added;
     const size_t kept = added < surrogate->capacity ? added : surrogate->capacity;
-    double lever;
     *model = (struct surrogate_model){.variables = variables};
     *known = kept >= mf_surrogate_least_rows(variables);
     if (!*known)
         return STATUS_OK;
     NEW_ARRAY(model->best, variables);
     NEW_ARRAY(model->covariance, variables * variables);
-    CHECK(find_best(surrogate, centre, kept, reach, model, &lever));
-    CHECK(find_covariance(surrogate, centre, kept, lever, model));
+    CHECK(find_best(surrogate, centre, kept, reach, model));
+    CHECK(find_covariance(surrogate, centre, kept, model));
 done:
     return status;
 }

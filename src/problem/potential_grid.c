@@ -52,9 +52,11 @@ static enum status find_core(struct potential_grid *grid, const struct inverse_p
     if (*core + 3 > grid->bins) {
         char name[COMPOSITION_PAIR_NAME_SIZE];
         mf_composition_pair_name(&problem->scene.composition, (int)pair, name);
-        return mf_status_fail(STATUS_BAD_INPUT,
-                              "the target%s%s is nowhere above %g and two of its errors",
-                              name[0] ? " of " : "", name, problem->core_threshold);
+        return mf_status_fail(
+            STATUS_BAD_INPUT,
+            "the target%s%s is nowhere above %g and two of its errors: are \"g_column\" and "
+            "\"error_column\" right?",
+            name[0] ? " of " : "", name, problem->core_threshold);
     }
     grid->known_of[pair] = grid->bins - *core;
     grid->known += grid->known_of[pair];

@@ -121,9 +121,8 @@ static void test_integrals_of_one_state_are_fitted_with_the_bits_of_imc(void **s
     results_assert_same("plain", "one", same);
 }
 
-/// a of A-B is 14. Nothing else is fitted, from a = 11. In 25 seeds what was found was off by 0.94
-/// of its error (rms), the farthest by 2: four errors are a false alarm in some 10,000 seeds.
-/// Before the fit a is known within 12/sqrt(12).
+/// a of A-B is 14. Nothing else is fitted, from a = 11. In 24 seeds, of truth and fit, what was found
+/// was off by 1.25(18) times its error, so that five errors are a false alarm in thousands.
 static void test_optimiser_finds_a_repulsion_from_the_integrals_alone(void **state) {
     static const char text[] =
         "{\"seed\": 3, \"scene\": {" SETUP
@@ -144,7 +143,7 @@ static void test_optimiser_finds_a_repulsion_from_the_integrals_alone(void **sta
     run_program_assert_code(&result, 0);
     const double a = results_parameter("number/summary.json", "conservative.A-B.a", "value");
     const double error = results_parameter("number/summary.json", "conservative.A-B.a", "error");
-    if (!(error > 0 && error < 0.5 * 12 / sqrt(12) && fabs(a - 14) < 4 * error))
+    if (!(error > 0 && error < 1 && fabs(a - 14) < 5 * error))
         fail_msg("conservative.A-B.a = %g +- %g, not 14", a, error);
 }
 

@@ -154,7 +154,7 @@ static void test_cmaes_has_not_converged_when_its_verification_is_worse(void **s
     make_slow(*state, "run.json");
     char *text = temporary_folder_read("run.json");
     small_inputs_write(*state, "run.json", text, "\"verification\": {",
-                       "\"verification\": {\"time_step\": 0.02, ");
+                       "\"verification\": {\"time_step\": 0.01, ");
     free(text);
     RUN_PROGRAM(&result, "fit", "run.json", "-o", "out", "--force");
     run_program_assert_code(&result, 1);

@@ -91,8 +91,10 @@ static void write_scene(struct temporary_folder *folder, const char *name, const
 
 /// The numbers of a table, all behind each other.
 static size_t read_numbers(const char *file, double *values, size_t most) {
-    char *text = temporary_folder_read(file), *rest, *at = strchr(text, '\n') + 1;
+    char *text = temporary_folder_read(file), *rest, *at = text;
     size_t count = 0;
+    while (*at == '#')
+        at = strchr(at, '\n') + 1;
     for (double value; count < most; at = rest) {
         value = strtod(at, &rest);
         if (rest == at)
