@@ -69,7 +69,8 @@ static enum status step_with(struct simulation *simulation, friction_change *cha
     return STATUS_OK;
 }
 
-/// The same with flights along bonds instead of the drifts.
+/// The same with flights along bonds instead of the drifts, half of the inner steps in each; an odd
+/// number is made even.
 static enum status step_with_flights(struct simulation *simulation, int64_t inner_steps) {
     struct respa *respa = simulation->integrator_state;
     const double half = 0.5 * simulation->setup.time_step;

@@ -309,7 +309,7 @@ static enum status join_integrals(struct inversion *inversion) {
     if (inversion->kirkwood_buff.pairs == 0 || inversion->joint)
         return STATUS_OK;
     TRY(mf_inversion_rows_reduce(&inversion->rows, inversion, 1, false));
-    if (inversion->doubt && !mf_inversion_is_coarse(inversion))
+    if (inversion->doubt)
         TRY(mf_inversion_rows_reduce(&inversion->doubted, inversion, 1, true));
     inversion->together = (struct inversion_joint){.state = inversion,
                                                    .states = 1,

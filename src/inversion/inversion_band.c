@@ -281,12 +281,12 @@ enum status mf_inversion_band_find(struct inversion *inversion) {
     CHECK(inversion->basis.count > 0
               ? mf_inversion_basis_covariance(inversion, band->covariance, &band->ramp.directions)
               : mf_inversion_band_covariance(&system, band->covariance, &band->ramp.directions));
+    if (inversion->walked)
+        add_walk(inversion, scratch);
     take_constants_off(inversion);
     weigh_ramp(inversion, weight);
     CHECK(find_step(inversion, &system, step));
     add_way(inversion, step, weight, scratch);
-    if (inversion->walked)
-        add_walk(inversion, scratch);
     add_pressure(inversion, scratch);
     find_farthest(inversion, step, scratch);
     find_errors(inversion, weight, scratch);

@@ -89,7 +89,7 @@ static enum status join(struct joint *joint) {
         TRY(mf_joint_coarse_step(joint, joint->coarse));
     mf_joint_targets_join(joint);
     TRY(mf_inversion_rows_reduce(&joint->rows, joint->state, joint->states, false));
-    if (groups && !mf_inversion_is_coarse(leader))
+    if (groups)
         TRY(mf_inversion_rows_reduce(&joint->doubted, joint->state, joint->states, true));
     joint->together = (struct inversion_joint){joint->state, joint->states, joint->rows.system,
                                                joint->doubted.system, joint->coarse};

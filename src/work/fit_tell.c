@@ -2,6 +2,7 @@
 #include "work/fit_tell.h"
 
 #include "dynamics/hybrid_step.h"
+#include "dynamics/respa.h"
 #include "system/attributes.h"
 
 #include <math.h>
@@ -37,7 +38,9 @@ static void warn_of_step(const struct fit_file *fit,
     const double time = mf_units_factor(units, "tau");
     char unit[UNITS_NAME_SIZE], harm[64];
     mf_units_suffix(units, "tau", unit);
-    for (size_t g = 0; simulation_has_velocities(setup) && g < bonds->groups; g++) {
+    if (!simulation_has_velocities(setup) || mf_respa_acts(setup))
+        return;
+    for (size_t g = 0; g < bonds->groups; g++) {
         if (!target_groups_have(bonds, g))
             continue;
         const double turn =
