@@ -121,8 +121,8 @@ static void test_integrals_of_one_state_are_fitted_with_the_bits_of_imc(void **s
     results_assert_same("plain", "one", same);
 }
 
-/// a of A-B is 14. Nothing else is fitted, from a = 11. In 24 seeds, of truth and fit, what was found
-/// was off by 1.25(18) times its error, so that five errors are a false alarm in thousands.
+/// a of A-B is 14. Nothing else is fitted, from a = 11. In 24 seeds, of truth and fit, what was
+/// found was off by 1.25(18) times its error, so that five errors are a false alarm in thousands.
 static void test_optimiser_finds_a_repulsion_from_the_integrals_alone(void **state) {
     static const char text[] =
         "{\"seed\": 3, \"scene\": {" SETUP
