@@ -158,18 +158,21 @@ static void check_pairs(const struct inversion *inversion) {
 }
 
 /// k within 5 %, which is 0.6 % of the distribution's width times some; the deviations from a
-/// parabola as large as the bands say, within what smoothing takes off and misfit adds: from
-/// `least` to `most`.
+/// parabola as large as the bands say, within what smoothing takes off and misfit adds: up to
+/// `most`, and from `least` on over both groups.
 static void check_groups(const struct inversion *inversion, double least, double most) {
     static const double truth[] = {spring, bend}, unit[] = {1, M_PI / 180};
+    double squares = 0;
     for (size_t g = 0; g < 2; g++) {
         double k, deviation;
         fit_parabola(inversion, g, unit[g], &k, &deviation);
         print_message("group %zu: k = %.3f of %g, deviations %.2f bands\n", g, k, truth[g],
                       deviation);
         assert_true(fabs(k / truth[g] - 1) < 0.05);
-        assert_true(deviation > least && deviation < most);
+        assert_true(deviation < most);
+        squares += deviation * deviation;
     }
+    assert_true(sqrt(squares / 2) > least);
 }
 
 static void find(const struct inverse_method *method, double least, double most) {
@@ -208,12 +211,11 @@ static void test_ibi_finds_pairs_bonds_and_angles_at_once(void **state) {
 }
 
 /// Bins deviate together that few coefficients make: eight of these are above 2 on average in one
-/// case of 1000, if the errors are honest. Without a parabola five are left; two
-/// seeds had 0.89, 0.19 and 0.45, 0.37. Of bands that are twice as wide as they should be they are
-/// below 0.1 in one case of 1000.
+/// case of 1000, if the errors are honest. Without a parabola five are left of each group; over
+/// both six seeds had 0.35 to 0.64.
 static void test_relative_entropy_finds_pairs_bonds_and_angles_at_once(void **state) {
     (void)state;
-    find(&mf_relative_entropy, 0.1, 2.5);
+    find(&mf_relative_entropy, 0.2, 2.5);
 }
 
 /// Dimers of which the bond alone is looked for; nothing else acts.
