@@ -35,8 +35,12 @@ static bool one_knows_pairs(const struct inverse_problem *problem, size_t bin) {
 /// Where the target is well known.
 static const double well = 0.1;
 
+/// Fewer known bins than this are no curve.
+enum { LEAST_KNOWN = 3 };
+
 /// The core ends where the bins begin that know of pairs, without a gap up to the first that is
 /// well known, or to the last one: few pairs nearer than that tell nothing of the bins between.
+/// A target that knows of next to none, with errors as large as g, has its first pairs there.
 static enum status find_core(struct potential_grid *grid, const struct inverse_problem *problem,
                              size_t pair) {
     const size_t first = pair * grid->bins;
@@ -46,17 +50,18 @@ static enum status find_core(struct potential_grid *grid, const struct inverse_p
         (*core)++;
     while (*core > 0 && one_knows_pairs(problem, first + *core - 1))
         (*core)--;
+    if (*core + LEAST_KNOWN > grid->bins)
+        for (*core = 0;
+             *core < grid->bins && most_pairs(problem, first + *core) <= problem->core_threshold;)
+            (*core)++;
     size_t *empty = &grid->empty[pair];
     while (*empty < *core && most_pairs(problem, first + *empty) <= problem->core_threshold)
         (*empty)++;
-    if (*core + 3 > grid->bins) {
+    if (*core + LEAST_KNOWN > grid->bins) {
         char name[COMPOSITION_PAIR_NAME_SIZE];
         mf_composition_pair_name(&problem->scene.composition, (int)pair, name);
-        return mf_status_fail(
-            STATUS_BAD_INPUT,
-            "the target%s%s is nowhere above %g and two of its errors: are \"g_column\" and "
-            "\"error_column\" right?",
-            name[0] ? " of " : "", name, problem->core_threshold);
+        return mf_status_fail(STATUS_BAD_INPUT, "the target%s%s is nowhere above %g",
+                              name[0] ? " of " : "", name, problem->core_threshold);
     }
     grid->known_of[pair] = grid->bins - *core;
     grid->known += grid->known_of[pair];

@@ -64,7 +64,7 @@ static const struct mistake refused[] = {
     MISTAKE("counts as g", COLUMNS, "\"r_column\": 2, \"g_column\": 7",
             "target.rdf.g_column: ", "7.883e+06, not 1", "counts of pairs"),
     MISTAKE("errors as g", COLUMNS ERRORS, "\"r_column\": 2, \"g_column\": 6",
-            "the target is nowhere above 0.001 and two of its errors: are \"g_column\""),
+            "target.rdf.g_column: ", "water.txt is 0.0003556, not 1"),
     MISTAKE("numbers of neighbours as errors", ERRORS, ", \"error_column\": 8", "target.rdf.file: ",
             "column 8 cannot be the standard error of g: it grows", "\"error_column\""),
     MISTAKE("no column of errors among many", ERRORS, "", "target.rdf.file: ",
