@@ -27,10 +27,13 @@ double mf_progress_seconds(const struct progress *progress) {
     return clock_seconds() - progress->started;
 }
 
+/// With two digits, so that it agrees with rate and parts to be done.
 static void format_duration(double seconds, char text[32]) {
-    if (seconds < 100)
+    if (seconds < 99.5)
         snprintf(text, 32, "%.0f s", seconds);
-    else if (seconds < 6000)
+    else if (seconds < 597)
+        snprintf(text, 32, "%.1f min", seconds / 60);
+    else if (seconds < 5970)
         snprintf(text, 32, "%.0f min", seconds / 60);
     else
         snprintf(text, 32, "%.1f h", seconds / 3600);
@@ -72,12 +75,11 @@ void mf_progress_end(const struct progress *progress) {
 
 void mf_progress_tell(struct progress *progress, uint64_t done, uint64_t total, const char *unit,
                       const char *text) {
-    const double now = clock_seconds(), elapsed = now - progress->started;
-    const double fresh = (double)(done - progress->done_before);
-    const double rate = elapsed > 0 ? fresh / elapsed : 0;
+    const double now = clock_seconds();
     if (progress->pace.period == 0)
         progress->pace = mf_progress_pace_begin(progress->started, progress->done_before, 1);
     mf_progress_pace_tell(&progress->pace, now, done);
+    const double rate = mf_progress_pace_rate(&progress->pace, now, done);
     const double seconds = mf_progress_pace_left(&progress->pace, now, done, total);
     const struct watcher *watcher = progress->watcher;
     const struct watcher_progress told = {done, total, unit, text, rate};
@@ -89,9 +91,11 @@ void mf_progress_tell(struct progress *progress, uint64_t done, uint64_t total, 
     if (watcher)
         watcher->tell(watcher->context, &told);
     const double interval = progress->terminal ? terminal_interval : pipe_interval;
-    if (progress->quiet || (now - progress->last < interval && done < total))
+    const bool ends = done == total && progress->written != total;
+    if (progress->quiet || (now - progress->last < interval && !ends))
         return;
     progress->last = now;
+    progress->written = done;
     fprintf(stderr, "%s%s  %3.0f %%  %.3g %s/s  %s left%s", progress->terminal ? "\r\033[K" : "",
             text, 100 * (double)done / (double)total, rate, unit, left,
             progress->terminal ? "" : "\n");

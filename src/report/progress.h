@@ -16,6 +16,7 @@ struct progress {
     bool quiet, terminal;
     double started;                ///< clock at the begin [s]
     double last;                   ///< clock of the last line [s]
+    uint64_t written;              ///< parts that were done then
     const char *folder;            ///< where progress.json is to be, or NULL; borrowed
     double next;                   ///< clock of the next one [s]
     uint64_t done_before;          ///< parts that a run before a restart had done

@@ -2,6 +2,7 @@
 #include "report/progress_pace.h"
 
 #include <math.h>
+#include <stdbool.h>
 
 struct progress_pace mf_progress_pace_begin(double clock, uint64_t done, uint64_t period) {
     const struct progress_mark now = {clock, done};
@@ -19,6 +20,14 @@ void mf_progress_pace_tell(struct progress_pace *pace, double clock, uint64_t do
     pace->between = now;
 }
 
+double mf_progress_pace_rate(const struct progress_pace *pace, double clock, uint64_t done) {
+    const struct progress_mark now = {clock, done};
+    const bool whole = pace->last.done > pace->begin.done;
+    const struct progress_mark from = whole ? pace->half : pace->begin;
+    const struct progress_mark to = whole ? pace->last : now;
+    return to.clock > from.clock ? (double)(to.done - from.done) / (to.clock - from.clock) : 0;
+}
+
 double mf_progress_pace_left(const struct progress_pace *pace, double clock, uint64_t done,
                              uint64_t total) {
     // A period that takes longer than those before is said to be near its end until it is there.
@@ -26,14 +35,12 @@ double mf_progress_pace_left(const struct progress_pace *pace, double clock, uin
     const uint64_t last = pace->last.done;
     if (done >= total)
         return 0;
+    const double rate = mf_progress_pace_rate(pace, clock, done);
+    const double each = rate > 0 ? 1 / rate : 0;
     if (last > pace->begin.done) {
-        const double each =
-            (pace->last.clock - pace->half.clock) / (double)(last - pace->half.done);
         const double now = fmin((double)pace->period, (double)(total - last));
         return fmax(each * (double)(total - last) - (clock - pace->last.clock),
                     each * ((double)(total - last) - now + near * (now - (double)(done - last))));
     }
-    return done > pace->begin.done ? (clock - pace->begin.clock) * (double)(total - done) /
-                                         (double)(done - pace->begin.done)
-                                   : NAN;
+    return done > pace->begin.done ? each * (double)(total - done) : NAN;
 }

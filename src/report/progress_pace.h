@@ -24,6 +24,9 @@ struct progress_pace mf_progress_pace_begin(double clock, uint64_t done, uint64_
 /// Tell how many parts are done; they never become fewer.
 void mf_progress_pace_tell(struct progress_pace *pace, double clock, uint64_t done);
 
+/// Parts a second, over the same time as what is left is reckoned from.
+double mf_progress_pace_rate(const struct progress_pace *pace, double clock, uint64_t done);
+
 /// Seconds left until `total` parts are done; NaN if nothing is known yet.
 /// Tested: test_progress.
 double mf_progress_pace_left(const struct progress_pace *pace, double clock, uint64_t done,

@@ -47,6 +47,20 @@ static void test_pace_runs_down_inside_a_period(void **state) {
     assert_close(mf_progress_pace_left(&pace, 90, 24, 24), 0, 0);
 }
 
+/// Rate and time left are of the same time, so that who multiplies them has what is to be done.
+static void test_pace_has_a_rate_that_agrees_with_the_time_left(void **state) {
+    (void)state;
+    struct progress_pace pace = mf_progress_pace_begin(0, 10, 1);
+    assert_close(mf_progress_pace_rate(&pace, 5, 20), 2, 1e-12);
+    const double clocks[] = {100, 101, 102, 104, 107};
+    for (uint64_t k = 0; k < 5; k++) {
+        mf_progress_pace_tell(&pace, clocks[k], 11 + k);
+        const double rate = mf_progress_pace_rate(&pace, clocks[k], 11 + k);
+        assert_close(rate * mf_progress_pace_left(&pace, clocks[k], 11 + k, 40), 29 - (double)k,
+                     1e-9);
+    }
+}
+
 /// The first of ten periods takes ten times as long as the rest.
 static void test_pace_forgets_a_slow_beginning(void **state) {
     (void)state;
@@ -88,6 +102,7 @@ int main(void) {
         cmocka_unit_test(test_pace_is_unknown_before_the_first_part),
         cmocka_unit_test(test_pace_of_even_parts_is_their_time),
         cmocka_unit_test(test_pace_runs_down_inside_a_period),
+        cmocka_unit_test(test_pace_has_a_rate_that_agrees_with_the_time_left),
         cmocka_unit_test(test_pace_forgets_a_slow_beginning),
         cmocka_unit_test(test_iterations_go_on_when_their_passes_begin_anew),
     };
