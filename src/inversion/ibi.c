@@ -8,6 +8,15 @@
 
 static const char *const columns[] = {INVERSION_COLUMNS, NULL};
 
+/// g of the present samples; near the target that of all iterations there, as at the present
+/// potential, so that a step is not made of the noise of one.
+static double sampled_g(const struct inversion *inversion, size_t n) {
+    const size_t bin = inversion->grid.known_bin[n];
+    if (inversion->progress.pool > 0)
+        return (inversion->target_counts[bin] + inversion->excess[n]) / inversion->ideal[bin];
+    return mf_inversion_g(inversion, bin);
+}
+
 void mf_ibi_logarithms(const struct inversion *inversion, double *step) {
     const struct potential_grid *grid = &inversion->grid;
     for (size_t n = 0; n < grid->known; n++) {
@@ -18,7 +27,7 @@ void mf_ibi_logarithms(const struct inversion *inversion, double *step) {
         // An empty bin is as full as one with the threshold's few pairs.
         const size_t bin = grid->known_bin[n];
         const double least = inversion->least[bin];
-        const double g = fmax(mf_inversion_g(inversion, bin), least);
+        const double g = fmax(sampled_g(inversion, n), least);
         const double target = fmax(mf_inversion_target_g(inversion, bin), least);
         step[grid->known_point[n]] = inversion->problem->scene.temperature * log(g / target);
     }
