@@ -203,17 +203,14 @@ void mf_bonded_grid_start(const struct bonded_grid *grid, double *energy) {
     // What was not seen is as high as what is hardly seen.
     const double seen = mf_bonded_grid_seen * largest_of(grid, grid->target);
     const struct bonded_grid own = seen_by_itself(grid);
-    double least = INFINITY, *known = energy + own.below;
+    double *known = energy + own.below;
     for (size_t k = 0; k < own.known; k++) {
         const size_t bin = own.first + k;
         const double p = fmax(grid->target[bin], seen);
         known[k] = -grid->temperature *
                    log(p / mf_bonded_distribution_jacobian(unknown->order, grid->dimensions,
                                                            &unknown->bins, bin));
-        least = fmin(least, known[k]);
     }
-    for (size_t k = 0; k < own.known; k++)
-        known[k] -= least;
     mf_bonded_grid_complete(&own, energy);
 }
 
@@ -236,8 +233,18 @@ static void extend(const struct bonded_grid *grid, double *end, ptrdiff_t way, s
         end[way * (ptrdiff_t)k] = end[0] + (double)k * (slope + 0.5 * bend * (double)k);
 }
 
+/// No distribution sees the constant of U.
+static void set_least_to_zero(const struct bonded_grid *grid, double *energy) {
+    double least = INFINITY, *known = energy + grid->below;
+    for (size_t k = 0; k < grid->known; k++)
+        least = fmin(least, known[k]);
+    for (size_t k = 0; k < grid->known; k++)
+        known[k] -= least;
+}
+
 void mf_bonded_grid_complete(const struct bonded_grid *grid, double *energy) {
     const size_t above = grid->points - grid->below - grid->known;
+    set_least_to_zero(grid, energy);
     if (is_periodic(grid)) {
         energy[grid->known] = energy[0];
         return;

@@ -34,11 +34,12 @@ enum status mf_bonded_grid_init(struct bonded_grid *grid, const struct inverse_p
 /// q of a point [λ] or [degrees].
 double mf_bonded_grid_place(const struct bonded_grid *grid, size_t point);
 
-/// −k_B T ln(p/J) of the bins that the target has seen, with J the mean Jacobian of a bin and the
-/// least value 0, shape [points], completed.
+/// −k_B T ln(p/J) of the bins that the target has seen, with J the mean Jacobian of a bin, shape
+/// [points], completed.
 void mf_bonded_grid_start(const struct bonded_grid *grid, double *energy);
 
-/// Complete U, shape [points], from its known values.
+/// Complete U, shape [points], from its known values, the least of which becomes 0: no
+/// distribution sees the constant.
 void mf_bonded_grid_complete(const struct bonded_grid *grid, double *energy);
 
 /// The curve of completed values, to be cleared with mf_bonded_clear. Fails: NO_MEMORY.

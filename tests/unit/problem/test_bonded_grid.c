@@ -106,6 +106,27 @@ static void test_bonded_grid_inverts_the_distribution_of_a_bond(void **state) {
     clear_twin(&twin);
 }
 
+/// A constant that the steps of a fit have added to U is gone, and nothing else has changed.
+static void test_bonded_grid_has_no_constant(void **state) {
+    (void)state;
+    static struct twin twin;
+    struct bonded_grid grid;
+    struct bonded_curve curve = {0};
+    double values[POINTS], shifted[POINTS] = {0}, least = INFINITY;
+    make_twin(&twin, TOPOLOGY_BOND, (struct bonded_bins){0.6, 0.4 / BINS, BINS}, bond_energy);
+    begin(&twin, &grid, values, &curve);
+    for (size_t k = grid.below; k < grid.below + grid.known; k++)
+        shifted[k] = values[k] - 7;
+    mf_bonded_grid_complete(&grid, shifted);
+    for (size_t k = 0; k < grid.points; k++) {
+        assert_close(shifted[k], values[k], 1e-9);
+        least = fmin(least, values[k]);
+    }
+    assert_close(least, 0, 1e-12);
+    mf_bonded_clear(&curve);
+    clear_twin(&twin);
+}
+
 /// Beyond the known range the curve goes on as the parabola that it is, and grows for ever.
 static void test_bonded_grid_holds_what_leaves_the_target(void **state) {
     (void)state;
@@ -298,6 +319,7 @@ static void test_bins_of_two_states_are_those_of_both(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_bonded_grid_inverts_the_distribution_of_a_bond),
+        cmocka_unit_test(test_bonded_grid_has_no_constant),
         cmocka_unit_test(test_bonded_grid_holds_what_leaves_the_target),
         cmocka_unit_test(test_bonded_grid_lets_an_angle_be_straight),
         cmocka_unit_test(test_bonded_grid_closes_the_circle),
