@@ -17,6 +17,13 @@ function besideCore(datasets) {
   return high > limit + 3 * Math.abs(limit - low) ? [low - 0.1 * (limit - low), limit] : [undefined, undefined];
 }
 
+// y of the curve that has a name, where it has an error: beyond, U of a group goes on without end.
+function ofCurve(datasets) {
+  const values = datasets.filter((set) => set.label).flatMap((set) => set.data.map((p) => p.y)), high = Math.max(...values);
+  return values.length ? [-0.05 * high, 1.05 * high] : [undefined, undefined];
+}
+const rangeOf = (datasets) => (datasets.some((set) => set.label === symbol("energy")) ? ofCurve : besideCore)(datasets);
+
 // What a table's columns say as curves: y, its error, and what it is to be compared with.
 function pairs(table, x, names) {
   return names.filter((name) => table.has(name)).flatMap((name, k) => {
@@ -47,9 +54,10 @@ function otherOf(context, name) {
 function showUnknown(plot, table, name, context) {
   const x = table.column(0), value = table.columns[1].name;
   const history = context.tables.get(name.replace(".tsv", "_history.tsv")), sets = earlier(history);
-  const y = table.values(value);
-  if (table.has(value + "_error"))
-    sets.push(...band(x, y, table.values(value + "_error"), 0));
+  const error = table.has(value + "_error") ? table.values(value + "_error") : null, group = value === "energy";
+  const y = table.values(value).map((v, k) => (group && error && !Number.isFinite(error[k]) ? NaN : v));
+  if (error)
+    sets.push(...band(x, y, error, 0));
   sets.push(curve(symbol(value), x, y, 0));
   if (table.has("truth") && table.values("truth").some(Number.isFinite))
     sets.push(curve("truth", x, table.values("truth"), 1, { borderDash: [6, 4] }));
@@ -66,8 +74,15 @@ function functionOf(name) {
   const key = /^(rdf_now|rdf|[a-z_]+)/.exec(name)[0];
   return functions[key] || key.replaceAll("_", " ");
 }
-const nowOf = (name) => (name.startsWith("rdf_now") ? ", last samples of the fit" : "");
+const nowOf = (name) => (/^rdf_now|^now_/.test(name) ? ", last samples of the fit" : "");
 const pairOf = (name) => name.replace(/^rdf(_now)?|\.tsv$/g, "").replace("_", " ");
+
+// Lengths and angles of a group of molecules, whose name the table's has at its end.
+const groupFile = /^(?:now_)?(bond_lengths|bond_angles|dihedral_angles)_(.+)\.tsv$/;
+function groupOf(name) {
+  const [, kind, group] = groupFile.exec(name);
+  return `${kind.replace("_", " ")} of "${group}"`;
+}
 
 // A target and what was found of it.
 function showTarget(plot, table, name, context) {
@@ -83,7 +98,7 @@ function showTarget(plot, table, name, context) {
   if (other)
     sets.push(curve("other run", other.column(0), other.values(other.has("result") ? "result" : other.columns[1].name), 2,
       { borderDash: [3, 3] }));
-  plot.show(sets, { x: table.label(0), y: functionOf(name) + table.unit(1) });
+  plot.show(sets, { x: table.label(0), y: (groupFile.test(name) ? "p" : functionOf(name)) + table.unit(1) });
 }
 
 function showDifference(plot, table) {
@@ -135,16 +150,22 @@ const showColumns = (names) => (plot, table) => {
 const positive = (names) => (table) => names.some((name) => table.has(name) && table.values(name).some((v) => v > 0));
 const hasColumns = (names) => (table) => names.some((name) => table.has(name) && table.values(name).some(Number.isFinite));
 
-// Curves that a fit finds: Φ, ω, that across pairs, those of modes of memory; not their histories and flat directions.
-const unknownFile = /^(?!.*_(history|flat)\.tsv$)(potential(_[^_]+-[^_]+)?|omega(_[^_]+-[^_]+)?|omega_transverse|memory_.+)\.tsv$/;
-const unknownTitle = (name) => name.replace(".tsv", "").replace("potential", "Φ(r)").replace("omega_transverse", "ω(r) across pairs")
-  .replace(/^memory_(.*)/, "ω(r) of the memory \"$1\"").replace(/^omega/, "ω(r)").replace("_", " ");
+// Curves that a fit finds: Φ, ω, that across pairs, those of modes of memory, U of groups; not their histories and flat directions.
+const unknownFile = /^(?!.*_(history|flat)\.tsv$)(potential(_[^_]+-[^_]+)?|omega(_[^_]+-[^_]+)?|omega_transverse|memory_.+|(bonds|angles|dihedrals)_.+)\.tsv$/;
+const named = [[/^memory_(.*)\.tsv$/, "ω(r) of the memory \"$1\""], [/^(bond|angle|dihedral)s_(.*)\.tsv$/, "U of the $1 \"$2\""]];
+function unknownTitle(name) {
+  const [form, title] = named.find(([pattern]) => pattern.test(name)) || [];
+  return form ? name.replace(form, title)
+    : name.replace(".tsv", "").replace("potential", "Φ(r)").replace("omega_transverse", "ω(r) across pairs").replace(/^omega/, "ω(r)").replace("_", " ");
+}
 
 // file, title, what shows it; `when` says whether the table has it.
 const kinds = [
-  { file: unknownFile, title: unknownTitle, show: showUnknown, range: besideCore },
+  { file: unknownFile, title: unknownTitle, show: showUnknown, range: rangeOf },
   { file: /^rdf(_now)?(_[^_]+-[^_]+)?\.tsv$/, title: (n) => "g(r)" + nowOf(n) + pairOf(n), show: showTarget },
   { file: /^rdf(_now)?(_[^_]+-[^_]+)?\.tsv$/, title: (n) => "g(r) less its target" + nowOf(n) + pairOf(n), show: showDifference, when: (t) => t.has("target") },
+  { file: groupFile, title: (n) => groupOf(n) + nowOf(n), show: showTarget },
+  { file: groupFile, title: (n) => groupOf(n) + " less their target" + nowOf(n), show: showDifference, when: (t) => t.has("target") },
   { file: /^rdf_now(_[^_]+-[^_]+)?\.tsv$/, title: (n) => "S − S* by bin" + pairOf(n), show: showExcess },
   { file: /^singular_values\.tsv$/, title: () => "singular values of the step", show: showSingular, logarithmic: true },
   { file: /^history\.tsv$/, title: () => "error of the fit", show: showColumns(["error", "noise", "least", "mean"]), logarithmic: true, when: positive(["error"]) },

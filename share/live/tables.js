@@ -11,7 +11,7 @@ function parseName(text) {
 // Units and names as a page can write them, and a table's head cannot.
 export const pretty = (unit) => unit.replaceAll("lambda", "λ").replaceAll("tau", "τ").replaceAll("k_B.T_0", "k_B T_0")
   .replaceAll("^2", "²").replaceAll("^3", "³").replaceAll("^d", "ᵈ");
-const symbols = { phi: "Φ", omega: "ω", msd: "MSD", vacf: "VACF", temperature_configurational: "configurational temperature" };
+const symbols = { phi: "Φ", "phi [degrees]": "φ", theta: "θ", omega: "ω", energy: "U", msd: "MSD", vacf: "VACF", temperature_configurational: "configurational temperature" };
 export const symbol = (name) => symbols[name] || name.replaceAll("_", " ");
 
 export function parse(text) {
@@ -26,7 +26,7 @@ export function parse(text) {
   table.column = (k) => rows.map((row) => row[k]);
   table.values = (name) => table.column(table.at(name));
   table.unit = (k) => columns[k].unit && ` [${pretty(columns[k].unit)}]`;
-  table.label = (k) => symbol(columns[k].name) + table.unit(k);
+  table.label = (k) => (symbols[columns[k].name + table.unit(k)] || symbol(columns[k].name)) + table.unit(k);
   return table;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// g(r) of the last iteration's samples beside its target, so that a fit can be seen while it works;
-// S − S* and singular values of all iterations.
+// g(r) and p of groups of the last iteration's samples beside their targets, so that a fit can be
+// seen while it works; S − S* and singular values of all iterations.
 #include "inversion/inversion.h"
 
 #include "base/memory.h"
@@ -13,18 +13,17 @@
 
 enum { COLUMNS = 5 };
 
-/// One pair type's bins, from `first` on: r, target, g, its standard error, S − S*.
+/// `bins` values from `first` on, behind their places: target, samples, standard error, S − S*.
 static void fill(const struct inversion *inversion, size_t first, size_t bins,
                  double *const column[COLUMNS]) {
     const struct comoments *counts = &inversion->replicas.counts;
     const double independent = fmax(1, counts->count / inversion->inefficiency);
     for (size_t k = 0; k < bins; k++) {
         const size_t bin = first + k;
-        column[0][k] = mf_rdf_bins_centre(&inversion->problem->targets.bins, k);
-        column[1][k] = mf_inversion_target_g(inversion, bin);
-        column[2][k] = mf_inversion_g(inversion, bin);
-        column[3][k] =
-            sqrt(mf_comoments_covariance(counts, bin, bin) / independent) / inversion->ideal[bin];
+        const double unit = inversion->unit[bin];
+        column[1][k] = inversion->target_counts[bin] / unit;
+        column[2][k] = counts->mean[bin] / unit;
+        column[3][k] = sqrt(mf_comoments_covariance(counts, bin, bin) / independent) / unit;
         column[4][k] = counts->mean[bin] - inversion->target_counts[bin];
     }
 }
@@ -38,25 +37,75 @@ static void find_path(const struct inversion *inversion, size_t pair, const char
     folder->file(folder->context, file, path);
 }
 
-static enum status write_now(const struct inversion *inversion,
-                             const struct inverse_folder *folder) {
-    const size_t bins = inversion->grid.bins;
+/// Columns of a table for each section of bins, of the longest one.
+static enum status allocate_columns(const struct inversion *inversion, double **memory,
+                                    double *column[COLUMNS]) {
     enum status status = STATUS_OK;
-    double *memory = NULL, *column[COLUMNS];
-    char path[OUTPUT_PATH_SIZE];
-    NEW_ARRAY(memory, COLUMNS * bins);
+    size_t most = inversion->grid.bins;
+    for (size_t g = 0; g < inversion->grid.groups; g++)
+        if (inversion->grid.group[g].own.unknown->bins.count > most)
+            most = inversion->grid.group[g].own.unknown->bins.count;
+    NEW_ARRAY(*memory, COLUMNS * most);
     for (size_t c = 0; c < COLUMNS; c++)
-        column[c] = memory + c * bins;
+        column[c] = *memory + c * most;
+done:
+    return status;
+}
+
+static enum status write_pairs(const struct inversion *inversion,
+                               const struct inverse_folder *folder, double *column[COLUMNS]) {
+    const size_t bins = inversion->grid.bins;
     const struct data_column columns[COLUMNS] = {{"r[lambda]", column[0], NULL},
                                                  {"target[1]", column[1], "%.8g"},
                                                  {"result[1]", column[2], "%.8g"},
                                                  {"result_error[1]", column[3], "%.3g"},
                                                  {"excess[1]", column[4], "%.6g"}};
+    char path[OUTPUT_PATH_SIZE];
+    for (size_t k = 0; k < bins; k++)
+        column[0][k] = mf_rdf_bins_centre(&inversion->problem->targets.bins, k);
     for (size_t pair = 0; pair < inversion->grid.pairs; pair++) {
         fill(inversion, pair * bins, bins, column);
         find_path(inversion, pair, "rdf_now", ".tsv", folder, path);
-        CHECK(mf_data_table_write_in(path, folder->units, NULL, columns, COLUMNS, bins));
+        TRY(mf_data_table_write_in(path, folder->units, NULL, columns, COLUMNS, bins));
     }
+    return STATUS_OK;
+}
+
+/// p of a group: "now_bond_lengths_backbone.tsv".
+static enum status write_group(const struct inversion *inversion, size_t g,
+                               const struct inverse_folder *folder, double *column[COLUMNS]) {
+    const struct simulation_setup *scene = &inversion->problem->scene;
+    const struct potential_group *group = &inversion->grid.group[g];
+    const struct bonded_unknown *unknown = group->own.unknown;
+    const struct molecules *molecules = mf_molecules_find(scene->interaction, scene->interactions);
+    const struct observable_target *about =
+        mf_observable_kind(mf_bonded_distribution_kind(unknown->order)).target;
+    char path[OUTPUT_PATH_SIZE], file[TOPOLOGY_NAME_SIZE + 64], names[3][64];
+    static const char *const words[3] = {"target", "result", "result_error"};
+    for (int k = 0; k < 3; k++)
+        snprintf(names[k], sizeof names[k], "%s[%s]", words[k], about->unit);
+    const struct data_column columns[COLUMNS] = {{about->argument, column[0], NULL},
+                                                 {names[0], column[1], "%.8g"},
+                                                 {names[1], column[2], "%.8g"},
+                                                 {names[2], column[3], "%.3g"},
+                                                 {"excess[1]", column[4], "%.6g"}};
+    for (size_t k = 0; k < unknown->bins.count; k++)
+        column[0][k] = bonded_bins_centre(&unknown->bins, k);
+    fill(inversion, group->bin, unknown->bins.count, column);
+    snprintf(file, sizeof file, "now_%s_%s.tsv", about->name,
+             molecules->group[unknown->order][unknown->group].name);
+    folder->file(folder->context, file, path);
+    return mf_data_table_write_in(path, folder->units, NULL, columns, COLUMNS, unknown->bins.count);
+}
+
+static enum status write_now(const struct inversion *inversion,
+                             const struct inverse_folder *folder) {
+    enum status status = STATUS_OK;
+    double *memory = NULL, *column[COLUMNS];
+    CHECK(allocate_columns(inversion, &memory, column));
+    CHECK(write_pairs(inversion, folder, column));
+    for (size_t g = 0; g < inversion->grid.groups; g++)
+        CHECK(write_group(inversion, g, folder, column));
 done:
     mf_memory_free(memory);
     return status;

@@ -2,6 +2,8 @@
 //
 // Fits of molecules from outside: all potentials of a three-bead chain at once from what a
 // simulation of known ones has measured, the same bits again, and files that cannot be right.
+#include "io/data_table.h"
+
 #include "shared/is_close.h"
 #include "shared/results.h"
 #include "shared/run_program.h"
@@ -60,6 +62,8 @@ static const char *const tables[] = {"potential_A-A.tsv",
                                      "bonds_backbone_history.tsv",
                                      "bond_lengths_backbone.tsv",
                                      "bond_angles_bend.tsv",
+                                     "now_bond_lengths_backbone.tsv",
+                                     "now_bond_angles_bend.tsv",
                                      "history.tsv",
                                      NULL};
 
@@ -86,6 +90,36 @@ static void test_fit_molecules_again_with_the_same_bits(void **state) {
         fit_again(*state, "\"imc\"", method);
         results_assert_text("one/used.json", "method.sampler", samplers[k]);
         assert_true(results_number("one/summary.json", "rdf_rmse") < 0.05);
+    }
+}
+
+/// All bonds are in the bins: ∫ p dq = 1, of 160 bonds and 80 angles, and S − S* is their share.
+static void test_fit_molecules_shows_lengths_and_angles_of_its_samples(void **state) {
+    static struct run_program_result result;
+    static const struct {
+        const char *now, *verified;
+        double terms;
+    } group[] = {{"out/now_bond_lengths_backbone.tsv", "out/bond_lengths_backbone.tsv", 160},
+                 {"out/now_bond_angles_bend.tsv", "out/bond_angles_bend.tsv", 80}};
+    small_inputs_write(*state, "run.json", run, "\"iterations\": 4", "\"iterations\": 1");
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "out", "--force");
+    for (int g = 0; g < 2; g++) {
+        struct data_table now, verified;
+        assert_ok(mf_data_table_read(&now, group[g].now, 1));
+        assert_ok(mf_data_table_read(&verified, group[g].verified, 1));
+        assert_int_equal(now.rows, verified.rows);
+        double sum = 0;
+        for (size_t k = 0; k < now.rows; k++) {
+            const double *row = now.values + k * now.columns;
+            const double width = now.values[now.columns] - now.values[0];
+            assert_close(row[0], verified.values[k * verified.columns], 1e-9);
+            assert_close(row[1], verified.values[k * verified.columns + 1], 1e-6);
+            assert_close(row[4], group[g].terms * width * (row[2] - row[1]), 1e-3);
+            sum += width * row[2];
+        }
+        assert_close(sum, 1, 1e-3);
+        mf_data_table_clear(&now);
+        mf_data_table_clear(&verified);
     }
 }
 
@@ -309,6 +343,8 @@ int main(void) {
         cmocka_unit_test_setup_teardown(test_fit_molecules_again_with_the_same_bits, enter,
                                         small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_fit_by_relative_entropy_again_with_the_same_bits,
+                                        enter, small_inputs_leave),
+        cmocka_unit_test_setup_teardown(test_fit_molecules_shows_lengths_and_angles_of_its_samples,
                                         enter, small_inputs_leave),
         cmocka_unit_test_setup_teardown(
             test_fit_by_relative_entropy_tells_what_its_form_does_not_meet, enter,

@@ -43,6 +43,39 @@ class Panels(PageTest):
         self.shoot("singular")
         self.check_console()
 
+    def test_molecules_have_their_bonds_and_angles(self):
+        """U of each group with its band, and p beside its target, of the fit's samples and of the verification."""
+        scene = {"box": [4, 4, 4], "temperature": 1, "time_step": 0.01, "dissipative": {"law": "power", "sigma": 3},
+                 "molecules": {"trimer": {"count": 60, "chain": {"beads": ["A", "A", "A"], "bond": "stiff_bond", "angle": "bend"}}}}
+        law = {"conservative": {"law": "soft-repulsion", "a": 15}, "bonds": {"stiff_bond": {"law": "harmonic", "k": 80, "length": 0.6}},
+               "angles": {"bend": {"law": "harmonic", "k": 10, "angle": 120}}}
+        self.run_file("melt.json", {"seed": 2, **scene, **law, "rdf": {"range": 1.2, "bins": 30}, "bond_lengths": {"bins": 30},
+                                    "bond_angles": {"bins": 30}, "measure": {"equilibration": 500, "samples": 200, "every": 20}}, "melt")
+        groups = (("bond_lengths", "bonds", "stiff_bond"), ("bond_angles", "angles", "bend"))
+        targets = {p: {g: {"file": f"melt/{p}.tsv"}} for p, _, g in groups}
+        self.run_file("found.json", {"seed": 4, "scene": scene, "target": {"rdf": {"file": "melt/rdf.tsv"}, **targets},
+                                     "method": {"name": "ibi", "replicas": 2, "iterations": 3},
+                                     "verification": {"replicas": 2, "equilibration": 200, "samples": 20, "every": 20}}, "found")
+        self.begin("live", "found")
+        self.wait(lambda: {f"{u}_{g}.tsv" for _, u, g in groups} <= set(self.panels()))
+        self.wait(lambda: {f"now_{p}_{g}.tsv" for p, _, g in groups} | {f"{p}_{g}.tsv" for p, _, g in groups} <= set(self.panels()))
+        for title in ('U of the bond "stiff_bond"', 'U of the angle "bend"', 'bond lengths of "stiff_bond"',
+                      'bond lengths of "stiff_bond" less their target', 'bond angles of "bend", last samples of the fit'):
+            self.assertIn(title, self.titles())
+        for p, u, g in groups:
+            rows = self.rows("found", f"{u}_{g}.tsv")
+            known = sum(row[2] != "nan" for row in rows)
+            self.assertLess(known, len(rows))
+            self.assertEqual(self.chart(f"{u}_{g}.tsv")[-1], ["U", known])
+            self.assertEqual([label for label, _ in self.chart(f"now_{p}_{g}.tsv") if label], ["target", "result"])
+        self.assertEqual(self.browser.execute_script(
+            "return Chart.getChart(document.querySelector(`[data-table='angles_bend.tsv'] canvas`)).options.scales.x.title.text"), "θ [degrees]")
+        for name, table in (("bond", "bonds_stiff_bond.tsv"), ("lengths", "bond_lengths_stiff_bond.tsv")):
+            self.browser.execute_script("arguments[0].scrollIntoView({ block: 'center' })",
+                                        self.browser.find_element("css selector", f"[data-table='{table}']"))
+            self.shoot(name)
+        self.check_console()
+
     def test_results_are_compared_with_those_of_another_folder(self):
         self.run_file("one.json", water_fit(1), "one")
         self.run_file("other.json", {**water_fit(1), "seed": 9}, "other")
