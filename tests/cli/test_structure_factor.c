@@ -137,6 +137,53 @@ static void test_number_is_found_from_a_structure_factor_begun_far_away(void **s
     assert_true(fabs(a - 25) < 4 * error);
 }
 
+/// A molecule's form is in S(q): the length of its bonds and the repulsion of its beads at once.
+static void test_bonds_are_found_from_a_structure_factor_alone(void **state) {
+    static struct run_program_result result;
+    static const char melt[] =
+        "\"box\": [4.4, 4.4, 4.4], \"time_step\": 0.01,\n"
+        "\"dissipative\": {\"law\": \"power\", \"sigma\": 3},\n"
+        "\"molecules\": {\"trimer\": {\"count\": 80, \"exclude\": 0,\n"
+        "  \"chain\": {\"type\": \"A\", \"length\": 3, \"bond\": \"backbone\"}}},\n";
+    static const char laws[] = "\"bonds\": {\"backbone\": {\"law\": \"harmonic\", \"k\": 100, "
+                               "\"length\": %g}},\n"
+                               "\"conservative\": {\"law\": \"soft-repulsion\", \"a\": %g}";
+    char text[4096], truth[512], start[512];
+    snprintf(truth, sizeof truth, laws, 0.6, 25.0);
+    snprintf(start, sizeof start, laws, 0.7, 15.0);
+    snprintf(text, sizeof text,
+             "{\"seed\": 61, %s%s, \"structure_factor\": {\"q_maximum\": 14},\n"
+             "\"measure\": {\"equilibration\": 1000, \"samples\": 500, \"every\": 25}}",
+             melt, truth);
+    write_text(*state, "melt.json", text);
+    RUN_PROGRAM(&result, "simulate", "melt.json", "-o", "melt");
+    run_program_assert_code(&result, 0);
+    snprintf(text, sizeof text,
+             "{\"seed\": 3, \"target\": {\"structure_factor\": {\"q_maximum\": 14,\n"
+             "\"file\": \"melt/structure_factor.tsv\"}}, \"unknowns\": {\"numbers\": {\n"
+             "\"bonds.backbone.length\": {\"minimum\": 0.3, \"maximum\": 1},\n"
+             "\"conservative.a\": {\"minimum\": 5, \"maximum\": 60}}},\n"
+             "\"scene\": {%s%s}, \"method\": {\"name\": \"gauss-newton\", \"iterations\": 10,\n"
+             "\"equilibration\": 300, \"samples\": 60, \"every\": 25,\n"
+             "\"temperature_tolerance\": 0.5}, \"verification\": {\"replicas\": 2,\n"
+             "\"equilibration\": 300, \"samples\": 60, \"every\": 25}}",
+             melt, start);
+    write_text(*state, "bonds.json", text);
+    RUN_PROGRAM(&result, "fit", "bonds.json", "-o", "bonds");
+    run_program_assert_code(&result, 0);
+    static const struct {
+        const char *name;
+        double truth, most;
+    } number[] = {{"bonds.backbone.length", 0.6, 0.02}, {"conservative.a", 25, 2}};
+    for (int k = 0; k < 2; k++) {
+        const double value = results_parameter("bonds/summary.json", number[k].name, "value");
+        const double error = results_parameter("bonds/summary.json", number[k].name, "error");
+        print_message("%s = %g(%g)\n", number[k].name, value, error);
+        assert_true(error < number[k].most);
+        assert_true(fabs(value - number[k].truth) < 4 * error);
+    }
+}
+
 #define TEST(test)                                                                                 \
     cmocka_unit_test_setup_teardown(test, small_inputs_enter_without_gnuplot, small_inputs_leave)
 
@@ -146,6 +193,7 @@ int main(void) {
         TEST(test_structure_factor_can_be_a_target),
         TEST(test_structure_factor_says_what_its_target_lacks),
         TEST(test_number_is_found_from_a_structure_factor_begun_far_away),
+        TEST(test_bonds_are_found_from_a_structure_factor_alone),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
