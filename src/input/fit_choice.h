@@ -55,6 +55,9 @@ enum status mf_fit_choice_give_empty(const struct json_object *root, const char 
 /// infinite without.
 double mf_fit_defaults_stiff_step(const struct fit_choice *choice);
 
+/// How exactly g is to be known: as the target is.
+double mf_fit_defaults_precision(const struct fit_choice *choice);
+
 /// The choices of the method and of the verification (input/fit_defaults_method.c).
 enum status mf_fit_defaults_method(struct fit_choice *choice) MUST_USE;
 enum status mf_fit_defaults_verification(struct fit_choice *choice) MUST_USE;

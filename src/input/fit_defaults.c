@@ -7,12 +7,27 @@
 #include <stdio.h>
 #include <string.h>
 
+static bool lacks_method(const struct json_object *root) {
+    return mf_fit_choice_lacks(root, "", "method");
+}
+
+/// Whether nothing would hold the temperature.
+static bool lacks_friction(const struct json_object *root) {
+    return mf_fit_choice_lacks(root, "scene", "dissipative") &&
+           mf_fit_choice_lacks(root, "scene", "dynamics") &&
+           mf_fit_choice_lacks(root, "scene", "memory");
+}
+
 bool mf_fit_defaults_wanted(const struct json_object *root) {
-    return root->item && mf_fit_choice_lacks(root, "", "method");
+    return root->item && (lacks_method(root) || lacks_friction(root) ||
+                          mf_fit_choice_lacks(root, "scene", "time_step") ||
+                          mf_fit_choice_lacks(root, "", "verification"));
 }
 
 enum status mf_fit_defaults_make_readable(struct json_object *root) {
     enum { ANY_COUNT = 1000 };
+    if (!lacks_method(root))
+        return STATUS_OK;
     TRY(mf_fit_choice_give_text(root, "method", "name", mf_automatic.name));
     if (mf_fit_choice_lacks(root, "scene", "density") ||
         !mf_fit_choice_lacks(root, "scene.particles", "types") ||
@@ -66,7 +81,6 @@ static enum status choose_cutoff(struct fit_choice *c) {
     const double cutoff = find_cutoff(c, &why);
     const bool forced = c->leader || strcmp(why, "half of the box") == 0;
     struct json_object rdf = mf_fit_choice_object(c->root, "target.rdf");
-    c->range = c->scales.range;
     if (!c->finds[UNKNOWN_POTENTIAL] || (cutoff > worth * c->range && !forced))
         return STATUS_OK;
     for (size_t n = 0; (key = mf_json_key(&rdf, n)); n++) {
@@ -238,9 +252,7 @@ static enum status choose_omega(struct fit_choice *c) {
 
 /// It holds the temperature against what the integrator heats, and leaves g(r) as it is.
 static enum status choose_friction(struct fit_choice *c) {
-    if (c->finds[UNKNOWN_OMEGA] || !mf_fit_choice_lacks(c->root, "scene", "dissipative") ||
-        !mf_fit_choice_lacks(c->root, "scene", "dynamics") ||
-        !mf_fit_choice_lacks(c->root, "scene", "memory"))
+    if (c->finds[UNKNOWN_OMEGA] || !lacks_friction(c->root))
         return STATUS_OK;
     const double cutoff = c->scales.shell, sigma = moderate_friction(c, cutoff);
     const double time = c->mass / (mf_fit_scales_friction(c->rdf, cutoff) * sigma * sigma);
@@ -254,8 +266,7 @@ static enum status choose_friction(struct fit_choice *c) {
     return mf_fit_choice_give_omega(c, "scene.dissipative", sigma, cutoff);
 }
 
-enum status mf_fit_defaults_choose(const struct fit_file *read, const struct fit_file *leader,
-                                   struct json_object *root, struct fit_choices *choices) {
+static enum status choose_all(struct fit_choice *c) {
     static enum status (*const steps[])(struct fit_choice *) = {
         choose_unknowns,
         choose_core,
@@ -267,6 +278,28 @@ enum status mf_fit_defaults_choose(const struct fit_file *read, const struct fit
         mf_fit_defaults_method,
         mf_fit_defaults_verification,
     };
+    for (size_t k = 0; k < sizeof steps / sizeof *steps; k++)
+        TRY(steps[k](c));
+    return STATUS_OK;
+}
+
+/// Beside a method that the file gives: without friction nothing would hold the temperature.
+/// Molecules have many pairs, and are long on their way.
+static enum status choose_simulation(struct fit_choice *c) {
+    const bool joined = scene_has_molecules(&c->read->scene.molecules);
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        c->finds[kind] = c->read->unknown[kind].wanted;
+    if (joined)
+        TRY(choose_cutoff(c));
+    TRY(choose_time_step(c));
+    TRY(choose_friction(c));
+    return joined && mf_fit_choice_lacks(c->root, "", "verification")
+               ? mf_fit_defaults_verification(c)
+               : STATUS_OK;
+}
+
+enum status mf_fit_defaults_choose(const struct fit_file *read, const struct fit_file *leader,
+                                   struct json_object *root, struct fit_choices *choices) {
     const struct simulation_setup *setup = &read->scene.setup;
     const struct attributes_range masses = mf_attributes_span(&setup->attribute[ATTRIBUTES_MASS]);
     enum status status = STATUS_OK;
@@ -279,7 +312,7 @@ enum status mf_fit_defaults_choose(const struct fit_file *read, const struct fit
                            .dimensions = setup->box.dimensions,
                            .count = (double)setup->placement.count};
     CHECK(mf_fit_scales_rdf_init(&rdf, &read->files, &read->scene));
-    if (rdf.bins.count == 0) // there is nothing to choose by, and the method is missing
+    if (rdf.bins.count == 0) // there is nothing to choose by
         goto done;
     c.density = rdf.density;
     c.scales = mf_fit_scales_find(&rdf, setup->temperature,
@@ -287,8 +320,9 @@ enum status mf_fit_defaults_choose(const struct fit_file *read, const struct fit
                                                                               : little);
     c.mass = masses.maximum > 0 ? masses.minimum : 1;
     c.crossing = c.scales.neighbour * sqrt(c.mass / setup->temperature);
-    for (size_t k = 0; k < sizeof steps / sizeof *steps; k++)
-        CHECK(steps[k](&c));
+    c.range = c.scales.range;
+    c.precision = mf_fit_defaults_precision(&c);
+    CHECK(lacks_method(root) ? choose_all(&c) : choose_simulation(&c));
 done:
     mf_fit_scales_rdf_clear(&rdf);
     return status;

@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file What the program chooses where a run file names no method.
+/// @file What the program chooses where a run file does not say it.
 ///
-/// Such a file leaves to the program what it does not say: the particles and the time step of the
-/// simulations, where the potential ends, friction, method, verification. All of that follows from
-/// the targets, the density and the temperature, and is put into the document before it is read, as
-/// if the file had said it: what it says stays, and used.json gives the same fit. A file with a
-/// "method" gets the fixed defaults of the field tables alone.
+/// A file that names no method leaves to the program what it does not say: the particles and the
+/// time step of the simulations, where the potential ends, friction, method, verification. All of
+/// that follows from the targets, the density and the temperature, and is put into the document
+/// before it is read, as if the file had said it: what it says stays, and used.json gives the same
+/// fit. A file with a "method" gets the fixed defaults of the field tables, but for the time step,
+/// and friction where nothing else moves the beads; and of molecules for the end of g(r) and the
+/// verification.
 #pragma once
 
 #include "input/fit_file.h"
 
-/// Whether the root of a run file leaves the method to the program.
+/// Whether the root of a run file leaves something of that to the program.
 bool mf_fit_defaults_wanted(const struct json_object *root);
 
 /// Put in what must stand in a run file before it can be read at all.

@@ -8,13 +8,16 @@
 #include <math.h>
 #include <string.h>
 
-/// As exact as the target is, in a system that is large enough for the range.
-static double choose_particles(struct fit_choice *c) {
+double mf_fit_defaults_precision(const struct fit_choice *c) {
     // Molecules move slowly: a third of the noise would take ten times as long.
-    const double least_precision = scene_has_molecules(&c->read->scene.molecules) ? 0.003 : 0.001;
-    static const double most_precision = 0.004;
+    const double least = scene_has_molecules(&c->read->scene.molecules) ? 0.003 : 0.001;
+    static const double most = 0.004;
+    return fmin(most, fmax(least, c->scales.noise));
+}
+
+/// A system that is large enough for the range.
+static double choose_particles(const struct fit_choice *c) {
     static const double least = 700, margin = 2.15, distortion = 0.05;
-    c->precision = fmin(most_precision, fmax(least_precision, c->scales.noise));
     const double wanted = ceil(fmax(least, c->density * pow(margin * c->range, c->dimensions)));
     return (double)mf_composition_least_particles(c->rdf->composition, (int64_t)wanted, distortion);
 }

@@ -198,6 +198,14 @@ static struct bonded_grid seen_by_itself(const struct bonded_grid *grid) {
     return own;
 }
 
+void mf_bonded_grid_level(const struct bonded_grid *grid, double *energy) {
+    double least = INFINITY, *known = energy + grid->below;
+    for (size_t k = 0; k < grid->known; k++)
+        least = fmin(least, known[k]);
+    for (size_t k = 0; k < grid->known; k++)
+        known[k] -= least;
+}
+
 void mf_bonded_grid_start(const struct bonded_grid *grid, double *energy) {
     const struct bonded_unknown *unknown = grid->unknown;
     // What was not seen is as high as what is hardly seen.
@@ -211,6 +219,7 @@ void mf_bonded_grid_start(const struct bonded_grid *grid, double *energy) {
                    log(p / mf_bonded_distribution_jacobian(unknown->order, grid->dimensions,
                                                            &unknown->bins, bin));
     }
+    mf_bonded_grid_level(&own, energy);
     mf_bonded_grid_complete(&own, energy);
 }
 
@@ -233,18 +242,8 @@ static void extend(const struct bonded_grid *grid, double *end, ptrdiff_t way, s
         end[way * (ptrdiff_t)k] = end[0] + (double)k * (slope + 0.5 * bend * (double)k);
 }
 
-/// No distribution sees the constant of U.
-static void set_least_to_zero(const struct bonded_grid *grid, double *energy) {
-    double least = INFINITY, *known = energy + grid->below;
-    for (size_t k = 0; k < grid->known; k++)
-        least = fmin(least, known[k]);
-    for (size_t k = 0; k < grid->known; k++)
-        known[k] -= least;
-}
-
 void mf_bonded_grid_complete(const struct bonded_grid *grid, double *energy) {
     const size_t above = grid->points - grid->below - grid->known;
-    set_least_to_zero(grid, energy);
     if (is_periodic(grid)) {
         energy[grid->known] = energy[0];
         return;

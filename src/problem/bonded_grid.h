@@ -34,12 +34,15 @@ enum status mf_bonded_grid_init(struct bonded_grid *grid, const struct inverse_p
 /// q of a point [λ] or [degrees].
 double mf_bonded_grid_place(const struct bonded_grid *grid, size_t point);
 
-/// −k_B T ln(p/J) of the bins that the target has seen, with J the mean Jacobian of a bin, shape
-/// [points], completed.
+/// Add the constant to the known values of U with which the least of them is 0: no distribution
+/// sees it.
+void mf_bonded_grid_level(const struct bonded_grid *grid, double *energy);
+
+/// −k_B T ln(p/J) of the bins that the target has seen, with J the mean Jacobian of a bin and the
+/// least value 0, shape [points], completed.
 void mf_bonded_grid_start(const struct bonded_grid *grid, double *energy);
 
-/// Complete U, shape [points], from its known values, the least of which becomes 0: no
-/// distribution sees the constant.
+/// Complete U, shape [points], from its known values.
 void mf_bonded_grid_complete(const struct bonded_grid *grid, double *energy);
 
 /// The curve of completed values, to be cleared with mf_bonded_clear. Fails: NO_MEMORY.

@@ -219,6 +219,8 @@ void mf_potential_grid_complete_groups(const struct potential_grid *grid, double
 
 void mf_potential_grid_complete(const struct potential_grid *grid, double *phi) {
     mf_potential_grid_complete_pairs(grid, phi);
+    for (size_t g = 0; g < grid->groups; g++)
+        mf_bonded_grid_level(&grid->group[g].own, phi + grid->group[g].point);
     mf_potential_grid_complete_groups(grid, phi + grid->pair_points);
 }
 

@@ -13,7 +13,10 @@ static const double hot = 0.05, cold = 0.005;
 /// What is the likely cause.
 static const char *find_cause(const struct thermodynamics_summary *found, double temperature) {
     const double off = fabs(found->temperature_configurational - temperature);
-    if (fabs(found->temperature / temperature - 1) > hot)
+    if (found->temperature / temperature < 1 - hot)
+        return "too little friction holds the temperature: more \"dissipative\" friction does, or "
+               "a shorter \"verification.time_step\"";
+    if (found->temperature / temperature > 1 + hot)
         return "the potential is too rough for this time step: set a shorter "
                "\"verification.time_step\"";
     if (found->pressure < 0)
@@ -41,14 +44,31 @@ static bool contradicts_integrals(const struct verification *verification, doubl
     return true;
 }
 
+/// A structure that the fit's samples have.
+static void tell_structure(const char *name, const struct target_distance *distance,
+                           const struct thermodynamics_summary *found, double temperature,
+                           const struct units *units, char reason[INVERSE_REASON_SIZE]) {
+    char unit[UNITS_NAME_SIZE], kelvin[UNITS_NAME_SIZE];
+    mf_units_suffix(units, "k_B T_0/lambda^d", unit);
+    mf_units_suffix(units, "T_0", kelvin);
+    snprintf(reason, INVERSE_REASON_SIZE,
+             "the fit's samples agree with %s, its verification is off by %.2g (%.2g by "
+             "statistics) at T = %.3g%.8s, pressure %.3g%.16s: %s",
+             name, distance->rms, distance->noise,
+             mf_units_factor(units, "T_0") * (isnan(found->temperature)
+                                                  ? found->temperature_configurational
+                                                  : found->temperature),
+             kelvin, mf_units_factor(units, "k_B T_0/lambda^d") * found->pressure, unit,
+             find_cause(found, temperature));
+}
+
 bool mf_fit_verdict_contradicts(const struct verification *verification,
                                 const struct targets *fitted, double temperature,
                                 double noise_margin, const struct units *units,
                                 char reason[INVERSE_REASON_SIZE]) {
     const double bar = mf_units_factor(units, "k_B T_0/lambda^d");
-    char unit[UNITS_NAME_SIZE], kelvin[UNITS_NAME_SIZE];
+    char unit[UNITS_NAME_SIZE];
     mf_units_suffix(units, "k_B T_0/lambda^d", unit);
-    mf_units_suffix(units, "T_0", kelvin);
     const struct target_distance *rdf = &verification->distance[TARGET_RDF];
     const struct thermodynamics_summary *found = &verification->thermodynamics;
     const struct target_distance *pressure = &verification->distance[TARGET_PRESSURE];
@@ -68,22 +88,12 @@ bool mf_fit_verdict_contradicts(const struct verification *verification,
         const struct target_distance *bonded = &verification->worst[kind];
         if (!(bonded->rms > noise_margin * bonded->noise))
             continue;
-        snprintf(reason, INVERSE_REASON_SIZE,
-                 "the fit's samples agree with %s, its verification is off by %.2g (%.2g by "
-                 "statistics): its time step may be too long",
-                 mf_targets_name(kind), bonded->rms, bonded->noise);
+        tell_structure(mf_targets_name(kind), bonded, found, temperature, units, reason);
         return true;
     }
     if (!(rdf->rms > noise_margin * rdf->noise))
         return false;
-    snprintf(reason, INVERSE_REASON_SIZE,
-             "the fit's samples agree with g(r), its verification is off by %.2g (%.2g by "
-             "statistics) at T = %.3g%.8s, pressure %.3g%.16s: %s",
-             rdf->rms, rdf->noise,
-             mf_units_factor(units, "T_0") * (isnan(found->temperature)
-                                                  ? found->temperature_configurational
-                                                  : found->temperature),
-             kelvin, bar * found->pressure, unit, find_cause(found, temperature));
+    tell_structure("g(r)", rdf, found, temperature, units, reason);
     return true;
 }
 

@@ -252,6 +252,30 @@ static void test_fit_molecules_default_time_step_knows_stiff_laws(void **state) 
 
 /// Bonds of k = 100 and mass 1: Ω² = 200, so that a Verlet step of 0.04 adds 8 % to their variance,
 /// and 0.005, or aboba, hardly anything.
+/// A method beside them changes nothing of what molecules need for their verification.
+static void test_fit_molecules_with_a_method_has_friction_and_a_verification(void **state) {
+    static struct run_program_result result;
+    static const char *const chosen[] = {"chosen: time step ",
+                                         "chosen: friction omega = ", "chosen: verification: "};
+    small_inputs_write(*state, "run.json", run, ", " FRICTION, "");
+    RUN_PROGRAM(&result, "fit", "run.json", "--explain");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.out, chosen[1]);
+    assert_null(strstr(result.out, chosen[0]));
+    assert_null(strstr(result.out, chosen[2]));
+    small_inputs_write(*state, "run.json", run, "\"time_step\": 0.005,", "");
+    RUN_PROGRAM(&result, "fit", "run.json", "--explain");
+    assert_contains(result.out, chosen[0]);
+    assert_null(strstr(result.out, chosen[1]));
+    small_inputs_write(*state, "run.json", run,
+                       ",\n\"verification\": {\"replicas\": 2, "
+                       "\"equilibration\": 500, \"samples\": 60, "
+                       "\"every\": 25}",
+                       "");
+    RUN_PROGRAM(&result, "fit", "run.json", "--explain");
+    assert_contains(result.out, chosen[2]);
+}
+
 static void test_fit_warns_of_steps_too_long_for_bonds(void **state) {
     static const struct {
         const char *step, *word;
@@ -355,6 +379,9 @@ int main(void) {
                                         small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_fit_molecules_default_time_step_knows_stiff_laws,
                                         enter, small_inputs_leave),
+        cmocka_unit_test_setup_teardown(
+            test_fit_molecules_with_a_method_has_friction_and_a_verification, enter,
+            small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_fit_warns_of_steps_too_long_for_bonds, enter,
                                         small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_fit_molecules_refuses_what_cannot_be, enter,

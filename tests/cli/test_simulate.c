@@ -290,10 +290,15 @@ static void test_simulate_warns_when_nothing_holds_the_temperature(void **state)
     assert_contains(result.err, "mesofit: warning: temperature: 300 in units of k_B T_0");
     assert_contains(result.err, "kelvins belong into \"units\"");
     temporary_folder_write(*state, "target.tsv", small_inputs_target, strlen(small_inputs_target));
+    static const char warning[] = "mesofit: warning: scene: nothing holds the temperature: ";
+    small_inputs_write(*state, "run.json", small_inputs_run, "\"power\", \"sigma\": 2", "\"none\"");
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "fit");
+    assert_contains(result.err, warning);
     small_inputs_write(*state, "run.json", small_inputs_run,
                        ",\n    \"dissipative\": {\"law\": \"power\", \"sigma\": 2}", "");
-    RUN_PROGRAM(&result, "fit", "run.json", "-o", "fit");
-    assert_contains(result.err, "mesofit: warning: scene: nothing holds the temperature: ");
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "fit", "--force");
+    assert_contains(result.err, "chosen: friction omega = ");
+    assert_null(strstr(result.err, warning));
 }
 
 /// White friction of sigma 3 has D = 0.24; a memory of 0.002 had 0.12 with a step of 0.02, and one

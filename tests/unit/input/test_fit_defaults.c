@@ -100,20 +100,30 @@ static void test_fit_defaults_leave_what_the_file_says(void **state) {
     mf_fit_file_clear(&fit);
 }
 
-/// A file with a method is read as before there were choices.
-static void test_fit_defaults_choose_nothing_where_there_is_a_method(void **state) {
-    struct fit_file fit;
+/// A file with a method has fixed defaults, but for what would leave the temperature to chance.
+static void test_fit_defaults_choose_friction_and_time_step_beside_a_method(void **state) {
+    static const char scene[] =
+        TARGET "\"scene\": {\"box\": [9.1, 9.1, 9.1], %s\"particles\": {\"count\": 226}}, "
+               "\"method\": {\"name\": \"ibi\"}}";
+    static const char *const moves[] = {"",
+                                        "\"dynamics\": {\"integrator\": \"brownian\", "
+                                        "\"friction\": 2}, ",
+                                        "\"time_step\": 0.01, \"dissipative\": {\"law\": "
+                                        "\"power\", \"sigma\": 3}, "};
+    static const size_t choices[] = {2, 1, 0};
     write_target(state);
-    assert_ok(read_run(state, &fit, "run.json",
-                       TARGET
-                       "\"scene\": {\"box\": [9.1, 9.1, 9.1], \"particles\": {\"count\": 226}}, "
-                       "\"method\": {\"name\": \"ibi\"}}"));
-    assert_int_equal(fit.choices.count, 0);
-    assert_identical(fit.scene.setup.time_step, 0.01);
-    assert_int_equal(fit.scene.omega.curves, 0);
-    assert_int_equal(fit.verification.plan.samples, 50);
-    assert_int_equal(fit.problem.targets.bins.count, 150);
-    mf_fit_file_clear(&fit);
+    for (int k = 0; k < 3; k++) {
+        struct fit_file fit;
+        char text[2048];
+        snprintf(text, sizeof text, scene, moves[k]);
+        assert_ok(read_run(state, &fit, "run.json", text));
+        assert_int_equal(fit.choices.count, choices[k]);
+        assert_int_equal(fit.scene.omega.curves > 0, k != 1);
+        assert_identical(fit.scene.setup.time_step, k == 2 ? 0.01 : 0.02);
+        assert_int_equal(fit.verification.plan.samples, 50);
+        assert_int_equal(fit.problem.targets.bins.count, 150);
+        mf_fit_file_clear(&fit);
+    }
 }
 
 /// Half of a box that is given ends g(r), all of the last bin within it.
@@ -179,7 +189,7 @@ int main(void) {
         IN_FOLDER(test_fit_defaults_choose_all_that_target_density_and_temperature_leave),
         IN_FOLDER(test_fit_defaults_stand_in_used_json),
         IN_FOLDER(test_fit_defaults_leave_what_the_file_says),
-        IN_FOLDER(test_fit_defaults_choose_nothing_where_there_is_a_method),
+        IN_FOLDER(test_fit_defaults_choose_friction_and_time_step_beside_a_method),
         IN_FOLDER(test_fit_defaults_cut_g_at_half_of_a_box_that_is_given),
         IN_FOLDER(test_fit_defaults_find_omega_where_targets_move),
         IN_FOLDER(test_fit_defaults_tell_faults_once_and_only_what_is_missing),

@@ -117,6 +117,7 @@ static void test_bonded_grid_has_no_constant(void **state) {
     begin(&twin, &grid, values, &curve);
     for (size_t k = grid.below; k < grid.below + grid.known; k++)
         shifted[k] = values[k] - 7;
+    mf_bonded_grid_level(&grid, shifted);
     mf_bonded_grid_complete(&grid, shifted);
     for (size_t k = 0; k < grid.points; k++) {
         assert_close(shifted[k], values[k], 1e-9);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "report/fit_verdict.h"
 
+#include "observe/bonded_distribution.h"
 #include "observe/kirkwood_buff_observable.h"
 
 #include "shared/testing.h"
@@ -47,6 +48,18 @@ static void test_fit_verdict_names_the_cause_when_g_is_off(void **state) {
     assert_says(&torn, "off by 0.16 (0.002 by statistics) at T = 1.53, pressure -2.19: a liquid "
                        "under tension tears");
     assert_says(&other, "longer \"equilibration\"");
+}
+
+/// Beads that lose their energy to rounding are cold, and friction would hold them.
+static void test_fit_verdict_names_friction_when_the_beads_are_cold(void **state) {
+    (void)state;
+    struct verification cold = make(0.045, 1, 2);
+    assert_says(&cold, "friction");
+    cold.distance[TARGET_RDF].rms = 0;
+    cold.worst[mf_bonded_distribution_kind(TOPOLOGY_BOND)] =
+        (struct target_distance){.rms = 3.4, .noise = 0.18};
+    assert_says(&cold, "agree with bond_lengths, its verification is off by 3.4 (0.18 by "
+                       "statistics) at T = 1, pressure 2: too little friction");
 }
 
 static void test_fit_verdict_names_the_pressure_when_it_was_fitted_and_is_off(void **state) {
@@ -107,6 +120,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_fit_verdict_is_silent_when_g_is_off_by_noise),
         cmocka_unit_test(test_fit_verdict_names_the_cause_when_g_is_off),
+        cmocka_unit_test(test_fit_verdict_names_friction_when_the_beads_are_cold),
         cmocka_unit_test(test_fit_verdict_names_the_pressure_when_it_was_fitted_and_is_off),
         cmocka_unit_test(test_fit_verdict_names_an_integral_when_it_was_fitted_and_is_off),
         cmocka_unit_test(test_fit_verdict_is_worse_when_the_difference_is_no_chance),
