@@ -256,7 +256,9 @@ static const char good_mixture[] =
 static const struct fault mixture_faults[] = {
     FAULT("a missing pair", "\"A-A\": " LAW ", ", "", "input.json: conservative.A-A: missing"),
     FAULT("an unknown pair", "\"A-A\"", "\"A-A\": " LAW ", \"A-C\"",
-          "input.json: conservative.A-C: is no pair of the types A, B"),
+          "input.json: conservative.A-C: there is no such pair; the pairs are A-A, A-B, B-B"),
+    FAULT("an unknown pair in the place of another", "\"A-B\"", "\"A-Q\"",
+          "input.json: conservative.A-Q: there is no such pair; the pairs are A-A, A-B, B-B"),
     FAULT("a pair in both orders", "\"A-A\"", "\"B-A\": " LAW ", \"A-A\"",
           "input.json: conservative.A-B", "twice"),
     FAULT("an unknown law of a pair", "\"gaussian\"", "\"gausian\"", "conservative.A-B.law",
