@@ -37,8 +37,8 @@ enum status mf_target_sanity_check(const struct target_files *files, const struc
 /// maximum, as a liquid's g has at a density ten times too low (solutes in an implicit solvent look
 /// so, too, which is why it is no fault); ρ d³ < 0.01 with d where g exceeds 1/2, the density of a
 /// dilute gas; dihedrals of beads that may stand in a line; and without units a temperature above
-/// 50, which may be in kelvins; of molecules a mean g of all beads that ends more than 3 % and three
-/// times its scatter away from 1. Fails: NO_MEMORY. Tested: test_target_sanity.
+/// 50, which may be in kelvins; of molecules a mean g of all beads that ends more than 3 % and
+/// three times its scatter away from 1. Fails: NO_MEMORY. Tested: test_target_sanity.
 enum status mf_target_sanity_tell(const struct target_files *files, const struct scene *scene,
                                   const struct target_sanity_listener *listener) MUST_USE;
 
