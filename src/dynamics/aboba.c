@@ -105,7 +105,9 @@ static enum status step_implicit(struct simulation *simulation) {
 }
 
 static const struct field exact_fields[] = {
-    RESPA_FIELD(offsetof(struct respa_parameters, inner_steps)),
+    RESPA_FIELD(
+        offsetof(struct respa_parameters, inner_steps),
+        "; half of them in each half of a step, so that an odd number counts as the next even one"),
     FIELD_END,
 };
 

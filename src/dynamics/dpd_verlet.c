@@ -33,7 +33,7 @@ static const struct field fields[] = {
     {"lambda", FIELD_NUMBER, offsetof(struct dpd_verlet_parameters, lambda), .initial = 0.5,
      .minimum = 0, .maximum = 1, .unit = "",
      .help = "how far velocities are predicted for the friction, in time steps"},
-    RESPA_FIELD(offsetof(struct dpd_verlet_parameters, inner_steps)),
+    RESPA_FIELD(offsetof(struct dpd_verlet_parameters, inner_steps), ""),
     FIELD_END,
 };
 

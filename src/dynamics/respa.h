@@ -21,14 +21,14 @@ struct respa_parameters {
     int64_t inner_steps;
 };
 
-/// The field of this, at its place in the parameters.
-#define RESPA_FIELD(place)                                                                         \
+/// The field of this, at its place in the parameters, with `more` behind its help.
+#define RESPA_FIELD(place, more)                                                                   \
     {                                                                                              \
         "inner_steps", FIELD_INTEGER,                                                              \
             .offset = place, .initial = 1, .minimum = 1, .maximum = 1000, .unit = "",              \
             .help =                                                                                \
                 "steps of bonds, angles and dihedrals in one of the pairs (r-RESPA, Tuckerman et " \
-                "al. 1992)"                                                                        \
+                "al. 1992)" more                                                                   \
     }
 
 /// Make room, if there is more than one inner step; else nothing.

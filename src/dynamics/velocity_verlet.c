@@ -21,7 +21,7 @@ static enum status step(struct simulation *simulation) {
 }
 
 static const struct field fields[] = {
-    RESPA_FIELD(offsetof(struct respa_parameters, inner_steps)),
+    RESPA_FIELD(offsetof(struct respa_parameters, inner_steps), ""),
     FIELD_END,
 };
 

@@ -52,7 +52,11 @@ static void print_data(const struct export_job *job, FILE *stream) {
         fprintf(stream, "%zu ", k + 1);
         if (model->molecules)
             fprintf(stream, "%zu ", mf_export_lammps_molecule(model, k));
-        fprintf(stream, "%d %.12g %.12g %.12g\n", mf_export_type(model, k) + 1, x[0], x[1], x[2]);
+        fprintf(stream, "%d %.12g %.12g %.12g", mf_export_type(model, k) + 1, x[0], x[1], x[2]);
+        if (model->molecules)
+            fprintf(stream, " %d %d %d", model->image[0][k], model->image[1][k],
+                    model->image[2][k]);
+        fprintf(stream, "\n");
     }
     fprintf(stream, "\nVelocities\n\n");
     for (size_t k = 0; k < model->count; k++)

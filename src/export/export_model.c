@@ -391,6 +391,7 @@ void mf_export_model_clear(struct export_model *model) {
     for (int d = 0; d < 3; d++) {
         mf_memory_free(model->position[d]);
         mf_memory_free(model->velocity[d]);
+        mf_memory_free(model->image[d]);
     }
     for (int c = 0; c < EXPORT_CURVES; c++)
         mf_table_clear(&model->potential[c]);

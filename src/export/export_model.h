@@ -33,9 +33,10 @@ struct export_model {
     double mass[COMPOSITION_MOST_TYPES]; ///< [μ]
     size_t count;
     double *position[3], *velocity[3]; ///< shape [count], by id: in the box [λ], [λ/τ]
-    bool equilibrated;                 ///< they are where the result's own simulation ended
-    size_t rdf_bins;                   ///< of g(r), equally wide from 0 on
-    double rdf_range;                  ///< where they end [λ]
+    int *image[3];     ///< shape [count], by id: boxes away, so that no bond crosses a wall
+    bool equilibrated; ///< they are where the result's own simulation ended
+    size_t rdf_bins;   ///< of g(r), equally wide from 0 on
+    double rdf_range;  ///< where they end [λ]
     struct export_number temperature, pressure; ///< of the result
     double configurational;                     ///< its configurational temperature; or NAN
     char warning[256]; ///< what a person should know of the result; "" if nothing

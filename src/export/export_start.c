@@ -3,6 +3,8 @@
 
 #include "base/memory.h"
 #include "export/export_columns.h"
+#include "export/export_engine.h"
+#include "system/whole_molecules.h"
 
 #include <math.h>
 #include <sys/stat.h>
@@ -76,6 +78,33 @@ done:
     return status;
 }
 
+/// In which image of the box each bead is, if molecules are whole and begin inside.
+static enum status keep_images(struct export_model *model, const struct particles *particles) {
+    const struct topology *topology = model->molecules ? &model->molecules->topology : NULL;
+    struct whole_molecules whole = {0};
+    enum status status = STATUS_OK;
+    for (int d = 0; d < 3; d++)
+        NEW_ARRAY(model->image[d], model->count);
+    if (topology == NULL)
+        return STATUS_OK;
+    CHECK(mf_whole_molecules_init(&whole, topology));
+    for (int k = 0; k < topology->kinds; k++)
+        for (int64_t m = 0; m < topology->kind[k].count; m++) {
+            mf_whole_molecules_make(&whole, particles, k, m);
+            for (int bead = 0; bead < topology->kind[k].beads; bead++)
+                for (int d = 0; d < model->setup.box.dimensions; d++) {
+                    const uint32_t id = topology_id(&topology->kind[k], m, bead);
+                    const uint32_t first = topology_id(&topology->kind[k], m, 0);
+                    const double away = mf_export_place(model, d, first) + whole.place[bead][d] -
+                                        whole.place[0][d] - mf_export_place(model, d, id);
+                    model->image[d][id] = (int)lround(away / model->setup.box.length[d]);
+                }
+        }
+done:
+    mf_whole_molecules_clear(&whole);
+    return status;
+}
+
 enum status mf_export_start_find(struct export_model *model) {
     enum status status = STATUS_OK;
     struct simulation_start start;
@@ -87,6 +116,7 @@ enum status mf_export_start_find(struct export_model *model) {
         status = mf_status_prefix(status, "%s", model->folder);
     CHECK(status);
     CHECK(keep_state(model, &simulation.particles));
+    CHECK(keep_images(model, &simulation.particles));
 done:
     mf_simulation_clear(&simulation);
     mf_export_columns_clear(&columns);

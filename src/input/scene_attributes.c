@@ -33,9 +33,15 @@ static void read_range(struct json_object *parent, const char *key, const struct
                       range->minimum * mf_json_factor(&own, kind->unit));
 }
 
-/// {"A": …, "B": …}, a range or number for each type.
+/// {"A": …, "B": …}, a range or number for each type that has a name.
 static void read_types(struct json_object *particles, const struct field *kind,
                        const struct composition *composition, struct attributes_source *source) {
+    if (composition->name[0][0] == '\0') {
+        mf_json_fault(particles, kind->name,
+                      "the particles have no types: write a number, or {\"minimum\": …, "
+                      "\"maximum\": …}");
+        return;
+    }
     struct json_object own = mf_json_child(particles, kind->name, true);
     source->ranges = composition->types;
     for (int type = 0; type < composition->types; type++)
@@ -66,8 +72,7 @@ void mf_scene_attributes_read(struct scene *scene, struct json_object *particles
             continue;
         if (composition->types == 0 && mf_json_is_object(particles, kind->name))
             continue; // the fault is one of the types
-        if (composition_is_mixed(composition) && mf_json_is_object(particles, kind->name) &&
-            is_by_type(particles, kind)) {
+        if (mf_json_is_object(particles, kind->name) && is_by_type(particles, kind)) {
             read_types(particles, kind, composition, source);
             continue;
         }

@@ -5,6 +5,7 @@
 #include "base/memory.h"
 #include "base/names.h"
 #include "curves/sampled.h"
+#include "input/pair_names.h"
 #include "io/data_table.h"
 #include "io/votca.h"
 
@@ -126,42 +127,24 @@ void mf_scene_write_curve(const struct curve *curve, struct json_writer *writer,
 
 // A curve for all pairs, or one for each pair type ------------------------------------------------
 
-static void fault_unknown_pair(struct json_object *object, const struct composition *composition,
-                               const char *key) {
-    char names[COMPOSITION_MOST_TYPES * (COMPOSITION_NAME_SIZE + 2)] = "";
-    for (int type = 0; type < composition->types; type++) {
-        strcat(names, type ? ", " : "");
-        strcat(names, composition->name[type]);
-    }
-    mf_json_fault(object, key, "is no pair of the types %s; write \"A-B\"", names);
-}
-
 /// {"A-A": {"law": …}, "A-B": {"law": …}, …}, each pair type once, in any order.
 static enum status read_pairs(struct scene_law *law, struct json_object *object,
                               const struct curve_family *const *list,
                               const struct composition *composition, const struct units *units) {
-    bool given[COMPOSITION_MOST_PAIRS] = {false};
-    const char *key;
-    for (size_t n = 0; (key = mf_json_key(object, n)); n++) {
-        const int pair = mf_composition_find_pair(composition, key);
-        if (pair < 0) {
-            fault_unknown_pair(object, composition, key);
-            continue;
-        }
-        if (given[pair])
-            mf_json_fault(object, key, "the pair stands here twice, in both orders");
-        else
-            TRY(mf_scene_read_curve(&law->curve[pair], object, key, list, units));
-        given[pair] = true;
+    char name[COMPOSITION_MOST_PAIRS][COMPOSITION_PAIR_NAME_SIZE];
+    const char *key[COMPOSITION_MOST_PAIRS];
+    const bool known = mf_pair_names_find(object, composition, key);
+    for (int pair = 0; pair < mf_composition_pairs(composition); pair++) {
+        mf_composition_pair_name(composition, pair, name[pair]);
+        if (key[pair])
+            TRY(mf_scene_read_curve(&law->curve[pair], object, key[pair], list, units));
+        else if (!mf_json_has(object, name[pair]) && known)
+            mf_json_fault(object, name[pair],
+                          "missing: an object is required; \"law\": \"none\" is one");
         if (law->curve[pair].family)
             law->curves = mf_composition_pairs(composition);
     }
-    for (int pair = 0; pair < mf_composition_pairs(composition); pair++) {
-        char name[COMPOSITION_PAIR_NAME_SIZE];
-        mf_composition_pair_name(composition, pair, name);
-        if (!given[pair])
-            mf_json_fault(object, name, "missing: an object is required; \"law\": \"none\" is one");
-    }
+    mf_json_finish(object);
     return STATUS_OK;
 }
 

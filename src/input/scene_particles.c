@@ -144,11 +144,15 @@ static void read_types(struct scene *scene, struct json_object *particles, bool 
     struct json_object types = mf_json_child(particles, "types", true);
     const size_t fewest = beside ? 1 : 2;
     const size_t faults = mf_json_fault_count(types.document);
+    const bool counted = mf_json_has(particles, "count");
     size_t n = 0;
+    if (counted)
+        mf_json_fault(particles, "count",
+                      "stands beside \"types\", which are numbers, too: write one of them");
     for (const char *name; (name = mf_json_key(&types, n)); n++)
         if (n < COMPOSITION_MOST_TYPES)
             read_type(scene, &types, name, (double)fewest);
-    if (types.item && (n < fewest || n > COMPOSITION_MOST_TYPES))
+    if (types.item && !counted && (n < fewest || n > COMPOSITION_MOST_TYPES))
         mf_json_fault(particles, "types",
                       "a mixture has %zu to %d types, not %zu; \"count\" is for one", fewest,
                       COMPOSITION_MOST_TYPES, n);
@@ -170,10 +174,11 @@ static enum status read_beads(struct scene *scene, struct json_object *object,
     const size_t faults = mf_json_fault_count(object->document);
     const bool beside = mf_json_has(object, "molecules");
     struct composition *composition = &scene->setup.composition;
-    if (beside && mf_json_has(particles, "count"))
+    const bool typed = mf_json_has(particles, "types");
+    if (beside && !typed && mf_json_has(particles, "count"))
         mf_json_fault(particles, "count",
                       "beside molecules single beads have types, as in \"types\": {\"A\": 100}");
-    else if (mf_json_has(particles, "types"))
+    else if (typed)
         read_types(scene, particles, beside);
     else if (!beside)
         read_count(scene, particles);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "input/target_kirkwood_buff.h"
 
+#include "input/pair_names.h"
+
 #include <math.h>
 
 #define NUMBER(name) .offset = offsetof(struct target_kirkwood_buff_number, name)
@@ -28,7 +30,7 @@ void mf_target_kirkwood_buff_read(struct target_kirkwood_buff *target, struct js
     const struct composition *components = &target->components;
     char name[COMPOSITION_MOST_PAIRS]
              [COMPOSITION_PAIR_NAME_SIZE]; // remembered until it is finished
-    const char *key;
+    const char *key[COMPOSITION_MOST_PAIRS];
     size_t named = 0;
     *target = (struct target_kirkwood_buff){0};
     if (composition->types == 0)
@@ -42,31 +44,31 @@ void mf_target_kirkwood_buff_read(struct target_kirkwood_buff *target, struct js
     for (size_t pair = 0; pair < target->pairs; pair++)
         target->value[pair] = target->error[pair] = NAN;
     if (!composition_is_mixed(components)) {
+        if (mf_pair_names_refuse(object, components, "{\"value\": …, \"error\": …}"))
+            return;
         read_number(target, 0, object);
         mf_json_finish(object);
         return;
     }
+    const bool known = mf_pair_names_find(object, components, key);
     for (size_t pair = 0; pair < target->pairs; pair++) {
         mf_composition_pair_name(components, (int)pair, name[pair]);
         mf_json_has(object, name[pair]);
-    }
-    for (size_t n = 0; (key = mf_json_key(object, n)); n++) {
-        const int pair = mf_composition_find_pair(components, key);
-        if (pair < 0)
+        if (key[pair] == NULL)
             continue;
-        if (!isnan(target->value[pair]))
-            mf_json_fault(object, key, "is there already, under its other name");
-        struct json_object child = mf_json_child_of(object, key, true, "value");
+        struct json_object child = mf_json_child_of(object, key[pair], true, "value");
         if (child.item)
-            read_number(target, pair, &child);
+            read_number(target, (int)pair, &child);
         mf_json_finish(&child);
         named++;
     }
-    if (named == 0)
+    if (named == 0 && known) {
         mf_json_fault(object, NULL,
                       "names no pair of the scene's components, as {\"%s-%s\": {\"value\": "
                       "0.1, \"error\": 0.01}}",
                       components->name[0], components->name[1]);
+        return;
+    }
     mf_json_finish(object);
 }
 

@@ -2,6 +2,7 @@
 #include "input/target_pairs.h"
 
 #include "base/memory.h"
+#include "input/pair_names.h"
 
 #include <math.h>
 #include <string.h>
@@ -38,18 +39,6 @@ static void check_bins(const struct target_pairs *target, const struct compositi
     }
 }
 
-/// What the file calls a pair type: "A-B" or "B-A".
-static const char *pair_key(const struct composition *composition, int pair,
-                            const struct json_object *object,
-                            char name[COMPOSITION_PAIR_NAME_SIZE]) {
-    const char *key;
-    mf_composition_pair_name(composition, pair, name);
-    for (size_t n = 0; (key = mf_json_key(object, n)); n++)
-        if (mf_composition_find_pair(composition, key) == pair)
-            return key;
-    return name;
-}
-
 /// g and errors of all pair types in the numbers of the scene, one behind the other, if all
 /// could be read.
 static enum status collect(struct target_pairs *target, const struct box *box,
@@ -70,20 +59,6 @@ done:
     return status;
 }
 
-/// A pair type that is named, as "A-A", where all beads are alike: one line tells it.
-static bool refuse_pair_name(struct json_object *object, const struct composition *composition) {
-    const char *key;
-    for (size_t n = 0; (key = mf_json_key(object, n)); n++) {
-        if (!mf_json_is_object(object, key))
-            continue;
-        mf_json_fault(object, key,
-                      "pairs are named in mixtures, and all beads are %s%s; write {\"file\": …}",
-                      composition->name[0][0] ? "of type " : "alike", composition->name[0]);
-        return true;
-    }
-    return false;
-}
-
 enum status mf_target_pairs_read(struct target_pairs *target, struct json_object *object,
                                  const struct box *box, const struct composition *composition,
                                  const struct units *units) {
@@ -92,16 +67,19 @@ enum status mf_target_pairs_read(struct target_pairs *target, struct json_object
         return STATUS_OK; // a fault of the types is told, those of their pairs would mislead
     target->pairs = (size_t)mf_composition_pairs(composition);
     if (!composition_is_mixed(composition)) {
-        if (refuse_pair_name(object, composition))
+        if (mf_pair_names_refuse(object, composition, "{\"file\": …}"))
             return STATUS_OK;
         TRY(mf_target_rdf_read(&target->member[0], object, units, box->dimensions));
         return collect(target, box, composition);
     }
     // The object remembers what it was asked for until it is finished.
     char name[COMPOSITION_MOST_PAIRS][COMPOSITION_PAIR_NAME_SIZE];
+    const char *key[COMPOSITION_MOST_PAIRS];
+    const bool known = mf_pair_names_find(object, composition, key);
     for (size_t pair = 0; pair < target->pairs; pair++) {
-        struct json_object child =
-            mf_json_child(object, pair_key(composition, (int)pair, object, name[pair]), true);
+        mf_composition_pair_name(composition, (int)pair, name[pair]);
+        // What is missing may be what a wrong name was to be.
+        struct json_object child = mf_json_child(object, key[pair] ? key[pair] : name[pair], known);
         if (child.item)
             TRY(mf_target_rdf_read(&target->member[pair], &child, units, box->dimensions));
     }

@@ -37,12 +37,13 @@ enum status mf_target_sanity_check(const struct target_files *files, const struc
 /// maximum, as a liquid's g has at a density ten times too low (solutes in an implicit solvent look
 /// so, too, which is why it is no fault); ρ d³ < 0.01 with d where g exceeds 1/2, the density of a
 /// dilute gas; dihedrals of beads that may stand in a line; and without units a temperature above
-/// 50, which may be in kelvins. Fails: NO_MEMORY. Tested: test_target_sanity.
+/// 50, which may be in kelvins; of molecules a mean g of all beads that ends more than 3 % and
+/// three times its scatter away from 1. Fails: NO_MEMORY. Tested: test_target_sanity.
 enum status mf_target_sanity_tell(const struct target_files *files, const struct scene *scene,
                                   const struct target_sanity_listener *listener) MUST_USE;
 
-/// The same of bonds, angles and dihedrals: a line a group, and a warning of angles that may be
-/// straight.
+/// The same of bonds, angles and dihedrals: a line a group, and warnings of angles that may be
+/// straight, and of g(r) of molecules that does not end near 1.
 void mf_target_sanity_tell_groups(const struct target_files *files, const struct scene *scene,
                                   const struct target_sanity_listener *listener);
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// A look at the targets of bonds, angles and dihedrals.
+// A look at the targets of bonds, angles and dihedrals, and at g(r) of molecules.
 #include "input/target_sanity.h"
 
+#include <math.h>
 #include <stdio.h>
 
 /// What lengths are told in.
@@ -63,10 +64,47 @@ static void warn_of_lines(const struct target_files *files,
     }
 }
 
+/// Beads of the longest molecule: so many of all are not counted around a bead at most.
+static double longest(const struct topology *topology) {
+    int beads = 0;
+    for (int k = 0; k < topology->kinds; k++)
+        beads = topology->kind[k].beads > beads ? topology->kind[k].beads : beads;
+    return beads;
+}
+
+/// The mean g of all beads has no reason to differ from 1 at its end, where that of a pair type
+/// may: types gather. Molecules have no theory that finds its factor (inversion/normalisation).
+static void warn_of_tails(const struct target_files *files, const struct scene *scene,
+                          const struct target_sanity_listener *listener) {
+    static const double allowed = 0.03, deviations = 3;
+    const struct composition *composition = &files->composition;
+    double all = 0, mean = 0, scatter = 0;
+    for (size_t pair = 0; pair < files->rdf.pairs; pair++) {
+        const struct target_rdf *target = &files->rdf.member[pair];
+        const double pairs = mf_composition_possible_pairs(composition, (int)pair);
+        const double given = target->parameters.normalisation;
+        all += pairs;
+        mean += pairs * target->tail.mean / (given > 0 ? given : 1);
+        scatter += pairs * target->tail.scatter;
+    }
+    const double away = fabs(mean / all - 1);
+    const double excluded = longest(&scene->molecules.molecules.topology) /
+                            (double)mf_composition_particles(composition);
+    if (all > 0 && away > allowed + excluded && away > deviations * scatter / all)
+        mf_target_sanity_say(
+            listener,
+            "mesofit: warning: target.rdf: over the last quarter of its range g of all beads is "
+            "%.3f(%.0f), not 1: is its volume or number of beads another than the scene's? A fit "
+            "of molecules does not mend it; \"normalisation\" of each pair divides by a factor",
+            mean / all, ceil(1e3 * scatter / all));
+}
+
 void mf_target_sanity_tell_groups(const struct target_files *files, const struct scene *scene,
                                   const struct target_sanity_listener *listener) {
     for (int order = 0; order < TOPOLOGY_ORDERS; order++)
         for (size_t g = 0; g < files->groups[order].groups; g++)
             tell_group(&files->groups[order], g, scene, listener);
     warn_of_lines(files, listener);
+    if (scene_has_molecules(&scene->molecules))
+        warn_of_tails(files, scene, listener);
 }

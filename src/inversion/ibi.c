@@ -33,8 +33,36 @@ void mf_ibi_logarithms(const struct inversion *inversion, double *step) {
     }
 }
 
+/// Standard error of S − S*. A bin that has happened to be empty, or nearly so, has that of the
+/// counts that its target expects there, since its own scatter tells nothing.
+static double error_of(const struct inversion *inversion, size_t n) {
+    const size_t bin = inversion->grid.known_bin[n];
+    const double expected =
+        inversion->target_counts[bin] * inversion->inefficiency / inversion->replicas.counts.count;
+    return sqrt(fmax(inversion->variance[n], expected + pow(inversion->target_error[bin], 2)));
+}
+
+/// Where the target has few counts, the logarithm of a few is mostly noise, which would dig wells
+/// of a single bin: S counts as that within two standard errors which is nearest to the target.
+static void keep_within_noise(const struct inversion *inversion, double *step) {
+    static const double errors = 2;
+    const struct potential_grid *grid = &inversion->grid;
+    for (size_t n = 0; n < grid->known; n++) {
+        const size_t bin = grid->known_bin[n];
+        const double least = inversion->least[bin] * inversion->ideal[bin];
+        const double target = inversion->target_counts[bin];
+        const double excess = inversion->replicas.counts.mean[bin] - target;
+        const double beyond = fmax(0, fabs(excess) - errors * error_of(inversion, n));
+        const double counts = target + copysign(beyond, excess);
+        if (grid->seen[n] && !grid->well_known[n])
+            step[grid->known_point[n]] = inversion->problem->scene.temperature *
+                                         log(fmax(counts, least) / fmax(target, least));
+    }
+}
+
 void mf_ibi_step(const struct inversion *inversion, double *step) {
     mf_ibi_logarithms(inversion, step);
+    keep_within_noise(inversion, step);
     mf_inversion_pressure_add_ramp(inversion, step);
 }
 

@@ -300,7 +300,8 @@ void mf_ibi_logarithms(const struct inversion *inversion, double *step);
 
 /// @name The steps of the methods, for the known bins; each meets the pressure if it is asked for.
 
-/// The logarithms.
+/// The logarithms; where the target is not well known, of the counts nearest to it that are within
+/// two standard errors of those of the samples. Tested: test_ibi.
 void mf_ibi_step(const struct inversion *inversion, double *step);
 
 /// The same with the slope of the hypernetted chain. Fails: NO_MEMORY.

@@ -3,6 +3,7 @@
 #include "io/data_table.h"
 #include "observe/measure.h"
 #include "observe/pooled.h"
+#include "observe/settled.h"
 #include "observe/thermodynamics.h"
 
 #include <math.h>
@@ -83,9 +84,15 @@ done:
     return status;
 }
 
+/// Temperatures first: a step that is too long tells more than the drift that it makes.
 static enum status judge(const void *state, const struct simulation_setup *setup) {
-    const struct thermodynamics_summary s = mf_thermodynamics_result(state, 1);
-    return mf_thermodynamics_judge(&s, setup);
+    const struct thermodynamics *t = state;
+    const struct thermodynamics_summary s = mf_thermodynamics_result(t, 1);
+    TRY(mf_thermodynamics_judge(&s, setup));
+    TRY(mf_settled_judge("potential energy",
+                         mf_thermodynamics_series(t, THERMODYNAMICS_POTENTIAL_ENERGY), t->samples));
+    return mf_settled_judge("pressure", mf_thermodynamics_series(t, THERMODYNAMICS_PRESSURE),
+                            t->samples);
 }
 
 /// One sample tells no error: null.
@@ -98,7 +105,7 @@ static void put_error(struct json_writer *writer, const char *name, const char *
 static void put(const void *state, const struct observable_results *results,
                 struct json_writer *writer) {
     const struct thermodynamics_summary s = mf_thermodynamics_result(state, 1);
-    if (mf_units_mark(results->units, mf_thermodynamics_judge(&s, results->setup)) != STATUS_OK)
+    if (mf_units_mark(results->units, judge(state, results->setup)) != STATUS_OK)
         mf_json_put_text(writer, "warning", mf_status_message());
     mf_json_put_quantity(writer, "temperature", "T_0", s.temperature);
     put_error(writer, "temperature_error", "T_0", &s, s.temperature_error);

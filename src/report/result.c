@@ -104,6 +104,12 @@ static bool has_distance(struct json_object *root) {
     return found;
 }
 
+/// A fit that has not come to the comparison with its targets: its status tells.
+static bool is_stopped(const struct result_summary *summary) {
+    return strcmp(summary->status, mf_status_name(STATUS_UNSTABLE)) == 0 ||
+           strcmp(summary->status, mf_status_name(STATUS_INTERRUPTED)) == 0;
+}
+
 static bool is_simulation(const struct result_summary *summary) {
     return strcmp(summary->method, "simulate") == 0;
 }
@@ -217,7 +223,7 @@ static enum status read_summary(struct result_summary *summary, const char *file
     mf_result_distance_find(summary);
     if (is_simulation(summary))
         read_simulated_diffusion(&root, summary);
-    else if (root.item && !has_distance(&root))
+    else if (root.item && !has_distance(&root) && !is_stopped(summary))
         mf_json_fault(&root, NULL, "not the result of a fit: there is no rdf_rmse or other rmse");
     return mf_json_close(document, STATUS_OK);
 }

@@ -310,14 +310,15 @@ static void tell_unconverged(const struct run *run) {
 
 /// A result whose verification blows up leaves a summary that says so.
 static enum status write_unstable(struct run *run) {
-    const struct fit_result result = result_so_far(run, STATUS_UNSTABLE);
+    struct fit_result result = result_so_far(run, STATUS_UNSTABLE);
+    char reason[1024];
     if (isfinite(run->standing.error))
         mf_status_prefix(STATUS_UNSTABLE, "the verification of what was fitted");
     else
         mf_status_prefix(STATUS_UNSTABLE, "the verification of what was fitted (no result%s%s)",
                          run->standing.reason[0] ? ": " : "", run->standing.reason);
-    char reason[1024];
     snprintf(reason, sizeof reason, "%s", mf_status_message());
+    result.reason = reason;
     TRY(mf_fit_output_summary(&run->fit, &run->unknowns, &result, &run->folder));
     mf_run_folder_draw(&run->folder);
     return mf_status_fail(STATUS_UNSTABLE, "%s", reason);

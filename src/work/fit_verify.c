@@ -37,6 +37,22 @@ static void tell_of_state(void *context, const struct inverse_progress *own) {
     sharing->listener->tell(sharing->listener->context, &told);
 }
 
+/// The engine advises a shorter "time_step", which here is the verification's own.
+static enum status advise(const struct fit_file *state, enum status status) {
+    const struct units *units = &state->scene.units;
+    const double own = state->verification.time_step;
+    const double time_step = own > 0 ? own : state->scene.setup.time_step;
+    char unit[UNITS_NAME_SIZE], message[STATUS_MESSAGE_SIZE];
+    if (status != STATUS_UNSTABLE)
+        return status;
+    snprintf(message, sizeof message, "%s", mf_status_message());
+    return mf_status_fail(status,
+                          "%s; the verification had a time step of %.4g%s, and a shorter "
+                          "\"verification.time_step\" may help",
+                          message, mf_units_factor(units, "tau") * time_step,
+                          mf_units_suffix(units, "tau", unit));
+}
+
 static enum status verify_state(const struct fit_file *state, double *const *curve,
                                 const struct inverse_parameter *number,
                                 const struct inverse_listener *listener,
@@ -49,8 +65,9 @@ static enum status verify_state(const struct fit_file *state, double *const *cur
         value[n] = number[n].value;
     CHECK(mf_unknowns_init(&unknowns, &state->problem));
     CHECK(mf_unknowns_laws_make(&unknowns, (const double *const *)curve, value, &laws));
-    CHECK(mf_verify(&laws.problem, laws.table[UNKNOWN_POTENTIAL], laws.table[UNKNOWN_OMEGA],
-                    &state->verification, listener, verification));
+    status = mf_verify(&laws.problem, laws.table[UNKNOWN_POTENTIAL], laws.table[UNKNOWN_OMEGA],
+                       &state->verification, listener, verification);
+    CHECK(advise(state, status));
     mf_fit_verdict_mark(&state->scene.units, verification);
 done:
     mf_unknowns_laws_clear(&laws);

@@ -76,6 +76,30 @@ static void test_compare_takes_a_simulation_beside_a_fit(void **state) {
     free(text);
 }
 
+/// A verification that blows up, and what stopping leaves, which is the same but for the status:
+/// both stand in the table with it. A file without either is no result.
+static void test_compare_shows_fits_that_were_not_verified_with_their_status(void **state) {
+    static const char *const shown[] = {"interrupted", "unstable"};
+    small_inputs_write(*state, "target.tsv", small_inputs_target, NULL, NULL);
+    small_inputs_write(*state, "run.json", small_inputs_run, "\"verification\": {",
+                       "\"verification\": {\"time_step\": 100, ");
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "fit", "--quiet");
+    run_program_assert_code(&result, 1);
+    char *summary = temporary_folder_read("fit/summary.json");
+    assert_contains(summary, "\"unstable\"");
+    for (int k = 0; k < 2; k++) {
+        small_inputs_write(*state, "fit/summary.json", summary, "unstable", shown[k]);
+        RUN_PROGRAM(&result, "compare", "fit", "fit", "-o", "both");
+        run_program_assert_code(&result, 0);
+        assert_contains(result.out, shown[k]);
+    }
+    small_inputs_write(*state, "fit/summary.json", summary, "unstable", "ok");
+    RUN_PROGRAM(&result, "compare", "fit", "fit", "-o", "both");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err, "fit/summary.json: not the result of a fit");
+    free(summary);
+}
+
 /// All files of a folder and their contents, but those that are called "…compare…".
 static char *snapshot(const char *folder) {
     static char text[4096];
@@ -177,6 +201,9 @@ int main(void) {
                                         small_inputs_enter, small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_compare_refuses_results_of_different_units_of_length,
                                         small_inputs_enter_without_gnuplot, small_inputs_leave),
+        cmocka_unit_test_setup_teardown(
+            test_compare_shows_fits_that_were_not_verified_with_their_status,
+            small_inputs_enter_without_gnuplot, small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_compare_takes_a_simulation_beside_a_fit,
                                         small_inputs_enter, small_inputs_leave),
     };

@@ -231,6 +231,9 @@ static void compare(struct temporary_folder *folder, bool with_tables, double pe
     if (system("cd lammps && lmp -in in.mesofit -var steps 200 -var equilibration 100 >lmp.out "
                "2>&1") != 0)
         fail_msg("LAMMPS does not run what was exported: see lammps/lmp.out");
+    char *said = temporary_folder_read("lammps/lmp.out");
+    assert_null(strstr(said, "image flags"));
+    free(said);
     clear_ours(&ours);
 }
 

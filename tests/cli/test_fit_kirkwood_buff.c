@@ -164,12 +164,12 @@ static void assert_refused(struct temporary_folder *folder, const char *members,
 
 static void test_fit_refuses_integrals_that_cannot_be_met(void **state) {
     assert_refused(*state, "\"A-C\": {\"value\": 0.1, \"error\": 0.01}", NULL, NULL,
-                   "kirkwood_buff.A-C: unknown key");
+                   "kirkwood_buff.A-C: there is no such pair; the pairs are A-A, A-B, B-B");
     assert_refused(*state, "\"A-B\": {\"value\": 0.1}", NULL, NULL, "kirkwood_buff.A-B.error");
     assert_refused(*state, "\"A-B\": {\"value\": 0.1, \"error\": 0}", NULL, NULL,
                    "kirkwood_buff.A-B.error");
     assert_refused(*state, GOOD ", \"B-A\": {\"value\": 0.1, \"error\": 0.01}", NULL, NULL,
-                   "under its other name");
+                   "kirkwood_buff.B-A: the pair stands here twice");
     assert_refused(*state, "\"q_maximum\": 2.2", NULL, NULL, "names no pair of the scene");
     assert_refused(*state, "\"value\": 0.1, \"error\": 0.01", NULL, NULL, "target.kirkwood_buff");
     assert_refused(*state, "\"q_maximum\": 0.9, \"A-B\": {\"value\": 0.1, \"error\": 0.01}", NULL,

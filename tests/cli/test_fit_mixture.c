@@ -240,15 +240,17 @@ static void test_fit_of_a_mixture_is_refused_in_a_line_when_a_pair_is_wrong(void
     assert_int_equal(mkdir("out", 0700), 0);
     refuse(*state, ", " TARGET_BB, "", 1,
            (const char *[]){"run.json: target.rdf.B-B: missing", NULL});
-    refuse(*state, "\"B-A\"", "\"B-C\"", 2, (const char *[]){"run.json: ", "target.rdf.", NULL});
+    refuse(*state, "\"B-A\"", "\"B-C\"", 1,
+           (const char *[]){"run.json: target.rdf.B-C: there is no such pair",
+                            "the pairs are A-A, A-B, B-B", NULL});
     refuse(*state, TARGET_BB, TARGET_BB ", \"C-B\": {}", 1,
-           (const char *[]){"run.json: target.rdf.C-B: unknown key", NULL});
+           (const char *[]){"run.json: target.rdf.C-B: there is no such pair", NULL});
     refuse(*state, "target/rdf_A-B.tsv", "target/none.tsv", 1,
            (const char *[]){"run.json: target.rdf.B-A.file", "none.tsv", NULL});
     refuse(*state, TRUTH_AB, "", 1,
            (const char *[]){"run.json: unknowns.potential.truth.A-B: missing", NULL});
-    refuse(*state, "{\n\"A-A\": {\"law\"", "{\n\"A-C\": {\"law\"", 2,
-           (const char *[]){"run.json: unknowns.potential.truth.A-", NULL});
+    refuse(*state, "{\n\"A-A\": {\"law\"", "{\n\"A-C\": {\"law\"", 1,
+           (const char *[]){"run.json: unknowns.potential.truth.A-C: there is no such", NULL});
     // A fault of the types is told alone: those of their pairs would mislead.
     refuse(*state, "\"A\": 40", "\"A\": 1", 1,
            (const char *[]){"run.json: scene.particles.types.A: 1 is out of range", NULL});

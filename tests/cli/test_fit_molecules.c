@@ -350,7 +350,15 @@ static void test_fit_molecules_tells_a_wrong_name_in_one_line(void **state) {
         {"[\"A\", \"B\", \"A\"]", "[\"A\"]",
          "scene.molecules.trimer.chain.bond: a bond is of 2 beads, and the chain has 1"},
         {"[\"A\", \"B\", \"A\"]", "[\"A\", \"A\", \"A\"]",
-         "target.rdf.A-A: pairs are named in mixtures, and all beads are of type A"},
+         "target.rdf.A-A: pairs are named in mixtures, and there is only A; write {\"file\": …}"},
+        {"\"A-B\": {\"file\"", "\"A-Q\": {\"file\"",
+         "run.json: target.rdf.A-Q: there is no such pair; the pairs are A-A, A-B, B-B"},
+        {"\"A-B\": {\"file\"", "\"B-A\": {\"file\": \"truth/rdf_A-B.tsv\"}, \"A-B\": {\"file\"",
+         "run.json: target.rdf.A-B: the pair stands here twice, in both orders"},
+        {"\"bond_lengths\": {",
+         "\"kirkwood_buff\": {\"A-B\": {\"value\": 1, \"error\": 1}}, \"bond_lengths\": {",
+         "run.json: target.kirkwood_buff.A-B: pairs are named in mixtures, and there is only "
+         "trimer; write {\"value\": …, \"error\": …}"},
     };
     static struct run_program_result result;
     for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++) {

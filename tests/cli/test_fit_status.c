@@ -163,6 +163,27 @@ static void test_cmaes_has_not_converged_when_its_verification_is_worse(void **s
 }
 
 /// Its steps become shorter than its tolerance.
+/// The step that blew up is the verification's own, which the scene's would not tell.
+static void test_unstable_verification_tells_its_time_step_in_the_units_of_the_file(void **state) {
+    static const char advice[] = "the verification had a time step of 9 ps, and a shorter ";
+    static struct run_program_result result;
+    small_inputs_write(*state, "target.tsv", small_inputs_target, NULL, NULL);
+    small_inputs_write(*state, "one.json", small_inputs_run, "\"verification\": {",
+                       "\"verification\": {\"time_step\": 9, ");
+    char *text = temporary_folder_read("one.json");
+    small_inputs_write(*state, "run.json", text, "\"seed\": 1", "\"units\": \"nm-ps\"");
+    free(text);
+    text = temporary_folder_read("run.json");
+    small_inputs_write(*state, "run.json", text, "{\"count\": 81}",
+                       "{\"count\": 81, \"mass\": 2.5}, \"temperature\": 300");
+    free(text);
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "out");
+    run_program_assert_code(&result, 1);
+    assert_contains(result.err, advice);
+    assert_contains(result.err, "\"verification.time_step\" may help");
+    assert_summary("unstable", advice);
+}
+
 static void test_nlopt_has_converged_when_its_steps_are_short(void **state) {
     static struct run_program_result result;
     run_fit(*state, PLAN,
@@ -184,6 +205,8 @@ int main(void) {
         TEST_WITHOUT_FIGURES(test_gauss_newton_says_when_too_few_succeeded_for_a_model),
         TEST_WITHOUT_FIGURES(test_populations_have_finished_when_their_budget_is_used_up),
         TEST_WITHOUT_FIGURES(test_cmaes_has_not_converged_when_its_verification_is_worse),
+        TEST_WITHOUT_FIGURES(
+            test_unstable_verification_tells_its_time_step_in_the_units_of_the_file),
         TEST_WITHOUT_FIGURES(test_nlopt_has_converged_when_its_steps_are_short),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

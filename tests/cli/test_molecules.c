@@ -245,6 +245,56 @@ static void test_a_pair_named_in_a_scene_of_one_type_is_refused(void **state) {
                               "write \"conservative\": {\"law\"", NULL});
 }
 
+/// The mass of the only type is that of all beads, whichever way it is written.
+static void test_a_mass_of_the_only_type_is_that_of_all(void **state) {
+    static const char *const masses[] = {"2.5", "{\"W\": 2.5}"};
+    static struct run_program_result result;
+    char text[1024], *runs[2];
+    for (int k = 0; k < 2; k++) {
+        snprintf(text, sizeof text,
+                 "{\"box\": [6, 6, 6], \"bonds\": {" BACKBONE "}, \"molecules\": {\"dimer\":\n"
+                 "{\"count\": 20, \"chain\": {\"type\": \"W\", \"length\": 2, \"bond\": "
+                 "\"backbone\"}}},\n\"particles\": {\"types\": {\"W\": 40}, \"mass\": %s},\n"
+                 "\"conservative\": {\"law\": \"soft-repulsion\"}, \"time_step\": 0.01,\n"
+                 "\"measure\": {\"equilibration\": 10, \"samples\": 5, \"every\": 1}}\n",
+                 masses[k]);
+        small_inputs_write(*state, "mass.json", text, NULL, NULL);
+        RUN_PROGRAM(&result, "simulate", "mass.json", "-o", "mass", "--force");
+        run_program_assert_code(&result, 0);
+        runs[k] = temporary_folder_read("mass/thermodynamics.tsv");
+    }
+    assert_string_equal(runs[0], runs[1]);
+    free(runs[0]);
+    free(runs[1]);
+}
+
+/// aboba takes half of the inner steps in each half of a step, and its help says what that makes
+/// of 3.
+static void test_an_odd_number_of_inner_steps_is_made_even_as_the_help_says(void **state) {
+    static struct run_program_result result;
+    char text[1024], *runs[3];
+    for (int k = 0; k < 3; k++) {
+        snprintf(text, sizeof text,
+                 "{\"box\": [6, 6, 6], \"bonds\": {" BACKBONE "}, \"molecules\": {\"dimer\":\n"
+                 "{\"count\": 20, \"chain\": {\"type\": \"A\", \"length\": 2, \"bond\": "
+                 "\"backbone\"}}},\n\"conservative\": {\"law\": \"soft-repulsion\"},\n"
+                 "\"dissipative\": {\"law\": \"power\"}, \"time_step\": 0.02, \"dynamics\":\n"
+                 "{\"integrator\": \"aboba\", \"inner_steps\": %d},\n"
+                 "\"measure\": {\"equilibration\": 10, \"samples\": 5, \"every\": 1}}\n",
+                 2 + k);
+        small_inputs_write(*state, "inner.json", text, NULL, NULL);
+        RUN_PROGRAM(&result, "simulate", "inner.json", "-o", "inner", "--force");
+        run_program_assert_code(&result, 0);
+        runs[k] = temporary_folder_read("inner/thermodynamics.tsv");
+    }
+    assert_string_not_equal(runs[0], runs[1]);
+    assert_string_equal(runs[1], runs[2]);
+    for (int k = 0; k < 3; k++)
+        free(runs[k]);
+    RUN_PROGRAM(&result, "describe", "aboba");
+    assert_contains(result.out, "odd number counts as the next even one");
+}
+
 /// A dimer at rest across the box, and one of 2.5, more than three times 0.8.
 static void test_a_table_with_stretched_bonds_is_refused(void **state) {
     static struct run_program_result result;
@@ -391,6 +441,8 @@ int main(void) {
         TEST(test_sizes_of_a_rod_are_those_of_geometry),
         TEST(test_molecules_that_cannot_be_are_refused_in_one_line),
         TEST(test_tables_of_dihedrals_must_close),
+        TEST(test_an_odd_number_of_inner_steps_is_made_even_as_the_help_says),
+        TEST(test_a_mass_of_the_only_type_is_that_of_all),
         TEST(test_a_pair_named_in_a_scene_of_one_type_is_refused),
         TEST(test_a_snapshot_of_soft_bonds_is_no_stretched_one),
         TEST(test_a_table_with_stretched_bonds_is_refused),

@@ -221,6 +221,30 @@ static void test_simulate_warns_when_only_the_kinetic_temperature_is_right(void 
     free(summary);
 }
 
+/// Trimers whose energy still rises from that of molecules at rest, and the same after a while.
+static void test_simulate_warns_when_it_has_not_settled(void **state) {
+    static const char plan[] = "\"equilibration\": 0, \"samples\": 100, \"every\": 5";
+    static const char trimers[] =
+        "{\"seed\": 1, \"box\": [4.4, 4.4, 4.4], \"time_step\": 0.01,\n"
+        "\"bonds\": {\"bond\": {\"law\": \"harmonic\", \"k\": 100, \"length\": 0.8}},\n"
+        "\"angles\": {\"bend\": {\"law\": \"harmonic\", \"k\": 20, \"angle\": 120}},\n"
+        "\"molecules\": {\"trimer\": {\"count\": 60, \"chain\": {\"type\": \"A\", \"length\": 3,\n"
+        "\"bond\": \"bond\", \"angle\": \"bend\"}}}, \"dissipative\": {\"law\": \"power\"},\n"
+        "\"conservative\": {\"law\": \"soft-repulsion\", \"a\": 25},\n"
+        "\"measure\": {\"equilibration\": 0, \"samples\": 100, \"every\": 5}}\n";
+    static struct run_program_result result;
+    small_scenes_write(*state, trimers, NULL, NULL);
+    small_scenes_simulate(&result, "out");
+    assert_contains(result.err, "mesofit: warning: the 100 samples of the potential energy, ");
+    char *summary = temporary_folder_read("out/summary.json");
+    assert_contains(summary, "the run may not have settled");
+    free(summary);
+    small_scenes_write(*state, trimers, plan,
+                       "\"equilibration\": 2000, \"samples\": 100, \"every\": 50");
+    small_scenes_simulate(&result, "long");
+    assert_null(strstr(result.err, "settled"));
+}
+
 static void test_quiet_run_says_nothing(void **state) {
     static struct run_program_result result;
     small_inputs_need_gnuplot();
@@ -348,6 +372,7 @@ int main(void) {
         TEST_WITHOUT_FIGURES(test_simulate_warns_when_only_the_kinetic_temperature_is_right),
         TEST_WITHOUT_FIGURES(test_simulate_warns_when_nothing_holds_the_temperature),
         TEST_WITHOUT_FIGURES(test_simulate_warns_when_steps_do_not_follow_a_memory),
+        TEST_WITHOUT_FIGURES(test_simulate_warns_when_it_has_not_settled),
         TEST_WITHOUT_FIGURES(test_one_sample_is_enough),
         TEST_WITHOUT_FIGURES(test_ideal_gas_has_no_configurational_temperature),
     };
