@@ -234,10 +234,11 @@ static void invert(const struct inversion_basis *basis, double larger, double he
 /// Schneider, Astron. Astrophys. 464, 399 (2007). Far from it the diagonal is larger by K/n, which
 /// all but stops what C hardly sees, as the ramp.
 static void damp(struct inversion_basis *basis, bool near) {
+    static const double most = 0.5;
     const double part = (double)basis->count / basis->behind;
     invert(basis, near ? 1 : 1 + part, 1 / basis->pooled, basis->damped);
     for (size_t k = 0; near && k < basis->count * basis->count; k++)
-        basis->damped[k] *= 1 - part;
+        basis->damped[k] *= 1 - fmin(part, most);
 }
 
 /// The step of the coefficients, and what it promises.
