@@ -4,7 +4,6 @@
 #include "inversion/imc_solve.h"
 #include "inversion/inversion.h"
 #include "inversion/inversion_coarse.h"
-#include "inversion/inversion_ramp.h"
 #include "observe/kirkwood_buff_observable.h"
 
 #include <math.h>
@@ -85,7 +84,7 @@ enum status mf_imc_step(struct inversion *inversion, const struct imc_parameters
     const struct potential_grid *grid = &inversion->grid;
     enum status status = STATUS_OK;
     struct imc_solution solution;
-    double *x = NULL, *wide = NULL, *residual = NULL;
+    double *x = NULL;
     struct imc_system system = mf_inversion_system(inversion);
     if (mf_inversion_is_coarse(inversion) && parameters->regularisation == 0 &&
         !(parameters->strength > 0))
@@ -96,30 +95,16 @@ enum status mf_imc_step(struct inversion *inversion, const struct imc_parameters
         system.wanted = *problem->targets.target[TARGET_PRESSURE].value - inversion->pressure.value;
     }
     NEW_ARRAY(x, grid->known);
-    NEW_ARRAY(wide, grid->points);
-    NEW_ARRAY(residual, grid->known);
-    // Groups have about as many bins as an iteration has samples, so that C is noisy.
-    const bool by_itself =
-        inversion->coarse.count > 0 && grid->pairs > 0 && mf_inversion_is_near(inversion);
-    const double ramp = by_itself ? mf_inversion_ramp_find(grid, &system) : 0;
     doubt_response(inversion, step, &system);
-    if (by_itself) {
-        mf_inversion_ramp_take(grid, &system, ramp, wide, residual);
-        system.excess = residual;
-        for (size_t a = 0; a < grid->known; a++)
-            system.wanted -= inversion->pressure.slope[a] * wide[grid->known_point[a]];
-    }
     CHECK(solvers[parameters->regularisation](&system, choose_strength(inversion, parameters), x,
                                               &solution));
     for (size_t a = 0; a < grid->known; a++)
-        step[grid->known_point[a]] = wide[grid->known_point[a]] + x[a];
+        step[grid->known_point[a]] = x[a];
     extra[0] = solution.strength;
     extra[1] = solution.misfit;
     extra[2] = solution.directions;
 done:
     mf_memory_free(x);
-    mf_memory_free(wide);
-    mf_memory_free(residual);
     return status;
 }
 

@@ -178,7 +178,6 @@ static bool keeps_by_gradient(struct inversion *inversion) {
     double *least = &inversion->progress.least_decrement;
     const bool kept = basis->decrement <= 2 * *least + 8 * basis->chance;
     *least = fmin(*least, basis->decrement);
-    inversion->progress.miss = basis->miss;
     return kept;
 }
 

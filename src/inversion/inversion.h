@@ -160,7 +160,6 @@ struct inversion {
         double pool;                      ///< samples that the pooled excess is worth, 0 far off
         double least_decrement;           ///< of what was kept, by the gradient
         double miss;                      ///< of the last gradient, in its noise
-        uint32_t near_steps;              ///< one after the other with a gradient of hardly more
         uint32_t agreed;                  ///< iterations running that agreed with all targets
         uint32_t met;                     ///< the same but for what has not settled
         double first_error, second_error; ///< of g, in the first two iterations from a start
@@ -270,11 +269,11 @@ void mf_inversion_assess(struct inversion *inversion);
 /// step from the present samples alone carries their noise into the next potential, so that its
 /// error is sqrt(2) times the noise, iteration after iteration; Kushner and Yin, Stochastic
 /// Approximation (2003), section 1.1. Present samples weigh a third at least, for what C does not
-/// tell. Not of a method that goes by a gradient. Tested: test_inversion_keeps.
+/// tell. Tested: test_inversion_keeps.
 void mf_inversion_pool(struct inversion *inversion);
 
 /// Whether g, and p of all groups, are so near to their targets, by their noise, that C hardly
-/// changes any more.
+/// changes any more; or the gradient of coefficients to 0, by its own.
 bool mf_inversion_is_near(const struct inversion *inversion);
 
 /// Whether this iteration, whose potential was kept or not, ends the fit: its samples are as exact

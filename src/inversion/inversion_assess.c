@@ -12,6 +12,9 @@ static const double least_share = 1.0 / 3;
 /// The error of what is near to its target, in units of its noise, and of what stays near.
 static const double near_noises = 2, still_near_noises = 3;
 
+/// The same of the gradient of coefficients, as last measured.
+static const double near_miss = 3;
+
 double mf_inversion_g(const struct inversion *inversion, size_t bin) {
     return inversion->replicas.counts.mean[bin] / inversion->ideal[bin];
 }
@@ -91,6 +94,8 @@ void mf_inversion_assess(struct inversion *inversion) {
 
 bool mf_inversion_is_near(const struct inversion *inversion) {
     const double noises = inversion->progress.pool > 0 ? still_near_noises : near_noises;
+    if (inversion->basis.count > 0)
+        return inversion->progress.miss < near_miss;
     for (int k = 0; k < inversion->sections; k++)
         if (!(inversion->section[k].rms < noises * inversion->section[k].noise))
             return false;
@@ -116,8 +121,7 @@ void mf_inversion_pool(struct inversion *inversion) {
     const struct potential_grid *grid = &inversion->grid;
     double *pool = &inversion->progress.pool;
     const double now = inversion->replicas.counts.count;
-    // The gradient of coefficients has the noise of the present samples, and shorter steps.
-    if (inversion->basis.count > 0 || !mf_inversion_is_near(inversion)) {
+    if (!mf_inversion_is_near(inversion)) {
         *pool = 0;
         return;
     }

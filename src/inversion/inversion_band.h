@@ -25,7 +25,8 @@
 /// F = n C/(k_B T)² (n independent configurations; the canonical ensemble is an exponential family)
 /// would determine water's ramp within 0.008 k_B T; but then every systematic error of the target
 /// must be smaller than its noise in the sum of all bins, and fits of the same target differ by
-/// 0.1.
+/// 0.1. Targets of 28 twins have sums of pairs along the ramp that scatter by half of what
+/// independent bins give, and so A is off by 0.6 to 0.7 of its stated error.
 ///
 /// C is itself sampled. Its noise adds to C·C, but what is least known follows the smallest
 /// eigenvalues, and those of a sampled covariance come out too small: the band of few samples is

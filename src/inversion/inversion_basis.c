@@ -229,6 +229,18 @@ static void invert(const struct inversion_basis *basis, double larger, double he
     gsl_linalg_cholesky_invert(&matrix.matrix);
 }
 
+/// The inverse for steps. Near the target it is as much smaller as a whole as that of a sampled C
+/// is too large, about n/(n − K) for n samples and K coefficients: J. Hartlap, P. Simon and P.
+/// Schneider, Astron. Astrophys. 464, 399 (2007). Far from it the diagonal is larger by K/n, which
+/// all but stops what C hardly sees, as the ramp.
+static void damp(struct inversion_basis *basis, bool near) {
+    static const double most = 0.5;
+    const double part = (double)basis->count / basis->behind;
+    invert(basis, near ? 1 : 1 + part, 1 / basis->pooled, basis->damped);
+    for (size_t k = 0; near && k < basis->count * basis->count; k++)
+        basis->damped[k] *= 1 - fmin(part, most);
+}
+
 /// The step of the coefficients, and what it promises.
 static void find_change(struct inversion_basis *basis, double temperature) {
     const size_t count = basis->count;
@@ -246,7 +258,10 @@ static void find_change(struct inversion_basis *basis, double temperature) {
 
 void mf_inversion_basis_respond(struct inversion_basis *basis, const struct inversion *inversion) {
     fill_matrices(basis, inversion);
+    const double now = inversion->replicas.counts.count;
     basis->independent = count_independent(basis, inversion);
+    basis->pooled = basis->independent * fmax(1, inversion->progress.pool / now);
+    basis->behind = basis->independent * fmax(1, inversion->behind / now);
 }
 
 void mf_inversion_basis_measure(struct inversion_basis *basis, const struct inversion *inversion,
@@ -258,14 +273,13 @@ void mf_inversion_basis_measure(struct inversion_basis *basis, const struct inve
         for (size_t k = 0; k < count; k++)
             basis->gradient[k] += basis->value[a * count + k] * inversion->excess[a];
     mf_inversion_basis_respond(basis, inversion);
-    const double independent = basis->independent;
     for (size_t k = 0; k < count * count; k++)
-        basis->noise[k] += basis->hessian[k] / independent;
+        basis->noise[k] += basis->hessian[k] / basis->pooled;
     memcpy(basis->inverse, basis->noise, count * count * sizeof *basis->noise);
     basis->miss = sqrt(measure_against(basis->inverse, basis->gradient, basis->change, count) /
                        (double)count);
-    invert(basis, 1, 1 / independent, basis->inverse);
-    invert(basis, 1 + (double)count / independent, 1 / independent, basis->damped);
+    invert(basis, 1, 1 / basis->pooled, basis->inverse);
+    damp(basis, mf_inversion_is_near(inversion));
     find_change(basis, inversion->problem->scene.temperature);
     make_curve(basis, grid, basis->change, step);
 }
@@ -275,7 +289,7 @@ enum status mf_inversion_basis_covariance(const struct inversion *inversion, dou
     enum status status = STATUS_OK;
     const struct inversion_basis *basis = &inversion->basis;
     const size_t count = basis->count, known = inversion->grid.known;
-    const double held = 1 / basis->independent;
+    const double held = 1 / basis->pooled;
     const double unit = pow(inversion->problem->scene.temperature, 2);
     double *noise = NULL, *product = NULL, *half = NULL;
     NEW_ARRAY(noise, count * count);

@@ -30,11 +30,13 @@ struct inversion_basis {
     double *noise;    ///< covariance of the gradient by the noise of target and samples
     double *inverse; ///< (BᵀC B + 1/n)⁻¹ for n independent samples: what these hardly see may move
                      ///< by k_B T in a step
-    double *damped; ///< the same with the diagonal of BᵀC B larger by count/n, for steps: of few
-                    ///< samples, C has eigenvalues far too small, which would make steps too long
+    double *damped; ///< the same for steps: of few samples, C has eigenvalues far too small, which
+                    ///< would make steps too long
     double *change; ///< the Newton step of the coefficients [k_B T_0], shape [count]
     double independent; ///< samples, by the scatter of the gradient: it follows all bins a little,
                         ///< and so what changes more slowly than each of them does
+    double pooled;      ///< the same behind the excess, of all iterations near the target
+    double behind;      ///< the same behind C
     double miss;        ///< gradient in units of its noise, rms over coefficients
     double decrement;   ///< g·H⁻¹g: twice the fall of S_rel that the step promises
     double chance;      ///< what noise alone makes of that
@@ -61,7 +63,8 @@ enum status mf_inversion_basis_project(const struct inversion_basis *basis,
 /// Hessian and independent samples, and the noise of the gradient by the target alone.
 void mf_inversion_basis_respond(struct inversion_basis *basis, const struct inversion *inversion);
 
-/// Gradient, Hessian and Newton step by the present samples and their covariance.
+/// Gradient, Hessian and Newton step by the excess and C, near the target those of all iterations
+/// since it was reached.
 /// @param[out] step  of the potential in the known bins, shape [points]
 /// Tested: test_inversion_basis.
 void mf_inversion_basis_measure(struct inversion_basis *basis, const struct inversion *inversion,

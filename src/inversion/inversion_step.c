@@ -37,8 +37,7 @@ void mf_inversion_take_step(struct inversion *inversion) {
 }
 
 void mf_inversion_take_last_step(struct inversion *inversion) {
-    // A step of relative entropy is a part of its way.
-    if (!inversion->settling || inversion->basis.count > 0)
+    if (!inversion->settling)
         return;
     mf_inversion_take_step(inversion);
     memcpy(inversion->best, inversion->phi, inversion->grid.points * sizeof(double));

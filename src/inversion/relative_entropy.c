@@ -35,31 +35,20 @@ done:
     return status;
 }
 
-/// Near the end a gradient is the noise of its samples and that of those that led here. There the
-/// n-th step goes an n-th of its way, so that the coefficients become the mean of what all have
-/// asked for: H. Robbins and S. Monro, Ann. Math. Stat. 22, 400 (1951).
-static void shorten(struct inversion *inversion) {
-    static const double near = 3;
-    const struct potential_grid *grid = &inversion->grid;
-    uint32_t *steps = &inversion->progress.near_steps;
-    inversion->settling = inversion->basis.miss < near;
-    *steps = inversion->settling ? *steps + 1 : 0;
-    for (size_t a = 0; a<grid->known && * steps> 1; a++)
-        inversion->step[grid->known_point[a]] /= *steps;
-}
-
 /// The Newton step; of hardly more independent samples than coefficients, whose covariance tells
-/// less, that of Boltzmann inversion.
+/// less, that of Boltzmann inversion, which has the noise of the present samples alone.
 static enum status update(struct inversion *inversion, double *extra) {
     static const double enough = 2;
     const struct inversion_basis *basis = &inversion->basis;
     mf_inversion_basis_measure(&inversion->basis, inversion, inversion->step);
-    extra[0] = basis->miss;
+    inversion->progress.miss = extra[0] = basis->miss;
     extra[1] = basis->decrement;
     extra[2] = (double)basis->count;
-    if (basis->independent < enough * (double)basis->count)
+    if (basis->behind < enough * (double)basis->count) {
+        inversion->progress.pool = 0;
         return take_logarithms(inversion);
-    shorten(inversion);
+    }
+    inversion->settling = mf_inversion_is_near(inversion);
     return STATUS_OK;
 }
 

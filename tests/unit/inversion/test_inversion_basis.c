@@ -140,6 +140,24 @@ static void draw_excess(struct made *made, const double *factor, double samples,
     }
 }
 
+/// C of so many samples, normal numbers with the covariance L Lᵀ about 0.
+static void sample_covariance(struct made *made, const double *factor, uint32_t samples,
+                              uint32_t draw) {
+    memset(made->covariance, 0, sizeof made->covariance);
+    for (uint32_t n = 0; n < samples; n++) {
+        double s[KNOWN] = {0};
+        for (uint32_t b = 0; b < KNOWN; b++) {
+            double normal[4];
+            mf_rng_normal4(mf_rng_philox(4, RNG_SELECTION, draw, n, b), normal);
+            for (size_t a = b; a < KNOWN; a++)
+                s[a] += factor[a * KNOWN + b] * normal[0];
+        }
+        for (size_t a = 0; a < KNOWN; a++)
+            for (size_t b = 0; b < KNOWN; b++)
+                made->covariance[a * KNOWN + b] += s[a] * s[b] / samples;
+    }
+}
+
 /// Cholesky's factor of C.
 static void factorise(const double *c, double *factor) {
     memset(factor, 0, KNOWN * KNOWN * sizeof *factor);
@@ -180,12 +198,48 @@ static void test_basis_covariance_is_the_scatter_of_the_step(void **state) {
     clear(&made);
 }
 
+/// Near the target a step goes all of the way on average, whatever C of 40 samples: the curve that
+/// the excess is made with comes back in each bin. The inverse of such a C alone goes 14 % too far,
+/// with n/(n − K − 1) for K = 4 (Wishart's distribution); 3000 of them know the step within 1 %.
+static void test_basis_near_the_target_steps_all_of_the_way_on_average(void **state) {
+    (void)state;
+    enum { DRAWS = 3000, SAMPLES = 40, COUNT = 4 };
+    static const double coefficient[COUNT] = {0.3, -0.5, 0.4, 0.2}, large = 30;
+    static struct made made;
+    double exact[KNOWN * KNOWN], factor[KNOWN * KNOWN], wanted[KNOWN] = {0}, mean[KNOWN] = {0};
+    make(&made, COUNT, SAMPLES);
+    for (size_t k = 0; k < KNOWN * KNOWN; k++)
+        exact[k] = large * large * made.covariance[k];
+    factorise(exact, factor);
+    for (size_t a = 0; a < KNOWN; a++)
+        for (size_t k = 0; k < COUNT; k++)
+            wanted[a] += made.inversion.basis.value[a * COUNT + k] * coefficient[k];
+    for (size_t a = 0; a < KNOWN; a++) {
+        made.excess[a] = 0;
+        for (size_t b = 0; b < KNOWN; b++)
+            made.excess[a] += exact[a * KNOWN + b] * wanted[b] / temperature;
+    }
+    made.inversion.progress.miss = 1;
+    for (uint32_t draw = 0; draw < DRAWS; draw++) {
+        sample_covariance(&made, factor, SAMPLES, draw);
+        mf_inversion_basis_measure(&made.inversion.basis, &made.inversion, made.step);
+        for (size_t a = 0; a < KNOWN; a++)
+            mean[a] += made.step[CORE + a] / DRAWS;
+    }
+    for (size_t a = 0; a < KNOWN; a++) {
+        print_message("bin %zu: %.4f of %.4f\n", a, mean[a], wanted[a]);
+        assert_close(mean[a], wanted[a], 0.02);
+    }
+    clear(&made);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_basis_of_all_bins_takes_the_step_of_inverse_monte_carlo),
         cmocka_unit_test(test_basis_of_few_coefficients_makes_their_gradient_zero),
         cmocka_unit_test(test_basis_leaves_a_curve_as_it_is_that_it_can_make),
         cmocka_unit_test(test_basis_covariance_is_the_scatter_of_the_step),
+        cmocka_unit_test(test_basis_near_the_target_steps_all_of_the_way_on_average),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
