@@ -37,8 +37,8 @@ void mf_ibi_logarithms(const struct inversion *inversion, double *step) {
 /// counts that its target expects there, since its own scatter tells nothing.
 static double error_of(const struct inversion *inversion, size_t n) {
     const size_t bin = inversion->grid.known_bin[n];
-    const double expected =
-        inversion->target_counts[bin] * inversion->inefficiency / inversion->replicas.counts.count;
+    const double samples = fmax(inversion->replicas.counts.count, inversion->progress.pool);
+    const double expected = inversion->target_counts[bin] * inversion->inefficiency / samples;
     return sqrt(fmax(inversion->variance[n], expected + pow(inversion->target_error[bin], 2)));
 }
 
@@ -51,7 +51,7 @@ static void keep_within_noise(const struct inversion *inversion, double *step) {
         const size_t bin = grid->known_bin[n];
         const double least = inversion->least[bin] * inversion->ideal[bin];
         const double target = inversion->target_counts[bin];
-        const double excess = inversion->replicas.counts.mean[bin] - target;
+        const double excess = inversion->excess[n];
         const double beyond = fmax(0, fabs(excess) - errors * error_of(inversion, n));
         const double counts = target + copysign(beyond, excess);
         if (grid->seen[n] && !grid->well_known[n])
