@@ -84,6 +84,11 @@ static double time_to_obstacle(const struct solvent *solvent, const double posit
     if (!(approach < 0) || !(root > 0))
         return INFINITY;
     double t = fmax(0, beyond / (sqrt(root) - approach));
+    // What rises from the wall falls back no sooner than it would on a plane through its place.
+    const double rise = dot(separation, velocity, dimensions),
+                 pull = dot(separation, g, dimensions);
+    if (rise > 0 && pull < 0)
+        t = fmax(t, -2 * rise / pull);
     for (int n = 0; n < 3 && beyond > 0 && dot(g, g, dimensions) > 0; n++) {
         double at[3], speed[3];
         for (int d = 0; d < dimensions; d++) {
@@ -129,11 +134,26 @@ static double longest_leg(const struct solvent *solvent, const double g[3]) {
     return radius > 0 && bend > 0 ? sqrt(1e-4 * radius / bend) : INFINITY;
 }
 
+/// A particle that the acceleration presses against a wall, so that it hops by next to
+/// nothing, rests there and hands on what presses it.
+static bool rests(const struct solvent *solvent, double position[3], const double velocity[3],
+                  const double g[3], double hop, double time, double impulse[3]) {
+    static const double least = 1e-4;
+    const int dimensions = solvent->box.dimensions;
+    if (!(hop * sqrt(dot(velocity, velocity, dimensions)) < least * solvent->parameters.cell))
+        return false;
+    put_outside(solvent, position);
+    for (int d = 0; d < dimensions && impulse; d++)
+        impulse[d] += time * g[d];
+    return true;
+}
+
 bool mf_solvent_fly(const struct solvent *solvent, double position[3], double velocity[3],
                     const double g[3], double time, double impulse[3]) {
-    enum { MOST_MEETINGS = 100 };
+    enum { MOST_MEETINGS = 10000 };
     const int dimensions = solvent->box.dimensions;
     const double longest = longest_leg(solvent, g);
+    double hop = 0;
     for (int meetings = 0; meetings < MOST_MEETINGS;) {
         const double leg = fmin(time, longest);
         const double plate = time_to_plate(solvent, position[1], velocity[1]);
@@ -143,6 +163,7 @@ bool mf_solvent_fly(const struct solvent *solvent, double position[3], double ve
         time -= next;
         if (next < leg) {
             meetings++;
+            hop = next;
             for (int d = 0; d < dimensions; d++) {
                 if (impulse && obstacle < plate)
                     impulse[d] += 2 * velocity[d];
@@ -153,5 +174,5 @@ bool mf_solvent_fly(const struct solvent *solvent, double position[3], double ve
             return true;
         }
     }
-    return false;
+    return rests(solvent, position, velocity, g, hop, time, impulse);
 }

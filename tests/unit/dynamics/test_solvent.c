@@ -278,6 +278,29 @@ static void test_flights_reverse_and_agree_with_small_flights(void **state) {
     mf_simulation_clear(&simulation);
 }
 
+/// A slow particle that the acceleration presses against the obstacle hops ever less, on its surface
+/// or behind it by rounding. It stays there, and hands on what presses it.
+static void test_particle_that_is_pressed_against_the_obstacle_rests_there(void **state) {
+    (void)state;
+    const struct collision_dynamics_parameters parameters = with_walls(0);
+    const struct simulation_setup setup = setup_of(2, 0, &parameters);
+    const double g[3] = {0.3, 0, 0}, radius = parameters.obstacle_radius, time = 0.1;
+    struct simulation simulation;
+    assert_ok(mf_simulation_init(&simulation, &setup, NULL));
+    const struct solvent *solvent = mf_collision_dynamics_solvent(&simulation);
+    for (double behind = -1e-13; behind <= 1e-13; behind += 1e-13)
+        for (double slow = 1e-15; slow < 1e-4; slow *= 30) {
+            double x[3] = {parameters.obstacle_centre[0] - radius + behind,
+                           parameters.obstacle_centre[1]};
+            double v[3] = {-slow, 0}, impulse[3] = {0};
+            assert_true(mf_solvent_fly(solvent, x, v, g, time, impulse));
+            assert_close(x[0], parameters.obstacle_centre[0] - radius, 1e-6);
+            assert_true(fabs(v[0]) < 0.005);
+            assert_close(v[0] + impulse[0], time * g[0] - slow, 1e-9);
+        }
+    mf_simulation_clear(&simulation);
+}
+
 static void assert_same_solvent(const struct simulation *a, const struct simulation *b) {
     const struct solvent *left = mf_collision_dynamics_solvent(a);
     const struct solvent *right = mf_collision_dynamics_solvent(b);
@@ -394,6 +417,7 @@ int main(void) {
         cmocka_unit_test(test_collision_turns_relative_velocities_of_each_cell_together),
         cmocka_unit_test(test_particles_stay_outside_walls_and_obstacle),
         cmocka_unit_test(test_flights_reverse_and_agree_with_small_flights),
+        cmocka_unit_test(test_particle_that_is_pressed_against_the_obstacle_rests_there),
         cmocka_unit_test(test_solvent_has_the_same_bits_for_any_number_of_threads),
         cmocka_unit_test(test_solvent_goes_on_with_the_same_bits_when_restarted),
         cmocka_unit_test(test_solvent_refuses_what_has_no_sense),
