@@ -8,15 +8,6 @@
 
 static const char *const columns[] = {INVERSION_COLUMNS, NULL};
 
-/// g of the present samples; near the target that of all iterations there, as at the present
-/// potential, so that a step is not made of the noise of one.
-static double sampled_g(const struct inversion *inversion, size_t n) {
-    const size_t bin = inversion->grid.known_bin[n];
-    if (inversion->progress.pool > 0)
-        return (inversion->target_counts[bin] + inversion->excess[n]) / inversion->ideal[bin];
-    return mf_inversion_g(inversion, bin);
-}
-
 void mf_ibi_logarithms(const struct inversion *inversion, double *step) {
     const struct potential_grid *grid = &inversion->grid;
     for (size_t n = 0; n < grid->known; n++) {
@@ -27,7 +18,7 @@ void mf_ibi_logarithms(const struct inversion *inversion, double *step) {
         // An empty bin is as full as one with the threshold's few pairs.
         const size_t bin = grid->known_bin[n];
         const double least = inversion->least[bin];
-        const double g = fmax(sampled_g(inversion, n), least);
+        const double g = fmax(mf_inversion_g(inversion, bin), least);
         const double target = fmax(mf_inversion_target_g(inversion, bin), least);
         step[grid->known_point[n]] = inversion->problem->scene.temperature * log(g / target);
     }
@@ -37,21 +28,22 @@ void mf_ibi_logarithms(const struct inversion *inversion, double *step) {
 /// counts that its target expects there, since its own scatter tells nothing.
 static double error_of(const struct inversion *inversion, size_t n) {
     const size_t bin = inversion->grid.known_bin[n];
-    const double samples = fmax(inversion->replicas.counts.count, inversion->progress.pool);
-    const double expected = inversion->target_counts[bin] * inversion->inefficiency / samples;
+    const double expected =
+        inversion->target_counts[bin] * inversion->inefficiency / inversion->replicas.counts.count;
     return sqrt(fmax(inversion->variance[n], expected + pow(inversion->target_error[bin], 2)));
 }
 
-/// Where the target has few counts, the logarithm of a few is mostly noise, which would dig wells
-/// of a single bin: S counts as that within two standard errors which is nearest to the target.
+/// Where the target of a group has few counts, the logarithm of a few is mostly noise, which would
+/// dig wells of a single bin into U: S counts as that within two standard errors which is nearest
+/// to the target.
 static void keep_within_noise(const struct inversion *inversion, double *step) {
     static const double errors = 2;
     const struct potential_grid *grid = &inversion->grid;
-    for (size_t n = 0; n < grid->known; n++) {
+    for (size_t n = grid->pairs_known; n < grid->known; n++) {
         const size_t bin = grid->known_bin[n];
         const double least = inversion->least[bin] * inversion->ideal[bin];
         const double target = inversion->target_counts[bin];
-        const double excess = inversion->excess[n];
+        const double excess = inversion->replicas.counts.mean[bin] - target;
         const double beyond = fmax(0, fabs(excess) - errors * error_of(inversion, n));
         const double counts = target + copysign(beyond, excess);
         if (grid->seen[n] && !grid->well_known[n])

@@ -18,7 +18,6 @@ struct scene {
     size_t place[BINS];
     bool seen[BINS], well_known[BINS];
     double ideal[BINS], least[BINS], target[BINS], error[BINS], variance[BINS], mean[BINS];
-    double excess[BINS];
     double step[BINS];
 };
 
@@ -44,7 +43,6 @@ static void make(struct scene *scene, double rare) {
                                     .least = scene->least,
                                     .target_counts = scene->target,
                                     .target_error = scene->error,
-                                    .excess = scene->excess,
                                     .variance = scene->variance,
                                     .inefficiency = 1};
     inversion->replicas.counts.mean = scene->mean;
@@ -55,11 +53,9 @@ static void make(struct scene *scene, double rare) {
 static double step_of(struct scene *scene, double counts) {
     scene->mean[RARE] = counts / SAMPLES;
     scene->mean[FULL] = 1.1 * scene->target[FULL];
-    for (int k = 0; k < BINS; k++) {
-        scene->excess[k] = scene->mean[k] - scene->target[k];
+    for (int k = 0; k < BINS; k++)
         scene->variance[k] =
             fmax(scene->mean[k], 1.0 / SAMPLES) / SAMPLES + pow(scene->error[k], 2);
-    }
     mf_ibi_step(&scene->inversion, scene->step);
     return scene->step[RARE];
 }
