@@ -278,8 +278,8 @@ static void test_flights_reverse_and_agree_with_small_flights(void **state) {
     mf_simulation_clear(&simulation);
 }
 
-/// A slow particle that the acceleration presses against the obstacle hops ever less, on its surface
-/// or behind it by rounding. It stays there, and hands on what presses it.
+/// A slow particle that the acceleration presses against the obstacle hops ever less, on its
+/// surface or behind it by rounding. It stays there, and hands on what presses it.
 static void test_particle_that_is_pressed_against_the_obstacle_rests_there(void **state) {
     (void)state;
     const struct collision_dynamics_parameters parameters = with_walls(0);
