@@ -82,10 +82,10 @@ static void warn_of_tails(const struct target_files *files, const struct scene *
     for (size_t pair = 0; pair < files->rdf.pairs; pair++) {
         const struct target_rdf *target = &files->rdf.member[pair];
         const double pairs = mf_composition_possible_pairs(composition, (int)pair);
-        const double given = target->parameters.normalisation;
+        const double given = target->parameters.normalisation, factor = given > 0 ? given : 1;
         all += pairs;
-        mean += pairs * target->tail.mean / (given > 0 ? given : 1);
-        scatter += pairs * target->tail.scatter;
+        mean += pairs * target->tail.mean / factor;
+        scatter += pairs * target->tail.scatter / factor;
     }
     const double away = fabs(mean / all - 1);
     const double excluded = longest(&scene->molecules.molecules.topology) /

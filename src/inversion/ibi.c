@@ -24,13 +24,15 @@ void mf_ibi_logarithms(const struct inversion *inversion, double *step) {
     }
 }
 
-/// Standard error of S − S*. A bin that has happened to be empty, or nearly so, has that of the
-/// counts that its target expects there, since its own scatter tells nothing.
+/// Standard error of S − S* of the present samples. A bin that has happened to be empty, or nearly
+/// so, has that of the counts that its target expects there, since its own scatter tells nothing.
 static double error_of(const struct inversion *inversion, size_t n) {
     const size_t bin = inversion->grid.known_bin[n];
-    const double expected =
-        inversion->target_counts[bin] * inversion->inefficiency / inversion->replicas.counts.count;
-    return sqrt(fmax(inversion->variance[n], expected + pow(inversion->target_error[bin], 2)));
+    const struct comoments *counts = &inversion->replicas.counts;
+    const double scatter =
+        fmax(mf_comoments_covariance(counts, bin, bin), inversion->target_counts[bin]);
+    return sqrt(scatter * inversion->inefficiency / counts->count +
+                pow(inversion->target_error[bin], 2));
 }
 
 /// Where the target of a group has few counts, the logarithm of a few is mostly noise, which would

@@ -17,7 +17,8 @@ struct scene {
     struct inversion inversion;
     size_t place[BINS];
     bool seen[BINS], well_known[BINS];
-    double ideal[BINS], least[BINS], target[BINS], error[BINS], variance[BINS], mean[BINS];
+    double ideal[BINS], least[BINS], target[BINS], error[BINS], mean[BINS];
+    double comoment[BINS * BINS];
     double step[BINS];
 };
 
@@ -43,10 +44,9 @@ static void make(struct scene *scene, double rare) {
                                     .least = scene->least,
                                     .target_counts = scene->target,
                                     .target_error = scene->error,
-                                    .variance = scene->variance,
                                     .inefficiency = 1};
-    inversion->replicas.counts.mean = scene->mean;
-    inversion->replicas.counts.count = SAMPLES;
+    inversion->replicas.counts = (struct comoments){
+        .size = BINS, .count = SAMPLES, .mean = scene->mean, .comoment = scene->comoment};
 }
 
 /// The step when the samples have so many counts in the rare bin.
@@ -54,8 +54,7 @@ static double step_of(struct scene *scene, double counts) {
     scene->mean[RARE] = counts / SAMPLES;
     scene->mean[FULL] = 1.1 * scene->target[FULL];
     for (int k = 0; k < BINS; k++)
-        scene->variance[k] =
-            fmax(scene->mean[k], 1.0 / SAMPLES) / SAMPLES + pow(scene->error[k], 2);
+        scene->comoment[k * (BINS + 1)] = scene->mean[k] * SAMPLES; // Poisson's
     mf_ibi_step(&scene->inversion, scene->step);
     return scene->step[RARE];
 }
