@@ -87,7 +87,7 @@ const struct inverse_method mf_automatic = {
                "inversion, Reith et al. 2003) until their linear response holds, or with groups "
                "until the targets are near, then inverse Monte Carlo (Lyubartsev and Laaksonen "
                "1995)",
-    .own = &(const struct inversion_rule){update},
+    .own = &(const struct inversion_rule){.update = update},
     .tables = (const struct inverse_table[]){INVERSION_TABLE, {NULL, 0}},
     .knows_molecules = true,
     .meets_integrals = true,

@@ -60,7 +60,7 @@ const struct inverse_method mf_hnc = {
     .name = "hnc",
     .summary = "Newton steps by the hypernetted chain; F. Delbary, M. Hanke and D. Ivanizki, J. "
                "Inverse Ill-Posed Probl. 28 (2020)",
-    .own = &(const struct inversion_rule){update},
+    .own = &(const struct inversion_rule){.update = update, .forgets = true},
     .tables = (const struct inverse_table[]){INVERSION_TABLE,
                                              {own_fields, offsetof(struct inversion_settings, hnc)},
                                              {NULL, 0}},

@@ -71,7 +71,7 @@ const struct inverse_method mf_ibi = {
     .summary =
         "iterative Boltzmann inversion; D. Reith, M. Puetz and F. Mueller-Plathe, J. Comput. "
         "Chem. 24, 1624 (2003)",
-    .own = &(const struct inversion_rule){update},
+    .own = &(const struct inversion_rule){.update = update, .forgets = true},
     .tables = (const struct inverse_table[]){INVERSION_TABLE, {NULL, 0}},
     .knows_molecules = true,
     .columns = columns,

@@ -128,7 +128,7 @@ const struct inverse_method mf_imc = {
     .name = "imc",
     .summary = "inverse Monte Carlo; A. P. Lyubartsev and A. Laaksonen, Phys. Rev. E 52, 3730 "
                "(1995)",
-    .own = &(const struct inversion_rule){update},
+    .own = &(const struct inversion_rule){.update = update},
     .tables = (const struct inverse_table[]){INVERSION_TABLE,
                                              {own_fields, offsetof(struct inversion_settings, imc)},
                                              {NULL, 0}},

@@ -194,7 +194,7 @@ const struct inverse_method mf_joint_imc = {
                "Lyubartsev and A. Laaksonen, Phys. Rev. E 52, 3730 (1995), with the equations of "
                "all states",
     .kind = INVERSE_INVERSION,
-    .own = &(const struct inversion_rule){update},
+    .own = &(const struct inversion_rule){.update = update},
     .tables = (const struct inverse_table[]){INVERSION_TABLE, {NULL, 0}},
     .parameters_size = sizeof(struct inversion_settings),
     .state_size = sizeof(struct joint),

@@ -65,7 +65,7 @@ const struct inverse_method mf_relative_entropy = {
     .name = "relative-entropy",
     .summary = "the best potentials of few coefficients; M. S. Shell, J. Chem. Phys. 129, 144108 "
                "(2008)",
-    .own = &(const struct inversion_rule){update},
+    .own = &(const struct inversion_rule){.update = update},
     .tables =
         (const struct inverse_table[]){
             INVERSION_TABLE, {own_fields, offsetof(struct inversion_settings, entropy)}, {NULL, 0}},
