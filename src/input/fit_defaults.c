@@ -14,6 +14,7 @@ static bool lacks_method(const struct json_object *root) {
 /// Whether nothing would hold the temperature.
 static bool lacks_friction(const struct json_object *root) {
     return mf_fit_choice_lacks(root, "scene", "dissipative") &&
+           mf_fit_choice_lacks(root, "scene", "dissipative_transverse") &&
            mf_fit_choice_lacks(root, "scene", "dynamics") &&
            mf_fit_choice_lacks(root, "scene", "memory");
 }
@@ -250,9 +251,17 @@ static enum status choose_omega(struct fit_choice *c) {
     return mf_fit_choice_give_omega(c, "unknowns.omega.start", sigma, cutoff);
 }
 
+/// Friction of any kind, along or across pairs.
+static bool finds_friction(const struct fit_choice *c) {
+    bool finds = false;
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        finds = finds || (unknown_is_omega(kind) && c->finds[kind]);
+    return finds;
+}
+
 /// It holds the temperature against what the integrator heats, and leaves g(r) as it is.
 static enum status choose_friction(struct fit_choice *c) {
-    if (c->finds[UNKNOWN_OMEGA] || !lacks_friction(c->root))
+    if (finds_friction(c) || !lacks_friction(c->root))
         return STATUS_OK;
     const double cutoff = c->scales.shell, sigma = moderate_friction(c, cutoff);
     const double time = c->mass / (mf_fit_scales_friction(c->rdf, cutoff) * sigma * sigma);
