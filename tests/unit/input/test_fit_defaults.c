@@ -121,10 +121,39 @@ static void test_fit_defaults_choose_friction_and_time_step_beside_a_method(void
         assert_ok(read_run(state, &fit, "run.json", text));
         assert_int_equal(fit.choices.count, choices[k]);
         assert_int_equal(fit.scene.omega.curves > 0, k % 2 == 0);
-        assert_identical(fit.scene.setup.time_step, k == 2 ? 0.01 : 0.02);
+        if (k != 1)
+            assert_identical(fit.scene.setup.time_step, k == 2 ? 0.01 : 0.02);
         assert_int_equal(fit.verification.plan.samples, 50);
         assert_int_equal(fit.problem.targets.bins.count, 150);
         mf_fit_file_clear(&fit);
+    }
+}
+
+/// A bead without velocities relaxes in γ/2Φ'', which a step of Euler's must stay far below, and
+/// diffuses: twice the friction makes all of that twice as slow.
+static void test_fit_defaults_choose_time_steps_by_the_friction_without_velocities(void **state) {
+    static const char *const integrators[] = {"euler-maruyama", "brownian"};
+    double time_step[2][2];
+    write_target(state);
+    for (int k = 0; k < 4; k++) {
+        struct fit_file fit;
+        char text[2048];
+        snprintf(text, sizeof text,
+                 TARGET "\"scene\": {\"box\": [9.1, 9.1, 9.1], \"particles\": {\"count\": 226}, "
+                        "\"dynamics\": {\"integrator\": \"%s\", \"friction\": %d}}, "
+                        "\"method\": {\"name\": \"ibi\"}}",
+                 integrators[k / 2], 10 * (k % 2 + 1));
+        assert_ok(read_run(state, &fit, "run.json", text));
+        time_step[k / 2][k % 2] = fit.scene.setup.time_step;
+        mf_fit_file_clear(&fit);
+    }
+    // 1 % of the variance for the largest of −(ln g)'', 35.7 at most.
+    assert_true(time_step[0][0] / 10 * 2 * 34 / 2 <= 0.0101);
+    // A fiftieth of the way to neighbours, of which the shell is 2.24 wide at most, is 0.03.
+    assert_true(sqrt(2 * time_step[1][0] / 10) <= 0.03);
+    for (int k = 0; k < 2; k++) {
+        assert_true(time_step[k][0] > 1e-3);
+        assert_close(time_step[k][1] / time_step[k][0], 2, 1e-9);
     }
 }
 
@@ -211,6 +240,7 @@ int main(void) {
         IN_FOLDER(test_fit_defaults_stand_in_used_json),
         IN_FOLDER(test_fit_defaults_leave_what_the_file_says),
         IN_FOLDER(test_fit_defaults_choose_friction_and_time_step_beside_a_method),
+        IN_FOLDER(test_fit_defaults_choose_time_steps_by_the_friction_without_velocities),
         IN_FOLDER(test_fit_defaults_choose_no_friction_where_that_across_pairs_is_found),
         IN_FOLDER(test_fit_defaults_cut_g_at_half_of_a_box_that_is_given),
         IN_FOLDER(test_fit_defaults_find_omega_where_targets_move),
