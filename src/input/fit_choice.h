@@ -18,7 +18,8 @@ struct fit_choice {
     int dimensions;
     double density;
     double mass;          ///< the least of any bead
-    double crossing;      ///< time in which a bead moves as far as its neighbours are [τ]
+    double crossing;      ///< time in which a bead flies, or diffuses, as far as its neighbours
+                          ///< are [τ]
     double range;         ///< of g(r) as it will be used [λ]
     double count;         ///< beads of a simulation
     double time_step;     ///< [τ]
@@ -54,6 +55,11 @@ enum status mf_fit_choice_give_empty(const struct json_object *root, const char 
 /// The time step that bonds, angles and dihedrals ask for by their targets and the integrator [τ];
 /// infinite without.
 double mf_fit_defaults_stiff_step(const struct fit_choice *choice);
+
+/// The time step of dynamics without velocities whose variance in a well of that curvature
+/// [k_B T_0/λ²] is wrong by the allowed share [τ].
+double mf_fit_defaults_relaxing_step(const struct fit_choice *choice, double curvature,
+                                     double allowed);
 
 /// How exactly g is to be known: as the target is.
 double mf_fit_defaults_precision(const struct fit_choice *choice);

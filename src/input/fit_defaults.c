@@ -14,6 +14,7 @@ static bool lacks_method(const struct json_object *root) {
 /// Whether nothing would hold the temperature.
 static bool lacks_friction(const struct json_object *root) {
     return mf_fit_choice_lacks(root, "scene", "dissipative") &&
+           mf_fit_choice_lacks(root, "scene", "dissipative_transverse") &&
            mf_fit_choice_lacks(root, "scene", "dynamics") &&
            mf_fit_choice_lacks(root, "scene", "memory");
 }
@@ -148,11 +149,16 @@ static double fit_interval(const struct fit_choice *c, double time_step) {
 /// Integrators of Verlet's kind give an oscillator of angular frequency Ω the configurational
 /// temperature T/(1 − (Ω Δt)²/4). Two beads oscillate with Ω² = 2 Φ''/m, and Φ is at most as steep
 /// as −k_B T ln g where pairs come near. What flies free moves a fiftieth of the way to its
-/// neighbours.
+/// neighbours; without velocities it takes as long as the square of that of the time in which it
+/// diffuses there.
 static enum status choose_time_step(struct fit_choice *c) {
     static const double allowed = 0.01, way = 0.02;
-    const double stiff = mf_fit_defaults_stiff_step(c), free = fmin(way * c->crossing, stiff);
-    const double bound = sqrt(4 * allowed * c->mass / (2 * c->scales.curvature));
+    const bool flies = c->read->scene.setup.integrator->mobility == NULL;
+    const double stiff = mf_fit_defaults_stiff_step(c);
+    const double free = fmin((flies ? way : way * way) * c->crossing, stiff);
+    const double curvature_of_pair = 2 * c->scales.curvature;
+    const double bound = flies ? sqrt(4 * allowed * c->mass / curvature_of_pair)
+                               : mf_fit_defaults_relaxing_step(c, curvature_of_pair, allowed);
     if (!mf_fit_choice_lacks(c->root, "scene", "time_step")) {
         c->time_step = c->read->scene.setup.time_step;
         return STATUS_OK;
@@ -250,9 +256,17 @@ static enum status choose_omega(struct fit_choice *c) {
     return mf_fit_choice_give_omega(c, "unknowns.omega.start", sigma, cutoff);
 }
 
+/// Friction of any kind, along or across pairs.
+static bool finds_friction(const struct fit_choice *c) {
+    bool finds = false;
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        finds = finds || (unknown_is_omega(kind) && c->finds[kind]);
+    return finds;
+}
+
 /// It holds the temperature against what the integrator heats, and leaves g(r) as it is.
 static enum status choose_friction(struct fit_choice *c) {
-    if (c->finds[UNKNOWN_OMEGA] || !lacks_friction(c->root))
+    if (finds_friction(c) || !lacks_friction(c->root))
         return STATUS_OK;
     const double cutoff = c->scales.shell, sigma = moderate_friction(c, cutoff);
     const double time = c->mass / (mf_fit_scales_friction(c->rdf, cutoff) * sigma * sigma);
@@ -298,6 +312,13 @@ static enum status choose_simulation(struct fit_choice *c) {
                : STATUS_OK;
 }
 
+static double find_crossing(const struct fit_choice *c, const struct simulation_setup *setup) {
+    const double way = c->scales.neighbour;
+    return setup->integrator->mobility
+               ? way * way / (2 * setup->temperature * setup->integrator->mobility(setup))
+               : way * sqrt(c->mass / setup->temperature);
+}
+
 enum status mf_fit_defaults_choose(const struct fit_file *read, const struct fit_file *leader,
                                    struct json_object *root, struct fit_choices *choices) {
     const struct simulation_setup *setup = &read->scene.setup;
@@ -319,7 +340,7 @@ enum status mf_fit_defaults_choose(const struct fit_file *read, const struct fit
                                   scene_has_molecules(&read->scene.molecules) ? little_of_molecules
                                                                               : little);
     c.mass = masses.maximum > 0 ? masses.minimum : 1;
-    c.crossing = c.scales.neighbour * sqrt(c.mass / setup->temperature);
+    c.crossing = find_crossing(&c, setup);
     c.range = c.scales.range;
     c.precision = mf_fit_defaults_precision(&c);
     CHECK(lacks_method(root) ? choose_all(&c) : choose_simulation(&c));

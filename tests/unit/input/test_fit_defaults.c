@@ -109,21 +109,71 @@ static void test_fit_defaults_choose_friction_and_time_step_beside_a_method(void
                                         "\"dynamics\": {\"integrator\": \"brownian\", "
                                         "\"friction\": 2}, ",
                                         "\"time_step\": 0.01, \"dissipative\": {\"law\": "
-                                        "\"power\", \"sigma\": 3}, "};
-    static const size_t choices[] = {2, 1, 0};
+                                        "\"power\", \"sigma\": 3}, ",
+                                        "\"dissipative_transverse\": {\"law\": \"power\", "
+                                        "\"sigma\": 3}, "};
+    static const size_t choices[] = {2, 1, 0, 1};
     write_target(state);
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 4; k++) {
         struct fit_file fit;
         char text[2048];
         snprintf(text, sizeof text, scene, moves[k]);
         assert_ok(read_run(state, &fit, "run.json", text));
         assert_int_equal(fit.choices.count, choices[k]);
-        assert_int_equal(fit.scene.omega.curves > 0, k != 1);
-        assert_identical(fit.scene.setup.time_step, k == 2 ? 0.01 : 0.02);
+        assert_int_equal(fit.scene.omega.curves > 0, k % 2 == 0);
+        if (k != 1)
+            assert_identical(fit.scene.setup.time_step, k == 2 ? 0.01 : 0.02);
         assert_int_equal(fit.verification.plan.samples, 50);
         assert_int_equal(fit.problem.targets.bins.count, 150);
         mf_fit_file_clear(&fit);
     }
+}
+
+/// A bead without velocities relaxes in γ/2Φ'', which a step of Euler's must stay far below, and
+/// diffuses: twice the friction makes all of that twice as slow.
+static void test_fit_defaults_choose_time_steps_by_the_friction_without_velocities(void **state) {
+    static const char *const integrators[] = {"euler-maruyama", "brownian"};
+    double time_step[2][2];
+    write_target(state);
+    for (int k = 0; k < 4; k++) {
+        struct fit_file fit;
+        char text[2048];
+        snprintf(text, sizeof text,
+                 TARGET "\"scene\": {\"box\": [9.1, 9.1, 9.1], \"particles\": {\"count\": 226}, "
+                        "\"dynamics\": {\"integrator\": \"%s\", \"friction\": %d}}, "
+                        "\"method\": {\"name\": \"ibi\"}}",
+                 integrators[k / 2], 10 * (k % 2 + 1));
+        assert_ok(read_run(state, &fit, "run.json", text));
+        time_step[k / 2][k % 2] = fit.scene.setup.time_step;
+        mf_fit_file_clear(&fit);
+    }
+    // 1 % of the variance for the largest of −(ln g)'', 35.7 at most.
+    assert_true(time_step[0][0] / 10 * 2 * 34 / 2 <= 0.0101);
+    // A fiftieth of the way to neighbours, of which the shell is 2.24 wide at most, is 0.03.
+    assert_true(sqrt(2 * time_step[1][0] / 10) <= 0.03);
+    for (int k = 0; k < 2; k++) {
+        assert_true(time_step[k][0] > 1e-3);
+        assert_close(time_step[k][1] / time_step[k][0], 2, 1e-9);
+    }
+}
+
+/// Friction across pairs that is to be found holds the temperature, too: one along pairs would make
+/// it another.
+static void test_fit_defaults_choose_no_friction_where_that_across_pairs_is_found(void **state) {
+    static const char vacf[] = "0 1\n0.05 0.9\n0.1 0.8\n0.15 0.7\n";
+    struct fit_file fit;
+    write_target(state);
+    temporary_folder_write(*state, "vacf.tsv", vacf, strlen(vacf));
+    assert_ok(read_run(state, &fit, "run.json",
+                       "{\"target\": {\"rdf\": {\"file\": \"rdf.tsv\", \"fitted\": \"no\"}, "
+                       "\"vacf\": {\"file\": \"vacf.tsv\"}}, "
+                       "\"unknowns\": {\"omega_transverse\": {}}, "
+                       "\"scene\": {\"box\": [9.1, 9.1, 9.1], \"particles\": {\"count\": 226}, "
+                       "\"conservative\": {\"law\": \"gaussian\", \"epsilon\": 1}}, "
+                       "\"method\": {\"name\": \"gauss-newton\"}}"));
+    assert_int_equal(fit.scene.omega.curves, 0);
+    assert_int_equal(fit.choices.count, 1); // the time step
+    mf_fit_file_clear(&fit);
 }
 
 /// Half of a box that is given ends g(r), all of the last bin within it.
@@ -190,6 +240,8 @@ int main(void) {
         IN_FOLDER(test_fit_defaults_stand_in_used_json),
         IN_FOLDER(test_fit_defaults_leave_what_the_file_says),
         IN_FOLDER(test_fit_defaults_choose_friction_and_time_step_beside_a_method),
+        IN_FOLDER(test_fit_defaults_choose_time_steps_by_the_friction_without_velocities),
+        IN_FOLDER(test_fit_defaults_choose_no_friction_where_that_across_pairs_is_found),
         IN_FOLDER(test_fit_defaults_cut_g_at_half_of_a_box_that_is_given),
         IN_FOLDER(test_fit_defaults_find_omega_where_targets_move),
         IN_FOLDER(test_fit_defaults_tell_faults_once_and_only_what_is_missing),
