@@ -36,13 +36,18 @@ void mf_inversion_take_step(struct inversion *inversion) {
     mf_potential_grid_complete(grid, inversion->phi);
 }
 
-/// Whether the fit ends with the mean of the potentials near the target: if g at the mean is nearer
-/// to it than at the present one.
+/// Iterations near the target whose mean is worth more than the last: of fewer the first ones lie
+/// on the side that the fit came from. As many samples, less what rounding may take.
+static const double enough_near = 2.99;
+
+/// Whether the fit ends with the mean of the potentials near the target: if these are enough, and g
+/// at the mean is nearer to it than at the present one.
 static bool ends_with_mean(const struct inversion *inversion) {
     const struct inversion_rule *rule = inversion->method->own;
     const struct potential_grid *grid = &inversion->grid;
     double mean = 0, now = 0;
-    if (!rule->forgets || inversion->progress.pool == 0 ||
+    if (!rule->forgets ||
+        inversion->progress.pool < enough_near * inversion->replicas.counts.count ||
         targets_ask(&inversion->problem->targets, TARGET_PRESSURE))
         return false;
     for (size_t a = 0; a < grid->known; a++) {

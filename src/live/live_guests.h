@@ -12,7 +12,7 @@
 #include <stdint.h>
 
 /// Connections at one time, and those for which there is room until ended ones have left.
-enum { LIVE_GUESTS_MOST = 48, LIVE_GUESTS_ROOM = 80 };
+enum { LIVE_GUESTS_MOST = 48, LIVE_GUESTS_ROOM = 160 };
 
 struct live_guests {
     pthread_mutex_t lock;

@@ -174,8 +174,8 @@ static void test_inversion_pool_of_coefficients_goes_by_their_gradient(void **st
 }
 
 /// The result is what the last samples ask for, if the step is the most probable one; of a method
-/// that forgets, the mean of the potentials near the target, unless g at the mean is off by more;
-/// other methods end with the potential that was sampled.
+/// that forgets, the mean of three or more potentials near the target, unless g at the mean is off
+/// by more; other methods end with the potential that was sampled.
 static void test_inversion_ends_with_the_step_that_is_left_or_the_mean(void **state) {
     (void)state;
     const struct inversion_rule forgetting = {.forgets = true}, other = {.forgets = false};
@@ -192,7 +192,7 @@ static void test_inversion_ends_with_the_step_that_is_left_or_the_mean(void **st
                                            .known_point = known_point,
                                            .known_bin = known_bin,
                                            .well_known = well_known},
-                                  .replicas.counts.mean = mean,
+                                  .replicas.counts = {.count = 30, .mean = mean},
                                   .target_counts = target,
                                   .variance = variance,
                                   .pooled = pooled,
@@ -213,6 +213,10 @@ static void test_inversion_ends_with_the_step_that_is_left_or_the_mean(void **st
     mf_inversion_take_last_step(&inversion);
     assert_close(best[0], 2.3, 1e-15);
     pooled[0] = 0.1;
+    inversion.progress.pool = 60;
+    mf_inversion_take_last_step(&inversion);
+    assert_close(best[0], 2.3, 1e-15);
+    inversion.progress.pool = 90;
     mf_inversion_take_last_step(&inversion);
     assert_true(best[0] == 1.5 && best[1] == 1.25);
 }
