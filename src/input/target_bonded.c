@@ -92,6 +92,7 @@ static enum status read_columns(const struct target_bonded_parameters *p, enum t
     const int64_t least = p->value_column > USUAL ? p->value_column : USUAL;
     CHECK(mf_data_table_read(&table, p->file, (size_t)(p->q_column > least ? p->q_column : least)));
     CHECK(find_columns(p, name, &table, &value, &error));
+    CHECK(mf_data_table_check_increasing(&table, p->file, (size_t)p->q_column - 1, -INFINITY));
     CHECK(mf_data_table_convert(&table, p->file, (size_t)p->q_column - 1, unit, units));
     CHECK(mf_data_table_convert(&table, p->file, (size_t)value - 1, inverse, units));
     if (error > 0)

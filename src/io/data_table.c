@@ -198,8 +198,10 @@ static enum status read_flag(const char *file, const struct line *line, const st
     *flag = *word;
     if (of->length == 1 && ((*word >= 'a' && *word <= 'z') || (*word >= 'A' && *word <= 'Z')))
         return STATUS_OK;
-    return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: the row does not end with a letter", file,
-                          line->number);
+    return mf_status_fail(
+        STATUS_BAD_INPUT,
+        "%s:%zu: the row does not end with a letter, as the flags i, o and u of VOTCA", file,
+        line->number);
 }
 
 static enum status read_row(const struct data_table *table, const char *file,
@@ -332,7 +334,8 @@ enum status mf_data_table_check_increasing(const struct data_table *table, const
         const double before = row ? table->values[(row - 1) * table->columns + column] : -INFINITY;
         if (!(value > before))
             return mf_status_fail(STATUS_BAD_INPUT,
-                                  "%s:%zu: column %zu: %.15g does not grow from %.15g in line %zu",
+                                  "%s:%zu: column %zu: %.15g does not grow from %.15g in line %zu "
+                                  "(are the columns in another order?)",
                                   file, line, column + 1, value, before, table->line[row - 1]);
     }
     return STATUS_OK;

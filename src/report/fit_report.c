@@ -176,24 +176,27 @@ static void say_integrals(struct progress *to, const struct fit_file *fit,
 static void say_thermodynamics(struct progress *to, const struct units *units,
                                const struct thermodynamics_summary *t, double open) {
     const double factor = mf_units_factor(units, "T_0");
-    const double kinetic = factor * t->temperature;
-    const double configurational = factor * t->temperature_configurational;
     const double scale = mf_units_factor(units, "k_B T_0/lambda^d");
-    char kelvin[UNITS_NAME_SIZE], unit[UNITS_NAME_SIZE], left[64] = "", pressure[160];
+    char kinetic[NUMBER_TEXT_SIZE], configurational[NUMBER_TEXT_SIZE], found[NUMBER_TEXT_SIZE];
+    char kelvin[UNITS_NAME_SIZE], unit[UNITS_NAME_SIZE], left[64] = "", pressure[192];
+    mf_number_text(factor * t->temperature, factor * t->temperature_error, kinetic);
+    mf_number_text(factor * t->temperature_configurational,
+                   factor * t->temperature_configurational_error, configurational);
+    mf_number_text(scale * t->pressure, scale * t->pressure_error, found);
     mf_units_suffix(units, "T_0", kelvin);
     if (open > 0)
         snprintf(left, sizeof left, ", which g(r) leaves open by %.2g", scale * open);
-    snprintf(pressure, sizeof pressure, "pressure %.3f%s%s", t->pressure * scale,
+    snprintf(pressure, sizeof pressure, "pressure %s%s%s", found,
              mf_units_suffix(units, "k_B T_0/lambda^d", unit), left);
-    if (isnan(kinetic) && isnan(configurational)) // no particles
+    if (isnan(t->temperature) && isnan(t->temperature_configurational)) // no particles
         return;
-    if (isnan(kinetic)) // no velocities
-        mf_progress_say(to, "configurational T = %.4f%s, %s", configurational, kelvin, pressure);
-    else if (isnan(configurational)) // no potential of pairs
-        mf_progress_say(to, "T = %.4f%s, %s", kinetic, kelvin, pressure);
+    if (isnan(t->temperature)) // no velocities
+        mf_progress_say(to, "configurational T = %s%s, %s", configurational, kelvin, pressure);
+    else if (isnan(t->temperature_configurational)) // no potential of pairs
+        mf_progress_say(to, "T = %s%s, %s", kinetic, kelvin, pressure);
     else
-        mf_progress_say(to, "T = %.4f%s, configurational %.4f%s, %s", kinetic, kelvin,
-                        configurational, kelvin, pressure);
+        mf_progress_say(to, "T = %s%s, configurational %s%s, %s", kinetic, kelvin, configurational,
+                        kelvin, pressure);
 }
 
 /// What was found of a state, or of the only one.

@@ -42,6 +42,25 @@ static void write_target(struct temporary_folder *folder) {
     run_program_assert_code(&result, 0);
 }
 
+/// The line "T = 1.0107(18), configurational 1.0009(38), pressure 2.9184(22)" has the numbers of
+/// `summary.json`, each with an error.
+static void assert_says_thermodynamics_with_errors(void) {
+    static const char *const names[] = {"temperature", "temperature_configurational", "pressure"};
+    double value[3], error[3];
+    const char *line = strstr(result.err, "\nT = ");
+    assert_non_null(line);
+    assert_int_equal(sscanf(line, "\nT = %lf(%lf), configurational %lf(%lf), pressure %lf(%lf)",
+                            &value[0], &error[0], &value[1], &error[1], &value[2], &error[2]),
+                     6);
+    for (int k = 0; k < 3; k++) {
+        char key[64];
+        snprintf(key, sizeof key, "%s_error", names[k]);
+        const double of_summary = results_number("out/summary.json", key);
+        assert_true(error[k] > 0);
+        assert_true(fabs(value[k] - results_number("out/summary.json", names[k])) < of_summary);
+    }
+}
+
 /// False alarms: 3 in 1000 for another seed, if the errors are honest.
 static void test_fit_finds_a_known_sigma_within_its_error(void **state) {
     write_target(*state);
@@ -52,6 +71,7 @@ static void test_fit_finds_a_known_sigma_within_its_error(void **state) {
     assert_contains(result.err, "error of the fit: ");
     assert_contains(result.err, "omega: changed by ");
     assert_contains(result.err, "omega: sigma = ");
+    assert_says_thermodynamics_with_errors();
     assert_true(results_number("out/summary.json", "start.error") > 0);
     assert_true(results_number("out/summary.json", "error") > 0);
     assert_contains(result.err, "exponent = 1 (fixed)");

@@ -162,6 +162,8 @@ static void test_target_bonded_refuses_nonsense(void **state) {
                    "the integral of p is 1.03, not 1");
     assert_refused(state, normal(0, 0.01, 315, 1.9, 0.05, 1, ""), "", TOPOLOGY_ANGLE,
                    "as if in radians");
+    assert_refused(state, strdup("0 0.9\n0 2.7\n0.1 4.5\n0.4 6.3\n"), "", TOPOLOGY_ANGLE,
+                   "p.tsv:2: column 1: 0 does not grow from 0 in line 1 (are the columns");
     assert_refused(state, normal(0, 1, 181, 110, 5, 1, " i"), VOTCA, TOPOLOGY_ANGLE,
                    "as if in degrees");
     assert_refused(state, normal(0, 2, 181, 110, 5, 1, ""), "", TOPOLOGY_ANGLE,
