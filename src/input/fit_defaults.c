@@ -11,6 +11,15 @@ static bool lacks_method(const struct json_object *root) {
     return mf_fit_choice_lacks(root, "", "method");
 }
 
+/// A part of it is enough.
+static bool lacks_verification(const struct json_object *root) {
+    static const char *const keys[] = {"replicas", "equilibration", "every", "samples"};
+    bool lacks = false;
+    for (size_t k = 0; k < sizeof keys / sizeof *keys; k++)
+        lacks = lacks || mf_fit_choice_lacks(root, "verification", keys[k]);
+    return lacks;
+}
+
 /// Whether nothing would hold the temperature.
 static bool lacks_friction(const struct json_object *root) {
     return mf_fit_choice_lacks(root, "scene", "dissipative") &&
@@ -20,9 +29,9 @@ static bool lacks_friction(const struct json_object *root) {
 }
 
 bool mf_fit_defaults_wanted(const struct json_object *root) {
-    return root->item && (lacks_method(root) || lacks_friction(root) ||
-                          mf_fit_choice_lacks(root, "scene", "time_step") ||
-                          mf_fit_choice_lacks(root, "", "verification"));
+    return root->item &&
+           (lacks_method(root) || lacks_friction(root) ||
+            mf_fit_choice_lacks(root, "scene", "time_step") || lacks_verification(root));
 }
 
 enum status mf_fit_defaults_make_readable(struct json_object *root) {
@@ -308,9 +317,7 @@ static enum status choose_simulation(struct fit_choice *c) {
         TRY(choose_cutoff(c));
     TRY(choose_time_step(c));
     TRY(choose_friction(c));
-    return joined && mf_fit_choice_lacks(c->root, "", "verification")
-               ? mf_fit_defaults_verification(c)
-               : STATUS_OK;
+    return joined ? mf_fit_defaults_verification(c) : STATUS_OK;
 }
 
 static double find_crossing(const struct fit_choice *c, const struct simulation_setup *setup) {

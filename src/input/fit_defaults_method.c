@@ -182,10 +182,12 @@ enum status mf_fit_defaults_verification(struct fit_choice *c) {
     enum { REPLICAS = 4 };
     const char *path = "verification";
     enum target_kind longest;
-    const double every = fmax(1, round(apart * c->crossing / c->time_step));
-    const double begin = fmax(1000, ceil(equilibration * c->crossing / c->time_step));
+    const double own = c->read->verification.time_step;
+    const double time_step = own > 0 ? own : c->time_step;
+    const double every = fmax(1, round(apart * c->crossing / time_step));
+    const double begin = fmax(1000, ceil(equilibration * c->crossing / time_step));
     const double window =
-        (double)mf_measurement_window(&c->read->problem.compared, c->time_step, &longest);
+        (double)mf_measurement_window(&c->read->problem.compared, time_step, &longest);
     const double can = most_moves / (REPLICAS * c->count * every);
     const double wanted = fmax(c->read->files.given[TARGET_RDF] ? samples_for_rdf(c, REPLICAS) : 0,
                                fmax(least, windows * window / every));
@@ -194,7 +196,7 @@ enum status mf_fit_defaults_verification(struct fit_choice *c) {
                       : c->read->files.given[TARGET_RDF]
                           ? "so that the difference of g is known within a tenth of it"
                           : "20 times as long as the targets look";
-    if (mf_fit_choice_lacks(c->root, "", path))
+    if (mf_fit_choice_lacks(c->root, path, "samples"))
         mf_fit_choice_say(c, "verification: %d simulations of %.0f samples, %s", REPLICAS, samples,
                           why);
     TRY(mf_fit_choice_give(c, path, mf_verify_fields, "replicas", REPLICAS));

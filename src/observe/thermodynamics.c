@@ -195,29 +195,35 @@ enum status mf_thermodynamics_judge(const struct thermodynamics_summary *summary
         s->temperature, s->temperature_configurational, wanted);
 }
 
+/// Whether a temperature is off by more than little and by more than chance.
+static bool is_off(double temperature, double error, double wanted) {
+    static const double least = 0.025, errors = 3;
+    return fabs(temperature - wanted) > fmax(least * wanted, errors * error);
+}
+
 enum status mf_thermodynamics_judge_fit(const struct thermodynamics_summary *summary,
                                         const struct simulation_setup *setup) {
-    static const double least = 0.025, errors = 3;
     const struct thermodynamics_summary *s = summary;
+    const bool held = simulation_holds_temperature(setup);
     TRY(mf_thermodynamics_judge(summary, setup));
-    if (!mf_simulation_is_thermal(setup))
+    if (!mf_simulation_is_thermal(setup) || s->blocks < LEAST_BLOCKS)
         return STATUS_OK;
-    if (s->blocks >= LEAST_BLOCKS && !simulation_holds_temperature(setup) &&
-        !agrees(s->temperature, s->temperature_error, setup->temperature))
+    if (!held && !agrees(s->temperature, s->temperature_error, setup->temperature))
         return mf_status_fail(STATUS_UNSTABLE,
                               "the temperature is %.3g, not %.3g: nothing holds it; give the scene "
                               "\"dissipative\", friction and noise",
                               s->temperature, setup->temperature);
-    const double wanted = simulation_holds_temperature(setup) ? setup->temperature : s->temperature;
-    const double off = s->temperature_configurational - wanted;
-    if (s->blocks < LEAST_BLOCKS ||
-        !(fabs(off) > fmax(least * wanted, errors * s->temperature_configurational_error)))
+    const double wanted = held ? setup->temperature : s->temperature;
+    const bool flies = is_off(s->temperature, s->temperature_error, wanted);
+    if (!flies &&
+        !is_off(s->temperature_configurational, s->temperature_configurational_error, wanted))
         return STATUS_OK;
+    const double found = flies ? s->temperature : s->temperature_configurational;
+    const double error = flies ? s->temperature_error : s->temperature_configurational_error;
     return mf_status_fail(
         STATUS_UNSTABLE,
-        "the configurational temperature is %.3f(%.0f), %.1f %% off: the time step "
-        "is coarse for this potential, or its force ends abruptly; a shorter "
-        "\"verification.time_step\" tells which",
-        s->temperature_configurational, ceil(1e3 * s->temperature_configurational_error),
-        100 * off / wanted);
+        "the %s temperature is %.3f(%.0f), %.1f %% off: the time step is coarse for this "
+        "potential, or its force ends abruptly; a shorter \"verification.time_step\" tells which",
+        flies ? "kinetic" : "configurational", found, ceil(1e3 * error),
+        100 * (found - wanted) / wanted);
 }

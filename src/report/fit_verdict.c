@@ -62,6 +62,21 @@ static void tell_structure(const char *name, const struct target_distance *dista
              find_cause(found, temperature));
 }
 
+/// Beads that are hotter or colder than the friction holds them have another structure, even if the
+/// noise hides it.
+static bool contradicts_temperature(const struct verification *verification, double temperature,
+                                    const struct units *units, char reason[INVERSE_REASON_SIZE]) {
+    const struct thermodynamics_summary *found = &verification->thermodynamics;
+    char kelvin[UNITS_NAME_SIZE];
+    if (!verification->warning[0] || !(fabs(found->temperature / temperature - 1) > hot))
+        return false;
+    mf_units_suffix(units, "T_0", kelvin);
+    snprintf(reason, INVERSE_REASON_SIZE, "the verification is at T = %.4g%.8s, not %.4g%.8s: %s",
+             mf_units_factor(units, "T_0") * found->temperature, kelvin,
+             mf_units_factor(units, "T_0") * temperature, kelvin, find_cause(found, temperature));
+    return true;
+}
+
 bool mf_fit_verdict_contradicts(const struct verification *verification,
                                 const struct targets *fitted, double temperature,
                                 double noise_margin, const struct units *units,
@@ -92,7 +107,7 @@ bool mf_fit_verdict_contradicts(const struct verification *verification,
         return true;
     }
     if (!(rdf->rms > noise_margin * rdf->noise))
-        return false;
+        return contradicts_temperature(verification, temperature, units, reason);
     tell_structure("g(r)", rdf, found, temperature, units, reason);
     return true;
 }

@@ -9,7 +9,7 @@
 #include "problem/verify.h"
 
 /// Why the verified g(r), or the pressure or an integral of Kirkwood and Buff if it was fitted, is
-/// not what the fit says it is, into `reason`.
+/// not what the fit says it is, or the temperature more than 5 % off, into `reason`.
 /// @param[in] fitted        the targets that were fitted
 /// @param[in] noise_margin  each may be off by this many times its statistical error
 /// Returns whether there is something to say. Tested: test_fit_verdict.

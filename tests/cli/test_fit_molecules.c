@@ -250,8 +250,6 @@ static void test_fit_molecules_default_time_step_knows_stiff_laws(void **state) 
     assert_contains(result.out, "time step 0.0002 tau");
 }
 
-/// Bonds of k = 100 and mass 1: Ω² = 200, so that a Verlet step of 0.04 adds 8 % to their variance,
-/// and 0.005, or aboba, hardly anything.
 /// A method beside them changes nothing of what molecules need for their verification.
 static void test_fit_molecules_with_a_method_has_friction_and_a_verification(void **state) {
     static struct run_program_result result;
@@ -274,8 +272,18 @@ static void test_fit_molecules_with_a_method_has_friction_and_a_verification(voi
                        "");
     RUN_PROGRAM(&result, "fit", "run.json", "--explain");
     assert_contains(result.out, chosen[2]);
+    // A time step of its own leaves the rest of it to be chosen.
+    small_inputs_write(*state, "run.json", run,
+                       "\"verification\": {\"replicas\": 2, "
+                       "\"equilibration\": 500, \"samples\": 60, "
+                       "\"every\": 25}",
+                       "\"verification\": {\"time_step\": 0.0025}");
+    RUN_PROGRAM(&result, "fit", "run.json", "--explain");
+    assert_contains(result.out, chosen[2]);
 }
 
+/// Bonds of k = 100 and mass 1: Ω² = 200, so that a Verlet step of 0.04 adds 8 % to their variance,
+/// and 0.005, or aboba, hardly anything.
 static void test_fit_warns_of_steps_too_long_for_bonds(void **state) {
     static const struct {
         const char *step, *word;

@@ -222,7 +222,7 @@ static void test_judge_tells_when_a_temperature_is_off(void **state) {
     fluid_clear(&fluid);
 }
 
-static void test_judge_of_a_fit_sees_a_few_percent_of_the_positions(void **state) {
+static void test_judge_of_a_fit_sees_a_few_percent(void **state) {
     (void)state;
     struct fluid fluid;
     fluid_groot_warren(&fluid, 100, 0.01);
@@ -239,6 +239,12 @@ static void test_judge_of_a_fit_sees_a_few_percent_of_the_positions(void **state
     s.temperature_configurational_error = 0.001; // sure, and little
     assert_ok(mf_thermodynamics_judge_fit(&s, &fluid.setup));
     s.temperature_configurational = NAN;
+    assert_ok(mf_thermodynamics_judge_fit(&s, &fluid.setup));
+    s.temperature = 1.059; // of a g(r) that was 1.05 times too large
+    assert_ok(mf_thermodynamics_judge(&s, &fluid.setup));
+    assert_fails(mf_thermodynamics_judge_fit(&s, &fluid.setup), STATUS_UNSTABLE,
+                 "kinetic temperature is 1.059(2), 5.9 % off");
+    s.temperature_error = 0.02;
     assert_ok(mf_thermodynamics_judge_fit(&s, &fluid.setup));
     // A simulation may go where its energy leads it, but a target has its temperature.
     fluid.setup.omega = NULL;
@@ -264,7 +270,7 @@ int main(void) {
         cmocka_unit_test(test_thermodynamics_errors_cover_the_truth_when_samples_are_independent),
         cmocka_unit_test(test_thermodynamics_errors_grow_when_samples_are_correlated),
         cmocka_unit_test(test_judge_tells_when_a_temperature_is_off),
-        cmocka_unit_test(test_judge_of_a_fit_sees_a_few_percent_of_the_positions),
+        cmocka_unit_test(test_judge_of_a_fit_sees_a_few_percent),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

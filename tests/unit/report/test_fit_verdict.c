@@ -62,6 +62,20 @@ static void test_fit_verdict_names_friction_when_the_beads_are_cold(void **state
                        "statistics) at T = 1, pressure 2: too little friction");
 }
 
+/// g(r) within its noise, at a temperature that the friction does not hold.
+static void test_fit_verdict_names_the_temperature_when_it_is_off(void **state) {
+    (void)state;
+    char reason[INVERSE_REASON_SIZE];
+    struct verification hot = make(0.0021, 1.5, 1.9);
+    hot.thermodynamics.temperature = 1.5 * 1.06;
+    assert_false(mf_fit_verdict_contradicts(&hot, &only_rdf, 1.5, 3, NULL, reason)); // held by none
+    snprintf(hot.warning, sizeof hot.warning, "the kinetic temperature is off");
+    assert_true(mf_fit_verdict_contradicts(&hot, &only_rdf, 1.5, 3, NULL, reason));
+    assert_contains(reason, "the verification is at T = 1.59, not 1.5: the potential is too rough");
+    hot.thermodynamics.temperature = 1.5 * 1.04;
+    assert_false(mf_fit_verdict_contradicts(&hot, &only_rdf, 1.5, 3, NULL, reason));
+}
+
 static void test_fit_verdict_names_the_pressure_when_it_was_fitted_and_is_off(void **state) {
     (void)state;
     char reason[INVERSE_REASON_SIZE];
@@ -121,6 +135,7 @@ int main(void) {
         cmocka_unit_test(test_fit_verdict_is_silent_when_g_is_off_by_noise),
         cmocka_unit_test(test_fit_verdict_names_the_cause_when_g_is_off),
         cmocka_unit_test(test_fit_verdict_names_friction_when_the_beads_are_cold),
+        cmocka_unit_test(test_fit_verdict_names_the_temperature_when_it_is_off),
         cmocka_unit_test(test_fit_verdict_names_the_pressure_when_it_was_fitted_and_is_off),
         cmocka_unit_test(test_fit_verdict_names_an_integral_when_it_was_fitted_and_is_off),
         cmocka_unit_test(test_fit_verdict_is_worse_when_the_difference_is_no_chance),
