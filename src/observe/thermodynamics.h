@@ -67,8 +67,8 @@ enum status mf_thermodynamics_judge(const struct thermodynamics_summary *summary
                                     const struct simulation_setup *setup) MUST_USE;
 
 /// A stricter look at what was fitted: one of the temperatures off by more than 2.5 % and three
-/// standard errors says that the potential and its time step do not belong together. Without friction the kinetic one must be near that of the setup, too,
-/// for which the target holds. Fails: UNSTABLE with the numbers in the message. Tested:
-/// test_thermodynamics.
+/// standard errors says that the potential and its time step do not belong together. Without
+/// friction the kinetic one must be near that of the setup, too, for which the target holds. Fails:
+/// UNSTABLE with the numbers in the message. Tested: test_thermodynamics.
 enum status mf_thermodynamics_judge_fit(const struct thermodynamics_summary *summary,
                                         const struct simulation_setup *setup) MUST_USE;
