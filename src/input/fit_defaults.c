@@ -64,8 +64,7 @@ static double find_cutoff(const struct fit_choice *c, const char **why) {
     const bool joined = scene_has_molecules(&c->read->scene.molecules);
     const double beyond = joined ? 1 : 1.1, whole = c->scales.range - 0.5 * c->rdf->bins.width;
     double cutoff = fmin(whole, fmax(beyond * c->scales.seen, 2 * c->scales.neighbour));
-    *why = joined ? "beyond it g differs from 1 by less than 0.03, and forces that end there make "
-                    "that, too"
+    *why = joined ? "beyond it g differs from 1 by less than 0.03, as it may without forces there"
                   : "beyond, g - 1 is within its noise";
     if (c->leader) {
         const struct rdf_bins *bins = target_pairs_bins(&c->leader->files.rdf);

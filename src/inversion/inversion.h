@@ -227,13 +227,17 @@ enum status mf_inversion_restrict(struct inversion *inversion) MUST_USE;
 /// bin elsewhere; as a whole everywhere if it is made of coefficients.
 void mf_inversion_take_step(struct inversion *inversion);
 
+/// Whether the result of a method that forgets is the mean of the potentials near the target, and
+/// no longer the present one (B. T. Polyak and A. B. Juditsky, SIAM J. Control Optim. 30, 838
+/// (1992)): there are three or more, and their mean g is nearer. A fit with a pressure, which may
+/// have come nearer meanwhile, ends with its last potential. Tested: test_inversion_keeps,
+/// test_inversion_converged.
+bool mf_inversion_ends_with_mean(const struct inversion *inversion);
+
 /// The same as the end of a fit that has converged, where the step is the most probable one: the
 /// potential that the samples ask for is the result, and not the one that they were taken of, which
-/// lies on the side that the fit came from. Of a method that forgets the result is the mean of
-/// three or more potentials near the target, if their mean g is nearer to it than that of the
-/// present one (B. T. Polyak and A. B. Juditsky, SIAM J. Control Optim. 30, 838 (1992)): the
-/// pressure, which g hardly sees, may have come nearer meanwhile, so that a fit with a pressure
-/// ends with its last potential. Tested: test_inversion_keeps.
+/// lies on the side that the fit came from. Or the mean of the potentials near the target. Tested:
+/// test_inversion_keeps.
 void mf_inversion_take_last_step(struct inversion *inversion);
 
 /// Whether the present potential is kept: unless it is farther from the targets than the nearest so

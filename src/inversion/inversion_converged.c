@@ -21,11 +21,62 @@ enum { LONG_AGREEMENT = 4, AGREEMENT_WITH_GROUPS = 2 };
 /// combinations of Φ that g hardly sees may go on for ever. Twins that do settle take five at most.
 enum { LONG_WALK = 6 };
 
-/// Whether the present potential meets all targets as far as their noise lets see; of few
-/// coefficients, whether no change of these makes it better.
+/// Iterations near the target whose mean is worth more than the last: of fewer the first ones lie
+/// on the side that the fit came from. As many samples, less what rounding may take.
+static const double enough_near = 2.99;
+
+bool mf_inversion_ends_with_mean(const struct inversion *inversion) {
+    const struct potential_grid *grid = &inversion->grid;
+    double mean = 0, now = 0;
+    if (inversion->progress.pool <= 0 ||
+        inversion->progress.pool < enough_near * inversion->replicas.counts.count ||
+        !((const struct inversion_rule *)inversion->method->own)->forgets ||
+        targets_ask(&inversion->problem->targets, TARGET_PRESSURE))
+        return false;
+    for (size_t a = 0; a < grid->known; a++) {
+        const size_t bin = grid->known_bin[a];
+        const double excess = inversion->replicas.counts.mean[bin] - inversion->target_counts[bin];
+        mean += pow(inversion->pooled[a], 2) / inversion->variance[a];
+        now += pow(excess, 2) / inversion->variance[a];
+    }
+    return mean < now;
+}
+
+/// χ² by bin of the mean of the potentials near the target.
+static double find_mean_misfit(const struct inversion *inversion) {
+    double misfit = 0, bins = 0;
+    for (size_t a = 0; a < inversion->grid.known; a++) {
+        if (!inversion->grid.seen[a])
+            continue;
+        misfit += pow(inversion->pooled[a], 2) / inversion->variance[a];
+        bins++;
+    }
+    return misfit / bins;
+}
+
+/// Whether that mean meets the targets of a section.
+static bool mean_meets(const struct inversion *inversion, const struct inversion_section *section) {
+    double sum = 0, noise = 0;
+    for (size_t a = section->known; a < section->known + section->known_count; a++) {
+        const double unit = inversion->unit[inversion->grid.known_bin[a]];
+        sum += pow(inversion->pooled[a] / unit, 2);
+        if (inversion->grid.seen[a])
+            noise += inversion->variance[a] / (unit * unit);
+    }
+    return sum <= pow(mf_inverse_noise_margin, 2) * noise;
+}
+
+/// Whether the present potential, or the mean that the fit would end with, meets all targets as far
+/// as their noise lets see; of few coefficients, whether no change of these makes it better.
 static bool meets_targets(const struct inversion *inversion) {
+    bool meets = true;
     if (inversion->basis.count > 0)
         return inversion->basis.miss <= mf_inverse_noise_margin;
+    if (mf_inversion_ends_with_mean(inversion)) {
+        for (int k = 0; k < inversion->sections; k++)
+            meets = meets && mean_meets(inversion, &inversion->section[k]);
+        return meets;
+    }
     for (int kind = 0; kind < TARGETS; kind++)
         if (targets_ask(&inversion->problem->targets, kind) &&
             inversion->distance[kind].rms >
@@ -54,8 +105,10 @@ static bool has_settled(const struct inversion *inversion) {
 /// agreed within 1.6 times its noise when χ² by bin was still 3.3, and was off by 1.8 times the
 /// noise in the verification; the next steps took χ² to 1.2.
 static bool hides(const struct inversion *inversion) {
-    return inversion->grid.groups > 0 && inversion->basis.count == 0 &&
-           inversion->misfit > probable_misfit;
+    if (inversion->grid.groups == 0 || inversion->basis.count > 0)
+        return false;
+    return (mf_inversion_ends_with_mean(inversion) ? find_mean_misfit(inversion)
+                                                   : inversion->misfit) > probable_misfit;
 }
 
 /// Count the iterations running that meet the targets, settled or not.

@@ -36,32 +36,9 @@ void mf_inversion_take_step(struct inversion *inversion) {
     mf_potential_grid_complete(grid, inversion->phi);
 }
 
-/// Iterations near the target whose mean is worth more than the last: of fewer the first ones lie
-/// on the side that the fit came from. As many samples, less what rounding may take.
-static const double enough_near = 2.99;
-
-/// Whether the fit ends with the mean of the potentials near the target: if these are enough, and g
-/// at the mean is nearer to it than at the present one.
-static bool ends_with_mean(const struct inversion *inversion) {
-    const struct inversion_rule *rule = inversion->method->own;
-    const struct potential_grid *grid = &inversion->grid;
-    double mean = 0, now = 0;
-    if (!rule->forgets ||
-        inversion->progress.pool < enough_near * inversion->replicas.counts.count ||
-        targets_ask(&inversion->problem->targets, TARGET_PRESSURE))
-        return false;
-    for (size_t a = 0; a < grid->known; a++) {
-        const size_t bin = grid->known_bin[a];
-        const double excess = inversion->replicas.counts.mean[bin] - inversion->target_counts[bin];
-        mean += pow(inversion->pooled[a], 2) / inversion->variance[a];
-        now += pow(excess, 2) / inversion->variance[a];
-    }
-    return mean < now;
-}
-
 void mf_inversion_take_last_step(struct inversion *inversion) {
     const size_t bytes = inversion->grid.points * sizeof(double);
-    if (ends_with_mean(inversion)) {
+    if (mf_inversion_ends_with_mean(inversion)) {
         memcpy(inversion->phi, inversion->pooled_phi, bytes);
         mf_potential_grid_complete(&inversion->grid, inversion->phi);
     } else if (inversion->settling) {

@@ -102,6 +102,42 @@ static void test_fit_with_groups_ends_though_it_walks_on(void **state) {
     assert_false(inversion.walked);
 }
 
+/// Present samples are off by chance where the mean of three potentials near the target is not.
+static void test_fit_that_forgets_ends_when_the_mean_of_its_potentials_agrees(void **state) {
+    (void)state;
+    const struct inversion_rule rule = {.forgets = true};
+    const struct inverse_method method = {.own = &rule};
+    const struct inverse_problem problem = {0};
+    size_t known_bin[] = {0};
+    bool seen[] = {true};
+    double unit[] = {2}, mean[] = {15}, target[] = {10}, pooled[] = {3.2}, variance[] = {4};
+    struct inversion inversion = make_end(&problem, 0);
+    inversion.method = &method;
+    inversion.settling = false;
+    inversion.section[0] =
+        (struct inversion_section){.rms = 2.5, .noise = 1, .known_count = 1, .bins = 1};
+    inversion.grid.known = 1;
+    inversion.grid.known_bin = known_bin;
+    inversion.grid.seen = seen;
+    inversion.unit = unit;
+    inversion.target_counts = target;
+    inversion.replicas.counts = (struct comoments){.count = 30, .mean = mean};
+    inversion.pooled = pooled;
+    inversion.variance = variance;
+    inversion.progress.pool = 60;
+    assert_false(mf_inversion_has_converged(&inversion, true)); // of two: the present one
+    inversion.progress.pool = 90;
+    assert_true(mf_inversion_has_converged(&inversion, true));
+    pooled[0] = 3.6; // 1.8 times its noise
+    assert_false(mf_inversion_has_converged(&inversion, true));
+    // With a group χ² by bin must be probable, too, and is 2.56 here.
+    inversion.grid.groups = 1;
+    pooled[0] = 3.2;
+    assert_false(mf_inversion_has_converged(&inversion, true));
+    pooled[0] = 2.8; // 1.96
+    assert_true(mf_inversion_has_converged(&inversion, true));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_fit_of_pairs_ends_when_it_agrees_once),
@@ -109,6 +145,7 @@ int main(void) {
         cmocka_unit_test(test_fit_with_groups_ends_at_once_where_nothing_must_settle),
         cmocka_unit_test(test_fit_with_groups_ends_after_four_agreements_where_noise_hides_bins),
         cmocka_unit_test(test_fit_with_groups_ends_though_it_walks_on),
+        cmocka_unit_test(test_fit_that_forgets_ends_when_the_mean_of_its_potentials_agrees),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
