@@ -55,7 +55,8 @@ static double find_mean_misfit(const struct inversion *inversion) {
 }
 
 /// Whether that mean meets the targets of a section.
-static bool mean_meets(const struct inversion *inversion, const struct inversion_section *section) {
+static bool mean_meets_section(const struct inversion *inversion,
+                               const struct inversion_section *section) {
     double sum = 0, noise = 0;
     for (size_t a = section->known; a < section->known + section->known_count; a++) {
         const double unit = inversion->unit[inversion->grid.known_bin[a]];
@@ -66,17 +67,16 @@ static bool mean_meets(const struct inversion *inversion, const struct inversion
     return sum <= pow(mf_inverse_noise_margin, 2) * noise;
 }
 
-/// Whether the present potential, or the mean that the fit would end with, meets all targets as far
-/// as their noise lets see; of few coefficients, whether no change of these makes it better.
-static bool meets_targets(const struct inversion *inversion) {
-    bool meets = true;
-    if (inversion->basis.count > 0)
-        return inversion->basis.miss <= mf_inverse_noise_margin;
-    if (mf_inversion_ends_with_mean(inversion)) {
-        for (int k = 0; k < inversion->sections; k++)
-            meets = meets && mean_meets(inversion, &inversion->section[k]);
-        return meets;
-    }
+/// Whether that mean meets the targets of all sections.
+static bool mean_meets(const struct inversion *inversion) {
+    for (int k = 0; k < inversion->sections; k++)
+        if (!mean_meets_section(inversion, &inversion->section[k]))
+            return false;
+    return true;
+}
+
+/// Whether the present potential meets all targets as far as their noise lets see.
+static bool present_meets(const struct inversion *inversion) {
     for (int kind = 0; kind < TARGETS; kind++)
         if (targets_ask(&inversion->problem->targets, kind) &&
             inversion->distance[kind].rms >
@@ -87,6 +87,16 @@ static bool meets_targets(const struct inversion *inversion) {
         if (inversion->section[k].rms > mf_inverse_noise_margin * inversion->section[k].noise)
             return false;
     return true;
+}
+
+/// Whether the present potential meets the targets, or the mean that the fit would end with, which
+/// has less noise and follows a slow fit at a distance; of few coefficients, whether no change of
+/// these makes it better.
+static bool meets_targets(const struct inversion *inversion) {
+    if (inversion->basis.count > 0)
+        return inversion->basis.miss <= mf_inverse_noise_margin;
+    return present_meets(inversion) ||
+           (mf_inversion_ends_with_mean(inversion) && mean_meets(inversion));
 }
 
 /// Whether a method that takes the most probable step must go all of the way that g hardly sees.
