@@ -189,13 +189,15 @@ enum status mf_fit_defaults_verification(struct fit_choice *c) {
     const double window =
         (double)mf_measurement_window(&c->read->problem.compared, time_step, &longest);
     const double can = most_moves / (REPLICAS * c->count * every);
-    const double wanted = fmax(c->read->files.given[TARGET_RDF] ? samples_for_rdf(c, REPLICAS) : 0,
-                               fmax(least, windows * window / every));
+    const double looks = windows * window / every;
+    const double counts = c->read->files.given[TARGET_RDF] ? samples_for_rdf(c, REPLICAS) : 0;
+    const double wanted = fmax(counts, fmax(least, looks));
     const double samples = ceil(fmax(fmin(wanted, can), fmax(least, window / every)));
-    const char *why = wanted > samples ? "as many as a few minutes allow"
-                      : c->read->files.given[TARGET_RDF]
-                          ? "so that the difference of g is known within a tenth of it"
-                          : "20 times as long as the targets look";
+    const char *why = wanted > samples   ? "as many as a few minutes allow"
+                      : counts == wanted ? "so that the difference of g is known within a tenth "
+                                           "of it"
+                      : looks == wanted  ? "20 times as long as the targets look"
+                                         : "the least of which errors can be told";
     if (mf_fit_choice_lacks(c->root, path, "samples"))
         mf_fit_choice_say(c, "verification: %d simulations of %.0f samples, %s", REPLICAS, samples,
                           why);
