@@ -236,11 +236,24 @@ static enum status write_results(struct run *run, bool interrupted) {
     return STATUS_OK;
 }
 
+/// --file-units is for the trajectory or for the structure: one of them must want it.
+static enum status check_units(const struct run *run) {
+    const struct trajectory *const trajectory = &run->frames.trajectory;
+    if (run->request->frames.options.units == NULL ||
+        run->structure.format->speaks != TRAJECTORY_OWN_UNITS ||
+        trajectory->format->speaks != TRAJECTORY_OWN_UNITS)
+        return STATUS_OK;
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "%s: the format \"%s\" has units of its own: leave --file-units out",
+                          trajectory->file, trajectory->format->name);
+}
+
 static enum status prepare(struct run *run, const struct run_options *options) {
     TRY(collect_inputs(run));
     TRY(find_beads(run));
     TRY(mf_frames_open(&run->frames, &run->request->frames, &run->structure.structure,
                        structure_file(run)));
+    TRY(check_units(run));
     return mf_run_folder_open(&run->folder, RUN_MEASUREMENT, run->request->frames.file[0],
                               &run->inputs, options);
 }
