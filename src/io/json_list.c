@@ -72,6 +72,15 @@ bool mf_json_list_texts(struct json_object *object, const char *key, const char 
     return false;
 }
 
+const char *mf_json_list_text(const struct json_object *object, const char *key, size_t n) {
+    const cJSON *item = cJSON_GetObjectItemCaseSensitive(object->item, key);
+    if (cJSON_IsArray(item))
+        item = cJSON_GetArrayItem(item, (int)n);
+    else if (n > 0)
+        return NULL;
+    return cJSON_IsString(item) ? item->valuestring : NULL;
+}
+
 /// A whole number that an int holds.
 static bool read_whole(const cJSON *item, int *value) {
     static const double largest = 1e9;

@@ -23,3 +23,7 @@ bool mf_json_list_texts(struct json_object *object, const char *key, const char 
 /// @param[out] values  shape [rows, width]
 bool mf_json_list_rows(struct json_object *object, const char *key, int *values, size_t rows,
                        size_t width);
+
+/// Text number `n` of the list at `key`, or the text there as number 0; NULL if there is none.
+/// Counts as nothing, and faults are left to the reader. Tested: test_units.
+const char *mf_json_list_text(const struct json_object *object, const char *key, size_t n);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/units.h"
 
+#include "io/units_beads.h"
+
 #include <math.h>
 
 #define MEMBER(name) .offset = offsetof(struct units, name)
@@ -55,45 +57,6 @@ static void fault_unholdable(struct json_object *object) {
 
 // The scale that follows from a scene -------------------------------------------------------------
 
-/// An object if one stands there: what else does is the reader's to say.
-static struct json_object look(const struct json_object *parent, const char *key) {
-    struct json_object looked = *parent;
-    return mf_json_is_object(parent, key) ? mf_json_child(&looked, key, false)
-                                          : (struct json_object){.document = parent->document};
-}
-
-/// How many beads there are, and their mean mass if the scene says it, else 0, of one type or of
-/// all; `count` is 0 if a fault will tell why it is not known.
-static double find_beads(const struct json_object *scene, double *mean_mass) {
-    const struct json_object particles = look(scene, "particles");
-    const struct json_object types = look(&particles, "types"), mass = look(&particles, "mass");
-    double count = 0, sum = 0, number, range[2];
-    const char *type;
-    *mean_mass = 0;
-    for (size_t n = 0; (type = mf_json_key(&types, n)); n++) {
-        const struct json_object own = look(&mass, type);
-        if (mf_json_numbers(&types, type, &number, 1) != 1)
-            continue;
-        count += number;
-        if (mf_json_numbers(&mass, type, range, 1) == 1)
-            sum += number * range[0];
-        else if (mf_json_numbers(&own, "minimum", &range[0], 1) +
-                     mf_json_numbers(&own, "maximum", &range[1], 1) ==
-                 2)
-            sum += 0.5 * number * (range[0] + range[1]);
-    }
-    mf_json_numbers(&particles, "count", &count, 1);
-    if (mf_json_numbers(&particles, "mass", range, 1) == 1)
-        *mean_mass = range[0];
-    else if (mf_json_numbers(&mass, "minimum", &range[0], 1) +
-                 mf_json_numbers(&mass, "maximum", &range[1], 1) ==
-             2)
-        *mean_mass = 0.5 * (range[0] + range[1]);
-    else if (count > 0)
-        *mean_mass = sum / count;
-    return count;
-}
-
 /// Of space, by what the scene says first.
 static int find_dimensions(const struct json_object *scene) {
     double dimensions = 3, box[3];
@@ -101,23 +64,24 @@ static int find_dimensions(const struct json_object *scene) {
     return dimensions == 2 || mf_json_numbers(scene, "box", box, 3) == 2 ? 2 : 3;
 }
 
-/// The edge of a cube, or square, that holds three of the beads; 1 if a fault will tell why not.
-static double find_length(const struct json_object *scene, double beads) {
+/// The edge of a cube, or square, that holds three of the beads; 1 nm if their number is not known.
+static double find_length(const struct json_object *scene, double beads, int kind) {
     double box[3], volume = 1, density;
     const int edges = mf_json_numbers(scene, "box", box, 3);
     if (mf_json_numbers(scene, "density", &density, 1) == 1 && density > 0)
         return pow(3 / density, 1.0 / find_dimensions(scene));
     for (int d = 0; d < edges; d++)
         volume *= box[d];
-    return edges >= 2 && beads > 0 && volume > 0 ? pow(3 * volume / beads, 1.0 / edges) : 1;
+    return edges >= 2 && beads > 0 && volume > 0 ? pow(3 * volume / beads, 1.0 / edges)
+                                                 : lengths(kind + 1);
 }
 
 /// Fill in what the file does not say.
 static void complete(struct system *system, struct json_object *scene) {
     double mean_mass;
-    const double beads = find_beads(scene, &mean_mass);
+    const double beads = mf_units_beads(scene, &mean_mass);
     if (isnan(system->length))
-        system->length = find_length(scene, beads);
+        system->length = find_length(scene, beads, system->kind);
     if (isnan(system->mass))
         system->mass = mean_mass > 0 ? mean_mass : 1;
     if (!isnan(system->temperature))
@@ -137,7 +101,7 @@ static void complete(struct system *system, struct json_object *scene) {
 /// "units": "nm-ps", or an object with "system"; false if the file is reduced.
 static bool read_system(struct system *system, struct json_object *root) {
     if (mf_json_is_object(root, "units")) {
-        struct json_object looked = look(root, "units");
+        struct json_object looked = mf_units_look(root, "units");
         if (!mf_json_has(&looked, "system"))
             return false;
         struct json_object object = mf_json_child(root, "units", false);

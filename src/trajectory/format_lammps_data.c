@@ -80,6 +80,7 @@ static enum status describe_atoms(struct structure *structure, const struct lamm
     size_t count = 0;
     TRY(mf_lammps_data_style(data, first, &style));
     structure->has_ids = structure->has_types = structure->has_names = true;
+    structure->names = STRUCTURE_TYPES;
     structure->has_molecules = style->molecule >= 0;
     structure->has_masses = data->masses != NULL;
     const char *line = data->atom;

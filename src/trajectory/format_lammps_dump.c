@@ -87,6 +87,7 @@ static enum status describe(struct trajectory *trajectory, struct trajectory_fra
     structure->has_elements = dump.column[LAMMPS_ELEMENT] >= 0;
     structure->has_masses = dump.column[LAMMPS_MASS] >= 0;
     structure->has_names = structure->has_elements || structure->has_types;
+    structure->names = structure->has_elements ? STRUCTURE_ELEMENTS : STRUCTURE_TYPES;
     const char *line = dump.first;
     for (size_t k = 0; k < dump.atoms; k++, line = mf_frame_next_line(first, line))
         TRY(describe_atom(&dump, first, line, &trajectory->scale, &structure->atom[k]));

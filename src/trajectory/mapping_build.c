@@ -162,8 +162,11 @@ static enum status take_residues(struct work *work, const struct mapping_entry *
         TRY(take_residue(work, entry, r));
     }
     if (model == work->residues)
-        return mf_status_fail(STATUS_BAD_INPUT, "%s: \"%s\": there is no residue \"%s\"",
-                              work->plan->file, entry->key, entry->residue);
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: \"%s\": there is no residue \"%s\"%s",
+                              work->plan->file, entry->key, entry->residue,
+                              work->structure->has_residues
+                                  ? ""
+                                  : ": these atoms have no residues; a .gro or .pdb by -s has");
     return STATUS_OK;
 }
 

@@ -103,7 +103,7 @@ enum status mf_structure_check_same(const struct structure *structure, const cha
     if (structure->atoms != other->atoms)
         return mf_status_fail(STATUS_BAD_INPUT, "%s: has %zu atoms, %s has %zu", other_file,
                               other->atoms, file, structure->atoms);
-    const bool names = structure->has_names && other->has_names;
+    const bool names = structure->has_names && other->has_names && structure->names == other->names;
     const bool residues = structure->has_residues && other->has_residues;
     const bool ids = structure->has_ids && other->has_ids;
     for (size_t k = 0; k < structure->atoms; k++) {

@@ -13,7 +13,7 @@ enum { STRUCTURE_NAME = 16 };
 
 /// What a format does not have is 0, "" or NAN.
 struct structure_atom {
-    char name[STRUCTURE_NAME];         ///< "OW"; the number of its type where there are but types
+    char name[STRUCTURE_NAME];         ///< "OW"; else its element or the number of its type
     char residue_name[STRUCTURE_NAME]; ///< "SOL"
     char element[STRUCTURE_NAME];      ///< "O", as the file says it
     char chain;
@@ -23,12 +23,16 @@ struct structure_atom {
     size_t residue; ///< 0 … residues − 1
 };
 
+/// What stands in the place of names: a file of LAMMPS has elements or types for them.
+enum structure_names { STRUCTURE_NAMES, STRUCTURE_ELEMENTS, STRUCTURE_TYPES };
+
 /// What its format, or the file, knows of atoms.
 struct structure {
     size_t atoms;
     struct structure_atom *atom; ///< shape [atoms], in the order of every frame's positions
     bool has_names, has_residues, has_elements, has_molecules, has_types, has_ids, has_masses;
-    size_t residues; ///< 0 if neither residues nor molecules are known
+    enum structure_names names; ///< what they are, if it has them
+    size_t residues;            ///< 0 if neither residues nor molecules are known
 };
 
 /// `atoms` atoms of which nothing is known. Fails: NO_MEMORY.
@@ -48,6 +52,7 @@ enum status mf_structure_number_residues(struct structure *structure) MUST_USE;
 size_t mf_structure_find(const struct structure *structure, int64_t id);
 
 /// Whether `other`, of a trajectory, can be the same atoms: as many, and no name, residue or id is
-/// another where both know it. Fails: BAD_INPUT, naming both files and the first atom that differs.
+/// another where both know it; names, elements and types are not compared with each other. Fails:
+/// BAD_INPUT, naming both files and the first atom that differs.
 enum status mf_structure_check_same(const struct structure *structure, const char *file,
                                     const struct structure *other, const char *other_file) MUST_USE;

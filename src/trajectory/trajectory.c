@@ -51,12 +51,10 @@ static enum status find_format(struct trajectory *trajectory) {
                           find_hint(begin, size));
 }
 
-/// What is told; else Å, fs and u, unless only the file can know.
+/// What is told, unless the format has units of its own; else Å, fs and u, unless only the file can
+/// know.
 static enum status find_units(struct trajectory *trajectory, const char *units) {
     const struct trajectory_format *const format = trajectory->format;
-    if (units && format->speaks == TRAJECTORY_OWN_UNITS)
-        return mf_status_fail(STATUS_BAD_INPUT, "%s: the format \"%s\" has units of its own",
-                              trajectory->file, format->name);
     if (format->speaks == TRAJECTORY_OWN_UNITS)
         trajectory->scale = (struct trajectory_scale){1, 1, 1, 1};
     else if (units || format->speaks == TRAJECTORY_ANGSTROM)

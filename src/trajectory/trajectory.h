@@ -63,7 +63,7 @@ extern const struct trajectory_format *const mf_trajectory_formats[];
 
 /// What a file may not say itself; all zero says nothing.
 struct trajectory_options {
-    const char *units; ///< one of mf_trajectory_unit_names, or NULL
+    const char *units; ///< one of mf_trajectory_unit_names, for formats without their own; or NULL
     double time_step; ///< of the simulation [ps]: gives frames a time that have but a step; 0: none
     const char *group; ///< of particles, in a file that may have several; NULL: the only one
 };
@@ -84,8 +84,8 @@ struct trajectory {
 
 /// Open a trajectory, or a file with one configuration. The format is found by what the file begins
 /// with, and only if that says nothing by the extension of its name.
-/// Fails: BAD_INPUT for an unknown format, units that must be told or must not, a damaged header or
-/// first frame; IO; NO_MEMORY. What has failed is closed. Tested: test_trajectory_gromacs and the
+/// Fails: BAD_INPUT for an unknown format, units that must be told, a damaged header or first
+/// frame; IO; NO_MEMORY. What has failed is closed. Tested: test_trajectory_gromacs and the
 /// others of tests/unit/trajectory.
 enum status mf_trajectory_open(struct trajectory *trajectory, const char *file,
                                const struct trajectory_options *options) MUST_USE;

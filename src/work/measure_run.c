@@ -176,10 +176,39 @@ static void say_motion(struct run *run, const struct units *units) {
                                         "differences makes them of positions)");
 }
 
+/// The first atom of each bead of the first molecule of a kind, counted from 1.
+static bool list_atoms(const struct run *run, const struct topology_kind *kind, char *text,
+                       size_t size) {
+    const struct mapping *const mapping = &run->mapping;
+    bool sorted = true;
+    size_t length = 0, last = 0;
+    for (int n = 0; n < kind->beads && length < size; n++) {
+        const size_t bead = run->measured.molecules.match.bead[topology_id(kind, 0, n)];
+        const size_t atom = mapping->atom[mapping->bead[bead].first] + 1;
+        length += (size_t)snprintf(text + length, size - length, n ? ", %zu" : "%zu", atom);
+        sorted = sorted && atom > last;
+        last = atom;
+    }
+    return sorted;
+}
+
+/// Types in another order than that of the trajectory may be meant, or a slip: bonds show it.
+static void say_order(struct run *run) {
+    const struct topology *const topology = &run->molecules.molecules.topology;
+    char text[256];
+    for (int k = 0; run->request->map && k < topology->kinds; k++)
+        if (!list_atoms(run, &topology->kind[k], text, sizeof text))
+            mf_progress_say(&run->progress,
+                            "%s: its beads are not in the order of the atoms: they begin with the "
+                            "atoms %s",
+                            topology->kind[k].name, text);
+}
+
 static void say_molecules(struct run *run, const struct measure_result *result) {
     const struct observable_results results = {.units = &result->units};
     const struct observable_use *use = run->measured.molecules.use;
     char line[256];
+    say_order(run);
     for (; use->observable; use++) {
         if (use->observable->say == NULL)
             continue;
@@ -236,11 +265,24 @@ static enum status write_results(struct run *run, bool interrupted) {
     return STATUS_OK;
 }
 
+/// --file-units is for the trajectory or for the structure: one of them must want it.
+static enum status check_units(const struct run *run) {
+    const struct trajectory *const trajectory = &run->frames.trajectory;
+    if (run->request->frames.options.units == NULL ||
+        run->structure.format->speaks != TRAJECTORY_OWN_UNITS ||
+        trajectory->format->speaks != TRAJECTORY_OWN_UNITS)
+        return STATUS_OK;
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "%s: the format \"%s\" has units of its own: leave --file-units out",
+                          trajectory->file, trajectory->format->name);
+}
+
 static enum status prepare(struct run *run, const struct run_options *options) {
     TRY(collect_inputs(run));
     TRY(find_beads(run));
     TRY(mf_frames_open(&run->frames, &run->request->frames, &run->structure.structure,
                        structure_file(run)));
+    TRY(check_units(run));
     return mf_run_folder_open(&run->folder, RUN_MEASUREMENT, run->request->frames.file[0],
                               &run->inputs, options);
 }

@@ -306,6 +306,7 @@ static const struct {
     {{"XTC", "-s", "GRO", "--units", "mile"}, {"--units takes nm-ps|angstrom-fs"}},
     {{"XTC", "-s", "GRO", "--window", "0.02"}, {"--window 0.02", "0.02 ps apart"}},
     {{"DUMP", "-s", "GRO"}, {"lammps-plain.dump"}},
+    {{"XTC", "-s", "GRO", "--file-units", "real"}, {"\"xtc\" has units of its own"}},
 };
 
 static void write_bad_files(struct temporary_folder *folder) {
@@ -336,6 +337,27 @@ static void write_bad_files(struct temporary_folder *folder) {
     write_frames(folder, "early.xtc", 0, 2);
     write_frames(folder, "late.xtc", 2, 4);
     write_frames(folder, "last.xtc", 4, 5);
+}
+
+/// --file-units is of the file of LAMMPS, be it the trajectory or the structure.
+static void test_measure_takes_units_of_one_file_when_the_other_has_its_own(void **state) {
+    static const char atoms[] = "two atoms\n2\n"
+                                "    1ARG     C1    1   0.100   0.100   0.100\n"
+                                "    2ARG     C1    2   0.500   0.100   0.100\n"
+                                "   3.0 3.0 3.0\n";
+    static const char frames[] = "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n2\n"
+                                 "ITEM: BOX BOUNDS pp pp pp\n0 30\n0 30\n0 30\n"
+                                 "ITEM: ATOMS id type x y z\n1 1 1 1 1\n2 1 5 1 1\n";
+    static const char data[] = "LAMMPS\n\n2 atoms\n1 atom types\n\n0 30 xlo xhi\n0 30 ylo yhi\n"
+                               "0 30 zlo zhi\n\nMasses\n\n1 39.95\n\nAtoms # molecular\n\n"
+                               "1 1 1 1 1 1\n2 2 1 5 1 1\n";
+    temporary_folder_write(*state, "two.gro", atoms, sizeof atoms - 1);
+    temporary_folder_write(*state, "two.lammpstrj", frames, sizeof frames - 1);
+    temporary_folder_write(*state, "two.data", data, sizeof data - 1);
+    MEASURE("two.lammpstrj", "-s", "two.gro", "--file-units", "real", "-o", "named", "--quiet");
+    assert_close(results_number("named/summary.json", "density"), 2 / 27.0, 1e-9);
+    MEASURE("two.gro", "-s", "two.data", "--file-units", "real", "-o", "weighed", "--quiet");
+    assert_close(results_number("weighed/summary.json", "density"), 2 / 27.0, 1e-9);
 }
 
 static void test_measure_refuses_what_does_not_fit_in_a_line(void **state) {
@@ -379,6 +401,7 @@ int main(void) {
         TEST(test_measure_writes_what_it_has_when_it_is_stopped),
         TEST(test_measure_speaks_angstrom_when_asked),
         TEST(test_measure_tells_types_apart_when_the_map_does),
+        TEST(test_measure_takes_units_of_one_file_when_the_other_has_its_own),
         TEST(test_measure_refuses_what_does_not_fit_in_a_line),
         TEST(test_measure_spares_what_it_did_not_write),
     };

@@ -270,6 +270,36 @@ static void test_cut_molecules_in_a_skewed_box_are_whole(void **state) {
     check_topology(*state);
 }
 
+/// A-B-B-A, and a slip: A-B-A-B, which has as many of each type.
+static void test_beads_in_another_order_than_their_atoms_are_told(void **state) {
+    static const char atoms[] = "a chain\n4\n"
+                                "    1OCT     C1    1   0.100   0.100   0.100\n"
+                                "    1OCT     C2    2   0.300   0.100   0.100\n"
+                                "    1OCT     C3    3   0.500   0.100   0.100\n"
+                                "    1OCT     C4    4   0.700   0.100   0.100\n"
+                                "   4.0 4.0 4.0\n";
+    static const char map[] =
+        "{\"beads\": {\"A1\": {\"type\": \"A\", \"residue\": \"OCT\", \"atoms\": \"C1\"},\n"
+        "\"B1\": {\"type\": \"B\", \"residue\": \"OCT\", \"atoms\": \"C2\"},\n"
+        "\"B2\": {\"type\": \"B\", \"residue\": \"OCT\", \"atoms\": \"C3\"},\n"
+        "\"A2\": {\"type\": \"A\", \"residue\": \"OCT\", \"atoms\": \"C4\"}},\n"
+        "\"masses\": {\"C1\": 1, \"C2\": 1, \"C3\": 1, \"C4\": 1}}\n";
+    static const char *const beads[] = {"\"A\", \"B\", \"B\", \"A\"", "\"A\", \"B\", \"A\", \"B\""};
+    static struct run_program_result result;
+    temporary_folder_write(*state, "chain.gro", atoms, sizeof atoms - 1);
+    temporary_folder_write(*state, "map.json", map, sizeof map - 1);
+    for (int k = 0; k < 2; k++) {
+        small_inputs_write(*state, "kinds.json", kinds, "\"A\", \"B\", \"A\"", beads[k]);
+        RUN_PROGRAM(&result, "measure", "chain.gro", "--map", "map.json", "--molecules",
+                    "kinds.json", "-o", "target");
+        run_program_assert_code(&result, 0);
+        const char *const told = strstr(
+            result.err, "trimer: its beads are not in the order of the atoms: they begin with the "
+                        "atoms 1, 2, 4, 3");
+        assert_true(k == 0 ? strstr(result.err, "order of the atoms") == NULL : told != NULL);
+    }
+}
+
 static void test_molecules_that_are_not_there_are_refused(void **state) {
     static const struct {
         const char *from, *to, *words[3];
@@ -304,6 +334,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(test_a_simulation_is_measured_again),
         TEST(test_cut_molecules_in_a_skewed_box_are_whole),
+        TEST(test_beads_in_another_order_than_their_atoms_are_told),
         TEST(test_molecules_that_are_not_there_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

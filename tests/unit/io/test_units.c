@@ -93,6 +93,37 @@ static void test_units_read_refuses_when_no_number_can_hold_what_follows(void **
     assert_false(mf_units_known(&units));
 }
 
+#define MOLECULES(system, box, particles, molecules)                                               \
+    "{\"units\": \"" system "\", \"temperature\": 300, \"box\": " box                              \
+    ", \"particles\": {" particles "}, \"molecules\": " molecules "}"
+
+/// λ³ holds three beads, those of molecules too, and μ is the mean mass of all.
+static void test_units_count_the_beads_of_molecules(void **state) {
+    static const char *const texts[] = {
+        MOLECULES("nm-ps", "[4, 4, 4]", "\"mass\": {\"A\": 10, \"B\": 25}",
+                  "{\"m\": {\"count\": 8, \"chain\": {\"beads\": [\"A\", \"B\", \"A\"]}}}"),
+        MOLECULES("angstrom-fs", "[40, 40, 40]", "\"mass\": {\"A\": 10, \"B\": 25}",
+                  "{\"m\": {\"count\": 8, \"beads\": [\"A\", \"B\", \"A\"]}}"),
+        MOLECULES("nm-ps", "[4, 4, 4]", "\"mass\": 15",
+                  "{\"m\": {\"count\": 8, \"chain\": {\"type\": \"A\", \"length\": 3}}}"),
+        MOLECULES("nm-ps", "[4, 4, 4]", "\"types\": {\"W\": 12}, \"mass\": {\"W\": 18, \"A\": 12}",
+                  "{\"m\": {\"count\": 4, \"chain\": {\"type\": \"A\", \"length\": 3}}}")};
+    struct units units;
+    for (size_t k = 0; k < sizeof texts / sizeof *texts; k++) {
+        // There is no reader of the scene here.
+        assert_fails(read_text(state, texts[k], &units), STATUS_BAD_INPUT, "unknown");
+        assert_close(units.length, 2, 1e-12);
+        assert_close(units.mass / UNITS_ATOMIC_MASS, 15, 1e-12);
+    }
+    // In a file that is not read yet nobody knows how many there are.
+    assert_fails(
+        read_text(state,
+                  MOLECULES("angstrom-fs", "[40, 40, 40]", "\"mass\": 15", "{\"file\": \"a.top\"}"),
+                  &units),
+        STATUS_BAD_INPUT, "unknown");
+    assert_close(units.length, 1, 1e-12);
+}
+
 /// The 15 digits in which a file says a number.
 static const char *number(double value) {
     static char text[32];
@@ -266,6 +297,7 @@ int main(void) {
         cmocka_unit_test(test_units_name_is_what_a_person_would_write),
         cmocka_unit_test(test_units_from_takes_back_what_name_gives),
         cmocka_unit_test(test_units_spoken_is_what_was_read),
+        TEST(test_units_count_the_beads_of_molecules),
         TEST(test_units_read_refuses_when_no_number_can_hold_what_follows),
         TEST(test_units_follow_from_the_scene_when_the_file_does_not_say_them),
         TEST(test_units_put_writes_results_in_physical_units),

@@ -168,6 +168,10 @@ static void test_map_is_refused_when_it_does_not_fit_the_atoms(void **state) {
                    "atom 10, \"NA\" of residue 4 \"NA\", belongs to two beads");
     assert_refused(state, "{\"beads\": {\"A\": {\"residue\": \"ETH\"}}}",
                    "\"A\": there is no residue \"ETH\"");
+    structure.has_residues = false; // as in a file of LAMMPS
+    assert_refused(state, "{\"beads\": {\"A\": {\"residue\": \"ETH\"}}}",
+                   "these atoms have no residues; a .gro or .pdb by -s has");
+    structure.has_residues = true;
     assert_refused(state, "{\"beads\": {\"A\": {\"residue\": \"MET\", \"atoms\": \"C N\"}}}",
                    "residue 1 \"MET\" (atom 1) has 0 atoms \"N\"");
     assert_refused(state, "{\"beads\": {\"A\": {\"first\": 1, \"last\": 12}}}",
