@@ -59,7 +59,8 @@ static void warn_of_lines(const struct target_files *files,
                 listener,
                 "mesofit: warning: target.dihedral_angles: %.0f %% of the angles \"%s\" are within "
                 "10 degrees of a straight line, where the force of a dihedral has no bound: "
-                "simulations with it are too hot. Leave the dihedrals out",
+                "simulations with it are too hot. Leave the dihedrals out, and write "
+                "\"exclude\": 3 into the molecule if g(r) was counted with them",
                 100 * share, angles->name[g]);
     }
 }

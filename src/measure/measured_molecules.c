@@ -3,6 +3,7 @@
 
 #include "base/memory.h"
 #include "forces/bonded.h"
+#include "observe/bonded_distribution.h"
 
 #include <math.h>
 #include <string.h>
@@ -140,15 +141,19 @@ enum status mf_measured_molecules_add(struct measured_molecules *measured,
 
 // Beginning ---------------------------------------------------------------------------------------
 
-/// Let each group of bonds rest at its mean length, so that bins go to twice the longest of them.
-static void find_lengths(struct measured_molecules *measured) {
-    struct molecules *molecules = measured->molecules;
-    const struct topology *topology = &molecules->topology;
-    double sum[MOLECULES_MOST_GROUPS] = {0}, count[MOLECULES_MOST_GROUPS] = {0};
+/// Lengths of a group in a frame.
+struct lengths {
+    double count, sum, squares;
+};
+
+static void add_lengths(const struct measured_molecules *measured,
+                        struct lengths found[MOLECULES_MOST_GROUPS]) {
+    const struct topology *topology = &measured->molecules->topology;
     for (int k = 0; k < topology->kinds; k++) {
         const struct topology_kind *kind = &topology->kind[k];
         for (int n = 0; n < kind->terms[TOPOLOGY_BOND]; n++) {
             const struct topology_term *term = &kind->term[TOPOLOGY_BOND][n];
+            struct lengths *group = &found[term->group];
             for (int64_t m = 0; m < kind->count; m++) {
                 int32_t place[2];
                 double length;
@@ -156,21 +161,42 @@ static void find_lengths(struct measured_molecules *measured) {
                     place[bead] =
                         (int32_t)measured->match.bead[topology_id(kind, m, term->bead[bead])];
                 mf_bonded_measure(TOPOLOGY_BOND, 1, place, &measured->shell->particles, &length);
-                sum[term->group] += length;
-                count[term->group]++;
+                group->sum += length;
+                group->squares += length * length;
+                group->count++;
             }
         }
     }
-    for (int g = 0; g < molecules->groups[TOPOLOGY_BOND]; g++) {
-        const struct bonded_curve *curve = &molecules->group[TOPOLOGY_BOND][g].curve;
-        const struct field *field = curve->law->fields;
-        while (field->name && strcmp(field->name, "length") != 0)
-            field++;
-        if (field->name == NULL || count[g] == 0)
-            continue;
-        const double mean = sum[g] / count[g];
+}
+
+/// Let a group of bonds rest at its mean length, so that bins go to twice the longest of them.
+static void rest_at(const struct bonded_curve *curve, double mean) {
+    const struct field *field = curve->law->fields;
+    while (field->name && strcmp(field->name, "length") != 0)
+        field++;
+    if (field->name)
         memcpy((char *)curve->parameters + field->offset, &mean, sizeof mean);
+}
+
+/// Find where bonds rest, and how many bins of lengths the narrowest group needs: two in its
+/// standard deviation. A bond of fixed length, or of whose length few are known, asks for none.
+static int64_t find_lengths(struct measured_molecules *measured) {
+    static const double fixed = 0.01, few = 8, in_deviation = 2, least = 100, most = 2000;
+    const struct molecules *molecules = measured->molecules;
+    struct lengths found[MOLECULES_MOST_GROUPS] = {{0}};
+    double longest = 0, narrowest = INFINITY;
+    add_lengths(measured, found);
+    for (int g = 0; g < molecules->groups[TOPOLOGY_BOND]; g++) {
+        if (found[g].count == 0)
+            continue;
+        const double mean = found[g].sum / found[g].count;
+        const double deviation = sqrt(fmax(0, found[g].squares / found[g].count - mean * mean));
+        longest = fmax(longest, mean);
+        if (found[g].count >= few && deviation > fixed * mean)
+            narrowest = fmin(narrowest, deviation);
+        rest_at(&molecules->group[TOPOLOGY_BOND][g].curve, mean);
     }
+    return (int64_t)fmin(most, fmax(least, ceil(2 * longest * in_deviation / narrowest)));
 }
 
 static const struct observable *find_observable(const char *name) {
@@ -180,8 +206,10 @@ static const struct observable *find_observable(const char *name) {
     return mf_observables[k];
 }
 
+/// @param[in] bins  of lengths
 static enum status add_observable(struct measured_molecules *measured,
-                                  const struct observable *observable, struct observable_use *use) {
+                                  const struct observable *observable, int64_t bins,
+                                  struct observable_use *use) {
     enum status status = STATUS_OK;
     const struct measure_plan plan = {.equilibration = -1, .samples = 0, .every = 1};
     use->observable = observable;
@@ -189,6 +217,8 @@ static enum status add_observable(struct measured_molecules *measured,
     use->settings = mf_memory_zeroed(1, observable->settings_size);
     CHECK(use->state && use->settings ? STATUS_OK : STATUS_NO_MEMORY);
     mf_fields_set_defaults(observable->fields, use->settings);
+    if (observable == &mf_bonded_lengths)
+        ((struct bonded_settings *)use->settings)->bins = bins;
     CHECK(observable->begin(use->state, use->settings, measured->shell, &plan));
 done:
     return status;
@@ -201,10 +231,10 @@ enum status mf_measured_molecules_start(struct measured_molecules *measured,
         return STATUS_OK;
     TRY(make_shell(measured, interval));
     place_beads(measured, beads);
-    find_lengths(measured);
+    const int64_t bins = find_lengths(measured);
     for (int n = 0; n < MEASURED_MOLECULES_MOST; n++)
         if (n >= TOPOLOGY_ORDERS || measured->molecules->groups[n] > 0)
-            TRY(add_observable(measured, find_observable(names[n]), use++));
+            TRY(add_observable(measured, find_observable(names[n]), bins, use++));
     return STATUS_OK;
 }
 

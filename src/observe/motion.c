@@ -408,11 +408,16 @@ double mf_motion_green_kubo_uncertainty(const struct motion_summary *summary) {
                  summary->green_kubo_truncation);
 }
 
+bool mf_motion_is_coarse(const struct motion_summary *s) {
+    static const double coarse = 0.03;
+    return s->green_kubo_sampling > fmax(coarse * fabs(s->green_kubo), s->green_kubo_error);
+}
+
 enum status mf_motion_judge(const struct motion_summary *summary) {
-    static const double coarse = 0.03, deviations = 4;
+    static const double deviations = 4;
     const struct motion_summary *s = summary;
     const double error = mf_motion_green_kubo_uncertainty(s);
-    if (s->green_kubo_sampling > fmax(coarse * fabs(s->green_kubo), s->green_kubo_error))
+    if (mf_motion_is_coarse(s))
         return mf_status_fail(
             STATUS_UNCONVERGED,
             "D by Green and Kubo, %.3g, may be off by %.2g: the VACF falls by %.0f "

@@ -129,6 +129,10 @@ struct motion_summary mf_motion_result(const struct motion *motion,
 /// The error of D of the VACF with sampling and truncation [λ²/τ].
 double mf_motion_green_kubo_uncertainty(const struct motion_summary *summary);
 
+/// Whether samples are too far apart for D of the VACF: its sampling is off by more than 3 % and
+/// its statistical error. Tested: test_motion.
+bool mf_motion_is_coarse(const struct motion_summary *summary);
+
 /// Whether D of the VACF can be trusted: its sampling is off by less than 3 % or its statistical
 /// error, and it agrees with D of the MSD within four combined errors. Fails: UNCONVERGED with the
 /// numbers in the message. Tested: test_motion.

@@ -150,6 +150,11 @@ static void say_diffusion(struct run *run, const struct units *units) {
                         "mesofit: warning: the VACF is of differences of positions over %.4g ps: "
                         "it is lower at short times, its integral is right",
                         2 * motion->interval);
+    else if (motion->has_vacf && mf_motion_is_coarse(&s))
+        mf_progress_say(&run->progress,
+                        "mesofit: warning: frames are too far apart for D by the VACF, %.3g 1e-5 "
+                        "cm^2/s: velocities forget %.0f %% from one to the next",
+                        cm2 * s.green_kubo, 100 * s.vacf_drop);
 }
 
 static void say_motion(struct run *run, const struct units *units) {

@@ -339,6 +339,40 @@ static void write_bad_files(struct temporary_folder *folder) {
     write_frames(folder, "last.xtc", 4, 5);
 }
 
+/// Velocities that know nothing of the last ones, 1 ps apart: trapezoids make a D of them that has
+/// nothing to do with how far the atoms go. Those that fall by a tenth from frame to frame do not.
+static void test_measure_warns_of_velocities_that_are_far_apart(void **state) {
+    enum { FRAMES = 60, ATOMS = 20 };
+    static char text[FRAMES * (ATOMS + 2) * 80];
+    for (int slow = 0; slow < 2; slow++) {
+        double velocity[ATOMS][3] = {{0}}, place[ATOMS][3] = {{0}};
+        size_t length = 0;
+        srand(3);
+        for (int k = 0; k < FRAMES; k++) {
+            length +=
+                (size_t)snprintf(text + length, sizeof text - length,
+                                 "%d\nLattice=\"30 0 0 0 30 0 0 0 30\" Properties=species:S:1:"
+                                 "pos:R:3:vel:R:3 Time=%d\n",
+                                 ATOMS, 1000 * k);
+            for (int n = 0; n < ATOMS; n++) {
+                for (int d = 0; d < 3; d++) {
+                    const double kick = 2 * (rand() / (RAND_MAX + 1.0)) - 1;
+                    velocity[n][d] = slow ? 0.9 * velocity[n][d] + 0.4 * kick : kick;
+                    place[n][d] += 0.1 * velocity[n][d];
+                }
+                length += (size_t)snprintf(text + length, sizeof text - length,
+                                           "Ar %.4f %.4f %.4f %.6f %.6f %.6f\n", place[n][0],
+                                           place[n][1] + n, place[n][2], 1e-3 * velocity[n][0],
+                                           1e-3 * velocity[n][1], 1e-3 * velocity[n][2]);
+            }
+        }
+        temporary_folder_write(*state, "fast.xyz", text, length);
+        MEASURE("fast.xyz", "--window", "10", "-o", "fast");
+        const bool warned = strstr(result.err, "too far apart for D by the VACF");
+        assert_int_equal(warned, !slow);
+    }
+}
+
 /// --file-units is of the file of LAMMPS, be it the trajectory or the structure.
 static void test_measure_takes_units_of_one_file_when_the_other_has_its_own(void **state) {
     static const char atoms[] = "two atoms\n2\n"
@@ -401,6 +435,7 @@ int main(void) {
         TEST(test_measure_writes_what_it_has_when_it_is_stopped),
         TEST(test_measure_speaks_angstrom_when_asked),
         TEST(test_measure_tells_types_apart_when_the_map_does),
+        TEST(test_measure_warns_of_velocities_that_are_far_apart),
         TEST(test_measure_takes_units_of_one_file_when_the_other_has_its_own),
         TEST(test_measure_refuses_what_does_not_fit_in_a_line),
         TEST(test_measure_spares_what_it_did_not_write),

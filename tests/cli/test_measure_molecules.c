@@ -270,6 +270,48 @@ static void test_cut_molecules_in_a_skewed_box_are_whole(void **state) {
     check_topology(*state);
 }
 
+// Bins --------------------------------------------------------------------------------------------
+
+/// Molecules A-B-A along x with a bond of 0.15 nm and one of 0.6 nm, which is
+/// evenly spread by 9 %.
+static void write_stiff(struct temporary_folder *folder, double spread) {
+    enum { MOLECULES = 40 };
+    static char text[8192];
+    size_t length = (size_t)snprintf(text, sizeof text, "stiff\n%d\n", 3 * MOLECULES);
+    for (int m = 0; m < MOLECULES; m++) {
+        const double share = 2 * (m + 0.5) / MOLECULES - 1;
+        const double x[3] = {1, 1 + 0.15 * (1 + spread * share), 1.75 + 0.6 * 0.09 * share};
+        for (int n = 0; n < 3; n++)
+            length += (size_t)snprintf(text + length, sizeof text - length,
+                                       "%5dTRI  %5s%5d%9.4f%9.4f%9.4f\n", m + 1, n == 1 ? "B" : "A",
+                                       3 * m + n + 1, x[n], 0.1 * m, 1.0);
+    }
+    length += (size_t)snprintf(text + length, sizeof text - length, " 5.0 5.0 5.0\n");
+    temporary_folder_write(folder, "stiff.gro", text, length);
+}
+
+/// A bond of 0.15 nm beside one of 0.6 nm was in two bins of 0.012 nm, too few for a fit. Bonds of
+/// fixed length, which no bins resolve, leave the bins as they are.
+static void test_lengths_have_bins_for_the_narrowest_bond(void **state) {
+    static const char stiff_kinds[] =
+        "{\"molecules\": {\"trimer\": {\"beads\": [\"A\", \"B\", \"A\"],\n"
+        "  \"bonds\": {\"short\": [[1, 2]], \"long\": [[2, 3]]}}}}\n";
+    static struct run_program_result result;
+    small_inputs_write(*state, "kinds.json", stiff_kinds, NULL, NULL);
+    for (int stiff = 0; stiff < 2; stiff++) {
+        const double spread = stiff ? 0.03 : 0, deviation = 0.15 * spread / sqrt(3);
+        write_stiff(*state, spread);
+        RUN_PROGRAM(&result, "measure", "stiff.gro", "--molecules", "kinds.json", "-o", "stiff");
+        run_program_assert_code(&result, 0);
+        const double width =
+            cell("stiff/bond_lengths.tsv", 1, 0) - cell("stiff/bond_lengths.tsv", 0, 0);
+        if (stiff)
+            assert_close_relative(width, deviation / 2, 0.02);
+        else
+            assert_close_relative(width, 2 * 0.6 / 100, 0.02);
+    }
+}
+
 /// A-B-B-A, and a slip: A-B-A-B, which has as many of each type.
 static void test_beads_in_another_order_than_their_atoms_are_told(void **state) {
     static const char atoms[] = "a chain\n4\n"
@@ -334,6 +376,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(test_a_simulation_is_measured_again),
         TEST(test_cut_molecules_in_a_skewed_box_are_whole),
+        TEST(test_lengths_have_bins_for_the_narrowest_bond),
         TEST(test_beads_in_another_order_than_their_atoms_are_told),
         TEST(test_molecules_that_are_not_there_are_refused),
     };

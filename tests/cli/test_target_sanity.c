@@ -408,6 +408,42 @@ static void test_fit_of_molecules_warns_of_g_that_ends_beside_1(void **state) {
     }
 }
 
+/// p, flat from `first` to `last` degrees in bins of 4.
+static void write_flat(struct temporary_folder *folder, const char *name, int first, int last) {
+    char text[4096];
+    size_t length = 0;
+    for (int at = first; at < last; at += 4)
+        length += (size_t)snprintf(text + length, sizeof text - length, "%d %.6f 0.0001\n", at + 2,
+                                   1.0 / (last - first));
+    temporary_folder_write(folder, name, text, length);
+}
+
+static void test_fit_warns_of_dihedrals_about_angles_in_a_line(void **state) {
+    static const char run[] =
+        "{\"units\": \"nm-ps\", \"target\": {\n"
+        "\"rdf\": {\"file\": \"A-A.dist.tgt\", \"format\": \"votca\", \"normalisation\": 1},\n"
+        "\"bond_angles\": {\"bend\": {\"file\": \"bend.tsv\"}},\n"
+        "\"dihedral_angles\": {\"twist\": {\"file\": \"twist.tsv\"}}},\n"
+        "\"scene\": {\"box\": [4.96337, 5.13917, 4.52386], \"temperature\": 200,\n"
+        "\"particles\": {\"mass\": 14.7}, \"bonds\": {\"bond\": {\"law\": \"harmonic\", \"k\": "
+        "50000, \"length\": 0.17}},\n"
+        "\"molecules\": {\"butane\": {\"count\": 500, \"chain\": {\"type\": \"A\", \"length\": 4, "
+        "\"bond\": \"bond\", \"angle\": \"bend\", \"dihedral\": \"twist\"}}}}}\n";
+    static struct run_program_result result;
+    small_inputs_write(*state, "run.json", run, NULL, NULL);
+    write_scaled(*state, "A-A.dist.tgt", 1);
+    write_flat(*state, "twist.tsv", -180, 180);
+    for (int last = 160; last <= 180; last += 20) {
+        write_flat(*state, "bend.tsv", 100, last);
+        RUN_PROGRAM(&result, "fit", "run.json", "--explain");
+        run_program_assert_code(&result, 0);
+        const bool warned = strstr(result.out, "10 % of the angles \"bend\" are within 10 degrees");
+        assert_int_equal(warned, last == 180);
+        if (warned)
+            assert_contains(result.out, "write \"exclude\": 3 into the molecule");
+    }
+}
+
 #define TEST(name) cmocka_unit_test_setup_teardown(name, enter, small_inputs_leave)
 
 int main(void) {
@@ -420,6 +456,7 @@ int main(void) {
         TEST(test_fit_looks_at_densities_of_fluids_without_layers),
         TEST(test_fit_names_the_pairs_of_a_mixture_that_cannot_be),
         TEST(test_fit_names_demixing_where_the_integrals_say_so),
+        TEST(test_fit_warns_of_dihedrals_about_angles_in_a_line),
         TEST(test_fit_of_molecules_warns_of_g_that_ends_beside_1),
         TEST(test_fit_tells_its_target_in_a_line_unless_quiet),
         TEST(test_fit_tells_where_errors_and_bins_come_from),
