@@ -281,12 +281,26 @@ done:
     return status;
 }
 
+/// Errors that a file gives are the scatter of counts, which is 0 where nothing was seen. That of
+/// one count is the least of all.
+static void set_errors_of_unseen(struct rows *rows) {
+    double once = INFINITY;
+    for (size_t k = 0; k < rows->count; k++)
+        if (rows->p[k] > 0 && rows->error[k] > 0)
+            once = fmin(once, rows->error[k]);
+    for (size_t k = 0; k < rows->count && isfinite(once); k++)
+        if (rows->p[k] == 0 && rows->error[k] == 0)
+            rows->error[k] = once;
+}
+
 /// What was not seen has the error of what was seen once.
 static enum status set_errors(struct target_bonded *target, struct rows *rows,
                               enum topology_order order, int dimensions) {
     double square, peak = 0;
-    if (rows->has_errors)
+    if (rows->has_errors) {
+        set_errors_of_unseen(rows);
         return STATUS_OK;
+    }
     for (size_t k = 0; k < rows->count; k++)
         peak = fmax(peak, rows->p[k]);
     TRY(find_scatter(rows, order, dimensions, &target->bins, &square));

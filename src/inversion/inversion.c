@@ -335,7 +335,7 @@ enum status mf_inversion_advance(struct inversion *inversion, struct inverse_ste
     if (inversion->walked)
         TRY(mf_inversion_band_find(inversion));
     if (converged)
-        mf_inversion_take_last_step(inversion);
+        TRY(mf_inversion_take_last_step(inversion));
     describe(inversion, own, converged, step);
     if (!step->finished)
         TRY(go_on(inversion, kept));

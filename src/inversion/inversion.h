@@ -23,6 +23,7 @@
 #include "inversion/inversion_pressure.h"
 #include "inversion/inversion_response.h"
 #include "inversion/inversion_rows.h"
+#include "inversion/inversion_smooth.h"
 #include "inversion/inversion_trail.h"
 #include "problem/potential_grid.h"
 #include "inversion/replicas.h"
@@ -107,6 +108,7 @@ struct inversion {
     struct inversion_section section[INVERSION_MOST_SECTIONS];
     int sections;
     struct imc_shape *shape;      ///< of each block
+    double *smoothness;           ///< of each group, see inversion_smooth.h
     struct sampler_group *groups; ///< that are counted, shape [grid.groups]
     struct table table;
     struct molecules molecules; ///< with the present U of the groups
@@ -236,9 +238,10 @@ bool mf_inversion_ends_with_mean(const struct inversion *inversion);
 
 /// The same as the end of a fit that has converged, where the step is the most probable one: the
 /// potential that the samples ask for is the result, and not the one that they were taken of, which
-/// lies on the side that the fit came from. Or the mean of the potentials near the target. Tested:
-/// test_inversion_keeps.
-void mf_inversion_take_last_step(struct inversion *inversion);
+/// lies on the side that the fit came from. Or the mean of the potentials near the target. U of
+/// groups is then as smooth as the prior of the band has it (mf_inversion_smooth). Fails:
+/// NO_MEMORY. Tested: test_inversion_keeps.
+enum status mf_inversion_take_last_step(struct inversion *inversion) MUST_USE;
 
 /// Whether the present potential is kept: unless it is farther from the targets than the nearest so
 /// far, by two of the present noises. The nearest, not the last: samples are no more precise than a

@@ -31,6 +31,19 @@ static void add_distance(struct target_distance *distance, double sum, double bo
     distance->count += bins;
 }
 
+/// Variance of S* of a known bin. Where the target of a group has few counts, they are as often
+/// fewer than expected as more, and would have too small an error then: it is that of the counts
+/// that the samples expect, if these are more.
+static double find_target_variance(const struct inversion *inversion, size_t a) {
+    const struct potential_grid *grid = &inversion->grid;
+    const size_t bin = grid->known_bin[a];
+    const double error = inversion->target_error[bin];
+    if (a < grid->pairs_known || grid->well_known[a] || !(error > 0))
+        return error * error;
+    const double counts = fmax(inversion->target_counts[bin], error);
+    return error * error * fmax(1, inversion->replicas.counts.mean[bin] / counts);
+}
+
 /// Of one section; returns its χ².
 static double assess(struct inversion *inversion, struct inversion_section *section) {
     const struct comoments *counts = &inversion->replicas.counts;
@@ -49,7 +62,7 @@ static double assess(struct inversion *inversion, struct inversion_section *sect
         const double sampled =
             fmax(mf_comoments_covariance(counts, bin, bin), 1 / counts->count) / independent;
         inversion->excess[a] = counts->mean[bin] - inversion->target_counts[bin];
-        inversion->variance[a] = sampled + pow(inversion->target_error[bin], 2);
+        inversion->variance[a] = sampled + find_target_variance(inversion, a);
         if (!inversion->grid.seen[a])
             continue;
         misfit += inversion->excess[a] * inversion->excess[a] / inversion->variance[a];
@@ -127,7 +140,7 @@ void mf_inversion_pool(struct inversion *inversion) {
     }
     const double share = fmax(least_share, now / (*pool + now));
     for (size_t a = 0; a < grid->known; a++) {
-        const double target = pow(inversion->target_error[grid->known_bin[a]], 2);
+        const double target = find_target_variance(inversion, a);
         double *excess = &inversion->pooled[a], *sampled = &inversion->pooled_variance[a];
         *excess = (1 - share) * *excess + share * inversion->excess[a];
         *sampled = pow(1 - share, 2) * *sampled + pow(share, 2) * (inversion->variance[a] - target);

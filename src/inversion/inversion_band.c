@@ -270,6 +270,7 @@ enum status mf_inversion_band_find(struct inversion *inversion) {
     const struct potential_grid *grid = &inversion->grid;
     struct inversion_band *band = &inversion->band;
     double *weight = NULL, *scratch = NULL, *variance = NULL, *step = NULL;
+    struct imc_shape *shape = NULL;
     NEW_ARRAY(weight, grid->known);
     NEW_ARRAY(scratch, grid->known);
     NEW_ARRAY(variance, grid->known);
@@ -278,6 +279,9 @@ enum status mf_inversion_band_find(struct inversion *inversion) {
     for (size_t a = 0; a < system.size; a++)
         variance[a] = mf_inversion_band_birge(inversion) * system.variance[a];
     system.variance = variance;
+    NEW_ARRAY(shape, grid->blocks);
+    mf_inversion_smooth_shapes(inversion, shape);
+    system.shape = shape;
     CHECK(inversion->basis.count > 0
               ? mf_inversion_basis_covariance(inversion, band->covariance, &band->ramp.directions)
               : mf_inversion_band_covariance(&system, band->covariance, &band->ramp.directions));
@@ -296,6 +300,7 @@ done:
     mf_memory_free(weight);
     mf_memory_free(scratch);
     mf_memory_free(variance);
+    mf_memory_free(shape);
     mf_memory_free(step);
     return status;
 }

@@ -5,7 +5,8 @@
 ///   F = Bᵀ B,   B_ab = C_ab/(σ_a k_B T),
 /// as in mf_imc_solve, whatever step led there. What the data leave open is held by the smoothness
 /// prior there with the weight 1/(k_B T)²: a bend by k_B T within a tenth of λ, or ten k_B T in
-/// all, counts as one standard error. The covariance of Φ is (F + prior)⁻¹.
+/// all, counts as one standard error. The covariance of Φ is (F + prior)⁻¹. U of groups may bend
+/// more where its target does, and the result is made as smooth as that (inversion_smooth.h).
 ///
 /// Where more of the excess is left than these say, χ² by bin above 1, the σ_a² are that much
 /// larger: a fit stops within 1.7 times the noise, and what it leaves is an error of Φ too.

@@ -65,6 +65,7 @@ void mf_inversion_destroy(void *memory) {
     mf_inversion_response_clear(&inversion->response);
     mf_inversion_rows_clear(&inversion->doubted);
     mf_memory_free(inversion->shape);
+    mf_memory_free(inversion->smoothness);
     mf_memory_free(inversion->groups);
     mf_memory_free(inversion->doubt);
     double *arrays[] = {inversion->ideal,        inversion->unit,       inversion->target_counts,
@@ -178,6 +179,7 @@ static enum status prepare(struct inversion *inversion, const struct inverse_pro
     TRY(refuse_holes(inversion));
     TRY(allocate(inversion));
     mf_inversion_count_targets(inversion);
+    TRY(mf_inversion_smooth_init(inversion));
     if (inversion->method && inversion->method->restricted)
         TRY(mf_inversion_basis_init(&inversion->basis, &inversion->grid,
                                     &inversion->settings.entropy));

@@ -36,7 +36,7 @@ void mf_inversion_take_step(struct inversion *inversion) {
     mf_potential_grid_complete(grid, inversion->phi);
 }
 
-void mf_inversion_take_last_step(struct inversion *inversion) {
+enum status mf_inversion_take_last_step(struct inversion *inversion) {
     const size_t bytes = inversion->grid.points * sizeof(double);
     if (mf_inversion_ends_with_mean(inversion)) {
         memcpy(inversion->phi, inversion->pooled_phi, bytes);
@@ -44,7 +44,9 @@ void mf_inversion_take_last_step(struct inversion *inversion) {
     } else if (inversion->settling) {
         mf_inversion_take_step(inversion);
     } else {
-        return;
+        memcpy(inversion->phi, inversion->best, bytes);
     }
+    TRY(mf_inversion_smooth(inversion));
     memcpy(inversion->best, inversion->phi, bytes);
+    return STATUS_OK;
 }

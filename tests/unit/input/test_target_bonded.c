@@ -145,6 +145,21 @@ static void test_target_bonded_tells_the_errors_of_counts(void **state) {
     mf_target_bonded_clear(&target);
 }
 
+/// Two bins between others have no count and a scatter of 0: their error is that of one count.
+static void test_target_bonded_of_what_was_not_seen_has_the_error_of_one_count(void **state) {
+    static const int counts[] = {1, 0, 4, 16, 50, 21, 4, 0, 3, 1};
+    struct target_bonded target;
+    char table[1024] = "";
+    for (int k = 0; k < 10; k++)
+        snprintf(table + strlen(table), 64, "%.2f\t%.6g\t%.6g\n", 1 + 0.1 * k, counts[k] / 10.0,
+                 sqrt(counts[k]) / 10);
+    assert_ok(read(state, table, "", TOPOLOGY_BOND, &target));
+    assert_close(target.error[1], 0.1, 1e-5);
+    assert_close(target.error[7], 0.1, 1e-5);
+    assert_close(target.error[4], sqrt(0.5), 1e-5);
+    mf_target_bonded_clear(&target);
+}
+
 static void test_target_bonded_finds_columns_by_the_name_of_the_group(void **state) {
     struct target_bonded target;
     char table[2048] = "# r[lambda]\ta[1/lambda]\tb[1/lambda]\tb_error[1/lambda]\n";
@@ -183,6 +198,9 @@ int main(void) {
                                         temporary_folder_create, temporary_folder_remove),
         cmocka_unit_test_setup_teardown(test_target_bonded_joins_the_ends_of_a_circle,
                                         temporary_folder_create, temporary_folder_remove),
+        cmocka_unit_test_setup_teardown(
+            test_target_bonded_of_what_was_not_seen_has_the_error_of_one_count,
+            temporary_folder_create, temporary_folder_remove),
         cmocka_unit_test_setup_teardown(test_target_bonded_tells_the_errors_of_counts,
                                         temporary_folder_create, temporary_folder_remove),
         cmocka_unit_test_setup_teardown(test_target_bonded_finds_columns_by_the_name_of_the_group,

@@ -84,20 +84,23 @@ struct one_bin {
 
 static void make_one_bin(struct one_bin *one, double response) {
     *one = (struct one_bin){.covariance = response, .problem.scene.temperature = 1};
-    one->inversion = (struct inversion){
-        .problem = &one->problem,
-        .grid = {.known = 1, .points = 1, .known_bin = &one->bin, .known_point = &one->point},
-        .sections = 1,
-        .section[0] = {.rms = 1, .noise = 1},
-        .target_error = &one->target_error,
-        .covariance = &one->covariance,
-        .excess = &one->excess,
-        .variance = &one->variance,
-        .pooled = &one->pooled,
-        .pooled_variance = &one->pooled_variance,
-        .phi = &one->phi,
-        .pooled_phi = &one->pooled_phi,
-        .replicas.counts.count = 50};
+    one->inversion = (struct inversion){.problem = &one->problem,
+                                        .grid = {.known = 1,
+                                                 .pairs_known = 1,
+                                                 .points = 1,
+                                                 .known_bin = &one->bin,
+                                                 .known_point = &one->point},
+                                        .sections = 1,
+                                        .section[0] = {.rms = 1, .noise = 1},
+                                        .target_error = &one->target_error,
+                                        .covariance = &one->covariance,
+                                        .excess = &one->excess,
+                                        .variance = &one->variance,
+                                        .pooled = &one->pooled,
+                                        .pooled_variance = &one->pooled_variance,
+                                        .phi = &one->phi,
+                                        .pooled_phi = &one->pooled_phi,
+                                        .replicas.counts.count = 50};
 }
 
 /// S = S* − 4 (Φ − 2)/k_B T without noise, of which two iterations tell a response twice as large:
@@ -201,23 +204,23 @@ static void test_inversion_ends_with_the_step_that_is_left_or_the_mean(void **st
                                   .phi = phi,
                                   .best = best,
                                   .best_step = best_step};
-    mf_inversion_take_last_step(&inversion);
+    assert_ok(mf_inversion_take_last_step(&inversion));
     assert_true(best[0] == 2 && best[1] == 1);
     inversion.settling = true;
-    mf_inversion_take_last_step(&inversion);
+    assert_ok(mf_inversion_take_last_step(&inversion));
     assert_close(best[0], 2.3, 1e-15);
     assert_close(best[1], 0.9, 1e-15);
     inversion.settling = false;
     method.own = &forgetting;
     pooled[0] = 0.3;
-    mf_inversion_take_last_step(&inversion);
+    assert_ok(mf_inversion_take_last_step(&inversion));
     assert_close(best[0], 2.3, 1e-15);
     pooled[0] = 0.1;
     inversion.progress.pool = 60;
-    mf_inversion_take_last_step(&inversion);
+    assert_ok(mf_inversion_take_last_step(&inversion));
     assert_close(best[0], 2.3, 1e-15);
     inversion.progress.pool = 90;
-    mf_inversion_take_last_step(&inversion);
+    assert_ok(mf_inversion_take_last_step(&inversion));
     assert_true(best[0] == 1.5 && best[1] == 1.25);
 }
 
