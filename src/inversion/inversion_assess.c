@@ -12,8 +12,8 @@ static const double least_share = 1.0 / 3;
 /// The error of what is near to its target, in units of its noise, and of what stays near.
 static const double near_noises = 2, still_near_noises = 3;
 
-/// The same of the gradient of coefficients, as last measured.
-static const double near_miss = 3;
+/// The gradient of coefficients, in its noise, below which C hardly changes any more.
+static const double near_gradient = 3;
 
 double mf_inversion_g(const struct inversion *inversion, size_t bin) {
     return inversion->replicas.counts.mean[bin] / inversion->ideal[bin];
@@ -108,7 +108,7 @@ void mf_inversion_assess(struct inversion *inversion) {
 bool mf_inversion_is_near(const struct inversion *inversion) {
     const double noises = inversion->progress.pool > 0 ? still_near_noises : near_noises;
     if (inversion->basis.count > 0)
-        return inversion->progress.miss < near_miss;
+        return inversion->progress.miss < near_gradient;
     for (int k = 0; k < inversion->sections; k++)
         if (!(inversion->section[k].rms < noises * inversion->section[k].noise))
             return false;
