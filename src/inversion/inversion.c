@@ -275,6 +275,7 @@ static void describe(const struct inversion *inversion, const double *own, bool 
         .engine_steps = progress->sweeps,
         .error = mf_targets_error(&inversion->problem->targets, progress->best),
         .noise = mf_targets_noise(&inversion->problem->targets, progress->best),
+        .variance = mf_targets_variance(&inversion->problem->targets, progress->best),
         .extra = {progress->damping, inversion->own_noise, inversion->disagreement,
                   inversion->distance[TARGET_RDF].rms, inversion->pressure.value,
                   inversion->pressure.error, mf_replicas_acceptance(&inversion->replicas),
