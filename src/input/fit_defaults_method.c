@@ -176,21 +176,27 @@ static double samples_for_rdf(const struct fit_choice *c, double replicas) {
     return inefficiency * pow(noise_of_sample(c) / wanted, 2) / replicas;
 }
 
+/// What the file says of the verification, or what is chosen.
+static double given_or(const struct fit_choice *c, const char *key, int64_t given, double chosen) {
+    return mf_fit_choice_lacks(c->root, "verification", key) ? chosen : (double)given;
+}
+
 enum status mf_fit_defaults_verification(struct fit_choice *c) {
     static const double apart = 0.1, equilibration = 10, least = 50, windows = 20;
     static const double most_moves = 3e8;
-    enum { REPLICAS = 4 };
     const char *path = "verification";
     enum target_kind longest;
-    const double own = c->read->verification.time_step;
-    const double time_step = own > 0 ? own : c->time_step;
-    const double every = fmax(1, round(apart * c->crossing / time_step));
+    const struct verify_parameters *read = &c->read->verification;
+    const double time_step = read->time_step > 0 ? read->time_step : c->time_step;
+    const double replicas = given_or(c, "replicas", read->replicas, 4);
+    const double every =
+        given_or(c, "every", read->plan.every, fmax(1, round(apart * c->crossing / time_step)));
     const double begin = fmax(1000, ceil(equilibration * c->crossing / time_step));
     const double window =
         (double)mf_measurement_window(&c->read->problem.compared, time_step, &longest);
-    const double can = most_moves / (REPLICAS * c->count * every);
+    const double can = most_moves / (replicas * c->count * every);
     const double looks = windows * window / every;
-    const double counts = c->read->files.given[TARGET_RDF] ? samples_for_rdf(c, REPLICAS) : 0;
+    const double counts = c->read->files.given[TARGET_RDF] ? samples_for_rdf(c, replicas) : 0;
     const double wanted = fmax(counts, fmax(least, looks));
     const double samples = ceil(fmax(fmin(wanted, can), fmax(least, window / every)));
     const char *why = wanted > samples   ? "as many as a few minutes allow"
@@ -199,9 +205,9 @@ enum status mf_fit_defaults_verification(struct fit_choice *c) {
                       : looks == wanted  ? "20 times as long as the targets look"
                                          : "the least of which errors can be told";
     if (mf_fit_choice_lacks(c->root, path, "samples"))
-        mf_fit_choice_say(c, "verification: %d simulations of %.0f samples, %s", REPLICAS, samples,
-                          why);
-    TRY(mf_fit_choice_give(c, path, mf_verify_fields, "replicas", REPLICAS));
+        mf_fit_choice_say(c, "verification: %.0f simulations of %.0f samples, %s", replicas,
+                          samples, why);
+    TRY(mf_fit_choice_give(c, path, mf_verify_fields, "replicas", replicas));
     TRY(mf_fit_choice_give(c, path, mf_verify_fields, "equilibration", begin));
     TRY(mf_fit_choice_give(c, path, mf_verify_fields, "every", every));
     return mf_fit_choice_give(c, path, mf_verify_fields, "samples", samples);

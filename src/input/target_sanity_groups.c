@@ -73,31 +73,73 @@ static double longest(const struct topology *topology) {
     return beads;
 }
 
+/// Over the last quarter of its range, g of a pair type, and its scatter from row to row.
+static struct target_tail tail_of(const struct target_files *files, size_t pair) {
+    const struct target_rdf *target = &files->rdf.member[pair];
+    const double given = target->parameters.normalisation, factor = given > 0 ? given : 1;
+    return (struct target_tail){.mean = target->tail.mean / factor,
+                                .scatter = target->tail.scatter / factor};
+}
+
+/// Whether g does not end at 1, by more than `allowed` and by more than chance.
+static bool ends_beside_1(struct target_tail tail, double allowed) {
+    static const double deviations = 3;
+    const double away = fabs(tail.mean - 1);
+    return away > allowed && away > deviations * tail.scatter;
+}
+
+/// The only pair type whose g does not end at 1, where all others do, or −1: types of one kind of
+/// molecules that gather change the g of all pairs.
+static int find_odd_pair(const struct target_files *files, const struct topology *topology,
+                         double allowed) {
+    const bool one_kind =
+        topology->kinds == 1 && topology->kind[0].count == topology->molecules &&
+        (size_t)topology->kind[0].count * (size_t)topology->kind[0].beads == topology->particles;
+    int odd = -1, count = 0;
+    for (size_t pair = 0; pair < files->rdf.pairs; pair++)
+        if (ends_beside_1(tail_of(files, pair), allowed)) {
+            odd = (int)pair;
+            count++;
+        }
+    return one_kind && files->rdf.pairs > 1 && count == 1 ? odd : -1;
+}
+
 /// The mean g of all beads has no reason to differ from 1 at its end, where that of a pair type
 /// may: types gather. Molecules have no theory that finds its factor (inversion/normalisation).
 static void warn_of_tails(const struct target_files *files, const struct scene *scene,
                           const struct target_sanity_listener *listener) {
-    static const double allowed = 0.03, deviations = 3;
+    static const double allowed = 0.03;
     const struct composition *composition = &files->composition;
-    double all = 0, mean = 0, scatter = 0;
+    const struct topology *topology = &scene->molecules.molecules.topology;
+    const double most = allowed + longest(topology) / (double)mf_composition_particles(composition);
+    const int odd = find_odd_pair(files, topology, most);
+    struct target_tail mean = {0};
+    double all = 0;
+    for (size_t pair = 0; pair < files->rdf.pairs; pair++)
+        all += mf_composition_possible_pairs(composition, (int)pair);
     for (size_t pair = 0; pair < files->rdf.pairs; pair++) {
-        const struct target_rdf *target = &files->rdf.member[pair];
-        const double pairs = mf_composition_possible_pairs(composition, (int)pair);
-        const double given = target->parameters.normalisation, factor = given > 0 ? given : 1;
-        all += pairs;
-        mean += pairs * target->tail.mean / factor;
-        scatter += pairs * target->tail.scatter / factor;
+        const double part = mf_composition_possible_pairs(composition, (int)pair) / all;
+        mean.mean += part * tail_of(files, pair).mean;
+        mean.scatter += part * tail_of(files, pair).scatter;
     }
-    const double away = fabs(mean / all - 1);
-    const double excluded = longest(&scene->molecules.molecules.topology) /
-                            (double)mf_composition_particles(composition);
-    if (all > 0 && away > allowed + excluded && away > deviations * scatter / all)
+    if (odd >= 0) {
+        const struct target_tail tail = tail_of(files, (size_t)odd);
+        char name[COMPOSITION_PAIR_NAME_SIZE];
+        mf_composition_pair_name(composition, odd, name);
+        mf_target_sanity_say(
+            listener,
+            "mesofit: warning: target.rdf.%s: over the last quarter of its range g is %.3f(%.0f), "
+            "not 1, which the other pair types have there: is it over another number of pairs than "
+            "these? A fit of molecules does not mend it; \"normalisation\" divides by a factor",
+            name, tail.mean, ceil(1e3 * tail.scatter));
+    } else if (all > 0 && ends_beside_1(mean, most)) {
         mf_target_sanity_say(
             listener,
             "mesofit: warning: target.rdf: over the last quarter of its range g of all beads is "
             "%.3f(%.0f), not 1: is its volume or number of beads another than the scene's? A fit "
             "of molecules does not mend it; \"normalisation\" of each pair divides by a factor",
-            mean / all, ceil(1e3 * scatter / all));
+            mean.mean, ceil(1e3 * mean.scatter));
+    }
 }
 
 void mf_target_sanity_tell_groups(const struct target_files *files, const struct scene *scene,

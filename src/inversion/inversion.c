@@ -10,8 +10,9 @@ const double mf_inversion_least_damping = 1.0 / 64;
 /// Samples are doubled until their noise is this share of the error, or as small as was asked for.
 static const double noise_share = 1.0 / 3;
 
-/// A gradient below this many times its noise is hardly more than that.
-static const double near_miss = 2;
+/// A gradient below this many times its noise is hardly more than that: what g is still off is out
+/// of reach of the coefficients.
+static const double gradient_of_noise = 2;
 
 /// Samples of an iteration double at most so often.
 enum { MOST_DOUBLINGS = 7 };
@@ -113,8 +114,8 @@ static struct replicas_plan plan(const struct inversion *inversion) {
 /// Whether more samples would help: their noise is a large part of the error, and not yet what was
 /// asked for. Replicas that are stuck would never be told apart from noise.
 static bool needs_samples(const struct inversion *inversion, int doublings) {
-    // What is out of reach of few coefficients is no error that hides the noise.
-    const double share = inversion->progress.miss < near_miss ? 0 : noise_share;
+    // What is out of reach is no error that hides the noise.
+    const double share = inversion->progress.miss < gradient_of_noise ? 0 : noise_share;
     for (int k = 0; k < inversion->sections; k++) {
         const struct inversion_section *section = &inversion->section[k];
         if (section->own_noise > fmax(section->precision, share * section->rms))
@@ -274,6 +275,7 @@ static void describe(const struct inversion *inversion, const double *own, bool 
         .engine_steps = progress->sweeps,
         .error = mf_targets_error(&inversion->problem->targets, progress->best),
         .noise = mf_targets_noise(&inversion->problem->targets, progress->best),
+        .variance = mf_targets_variance(&inversion->problem->targets, progress->best),
         .extra = {progress->damping, inversion->own_noise, inversion->disagreement,
                   inversion->distance[TARGET_RDF].rms, inversion->pressure.value,
                   inversion->pressure.error, mf_replicas_acceptance(&inversion->replicas),

@@ -129,7 +129,7 @@ struct inversion {
         *joint;          ///< of the first of several states, or with integrals; or NULL
     double behind;       ///< samples behind C
     double misfit;       ///< χ² of the excess by bin
-    double inefficiency; ///< of the first section
+    double inefficiency; ///< the largest of all sections
     double disagreement; ///< of the replicas, mf_replicas_disagreement
     struct target_distance distance[TARGETS]; ///< of the samples from what is asked for
     double own_noise; ///< by the samples alone, rms, of the noisiest section

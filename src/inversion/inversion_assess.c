@@ -12,8 +12,8 @@ static const double least_share = 1.0 / 3;
 /// The error of what is near to its target, in units of its noise, and of what stays near.
 static const double near_noises = 2, still_near_noises = 3;
 
-/// The same of the gradient of coefficients, as last measured.
-static const double near_miss = 3;
+/// The gradient of coefficients, in its noise, below which C hardly changes any more.
+static const double near_gradient = 3;
 
 double mf_inversion_g(const struct inversion *inversion, size_t bin) {
     return inversion->replicas.counts.mean[bin] / inversion->ideal[bin];
@@ -23,11 +23,14 @@ double mf_inversion_target_g(const struct inversion *inversion, size_t bin) {
     return inversion->target_counts[bin] / inversion->ideal[bin];
 }
 
-/// Add a section to the distance of its kind, over the bins of all of them.
-static void add_distance(struct target_distance *distance, double sum, double both, size_t bins) {
+/// Add a section to the distance of its kind, over the bins of all of them, with the mean variance
+/// of the samples for its own.
+static void add_distance(struct target_distance *distance, double sum, double both, double own,
+                         size_t bins) {
     const double before = (double)distance->count, all = before + (double)bins;
     distance->rms = sqrt((before * distance->rms * distance->rms + sum) / all);
     distance->noise = sqrt((before * distance->noise * distance->noise + both) / all);
+    distance->variance = (before * distance->variance + own) / all;
     distance->count += bins;
 }
 
@@ -69,7 +72,7 @@ static double assess(struct inversion *inversion, struct inversion_section *sect
         own += sampled / unit;
         both += inversion->variance[a] / unit;
     }
-    add_distance(&inversion->distance[section->kind], sum, both, section->bins);
+    add_distance(&inversion->distance[section->kind], sum, both, own, section->bins);
     section->rms = sqrt(sum / bins) / section->peak;
     section->noise = sqrt(both / bins) / section->peak;
     section->own_noise = sqrt(own / bins) / section->peak;
@@ -88,6 +91,17 @@ static double count_seen(const struct potential_grid *grid) {
     return count;
 }
 
+/// From the mean variance of the bins to that of their rms.
+static void finish_distance(struct inversion *inversion, int kind) {
+    struct target_distance *distance = &inversion->distance[kind];
+    bool counted = false;
+    for (int k = 0; k < inversion->sections; k++)
+        counted = counted || inversion->section[k].kind == kind;
+    if (counted)
+        distance->variance =
+            mf_targets_rms_variance(distance->rms, distance->variance, (double)distance->count);
+}
+
 void mf_inversion_assess(struct inversion *inversion) {
     double misfit = 0;
     inversion->own_noise = inversion->inefficiency = 0;
@@ -99,6 +113,8 @@ void mf_inversion_assess(struct inversion *inversion) {
         inversion->own_noise = fmax(inversion->own_noise, section->own_noise);
         inversion->inefficiency = fmax(inversion->inefficiency, section->inefficiency);
     }
+    for (int kind = 0; kind < TARGETS; kind++)
+        finish_distance(inversion, kind);
     inversion->disagreement = mf_replicas_disagreement(
         &inversion->replicas, inversion->ideal, inversion->grid.known_bin, inversion->grid.known);
     inversion->misfit = misfit / count_seen(&inversion->grid);
@@ -108,7 +124,7 @@ void mf_inversion_assess(struct inversion *inversion) {
 bool mf_inversion_is_near(const struct inversion *inversion) {
     const double noises = inversion->progress.pool > 0 ? still_near_noises : near_noises;
     if (inversion->basis.count > 0)
-        return inversion->progress.miss < near_miss;
+        return inversion->progress.miss < near_gradient;
     for (int k = 0; k < inversion->sections; k++)
         if (!(inversion->section[k].rms < noises * inversion->section[k].noise))
             return false;

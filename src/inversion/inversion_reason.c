@@ -21,6 +21,29 @@ static int find_missed(const struct inversion *inversion) {
     return -1;
 }
 
+/// Of the group that is farthest off: how far, in its noise.
+static double find_worst(const struct inversion *inversion) {
+    double worst = 0;
+    for (int k = 0; k < inversion->sections; k++)
+        worst = fmax(worst, inversion->section[k].rms / inversion->section[k].noise);
+    return worst;
+}
+
+/// Groups alone, which agree all together, have no ramp and no g.
+static void tell_of_groups(const struct inversion *inversion, char reason[INVERSE_REASON_SIZE]) {
+    const struct inversion_progress *p = &inversion->progress;
+    if (p->best_precise)
+        snprintf(reason, INVERSE_REASON_SIZE,
+                 "the distributions agree on the whole, but one of them is off by %.2g times its "
+                 "noise, and chi^2 by bin is %.2g: more \"iterations\" are needed",
+                 find_worst(inversion), inversion->misfit);
+    else
+        snprintf(reason, INVERSE_REASON_SIZE,
+                 "the distributions agree within a statistical error of %.2g of their peaks, but "
+                 "\"precision\" asks for %.2g: more \"samples\" or \"iterations\" are needed",
+                 p->best_own_noise, inversion->settings.common.precision);
+}
+
 /// Why a fit whose g agrees has not converged.
 static void tell_what_is_missing(const struct inversion *inversion,
                                  char reason[INVERSE_REASON_SIZE]) {
@@ -45,6 +68,8 @@ static void tell_what_is_missing(const struct inversion *inversion,
                  "%.2g: more \"iterations\" or \"samples\" may help, or a longer cutoff of the "
                  "potential",
                  integrals->rms, integrals->noise);
+    else if (inversion->grid.groups > 0 && inversion->grid.pairs == 0)
+        tell_of_groups(inversion, reason);
     else if (isnan(inversion->band.ramp.way))
         snprintf(
             reason, INVERSE_REASON_SIZE,

@@ -73,5 +73,5 @@ double mf_units_beads(const struct json_object *scene, double *mean_mass) {
     *mean_mass = find_mass(&particles, "mass");
     if (*mean_mass == 0 && found.count > 0)
         *mean_mass = found.sum / found.count;
-    return mf_json_list_text(&molecules, "file", 0) ? 0 : found.count;
+    return found.count;
 }

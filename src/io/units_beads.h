@@ -7,7 +7,7 @@
 /// An object if one stands there: what else does is the reader's to say.
 struct json_object mf_units_look(const struct json_object *parent, const char *key);
 
-/// How many beads there are, single ones and those of molecules; 0 if a file has the molecules, or
+/// How many beads there are, single ones and those of molecules that stand in the scene itself; 0
 /// if a fault will tell why it is not known.
 /// @param[out] mean_mass  of all of them, or of the one type; 0 if the scene does not say it
 /// Tested: test_units.

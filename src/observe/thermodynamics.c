@@ -167,12 +167,16 @@ static bool is_absurd(double temperature, double wanted) {
     return temperature <= 0 || temperature > absurd * wanted;
 }
 
+/// Walls and obstacles of a solvent push beads by no force that the positions would tell of.
+static bool shows_forces(const struct simulation_setup *setup) {
+    return setup->integrator->companions == NULL;
+}
+
 enum status mf_thermodynamics_judge(const struct thermodynamics_summary *summary,
                                     const struct simulation_setup *setup) {
     const struct thermodynamics_summary *s = summary;
     const bool flies = simulation_has_velocities(setup);
-    // Walls and obstacles of a solvent push beads by no force that the positions would tell of.
-    const bool positions = !isnan(s->temperature_configurational) && !setup->integrator->companions;
+    const bool positions = !isnan(s->temperature_configurational) && shows_forces(setup);
     const double wanted = simulation_holds_temperature(setup) ? setup->temperature : s->temperature;
     const bool nobody = setup->integrator->companions && isnan(s->temperature); // a solvent alone
     if (s->blocks < LEAST_BLOCKS || nobody || !mf_simulation_is_thermal(setup))
@@ -215,8 +219,9 @@ enum status mf_thermodynamics_judge_fit(const struct thermodynamics_summary *sum
                               s->temperature, setup->temperature);
     const double wanted = held ? setup->temperature : s->temperature;
     const bool flies = is_off(s->temperature, s->temperature_error, wanted);
-    if (!flies &&
-        !is_off(s->temperature_configurational, s->temperature_configurational_error, wanted))
+    const bool rests = shows_forces(setup) && is_off(s->temperature_configurational,
+                                                     s->temperature_configurational_error, wanted);
+    if (!flies && !rests)
         return STATUS_OK;
     const double found = flies ? s->temperature : s->temperature_configurational;
     const double error = flies ? s->temperature_error : s->temperature_configurational_error;

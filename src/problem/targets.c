@@ -22,9 +22,7 @@ size_t mf_targets_count(const struct targets *targets) {
     return count;
 }
 
-/// Variance of an rms e over n independent values, each with the variance s²: e² has 4 e² s²/n +
-/// 2 s⁴/n, and e that over (2e)².
-static double rms_variance(double rms, double square, double count) {
+double mf_targets_rms_variance(double rms, double square, double count) {
     const double independent = fmin(count, most_independent);
     return (square + 0.5 * square * square / fmax(rms * rms, 1e-300)) / independent;
 }
@@ -49,7 +47,7 @@ struct target_distance mf_targets_distance(const struct target *target, const do
     distance.rms = count > 0 ? sqrt(squares / count) : INFINITY;
     if (count > 0) {
         distance.noise = sqrt(noise / count);
-        distance.variance = rms_variance(distance.rms, own / count, count);
+        distance.variance = mf_targets_rms_variance(distance.rms, own / count, count);
     }
     return distance;
 }

@@ -67,6 +67,10 @@ size_t mf_targets_count(const struct targets *targets);
 struct target_distance mf_targets_distance(const struct target *target, const double *value,
                                            const double *error);
 
+/// Variance of an rms e over n values, of which ten at most are independent, each with the variance
+/// s²: e² has 4 e² s²/n + 2 s⁴/n, and e that over (2e)².
+double mf_targets_rms_variance(double rms, double square, double count);
+
 /// The same of the one known value that is farthest off by its noise: what agrees within the errors
 /// of all has each of its numbers within its own.
 struct target_distance mf_targets_worst(const struct target *target, const double *value,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "report/fit_verdict.h"
 
+#include "base/number_text.h"
 #include "observe/kirkwood_buff_observable.h"
 
 #include <math.h>
@@ -44,22 +45,29 @@ static bool contradicts_integrals(const struct verification *verification, doubl
     return true;
 }
 
+/// "T = 1.02, pressure 3.4".
+enum { STATE_SIZE = 96 };
+static void tell_state(const struct thermodynamics_summary *found, const struct units *units,
+                       char text[STATE_SIZE]) {
+    const double temperature =
+        isnan(found->temperature) ? found->temperature_configurational : found->temperature;
+    char unit[UNITS_NAME_SIZE], kelvin[UNITS_NAME_SIZE];
+    snprintf(text, STATE_SIZE, "T = %.3g%.8s, pressure %.3g%.16s",
+             mf_units_factor(units, "T_0") * temperature, mf_units_suffix(units, "T_0", kelvin),
+             mf_units_factor(units, "k_B T_0/lambda^d") * found->pressure,
+             mf_units_suffix(units, "k_B T_0/lambda^d", unit));
+}
+
 /// A structure that the fit's samples have.
 static void tell_structure(const char *name, const struct target_distance *distance,
                            const struct thermodynamics_summary *found, double temperature,
                            const struct units *units, char reason[INVERSE_REASON_SIZE]) {
-    char unit[UNITS_NAME_SIZE], kelvin[UNITS_NAME_SIZE];
-    mf_units_suffix(units, "k_B T_0/lambda^d", unit);
-    mf_units_suffix(units, "T_0", kelvin);
+    char state[STATE_SIZE];
+    tell_state(found, units, state);
     snprintf(reason, INVERSE_REASON_SIZE,
              "the fit's samples agree with %s, its verification is off by %.2g (%.2g by "
-             "statistics) at T = %.3g%.8s, pressure %.3g%.16s: %s",
-             name, distance->rms, distance->noise,
-             mf_units_factor(units, "T_0") * (isnan(found->temperature)
-                                                  ? found->temperature_configurational
-                                                  : found->temperature),
-             kelvin, mf_units_factor(units, "k_B T_0/lambda^d") * found->pressure, unit,
-             find_cause(found, temperature));
+             "statistics) at %s: %s",
+             name, distance->rms, distance->noise, state, find_cause(found, temperature));
 }
 
 /// Beads that are hotter or colder than the friction holds them have another structure, even if the
@@ -119,12 +127,17 @@ void mf_fit_verdict_mark(const struct units *units, struct verification *verific
     snprintf(verification->warning, sizeof verification->warning, "%s", mf_status_message());
 }
 
+/// By more than chance, and by a quarter.
+static bool is_larger(double verified, double own, double error, double variance) {
+    static const double deviations = 5, part = 0.25;
+    return verified > error + deviations * sqrt(variance + own) && verified > (1 + part) * error;
+}
+
 bool mf_fit_verdict_is_worse(const struct verification *verification, const struct targets *targets,
                              double error, double variance, char reason[INVERSE_REASON_SIZE]) {
-    static const double deviations = 5, part = 0.25;
     const double verified = mf_targets_error(targets, verification->distance);
     const double own = mf_targets_variance(targets, verification->distance);
-    if (!(verified > error + deviations * sqrt(variance + own) && verified > (1 + part) * error))
+    if (!is_larger(verified, own, error, variance))
         return false;
     snprintf(
         reason, INVERSE_REASON_SIZE,
@@ -133,5 +146,27 @@ bool mf_fit_verdict_is_worse(const struct verification *verification, const stru
         "were too short, or too coarse in time: longer \"equilibration\", more \"samples\" or a "
         "shorter time step may tell why",
         error, sqrt(variance), verified, sqrt(own));
+    return true;
+}
+
+bool mf_fit_verdict_is_worse_than_samples(const struct verification *verification,
+                                          const struct targets *targets, double error,
+                                          double variance, double temperature,
+                                          const struct units *units,
+                                          char reason[INVERSE_REASON_SIZE]) {
+    const struct thermodynamics_summary *found = &verification->thermodynamics;
+    const double verified = mf_targets_error(targets, verification->distance);
+    const double own = mf_targets_variance(targets, verification->distance);
+    char of_samples[NUMBER_TEXT_SIZE], of_verification[NUMBER_TEXT_SIZE], state[STATE_SIZE];
+    if (!is_larger(verified, own, error, variance))
+        return contradicts_temperature(verification, temperature, units, reason);
+    mf_number_text(error, sqrt(variance), of_samples);
+    mf_number_text(verified, sqrt(own), of_verification);
+    tell_state(found, units, state);
+    snprintf(reason, INVERSE_REASON_SIZE,
+             "the fit's samples are off from %s by %.16s%s, its verification by %.16s at %.60s: %s",
+             mf_targets_count(targets) > 1 ? "the targets" : "the target", of_samples,
+             mf_targets_count(targets) > 1 ? " of their errors (rms)" : "", of_verification, state,
+             find_cause(found, temperature));
     return true;
 }

@@ -27,5 +27,14 @@ bool mf_fit_verdict_contradicts(const struct verification *verification,
 bool mf_fit_verdict_is_worse(const struct verification *verification, const struct targets *targets,
                              double error, double variance, char reason[INVERSE_REASON_SIZE]);
 
+/// The same of an inversion whose potentials need not meet the targets: the verification is worse
+/// than the samples were, or its temperature more than 5 % off, with the likely cause. Tested:
+/// test_fit_verdict.
+bool mf_fit_verdict_is_worse_than_samples(const struct verification *verification,
+                                          const struct targets *targets, double error,
+                                          double variance, double temperature,
+                                          const struct units *units,
+                                          char reason[INVERSE_REASON_SIZE]);
+
 /// Simulations warn in reduced units: add the scale to a warning if the file speaks in others.
 void mf_fit_verdict_mark(const struct units *units, struct verification *verification);

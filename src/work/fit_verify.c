@@ -105,10 +105,15 @@ static bool is_contradicted(const struct fit_file *state, const struct inverse_m
                             char reason[INVERSE_REASON_SIZE]) {
     static const double noise_margin = 3;
     const struct targets *targets = &state->problem.targets;
-    return method->kind == INVERSE_INVERSION && !method->restricted
-               ? mf_fit_verdict_contradicts(verification, targets, state->problem.scene.temperature,
-                                            noise_margin, &state->scene.units, reason)
-               : mf_fit_verdict_is_worse(verification, targets, error, variance, reason);
+    const struct units *units = &state->scene.units;
+    const double temperature = state->problem.scene.temperature;
+    if (method->kind != INVERSE_INVERSION)
+        return mf_fit_verdict_is_worse(verification, targets, error, variance, reason);
+    if (method->restricted)
+        return mf_fit_verdict_is_worse_than_samples(verification, targets, error, variance,
+                                                    temperature, units, reason);
+    return mf_fit_verdict_contradicts(verification, targets, temperature, noise_margin, units,
+                                      reason);
 }
 
 bool mf_fit_verify_contradicts(const struct fit_file *fit, const struct verification *verification,

@@ -372,8 +372,8 @@ static void write_scaled(struct temporary_folder *folder, const char *name, doub
     free(text);
 }
 
-/// As of a volume that is off by 5 %. Pair types that are off and make up for each other are a
-/// mixture whose types gather.
+/// As of a volume that is off by 5 %, or of one file that is over another number of pairs. Pair
+/// types that are off and make up for each other are a mixture whose types gather.
 static void test_fit_of_molecules_warns_of_g_that_ends_beside_1(void **state) {
     static const char pairs[][16] = {"A-A.dist.tgt", "A-B.dist.tgt", "B-B.dist.tgt"};
     static const char run[] =
@@ -392,6 +392,10 @@ static void test_fit_of_molecules_warns_of_g_that_ends_beside_1(void **state) {
     } cases[] = {{{1, 1, 1}, NULL},
                  {{1.05, 1.05, 1.05}, "g of all beads is 1.05"},
                  {{0.95, 0.95, 0.95}, "g of all beads is 0.95"},
+                 {{1.05, 1, 1}, "target.rdf.A-A: over the last quarter of its range g is 1.05"},
+                 {{1, 0.95, 1}, "target.rdf.A-B: over the last quarter of its range g is 0.9"},
+                 {{1, 1, 1.05}, "target.rdf.B-B: over the last quarter of its range g is 1.05"},
+                 {{1, 1, 1.025}, NULL},
                  {{1.05, 0.95, 1.05}, NULL}};
     static struct run_program_result result;
     small_inputs_write(*state, "run.json", run, NULL, NULL);

@@ -101,6 +101,23 @@ static void test_fit_defaults_leave_what_the_file_says(void **state) {
 }
 
 /// A file with a method has fixed defaults, but for what would leave the temperature to chance.
+/// As many samples in all, in how many simulations ever.
+static void test_fit_defaults_choose_samples_for_the_simulations_that_the_file_says(void **state) {
+    struct fit_file few, many;
+    write_target(state);
+#define SCENE "\"scene\": {\"density\": 0.3, \"temperature\": 1}, \"verification\": "
+    assert_ok(read_run(state, &few, "few.json", TARGET SCENE "{\"replicas\": 1}}"));
+    assert_ok(read_run(state, &many, "many.json", TARGET SCENE "{\"replicas\": 2}}"));
+#undef SCENE
+    const double one = (double)few.verification.plan.samples;
+    const double two = (double)many.verification.plan.samples;
+    print_message("%.0f samples of one, %.0f of two\n", one, two);
+    assert_in_range(two, 51, 1e6); // more than there are at least
+    assert_close(one, 2 * two, 2);
+    mf_fit_file_clear(&few);
+    mf_fit_file_clear(&many);
+}
+
 static void test_fit_defaults_choose_friction_and_time_step_beside_a_method(void **state) {
     static const char scene[] =
         TARGET "\"scene\": {\"box\": [9.1, 9.1, 9.1], %s\"particles\": {\"count\": 226}}, "
@@ -239,6 +256,7 @@ int main(void) {
         IN_FOLDER(test_fit_defaults_choose_all_that_target_density_and_temperature_leave),
         IN_FOLDER(test_fit_defaults_stand_in_used_json),
         IN_FOLDER(test_fit_defaults_leave_what_the_file_says),
+        IN_FOLDER(test_fit_defaults_choose_samples_for_the_simulations_that_the_file_says),
         IN_FOLDER(test_fit_defaults_choose_friction_and_time_step_beside_a_method),
         IN_FOLDER(test_fit_defaults_choose_time_steps_by_the_friction_without_velocities),
         IN_FOLDER(test_fit_defaults_choose_no_friction_where_that_across_pairs_is_found),

@@ -104,6 +104,24 @@ static void test_inversion_reason_is_a_ramp_that_runs_away(void **state) {
     assert_false(mf_inversion_runs_away(&inversion));
 }
 
+/// A stiff bond hides a soft one, and there is neither g nor a ramp.
+static void test_inversion_reason_of_groups_alone_is_the_one_that_is_hidden(void **state) {
+    (void)state;
+    const int bond = mf_bonded_distribution_kind(TOPOLOGY_BOND);
+    struct inverse_problem problem;
+    struct inversion inversion = make_inversion(&problem, 0, false);
+    problem.targets.target[TARGET_RDF].count = 0;
+    inversion.progress.best[TARGET_RDF] = (struct target_distance){0};
+    inversion.progress.best[bond] = (struct target_distance){.rms = 0.3, .noise = 0.2};
+    inversion.grid.groups = inversion.sections = 2;
+    inversion.section[0] = (struct inversion_section){.kind = bond, .rms = 0.1, .noise = 0.08};
+    inversion.section[1] = (struct inversion_section){.kind = bond, .rms = 0.05, .noise = 0.02};
+    inversion.misfit = 3.4;
+    assert_says(&inversion, "the distributions agree within a statistical error of 0.0025 of");
+    inversion.progress.best_precise = true;
+    assert_says(&inversion, "off by 2.5 times its noise, and chi^2 by bin is 3.4");
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_inversion_reason_is_a_ramp_that_runs_away),
@@ -112,6 +130,7 @@ int main(void) {
         cmocka_unit_test(test_inversion_reason_of_a_stuck_mixture_advises_a_shorter_cutoff),
         cmocka_unit_test(test_inversion_reason_is_the_precision_when_the_curves_agree),
         cmocka_unit_test(test_inversion_reason_is_frozen_replicas_when_they_disagree),
+        cmocka_unit_test(test_inversion_reason_of_groups_alone_is_the_one_that_is_hidden),
         cmocka_unit_test(test_inversion_reason_is_the_pressure_when_only_that_is_off),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

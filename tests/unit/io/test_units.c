@@ -97,8 +97,8 @@ static void test_units_read_refuses_when_no_number_can_hold_what_follows(void **
     "{\"units\": \"" system "\", \"temperature\": 300, \"box\": " box                              \
     ", \"particles\": {" particles "}, \"molecules\": " molecules "}"
 
-/// λ³ holds three beads, those of molecules too, and μ is the mean mass of all.
-static void test_units_count_the_beads_of_molecules(void **state) {
+/// With molecules λ is 1 nm in all systems, and μ is the mean mass of all beads.
+static void test_units_are_those_of_molecules(void **state) {
     static const char *const texts[] = {
         MOLECULES("nm-ps", "[4, 4, 4]", "\"mass\": {\"A\": 10, \"B\": 25}",
                   "{\"m\": {\"count\": 8, \"chain\": {\"beads\": [\"A\", \"B\", \"A\"]}}}"),
@@ -112,7 +112,7 @@ static void test_units_count_the_beads_of_molecules(void **state) {
     for (size_t k = 0; k < sizeof texts / sizeof *texts; k++) {
         // There is no reader of the scene here.
         assert_fails(read_text(state, texts[k], &units), STATUS_BAD_INPUT, "unknown");
-        assert_close(units.length, 2, 1e-12);
+        assert_close(units.length, 1, 1e-12);
         assert_close(units.mass / UNITS_ATOMIC_MASS, 15, 1e-12);
     }
     // In a file that is not read yet nobody knows how many there are.
@@ -297,7 +297,7 @@ int main(void) {
         cmocka_unit_test(test_units_name_is_what_a_person_would_write),
         cmocka_unit_test(test_units_from_takes_back_what_name_gives),
         cmocka_unit_test(test_units_spoken_is_what_was_read),
-        TEST(test_units_count_the_beads_of_molecules),
+        TEST(test_units_are_those_of_molecules),
         TEST(test_units_read_refuses_when_no_number_can_hold_what_follows),
         TEST(test_units_follow_from_the_scene_when_the_file_does_not_say_them),
         TEST(test_units_put_writes_results_in_physical_units),

@@ -130,6 +130,29 @@ static void test_fit_verdict_is_worse_when_the_difference_is_no_chance(void **st
     assert_false(mf_fit_verdict_is_worse(&found, &targets, 7, 0, reason));
 }
 
+/// Samples of few coefficients, which need not meet the targets, and a simulation that lost its
+/// heat: both with their errors, and the cause.
+static void test_fit_verdict_tells_why_a_verification_is_worse_than_samples(void **state) {
+    (void)state;
+    char reason[INVERSE_REASON_SIZE];
+    struct verification found = make(0.0413, 0.64, 2);
+    found.distance[TARGET_RDF].variance = 1e-6;
+    assert_false(
+        mf_fit_verdict_is_worse_than_samples(&found, &only_rdf, 0.041, 4e-8, 0.64, NULL, reason));
+    assert_true(
+        mf_fit_verdict_is_worse_than_samples(&found, &only_rdf, 0.011, 4e-8, 1, NULL, reason));
+    assert_string_equal(reason,
+                        "the fit's samples are off from the target by 0.01100(20), its "
+                        "verification by 0.0413(10) at T = 0.64, pressure 2: too little friction "
+                        "holds the temperature: more \"dissipative\" friction does, or a shorter "
+                        "\"verification.time_step\"");
+    // No worse, but cold.
+    snprintf(found.warning, sizeof found.warning, "the temperature is off");
+    assert_true(
+        mf_fit_verdict_is_worse_than_samples(&found, &only_rdf, 0.041, 4e-8, 1, NULL, reason));
+    assert_contains(reason, "the verification is at T = 0.64, not 1: too little friction");
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_fit_verdict_is_silent_when_g_is_off_by_noise),
@@ -139,6 +162,7 @@ int main(void) {
         cmocka_unit_test(test_fit_verdict_names_the_pressure_when_it_was_fitted_and_is_off),
         cmocka_unit_test(test_fit_verdict_names_an_integral_when_it_was_fitted_and_is_off),
         cmocka_unit_test(test_fit_verdict_is_worse_when_the_difference_is_no_chance),
+        cmocka_unit_test(test_fit_verdict_tells_why_a_verification_is_worse_than_samples),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
