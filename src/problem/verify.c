@@ -149,8 +149,25 @@ done:
     return status;
 }
 
-/// Of the groups of each order, and of the integrals, the one that is farthest from its target, by
-/// its noise.
+/// Keep the distance of a part of a target if it is the farthest so far, by its noise.
+static void add_part(const struct inverse_problem *problem, int kind, size_t first, size_t count,
+                     struct verification *verification) {
+    struct target target = problem->compared.target[kind];
+    struct target_distance *worst = &verification->worst[kind];
+    if (target.count == 0)
+        return;
+    target.count = count;
+    target.value += first;
+    target.error += first;
+    const struct target_distance distance =
+        mf_targets_distance(&target, verification->observed.value[kind] + first,
+                            verification->observed.error[kind] + first);
+    if (worst->count == 0 || distance.rms * worst->noise > worst->rms * distance.noise)
+        *worst = distance;
+}
+
+/// Of the pair types, the groups of each order and the integrals, the one that is farthest from its
+/// target.
 static void find_worst(const struct inverse_problem *problem, struct verification *verification) {
     const int integrals = mf_kirkwood_buff_kind();
     verification->worst[integrals] = mf_targets_worst(&problem->compared.target[integrals],
@@ -158,20 +175,12 @@ static void find_worst(const struct inverse_problem *problem, struct verificatio
                                                       verification->observed.error[integrals]);
     for (size_t g = 0; g < problem->bonded; g++) {
         const struct bonded_unknown *group = &problem->group[g];
-        const int kind = mf_bonded_distribution_kind(group->order);
-        struct target target = problem->compared.target[kind];
-        struct target_distance *worst = &verification->worst[kind];
-        if (target.count == 0)
-            continue;
-        target.count = group->bins.count;
-        target.value += group->first;
-        target.error += group->first;
-        const struct target_distance distance =
-            mf_targets_distance(&target, verification->observed.value[kind] + group->first,
-                                verification->observed.error[kind] + group->first);
-        if (worst->count == 0 || distance.rms * worst->noise > worst->rms * distance.noise)
-            *worst = distance;
+        add_part(problem, mf_bonded_distribution_kind(group->order), group->first,
+                 group->bins.count, verification);
     }
+    const size_t bins = problem->compared.bins.count;
+    for (size_t first = 0; first < problem->compared.target[TARGET_RDF].count; first += bins)
+        add_part(problem, TARGET_RDF, first, bins, verification);
 }
 
 /// Results of all replicas together, in their order.

@@ -16,8 +16,8 @@ extern const struct field mf_verify_fields[];
 struct verification {
     struct observed observed;
     struct target_distance distance[TARGETS];
-    struct target_distance worst[TARGETS]; ///< of the group, or the integral of Kirkwood and Buff,
-                                           ///< that is farthest off by its noise
+    struct target_distance worst[TARGETS]; ///< of the pair type, the group, or the integral of
+                                           ///< Kirkwood and Buff, that is farthest off by its noise
     double distance_error[TARGETS]; ///< standard error of each distance, by leaving out replicas;
                                     ///< that of g(r) by leaving out blocks. NaN with one replica
     struct thermodynamics_summary thermodynamics;

@@ -65,8 +65,8 @@ static void tell_structure(const char *name, const struct target_distance *dista
     char state[STATE_SIZE];
     tell_state(found, units, state);
     snprintf(reason, INVERSE_REASON_SIZE,
-             "the fit's samples agree with %s, its verification is off by %.2g (%.2g by "
-             "statistics) at %s: %s",
+             "the fit's samples agree with %.24s, its verification is off by %.2g (%.2g by "
+             "statistics) at %.60s: %s",
              name, distance->rms, distance->noise, state, find_cause(found, temperature));
 }
 
@@ -92,7 +92,8 @@ bool mf_fit_verdict_contradicts(const struct verification *verification,
     const double bar = mf_units_factor(units, "k_B T_0/lambda^d");
     char unit[UNITS_NAME_SIZE];
     mf_units_suffix(units, "k_B T_0/lambda^d", unit);
-    const struct target_distance *rdf = &verification->distance[TARGET_RDF];
+    const struct target_distance *rdf = &verification->worst[TARGET_RDF];
+    const bool several = rdf->count < verification->distance[TARGET_RDF].count;
     const struct thermodynamics_summary *found = &verification->thermodynamics;
     const struct target_distance *pressure = &verification->distance[TARGET_PRESSURE];
     if (targets_ask(fitted, TARGET_PRESSURE) && pressure->rms > noise_margin * pressure->noise) {
@@ -114,9 +115,10 @@ bool mf_fit_verdict_contradicts(const struct verification *verification,
         tell_structure(mf_targets_name(kind), bonded, found, temperature, units, reason);
         return true;
     }
-    if (!(rdf->rms > noise_margin * rdf->noise))
+    if (!targets_ask(fitted, TARGET_RDF) || !(rdf->rms > noise_margin * rdf->noise))
         return contradicts_temperature(verification, temperature, units, reason);
-    tell_structure("g(r)", rdf, found, temperature, units, reason);
+    tell_structure(several ? "g(r) of all pair types" : "g(r)", rdf, found, temperature, units,
+                   reason);
     return true;
 }
 

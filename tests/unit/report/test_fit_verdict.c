@@ -17,6 +17,7 @@ static const struct targets with_pressure = {
 
 static struct verification make(double rms, double temperature, double pressure) {
     return (struct verification){.distance[TARGET_RDF] = {.rms = rms, .noise = 0.002},
+                                 .worst[TARGET_RDF] = {.rms = rms, .noise = 0.002},
                                  .thermodynamics = {.temperature = temperature,
                                                     .temperature_configurational = temperature,
                                                     .temperature_configurational_error = 0.002,
@@ -37,6 +38,18 @@ static void test_fit_verdict_is_silent_when_g_is_off_by_noise(void **state) {
     assert_false(mf_fit_verdict_contradicts(&good, &with_pressure, 1.5, 3, NULL, reason));
 }
 
+/// One pair type of three, which the others hide; and a g that was not fitted, but is compared.
+static void test_fit_verdict_sees_each_pair_type_that_was_fitted(void **state) {
+    (void)state;
+    static const struct targets of_bonds = {.target[TARGET_RDF] = {.count = 0}};
+    char reason[INVERSE_REASON_SIZE];
+    struct verification hidden = make(0.005, 1.5, 3);
+    hidden.distance[TARGET_RDF].count = 90;
+    hidden.worst[TARGET_RDF] = (struct target_distance){.rms = 0.008, .noise = 0.002, .count = 30};
+    assert_says(&hidden, "agree with g(r) of all pair types, its verification is off by 0.008");
+    assert_false(mf_fit_verdict_contradicts(&hidden, &of_bonds, 1.5, 3, NULL, reason));
+}
+
 static void test_fit_verdict_names_the_cause_when_g_is_off(void **state) {
     (void)state;
     const struct verification heated = make(0.0272, 1.69, -0.3), torn = make(0.157, 1.53, -2.19),
@@ -55,7 +68,7 @@ static void test_fit_verdict_names_friction_when_the_beads_are_cold(void **state
     (void)state;
     struct verification cold = make(0.045, 1, 2);
     assert_says(&cold, "friction");
-    cold.distance[TARGET_RDF].rms = 0;
+    cold.worst[TARGET_RDF].rms = 0;
     cold.worst[mf_bonded_distribution_kind(TOPOLOGY_BOND)] =
         (struct target_distance){.rms = 3.4, .noise = 0.18};
     assert_says(&cold, "agree with bond_lengths, its verification is off by 3.4 (0.18 by "
@@ -156,6 +169,7 @@ static void test_fit_verdict_tells_why_a_verification_is_worse_than_samples(void
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_fit_verdict_is_silent_when_g_is_off_by_noise),
+        cmocka_unit_test(test_fit_verdict_sees_each_pair_type_that_was_fitted),
         cmocka_unit_test(test_fit_verdict_names_the_cause_when_g_is_off),
         cmocka_unit_test(test_fit_verdict_names_friction_when_the_beads_are_cold),
         cmocka_unit_test(test_fit_verdict_names_the_temperature_when_it_is_off),
