@@ -38,9 +38,8 @@ enum status mf_target_sanity_check(const struct target_files *files, const struc
 /// so, too, which is why it is no fault); ρ d³ < 0.01 with d where g exceeds 1/2, the density of a
 /// dilute gas; dihedrals of beads that may stand in a line; and without units a temperature above
 /// 50, which may be in kelvins; of molecules a mean g of all beads that ends more than 3 % and
-/// three times its scatter away from 1, or that of the
-/// only pair type of one kind of molecules that does so. Fails: NO_MEMORY. Tested:
-/// test_target_sanity.
+/// three times its scatter away from 1, or that of the only pair type of one kind of molecules that
+/// does so. Fails: NO_MEMORY. Tested: test_target_sanity.
 enum status mf_target_sanity_tell(const struct target_files *files, const struct scene *scene,
                                   const struct target_sanity_listener *listener) MUST_USE;
 

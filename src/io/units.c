@@ -64,8 +64,8 @@ static int find_dimensions(const struct json_object *scene) {
     return dimensions == 2 || mf_json_numbers(scene, "box", box, 3) == 2 ? 2 : 3;
 }
 
-/// The edge of a cube, or square, that holds three of the beads. Those of molecules overlap, so that
-/// their number does not tell their size: with them, and if there is no number, it is 1 nm.
+/// The edge of a cube, or square, that holds three of the beads. Those of molecules overlap, so
+/// that their number does not tell their size: with them, and if there is no number, it is 1 nm.
 static double find_length(const struct json_object *scene, double beads, int kind) {
     double box[3], volume = 1, density;
     const int edges = mf_json_numbers(scene, "box", box, 3);
