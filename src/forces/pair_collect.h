@@ -27,9 +27,9 @@ struct pair_batch {
 struct pair_scene {
     const struct pair_law *law;
     struct particles *particles;
-    struct pair_sums *sums;
-    uint32_t *counts;      ///< of the histogram, or NULL
-    double (*transfer)[3]; ///< of this part, or NULL
+    struct pair_sums *sums; ///< NULL: not wanted
+    uint32_t *counts;       ///< of the histogram, or NULL
+    double (*transfer)[3];  ///< of this part, or NULL
     uint64_t step;
     struct pair_box box;
     REAL cutoff2, near_cutoff2; ///< squared: of the law, of its dissipative part

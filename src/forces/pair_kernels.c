@@ -24,14 +24,14 @@ static pair_kernels *choose_set(bool is_double) {
     }
 }
 
-static pair_kernel choose(const struct pair_law *law, int dimensions, enum pair_wants wants) {
+static pair_kernel choose(const struct pair_law *law, int dimensions) {
     const int conservative = law->potential != NULL;
     const enum pair_friction friction = law->omega == NULL ? PAIR_NO_FRICTION
                                         : law->friction    ? PAIR_KEEPS_FRICTION
                                                            : PAIR_ADDS_FRICTION;
     pair_kernels *kernels = choose_set(law->precision == PAIR_DOUBLE);
-    return (*kernels)[dimensions - 2][conservative][friction][wants]
-                     [composition_is_mixed(&law->composition)];
+    return (
+        *kernels)[dimensions - 2][conservative][friction][composition_is_mixed(&law->composition)];
 }
 
 static void clear_forces(void *context, size_t begin, size_t end) {
@@ -53,14 +53,15 @@ void mf_pair_clear(struct particles *particles) {
 void mf_pair_add(const struct pair_law *law, struct particles *particles,
                  const struct neighbours *neighbours, uint64_t step, enum pair_wants wants,
                  struct pair_sums *sums) {
-    const pair_kernel kernel = choose(law, particles->box.dimensions, wants);
+    const pair_kernel kernel = choose(law, particles->box.dimensions);
     const int parts = kernel ? neighbours->parts : 0, threads = particles->threads;
     struct pair_sums part_sums[NEIGHBOURS_MOST_PARTS] = {{0}};
     // A part adds to its own particles and to those of the next one: even parts never meet.
     for (int first = 0; first < 2; first++) {
 #pragma omp parallel for schedule(dynamic) num_threads(threads) if (threads > 1)
         for (int p = first; p < parts; p += 2)
-            kernel(law, particles, neighbours, p, step, &part_sums[p]);
+            kernel(law, particles, neighbours, p, step,
+                   wants == PAIR_FORCES_AND_SUMS ? &part_sums[p] : NULL);
     }
     mf_parallel_for(particles->count, threads, gather_forces, particles);
     if (sums == NULL)

@@ -18,9 +18,9 @@ enum pair_friction {
 
 typedef void (*pair_kernel)(PAIR_KERNEL_ARGUMENTS);
 
-/// Adds the forces of the pairs of one part of the list to kernel_force, and their sums to `sums`.
-/// [dimensions − 2][potential][friction][sums][mixed]
-typedef const pair_kernel pair_kernels[2][2][PAIR_FRICTIONS][2][2];
+/// Adds the forces of the pairs of one part of the list to kernel_force, and their sums to `sums`
+/// if it is not NULL. [dimensions − 2][potential][friction][mixed]
+typedef const pair_kernel pair_kernels[2][2][PAIR_FRICTIONS][2];
 
 extern pair_kernels mf_pair_portable, mf_pair_avx2, mf_pair_avx512;
 extern pair_kernels mf_pair_portable_double, mf_pair_avx2_double, mf_pair_avx512_double;

@@ -15,10 +15,10 @@
 #include "pair_kernels.h"
 #include "pair_steps.h"
 
-/// The forces of the first `count` pairs of a batch.
+/// The forces of the first `count` pairs of a batch, and their sums if the scene wants them.
 INLINE void pair_evaluate(struct pair_batch *batch, int count, const struct pair_scene *scene,
                           const int dim, const bool conservative, const enum pair_friction friction,
-                          const bool wants_sums, const bool mixed) {
+                          const bool mixed) {
     const struct pair_law *law = scene->law;
     struct pair_columns columns;
     if (mixed)
@@ -26,8 +26,10 @@ INLINE void pair_evaluate(struct pair_batch *batch, int count, const struct pair
     pair_distances(&columns, batch, count, scene, dim, conservative, friction, mixed);
     if (scene->counts)
         pair_count(&columns, count, scene, mixed);
-    if (conservative)
-        pair_conservative(&columns, count, scene, wants_sums, mixed);
+    if (conservative && scene->sums)
+        pair_conservative(&columns, count, scene, true, mixed);
+    else if (conservative)
+        pair_conservative(&columns, count, scene, false, mixed);
     if (friction == PAIR_ADDS_FRICTION) {
         pair_velocities(&columns, batch, count, scene->particles->PAIR_MOTIONS, dim);
         pair_noise(&columns, count, law->seed, scene->step);
@@ -55,14 +57,17 @@ INLINE void pair_evaluate(struct pair_batch *batch, int count, const struct pair
     }
 }
 
+/// One out-of-line function an instance: inlined at each of its up to four callers, it took three
+/// times as long to compile, and ran no faster.
+typedef void pair_evaluator(struct pair_batch *batch, int count, const struct pair_scene *scene);
+
 /// Evaluate a full batch, and move what is beyond to the front.
 INLINE void pair_evaluate_full(struct pair_batch *batch, const struct pair_scene *scene,
-                               const int dim, const bool conservative,
-                               const enum pair_friction friction, const bool wants_sums,
-                               const bool mixed) {
+                               pair_evaluator *evaluate, const int dim,
+                               const enum pair_friction friction, const bool mixed) {
     if (batch->count < PAIR_BATCH)
         return;
-    pair_evaluate(batch, PAIR_BATCH, scene, dim, conservative, friction, wants_sums, mixed);
+    evaluate(batch, PAIR_BATCH, scene);
     batch->count -= PAIR_BATCH;
     for (int k = 0; k < PAIR_PIECE; k += LANES) { // always as many: predictable
         lanes_store_int(batch->i + k, lanes_load_int(batch->i + PAIR_BATCH + k));
@@ -80,17 +85,18 @@ INLINE void pair_evaluate_full(struct pair_batch *batch, const struct pair_scene
 
 /// Evaluate what is left. The last vector is filled up with pairs beyond the cutoff, without force.
 INLINE void pair_evaluate_rest(struct pair_batch *batch, const struct pair_scene *scene,
-                               const int dim, const bool conservative,
-                               const enum pair_friction friction, const bool wants_sums,
-                               const bool mixed) {
+                               pair_evaluator *evaluate) {
     pair_fill_up(batch, 2 * (REAL)sqrt(scene->cutoff2));
-    pair_evaluate(batch, batch->count, scene, dim, conservative, friction, wants_sums, mixed);
+    evaluate(batch, batch->count, scene);
 }
 
+/// @param[in] evaluate_near  of pairs that feel the whole law
+/// @param[in] evaluate_far   of those beyond the friction, which feel the potential alone
 INLINE void pair_loop(const struct pair_law *law, struct particles *particles,
                       const struct neighbours *neighbours, int part_number, uint64_t step,
-                      struct pair_sums *sums, const int dim, const bool conservative,
-                      const enum pair_friction friction, const bool wants_sums, const bool mixed) {
+                      struct pair_sums *sums, pair_evaluator *evaluate_near,
+                      pair_evaluator *evaluate_far, const int dim, const bool conservative,
+                      const enum pair_friction friction, const bool mixed) {
     const struct neighbours_part *part = &neighbours->part[part_number];
     const struct pair_histogram *histogram = law->histogram;
     const double cutoff = mf_pair_cutoff(law);
@@ -112,7 +118,6 @@ INLINE void pair_loop(const struct pair_law *law, struct particles *particles,
         scene.kept = &law->friction->end[part_number];
     if (mixed)
         scene.mixture = pair_mixture_of(law);
-    // Near pairs feel the whole law, far ones the potential alone.
     const bool has_far = conservative && friction != PAIR_NO_FRICTION && near_cutoff < cutoff;
     struct pair_batch near, far;
     near.count = far.count = 0;
@@ -121,61 +126,49 @@ INLINE void pair_loop(const struct pair_law *law, struct particles *particles,
         pair_collect(&near, &far, &scene, neighbours->list + k,
                      neighbours->owner + k / NEIGHBOURS_ROW, count, dim, has_far,
                      friction == PAIR_KEEPS_FRICTION || mixed, mixed);
-        pair_evaluate_full(&near, &scene, dim, conservative, friction, wants_sums, mixed);
+        pair_evaluate_full(&near, &scene, evaluate_near, dim, friction, mixed);
         if (has_far)
-            pair_evaluate_full(&far, &scene, dim, conservative, PAIR_NO_FRICTION, wants_sums,
-                               mixed);
+            pair_evaluate_full(&far, &scene, evaluate_far, dim, PAIR_NO_FRICTION, mixed);
     }
-    pair_evaluate_rest(&near, &scene, dim, conservative, friction, wants_sums, mixed);
+    pair_evaluate_rest(&near, &scene, evaluate_near);
     if (has_far)
-        pair_evaluate_rest(&far, &scene, dim, conservative, PAIR_NO_FRICTION, wants_sums, mixed);
+        pair_evaluate_rest(&far, &scene, evaluate_far);
 }
 
-/// An instance for one component and one for mixtures.
-#define PAIR_INSTANCE(name, dim, conservative, friction, wants_sums)                               \
-    static void name(PAIR_KERNEL_ARGUMENTS) {                                                      \
-        pair_loop(law, particles, neighbours, part, step, sums, dim, conservative, friction,       \
-                  wants_sums, false);                                                              \
+/// An instance, and how it evaluates; `far` is the instance without friction.
+#define PAIR_ONE(name, far, dim, conservative, friction, mixed)                                    \
+    static __attribute__((noinline)) void name##_evaluate(struct pair_batch *batch, int count,     \
+                                                          const struct pair_scene *scene) {        \
+        pair_evaluate(batch, count, scene, dim, conservative, friction, mixed);                    \
     }                                                                                              \
-    static void name##_mixed(PAIR_KERNEL_ARGUMENTS) {                                              \
-        pair_loop(law, particles, neighbours, part, step, sums, dim, conservative, friction,       \
-                  wants_sums, true);                                                               \
+    static void name(PAIR_KERNEL_ARGUMENTS) {                                                      \
+        pair_loop(law, particles, neighbours, part, step, sums, name##_evaluate, far##_evaluate,   \
+                  dim, conservative, friction, mixed);                                             \
     }
+/// An instance for one component and one for mixtures.
+#define PAIR_INSTANCE(name, far, dim, conservative, friction)                                      \
+    PAIR_ONE(name, far, dim, conservative, friction, false)                                        \
+    PAIR_ONE(name##_mixed, far##_mixed, dim, conservative, friction, true)
 #define PAIR_BOTH(name)                                                                            \
     { name, name##_mixed }
 
-/// All instances of a friction.
-#define PAIR_FRICTION_INSTANCES(set, friction)                                                     \
-    PAIR_INSTANCE(set##_2d, 2, false, friction, false)                                             \
-    PAIR_INSTANCE(set##_2d_s, 2, false, friction, true)                                            \
-    PAIR_INSTANCE(set##_2d_c, 2, true, friction, false)                                            \
-    PAIR_INSTANCE(set##_2d_cs, 2, true, friction, true)                                            \
-    PAIR_INSTANCE(set##_3d, 3, false, friction, false)                                             \
-    PAIR_INSTANCE(set##_3d_s, 3, false, friction, true)                                            \
-    PAIR_INSTANCE(set##_3d_c, 3, true, friction, false)                                            \
-    PAIR_INSTANCE(set##_3d_cs, 3, true, friction, true)
-#define PAIR_WITHOUT_POTENTIAL(set)                                                                \
-    { PAIR_BOTH(set), PAIR_BOTH(set##_s) }
-#define PAIR_WITH_POTENTIAL(set)                                                                   \
-    { PAIR_BOTH(set##_c), PAIR_BOTH(set##_cs) }
+/// All instances of a number of dimensions.
+#define PAIR_INSTANCES_OF(set, dim)                                                                \
+    PAIR_INSTANCE(set, set, dim, true, PAIR_NO_FRICTION)                                           \
+    PAIR_INSTANCE(set##_added, set, dim, false, PAIR_ADDS_FRICTION)                                \
+    PAIR_INSTANCE(set##_added_c, set, dim, true, PAIR_ADDS_FRICTION)                               \
+    PAIR_INSTANCE(set##_kept, set, dim, false, PAIR_KEEPS_FRICTION)                                \
+    PAIR_INSTANCE(set##_kept_c, set, dim, true, PAIR_KEEPS_FRICTION)
+#define PAIR_TABLE_OF(set)                                                                         \
+    {                                                                                              \
+        {{NULL}, PAIR_BOTH(set##_added), PAIR_BOTH(set##_kept)}, {                                 \
+            PAIR_BOTH(set), PAIR_BOTH(set##_added_c), PAIR_BOTH(set##_kept_c)                      \
+        }                                                                                          \
+    }
 
-/// All instances for one instruction set and precision, by name, and the table from which
-/// pair_kernels.c chooses.
+/// All instances for one instruction set and precision, and the table from which pair_kernels.c
+/// chooses.
 #define PAIR_INSTANCES(set)                                                                        \
-    PAIR_INSTANCE(set##_2d_c, 2, true, PAIR_NO_FRICTION, false)                                    \
-    PAIR_INSTANCE(set##_2d_cs, 2, true, PAIR_NO_FRICTION, true)                                    \
-    PAIR_INSTANCE(set##_3d_c, 3, true, PAIR_NO_FRICTION, false)                                    \
-    PAIR_INSTANCE(set##_3d_cs, 3, true, PAIR_NO_FRICTION, true)                                    \
-    PAIR_FRICTION_INSTANCES(set##_added, PAIR_ADDS_FRICTION)                                       \
-    PAIR_FRICTION_INSTANCES(set##_kept, PAIR_KEEPS_FRICTION)                                       \
-    const pair_kernel set[2][2][PAIR_FRICTIONS][2][2] = {                                          \
-        {{{{NULL}},                                                                                \
-          PAIR_WITHOUT_POTENTIAL(set##_added_2d),                                                  \
-          PAIR_WITHOUT_POTENTIAL(set##_kept_2d)},                                                  \
-         {PAIR_WITH_POTENTIAL(set##_2d), PAIR_WITH_POTENTIAL(set##_added_2d),                      \
-          PAIR_WITH_POTENTIAL(set##_kept_2d)}},                                                    \
-        {{{{NULL}},                                                                                \
-          PAIR_WITHOUT_POTENTIAL(set##_added_3d),                                                  \
-          PAIR_WITHOUT_POTENTIAL(set##_kept_3d)},                                                  \
-         {PAIR_WITH_POTENTIAL(set##_3d), PAIR_WITH_POTENTIAL(set##_added_3d),                      \
-          PAIR_WITH_POTENTIAL(set##_kept_3d)}}};
+    PAIR_INSTANCES_OF(set##_2d, 2)                                                                 \
+    PAIR_INSTANCES_OF(set##_3d, 3)                                                                 \
+    pair_kernels set = {PAIR_TABLE_OF(set##_2d), PAIR_TABLE_OF(set##_3d)};
