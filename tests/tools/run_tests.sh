@@ -4,8 +4,9 @@
 # run_tests.sh PROGRAM…: runs cmocka programs, as many at once as there are processors, or LANES of
 # them; one line a program with its seconds of processor time and on the wall, the whole output of
 # those that fail, the ten that worked longest, and the total of their tests. The exit status says
-# whether all passed. What a program has worked is kept beside it, as PROGRAM.seconds, and the next
-# time those that are not known or work longest begin first, so that no lane waits at the end.
+# whether all passed. What a program has worked is kept beside it, as PROGRAM.seconds or, with LONG
+# (tests/shared/length.h), as PROGRAM.long.seconds; the next time those that are not known or work
+# longest begin first, so that no lane waits at the end.
 set -u
 
 # Threads that spin while they wait for each other take 100 times as long on a busy machine.
@@ -51,7 +52,7 @@ run_program() {
     elif [ "$code" -gt 128 ]; then
         note=$(find_fault "$code" "$output")
     fi
-    [ "$f" -eq 0 ] && echo "$work" >"$1.seconds"
+    [ "$f" -eq 0 ] && echo "$work" >"$1${LONG:+.long}.seconds"
     echo "$p $f $s $work $1" >>"$2"
     {
         printf '%-6s %7s s work %7s s wall  %3d passed  %s%s\n' "$([ "$f" -eq 0 ] && echo ok || echo FAILED)" \
@@ -64,7 +65,7 @@ run_program() {
 # Prints the programs, each followed by a zero byte: longest first.
 in_order() {
     for program in "$@"; do
-        echo "$(cat "$program.seconds" 2>/dev/null || echo 1e9) $program"
+        echo "$(cat "$program${LONG:+.long}.seconds" 2>/dev/null || echo 1e9) $program"
     done | LC_ALL=C sort -s -g -r -k 1,1 | cut -d ' ' -f 2- | tr '\n' '\0'
 }
 
