@@ -4,9 +4,10 @@
 # make install        program, library, headers, figures' scripts, man page and completions of bash, to
 #                     PREFIX=/usr/local (and DESTDIR)
 # make docs           docs/reference.md, which tests compare with what the program prints
-# make test           builds and passes all tests
+# make test           builds and passes all tests, in their short form (minutes)
 # make check          unit, reference and command-line tests (minutes)
 # make check-physics  laws and exact limits (minutes)
+# make check-long     tests that have a longer form, in that (an hour)
 # make MPI=1 …        the program shares a fit among the processes of an MPI job
 # make check-mpi      such fits have the bits of a fit in one process
 # make check-live     the live view, also in a browser (minutes)
@@ -71,7 +72,7 @@ SHARED_LIBRARY = $(BUILD)/libmesofit.so.$(VERSION)
 MAN_PAGE   = $(BUILD)/mesofit.1
 COMPLETION = $(BUILD)/mesofit.bash
 
-.PHONY: all docs check check-physics check-stress asan tsan fuzz lint bench clean
+.PHONY: all docs check check-physics check-long check-stress asan tsan fuzz lint bench clean
 all: $(PROGRAM) mesofit $(SHARED_LIBRARY) $(MAN_PAGE) $(COMPLETION)
 
 mesofit: $(PROGRAM)
@@ -135,17 +136,25 @@ CLI       = $(patsubst %.c,$(BUILD)/%,$(wildcard tests/cli/test_*.c))
 PHYSICS   = $(patsubst %.c,$(BUILD)/%,$(wildcard tests/physics/test_*.c))
 STRESS    = $(patsubst %.c,$(BUILD)/%,$(wildcard tests/stress/test_*.c))
 SHARED    = $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/shared/*.c))
-# The longest first, so that no lane waits at the end.
+SHARED_ARCHIVE = $(BUILD)/tests/shared.a
+# Those that take longest as a rule come first, so that no lane waits at the end.
 TESTS     = $(PHYSICS) $(CLI) $(REFERENCE) $(UNIT)
+# Those with cases that are long, or longer, where tests/shared/length.h says so.
+LONG      = $(filter $(patsubst %.c,$(BUILD)/%,$(shell grep -l '"shared/length.h"' tests/*/test_*.c tests/unit/*/test_*.c)),$(TESTS))
 .SECONDARY: $(TESTS:=.o) $(STRESS:=.o) $(SHARED)
 
-# 250 programs of 33 MB are 8 GB; without what debuggers read of the library, an eighth.
+$(SHARED_ARCHIVE): $(SHARED)
+	@rm -f $@
+	@echo "ar $@"
+	$(AT)ar rcs $@ $^
+
+# Without what debuggers read of the library, which is most of a program.
 STRIP_TEST = $(if $(SANITIZE),,-Wl,--strip-debug)
 $(TESTS) $(STRESS): CFLAGS += -Itests
 $(filter $(BUILD)/tests/unit/live/%,$(UNIT)): $(LIVE)
-$(TESTS) $(STRESS): %: %.o $(SHARED) $(LIBRARY)
+$(TESTS) $(STRESS): %: %.o $(SHARED_ARCHIVE) $(LIBRARY)
 	@echo "ld $@"
-	$(AT)$(CC) $(LDFLAGS) $(STRIP_TEST) -o $@ $(filter %.o,$^) $(filter $(LIVE),$^) $(LIBRARY) -lcmocka $(if $(filter $(LIVE),$^),$(LIVE_LIBS)) $(LDLIBS)
+	$(AT)$(CC) $(LDFLAGS) $(STRIP_TEST) -o $@ $(filter %.o,$^) $(SHARED_ARCHIVE) $(filter $(LIVE),$^) $(LIBRARY) -lcmocka $(if $(filter $(LIVE),$^),$(LIVE_LIBS)) $(LDLIBS)
 
 .PHONY: test tests
 tests: all $(TESTS)
@@ -158,6 +167,9 @@ check: all $(UNIT) $(REFERENCE) $(CLI) check-install
 
 check-physics: all $(PHYSICS)
 	MESOFIT=$(abspath $(PROGRAM)) tests/tools/run_tests.sh $(PHYSICS)
+
+check-long: all $(LONG)
+	LONG=yes MESOFIT=$(abspath $(PROGRAM)) tests/tools/run_tests.sh $(LONG)
 
 # The live view: who looks changes nothing, and the page in a browser, if there is one (Debian:
 # chromium, chromium-driver, python3-selenium).

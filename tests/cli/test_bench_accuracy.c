@@ -7,6 +7,7 @@
 #include "shared/small_inputs.h"
 #include "shared/testing.h"
 
+#include <signal.h>
 #include <stdlib.h>
 
 /// Blank out the numbers of processor time in a table: columns 3 to 5, and comments.
@@ -129,14 +130,13 @@ static void test_interrupted_bench_leaves_nothing(void **state) {
     run_program(&result, &(struct run_program_how){0}, words);
     run_program_assert_code(&result, 2); // two scenes
     assert_contains(result.err, "usage: mesofit bench accuracy SCENE.json");
-    // In the foreground it sends one signal: of two the second would end the program at once.
-    assert_int_equal(
-        system("timeout --foreground -s INT 1 \"$MESOFIT\" bench accuracy small.json --time 1e5 "
-               "-o x.tsv >out.txt 2>err.txt; test $? = 124"),
-        0);
-    char *err = temporary_folder_read("err.txt");
-    assert_string_equal(err, "mesofit: interrupted\n");
-    free(err);
+    const struct run_program_how how = {
+        .interrupt_with = SIGINT, .interrupt_after = 0.3, .interrupt_from_start = true};
+    run_program(&result, &how,
+                (const char *const[]){"bench", "accuracy", "small.json", "--time", "1e5", "-o",
+                                      "x.tsv", NULL});
+    run_program_assert_code(&result, 130);
+    assert_string_equal(result.err, "mesofit: interrupted\n");
     assert_false(temporary_folder_exists("x.tsv"));
     run_program_assert_no_partial(".");
 }

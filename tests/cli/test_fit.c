@@ -7,6 +7,7 @@
 #include "shared/small_inputs.h"
 #include "shared/testing.h"
 
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -290,7 +291,7 @@ static void test_genetic_leaves_the_curves_of_its_last_generation(void **state) 
 
 static void test_interrupted_fit_says_so_and_refuses_other_settings(void **state) {
     static struct run_program_result result;
-    const struct run_program_how how = {.interrupt_after = 0.001};
+    const struct run_program_how how = {.interrupt_with = SIGINT};
     write_fit(*state, IMC ", \"particles\": 4000");
     run_program(&result, &how, (const char *const[]){"fit", "run.json", NULL});
     run_program_assert_code(&result, 130);

@@ -5,6 +5,7 @@
 #include "shared/small_inputs.h"
 #include "shared/testing.h"
 
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -102,7 +103,7 @@ static void test_fit_has_a_row_a_round_when_cmaes_is_asynchronous(void **state) 
 
 static void test_fit_ends_when_asynchronous_and_interrupted(void **state) {
     static struct run_program_result result;
-    const struct run_program_how how = {.interrupt_after = 0.001};
+    const struct run_program_how how = {.interrupt_with = SIGINT};
     write_inputs(*state, FIT(GENETIC));
     run_program(&result, &how, (const char *const[]){"fit", "run.json", "--threads", "3", NULL});
     run_program_assert_code(&result, 130);

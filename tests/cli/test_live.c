@@ -5,6 +5,7 @@
 #include "shared/small_inputs.h"
 #include "shared/testing.h"
 
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -63,15 +64,14 @@ static void test_what_cannot_be_shown_is_refused_in_one_line(void **state) {
     small_inputs_write(folder, "scene.json", small_inputs_scene, NULL, NULL);
     small_inputs_write(folder, "broken.json", "{", NULL, NULL);
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-        run_program(&result, &(struct run_program_how){.time_limit = 20}, cases[k].words);
+        run_program(&result, &(struct run_program_how){0}, cases[k].words);
         run_program_assert_refused(&result, ".", cases[k].part, 1,
                                    (const char *const[]){cases[k].part, NULL});
     }
 }
 
 static void test_page_without_a_run_ends_well_with_ctrl_c(void **state) {
-    const struct run_program_how how = {
-        .interrupt_after = 0.5, .interrupt_from_start = true, .time_limit = 20};
+    const struct run_program_how how = {.interrupt_with = SIGINT};
     (void)state;
     if (!has_live())
         skip();

@@ -10,6 +10,7 @@
 #include "shared/testing.h"
 
 #include <math.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -222,7 +223,7 @@ static void test_measure_writes_what_it_has_when_it_is_stopped(void **state) {
     (void)state;
     read_frames();
     write_long("long.xtc");
-    const struct run_program_how how = {.interrupt_after = 0.2};
+    const struct run_program_how how = {.interrupt_with = SIGINT, .interrupt_after = 0.2};
     run_program(&result, &how,
                 (const char *const[]){"measure", "long.xtc", "-s", gro, "-o", "stopped",
                                       "--threads", "1", NULL});

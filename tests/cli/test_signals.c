@@ -55,7 +55,7 @@ static int shell(const char *line) {
 /// `head` takes one line of the progress and goes.
 static void test_a_run_whose_pipe_is_closed_is_saved(void **state) {
     write_long_scene(*state);
-    shell("{ timeout 60 \"$MESOFIT\" simulate scene.json; echo $? > code; } 2>&1 | head -1 > "
+    shell("{ timeout 600 \"$MESOFIT\" simulate scene.json; echo $? > code; } 2>&1 | head -1 > "
           "/dev/null");
     char *code = temporary_folder_read("code");
     assert_int_equal(atoi(code), INTERRUPTED);
@@ -68,8 +68,8 @@ static void test_a_hangup_that_is_ignored_stays_ignored(void **state) {
     small_inputs_write(*state, "scene.json", small_inputs_scene, "\"samples\": 4",
                        "\"samples\": 2000");
     assert_int_equal(
-        shell("trap '' HUP; \"$MESOFIT\" simulate scene.json --quiet & p=$!; sleep 0.2; "
-              "kill -HUP $p; wait $p"),
+        shell("trap '' HUP; \"$MESOFIT\" simulate scene.json --quiet & p=$!; "
+              "until [ -e out/used.json ]; do sleep 0.01; done; kill -HUP $p; wait $p"),
         0);
 }
 
@@ -79,7 +79,7 @@ static void test_a_simulation_is_saved_before_its_first_step(void **state) {
     write_long_scene(*state);
     shell("\"$MESOFIT\" simulate scene.json --quiet & p=$!; "
           "while [ ! -e out/checkpoint.bin ]; do sleep 0.01; done; kill -9 $p; wait $p");
-    const struct run_program_how how = {.interrupt_after = 0.01};
+    const struct run_program_how how = {.interrupt_with = SIGINT, .interrupt_after = 0.01};
     run_program(&result, &how, (const char *const[]){"simulate", "scene.json", "--resume", NULL});
     run_program_assert_code(&result, INTERRUPTED);
 }

@@ -8,6 +8,7 @@
 #include "shared/small_scenes.h"
 #include "shared/testing.h"
 
+#include <signal.h>
 #include <stdlib.h>
 
 static const char flat[] =
@@ -125,7 +126,7 @@ static void test_interrupted_nve_goes_on_with_the_same_bits(void **state) {
 
 static void test_interrupted_run_says_so_and_refuses_other_settings(void **state) {
     static struct run_program_result result;
-    const struct run_program_how how = {.interrupt_after = 0.001};
+    const struct run_program_how how = {.interrupt_with = SIGINT};
     small_scenes_write(*state, small_scenes_dpd, "\"samples\": 20", "\"samples\": 100000");
     run_program(&result, &how, (const char *const[]){"simulate", "scene.json", NULL});
     run_program_assert_code(&result, 130);

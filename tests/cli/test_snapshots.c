@@ -7,6 +7,7 @@
 #include "shared/small_scenes.h"
 #include "shared/testing.h"
 
+#include <signal.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -37,7 +38,7 @@ static void test_interrupted_run_leaves_the_same_snapshots(void **state) {
 /// A run that was killed after its checkpoint has written more than the checkpoint knows of.
 static void test_killed_run_leaves_the_same_snapshots(void **state) {
     static struct run_program_result result;
-    const struct run_program_how how = {.interrupt_after = 0.001};
+    const struct run_program_how how = {.interrupt_with = SIGINT};
     small_scenes_write(*state, small_scenes_dpd, plan,
                        SNAPSHOTS "\"measure\": {\"equilibration\": 0, \"samples\": 400, "
                                  "\"every\": 10}");

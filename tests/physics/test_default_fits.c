@@ -26,7 +26,7 @@ static void fit(void **state, const char *target, const char *scene, char summar
     snprintf(run, sizeof run, "%s",
              temporary_folder_write(*state, "run.json", text, (size_t)length));
     snprintf(out, sizeof out, "%s", temporary_folder_file(*state, "out"));
-    run_program(&result, &(struct run_program_how){.time_limit = 1800},
+    run_program(&result, &(struct run_program_how){.work_limit = 1800},
                 (const char *const[]){"fit", run, "-o", out, "--quiet", NULL});
     run_program_assert_code(&result, 0);
     snprintf(summary, 1024, "%.1000s/summary.json", out);

@@ -93,7 +93,7 @@ static double mean_of(const char *file, int column, double *error) {
 /// 0.0024 apart, is asked for by what the export promises.
 static void test_lammps_has_our_water(void **state) {
     static struct run_program_result result;
-    const struct run_program_how how = {.time_limit = 1800};
+    const struct run_program_how how = {.work_limit = 1800};
     skip_without_lammps();
     write_scene(*state);
     run_program(&result, &how, (const char *const[]){"simulate", "scene.json", "-o", "out", NULL});

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#define _GNU_SOURCE // ppoll
 #include "shared/run_program.h"
 
 #include "base/clock.h"
@@ -21,12 +22,17 @@ extern char **environ;
 
 enum { MOST_WORDS = 32 };
 
+static const double usual_work_limit = 300, longest_idle = 600; // [s]
+
 /// A running program.
 struct child {
     pid_t process;
-    int out, err; ///< ends to read from; −1 once at its end
+    clockid_t work; ///< its processor time
+    int out, err;   ///< ends to read from; −1 once at its end
     size_t out_length, err_length;
-    double started, first_words; ///< clock [s]; first_words 0: none yet
+    double started;     ///< clock [s]
+    double first_words; ///< what it had worked by then [s]; negative: none yet
+    double seen, since; ///< what it had worked when last seen to do so [s], and when that was
 };
 
 static const char *program_path(void) {
@@ -97,7 +103,9 @@ static struct child start(const struct run_program_how *how, const char *const *
         posix_spawn_file_actions_addclose(&actions, err[end]);
     }
     init_attributes(&attributes);
-    struct child child = {.out = out[0], .err = err[0], .started = clock_seconds()};
+    const double now = clock_seconds();
+    struct child child = {
+        .out = out[0], .err = err[0], .started = now, .since = now, .first_words = -1};
     const int error = spawn_limited(&child.process, how->largest_file, &actions, &attributes, line);
     posix_spawn_file_actions_destroy(&actions);
     posix_spawnattr_destroy(&attributes);
@@ -105,6 +113,7 @@ static struct child start(const struct run_program_how *how, const char *const *
     close(err[1]);
     if (error != 0)
         fail_msg("cannot start %s: %s", line[0], strerror(error));
+    assert_int_equal(clock_getcpuclockid(child.process, &child.work), 0);
     for (int k = 0; line[k]; k++)
         free(line[k]);
     return child;
@@ -124,55 +133,81 @@ static void take(int *file, char *text, size_t size, size_t *length) {
     *file = -1;
 }
 
+/// Processor time [s] that it has had, also after its end until it is waited for.
+static double find_work(const struct child *child) {
+    struct timespec now;
+    assert_int_equal(clock_gettime(child->work, &now), 0);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
 /// Wait at most so long [s], and never longer than ten milliseconds, for something to read, and
 /// take it.
 static void listen_to(struct child *child, double seconds, struct run_program_result *result) {
     struct pollfd ends[] = {{.fd = child->out, .events = POLLIN},
                             {.fd = child->err, .events = POLLIN}};
-    if (poll(ends, 2, (int)(1e3 * fmin(fmax(seconds, 0), 0.01))) <= 0)
+    const struct timespec most = {.tv_nsec = (long)(1e9 * fmin(fmax(seconds, 0), 0.01))};
+    if (ppoll(ends, 2, &most, NULL) <= 0)
         return;
     if (ends[0].revents)
         take(&child->out, result->out, sizeof result->out, &child->out_length);
     if (ends[1].revents)
         take(&child->err, result->err, sizeof result->err, &child->err_length);
-    if (child->err_length > 0 && child->first_words == 0)
-        child->first_words = clock_seconds();
+    if (child->out_length + child->err_length > 0 && child->first_words < 0)
+        child->first_words = find_work(child);
 }
 
-static void kill_if_late(const struct child *child, const struct run_program_how *how,
-                         const struct run_program_result *result) {
-    const double limit = how->time_limit > 0 ? how->time_limit : 120;
-    if (clock_seconds() - child->started < limit)
-        return;
+static void give_up(const struct child *child, const char *what, double seconds,
+                    const struct run_program_result *result) {
     kill(child->process, SIGKILL);
     waitpid(child->process, NULL, 0);
-    fail_msg("the program has not ended after %g s; it says: %s", limit, result->err);
+    fail_msg("the program has %s for %g s; it says: %s", what, seconds, result->err);
 }
 
-/// [s]; infinite before its first words, if they are what counts.
-static double until_interruption(const struct child *child, const struct run_program_how *how) {
-    const double since = how->interrupt_from_start ? child->started : child->first_words;
-    return since > 0 ? since + how->interrupt_after - clock_seconds() : HUGE_VAL;
+/// A program that works too long is stopped, and one that waits for what never comes.
+static void kill_if_lost(struct child *child, double work, const struct run_program_how *how,
+                         const struct run_program_result *result) {
+    const double limit = how->work_limit > 0 ? how->work_limit : usual_work_limit;
+    if (work > limit)
+        give_up(child, "worked", limit, result);
+    if (work > child->seen) {
+        child->seen = work;
+        child->since = clock_seconds();
+    } else if (clock_seconds() - child->since > longest_idle) {
+        give_up(child, "done nothing", longest_idle, result);
+    }
+}
+
+/// Work that is left before it is interrupted [s]; infinite before its first words, if they are
+/// what counts.
+static double until_interruption(const struct child *child, double work,
+                                 const struct run_program_how *how) {
+    const double since = how->interrupt_from_start ? 0 : child->first_words;
+    return since >= 0 ? since + how->interrupt_after - work : HUGE_VAL;
 }
 
 void run_program(struct run_program_result *result, const struct run_program_how *how,
                  const char *const *words) {
     *result = (struct run_program_result){0};
     struct child child = start(how, words);
-    bool interrupted = !(how->interrupt_after > 0);
+    bool interrupted = how->interrupt_with == 0;
     int status;
     while (child.out >= 0 || child.err >= 0) {
-        const double left = interrupted ? HUGE_VAL : until_interruption(&child, how);
+        const double work = find_work(&child);
+        const double left = interrupted ? HUGE_VAL : until_interruption(&child, work, how);
         if (left <= 0) {
             interrupted = true;
-            kill(child.process, how->interrupt_with ? how->interrupt_with : SIGINT);
+            kill(child.process, how->interrupt_with);
         }
-        listen_to(&child, left, result);
-        kill_if_late(&child, how, result);
+        // Threads may work side by side, so that the time is over sooner.
+        listen_to(&child, fmax(left / 4, 1e-5), result);
+        kill_if_lost(&child, work, how, result);
     }
+    siginfo_t ended;
+    assert_int_equal(waitid(P_PID, (id_t)child.process, &ended, WEXITED | WNOWAIT), 0);
+    result->worked = find_work(&child);
+    result->seconds = clock_seconds() - child.started;
     assert_int_equal(waitpid(child.process, &status, 0), child.process);
     result->code = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
-    result->seconds = clock_seconds() - child.started;
 }
 
 void run_program_assert_code(const struct run_program_result *result, int expected) {
@@ -224,12 +259,13 @@ int run_program_in_pieces(int code, const char *const *words) {
     resumed[count] = "--resume";
     for (double first = longest; first > shortest; first /= 3) {
         for (int piece = 0; piece < MOST_PIECES; piece++) {
-            const struct run_program_how how = {.interrupt_after = first * (1 << piece)};
+            const struct run_program_how how = {.interrupt_with = SIGINT,
+                                                .interrupt_after = first * (1 << piece)};
             run_program(&result, &how, piece ? resumed : begun);
             if (result.code != INTERRUPTED) {
                 run_program_assert_code(&result, code);
                 if (piece == 0)
-                    break; // this machine is faster than the signal
+                    break; // it was faster than the signal
                 return piece;
             }
             assert_contains(result.err, "--resume");

@@ -8,23 +8,26 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/// How to run it; zeros are the plain way.
+/// How to run it; zeros are the plain way. Its time is the processor time of all its threads: what
+/// a test does is the same on a busy machine.
 struct run_program_how {
     long largest_file;         ///< RLIMIT_FSIZE of the program [bytes]; 0: none
-    double interrupt_after;    ///< SIGINT so long after its first words on stderr [s]; 0: never
+    int interrupt_with;        ///< signal that it is sent; 0: none
+    double interrupt_after;    ///< when it has worked so long since its first words [s]
     bool interrupt_from_start; ///< count that time from its start
-    int interrupt_with;        ///< this signal instead of SIGINT; 0: SIGINT
-    double time_limit;         ///< the test fails if it takes longer [s]; 0: two minutes
+    double work_limit;         ///< the test fails if it works longer [s]; 0: five minutes
 };
 
 struct run_program_result {
     int code;       ///< exit code, or −n if it died of signal n
-    double seconds; ///< that it took
+    double seconds; ///< that it took, by the clock on the wall
+    double worked;  ///< processor time [s]
     char out[65536], err[65536];
 };
 
-/// Run the program with `words`, NULL-terminated, and wait for its end. A text that does not fit
-/// and a program that cannot be started fail the test.
+/// Run the program with `words`, NULL-terminated, and wait for its end. A text that does not fit, a
+/// program that cannot be started, and one that has not worked at all for ten minutes fail the
+/// test.
 void run_program(struct run_program_result *result, const struct run_program_how *how,
                  const char *const *words);
 
@@ -48,7 +51,7 @@ void run_program_assert_refused(const struct run_program_result *result, const c
                                 const char *what, size_t lines, const char *const *words);
 
 /// Run with `words`, interrupt it soon after its first words, go on with --resume for twice as
-/// long, and so on until it ends by itself; its exit code must be `code`. A machine that is done
+/// long, and so on until it ends by itself; its exit code must be `code`. A program that is done
 /// before the first signal gets the signal sooner. Returns how many runs were interrupted, at least
 /// one.
 int run_program_in_pieces(int code, const char *const *words);

@@ -138,13 +138,13 @@ static void test_a_run_killed_at_random_goes_on_with_the_same_bits(void **state)
     for (int k = 0; k < KINDS; k++) {
         write_inputs(*state, &kinds[k]);
         const int expected = run_whole(&kinds[k]);
-        const double seconds = result.seconds;
+        const double work = result.worked;
         for (int time = 0; time < TIMES; time++) {
             char out[32];
             snprintf(out, sizeof out, "random-%d", time);
-            const struct run_program_how how = {.interrupt_after = seconds * (time + 0.5) / TIMES,
-                                                .interrupt_from_start = true,
-                                                .interrupt_with = SIGKILL};
+            const struct run_program_how how = {.interrupt_with = SIGKILL,
+                                                .interrupt_after = work * (time + 0.5) / TIMES,
+                                                .interrupt_from_start = true};
             run_program(
                 &result, &how,
                 (const char *const[]){kinds[k].verb, "run.json", "-o", out, "--quiet", NULL});

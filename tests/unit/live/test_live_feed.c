@@ -41,6 +41,9 @@ static void test_listener_gets_the_newest_of_each_once(void **state) {
     free(events);
 }
 
+/// What a listener waits that is not woken [s]; half of it passes on no machine, however busy.
+static const double patience = 600;
+
 static void *publish_late(void *context) {
     (void)context;
     nanosleep(&(struct timespec){.tv_nsec = 100000000}, NULL);
@@ -54,14 +57,14 @@ static void test_listener_is_woken_by_news_and_by_the_end(void **state) {
     (void)state;
     const double begun = clock_seconds();
     pthread_create(&thread, NULL, publish_late, NULL);
-    char *events = mf_live_feed_wait(&feed, &seen, 30);
-    assert_true(clock_seconds() - begun < 10);
+    char *events = mf_live_feed_wait(&feed, &seen, patience);
+    assert_true(clock_seconds() - begun < patience / 2);
     assert_contains(events, "event: progress");
     free(events);
     pthread_join(thread, NULL);
     mf_live_feed_close(&feed);
-    assert_null(mf_live_feed_wait(&feed, &seen, 30));
-    assert_true(clock_seconds() - begun < 10);
+    assert_null(mf_live_feed_wait(&feed, &seen, patience));
+    assert_true(clock_seconds() - begun < patience / 2);
 }
 
 static void test_particles_are_wanted_for_a_second_and_given_once(void **state) {

@@ -9,6 +9,7 @@
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/prctl.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <time.h>
@@ -43,7 +44,7 @@ static pid_t begin_other(char *path) {
     const pid_t child = fork();
     if (child == 0) {
         struct live_scratch scratch;
-        alarm(20); // should the test have ended without killing it
+        prctl(PR_SET_PDEATHSIG, SIGKILL); // should the test have ended without killing it
         mf_live_scratch_make(&scratch);
         if (put_file(scratch.path) && write(ends[1], scratch.path, sizeof scratch.path) > 0)
             pause();

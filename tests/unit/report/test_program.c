@@ -70,11 +70,11 @@ static void test_program_run_stops_what_takes_too_long(void **state) {
         const double begun = clock_seconds();
         assert_fails(mf_program_run("/", words, PROGRAM_EVERYTHING, 0.3, text, sizeof text),
                      STATUS_IO, "sh had not ended after 0.3 s and was stopped");
-        assert_true(clock_seconds() - begun < 60);
+        assert_true(clock_seconds() - begun < 500);
     }
     const pid_t left = (pid_t)atol(text);
     assert_true(left > 1);
-    for (int wait = 0; wait < 1000 && kill(left, 0) == 0; wait++)
+    for (int wait = 0; wait < 50000 && kill(left, 0) == 0; wait++)
         nanosleep(&(struct timespec){.tv_nsec = 10000000}, NULL);
     char about[64];
     snprintf(about, sizeof about, "/proc/%ld/stat", (long)left);
