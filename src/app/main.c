@@ -156,6 +156,10 @@ static enum status find_command(const char *name, const struct command **command
         }
     }
     mf_nearest_hint(name, names, count, hint, sizeof hint);
+    if (strcmp(name, "watch") == 0)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "there is no command \"watch\" any more: progress.json in the "
+                              "folder of a run says how far it is, mesofit live shows its curves");
     return mf_status_fail(STATUS_BAD_INPUT, "unknown command \"%s\"; %s", name, hint);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// --live, live and watch from the command line; tests/live has what a page does with them.
+// --live and live from the command line; tests/live has what a page does with them.
 #include "shared/run_program.h"
 #include "shared/small_inputs.h"
 #include "shared/testing.h"
@@ -53,9 +53,6 @@ static void test_what_cannot_be_shown_is_refused_in_one_line(void **state) {
         {{"simulate", "scene.json", "--live=x"}, "1 to 65535"},
         {{"simulate", "scene.json", "--live=-1"}, "1 to 65535"},
         {{"simulate", "scene.json", "--lives"}, "--live"},
-        {{"watch", "missing"}, "missing"},
-        {{"watch", "scene.json"}, "not a folder"},
-        {{"watch", "."}, "needs a terminal"},
     };
     struct temporary_folder *folder = *state;
     if (!has_live())
