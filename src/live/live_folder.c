@@ -9,6 +9,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <stdlib.h>
+#include <stdatomic.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -156,10 +157,20 @@ static enum status give_name(int folder, const char *partial, const char *name, 
 static enum status write_in(int folder, const char *name, const void *bytes, size_t size,
                             bool replace) {
     char partial[64];
-    snprintf(partial, sizeof partial, ".live.%ld" OUTPUT_PARTIAL, (long)getpid());
-    unlinkat(folder, partial, 0);
-    const int file =
-        openat(folder, partial, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+/// A new file of a name that nothing has: each connection writes from a thread of its own, and a
+/// program before this one may have had the same number.
+static int open_partial(int folder, char *partial, size_t size) {
+    static atomic_uint count;
+    int file;
+    do {
+        snprintf(partial, size, ".live.%ld.%u" OUTPUT_PARTIAL, (long)getpid(),
+                 atomic_fetch_add(&count, 1));
+        file = openat(folder, partial, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+    } while (file < 0 && errno == EEXIST);
+    return file;
+}
+
+    const int file = open_partial(folder, partial, sizeof partial);
     if (file < 0)
         return mf_status_fail(STATUS_IO, "%.200s: %s", name, strerror(errno));
     enum status status = write_bytes(file, name, bytes, size);
