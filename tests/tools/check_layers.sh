@@ -56,6 +56,9 @@ faults=$(
     only_in src/report/program.c '\b(fork|vfork|popen|system|exec[lv]p?e?|posix_spawnp?) ?\(' \
         'starting a program'
 )
+    only_in src/base/condition.c 'pthread_(cond|mutex|rwlock)_timed|sem_timedwait|CLOCK_REALTIME|gettimeofday|\btime ?\((NULL|0|&)' \
+        'waiting until a time, by a clock that is never set back,'
+    only_in src/base/terminal.c '"[^"]*\\(033|x1[bB]|e\[)' 'a command of the terminal'
 if [ -n "$faults" ]; then
     printf 'layers:\n%s\n' "$faults"
     exit 1
