@@ -2,14 +2,15 @@
 #define _GNU_SOURCE // scandirat
 #include "live/live_folder.h"
 
+#include "base/visible.h"
 #include "io/json_write.h"
 #include "io/output.h"
 
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
-#include <stdlib.h>
 #include <stdatomic.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -18,9 +19,11 @@
 static const char *const endings[] = {".json", ".tsv", ".txt", ".csv", ".xvg", ".dat", ".pot"};
 
 static bool is_plain_name(const char *name, size_t length) {
-    for (size_t k = 0; k < length; k++)
-        if ((unsigned char)name[k] < ' ' || name[k] == 127 || name[k] == '\\')
+    for (size_t k = 0, bytes; k < length; k += bytes) {
+        bytes = mf_visible_character(name + k, length - k);
+        if (bytes == 0 || (unsigned char)name[k] < ' ' || name[k] == 127 || name[k] == '\\')
             return false;
+    }
     return length > 0 && length <= 255 && name[0] != '.';
 }
 
@@ -154,9 +157,6 @@ static enum status give_name(int folder, const char *partial, const char *name, 
     return failed ? mf_status_fail(STATUS_IO, "%.200s: %s", name, strerror(errno)) : STATUS_OK;
 }
 
-static enum status write_in(int folder, const char *name, const void *bytes, size_t size,
-                            bool replace) {
-    char partial[64];
 /// A new file of a name that nothing has: each connection writes from a thread of its own, and a
 /// program before this one may have had the same number.
 static int open_partial(int folder, char *partial, size_t size) {
@@ -170,6 +170,9 @@ static int open_partial(int folder, char *partial, size_t size) {
     return file;
 }
 
+static enum status write_in(int folder, const char *name, const void *bytes, size_t size,
+                            bool replace) {
+    char partial[64];
     const int file = open_partial(folder, partial, sizeof partial);
     if (file < 0)
         return mf_status_fail(STATUS_IO, "%.200s: %s", name, strerror(errno));
