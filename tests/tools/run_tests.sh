@@ -6,7 +6,8 @@
 # exit status says whether all passed.
 set -u
 
-LC_ALL=C # a decimal point in EPOCHREALTIME
+# Tests run under the user's locale; what is reckoned here has a decimal point.
+export LOCALE_OF_TESTS=${LC_ALL-} LC_ALL=C.UTF-8
 # Threads that spin while they wait for each other take 100 times as long on a busy machine.
 export OMP_WAIT_POLICY=passive
 
@@ -37,7 +38,7 @@ run_program() {
     local begin=$EPOCHREALTIME code p f s note="" output seconds
     output=$(mktemp) || exit 1
     # The braces keep the shell's own word about a crash off the screen.
-    { "$1" >"$output" 2>&1; } 2>/dev/null
+    { LC_ALL=$LOCALE_OF_TESTS "$1" >"$output" 2>&1; } 2>/dev/null
     code=$?
     seconds=$(awk "BEGIN { print $EPOCHREALTIME - $begin }")
     read -r p f s <<<"$(count_tests "$output")"
