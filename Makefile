@@ -11,7 +11,8 @@
 # make MPI=1 …        the program shares a fit among the processes of an MPI job
 # make check-mpi      such fits have the bits of a fit in one process
 # make check-live     the live view, also in a browser (minutes)
-# make check-stress   time steps, friction, tables, sizes and lengths beyond the ordinary (minutes)
+# make check-stress   time steps, friction, tables, sizes and lengths beyond the ordinary; kills, a clock set
+#                     back, a German locale (minutes)
 # make asan           the whole test suite under address and undefined-behaviour sanitizers
 # make fuzz           damaged files, SECONDS=600 of them: every reader (libFuzzer, needs clang), whole runs
 # make tsan           tests of threads and a threaded simulation under the thread sanitizer
@@ -188,16 +189,19 @@ $(SHARE): $(BUILD)/tests/mpi/share.o $(RANKS) $(LIBRARY)
 check-mpi: all $(if $(shell command -v $(MPICC)),$(WITH_MPI) $(SHARE))
 	tests/tools/check_mpi.sh $(PROGRAM) $(WITH_MPI) $(SHARE) $(KILLS)
 
-# Kills a process at one of its renames: see tests/stress/test_kill.c.
-KILL_HOOK = $(BUILD)/tests/stress/hooks/kill_at.so
-$(KILL_HOOK): tests/stress/hooks/kill_at.c
+# Faults that are preloaded: a process is killed at one of its renames (tests/stress/test_kill.c), its
+# clock is set back (test_clock.c).
+KILL_HOOK  = $(BUILD)/tests/stress/hooks/kill_at.so
+CLOCK_HOOK = $(BUILD)/tests/stress/hooks/clock_back.so
+$(KILL_HOOK) $(CLOCK_HOOK): $(BUILD)/%.so: %.c
 	@mkdir -p $(@D)
 	@echo "cc $<"
 	$(AT)$(CC) -std=c11 -O1 -fPIC -shared $(WARN) -o $@ $< -ldl
 
-check-stress: all $(STRESS) $(KILL_HOOK)
+$(BUILD)/tests/stress/test_uploads: $(LIVE)
+check-stress: all $(STRESS) $(KILL_HOOK) $(CLOCK_HOOK)
 	$(MAKE) SECONDS=60 fuzz-programs
-	KILL_HOOK=$(abspath $(KILL_HOOK)) MESOFIT=$(abspath $(PROGRAM)) tests/tools/run_tests.sh $(STRESS)
+	KILL_HOOK=$(abspath $(KILL_HOOK)) CLOCK_HOOK=$(abspath $(CLOCK_HOOK)) MESOFIT=$(abspath $(PROGRAM)) tests/tools/run_tests.sh $(STRESS)
 
 # -Og: with -O1 GCC takes two to four times as long over the vector kernels, which are one large
 # function for each combination of constant arguments.

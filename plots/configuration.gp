@@ -55,12 +55,12 @@ shades = sprintf("BEGIN { n = split(\"%s\", t, \" \"); for (k = 2; k <= n; k += 
     shade[row] = %d ? turn - int(turn) + (turn < int(turn)) : type + 0 } ", types, layers, layers, layers - 1, angle, angle, angle)
 discs(layer) = "< " . both . sprintf("-v layer=%d '", layer) . places . shades . \
     sprintf("here(z[row]) { print $1, $2, %d ? $%d : %g, shade[row], z[row] }' ", radius, radius, size) . table . \
-    (dimensions == 3 ? " | LC_ALL=C sort -s -g -k 5" : "")
+    (dimensions == 3 ? " | sort -s -g -k 5" : "")
 # x, y and the way to the middle of the bond, the same shade, and the depth: half a bond from each bead.
 halves(layer) = "< " . both . sprintf("-v layer=%d '", layer) . places . shades . \
     "function half(a, b, c) { c = near(z[b] - z[a], Z) / 2; \
     if (here(z[a] + c / 2)) print x[a], y[a], near(x[b] - x[a], X) / 2, near(y[b] - y[a], Y) / 2, shade[a], z[a] + c / 2 } \
-    NR > FNR { half($1, $2); half($2, $1) }' " . tables . " | LC_ALL=C sort -s -g -k 6"
+    NR > FNR { half($1, $2); half($2, $1) }' " . tables . " | sort -s -g -k 6"
 # Each once more before, white and a little larger, where there are few enough to see it.
 outlined(layer) = discs(layer) . (rows <= 5000 ? " | awk '{ print $0, -1; print $0, 0 }'" : " | awk '{ print $0, 0 }'")
 rim = 0.3

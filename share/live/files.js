@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The working folder: look, open, edit, save, download.
-import { ask, download, getJson, getText, post } from "/server.js";
+import { ask, download, getJson, post } from "/server.js";
 
 const element = (name, more = {}, ...inside) => {
   const made = Object.assign(document.createElement(name), more);
@@ -14,6 +14,40 @@ const button = (text, act) => {
 };
 const sizeText = (bytes) => (bytes < 1000 ? `${bytes} B` : bytes < 1e6 ? `${(bytes / 1000).toFixed(1)} kB` : `${(bytes / 1e6).toFixed(1)} MB`);
 const join = (folder, name) => (folder ? folder + "/" + name : name);
+
+// Bytes of a file that are shown at most.
+const shownBytes = 200000;
+
+// The beginning of a file: no more is loaded than is shown.
+async function readBeginning(query) {
+  const reader = (await ask("file", query)).body.getReader(), pieces = [];
+  let size = 0;
+  for (;;) {
+    const { value, done } = await reader.read();
+    if (done || size + value.length > shownBytes) {
+      const bytes = new Uint8Array(await new Blob(done ? pieces : [...pieces, value]).slice(0, shownBytes).arrayBuffer());
+      await reader.cancel();
+      return { bytes, whole: done };
+    }
+    pieces.push(value);
+    size += value.length;
+  }
+}
+
+// A text and how its lines end, or why it cannot be edited: what is saved must have the bytes of before, but for the changes.
+function readText({ bytes, whole }) {
+  const decode = (name, fatal) => new TextDecoder(name, { fatal, ignoreBOM: true }).decode(bytes);
+  if (!whole)
+    return { text: decode("utf-8", false), why: `the first ${sizeText(shownBytes)} alone are shown` };
+  try {
+    const text = decode("utf-8", true), ends = [...new Set(text.match(/\r\n|\r|\n/g))];
+    if (ends.length > 1 || text.includes("\0"))
+      return { text, why: ends.length > 1 ? "its lines end in different ways" : "it has NUL bytes" };
+    return { text, end: ends[0] || "\n" };
+  } catch {
+    return { text: decode("windows-1252", false), why: "it is not UTF-8" };
+  }
+}
 
 export class Files {
   constructor(place, { open, fail, settings }) {
@@ -87,14 +121,16 @@ export class Files {
           return;
         this.view.replaceChildren(heading, picture);
       } else {
-        const text = await getText("file", { in: this.root, path: whole });
+        const { text, end, why } = readText(await readBeginning({ in: this.root, path: whole }));
         if (!isWanted())
           return;
-        const shown = element("textarea", { value: text.slice(0, 200000), spellcheck: false, readOnly: this.root !== "work" || text.length > 200000 });
+        const shown = element("textarea", { value: text, spellcheck: false, readOnly: this.root !== "work" || !end });
         shown.setAttribute("aria-label", "contents of " + name);
         this.view.replaceChildren(heading, shown);
-        if (!shown.readOnly)
-          this.view.append(button("save " + name, () => this.act(() => this.save(whole, shown.value, true))));
+        if (why)
+          this.view.append(element("p", { textContent: `Not to be edited here: ${why}.` }));
+        else if (!shown.readOnly)
+          this.view.append(button("save " + name, () => this.act(() => this.save(whole, shown.value.replaceAll("\n", end), true))));
       }
       this.view.scrollIntoView({ block: "nearest" });
     }, isWanted);

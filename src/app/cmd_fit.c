@@ -42,8 +42,9 @@ static enum status run_shared(const char *file, const struct command_line *line)
     own.quiet = own.quiet || !ranks_lead();
     const enum status status =
         line->own[LIVE] && mf_ranks_count() > 1
-            ? mf_status_fail(STATUS_BAD_INPUT, "--live is for a fit in one process; mesofit watch "
-                                               "looks at the folder of any")
+            ? mf_status_fail(STATUS_BAD_INPUT,
+                             "--live is for a fit in one process; progress.json in "
+                             "the folder of any says how far it is")
         : line->own[LIVE] ? mf_cmd_live_run(file, &own, line->own[LIVE])
                           : mf_fit_run(file, &own);
     mf_ranks_end();

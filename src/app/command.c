@@ -6,7 +6,7 @@
 #include <string.h>
 
 const struct command *const mf_command_list[] = {
-    &cmd_measure, &cmd_fit,     &cmd_export,   &cmd_simulate, &cmd_live, &cmd_watch,
+    &cmd_measure, &cmd_fit,     &cmd_export,   &cmd_simulate, &cmd_live,
     &cmd_plot,    &cmd_compare, &cmd_describe, &cmd_bench,    NULL,
 };
 

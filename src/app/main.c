@@ -6,6 +6,7 @@
 #include "base/nearest.h"
 #include "base/ranks.h"
 #include "base/fields.h"
+#include "base/terminal.h"
 #include "mesofit.h"
 #include "report/program.h"
 
@@ -155,6 +156,10 @@ static enum status find_command(const char *name, const struct command **command
             return STATUS_OK;
         }
     }
+    if (strcmp(name, "watch") == 0)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "there is no command \"watch\" any more: progress.json in the "
+                              "folder of a run says how far it is, mesofit live shows its curves");
     mf_nearest_hint(name, names, count, hint, sizeof hint);
     return mf_status_fail(STATUS_BAD_INPUT, "unknown command \"%s\"; %s", name, hint);
 }
@@ -232,7 +237,8 @@ int main(int count, char **words) {
     occupy_streams();
     install_handlers();
     mf_memory_keep();
-    const enum status status = finish_output(act(count, words));
+    const enum status begun = mf_terminal_begin();
+    const enum status status = finish_output(begun == STATUS_OK ? act(count, words) : begun);
     if (!ranks_lead())
         return 0; // rank 0 speaks for all
     if (status != STATUS_OK)

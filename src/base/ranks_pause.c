@@ -2,20 +2,16 @@
 #include "base/ranks_pause.h"
 
 #include "base/clock.h"
+#include "base/condition.h"
 
 #include <math.h>
-#include <time.h>
 
 /// Processor time of a task, as of the last few on this rank and, on rank 0, elsewhere [s].
 static double task_seconds;
 
 void mf_ranks_pause_init(struct ranks_pause *pause, pthread_mutex_t *lock) {
-    pthread_condattr_t steady;
     *pause = (struct ranks_pause){.lock = lock};
-    pthread_condattr_init(&steady);
-    pthread_condattr_setclock(&steady, CLOCK_MONOTONIC);
-    pthread_cond_init(&pause->spoken, &steady);
-    pthread_condattr_destroy(&steady);
+    mf_condition_init(&pause->spoken);
 }
 
 void mf_ranks_pause_clear(struct ranks_pause *pause) {
@@ -40,10 +36,8 @@ static double seconds(bool soon) {
 
 void mf_ranks_pause(struct ranks_pause *pause, bool soon) {
     pthread_mutex_lock(pause->lock);
-    const double end = clock_seconds() + seconds(soon), whole = floor(end);
-    const struct timespec until = {.tv_sec = (time_t)whole, .tv_nsec = (long)(1e9 * (end - whole))};
     if (!pause->has_spoken)
-        pthread_cond_timedwait(&pause->spoken, pause->lock, &until);
+        mf_condition_wait(&pause->spoken, pause->lock, clock_seconds() + seconds(soon));
     pause->has_spoken = false;
     pthread_mutex_unlock(pause->lock);
 }

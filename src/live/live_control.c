@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "live/live_control.h"
 
+#include "base/clock.h"
+#include "base/condition.h"
 #include "base/interrupt.h"
 
 #include <stdlib.h>
-#include <time.h>
 
 enum status mf_live_control_init(struct live_control *control) {
     *control = (struct live_control){0};
-    if (pthread_mutex_init(&control->lock, NULL) != 0 ||
-        pthread_cond_init(&control->changed, NULL) != 0)
+    if (pthread_mutex_init(&control->lock, NULL) != 0 || !mf_condition_init(&control->changed))
         return mf_status_fail(STATUS_NO_MEMORY, "no lock for the live view");
     return STATUS_OK;
 }
@@ -74,12 +74,7 @@ void mf_live_control_change(struct live_control *control, const struct live_chan
 
 /// Wait for a change, a tenth of a second at most: a signal may ask to stop meanwhile.
 static void wait_briefly(struct live_control *control) {
-    struct timespec until;
-    clock_gettime(CLOCK_REALTIME, &until);
-    until.tv_nsec += 100000000;
-    until.tv_sec += until.tv_nsec / 1000000000;
-    until.tv_nsec %= 1000000000;
-    pthread_cond_timedwait(&control->changed, &control->lock, &until);
+    mf_condition_wait(&control->changed, &control->lock, clock_seconds() + 0.1);
 }
 
 bool mf_live_control_take(struct live_control *control, struct live_order *order) {

@@ -2,8 +2,8 @@
 #include "live/live_feed.h"
 
 #include "base/clock.h"
+#include "base/condition.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,15 +14,11 @@ static const char *const names[LIVE_SLOTS] = {"state", "progress", "log", "table
 static const double particles_patience = 1;
 
 enum status mf_live_feed_init(struct live_feed *feed) {
-    pthread_condattr_t monotonic;
     *feed = (struct live_feed){.particles_asked = -particles_patience,
                                .energies_asked = -particles_patience};
-    if (pthread_mutex_init(&feed->lock, NULL) != 0 || pthread_condattr_init(&monotonic) != 0)
-        return mf_status_fail(STATUS_NO_MEMORY, "no lock for the live view");
-    pthread_condattr_setclock(&monotonic, CLOCK_MONOTONIC);
-    const int failed = pthread_cond_init(&feed->changed, &monotonic);
-    pthread_condattr_destroy(&monotonic);
-    return failed ? mf_status_fail(STATUS_NO_MEMORY, "no condition for the live view") : STATUS_OK;
+    return pthread_mutex_init(&feed->lock, NULL) == 0 && mf_condition_init(&feed->changed)
+               ? STATUS_OK
+               : mf_status_fail(STATUS_NO_MEMORY, "no lock for the live view");
 }
 
 void mf_live_feed_clear(struct live_feed *feed) {
@@ -95,13 +91,11 @@ static char *events_since(const struct live_feed *feed, uint64_t seen) {
 }
 
 char *mf_live_feed_wait(struct live_feed *feed, uint64_t *seen, double seconds) {
-    struct timespec until;
-    clock_gettime(CLOCK_MONOTONIC, &until);
-    until.tv_sec += (time_t)seconds;
+    const double until = clock_seconds() + seconds;
     char *events = NULL;
     pthread_mutex_lock(&feed->lock);
     while (!feed->closed && !has_news(feed, *seen))
-        if (pthread_cond_timedwait(&feed->changed, &feed->lock, &until) == ETIMEDOUT)
+        if (!mf_condition_wait(&feed->changed, &feed->lock, until))
             break;
     if (has_news(feed, *seen))
         events = events_since(feed, *seen);

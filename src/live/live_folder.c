@@ -2,12 +2,14 @@
 #define _GNU_SOURCE // scandirat
 #include "live/live_folder.h"
 
+#include "base/visible.h"
 #include "io/json_write.h"
 #include "io/output.h"
 
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -17,9 +19,11 @@
 static const char *const endings[] = {".json", ".tsv", ".txt", ".csv", ".xvg", ".dat", ".pot"};
 
 static bool is_plain_name(const char *name, size_t length) {
-    for (size_t k = 0; k < length; k++)
-        if ((unsigned char)name[k] < ' ' || name[k] == 127 || name[k] == '\\')
+    for (size_t k = 0, bytes; k < length; k += bytes) {
+        bytes = mf_visible_character(name + k, length - k);
+        if (bytes == 0 || (unsigned char)name[k] < ' ' || name[k] == 127 || name[k] == '\\')
             return false;
+    }
     return length > 0 && length <= 255 && name[0] != '.';
 }
 
@@ -153,13 +157,23 @@ static enum status give_name(int folder, const char *partial, const char *name, 
     return failed ? mf_status_fail(STATUS_IO, "%.200s: %s", name, strerror(errno)) : STATUS_OK;
 }
 
+/// A new file of a name that nothing has: each connection writes from a thread of its own, and a
+/// program before this one may have had the same number.
+static int open_partial(int folder, char *partial, size_t size) {
+    static atomic_uint count;
+    int file;
+    do {
+        snprintf(partial, size, ".live.%ld.%u" OUTPUT_PARTIAL, (long)getpid(),
+                 atomic_fetch_add(&count, 1));
+        file = openat(folder, partial, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+    } while (file < 0 && errno == EEXIST);
+    return file;
+}
+
 static enum status write_in(int folder, const char *name, const void *bytes, size_t size,
                             bool replace) {
     char partial[64];
-    snprintf(partial, sizeof partial, ".live.%ld" OUTPUT_PARTIAL, (long)getpid());
-    unlinkat(folder, partial, 0);
-    const int file =
-        openat(folder, partial, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+    const int file = open_partial(folder, partial, sizeof partial);
     if (file < 0)
         return mf_status_fail(STATUS_IO, "%.200s: %s", name, strerror(errno));
     enum status status = write_bytes(file, name, bytes, size);

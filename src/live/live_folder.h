@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// @file Files beneath one folder, and none outside it.
 ///
-/// A path is relative and of plain names: no "..", nothing hidden, no control characters. It is
+/// A path is relative and of plain names: no "..", nothing hidden, no control characters, nothing
+/// that is no UTF-8, in which alone a page can name it. It is
 /// opened name by name beneath the folder, and no link is followed, so that it cannot lead out
 /// whatever changes meanwhile. Tested: test_live_folder.
 #pragma once

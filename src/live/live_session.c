@@ -10,6 +10,7 @@
 #include "work/fit.h"
 #include "work/simulate.h"
 
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -117,8 +118,11 @@ static enum status begin(struct session *session) {
         (struct live_server){.token = session->token, .answerer = mf_live_routes(&session->view)};
     TRY(mf_live_server_start(&session->server, session->options->port));
     printf("live at http://127.0.0.1:%d/?token=%s\n", session->server.port, session->token);
-    fflush(stdout);
-    return STATUS_OK;
+    return fflush(stdout) == 0
+               ? STATUS_OK
+               : mf_status_fail(STATUS_IO,
+                                "cannot write the address of the live view to stdout: %s",
+                                strerror(errno));
 }
 
 enum status mf_live_session(const struct live_options *options) {

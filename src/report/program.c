@@ -24,9 +24,29 @@ enum {
 
 // Running -----------------------------------------------------------------------------------------
 
+extern char **environ;
+
+static const char plain_locale[] = "LC_ALL=C.UTF-8";
+
+/// The environment of this program, but for its language: where decimals have a comma awk reads
+/// 0.5 as 0, and the order of names is another one. To be freed with free(), NULL without memory.
+static char **make_environment(void) {
+    size_t count = 0, kept = 0;
+    while (environ[count])
+        count++;
+    char **environment = calloc(count + 2, sizeof *environment);
+    for (size_t k = 0; environment && k < count; k++)
+        if (strncmp(environ[k], plain_locale, strcspn(plain_locale, "=") + 1) != 0)
+            environment[kept++] = environ[k];
+    if (environment)
+        environment[kept] = (char *)(size_t)plain_locale;
+    return environment;
+}
+
 /// In the child: nothing but calls that are safe after a fork of a program with threads.
-static void become(const char *folder, const char *const *words, enum program_says says,
-                   const int ends[2]) {
+static void become(const char *folder, const char *const *words, char **environment,
+                   enum program_says says, const int ends[2]) {
+    environ = environment;
     setpgid(0, 0); // a group of its own, so that it can be stopped as a whole
     const int nothing = open("/dev/null", O_RDWR);
     const int out = says == PROGRAM_EVERYTHING ? ends[1] : nothing;
@@ -107,13 +127,19 @@ enum status mf_program_run(const char *folder, const char *const *words, enum pr
                            double seconds, char *text, size_t size) {
     int ends[2];
     text[0] = '\0';
-    if (pipe(ends) != 0)
+    char **environment = make_environment();
+    if (environment == NULL)
+        return mf_status_fail(STATUS_NO_MEMORY, "cannot run %s: out of memory", words[0]);
+    if (pipe(ends) != 0) {
+        free(environment);
         return mf_status_fail(STATUS_IO, "cannot run %s: %s", words[0], strerror(errno));
+    }
     const double end = seconds > 0 ? clock_seconds() + seconds : INFINITY;
     const pid_t child = fork();
     if (child == 0)
-        become(folder, words, says, ends);
+        become(folder, words, environment, says, ends);
     const int error = errno;
+    free(environment);
     close(ends[1]);
     int state = -1;
     const bool ended =

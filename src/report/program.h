@@ -12,12 +12,13 @@ enum program_says {
     PROGRAM_EVERYTHING, ///< both, as they come
 };
 
-/// Run words[0], found in PATH, with `words`, NULL-terminated, in `folder`, without input.
+/// Run words[0], found in PATH, with `words`, NULL-terminated, in `folder`, without input, under
+/// the locale C.UTF-8: what it writes does not depend on the user's language.
 /// @param[in] seconds  it is stopped, with all that it has started, if it takes longer; 0: any time
 /// @param[out] text  the last size − 1 bytes of what it says
 /// @param[in]  size  above 512
-/// Fails: IO with one line that names the program: not installed, ended by a signal, stopped as
-/// too slow, or failed with the last line that it said. Tested: test_program.
+/// Fails: NO_MEMORY; IO with one line that names the program: not installed, ended by a signal,
+/// stopped as too slow, or failed with the last line that it said. Tested: test_program.
 enum status mf_program_run(const char *folder, const char *const *words, enum program_says says,
                            double seconds, char *text, size_t size) MUST_USE;
 

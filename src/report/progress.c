@@ -2,6 +2,7 @@
 #include "report/progress.h"
 
 #include "base/clock.h"
+#include "base/terminal.h"
 #include "io/json_write.h"
 
 #include <math.h>
@@ -96,10 +97,10 @@ void mf_progress_tell(struct progress *progress, uint64_t done, uint64_t total, 
         return;
     progress->last = now;
     progress->written = done;
-    fprintf(stderr, "%s%s  %3.0f %%  %.3g %s/s  %s left%s", progress->terminal ? "\r\033[K" : "",
-            text, 100 * (double)done / (double)total, rate, unit, left,
-            progress->terminal ? "" : "\n");
-    fflush(stderr);
+    if (progress->terminal)
+        mf_terminal_clear_line();
+    fprintf(stderr, "%s  %3.0f %%  %.3g %s/s  %s left%s", text, 100 * (double)done / (double)total,
+            rate, unit, left, progress->terminal ? "" : "\n");
     progress->open_line = progress->terminal;
 }
 
@@ -131,7 +132,7 @@ void mf_progress_say(struct progress *progress, const char *format, ...) {
     if (progress->quiet)
         return;
     if (progress->open_line)
-        fputs("\r\033[K", stderr);
+        mf_terminal_clear_line();
     progress->open_line = false;
     fprintf(stderr, "%s\n", line);
 }

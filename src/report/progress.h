@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// @file Progress of long work: one updating line on a terminal, a line every few seconds at most
 /// in a pipe, nothing with --quiet, always on stderr; and while a run works for longer than that,
-/// progress.json in its folder, for `mesofit watch`.
+/// progress.json in its folder, for who looks from elsewhere.
 #pragma once
 
 #include "io/units_scale.h"

@@ -9,6 +9,7 @@
 # tests/bench/band_scatter.sh [PROGRAM] [FOLDER] [REPETITIONS]
 # METHOD=hnc picks another method, FIRST=21 other seeds. What FOLDER holds already is not run again.
 set -eu
+export LC_ALL=C.UTF-8
 root=$(cd "$(dirname "$0")/../.." && pwd)
 program=$(realpath "${1:-$root/build/mesofit}")
 folder=${2:-$(mktemp -d)}

@@ -11,6 +11,7 @@
 # FIRST=21 picks other seeds, SAMPLES=6400 PRECISION=0.003 longer targets and finer fits. What FOLDER
 # holds already is not run again.
 set -eu
+export LC_ALL=C.UTF-8
 root=$(cd "$(dirname "$0")/../.." && pwd)
 program=$(realpath "${1:-$root/build/mesofit}")
 folder=${2:-$(mktemp -d)}

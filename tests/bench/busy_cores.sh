@@ -8,6 +8,7 @@
 # tests/bench/busy_cores.sh [PROGRAM]
 # TRIALS=5, and SPINS="0 1000 10000" tries other numbers of turns.
 set -eu
+export LC_ALL=C.UTF-8
 root=$(cd "$(dirname "$0")/../.." && pwd)
 program=$(realpath "${1:-$root/build/mesofit}")
 trials=${TRIALS:-5}

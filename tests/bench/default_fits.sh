@@ -7,6 +7,7 @@
 # tests/bench/default_fits.sh [PROGRAM] [FOLDER]
 # SEEDS="1 2 3" and RUNS="lennard-jones …" pick some. What FOLDER holds already is not run again.
 set -eu
+export LC_ALL=C.UTF-8
 root=$(cd "$(dirname "$0")/../.." && pwd)
 program=$(realpath "${1:-$root/build/mesofit}")
 folder=${2:-$(mktemp -d)}

@@ -7,6 +7,7 @@
 # tests/bench/fewer_steps.sh [PROGRAM] [FOLDER]
 # SEEDS="1 2" picks seeds. Fits that FOLDER holds already are not run again.
 set -eu
+export LC_ALL=C.UTF-8
 root=$(cd "$(dirname "$0")/../.." && pwd)
 program=$(realpath "${1:-$root/build/mesofit}")
 folder=${2:-$(mktemp -d)}

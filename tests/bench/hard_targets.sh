@@ -8,6 +8,7 @@
 # tests/bench/hard_targets.sh [PROGRAM] [FOLDER]
 # METHODS="imc auto" picks methods. What FOLDER holds already is not run again.
 set -eu
+export LC_ALL=C.UTF-8
 root=$(cd "$(dirname "$0")/../.." && pwd)
 program=$(realpath "${1:-$root/build/mesofit}")
 folder=${2:-$(mktemp -d)}

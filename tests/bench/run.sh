@@ -4,6 +4,7 @@
 # tests/bench/results/<cpu>.tsv, to be compared with those of other days. Nothing else should run.
 # Usage: tests/bench/run.sh PROGRAM
 set -euo pipefail
+export LC_ALL=C.UTF-8
 program=$1
 results=$(dirname "$0")/results
 

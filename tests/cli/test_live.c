@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// --live, live and watch from the command line; tests/live has what a page does with them.
+// --live and live from the command line; tests/live has what a page does with them.
 #include "shared/run_program.h"
 #include "shared/small_inputs.h"
 #include "shared/testing.h"
@@ -54,9 +54,6 @@ static void test_what_cannot_be_shown_is_refused_in_one_line(void **state) {
         {{"simulate", "scene.json", "--live=x"}, "1 to 65535"},
         {{"simulate", "scene.json", "--live=-1"}, "1 to 65535"},
         {{"simulate", "scene.json", "--lives"}, "--live"},
-        {{"watch", "missing"}, "missing"},
-        {{"watch", "scene.json"}, "not a folder"},
-        {{"watch", "."}, "needs a terminal"},
     };
     struct temporary_folder *folder = *state;
     if (!has_live())
@@ -79,6 +76,26 @@ static void test_page_without_a_run_ends_well_with_ctrl_c(void **state) {
     run_program_assert_code(&result, 0);
 }
 
+/// It would serve for ever, and nobody knew where.
+static void test_page_whose_address_cannot_be_told_is_not_served(void **state) {
+    static const char *const words[] = {"live", "live scene.json --stay",
+                                        "simulate scene.json -o out --live"};
+    if (!has_live())
+        skip();
+    small_inputs_write(*state, "scene.json", small_inputs_scene, NULL, NULL);
+    for (size_t k = 0; k < sizeof words / sizeof *words; k++) {
+        char line[256];
+        snprintf(line, sizeof line, "timeout 60 \"$MESOFIT\" %s >/dev/full 2>err.txt; test $? = 2",
+                 words[k]);
+        assert_int_equal(system(line), 0);
+        char *said = temporary_folder_read("err.txt");
+        assert_string_equal(said, "mesofit: cannot write the address of the live view to stdout: "
+                                  "No space left on device\n");
+        free(said);
+        assert_false(temporary_folder_exists("out"));
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(
@@ -86,6 +103,8 @@ int main(void) {
             small_inputs_enter_without_gnuplot, small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_what_cannot_be_shown_is_refused_in_one_line,
                                         small_inputs_enter_without_gnuplot, small_inputs_leave),
+        cmocka_unit_test_setup_teardown(test_page_whose_address_cannot_be_told_is_not_served,
+                                        small_inputs_enter, small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_page_without_a_run_ends_well_with_ctrl_c,
                                         small_inputs_enter_without_gnuplot, small_inputs_leave),
     };

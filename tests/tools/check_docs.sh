@@ -5,6 +5,7 @@
 # docs/theory.md are those of the sources; docs/converged.md quotes reasons that the program gives; the
 # README stays short. Run at the root of the source tree.
 set -u
+export LC_ALL=C.UTF-8
 
 # All comments and texts of the sources in one line, without what begins lines and parts strings.
 sources=$(cat src/*/*.[ch] | sed -e 's|^ *//[/!]*||' | tr '\n' ' ' | sed -e 's/" *"//g' -e 's/  */ /g')

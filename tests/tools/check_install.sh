@@ -6,6 +6,7 @@
 # the program draws figures from anywhere, also where the package has been moved; its man page and its
 # completions are there. Run at the root of the source tree.
 set -eu
+export LC_ALL=C.UTF-8
 
 prefix=$1
 build=$2

@@ -4,6 +4,7 @@
 # check_layers.sh: every include "layer/…" follows src/layers.txt, and each foreign library or
 # program is known to one file only. Run at the root of the source tree.
 set -u
+export LC_ALL=C.UTF-8
 
 # Prints "file:line: layer may not include other" for each include that breaks a rule.
 includes_against_the_rules() {
@@ -55,6 +56,9 @@ faults=$(
     only_in src/bench/bench_lammps.c '"([^" ]*/)?lmp[" ]' 'LAMMPS'
     only_in src/report/program.c '\b(fork|vfork|popen|system|exec[lv]p?e?|posix_spawnp?) ?\(' \
         'starting a program'
+    only_in src/base/condition.c 'pthread_(cond|mutex|rwlock)_timed|sem_timedwait|CLOCK_REALTIME|gettimeofday|\btime ?\((NULL|0|&)' \
+        'waiting until a time, by a clock that is never set back,'
+    only_in src/base/terminal.c '"[^"]*\\(033|x1[bB]|e\[)' 'a command of the terminal'
 )
 if [ -n "$faults" ]; then
     printf 'layers:\n%s\n' "$faults"

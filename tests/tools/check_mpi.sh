@@ -6,6 +6,7 @@
 # rank was killed, KILLS times; so do fits without rounds, whose bits differ; what is wrong is said;
 # and tasks of SHARE take as long as the model says. METHODS="imc genetic" checks these alone.
 set -u
+export LC_ALL=C.UTF-8
 without=$(realpath "$1")
 program=$2
 kills=$4

@@ -6,6 +6,7 @@
 # list of them, or begins with x_, the first word of its file: files of one module, such as genetic.c
 # and genetic_operators.c, share it.
 set -u
+export LC_ALL=C.UTF-8
 
 symbols=$(nm --defined-only --extern-only --format=posix "$@") || exit 1
 if [ -z "$symbols" ]; then

@@ -4,6 +4,7 @@
 # lint.sh LIBRARY…: every check that needs no run of the program. One line "name: OK" a check, or
 # the offending lines; the exit status says whether all passed.
 set -u
+export LC_ALL=C.UTF-8
 
 library=$(realpath "$1")
 libraries=$(realpath "$@")

@@ -5,6 +5,7 @@
 # are called "json FILE" are written to that file, those called "sh" are run, one after the other, and
 # others are only read. It ends with the status of the first command that fails.
 set -eu
+export LC_ALL=C.UTF-8
 
 awk '
     /^```/ && inside { if (inside == "json") print "END_OF_FILE"; inside = ""; next }

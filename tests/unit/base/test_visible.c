@@ -18,7 +18,18 @@ static void test_visible_copy_shows_control_characters(void **state) {
         {"\xc2\x9b"
          "2J\xc2\xb5",
          "", "\\xc2\\x9b2J\xc2\xb5"}, // CSI as one character; µ
-        {"\xff\xc2", "", "\xff\xc2"},
+        {"\xf0\x9f\x98\x80", "", "\xf0\x9f\x98\x80"},
+        // No UTF-8: CSI of a terminal of ISO 8859, longer spellings, a surrogate, too large, cut off.
+        {"\x9b"
+         "2J",
+         "", "\\x9b2J"},
+        {"caf\xe9!", "", "caf\\xe9!"},
+        {"\xff\xc2", "", "\\xff\\xc2"},
+        {"\xc0\x9b", "", "\\xc0\\x9b"},
+        {"\xe0\x80\x9b", "", "\\xe0\\x80\\x9b"},
+        {"\xed\xa0\x80", "", "\\xed\\xa0\\x80"},
+        {"\xf4\x90\x80\x80", "", "\\xf4\\x90\\x80\\x80"},
+        {"\xe2\x88", "", "\\xe2\\x88"},
     };
     (void)state;
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {

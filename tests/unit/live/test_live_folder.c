@@ -47,7 +47,8 @@ static const char *const outside[] = {"../secret.json",
                                       ".",
                                       "deep\\..\\..\\secret.json",
                                       "run.json\n",
-                                      "\x01.json"};
+                                      "\x01.json",
+                                      "caf\xe9.json"};
 
 static void test_paths_outside_are_refused_by_name(void **state) {
     size_t size;
@@ -114,13 +115,16 @@ static void test_file_is_written_whole_and_kept_unless_it_may_be_replaced(void *
 static void test_list_has_plain_names_alone(void **state) {
     char *text = NULL;
     size_t size;
-    (void)state;
+    temporary_folder_write(*state, "inside/caf\xc3\xa9.json", "{}", 2);
+    temporary_folder_write(*state, "inside/latin-\xe9.json", "{}", 2); // would be no JSON
     FILE *stream = open_memstream(&text, &size);
     assert_ok(mf_live_folder_list(root, "", stream));
     fclose(stream);
     assert_contains(text, "run.json");
     assert_contains(text, "deep");
+    assert_contains(text, "caf\xc3\xa9.json");
     assert_null(strstr(text, "hidden"));
+    assert_null(strstr(text, "latin"));
     free(text);
 }
 

@@ -6,6 +6,7 @@
 #include "shared/testing.h"
 
 #include <arpa/inet.h>
+#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <sys/socket.h>
@@ -56,8 +57,9 @@ static int connect_to_server(void) {
     return connection;
 }
 
-/// Send bytes and read to the end, or until `until` has come; returns the code, 0 without one.
-static int exchange(const char *bytes, size_t size, const char *until) {
+/// Send bytes and read to the end, or until `until` has come, into `to`; returns the code, 0
+/// without one.
+static int talk(const char *bytes, size_t size, const char *until, char *to, size_t room) {
     const int connection = connect_to_server();
     size_t got = 0;
     for (size_t sent = 0; sent < size;) {
@@ -66,16 +68,20 @@ static int exchange(const char *bytes, size_t size, const char *until) {
             break;
         sent += (size_t)now;
     }
-    for (ssize_t now; got + 1 < sizeof answer &&
-                      (now = recv(connection, answer + got, sizeof answer - 1 - got, 0)) > 0;) {
+    for (ssize_t now;
+         got + 1 < room && (now = recv(connection, to + got, room - 1 - got, 0)) > 0;) {
         got += (size_t)now;
-        answer[got] = '\0';
-        if (until && strstr(answer, until))
+        to[got] = '\0';
+        if (until && strstr(to, until))
             break;
     }
-    answer[got] = '\0';
+    to[got] = '\0';
     close(connection);
-    return strncmp(answer, "HTTP/1.1 ", 9) == 0 ? atoi(answer + 9) : 0;
+    return strncmp(to, "HTTP/1.1 ", 9) == 0 ? atoi(to + 9) : 0;
+}
+
+static int exchange(const char *bytes, size_t size, const char *until) {
+    return talk(bytes, size, until, answer, sizeof answer);
 }
 
 /// A request with these lines in its head, each ended by "\r\n".
@@ -285,6 +291,68 @@ static void test_second_server_on_the_port_is_refused(void **state) {
     assert_fails(mf_live_server_start(&second, server.port), STATUS_IO, port);
 }
 
+/// A file of one letter, sent by a thread.
+struct upload {
+    const char *query;
+    char letter;
+    int code;
+};
+
+enum { UPLOAD = 1000 };
+
+static void *send_upload(void *context) {
+    struct upload *upload = context;
+    char text[2 * UPLOAD], said[1024];
+    const int head = snprintf(text, sizeof text,
+                              "POST /api/file?path=%s HTTP/1.1\r\n" GOOD "Connection: close\r\n"
+                              "Content-Length: %d\r\n\r\n",
+                              upload->query, UPLOAD);
+    memset(text + head, upload->letter, UPLOAD);
+    upload->code = talk(text, (size_t)head + UPLOAD, NULL, said, sizeof said);
+    return NULL;
+}
+
+/// Send both at once, each from a thread of its own.
+static void send_both(struct upload uploads[2]) {
+    pthread_t threads[2];
+    for (int k = 0; k < 2; k++)
+        assert_int_equal(pthread_create(&threads[k], NULL, send_upload, &uploads[k]), 0);
+    for (int k = 0; k < 2; k++)
+        pthread_join(threads[k], NULL);
+}
+
+static void assert_upload(const char *file, char letter) {
+    char expected[UPLOAD + 1], *text = temporary_folder_read(file);
+    memset(expected, letter, UPLOAD);
+    expected[UPLOAD] = '\0';
+    assert_string_equal(text, expected);
+    free(text);
+}
+
+static void test_uploads_at_once_get_their_own_bytes(void **state) {
+    (void)state;
+    for (int round = 0; round < 40; round++) {
+        struct upload uploads[] = {{"a.txt&replace=1", 'a', 0}, {"b.txt&replace=1", 'b', 0}};
+        send_both(uploads);
+        for (int k = 0; k < 2; k++) {
+            assert_int_equal(uploads[k].code, 200);
+            assert_upload(k ? "b.txt" : "a.txt", uploads[k].letter);
+        }
+    }
+}
+
+/// Of two new files of one name there is one, whole, and the other is refused.
+static void test_one_of_two_uploads_of_a_name_wins(void **state) {
+    (void)state;
+    for (int round = 0; round < 20; round++) {
+        struct upload uploads[] = {{"new.txt", 'a', 0}, {"new.txt", 'b', 0}};
+        send_both(uploads);
+        assert_int_equal(uploads[0].code + uploads[1].code, 200 + 400);
+        assert_upload("new.txt", uploads[uploads[0].code == 200 ? 0 : 1].letter);
+        assert_int_equal(unlink("new.txt"), 0);
+    }
+}
+
 int main(void) {
 #define SERVED(test) cmocka_unit_test_setup_teardown(test, enter, leave)
     const struct CMUnitTest tests[] = {
@@ -298,6 +366,8 @@ int main(void) {
         SERVED(test_events_come_while_the_stream_is_open),
         SERVED(test_too_large_and_broken_requests_end_alone),
         SERVED(test_connections_that_say_little_do_not_keep_the_page_out),
+        SERVED(test_uploads_at_once_get_their_own_bytes),
+        SERVED(test_one_of_two_uploads_of_a_name_wins),
         SERVED(test_second_server_on_the_port_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

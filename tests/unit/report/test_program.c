@@ -28,6 +28,22 @@ static void test_program_run_keeps_what_was_asked_for_when_both_streams_speak(vo
     assert_string_equal(text, "");
 }
 
+/// Where decimals have a comma, awk would write and read others.
+static void test_program_run_has_the_plain_locale_whatever_the_user_speaks(void **state) {
+    char text[TEXT_SIZE];
+    (void)state;
+    static const char *const names[] = {"LANG", "LC_ALL", "LC_NUMERIC"};
+    for (int k = 0; k < 3; k++)
+        assert_int_equal(setenv(names[k], "de_DE.UTF-8", 1), 0);
+    assert_ok(run_shell("env | grep -c '^LC_ALL='; echo $LC_ALL", PROGRAM_EVERYTHING, text));
+    assert_string_equal(text, "1\nC.UTF-8\n");
+    assert_string_equal(getenv("LC_ALL"), "de_DE.UTF-8");
+    for (int k = 0; k < 3; k++)
+        assert_int_equal(unsetenv(names[k]), 0);
+    assert_ok(run_shell("echo $LC_ALL", PROGRAM_EVERYTHING, text));
+    assert_string_equal(text, "C.UTF-8\n");
+}
+
 static void test_program_run_keeps_the_end_when_there_is_much(void **state) {
     char text[TEXT_SIZE];
     (void)state;
@@ -101,6 +117,7 @@ static void test_program_find_folder_goes_up_when_the_program_is_being_built(voi
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_program_run_keeps_what_was_asked_for_when_both_streams_speak),
+        cmocka_unit_test(test_program_run_has_the_plain_locale_whatever_the_user_speaks),
         cmocka_unit_test(test_program_run_keeps_the_end_when_there_is_much),
         IN_FOLDER(test_program_run_works_in_the_folder_when_given_one),
         cmocka_unit_test(test_program_run_says_why_when_the_program_fails),

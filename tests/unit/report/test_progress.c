@@ -4,6 +4,8 @@
 #include "report/progress.h"
 
 #include "shared/is_close.h"
+#include "shared/results.h"
+#include "shared/temporary_folder.h"
 #include "shared/testing.h"
 
 #include <math.h>
@@ -97,6 +99,25 @@ static void test_iterations_go_on_when_their_passes_begin_anew(void **state) {
     }
 }
 
+/// What who looks at the folder reads: numbers that agree with each other, and nothing at the end.
+static void test_progress_is_in_the_folder_until_the_end(void **state) {
+    struct temporary_folder *folder = *state;
+    struct progress progress = mf_progress_begin(true, NULL);
+    mf_progress_end(&progress); // without a folder nothing is removed
+    progress.folder = folder->path;
+    progress.started -= 100;
+    progress.next = 0;
+    mf_progress_tell(&progress, 25, 100, "steps", "step 25  T \x1b[2J");
+    const char *file = temporary_folder_file(folder, "progress.json");
+    assert_close(results_number(file, "done"), 25, 0);
+    assert_close(results_number(file, "total"), 100, 0);
+    assert_close(results_number(file, "rate"), 0.25, 0.05);
+    results_assert_text(file, "unit", "steps");
+    results_assert_text(file, "text", "step 25  T \x1b[2J");
+    mf_progress_end(&progress);
+    assert_false(temporary_folder_exists(file));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_pace_is_unknown_before_the_first_part),
@@ -105,6 +126,8 @@ int main(void) {
         cmocka_unit_test(test_pace_has_a_rate_that_agrees_with_the_time_left),
         cmocka_unit_test(test_pace_forgets_a_slow_beginning),
         cmocka_unit_test(test_iterations_go_on_when_their_passes_begin_anew),
+        cmocka_unit_test_setup_teardown(test_progress_is_in_the_folder_until_the_end,
+                                        temporary_folder_create, temporary_folder_remove),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
