@@ -181,13 +181,8 @@ check-live: all
 # Fits among the processes of an MPI job, where there is one (Debian: libopenmpi-dev, openmpi-bin).
 .PHONY: check-mpi
 KILLS ?= 3
-SHARE = $(BUILD)/mpi/share
-$(SHARE): $(BUILD)/tests/mpi/share.o $(RANKS) $(LIBRARY)
-	@mkdir -p $(@D)
-	@echo "ld $@"
-	$(AT)$(CC) $(LDFLAGS) -o $@ $^ $(MPI_LIBS) $(LDLIBS)
-check-mpi: all $(if $(shell command -v $(MPICC)),$(WITH_MPI) $(SHARE))
-	tests/tools/check_mpi.sh $(PROGRAM) $(WITH_MPI) $(SHARE) $(KILLS)
+check-mpi: all $(if $(shell command -v $(MPICC)),$(WITH_MPI))
+	tests/tools/check_mpi.sh $(PROGRAM) $(WITH_MPI) $(KILLS)
 
 # Faults that are preloaded: a process is killed at one of its renames (tests/stress/test_kill.c), its
 # clock is set back (test_clock.c).
@@ -286,5 +281,5 @@ bench: $(PROGRAM)
 clean:
 	rm -rf build mesofit
 
--include $(OBJECTS:.o=.d) $(RANKS:.o=.d) $(TESTS:=.d) $(STRESS:=.d) $(SHARED:.o=.d) $(BUILD)/tests/mpi/share.d \
+-include $(OBJECTS:.o=.d) $(RANKS:.o=.d) $(TESTS:=.d) $(STRESS:=.d) $(SHARED:.o=.d) \
          $(BUILD)/tests/fuzz/fuzz_readers.d

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/letter.h"
 
-#include "base/interrupt.h"
 #include "base/ranks.h"
 
 #include <string.h>
@@ -62,29 +61,6 @@ struct letter *mf_letter_of_task(const struct letter *head, const struct paralle
 
 void mf_letter_send(int to, const struct letter *letter) {
     mf_ranks_send(to, (const uint64_t *)letter, words_of(letter));
-}
-
-void mf_letter_send_all(const struct letter *letter) {
-    for (int rank = 1; rank < mf_ranks_count(); rank++)
-        mf_letter_send(rank, letter);
-}
-
-void mf_letter_stop_all(uint64_t turn, int signal_number) {
-    if (mf_interrupt_requested())
-        return;
-    mf_interrupt_agree(signal_number);
-    mf_letter_send_all(
-        &(struct letter){.kind = LETTER_STOP, .turn = turn, .task = (uint64_t)signal_number});
-}
-
-void mf_letter_tell_standing(uint64_t turn, struct ranks_watch *watch, bool *wished) {
-    if (mf_interrupt_signal() != 0 && !*wished)
-        mf_letter_send(0, &(struct letter){.kind = LETTER_WISH,
-                                           .turn = turn,
-                                           .task = (uint64_t)mf_interrupt_signal()});
-    *wished = mf_interrupt_signal() != 0;
-    if (mf_ranks_watch_is_due(watch))
-        mf_letter_send(0, &(struct letter){.kind = LETTER_ALIVE, .turn = turn});
 }
 
 struct letter *mf_letter_receive(uint64_t turn, int *from) {

@@ -3,20 +3,19 @@
 #pragma once
 
 #include "base/parallel.h"
-#include "base/ranks_watch.h"
 
 #include <stdbool.h>
 
 enum letter_kind {
     // while tasks are shared
-    LETTER_ASK,    ///< a thread of the sender is free; as many as `task` for a stream
-    LETTER_TASK,   ///< do this one, of a stream if bytes follow; LETTER_NO_TASK: there is none left
+    LETTER_ASK,    ///< a thread of the sender is free
+    LETTER_TASK,   ///< do this one; LETTER_NO_TASK: there is none left
     LETTER_RESULT, ///< what a task left, or its message if it failed
     LETTER_WISH,   ///< the sender was asked to stop by the signal `task`
     LETTER_STOP,   ///< all stop, as that signal wants it
     LETTER_ALIVE,  ///< and its answer
-    LETTER_OVER,   ///< all is done; of a stream after `task` tasks that the receiver was given
-    LETTER_READY,  ///< to share what was found; of a stream after `task` results
+    LETTER_OVER,   ///< all is done
+    LETTER_READY,  ///< to share what was found
     // between
     LETTER_ARRIVED, ///< at mf_parallel_agree, with a status, its message, and a digest as `task`
 };
@@ -24,7 +23,7 @@ enum letter_kind {
 #define LETTER_NO_TASK UINT64_MAX
 
 struct letter {
-    uint64_t turn; ///< which call that ranks make together it belongs to
+    uint64_t turn; ///< which call of mf_parallel_try or mf_parallel_agree it belongs to
     uint64_t task;
     uint64_t bytes; ///< behind this head
     double seconds; ///< of processor time that a task took
@@ -32,8 +31,7 @@ struct letter {
     int32_t status;
 };
 
-/// The number of the next call that ranks make together, as mf_parallel_try and mf_parallel_agree:
-/// the same on all ranks.
+/// The number of the next call of mf_parallel_try or mf_parallel_agree: the same on all ranks.
 uint64_t mf_letter_turn(void);
 
 static inline void *letter_bytes(const struct letter *letter) {
@@ -54,16 +52,6 @@ struct letter *mf_letter_of_task(const struct letter *head, const struct paralle
 
 /// Send a letter; a head alone is one of no bytes.
 void mf_letter_send(int to, const struct letter *letter);
-
-/// Rank 0: the same to all others.
-void mf_letter_send_all(const struct letter *letter);
-
-/// Rank 0: all stop as this signal wants it, unless they do already.
-void mf_letter_stop_all(uint64_t turn, int signal_number);
-
-/// Another rank: tell rank 0 that a signal has asked to stop, unless that is `wished`, and now and
-/// then that this rank works.
-void mf_letter_tell_standing(uint64_t turn, struct ranks_watch *watch, bool *wished);
 
 /// A letter of this turn or a later one, if one has arrived, else NULL. To be freed.
 struct letter *mf_letter_receive(uint64_t turn, int *from);

@@ -70,6 +70,19 @@ static void collect(struct round *round, struct letter *letter, const void *resu
     pthread_mutex_unlock(&round->lock);
 }
 
+static void tell_all(const struct letter *letter) {
+    for (int rank = 1; rank < mf_ranks_count(); rank++)
+        mf_letter_send(rank, letter);
+}
+
+static void stop_all(const struct round *round, int signal_number) {
+    if (mf_interrupt_requested())
+        return;
+    mf_interrupt_agree(signal_number);
+    tell_all(&(struct letter){
+        .kind = LETTER_STOP, .turn = round->turn, .task = (uint64_t)signal_number});
+}
+
 static bool is_over(struct round *round) {
     pthread_mutex_lock(&round->lock);
     const bool over = round->over;
@@ -97,7 +110,7 @@ static void serve(struct round *round, int from, struct letter *letter) {
         break;
     case LETTER_WISH: // who has gone on hears of it in the next round
         if (!is_over(round))
-            mf_letter_stop_all(round->turn, (int)letter->task);
+            stop_all(round, (int)letter->task);
         break;
     case LETTER_READY:
         round->ready++;
@@ -124,9 +137,9 @@ static void *lead(void *memory) {
     while (!is_over(round)) {
         listen_once(round);
         if (mf_interrupt_signal() != 0)
-            mf_letter_stop_all(round->turn, mf_interrupt_signal());
+            stop_all(round, mf_interrupt_signal());
     }
-    mf_letter_send_all(&(struct letter){.kind = LETTER_OVER, .turn = round->turn});
+    tell_all(&(struct letter){.kind = LETTER_OVER, .turn = round->turn});
     // What all do together cannot tell who is missing.
     while (round->ready < mf_ranks_count() - 1)
         listen_once(round);
@@ -206,7 +219,13 @@ static bool tell_leader(struct round *round, bool *wished) {
     if (letter)
         mf_letter_send(0, letter);
     mf_memory_free(letter);
-    mf_letter_tell_standing(round->turn, &round->watch, wished);
+    if (mf_interrupt_signal() != 0 && !*wished)
+        mf_letter_send(0, &(struct letter){.kind = LETTER_WISH,
+                                           .turn = round->turn,
+                                           .task = (uint64_t)mf_interrupt_signal()});
+    *wished = mf_interrupt_signal() != 0;
+    if (mf_ranks_watch_is_due(&round->watch))
+        mf_letter_send(0, &(struct letter){.kind = LETTER_ALIVE, .turn = round->turn});
     return letter != NULL;
 }
 

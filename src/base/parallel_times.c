@@ -2,7 +2,6 @@
 #include "base/parallel_times.h"
 
 static struct parallel_times seen;
-static struct parallel_size streamed; ///< `now` has all of them
 
 /// The entry of this number of tasks, a new one, or the nearest.
 static struct parallel_size *find(size_t tasks) {
@@ -41,33 +40,9 @@ void mf_parallel_times_end(size_t tasks, double waited) {
     }
 }
 
-void mf_parallel_times_add_streamed(double seconds, double waited) {
-#pragma omp critical
-    {
-        mf_statistics_add(&streamed.now, seconds);
-        streamed.waited += waited;
-    }
-}
-
-/// What was streamed, as one round of as many tasks.
-static struct parallel_size streamed_round(void) {
-    const struct running_mean *each = &streamed.now;
-    return (struct parallel_size){
-        .tasks = (size_t)each->count,
-        .rounds = 1,
-        .done = each->count,
-        .seconds = each->count * each->mean,
-        .squares = each->mean > 0 ? each->squares / (each->mean * each->mean) : 0,
-        .waited = streamed.waited};
-}
-
 struct parallel_times mf_parallel_times(void) {
     struct parallel_times times;
 #pragma omp critical
-    {
-        times = seen;
-        if (streamed.now.count > 0)
-            times.size[times.sizes++] = streamed_round();
-    }
+    times = seen;
     return times;
 }

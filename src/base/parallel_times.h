@@ -17,8 +17,7 @@ struct parallel_times {
         double squares;          ///< of each task's deviation from its round's mean, over that
         double waited;           ///< [s] from begin to end of these rounds
         struct running_mean now; ///< seconds of the round that is going on
-    } size[PARALLEL_MOST_SIZES +
-           1]; ///< and those of a stream (base/parallel_stream.h) as one round
+    } size[PARALLEL_MOST_SIZES];
 };
 
 /// What this process has seen since it began.
@@ -27,6 +26,3 @@ struct parallel_times mf_parallel_times(void);
 /// @name For mf_parallel_try: one of so many tasks is done; all of them are
 void mf_parallel_times_add(size_t tasks, double seconds);
 void mf_parallel_times_end(size_t tasks, double waited);
-
-/// For mf_parallel_stream_take: one has ended, after so long a wait.
-void mf_parallel_times_add_streamed(double seconds, double waited);

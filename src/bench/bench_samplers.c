@@ -53,14 +53,6 @@ static void print_moves(const struct sampler *sampler) {
             printf(", %s %.2f", mf_molecule_move_names[move],
                    (double)tally->accepted / (double)tally->tried);
     }
-    for (int k = 0; k < sampler->molecules->topology.kinds; k++) {
-        const struct reptation_kind *kind = &chain->reptation.kind[k];
-        if (kind->choice >= 0)
-            printf(", reptation %.3f (k = %d)",
-                   (double)kind->tally[kind->choice].accepted /
-                       (double)kind->tally[kind->choice].tried,
-                   reptation_places(kind->choice));
-    }
     printf("\n");
 }
 

@@ -86,9 +86,7 @@ static enum status take_places(struct metropolis *metropolis, const struct parti
 
 static enum status join(struct metropolis *metropolis, const struct molecules *molecules) {
     TRY(mf_particles_join(&metropolis->particles, &molecules->topology));
-    TRY(mf_molecule_moves_init(&metropolis->molecules, molecules, &metropolis->particles));
-    return mf_reptation_init(&metropolis->reptation, &molecules->topology,
-                             metropolis->particles.box.dimensions);
+    return mf_molecule_moves_init(&metropolis->molecules, molecules, &metropolis->particles);
 }
 
 enum status mf_metropolis_init_at(struct metropolis *metropolis, const struct particles *particles,
@@ -110,7 +108,6 @@ void mf_metropolis_clear(struct metropolis *metropolis) {
     mf_neighbours_clear(&metropolis->neighbours);
     mf_memory_free(metropolis->order);
     mf_molecule_moves_clear(&metropolis->molecules);
-    mf_reptation_clear(&metropolis->reptation);
     *metropolis = (struct metropolis){0};
 }
 
@@ -215,8 +212,6 @@ static enum status sweep(struct metropolis *metropolis) {
     TRY(mf_metropolis_move_beads(metropolis));
     if (metropolis->molecules.molecules)
         TRY(mf_molecule_moves_pass(metropolis, next_move(metropolis)));
-    if (mf_reptation_is_on(&metropolis->reptation))
-        TRY(mf_reptation_pass(metropolis));
     metropolis->sweep++;
     return STATUS_OK;
 }
@@ -236,7 +231,6 @@ static void forget_tallies(struct metropolis *metropolis) {
 enum status mf_metropolis_tune(struct metropolis *metropolis) {
     const enum molecule_move move = next_move(metropolis);
     forget_tallies(metropolis);
-    mf_reptation_tune(&metropolis->reptation, metropolis->sweep);
     TRY(sweep(metropolis));
     const double accepted = (double)metropolis->accepted / (double)metropolis->tried;
     metropolis->step =
@@ -250,12 +244,8 @@ enum status mf_metropolis_tune(struct metropolis *metropolis) {
 enum status mf_metropolis_equilibrate(struct metropolis *metropolis, uint32_t sweeps) {
     keep_order(metropolis);
     forget_tallies(metropolis);
-    if (sweeps == 0)
-        return STATUS_OK;
-    mf_reptation_forget(&metropolis->reptation);
     for (uint32_t s = 0; s < sweeps; s++)
         TRY(mf_metropolis_tune(metropolis));
-    mf_reptation_choose(&metropolis->reptation);
     return STATUS_OK;
 }
 

@@ -5,12 +5,10 @@
 /// once, in an order that equilibration fixes, by a uniform random vector of a cube. Same
 /// particles, same neighbour search and same tables as the dynamics. Beads of molecules move as
 /// single ones do, with U of their bonds, angles and dihedrals, and each sweep ends with one move
-/// of each molecule (dynamics/molecule_moves.h), of another kind in the next sweep. Long chains
-/// creep along themselves besides, where that pays (dynamics/reptation.h).
+/// of each molecule (dynamics/molecule_moves.h), of another kind in the next sweep.
 #pragma once
 
 #include "dynamics/molecule_moves.h"
-#include "dynamics/reptation.h"
 #include "forces/pair.h"
 
 #include <math.h>
@@ -22,7 +20,6 @@ struct metropolis {
     struct neighbours neighbours; ///< full list
     struct pair_law law;          ///< its potential is borrowed and may be exchanged
     struct molecule_moves molecules;
-    struct reptation reptation;
     uint32_t *order; ///< ids, in the order in which a sweep moves them
     double step;     ///< half edge of the cube of moves [λ]
     uint64_t seed;
@@ -97,8 +94,7 @@ enum status mf_metropolis_count(struct metropolis *metropolis,
                                 const struct pair_histogram *histogram,
                                 struct pair_sums *sums) MUST_USE;
 
-/// Moves of all kinds but reptation that were tried since mf_metropolis_equilibrate, and how many
-/// were accepted.
+/// Moves of all kinds that were tried since mf_metropolis_equilibrate, and how many were accepted.
 void mf_metropolis_tally(const struct metropolis *metropolis, uint64_t *accepted, uint64_t *tried);
 
 /// Sort the particles and build the list anew from the positions alone, so that a run that

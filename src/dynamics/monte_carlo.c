@@ -49,10 +49,7 @@ static enum status step(struct simulation *simulation) {
 }
 
 static void settle(void *state) {
-    struct monte_carlo *s = state;
-    if (!s->settled)
-        mf_reptation_choose(&s->chain.reptation);
-    s->settled = true;
+    ((struct monte_carlo *)state)->settled = true;
 }
 
 /// The order of the moves is that of the start, which a run that goes on has, too.
@@ -68,7 +65,6 @@ static size_t spans(void *state, struct memory_span *spans) {
     spans[n++] = (struct memory_span){&chain->accepted, sizeof chain->accepted};
     spans[n++] = (struct memory_span){&chain->tried, sizeof chain->tried};
     spans[n++] = (struct memory_span){chain->molecules.tally, sizeof chain->molecules.tally};
-    spans[n++] = (struct memory_span){chain->reptation.kind, sizeof chain->reptation.kind};
     spans[n++] = (struct memory_span){&s->settled, sizeof s->settled};
     return n;
 }
@@ -76,17 +72,6 @@ static size_t spans(void *state, struct memory_span *spans) {
 static enum status restore(void *state) {
     struct metropolis *chain = &((struct monte_carlo *)state)->chain;
     return mf_neighbours_rebuild(&chain->neighbours, &chain->particles);
-}
-
-/// Of all kinds that reptate.
-static struct reptation_tally reptations(const struct reptation *reptation) {
-    struct reptation_tally all = {0};
-    for (int k = 0; k < TOPOLOGY_MOST_KINDS; k++)
-        for (int choice = 0; choice < REPTATION_CHOICES; choice++) {
-            all.accepted += reptation->kind[k].tally[choice].accepted;
-            all.tried += reptation->kind[k].tally[choice].tried;
-        }
-    return all;
 }
 
 static size_t numbers(const void *state, struct integrator_number *numbers) {
@@ -102,10 +87,6 @@ static size_t numbers(const void *state, struct integrator_number *numbers) {
             numbers[n++] = (struct integrator_number){names[move], (double)tally->accepted /
                                                                        (double)tally->tried};
     }
-    const struct reptation_tally reptation = reptations(&chain->reptation);
-    if (reptation.tried > 0)
-        numbers[n++] = (struct integrator_number){
-            "acceptance_reptation", (double)reptation.accepted / (double)reptation.tried};
     return n;
 }
 

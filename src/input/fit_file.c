@@ -41,6 +41,12 @@ static void check_estimator(const struct fit_file *fit, struct json_object *meth
                       "\"force\" knows the forces of pairs alone, not \"interactions\"");
 }
 
+/// What files of earlier versions may say.
+static void refuse_removed(struct json_object *method) {
+    mf_json_refuse(method, "asynchronous",
+                   "candidates are measured by rounds alone; delete the line");
+}
+
 static enum status read_method(struct fit_file *fit, struct json_object *root) {
     const char **names;
     struct json_object object = mf_json_child_of(root, "method", true, "name");
@@ -58,6 +64,7 @@ static enum status read_method(struct fit_file *fit, struct json_object *root) {
     for (const struct inverse_table *table = fit->method->tables; table->fields; table++)
         mf_json_fields(&object, table->fields, (char *)fit->method_parameters + table->offset);
     check_estimator(fit, &object);
+    refuse_removed(&object);
     mf_json_finish(&object);
     return STATUS_OK;
 }

@@ -152,8 +152,6 @@ static size_t chain_spans(struct metropolis *chain, struct memory_span *span) {
     span[n++] = (struct memory_span){&chain->sweep, sizeof chain->sweep};
     if (chain->molecules.molecules)
         span[n++] = (struct memory_span){chain->molecules.tally, sizeof chain->molecules.tally};
-    if (chain->reptation.chains)
-        span[n++] = (struct memory_span){chain->reptation.kind, sizeof chain->reptation.kind};
     return n;
 }
 

@@ -6,13 +6,12 @@
 #include "base/visible.h"
 #include "io/json_document.h"
 #include "io/json_item.h"
-#include "io/json_syntax.h"
+#include "io/json_parse.h"
 #include "io/output.h"
 #include "io/text_file.h"
 
 #include <cJSON.h>
 
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -75,20 +74,6 @@ static void find_duplicates(struct json_object *object) {
     }
 }
 
-/// The syntax was checked, so what cJSON refuses is a \u escape without a meaning.
-static enum status parse(struct json_document *document, const char *text) {
-    const char *end = text;
-    errno = 0;
-    document->root = cJSON_ParseWithOpts(text, &end, true);
-    if (document->root)
-        return STATUS_OK;
-    if (errno == ENOMEM)
-        return mf_status_fail(STATUS_NO_MEMORY, "%s: out of memory", document->file);
-    const struct text_place place = mf_text_file_place(text, end);
-    return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu:%zu: expected a valid \\u escape",
-                          document->file, place.line, place.column);
-}
-
 static void free_document(struct json_document *document) {
     cJSON_Delete(document->root);
     mf_memory_free(document->file);
@@ -105,8 +90,7 @@ enum status mf_json_open(struct json_document **document, const char *file) {
     NEW_ARRAY(opened->file, strlen(file) + 1);
     memcpy(opened->file, file, strlen(file) + 1);
     CHECK(mf_text_file_read(file, &text, &length));
-    CHECK(mf_json_syntax_check(file, text));
-    CHECK(parse(opened, text));
+    CHECK(mf_json_parse(file, text, &opened->root));
     CHECK(mf_json_item_check(file, opened->root));
     struct json_object root = view(opened, opened->root);
     find_duplicates(&root);

@@ -19,7 +19,7 @@
 
 struct json_document;
 
-enum { JSON_PATH_SIZE = 256, JSON_MAX_KEYS = 128, JSON_MOST_MEMBERS = 1000 };
+enum { JSON_PATH_SIZE = 256, JSON_MAX_KEYS = 128, JSON_MOST_MEMBERS = 1000, JSON_DEEPEST = 64 };
 
 /// One object of a document while it is read. Plain data; lives on the reader's stack.
 struct json_object {
@@ -30,8 +30,8 @@ struct json_object {
     size_t asked_count;
 };
 
-/// Parse `file`. Malformed text is BAD_INPUT with file:line:column, an object of more than
-/// JSON_MOST_MEMBERS keys is BAD_INPUT.
+/// Parse `file`. Malformed text is BAD_INPUT with file:line:column; more than JSON_MOST_MEMBERS
+/// keys in an object, or JSON_DEEPEST objects and arrays one in the other, are BAD_INPUT.
 /// On success the caller owns *document (mf_json_close).
 enum status mf_json_open(struct json_document **document, const char *file) MUST_USE;
 

@@ -31,16 +31,23 @@ void mf_json_item_complete(const void *item, const char *chief, char *text, size
         snprintf(text, size, ": write {\"%s\": %.15g}", chief, json->valuedouble);
 }
 
-enum status mf_json_item_check(const char *file, const void *item) {
-    const cJSON *json = item, *member;
+static enum status check_below(const char *file, const cJSON *json, int depth) {
+    const cJSON *member;
     int count = 0;
+    if (depth > JSON_DEEPEST)
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: more than %d nested objects and arrays", file,
+                              JSON_DEEPEST);
     cJSON_ArrayForEach(member, json) {
         count++;
         if (member->child)
-            TRY(mf_json_item_check(file, member));
+            TRY(check_below(file, member, depth + 1));
     }
     if (cJSON_IsObject(json) && count > JSON_MOST_MEMBERS)
         return mf_status_fail(STATUS_BAD_INPUT, "%s: an object has %d keys; %d are the most", file,
                               count, JSON_MOST_MEMBERS);
     return STATUS_OK;
+}
+
+enum status mf_json_item_check(const char *file, const void *item) {
+    return check_below(file, item, 1);
 }

@@ -16,5 +16,6 @@ void mf_json_item_complete(const void *item, const char *chief, char *text, size
 
 /// BAD_INPUT if an object in it has more than JSON_MOST_MEMBERS keys: cJSON looks for a key from
 /// the first member on, so that what is read of an object, and the search for keys that stand
-/// twice, takes as long as the square of their number.
+/// twice, takes as long as the square of their number. Or if it is nested more than JSON_DEEPEST
+/// deep, since readers recurse.
 enum status mf_json_item_check(const char *file, const void *item) MUST_USE;

@@ -6,8 +6,6 @@
 #include "problem/inverse.h"
 
 #include "base/memory.h"
-#include "base/parallel.h"
-#include "matching/asynchronous.h"
 #include "matching/individuals.h"
 #include "matching/population.h"
 #include "problem/parametrisation.h"
@@ -48,7 +46,6 @@ struct state {
     struct parametrisation parametrisation;
     struct population population;
     struct individuals individuals;
-    struct asynchronous *asynchronous;    ///< NULL: by rounds
     double *incumbent;                    ///< shape [variables]: what is thought best
     double *best;                         ///< shape [variables]: the best by fresh measurements
     struct parametrisation_curves curves; ///< of the best, with errors by the linear model
@@ -105,17 +102,8 @@ static uint32_t most_iterations(const struct inverse_method *method,
            1;
 }
 
-static bool is_asynchronous(const struct inverse_method *method, const void *parameters) {
-    const struct driven *driven = method->own;
-    const struct optimiser_stream *stream = driven->optimiser->stream;
-    return stream && stream->wanted((const char *)parameters + driven->parameters);
-}
-
 static void destroy(void *memory) {
     struct state *state = memory;
-    if (state->asynchronous)
-        mf_asynchronous_clear(state->asynchronous);
-    mf_memory_free(state->asynchronous);
     if (state->created)
         state->optimiser->destroy(state->optimiser_state);
     mf_memory_free(state->optimiser_state);
@@ -153,19 +141,6 @@ done:
     return status;
 }
 
-static enum status create_asynchronous(struct state *state) {
-    enum status status = STATUS_OK;
-    if (state->parameters.surrogate == JOINS)
-        return mf_status_fail(STATUS_BAD_INPUT, "\"surrogate\": \"join\" joins a round, which an "
-                                                "\"asynchronous\" search does not have");
-    CHECK(mf_asynchronous_check(&state->parameters.population));
-    NEW_ARRAY(state->asynchronous, 1);
-    CHECK(mf_asynchronous_init(state->asynchronous, &state->population, &state->individuals,
-                               state->optimiser, state->optimiser_state));
-done:
-    return status;
-}
-
 static enum status create(void *memory, const struct inverse_method *method,
                           const struct inverse_problem *problem, const void *parameters) {
     enum status status = STATUS_OK;
@@ -183,8 +158,6 @@ static enum status create(void *memory, const struct inverse_method *method,
     CHECK(mf_population_init(&state->population, &state->parametrisation,
                              &state->parameters.population));
     CHECK(mf_individuals_init(&state->individuals, state->parametrisation.variables));
-    if (is_asynchronous(method, parameters))
-        CHECK(create_asynchronous(state));
     state->population.singles = least_evaluations;
     state->population.iterations = most_iterations(method, problem, parameters);
 done:
@@ -338,42 +311,21 @@ static size_t spans(void *memory, struct memory_span *span) {
     n += mf_population_spans(&state->population, span + n);
     n += mf_individuals_spans(&state->individuals, span + n);
     n += state->optimiser->spans(state->optimiser_state, span + n);
-    if (state->asynchronous)
-        n += mf_asynchronous_spans(state->asynchronous, span + n);
     return n;
-}
-
-/// A round without barriers, after which all ranks have the state of rank 0, which drove it.
-static enum status take_streamed_round(struct state *state, const struct inverse_listener *listener,
-                                       bool *finished) {
-    struct memory_span span[INVERSE_MAX_SPANS];
-    const enum status status = mf_asynchronous_take_round(state->asynchronous, listener, finished);
-    mf_parallel_share(span, spans(state, span));
-    return status;
-}
-
-/// Rounds of the optimiser, until an iteration has the evaluations that it should.
-static enum status take_rounds(struct state *state, const struct inverse_listener *listener,
-                               bool *finished) {
-    struct optimiser_round round;
-    if (state->asynchronous)
-        return take_streamed_round(state, listener, finished);
-    TRY(state->optimiser->ask(state->optimiser_state, &round));
-    while (round.count > 0 && !is_full(&state->population.survey, round.count)) {
-        TRY(take_round(state, &round, listener));
-        TRY(state->optimiser->ask(state->optimiser_state, &round));
-    }
-    *finished = round.count == 0;
-    return STATUS_OK;
 }
 
 static enum status iterate(void *memory, struct inverse_step *step,
                            const struct inverse_listener *listener) {
     struct state *state = memory;
-    bool finished;
+    struct optimiser_round round;
     state->population.iteration = state->progress.iteration;
     state->population.best = state->progress.error;
-    TRY(take_rounds(state, listener, &finished));
+    TRY(state->optimiser->ask(state->optimiser_state, &round));
+    while (round.count > 0 && !is_full(&state->population.survey, round.count)) {
+        TRY(take_round(state, &round, listener));
+        TRY(state->optimiser->ask(state->optimiser_state, &round));
+    }
+    const bool finished = round.count == 0;
     TRY(check(state, finished));
     describe(state, step, finished);
     mf_population_forget_survey(&state->population);
@@ -408,7 +360,6 @@ static enum status write(const void *memory, const struct inverse_folder *folder
         .most_iterations = most_iterations,                                                        \
         .sampling = mf_population_sampling,                                                        \
         .keeps_parts = true,                                                                       \
-        .depends_on_timing = is_asynchronous,                                                      \
         .columns = columns,                                                                        \
         .create = create,                                                                          \
         .destroy = destroy,                                                                        \

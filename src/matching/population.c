@@ -128,11 +128,6 @@ static void split(const struct population *population, double *position, double 
         column[d] = position + (size_t)d * (size_t)scene->placement.count;
 }
 
-/// Without "warm_start" simulations read nothing that changes while they go on.
-static bool is_warm(const struct population *population) {
-    return population->parameters.warm_start && population->totals.warm;
-}
-
 enum status mf_population_simulate(const struct population *population, const double *variables,
                                    const struct population_task *task,
                                    struct evaluate_result *result) {
@@ -144,7 +139,7 @@ enum status mf_population_simulate(const struct population *population, const do
     const struct evaluate_candidate candidate = {
         .potential = laws.table[UNKNOWN_POTENTIAL],
         .omega = laws.table[UNKNOWN_OMEGA],
-        .position = is_warm(population) ? (const double *const *)begin_column : NULL,
+        .position = population->totals.warm ? (const double *const *)begin_column : NULL,
         .discard_above = task->discard_above,
         .threads = task->threads,
         .seed = task->seed,
@@ -172,37 +167,25 @@ static void add(struct population_survey *survey, double error) {
         survey->least = fmin(survey->least, error);
 }
 
-/// Tell what a survey of this iteration knows, which had `before` evaluations when its round began.
-static void tell_survey(const struct population *population, const struct population_survey *survey,
-                        uint64_t before, size_t total, const struct inverse_listener *to) {
-    const struct inverse_progress progress = {
-        .iteration = population->iteration,
-        .iterations = population->iterations,
-        .done = survey->evaluations - before,
-        .total = total,
-        .best = population->best,
-        .least = survey->least,
-        .mean = survey->alive.count > 0 ? survey->alive.mean : NAN,
-        .failures = survey->failures,
-    };
-    to->tell(to->context, &progress);
-}
-
+/// Tell what this iteration knows.
 static void report(const struct population *population, size_t count,
                    const struct inverse_listener *to) {
     struct population_survey survey = population->survey;
     for (size_t k = 0; k < count; k++)
         if (population->errors[k] != UNMEASURED)
             add(&survey, population->errors[k]);
-    if (count == 1 && population->singles > 0)
-        tell_survey(population, &survey, 0, population->singles, to);
-    else
-        tell_survey(population, &survey, population->survey.evaluations, count, to);
-}
-
-void mf_population_report(const struct population *population, size_t total,
-                          const struct inverse_listener *listener) {
-    tell_survey(population, &population->survey, 0, total, listener);
+    const bool single = count == 1 && population->singles > 0;
+    const struct inverse_progress progress = {
+        .iteration = population->iteration,
+        .iterations = population->iterations,
+        .done = survey.evaluations - (single ? 0 : population->survey.evaluations),
+        .total = single ? population->singles : count,
+        .best = population->best,
+        .least = survey.least,
+        .mean = survey.alive.count > 0 ? survey.alive.mean : NAN,
+        .failures = survey.failures,
+    };
+    to->tell(to->context, &progress);
 }
 
 /// Take over a measurement. Called by one thread at a time, in any order.
@@ -309,8 +292,8 @@ void mf_population_remember(struct population *population, const double *variabl
         mf_surrogate_add(&population->surrogate, variables, features);
 }
 
-// Copies, which are a challenger measured again, are left out.
-void mf_population_show(struct population *population, const struct optimiser_round *round) {
+/// Keep a round to be written, but for copies, which are a challenger measured again.
+static void show(struct population *population, const struct optimiser_round *round) {
     enum { LEAST = 8 };
     const size_t bytes = population->parametrisation->variables * sizeof(double);
     size_t distinct = 0;
@@ -326,21 +309,6 @@ void mf_population_show(struct population *population, const struct optimiser_ro
                (const char *)round->variables + k * bytes, bytes);
         population->shown_error[population->shown_count++] = population->errors[k];
     }
-}
-
-void mf_population_take_streamed(struct population *population, const double *variables,
-                                 const struct evaluate_result *result, const double *features,
-                                 size_t here) {
-    population->totals.evaluations++;
-    population->totals.steps += result->engine_steps;
-    mf_population_add_failure(&population->totals.failures, result);
-    add(&population->survey, result->error);
-    mf_population_remember(population, variables, result->error, features);
-    if (here == 0)
-        memcpy(population->first, variables,
-               population->parametrisation->variables * sizeof *variables);
-    if (here < POPULATION_MOST)
-        population->errors[here] = result->error;
 }
 
 enum status mf_population_measure(struct population *population,
@@ -373,7 +341,7 @@ enum status mf_population_measure(struct population *population,
             population, round->variables + k * population->parametrisation->variables,
             population->errors[k], population->features + k * population->surrogate.features);
     }
-    mf_population_show(population, round);
+    show(population, round);
     return STATUS_OK;
 }
 

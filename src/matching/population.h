@@ -150,17 +150,3 @@ void mf_population_tell_failure(const struct population *population, const char 
 
 enum { CANDIDATES_SPANS = 12 + SURROGATE_SPANS };
 size_t mf_population_spans(struct population *population, struct memory_span *spans);
-
-/// @name Without rounds (matching/asynchronous.h)
-
-/// Take over a measurement, number `here` of those that make up a round.
-void mf_population_take_streamed(struct population *population, const double *variables,
-                                 const struct evaluate_result *result, const double *features,
-                                 size_t here);
-
-/// Keep a round to be written, whose errors are the population's; nothing if it is small.
-void mf_population_show(struct population *population, const struct optimiser_round *round);
-
-/// Tell how many of the `total` of a round are measured.
-void mf_population_report(const struct population *population, size_t total,
-                          const struct inverse_listener *listener);

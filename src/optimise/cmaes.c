@@ -14,10 +14,11 @@
 // then sees what no single candidate shows.
 //
 // Restarts with twice the population: A. Auger and N. Hansen, CEC 2005, 1769 ("IPOP").
-#include "optimise/cmaes_state.h"
+#include "optimise/cmaes.h"
 
 #include "base/rng.h"
 #include "base/statistics.h"
+#include "optimise/optimiser.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -34,9 +35,6 @@ const struct field mf_cmaes_fields[] = {
      .unit = "", .help = "from new places with twice the population, once errors stand still"},
     {"tolerance", FIELD_NUMBER, MEMBER(tolerance), .initial = 1e-12, .minimum = 0,
      .maximum = DBL_MAX, .unit = "error", .help = "within which errors stand still"},
-    {"asynchronous", FIELD_CHOICE, MEMBER(asynchronous), .choices = mf_optimiser_asynchronous,
-     .initial = 0, .unit = "",
-     .help = "yes: nobody waits for the end of a round; results then depend on timing"},
     FIELD_END,
 };
 
@@ -48,16 +46,41 @@ enum { MOST_GROWTH = 16 };
 /// step instead, as UH-CMA-ES has it when it cannot measure for longer.
 static const double noise_memory = 0.8, noise_grows = 0.5, noise_shrinks = 0.25, growth = 1.1;
 
+struct state {
+    struct cmaes_parameters parameters;
+    struct optimiser_space space;
+    struct cmaes_distribution distribution;
+    struct cmaes_strategy strategy;
+    size_t most;       ///< candidates of a round, at most; there is room for them
+    double *steps;     ///< of the candidates, shape [most, variables]
+    double *variables; ///< the candidates, shape [most, variables]
+    double *errors;    ///< shape [most]: scratch
+    double *record;    ///< variables of `record_error`, shape [variables]
+    double *history;   ///< least errors of the last rounds, a ring, shape [most_history]
+    uint64_t sampled;  ///< the round whose candidates these are, counted from 1; 0: none yet
+    struct progress {
+        uint64_t rounds;        ///< told
+        uint64_t descents;      ///< ended
+        uint64_t history_count; ///< of this descent
+        double population;      ///< of this descent, not yet rounded
+        double noise;           ///< smoothed share of noise among errors
+        double record_error;    ///< of the best candidate, or, with noise, of the best descent
+        double median;          ///< of the last round
+        double discard_above;
+        int64_t noisy, over, settled, known;
+    } progress;
+};
+
 static size_t usual_population(const struct cmaes_parameters *p, size_t variables) {
     return p->population > 0 ? (size_t)p->population : 4 + (size_t)(3 * log((double)variables));
 }
 
 /// Rounds within which errors must stand still: 10 + 30 n/λ (tutorial, B.3).
-static size_t history_rounds(const struct cmaes_state *state, size_t population) {
+static size_t history_rounds(const struct state *state, size_t population) {
     return 10 + (size_t)ceil(30 * (double)state->space.variables / (double)population);
 }
 
-static size_t most_history(const struct cmaes_state *state) {
+static size_t most_history(const struct state *state) {
     return history_rounds(state, usual_population(&state->parameters, state->space.variables));
 }
 
@@ -67,30 +90,30 @@ static uint32_t most_rounds(const void *parameters, size_t variables) {
 }
 
 static void destroy(void *memory) {
-    struct cmaes_state *state = memory;
+    struct state *state = memory;
     mf_cmaes_clear(&state->distribution);
     mf_memory_free(state->strategy.weights);
     mf_memory_free(state->steps);
     mf_memory_free(state->variables);
     mf_memory_free(state->errors);
-    mf_memory_free(state->variances);
     mf_memory_free(state->record);
     mf_memory_free(state->history);
-    *state = (struct cmaes_state){0};
+    *state = (struct state){0};
 }
 
 /// Of a number of candidates, as many as a round may have.
-static size_t limit(const struct cmaes_state *state, size_t candidates) {
+static size_t limit(const struct state *state, size_t candidates) {
     const size_t most = state->space.most;
     return most > 0 && candidates > most ? most : candidates;
 }
 
-static size_t descent_population(const struct cmaes_state *state) {
+static size_t descent_population(const struct state *state) {
     return limit(state, usual_population(&state->parameters, state->space.variables)
                             << state->progress.descents);
 }
 
-void mf_cmaes_follow_population(struct cmaes_state *state) {
+/// Numbers of the strategy, which no checkpoint keeps since they follow from the population.
+static void follow_population(struct state *state) {
     if (state->strategy.population == (size_t)state->progress.population)
         return;
     state->strategy.population = (size_t)state->progress.population;
@@ -98,41 +121,39 @@ void mf_cmaes_follow_population(struct cmaes_state *state) {
 }
 
 /// Begin a descent; the mean is to be set.
-static void begin_descent(struct cmaes_state *state) {
-    struct cmaes_progress *p = &state->progress;
+static void begin_descent(struct state *state) {
+    struct progress *p = &state->progress;
     p->population = (double)descent_population(state);
     p->history_count = 0;
     p->noise = 0;
     mf_cmaes_begin(&state->distribution, state->parameters.step);
 }
 
-void mf_cmaes_place(const struct cmaes_state *state, const double *step, double *variables) {
-    const struct cmaes_distribution *d = &state->distribution;
-    for (size_t k = 0; k < d->variables; k++)
-        variables[k] = optimiser_variable(
-            &state->space, mf_optimiser_reflect(d->mean[k] + d->moments.sigma * step[k]));
-}
-
 /// This round's candidates: a function of the distribution, the seed and the round, so no
 /// checkpoint keeps them.
-static void sample(struct cmaes_state *state) {
+static void sample(struct state *state) {
     const size_t n = state->space.variables;
     if (state->sampled == state->progress.rounds + 1)
         return;
     state->sampled = state->progress.rounds + 1;
-    mf_cmaes_follow_population(state);
+    follow_population(state);
     for (size_t row = 0; row < state->strategy.population; row++) {
         double *step = state->steps + row * n;
         mf_cmaes_sample(&state->distribution, state->space.seed, (uint32_t)state->progress.rounds,
                         (uint32_t)row, step);
-        mf_cmaes_place(state, step, state->variables + row * n);
+        for (size_t k = 0; k < n; k++) {
+            const double x =
+                state->distribution.mean[k] + state->distribution.moments.sigma * step[k];
+            state->variables[row * n + k] =
+                optimiser_variable(&state->space, mf_optimiser_reflect(x));
+        }
     }
 }
 
 static enum status create(void *memory, const struct optimiser_space *space,
                           const void *parameters) {
     enum status status = STATUS_OK;
-    struct cmaes_state *state = memory;
+    struct state *state = memory;
     state->parameters = *(const struct cmaes_parameters *)parameters;
     CHECK(mf_optimiser_check_space(space));
     if (state->parameters.population > 0 && state->parameters.population < 4)
@@ -147,7 +168,6 @@ static enum status create(void *memory, const struct optimiser_space *space,
     NEW_ARRAY(state->steps, state->most * space->variables);
     NEW_ARRAY(state->variables, state->most * space->variables);
     NEW_ARRAY(state->errors, state->most);
-    NEW_ARRAY(state->variances, state->most);
     NEW_ARRAY(state->record, space->variables);
     NEW_ARRAY(state->history, most_history(state));
     CHECK(mf_cmaes_init(&state->distribution, space->variables));
@@ -160,7 +180,7 @@ done:
 }
 
 static enum status ask(void *memory, struct optimiser_round *round) {
-    struct cmaes_state *state = memory;
+    struct state *state = memory;
     const bool over = state->progress.over != 0;
     sample(state);
     *round = (struct optimiser_round){state->variables, over ? 0 : state->strategy.population};
@@ -175,7 +195,7 @@ static int compare_numbers(const void *a, const void *b) {
 }
 
 /// Share of the variance among errors that is the variance of each: 1 if ranks are noise alone.
-static void watch_noise(struct cmaes_state *state, const double *variances) {
+static void watch_noise(struct state *state, const double *variances) {
     struct running_mean errors = {0}, noise = {0};
     for (size_t k = 0; k < state->strategy.population; k++) {
         if (state->errors[k] >= OPTIMISER_FAILED)
@@ -191,8 +211,8 @@ static void watch_noise(struct cmaes_state *state, const double *variances) {
     state->progress.noisy = state->progress.noisy || noise.mean > 0;
 }
 
-static void react_to_noise(struct cmaes_state *state) {
-    struct cmaes_progress *p = &state->progress;
+static void react_to_noise(struct state *state) {
+    struct progress *p = &state->progress;
     const double usual = (double)descent_population(state);
     if (p->noise > noise_grows)
         p->population =
@@ -202,7 +222,7 @@ static void react_to_noise(struct cmaes_state *state) {
 }
 
 /// Keep the best candidate.
-static void keep_best(struct cmaes_state *state) {
+static void keep_best(struct state *state) {
     const size_t n = state->space.variables;
     for (size_t k = 0; k < state->strategy.population; k++) {
         if (state->errors[k] >= fmin(state->progress.record_error, OPTIMISER_FAILED))
@@ -212,7 +232,7 @@ static void keep_best(struct cmaes_state *state) {
     }
 }
 
-static void mean_variables(const struct cmaes_state *state, double *variables) {
+static void mean_variables(const struct state *state, double *variables) {
     for (size_t k = 0; k < state->space.variables; k++)
         variables[k] =
             optimiser_variable(&state->space, mf_optimiser_reflect(state->distribution.mean[k]));
@@ -220,8 +240,8 @@ static void mean_variables(const struct cmaes_state *state, double *variables) {
 
 /// The least error of the round, the median, and the one above which a candidate changes nothing;
 /// sorts the errors.
-static void survey(struct cmaes_state *state) {
-    struct cmaes_progress *p = &state->progress;
+static void survey(struct state *state) {
+    struct progress *p = &state->progress;
     const struct cmaes_strategy *s = &state->strategy;
     qsort(state->errors, s->population, sizeof(double), compare_numbers);
     p->median = state->errors[s->population / 2];
@@ -230,8 +250,8 @@ static void survey(struct cmaes_state *state) {
 }
 
 /// Whether errors of this round, sorted, and the least of the last ones are all the same.
-static bool stands_still(const struct cmaes_state *state) {
-    const struct cmaes_progress *p = &state->progress;
+static bool stands_still(const struct state *state) {
+    const struct progress *p = &state->progress;
     const size_t rounds = history_rounds(state, state->strategy.population);
     if (p->history_count < rounds)
         return false;
@@ -245,7 +265,7 @@ static bool stands_still(const struct cmaes_state *state) {
 }
 
 /// Largest standard deviation of a variable.
-static double widest(const struct cmaes_state *state) {
+static double widest(const struct state *state) {
     double most = 0;
     for (size_t k = 0; k < state->space.variables; k++)
         most = fmax(most, mf_cmaes_deviation(&state->distribution, k));
@@ -253,20 +273,20 @@ static double widest(const struct cmaes_state *state) {
 }
 
 /// No variable spreads beyond its whole range: mirrors would only hide it.
-static void limit_step(struct cmaes_state *state) {
+static void limit_step(struct state *state) {
     const double most = widest(state);
     if (most > 1)
         state->distribution.moments.sigma /= most;
 }
 
 /// Whether the distribution has become too narrow or too oblong for double precision.
-static bool is_degenerate(const struct cmaes_state *state) {
+static bool is_degenerate(const struct state *state) {
     return widest(state) < 1e-12 || mf_cmaes_axis_ratio(&state->distribution) > 1e7;
 }
 
 /// With noise the record is the mean of the descent whose last errors were lowest.
-static void keep_descent(struct cmaes_state *state) {
-    struct cmaes_progress *p = &state->progress;
+static void keep_descent(struct state *state) {
+    struct progress *p = &state->progress;
     if (!p->noisy || (p->descents > 0 && p->median >= p->record_error))
         return;
     p->record_error = p->median;
@@ -274,7 +294,7 @@ static void keep_descent(struct cmaes_state *state) {
 }
 
 /// A new descent from anywhere.
-static void restart(struct cmaes_state *state) {
+static void restart(struct state *state) {
     struct rng_sequence random = mf_rng_sequence_begin(state->space.seed, RNG_INITIAL,
                                                        (uint32_t)++state->progress.descents, 0);
     begin_descent(state);
@@ -283,8 +303,8 @@ static void restart(struct cmaes_state *state) {
 }
 
 /// What follows a round, whose errors are sorted.
-static void go_on(struct cmaes_state *state) {
-    struct cmaes_progress *p = &state->progress;
+static void go_on(struct state *state) {
+    struct progress *p = &state->progress;
     const bool ended = stands_still(state) || is_degenerate(state);
     if (ended)
         keep_descent(state);
@@ -298,10 +318,15 @@ static void go_on(struct cmaes_state *state) {
         react_to_noise(state);
 }
 
-enum status mf_cmaes_end_round(struct cmaes_state *state, const double *variances) {
+static enum status tell(void *memory, const double *errors, const double *variances) {
+    struct state *state = memory;
+    sample(state);
+    const size_t population = state->strategy.population;
     double least = OPTIMISER_FAILED;
-    for (size_t k = 0; k < state->strategy.population; k++)
+    for (size_t k = 0; k < population; k++) {
+        state->errors[k] = optimiser_error(errors[k]);
         least = fmin(least, state->errors[k]);
+    }
     if (least < OPTIMISER_FAILED) { // a round in which all failed says nothing
         TRY(mf_cmaes_update(&state->distribution, &state->strategy, state->steps, state->errors));
         limit_step(state);
@@ -315,19 +340,11 @@ enum status mf_cmaes_end_round(struct cmaes_state *state, const double *variance
     return STATUS_OK;
 }
 
-static enum status tell(void *memory, const double *errors, const double *variances) {
-    struct cmaes_state *state = memory;
-    sample(state);
-    for (size_t k = 0; k < state->strategy.population; k++)
-        state->errors[k] = optimiser_error(errors[k]);
-    return mf_cmaes_end_round(state, variances);
-}
-
 // What it knows -----------------------------------------------------------------------------------
 
 static bool incumbent(const void *memory, double *variables) {
-    const struct cmaes_state *state = memory;
-    const struct cmaes_progress *p = &state->progress;
+    const struct state *state = memory;
+    const struct progress *p = &state->progress;
     if (!p->known)
         return false;
     const bool former = p->descents > 0 && p->record_error <= p->median;
@@ -339,7 +356,7 @@ static bool incumbent(const void *memory, double *variables) {
 }
 
 static double spread(const void *memory) {
-    const struct cmaes_state *state = memory;
+    const struct state *state = memory;
     double sum = 0;
     for (size_t k = 0; k < state->space.variables; k++)
         sum += mf_cmaes_deviation(&state->distribution, k);
@@ -347,15 +364,15 @@ static double spread(const void *memory) {
 }
 
 static double discard_above(const void *memory) {
-    return ((const struct cmaes_state *)memory)->progress.discard_above;
+    return ((const struct state *)memory)->progress.discard_above;
 }
 
 static bool settled(const void *memory) {
-    return ((const struct cmaes_state *)memory)->progress.settled != 0;
+    return ((const struct state *)memory)->progress.settled != 0;
 }
 
 static size_t spans(void *memory, struct memory_span *span) {
-    struct cmaes_state *state = memory;
+    struct state *state = memory;
     struct cmaes_distribution *d = &state->distribution;
     const size_t n = d->variables, row = n * sizeof(double);
     size_t count = 0;
@@ -370,12 +387,6 @@ static size_t spans(void *memory, struct memory_span *span) {
     span[count++] = (struct memory_span){d->covariance, n * row};
     span[count++] = (struct memory_span){d->axes, n * row};
     span[count++] = (struct memory_span){d->lengths, row};
-    if (!state->parameters.asynchronous)
-        return count;
-    span[count++] = (struct memory_span){state->steps, state->most * row};
-    span[count++] = (struct memory_span){state->variables, state->most * row};
-    span[count++] = (struct memory_span){state->errors, state->most * sizeof(double)};
-    span[count++] = (struct memory_span){state->variances, state->most * sizeof(double)};
     return count;
 }
 
@@ -383,7 +394,7 @@ const struct optimiser mf_cmaes_optimiser = {
     .name = "cma-es",
     .tables = (const struct field *const[]){mf_cmaes_fields, NULL},
     .parameters_size = sizeof(struct cmaes_parameters),
-    .state_size = sizeof(struct cmaes_state),
+    .state_size = sizeof(struct state),
     .budget = "rounds",
     .most_rounds = most_rounds,
     .create = create,
@@ -394,6 +405,5 @@ const struct optimiser mf_cmaes_optimiser = {
     .spread = spread,
     .discard_above = discard_above,
     .settled = settled,
-    .stream = &mf_cmaes_stream,
     .spans = spans,
 };

@@ -69,11 +69,6 @@ enum status mf_cmaes_update(struct cmaes_distribution *distribution,
                             const struct cmaes_strategy *strategy, const double *steps,
                             const double *errors) MUST_USE;
 
-/// Shorten the step of a candidate that was not sampled from this distribution to the length
-/// √n + 2n/(n + 2) of √(yᵀ C⁻¹ y), which few that are sampled exceed: N. Hansen, arXiv:1110.4181
-/// (2011). Tested: test_cmaes.
-void mf_cmaes_shorten(const struct cmaes_distribution *distribution, double *step);
-
 /// Standard deviation of a variable.
 double mf_cmaes_deviation(const struct cmaes_distribution *distribution, size_t variable);
 

@@ -244,14 +244,6 @@ enum status mf_cmaes_update(struct cmaes_distribution *d, const struct cmaes_str
     return STATUS_OK;
 }
 
-void mf_cmaes_shorten(const struct cmaes_distribution *d, double *step) {
-    const double n = (double)d->variables;
-    const double length = sqrt(whiten(d, step, d->scratch->white)),
-                 most = sqrt(n) + 2 * n / (n + 2);
-    for (size_t k = 0; length > most && k < d->variables; k++)
-        step[k] *= most / length;
-}
-
 double mf_cmaes_deviation(const struct cmaes_distribution *d, size_t variable) {
     return d->moments.sigma * sqrt(d->covariance[variable * d->variables + variable]);
 }

@@ -57,9 +57,6 @@ const struct field mf_genetic_fields[] = {
      .unit = "", .help = "every so many generations all islands breed with all"},
     {"generations", FIELD_INTEGER, MEMBER(generations), .initial = 21, .minimum = 1, .maximum = 1e6,
      .unit = "", .help = "after which the fit ends"},
-    {"asynchronous", FIELD_CHOICE, MEMBER(asynchronous), .choices = mf_optimiser_asynchronous,
-     .initial = 0, .unit = "",
-     .help = "yes: nobody waits for the end of a generation; results then depend on timing"},
     FIELD_END,
 };
 
@@ -188,25 +185,30 @@ static int64_t shore(const struct genetic_parameters *p, int64_t island) {
                                 : 2 * ((p->population + 1) / 2 * island / p->islands);
 }
 
-static struct genetic_parents parents_of(const struct genetic *genetic, int64_t child) {
+/// Rows from which the parents of a couple of children are drawn.
+struct parents {
+    int64_t first, count;
+};
+
+static struct parents parents_of(const struct genetic *genetic, int64_t child) {
     const struct genetic_parameters *p = &genetic->parameters;
     int64_t island = 0;
     if (p->islands <= 1 || genetic->generation % (uint64_t)p->migration == 0)
-        return (struct genetic_parents){0, genetic->rows};
+        return (struct parents){0, genetic->rows};
     while (shore(p, island + 1) <= child)
         island++;
-    return (struct genetic_parents){shore(p, island), shore(p, island + 1) - shore(p, island)};
+    return (struct parents){shore(p, island), shore(p, island + 1) - shore(p, island)};
 }
 
-/// A copy of the winner of a tournament. Returns its row.
-static int64_t copy_winner(const struct genetic *genetic, struct genetic_parents parents,
-                           const double *errors, double *child, struct rng_sequence *random) {
+/// A copy of the winner of a tournament. Returns its number.
+static uint64_t copy_winner(const struct genetic *genetic, struct parents parents,
+                            const double *errors, double *child, struct rng_sequence *random) {
     const struct genetic_parameters *p = &genetic->parameters;
     const int64_t winner = parents.first + mf_genetic_tournament(errors + parents.first,
                                                                  parents.count, p->tournament_size,
                                                                  p->tournament_probability, random);
     memcpy(child, mf_genetic_individual(genetic, winner), (size_t)p->genes * sizeof *child);
-    return winner;
+    return genetic->measured + (uint64_t)winner + 1;
 }
 
 static int compare_numbers(const void *a, const void *b) {
@@ -249,47 +251,30 @@ static void place_elite(struct genetic *genetic) {
     genetic->parent[1] = 0;
 }
 
-void mf_genetic_survey(struct genetic *genetic, const double *errors) {
-    genetic->median = find_median(genetic, errors);
-    find_spread(genetic, errors);
-}
-
-bool mf_genetic_breed(const struct genetic *genetic, struct genetic_parents parents,
-                      const double *errors, double *first, double *second, int64_t winner[2],
-                      struct rng_sequence *random) {
-    const struct genetic_parameters *p = &genetic->parameters;
-    winner[0] = copy_winner(genetic, parents, errors, first, random);
-    winner[1] = copy_winner(genetic, parents, errors, second, random);
-    const bool crossed = mf_rng_sequence_uniform(random) < p->crossover;
-    if (crossed)
-        mf_genetic_recombine(first, second, p, random);
-    mf_genetic_mutate(first, genetic, random);
-    mf_genetic_mutate(second, genetic, random);
-    for (int64_t k = 0; k < p->genes; k++) {
-        first[k] = within_range(first[k], p);
-        second[k] = within_range(second[k], p);
-    }
-    return crossed;
-}
-
 void mf_genetic_next_generation(struct genetic *genetic, const double *errors) {
     const struct genetic_parameters *p = &genetic->parameters;
     genetic->generation++;
-    mf_genetic_survey(genetic, errors);
+    genetic->median = find_median(genetic, errors);
+    find_spread(genetic, errors);
     for (int64_t pair = 0; pair < p->population; pair += 2) {
         struct rng_sequence random = mf_rng_sequence_begin(genetic->seed, RNG_SELECTION,
                                                            genetic->generation, (uint32_t)pair);
-        double *first = genetic->offspring + pair * p->genes;
+        const struct parents parents = parents_of(genetic, pair);
+        double *first = genetic->offspring + pair * p->genes, *second = first + p->genes;
         uint64_t *parent = genetic->parent + 2 * pair; // of both children
-        int64_t winner[2];
-        const bool crossed = mf_genetic_breed(genetic, parents_of(genetic, pair), errors, first,
-                                              first + p->genes, winner, &random);
-        parent[0] = genetic->measured + (uint64_t)winner[0] + 1;
-        parent[2] = genetic->measured + (uint64_t)winner[1] + 1;
-        parent[1] = crossed ? parent[2] : 0;
-        parent[3] = crossed ? parent[0] : 0;
+        parent[0] = copy_winner(genetic, parents, errors, first, &random);
+        parent[2] = copy_winner(genetic, parents, errors, second, &random);
+        parent[1] = parent[3] = 0;
+        if (mf_rng_sequence_uniform(&random) < p->crossover) {
+            mf_genetic_recombine(first, second, p, &random);
+            parent[1] = parent[2];
+            parent[3] = parent[0];
+        }
+        mf_genetic_mutate(first, genetic, &random);
+        mf_genetic_mutate(second, genetic, &random);
     }
-    memcpy(genetic->population, genetic->offspring, total_genes(genetic) * sizeof(double));
+    for (size_t k = 0; k < total_genes(genetic); k++)
+        genetic->population[k] = within_range(genetic->offspring[k], p);
     if (genetic->elite_measured > 0)
         place_elite(genetic);
     genetic->measured += (uint64_t)genetic->rows;

@@ -42,7 +42,6 @@ struct genetic_parameters {
     int64_t patience;  ///< generations without a better elite after which it has settled; 0: never
     int64_t islands;   ///< parts of the population that breed alone, but for every
     int64_t migration; ///< so many generations, when all breed with all
-    int asynchronous;  ///< 0: no; see genetic_asynchronous.c
 };
 
 struct genetic {
@@ -97,28 +96,12 @@ bool mf_genetic_offer(struct genetic *genetic, const double *genes, double error
 /// @param[in] errors  shape [rows]
 void mf_genetic_next_generation(struct genetic *genetic, const double *errors);
 
-/// The median error and the spread of the better half of a whole population, shape [population].
-void mf_genetic_survey(struct genetic *genetic, const double *errors);
-
-struct rng_sequence;
-
-/// Rows from which the parents of a couple of children are drawn.
-struct genetic_parents {
-    int64_t first, count;
-};
-
-/// Two children of the winners of two tournaments, whose rows are told.
-/// @param[in] errors  shape [first + count] of the rows
-/// Returns whether they were crossed; else each is a child of one winner alone.
-bool mf_genetic_breed(const struct genetic *genetic, struct genetic_parents parents,
-                      const double *errors, double *first, double *second, int64_t winner[2],
-                      struct rng_sequence *random);
-
 /// Mean over genes of the standard deviation over individuals, as a fraction of the first
 /// generation's range.
 double mf_genetic_diversity(const struct genetic *genetic);
 
 /// @name Operators (genetic_operators.c)
+struct rng_sequence;
 
 enum { GENETIC_LARGEST_TOURNAMENT = 64 };
 

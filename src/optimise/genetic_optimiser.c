@@ -5,9 +5,16 @@
 // challenger: its genes follow the next generation in as many rows as it needs fresh measurements,
 // and only their mean is offered for the elite's place. These rows take part in the selection, so
 // that a challenger has children while it waits. A last round measures the last challenger alone.
-#include "optimise/genetic_state.h"
+#include "optimise/genetic.h"
+#include "optimise/optimiser.h"
 
 #include <string.h>
+
+struct state {
+    struct genetic genetic;
+    double *errors;     ///< shape [population + remeasurements]: scratch
+    double *challenger; ///< shape [genes]: scratch
+};
 
 static uint32_t most_rounds(const void *parameters, size_t genes) {
     (void)genes;
@@ -15,18 +22,17 @@ static uint32_t most_rounds(const void *parameters, size_t genes) {
 }
 
 static void destroy(void *memory) {
-    struct genetic_state *state = memory;
+    struct state *state = memory;
     mf_genetic_clear(&state->genetic);
     mf_memory_free(state->errors);
     mf_memory_free(state->challenger);
-    mf_memory_free(state->number);
-    *state = (struct genetic_state){0};
+    *state = (struct state){0};
 }
 
 static enum status create(void *memory, const struct optimiser_space *space,
                           const void *parameters) {
     enum status status = STATUS_OK;
-    struct genetic_state *state = memory;
+    struct state *state = memory;
     const struct genetic_parameters *p = parameters;
     struct optimiser_space inside = *space;
     double *start = NULL;
@@ -34,15 +40,12 @@ static enum status create(void *memory, const struct optimiser_space *space,
     CHECK(mf_optimiser_check_round(space, (size_t)(p->population + p->remeasurements)));
     NEW_ARRAY(state->errors, (size_t)(p->population + p->remeasurements));
     NEW_ARRAY(state->challenger, space->variables);
-    NEW_ARRAY(state->number, (size_t)p->population);
     NEW_ARRAY(start, space->variables);
     for (size_t k = 0; space->start && k < space->variables; k++)
         start[k] = optimiser_variable(space, mf_optimiser_start(space, k));
     if (space->start)
         inside.start = start;
     CHECK(mf_genetic_init(&state->genetic, p, &inside));
-    if (p->asynchronous)
-        CHECK(mf_genetic_begin_stream(state));
 done:
     mf_memory_free(start);
     if (status != STATUS_OK)
@@ -57,13 +60,14 @@ static bool has_settled(const struct genetic *genetic) {
            genetic->generation >= genetic->elite_since + (uint64_t)patience;
 }
 
-bool mf_genetic_is_over(const struct genetic *genetic) {
+/// Whether all generations are measured, and perhaps a last challenger is left.
+static bool is_over(const struct genetic *genetic) {
     return has_settled(genetic) || genetic->generation >= (uint32_t)genetic->parameters.generations;
 }
 
 /// Rows of the population that this round leaves out.
 static int64_t first_row(const struct genetic *genetic) {
-    return mf_genetic_is_over(genetic) ? genetic->parameters.population : 0;
+    return is_over(genetic) ? genetic->parameters.population : 0;
 }
 
 static bool has_challenger(const struct genetic *genetic) {
@@ -75,7 +79,7 @@ static const double *last_challenger(const struct genetic *genetic) {
 }
 
 static enum status ask(void *memory, struct optimiser_round *round) {
-    const struct genetic *genetic = &((struct genetic_state *)memory)->genetic;
+    const struct genetic *genetic = &((struct state *)memory)->genetic;
     const int64_t first = first_row(genetic);
     *round = (struct optimiser_round){mf_genetic_individual(genetic, first),
                                       (size_t)(genetic->rows - first)};
@@ -97,7 +101,9 @@ static bool is_elite(const struct genetic *genetic, int64_t row) {
                   (size_t)genetic->parameters.genes * sizeof(double)) == 0;
 }
 
-int64_t mf_genetic_find_challenger(const struct genetic *genetic, const double *errors) {
+/// Index of the best individual below the elite's error, −1 if there is none. Twins of the elite
+/// are left out: they would win by a lucky draw of the same genes.
+static int64_t find_challenger(const struct genetic *genetic, const double *errors) {
     int64_t best = -1;
     double least = genetic->elite_error;
     for (int64_t k = 0; k < genetic->parameters.population; k++) {
@@ -111,7 +117,7 @@ int64_t mf_genetic_find_challenger(const struct genetic *genetic, const double *
 
 /// Rows of a challenger behind the next generation.
 /// @param[in] number  of the individual that it is
-static void add_challenger(struct genetic_state *state, uint64_t number) {
+static void add_challenger(struct state *state, uint64_t number) {
     struct genetic *genetic = &state->genetic;
     const int64_t population = genetic->parameters.population;
     const size_t genes = (size_t)genetic->parameters.genes;
@@ -123,14 +129,14 @@ static void add_challenger(struct genetic_state *state, uint64_t number) {
     }
 }
 
-static void tell_generation(struct genetic_state *state) {
+static void tell_generation(struct state *state) {
     struct genetic *genetic = &state->genetic;
     const int64_t population = genetic->parameters.population;
     if (genetic->elite_measured > 0)
         mf_genetic_remeasure_elite(genetic, state->errors[0]);
     if (has_challenger(genetic))
         judge_challenger(genetic, state->errors + population);
-    const int64_t challenger = mf_genetic_find_challenger(genetic, state->errors);
+    const int64_t challenger = find_challenger(genetic, state->errors);
     if (challenger >= 0)
         memcpy(state->challenger, mf_genetic_individual(genetic, challenger),
                (size_t)genetic->parameters.genes * sizeof(double));
@@ -148,53 +154,46 @@ static void begin_with_challenger(struct genetic *genetic) {
 }
 
 static enum status tell(void *memory, const double *errors, const double *variances) {
-    struct genetic_state *state = memory;
+    struct state *state = memory;
     struct genetic *genetic = &state->genetic;
     const int64_t count = genetic->rows - first_row(genetic);
     (void)variances; // the selection needs ranks alone, and the elite is measured again anyway
     for (int64_t k = 0; k < count; k++)
         state->errors[k] = optimiser_error(errors[k]);
-    if (!mf_genetic_is_over(genetic)) {
+    if (!is_over(genetic)) {
         tell_generation(state);
     } else if (has_challenger(genetic)) {
         judge_challenger(genetic, state->errors);
         genetic->measured += (uint64_t)count;
         genetic->rows = genetic->parameters.population;
         // If it has won, patience begins anew, with it in the place of the elite.
-        if (!mf_genetic_is_over(genetic))
+        if (!is_over(genetic))
             begin_with_challenger(genetic);
     }
     return STATUS_OK;
 }
 
-/// Who challenges, or NULL.
-static const double *find_waiting(const struct genetic_state *state) {
-    if (state->genetic.parameters.asynchronous)
-        return state->stream.challenge > 0 ? state->challenger : NULL;
-    return has_challenger(&state->genetic) ? last_challenger(&state->genetic) : NULL;
-}
-
 static bool incumbent(const void *memory, double *genes) {
-    const struct genetic_state *state = memory;
-    const struct genetic *genetic = &state->genetic;
-    const double *best = genetic->elite_measured > 0 ? genetic->elite : find_waiting(state);
-    if (best == NULL)
+    const struct genetic *genetic = &((const struct state *)memory)->genetic;
+    const bool has_elite = genetic->elite_measured > 0;
+    if (!has_elite && !has_challenger(genetic))
         return false;
-    memcpy(genes, best, (size_t)genetic->parameters.genes * sizeof *genes);
+    memcpy(genes, has_elite ? genetic->elite : last_challenger(genetic),
+           (size_t)genetic->parameters.genes * sizeof *genes);
     return true;
 }
 
 static double spread(const void *memory) {
-    return mf_genetic_diversity(&((const struct genetic_state *)memory)->genetic);
+    return mf_genetic_diversity(&((const struct state *)memory)->genetic);
 }
 
 static bool settled(const void *memory) {
-    return has_settled(&((const struct genetic_state *)memory)->genetic);
+    return has_settled(&((const struct state *)memory)->genetic);
 }
 
 /// In the last place of the next generation.
 static void suggest(void *memory, const double *genes) {
-    struct genetic *genetic = &((struct genetic_state *)memory)->genetic;
+    struct genetic *genetic = &((struct state *)memory)->genetic;
     const struct genetic_parameters *p = &genetic->parameters;
     memcpy(genetic->population + (p->population - 1) * p->genes, genes,
            (size_t)p->genes * sizeof *genes);
@@ -202,18 +201,18 @@ static void suggest(void *memory, const double *genes) {
 }
 
 static void parents(const void *memory, size_t row, uint64_t parent[2]) {
-    const struct genetic *genetic = &((const struct genetic_state *)memory)->genetic;
+    const struct genetic *genetic = &((const struct state *)memory)->genetic;
     const uint64_t *of_row = genetic->parent + 2 * ((size_t)first_row(genetic) + row);
     parent[0] = of_row[0];
     parent[1] = of_row[1];
 }
 
 static double discard_above(const void *memory) {
-    return ((const struct genetic_state *)memory)->genetic.median;
+    return ((const struct state *)memory)->genetic.median;
 }
 
 static size_t spans(void *memory, struct memory_span *span) {
-    struct genetic_state *state = memory;
+    struct state *state = memory;
     struct genetic *genetic = &state->genetic;
     const struct genetic_parameters *p = &genetic->parameters;
     const size_t row = (size_t)p->genes * sizeof(double);
@@ -231,14 +230,14 @@ static size_t spans(void *memory, struct memory_span *span) {
     span[n++] = (struct memory_span){genetic->parent, (size_t)(p->population + p->remeasurements) *
                                                           2 * sizeof *genetic->parent};
     span[n++] = (struct memory_span){&genetic->elite_since, sizeof genetic->elite_since};
-    return p->asynchronous ? n + mf_genetic_stream_spans(state, span + n) : n;
+    return n;
 }
 
 const struct optimiser mf_genetic_optimiser = {
     .name = "genetic",
     .tables = (const struct field *const[]){mf_genetic_fields, NULL},
     .parameters_size = sizeof(struct genetic_parameters),
-    .state_size = sizeof(struct genetic_state),
+    .state_size = sizeof(struct state),
     .budget = "generations",
     .most_rounds = most_rounds,
     .create = create,
@@ -251,6 +250,5 @@ const struct optimiser mf_genetic_optimiser = {
     .suggest = suggest,
     .settled = settled,
     .parents = parents,
-    .stream = &mf_genetic_stream,
     .spans = spans,
 };

@@ -6,8 +6,6 @@
 #define OPTIMISER_LIST(record, name, summary) &mf_##record##_optimiser,
 const struct optimiser *const mf_optimisers[] = {OPTIMISERS(OPTIMISER_LIST) NULL};
 
-const char *const mf_optimiser_asynchronous[] = {"no", "yes", NULL};
-
 NAMED_RECORD(struct optimiser);
 
 const struct optimiser *mf_optimiser_find(const char *name) {

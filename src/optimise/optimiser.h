@@ -36,36 +36,6 @@ struct optimiser_round {
     size_t count;            ///< 0: finished
 };
 
-/// A candidate of an optimiser that is asked for one at a time. What the optimiser has to know of
-/// it comes back with it.
-struct optimiser_candidate {
-    uint64_t parent[2]; ///< as `parents` of an optimiser
-    uint64_t origin;    ///< the optimiser's own: what it was asked for
-    uint64_t number;    ///< for who drives it
-    double numbers[];   ///< shape [2, variables]: its variables, then the optimiser's own
-};
-
-static inline size_t optimiser_candidate_size(size_t variables) {
-    return sizeof(struct optimiser_candidate) + 2 * variables * sizeof(double);
-}
-
-/// How an optimiser works without rounds that all wait for: any number of candidates is asked for
-/// before the first error is known, and errors are told in any order, on which it depends what is
-/// found. Candidates whose errors never come hold nothing up.
-struct optimiser_stream {
-    /// Whether parameters ask for it: `ask` and `tell` of the optimiser are then not called.
-    bool (*wanted)(const void *parameters);
-    /// Errors that make up a round now, as a history counts them.
-    size_t (*round)(const void *state);
-    /// The next candidate, of optimiser_candidate_size bytes; false: none is wanted before the next
-    /// error is told; once all are told: it is over.
-    bool (*ask)(void *state, struct optimiser_candidate *candidate);
-    /// @param[out] ended  whether the round ended with it
-    /// Fails: NO_MEMORY.
-    enum status (*tell)(void *state, const struct optimiser_candidate *candidate, double error,
-                        double variance, bool *ended);
-};
-
 enum { OPTIMISER_MAX_SPANS = 32 };
 
 struct optimiser {
@@ -104,7 +74,6 @@ struct optimiser {
     /// Whose child row `row` of the round asked for is, as numbers of candidates in the order in
     /// which they were told, from 1; 0: nobody's. NULL: there are no parents.
     void (*parents)(const void *state, size_t row, uint64_t parent[2]);
-    const struct optimiser_stream *stream; ///< NULL: it works by rounds alone
     /// The state of a checkpoint, between tell and tell: what is written there and read into a new
     /// state of the same space and parameters goes on with the same bits. Returns their number, at
     /// most OPTIMISER_MAX_SPANS.
@@ -130,9 +99,6 @@ extern const struct optimiser *const mf_optimisers[];
 
 /// The one of that name, or NULL.
 const struct optimiser *mf_optimiser_find(const char *name);
-
-/// Of a field that asks for `stream`: no, yes.
-extern const char *const mf_optimiser_asynchronous[];
 
 /// @name For those who write one
 
@@ -167,7 +133,6 @@ struct cmaes_parameters {
     double step;
     int64_t rounds, restarts;
     double tolerance;
-    int asynchronous; ///< 0: no; see cmaes_asynchronous.c
 };
 struct nlopt_parameters {
     int algorithm;

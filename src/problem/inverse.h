@@ -294,8 +294,6 @@ struct inverse_method {
                                 const struct inverse_problem *problem, const void *parameters);
     struct inverse_sampling (*sampling)(const void *parameters); ///< NULL of an inversion
     bool keeps_parts;
-    /// Whether results with these parameters depend on how long tasks take. NULL: never.
-    bool (*depends_on_timing)(const struct inverse_method *method, const void *parameters);
     const char *const *columns;        ///< names of `extra`, NULL-terminated
     bool finds_potential, finds_omega; ///< whether it can
     bool knows_molecules;              ///< and finds what is unknown of their bonds, too

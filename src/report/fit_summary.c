@@ -344,9 +344,6 @@ enum status mf_fit_output_summary(const struct fit_file *fit, const struct unkno
         mf_json_put_text(writer, "reason", result->reason);
     mf_json_put_text(writer, "method", fit->method->name);
     mf_json_put_text(writer, "method_summary", fit->method->summary);
-    if (fit->method->depends_on_timing &&
-        fit->method->depends_on_timing(fit->method, fit->method_parameters))
-        mf_json_put_text(writer, "depends_on_timing", "yes");
     mf_json_put_number(writer, "seconds", result->seconds);
     mf_json_put_number(writer, "threads", fit->problem.threads);
     mf_json_put_number(writer, "iterations", (double)result->iterations);

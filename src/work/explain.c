@@ -52,22 +52,6 @@ static void add_events(struct stages *stages, const struct simulation_setup *set
                   setup->integrator->name, rate * setup->time_step);
 }
 
-/// Moves of molecules; chains that may creep along themselves are named, whose cost none knows
-/// before the equilibration.
-static void add_moves_of_molecules(struct stages *stages, const struct simulation_setup *setup,
-                                   const struct topology *topology, double nanoseconds) {
-    char chains[128] = "";
-    for (int k = 0; k < topology->kinds; k++)
-        if (mf_reptation_is_possible(&topology->kind[k], setup->box.dimensions)) {
-            const size_t end = strlen(chains);
-            snprintf(chains + end, sizeof chains - end, "%s%s",
-                     end ? ", " : "; not counted: reptation, if it pays, of ",
-                     topology->kind[k].name);
-        }
-    mf_stages_add(stages, "moves of molecules", true, nanoseconds,
-                  "one of each in a sweep: shifted, turned, or an arm of it%s", chains);
-}
-
 /// Sweeps, and what is computed for a sample besides.
 static void add_sweeps(struct stages *stages, const struct simulation_setup *setup, double every) {
     const struct molecules *molecules = mf_molecules_find(setup->interaction, setup->interactions);
@@ -79,7 +63,8 @@ static void add_sweeps(struct stages *stages, const struct simulation_setup *set
                   cost.propose + energy + (molecules ? cost.hold : 0),
                   "%s, %.0f neighbours within reach of a move", setup->integrator->name, around);
     if (molecules)
-        add_moves_of_molecules(stages, setup, &molecules->topology, cost.hold + energy);
+        mf_stages_add(stages, "moves of molecules", true, cost.hold + energy,
+                      "one of each in a sweep: shifted, turned, or an arm of it");
     else
         mf_stages_add(stages, "moves of molecules", false, 0, "no molecules");
     mf_stages_add(stages, "list building and forces", true,

@@ -118,8 +118,6 @@ static void print_advice(const struct fit_file *fit, int workers) {
     static const double little = 0.1;
     int64_t count = 0;
     const struct field *field = find_handed_out(fit, &count);
-    if (mf_fit_tell_timing(fit))
-        return; // nobody waits for a round
     if (field == NULL || count <= 0)
         return; // none, or chosen by the method
     const int64_t rounds = (count + workers - 1) / workers;
@@ -145,8 +143,6 @@ enum status mf_fit_explain(const char *file, const struct run_options *options, 
         CHECK(print_targets(mf_fit_states_at(&fit, s)));
     print_numbers(&fit);
     CHECK(print_simulations(&fit));
-    if (mf_fit_tell_timing(&fit))
-        printf("%s.\n", mf_fit_tell_timing(&fit));
     if (ranks > 0) {
         print_advice(&fit, ranks * options->threads);
         CHECK(mf_fit_tasks_explain(stdout, file, options, ranks));

@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-enum { COLUMNS = 5, MOST_ROWS = PARALLEL_MOST_SIZES + 2 };
+enum { COLUMNS = 5, MOST_ROWS = PARALLEL_MOST_SIZES + 1 };
 
 enum status mf_fit_tasks_write(const struct run_folder *folder, double seconds) {
     const struct parallel_times times = mf_parallel_times();

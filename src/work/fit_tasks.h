@@ -15,7 +15,7 @@ enum status mf_fit_tasks_write(const struct run_folder *folder, double seconds) 
 /// Seconds from begin to end of `tasks` that `workers` take one after the other, each when it is
 /// free, as mf_parallel_try hands them out: a model by discrete events. NAN without memory.
 /// @param[in] seconds  shape [tasks]
-/// Tested: test_fit_tasks, and against ranks by tests/mpi/share.c.
+/// Tested: test_fit_tasks.
 double mf_fit_tasks_schedule(const double *seconds, size_t tasks, int workers);
 
 /// The mean of that over many draws of times that are log-normal.

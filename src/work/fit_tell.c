@@ -79,20 +79,8 @@ static enum status tell_state(struct progress *to, const struct fit_file *fit) {
     return mf_fit_tell_state(fit, &(struct target_sanity_listener){say_line, to});
 }
 
-const char *mf_fit_tell_timing(const struct fit_file *fit) {
-    const struct inverse_method *method = fit->method;
-    if (!method->depends_on_timing || !method->depends_on_timing(method, fit->method_parameters))
-        return NULL;
-    return "\"asynchronous\": results depend on timing; they are not the same bits from run to "
-           "run, "
-           "nor after --resume";
-}
-
 enum status mf_fit_tell_targets(struct progress *to, const struct fit_file *fit) {
-    const char *timing = mf_fit_tell_timing(fit);
     mf_progress_say_scale(to, &fit->scene.units);
-    if (timing)
-        mf_progress_say(to, "%s", timing);
     TRY(tell_state(to, fit));
     for (size_t s = 0; s < fit->others; s++)
         TRY(tell_state(to, &fit->other[s]));

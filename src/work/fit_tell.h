@@ -14,6 +14,3 @@ enum status mf_fit_tell_targets(struct progress *to, const struct fit_file *fit)
 /// long for the bonds among them. Fails: as mf_target_sanity_tell. Tested: test_fit_molecules.
 enum status mf_fit_tell_state(const struct fit_file *fit,
                               const struct target_sanity_listener *listener) MUST_USE;
-
-/// A sentence if the results of a fit depend on timing, else NULL.
-const char *mf_fit_tell_timing(const struct fit_file *fit);

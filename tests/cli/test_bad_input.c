@@ -243,7 +243,10 @@ static const struct fault run_faults[] = {
           "method.generations: unknown"),
     FAULT("a potential in a fit", STEP, STEP ", \"conservative\": {}", "input.json",
           "scene.conservative"),
-
+    FAULT("an optimiser of an earlier version", "\"samples\": 8",
+          "\"samples\": 8, \"asynchronous\": \"no\"",
+          "input.json: method.asynchronous: unknown key: candidates are measured by rounds alone; "
+          "delete the line"),
 };
 
 #define TYPES "\"types\": {\"A\": 40, \"B\": 41}"

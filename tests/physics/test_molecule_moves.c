@@ -19,7 +19,7 @@
 static const double temperature = 1.3, strength = 40; // Φ = strength (1 − r)²/2
 static const double spring = 40, rest = 0.6, stiffness = 5, bent = 110, torsion = 1.5, phase = 70;
 
-enum { MOST_BEADS = 6, VALUES = 4, BEADS_ALONE = MOLECULE_MOVES, ALL_MOVES, REPTATION };
+enum { MOST_BEADS = 6, VALUES = 4, BEADS_ALONE = MOLECULE_MOVES, ALL_MOVES };
 
 /// One system and the moves that it is given.
 struct example {
@@ -29,8 +29,7 @@ struct example {
     int highest;          ///< order of the terms of a chain
     bool ring, star;      ///< in place of a chain
     int exclude;          ///< bonds
-    int move;             ///< enum molecule_move, BEADS_ALONE, ALL_MOVES or REPTATION
-    int choice;           ///< of the places that reptation tries
+    int move;             ///< enum molecule_move, BEADS_ALONE or ALL_MOVES
     double edge;          ///< of the box
 };
 
@@ -282,9 +281,6 @@ static void step(struct metropolis *metropolis, int move) {
     if (move == BEADS_ALONE) {
         assert_ok(mf_metropolis_move_beads(metropolis));
         metropolis->sweep++;
-    } else if (move == REPTATION) {
-        assert_ok(mf_reptation_pass(metropolis));
-        metropolis->sweep++;
     } else if (move == ALL_MOVES) {
         assert_ok(mf_metropolis_run(metropolis, 1));
     } else {
@@ -344,8 +340,6 @@ static void check(const struct example *e) {
     assert_ok(mf_metropolis_run(&metropolis, 50)); // somewhere
     for (int move = 0; move < MOLECULE_MOVES; move++)
         metropolis.molecules.tally[move].step = move == MOLECULE_TRANSLATE ? 0.15 : 1.2;
-    if (metropolis.reptation.can[0])
-        metropolis.reptation.kind[0].choice = e->choice;
     begin(&metropolis, e, &draw);
     sample(&metropolis, e, found);
     integrate(&draw, exact);
@@ -384,79 +378,7 @@ static void test_moves_leave_chains_that_meet_themselves_in_equilibrium(void **s
     check(&(struct example){"chain, beads", 3, 1, 5, TOPOLOGY_DIHEDRAL, .exclude = 1,
                             .move = BEADS_ALONE, .edge = 12});
     check(&(struct example){"chain, all", 3, 1, 6, TOPOLOGY_DIHEDRAL, .exclude = 1,
-                            .move = ALL_MOVES, .choice = 1, .edge = 12});
-}
-
-/// One place alone, which has no weights of others beside it, and four; pairs of all beads, none of
-/// bonded ones, and none at most three bonds apart.
-static void test_reptation_alone_leaves_chains_in_equilibrium(void **state) {
-    (void)state;
-    check(&(struct example){"bonds, 1 place", 3, 1, 5, TOPOLOGY_BOND, .exclude = 0,
-                            .move = REPTATION, .choice = 0, .edge = 12});
-    check(&(struct example){"bonds, 4 places", 3, 1, 5, TOPOLOGY_BOND, .exclude = 0,
-                            .move = REPTATION, .choice = 2, .edge = 12});
-    check(&(struct example){"angles, 8 places", 3, 2, 5, TOPOLOGY_ANGLE, .exclude = 1,
-                            .move = REPTATION, .choice = 3, .edge = 4});
-    check(&(struct example){"dihedrals, 2 places", 3, 1, 6, TOPOLOGY_DIHEDRAL, .exclude = 1,
-                            .move = REPTATION, .choice = 1, .edge = 12});
-}
-
-/// Bonds of an ideal chain know nothing of each other: R_e² = (N − 1) ⟨l²⟩, with l² from an
-/// integral over p(l) ~ l² exp(−U/T). It begins with straight chains. 100 chains, whose scatter is
-/// the error: 4 of them, one in 16,000 seeds.
-static void test_reptation_gives_ideal_chains_their_size(void **state) {
-    (void)state;
-    enum { CHAINS = 100, BEADS = 40, PASSES = 6000, LEFT_OUT = 1000 };
-    static const int type[BEADS] = {0};
-    const struct molecules_number bond[] = {{"k", spring}, {"length", rest}, {NULL, 0}};
-    const struct box box = {3, {60, 60, 60}};
-    struct molecules molecules = {0};
-    struct metropolis metropolis;
-    struct running_mean all = {0};
-    double sum[CHAINS] = {0}, square = 0, whole = 0;
-    const struct composition composition = molecules_topology(
-        &molecules.topology, molecules_chain(CHAINS, type, BEADS, TOPOLOGY_BOND, 1),
-        (struct topology_kind){0}, 1, NULL);
-    molecules_add_group(&molecules, TOPOLOGY_BOND, &mf_bond_harmonic, bond);
-    assert_ok(mf_metropolis_init(&metropolis, &box, &composition, NULL, temperature, 7));
-    assert_ok(mf_metropolis_join(&metropolis, &molecules));
-    for (size_t k = 0; k < metropolis.particles.count; k++) {
-        const uint32_t id = metropolis.particles.id[k];
-        metropolis.particles.position[0][k] = rest * (id % BEADS);
-        metropolis.particles.position[1][k] = metropolis.particles.position[2][k] = 0;
-    }
-    assert_ok(mf_metropolis_refresh(&metropolis));
-    metropolis.reptation.kind[0].choice = 1;
-    for (; metropolis.sweep < PASSES; metropolis.sweep++) {
-        assert_ok(mf_reptation_pass(&metropolis));
-        for (int m = 0; m < CHAINS && metropolis.sweep >= LEFT_OUT; m++)
-            for (int d = 0; d < 3; d++) {
-                const struct topology_kind *kind = &molecules.topology.kind[0];
-                const double *x = metropolis.particles.position[d];
-                const uint32_t *place = metropolis.particles.place;
-                sum[m] += pow(box_nearest(x[place[topology_id(kind, m, BEADS - 1)]] -
-                                              x[place[topology_id(kind, m, 0)]],
-                                          box.length[d]),
-                              2) /
-                          (PASSES - LEFT_OUT);
-            }
-    }
-    for (double l = 0.0005; l < 2; l += 0.001) {
-        const double p = l * l * exp(-spring * pow(l - rest, 2) / 2 / temperature);
-        square += p * l * l;
-        whole += p;
-    }
-    for (int m = 0; m < CHAINS; m++)
-        mf_statistics_add(&all, sum[m]);
-    const double exact = (BEADS - 1) * square / whole;
-    const double error = mf_statistics_standard_error(&all);
-    const struct reptation_tally *tally = &metropolis.reptation.kind[0].tally[1];
-    print_message("ideal chains: R_e^2 %.3f(%.3f), exact %.3f; %.3f accepted\n", all.mean, error,
-                  exact, (double)tally->accepted / (double)tally->tried);
-    assert_close(all.mean, exact, 4 * error);
-    assert_true(error < 0.02 * exact);
-    mf_metropolis_clear(&metropolis);
-    mf_molecules_clear(&molecules);
+                            .move = ALL_MOVES, .edge = 12});
 }
 
 static void test_moves_leave_stars_and_rings_in_equilibrium(void **state) {
@@ -518,8 +440,6 @@ int main(void) {
         cmocka_unit_test(test_moves_leave_chains_that_meet_themselves_in_equilibrium),
         cmocka_unit_test(test_bonds_that_tear_stay_whole_in_equilibrium),
         cmocka_unit_test(test_moves_leave_stars_and_rings_in_equilibrium),
-        cmocka_unit_test(test_reptation_alone_leaves_chains_in_equilibrium),
-        cmocka_unit_test(test_reptation_gives_ideal_chains_their_size),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

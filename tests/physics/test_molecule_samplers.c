@@ -196,14 +196,6 @@ static void by_sampler(const struct melt *melt, enum sampler_kind kind, uint64_t
         }
         end_block(found, sum);
     }
-    const struct reptation_kind *reptation = &sampler.chain.reptation.kind[0];
-    if (kind == SAMPLER_MONTE_CARLO) { // it is among the moves that are compared
-        assert_true(mf_reptation_is_on(&sampler.chain.reptation));
-        print_message("reptation: %.3f accepted, k = %d\n",
-                      (double)reptation->tally[reptation->choice].accepted /
-                          (double)reptation->tally[reptation->choice].tried,
-                      reptation_places(reptation->choice));
-    }
     print_message("%s: %.2f accepted\n", mf_sampler_kinds[kind], mf_sampler_acceptance(&sampler));
     mf_sampler_clear(&sampler);
 }
@@ -273,7 +265,7 @@ static void test_an_ideal_gas_of_molecules_has_its_pressure(void **state) {
     }
 }
 
-/// What a checkpoint keeps of a sampler, put into another one: reptation goes on as it was tuned.
+/// What a checkpoint keeps of a sampler, put into another one: moves go on as they were tuned.
 static void test_moves_go_on_with_the_same_bits_when_restarted(void **state) {
     (void)state;
     enum { MOST_SPANS = 16 };
@@ -292,7 +284,6 @@ static void test_moves_go_on_with_the_same_bits_when_restarted(void **state) {
                                                            .seed = 8}));
     assert_ok(mf_sampler_begin(&sampler[0]));
     assert_ok(mf_sampler_equilibrate(&sampler[0], 200));
-    assert_true(mf_reptation_is_on(&sampler[0].chain.reptation));
     assert_ok(mf_sampler_sample(&sampler[0], 20, sample[0]));
     const size_t spans = mf_sampler_spans(&sampler[0], from);
     assert_int_equal(mf_sampler_spans(&sampler[1], to), spans);

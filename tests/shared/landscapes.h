@@ -73,21 +73,3 @@ bool landscape_step(struct landscape_run *run, const struct landscape_drive *dri
 /// All of it, from a new state to the target, the end, or as many evaluations.
 struct landscape_result landscape_minimise(const struct optimiser *optimiser, void *parameters,
                                            const struct landscape_drive *drive);
-
-/// Workers who each measure a candidate at a time, for 1 ± `spread` of simulated time (log-normal).
-struct landscape_workers {
-    int count;
-    double spread;
-};
-
-/// Ask for candidates one by one and tell each as soon as it is measured, until the target, the
-/// end, or as many evaluations in all. Candidates that are then being measured are forgotten. Adds
-/// to the result, whose rounds are what the optimiser said had ended.
-void landscape_stream(struct landscape_run *run, const struct landscape_drive *drive,
-                      const struct landscape_workers *workers, struct landscape_result *result);
-
-/// All of it from a new state; the parameters are set asynchronous.
-struct landscape_result landscape_minimise_by_stream(const struct optimiser *optimiser,
-                                                     void *parameters,
-                                                     const struct landscape_drive *drive,
-                                                     const struct landscape_workers *workers);

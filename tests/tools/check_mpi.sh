@@ -1,21 +1,19 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 #
-# check_mpi.sh WITHOUT PROGRAM SHARE KILLS: a short fit of each method has the same bits in one process,
+# check_mpi.sh WITHOUT PROGRAM KILLS: a short fit of each method has the same bits in one process,
 # WITHOUT MPI, and among ranks of PROGRAM; it goes on with another layout after it was stopped or a
-# rank was killed, KILLS times; so do fits without rounds, whose bits differ; what is wrong is said;
-# and tasks of SHARE take as long as the model says. METHODS="imc genetic" checks these alone.
+# rank was killed, KILLS times; and what is wrong is said. METHODS="imc genetic" checks these alone.
 set -u
 export LC_ALL=C.UTF-8
 without=$(realpath "$1")
 program=$2
-kills=$4
+kills=$3
 if ! command -v mpirun >/dev/null || [ ! -x "$program" ]; then
     echo "check_mpi: skipped: there is no MPI (Debian: libopenmpi-dev and openmpi-bin)"
     exit 0
 fi
 program=$(realpath "$program")
-share=$(realpath "$3")
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder" || exit 1
@@ -64,13 +62,6 @@ expect() {
         failed=1
     fi
 }
-
-# Tasks that sleep, in rounds and without, against the model of how long they take; 1 and 4 of
-# docs/cluster.md would take 100 s more.
-for number in 2 8; do
-    mpirun --bind-to none -np "$number" "$share" || failed=1
-    "$share" "$number" || failed=1
-done
 
 cat >scene.json <<'SCENE'
 {"seed": 3, "box": [4, 4, 4], "particles": {"count": 192}, "temperature": 1, "time_step": 0.01,
@@ -203,62 +194,6 @@ for signal in USR1 TERM INT; do
     }
     "$without" fit long.json -o stopped --quiet --resume --threads 2 2>words
     same "resumed after SIG$signal" long stopped
-done
-
-# Without rounds results depend on timing, but whatever the layout tables are whole: a row an
-# iteration, an individual for each evaluation that is no check, each with a seed and so an error
-# of its own unless it failed, and the error falls.
-# whole NAME FOLDER ROUNDS EVALUATIONS
-whole() {
-    local rows individuals measured errors fell
-    rows=$(grep -vc '#' "$2/history.tsv")
-    individuals=$(grep -vc '#' "$2/individuals.tsv")
-    measured=$(cut -f 3 "$2/individuals.tsv" | grep -vc '#\|nan\|error')
-    errors=$(cut -f 3 "$2/individuals.tsv" | grep -v '#\|nan\|error' | sort -u | wc -l)
-    fell=$(grep -v '#' "$2/history.tsv" | awk 'NR == 1 { first = $4 } END { print ($4 < first) }')
-    if [ -s "$2/summary.json" ] && [ "$rows" = $(($3 + 1)) ] && [ "$individuals" -ge "$4" ] &&
-        [ "$errors" = "$measured" ] && [ "$fell" = 1 ]; then
-        echo "$1: $individuals individuals, the error falls"
-    else
-        echo "$1: $rows rows, $individuals individuals, $measured measured, $errors errors; the error falls: $fell"
-        failed=1
-    fi
-}
-
-streamed='"asynchronous": "yes", "population": 20'
-run genetic-streamed "$rdf" "$potential" "\"name\": \"genetic\", $streamed, \"generations\": 20, \"patience\": 0, $simulated"
-run cma-es-streamed "$rdf" "$potential" "\"name\": \"cma-es\", $streamed, \"rounds\": 20, $simulated"
-for fit in genetic-streamed cma-es-streamed; do
-    for layout in 3x2 2x1; do
-        ranks "${layout%x*}" "$program" fit $fit.json -o "$fit-$layout" --quiet --threads "${layout#*x}"
-        code=$?
-        [ $code -le 1 ] || {
-            echo "$fit, $layout: exit code $code"
-            cat words
-            failed=1
-        }
-        whole "$fit, ${layout%x*} ranks of ${layout#*x} threads" "$fit-$layout" 20 400
-    done
-    # One rank is told to stop, and later one is killed; another layout goes on each time.
-    for signal in USR1 KILL; do
-        rm -rf streamed
-        ranks 3 "$program" fit $fit.json -o streamed --quiet --threads 1 &
-        job=$!
-        begun streamed
-        kill -"$signal" "$(ranks_of "$program fit $fit.json -o streamed" | tail -1)"
-        wait "$job"
-        code=$?
-        if [ $signal = USR1 ]; then
-            expect "$fit, SIGUSR1 of one rank" "interrupted after"
-            [ $code = 0 ] || failed=1
-            grep -q '"interrupted"' streamed/summary.json || failed=1
-        elif [ $code = 0 ]; then
-            echo "$fit: a job goes on without a rank that was killed"
-            failed=1
-        fi
-        ranks 2 "$program" fit $fit.json -o streamed --quiet --resume --threads 2
-        whole "$fit, resumed after SIG$signal" streamed 20 400
-    done
 done
 
 # What is wrong is said once, by rank 0 or with the rank's name, and all end.

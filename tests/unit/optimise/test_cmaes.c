@@ -212,21 +212,6 @@ static void test_cmaes_sample_has_the_covariance_of_its_axes(void **state) {
     mf_cmaes_clear(&d);
 }
 
-/// Of four variables to √4 + 8/6 = 10/3, in units of the axis.
-static void test_cmaes_shorten_leaves_steps_as_long_as_samples(void **state) {
-    struct cmaes_distribution d;
-    double longer[4] = {0, 0, 30, 0}, shorter[4] = {0, 9.9, 0, 0};
-    (void)state;
-    assert_ok(mf_cmaes_init(&d, 4));
-    mf_cmaes_begin(&d, 0.5);
-    d.lengths[1] = d.lengths[2] = 3;
-    mf_cmaes_shorten(&d, longer);
-    mf_cmaes_shorten(&d, shorter);
-    assert_close(longer[2], 10, 1e-12);
-    assert_identical(shorter[1], 9.9);
-    mf_cmaes_clear(&d);
-}
-
 static void test_cmaes_update_goes_nowhere_when_all_errors_are_equal(void **state) {
     enum { POPULATION = 4 };
     static const double errors[POPULATION] = {3, 3, 3, 3};
@@ -258,7 +243,6 @@ int main(void) {
         cmocka_unit_test(test_cmaes_refuses_a_population_below_4),
         cmocka_unit_test(test_cmaes_strategy_has_the_numbers_of_the_tutorial),
         cmocka_unit_test(test_cmaes_sample_has_the_covariance_of_its_axes),
-        cmocka_unit_test(test_cmaes_shorten_leaves_steps_as_long_as_samples),
         cmocka_unit_test(test_cmaes_update_goes_nowhere_when_all_errors_are_equal),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

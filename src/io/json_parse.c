@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/json_parse.h"
+
+#include "io/text_file.h"
+
+#include <cJSON.h>
+
+#include <errno.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <string.h>
+
+static const char spaces[] = " \t\r\n";
+
+/// The last character before a place that is no space, or NULL.
+static const char *find_before(const char *text, const char *at) {
+    while (at > text && strchr(spaces, at[-1]))
+        at--;
+    return at > text ? at - 1 : NULL;
+}
+
+/// Where cJSON says that a text begins which does not end: one character behind its quote.
+static bool is_open_text(const char *text, const char *end) {
+    if (end == text || end[-1] != '"' || strchr(end, '"'))
+        return false;
+    const char *last = find_before(text, end - 1);
+    return last == NULL || strchr("{[,:", *last);
+}
+
+/// Whether cJSON found something else where it looked for a key: it then stops one character
+/// behind that.
+static bool is_behind_key(const char *text, const char *end) {
+    if (end == text || strchr(" \t\r\n[{\"0123456789", end[-1]))
+        return false;
+    const char *last = find_before(text, end - 1);
+    return last && (*last == '{' || *last == ',');
+}
+
+static enum status fail_at(const char *file, const char *text, const char *at,
+                           const char *expected) {
+    const struct text_place place = mf_text_file_place(text, at);
+    const unsigned char c = (unsigned char)*at;
+    char found[32];
+    if (c == '\0')
+        snprintf(found, sizeof found, "the end of the file");
+    else if (c == '/' || c == '#')
+        snprintf(found, sizeof found, "'%c' (JSON has no comments)", c);
+    else
+        snprintf(found, sizeof found, c > ' ' && c < 127 ? "'%c'" : "byte 0x%02x", c);
+    return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu:%zu: expected %s, found %s", file, place.line,
+                          place.column, expected, found);
+}
+
+/// In words, by where cJSON has stopped and what stands before that.
+static enum status fail_where_it_ended(const char *file, const char *text, const char *end) {
+    if (is_open_text(text, end))
+        return fail_at(file, text, end - 1, "a text with a '\"' at its end, too");
+    if (*end == '\\')
+        return fail_at(file, text, end, "an escape such as \\n or \\u00e9");
+    const bool behind_key = is_behind_key(text, end);
+    const char *at = behind_key ? end - 1 : end, *before = find_before(text, at);
+    if (before && *before == ',' && strchr("}]", *at)) // also the end of the file
+        return fail_at(file, text, at, "something behind the last comma");
+    if (behind_key || (before && *before == '{'))
+        return fail_at(file, text, at, "a key in double quotes");
+    if (before == NULL || strchr(":[,", *before))
+        return fail_at(file, text, at, "a value");
+    return fail_at(file, text, at, "',', ':' or a closing bracket (is one, or a '\"', missing?)");
+}
+
+/// cJSON reads digits that are none as 0, and ends a text at a 0.
+static enum status check_escapes(const char *file, const char *text) {
+    for (const char *c = strchr(text, '\\'); c && c[1]; c = strchr(c + 2, '\\'))
+        if (c[1] == 'u' &&
+            (strspn(c + 2, "0123456789abcdefABCDEF") < 4 || strncmp(c + 2, "0000", 4) == 0))
+            return fail_at(file, text, c, "\\u and four hexadecimal digits, not all 0");
+    return STATUS_OK;
+}
+
+enum status mf_json_parse(const char *file, const char *text, struct cJSON **root) {
+    const char *end = text;
+    *root = NULL;
+    TRY(check_escapes(file, text));
+    errno = 0;
+    cJSON *parsed = cJSON_ParseWithOpts(text, &end, false);
+    if (parsed == NULL && errno == ENOMEM)
+        return mf_status_fail(STATUS_NO_MEMORY, "%s: out of memory", file);
+    if (parsed == NULL)
+        return fail_where_it_ended(file, text, end);
+    end += strspn(end, spaces);
+    if (*end != '\0') {
+        cJSON_Delete(parsed);
+        return fail_at(file, text, end, "nothing after the document");
+    }
+    *root = parsed;
+    return STATUS_OK;
+}
