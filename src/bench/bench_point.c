@@ -211,8 +211,8 @@ static void find_total(const struct thermodynamics *thermodynamics, const struct
     double energy[BLOCKS] = {0}, along = 0, spread = 0, rest = 0;
     struct running_mean blocks = {0};
     for (size_t b = 0; b < BLOCKS; b++) {
-        const size_t begin = thermodynamics->samples * b / BLOCKS,
-                     end = thermodynamics->samples * (b + 1) / BLOCKS;
+        const size_t samples = thermodynamics->series.count;
+        const size_t begin = samples * b / BLOCKS, end = samples * (b + 1) / BLOCKS;
         for (size_t k = begin; k < end; k++)
             energy[b] += (potential[k] + 0.5 * degrees * temperature[k]) / (double)(end - begin);
         mf_statistics_add(&blocks, energy[b]);
@@ -307,7 +307,7 @@ enum status mf_bench_point_run(const struct bench_common *common, struct bench_p
     CHECK(mf_rdf_init(&measured.rdf.counted, &common->bins.fine, &setup.box,
                       simulation.particles.count, mf_pair_cutoff(&simulation.law),
                       (size_t)plan.samples));
-    CHECK(mf_thermodynamics_init(&measured.thermodynamics, (size_t)plan.samples));
+    mf_thermodynamics_init(&measured.thermodynamics);
     CHECK(mf_measure_equilibrate(&simulation, &plan, &temperature, NULL));
     tell(common, point, plan.equilibration);
     if (measured.moves)

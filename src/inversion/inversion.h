@@ -172,9 +172,6 @@ struct inversion {
 
 /// @name For the records of the methods: struct inverse_method has a word on each.
 
-uint32_t mf_inversion_most_iterations(const struct inverse_method *method,
-                                      const struct inverse_problem *problem,
-                                      const void *parameters);
 enum status mf_inversion_create(void *inversion, const struct inverse_method *method,
                                 const struct inverse_problem *problem,
                                 const void *parameters) MUST_USE;
@@ -188,8 +185,8 @@ enum status mf_inversion_write(const void *inversion, const struct inverse_folde
 #define INVERSION_RECORD                                                                           \
     .kind = INVERSE_INVERSION, .parameters_size = sizeof(struct inversion_settings),               \
     .state_size = sizeof(struct inversion), .finds_potential = true,                               \
-    .most_iterations = mf_inversion_most_iterations, .destroy = mf_inversion_destroy,              \
-    .iterate = mf_inversion_iterate, .spans = mf_inversion_spans, .write = mf_inversion_write
+    .destroy = mf_inversion_destroy, .iterate = mf_inversion_iterate, .spans = mf_inversion_spans, \
+    .write = mf_inversion_write
 
 /// The parameters that all have, the first of their tables.
 #define INVERSION_TABLE                                                                            \

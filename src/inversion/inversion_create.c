@@ -43,13 +43,6 @@ const struct field mf_inversion_fields[] = {
     FIELD_END,
 };
 
-uint32_t mf_inversion_most_iterations(const struct inverse_method *method,
-                                      const struct inverse_problem *problem,
-                                      const void *parameters) {
-    (void)method, (void)problem;
-    return (uint32_t)((const struct inversion_settings *)parameters)->common.iterations;
-}
-
 void mf_inversion_destroy(void *memory) {
     struct inversion *inversion = memory;
     mf_replicas_clear(&inversion->replicas);

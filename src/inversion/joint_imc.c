@@ -198,7 +198,6 @@ const struct inverse_method mf_joint_imc = {
     .tables = (const struct inverse_table[]){INVERSION_TABLE, {NULL, 0}},
     .parameters_size = sizeof(struct inversion_settings),
     .state_size = sizeof(struct joint),
-    .most_iterations = mf_inversion_most_iterations,
     .columns = columns,
     .finds_potential = true,
     .knows_molecules = true,

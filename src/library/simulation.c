@@ -246,7 +246,7 @@ static enum status measure_means(struct mesofit_simulation *simulation, size_t s
                                           {NULL, NULL, NULL}};
     TRY(check_plan(simulation, samples, every));
     const struct measure_plan when = plan_from_now(simulation, samples, every);
-    CHECK(mf_thermodynamics_init(&thermodynamics, samples));
+    mf_thermodynamics_init(&thermodynamics);
     CHECK(mf_measure_sample(&simulation->engine, &when, uses, NULL));
     const struct thermodynamics_summary s = mf_thermodynamics_result(&thermodynamics, 1);
     *means = (struct mesofit_means){.temperature = s.temperature,

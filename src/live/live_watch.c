@@ -94,9 +94,9 @@ static const struct thermodynamics *find_samples(const struct live_watch *watch)
 
 static void put_samples(struct json_writer *writer, const struct live_watch *watch) {
     const struct thermodynamics *samples = find_samples(watch);
-    if (samples == NULL || samples->samples == 0)
+    if (samples == NULL || samples->series.count == 0)
         return;
-    const size_t last = samples->samples - 1;
+    const size_t last = samples->series.count - 1;
     const double squares = mf_thermodynamics_series(samples, THERMODYNAMICS_FORCE_SQUARES)[last];
     const double laplacian = mf_thermodynamics_series(samples, THERMODYNAMICS_LAPLACIAN)[last];
     put_number(writer, watch, "potential energy of a bead", "k_B T_0",

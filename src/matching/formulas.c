@@ -36,14 +36,6 @@ static const char *const columns[] = {"stage", "cycle", "nodes", "expected", NUL
 
 static const struct inverse_method *const inner_method = &mf_automatic;
 
-static uint32_t most_iterations(const struct inverse_method *method,
-                                const struct inverse_problem *problem, const void *parameters) {
-    enum { MOST_OF_CURVE = 100 };
-    const struct formulas_parameters *p = parameters;
-    (void)method, (void)problem;
-    return MOST_OF_CURVE + (uint32_t)((p->programming.rounds + 1) * p->cycles);
-}
-
 static void destroy(void *memory) {
     struct formulas_state *state = memory;
     struct formulas_inner *inner = &state->inner;
@@ -371,7 +363,6 @@ const struct inverse_method mf_formulas = {
     .state_size = sizeof(struct formulas_state),
     .finds_potential = true,
     .finds_omega = true,
-    .most_iterations = most_iterations,
     .sampling = mf_population_sampling,
     .columns = columns,
     .create = create,

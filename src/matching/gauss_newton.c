@@ -91,12 +91,6 @@ static_assert(offsetof(struct parameters, population) == 0, "the first, says pop
 
 static const char *const columns[] = {"least[1]", "mean[1]", "reach[1]", "failures", NULL};
 
-static uint32_t most_iterations(const struct inverse_method *method,
-                                const struct inverse_problem *problem, const void *parameters) {
-    (void)method, (void)problem;
-    return (uint32_t)((const struct parameters *)parameters)->iterations;
-}
-
 /// Candidates of an iteration, an even number; the first must be enough for a model.
 static size_t round_size(const struct state *state) {
     const size_t variables = state->parametrisation.variables;
@@ -142,6 +136,7 @@ static enum status create(void *memory, const struct inverse_method *method,
                           const struct inverse_problem *problem, const void *parameters) {
     enum status status = STATUS_OK;
     struct state *state = memory;
+    (void)method;
     state->own = *(const struct parameters *)parameters;
     state->problem = problem;
     state->progress = (struct progress){.reach = state->own.reach,
@@ -165,7 +160,7 @@ static enum status create(void *memory, const struct inverse_method *method,
     CHECK(mf_parametrisation_curves_init(&state->parametrisation, &state->curves));
     CHECK(mf_parametrisation_start(&state->parametrisation, state->best));
     CHECK(mf_population_init(&state->population, &state->parametrisation, &state->own.population));
-    state->population.iterations = most_iterations(method, problem, parameters);
+    state->population.iterations = (uint32_t)((const struct parameters *)parameters)->iterations;
     if (state->own.pressure == PRESSURE_CONSTRAINT)
         CHECK(constrain_pressure(state));
 done:
@@ -399,7 +394,6 @@ const struct inverse_method mf_gauss_newton = {
     .finds_potential = true,
     .finds_omega = true,
     .knows_molecules = true,
-    .most_iterations = most_iterations,
     .sampling = mf_population_sampling,
     .keeps_parts = true,
     .columns = columns,

@@ -357,7 +357,6 @@ static enum status write(const void *memory, const struct inverse_folder *folder
         .finds_potential = true,                                                                   \
         .finds_omega = true,                                                                       \
         .knows_molecules = true,                                                                   \
-        .most_iterations = most_iterations,                                                        \
         .sampling = mf_population_sampling,                                                        \
         .keeps_parts = true,                                                                       \
         .columns = columns,                                                                        \

@@ -29,12 +29,6 @@ static const char *const columns[] = {"least[1]", "mean[1]", "diversity[1]", "fa
 /// child so far, each of the others half as far as the one before.
 static const double reach = 0.3;
 
-static uint32_t most_iterations(const struct inverse_method *method,
-                                const struct inverse_problem *problem, const void *parameters) {
-    (void)method, (void)problem;
-    return (uint32_t)((const struct pareto_parameters *)parameters)->nsga2.generations;
-}
-
 static void destroy(void *memory) {
     struct pareto_state *state = memory;
     mf_nsga2_clear(&state->nsga2);
@@ -88,7 +82,8 @@ static enum status create(void *memory, const struct inverse_method *method,
     NEW_ARRAY(state->log, log_rows(state) * mf_pareto_log_width(state));
     CHECK(mf_parametrisation_curves_init(&state->parametrisation, &state->curves));
     CHECK(mf_population_init(&state->population, &state->parametrisation, &state->own.population));
-    state->population.iterations = most_iterations(method, problem, parameters);
+    state->population.iterations =
+        (uint32_t)((const struct pareto_parameters *)parameters)->nsga2.generations;
     state->progress.least = OPTIMISER_FAILED;
 done:
     return status;
@@ -301,7 +296,6 @@ const struct inverse_method mf_pareto = {
     .finds_potential = true,
     .finds_omega = true,
     .knows_molecules = true,
-    .most_iterations = most_iterations,
     .sampling = mf_population_sampling,
     .keeps_parts = true,
     .columns = columns,

@@ -73,13 +73,6 @@ static const char *const columns[] = {"finds_omega", "potential_error[1]", "omeg
 
 static const struct inverse_method *const methods[PARTS] = {&mf_automatic, &mf_gauss_newton};
 
-static uint32_t most_iterations(const struct inverse_method *method,
-                                const struct inverse_problem *problem, const void *parameters) {
-    enum { MOST_OF_BOTH = 200 };
-    (void)method, (void)problem, (void)parameters;
-    return MOST_OF_BOTH;
-}
-
 static void destroy(void *memory) {
     struct state *state = memory;
     for (int kind = 0; kind < PARTS; kind++) {
@@ -364,7 +357,6 @@ const struct inverse_method mf_successive = {
     .state_size = sizeof(struct state),
     .finds_potential = true,
     .finds_omega = true,
-    .most_iterations = most_iterations,
     .sampling = mf_population_sampling,
     .columns = columns,
     .create = create,

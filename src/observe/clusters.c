@@ -7,19 +7,22 @@
 #include "base/statistics.h"
 #include "io/data_table.h"
 #include "observe/measure.h"
+#include "observe/sample_series.h"
 
 struct settings {
     double distance;
 };
 
+/// Of a sample: Σ s²/N, and the share of all particles in the largest.
+enum { MEAN, LARGEST, NUMBERS };
+
 struct state {
     struct settings settings;
-    size_t count, planned, samples;
+    size_t count;
+    struct sample_series series;
     uint32_t *root;  ///< shape [count]: a particle of the same cluster, or itself
     uint32_t *size;  ///< shape [count]: of the cluster, at its root
     double *members; ///< shape [count + 1]: particles in clusters of each size, over all samples
-    double *mean;    ///< shape [planned]: Σ s²/N
-    double *largest; ///< shape [planned]: share of all particles
 };
 
 static void clear(void *state) {
@@ -27,8 +30,7 @@ static void clear(void *state) {
     mf_memory_free(s->root);
     mf_memory_free(s->size);
     mf_memory_free(s->members);
-    mf_memory_free(s->mean);
-    mf_memory_free(s->largest);
+    mf_sample_series_clear(&s->series);
     *s = (struct state){0};
 }
 
@@ -36,9 +38,10 @@ static enum status begin(void *state, const void *settings, const struct simulat
                          const struct measure_plan *plan) {
     enum status status = STATUS_OK;
     struct state *s = state;
+    (void)plan;
     *s = (struct state){.settings = *(const struct settings *)settings,
                         .count = simulation->particles.count,
-                        .planned = (size_t)plan->samples};
+                        .series.columns = NUMBERS};
     const double range = mf_simulation_range(&simulation->setup);
     if (s->settings.distance > range * (1 + 1e-9))
         return mf_status_fail(STATUS_BAD_INPUT,
@@ -52,8 +55,6 @@ static enum status begin(void *state, const void *settings, const struct simulat
     NEW_ARRAY(s->root, s->count);
     NEW_ARRAY(s->size, s->count);
     NEW_ARRAY(s->members, s->count + 1);
-    NEW_ARRAY(s->mean, s->planned);
-    NEW_ARRAY(s->largest, s->planned);
 done:
     return status;
 }
@@ -82,8 +83,6 @@ static void join(void *context, const struct neighbours_batch *batch) {
 static enum status sample(void *state, struct simulation *simulation) {
     struct state *s = state;
     double squares = 0, largest = 0;
-    if (s->samples == s->planned)
-        return STATUS_OK;
     for (size_t k = 0; k < s->count; k++) {
         s->root[k] = (uint32_t)k;
         s->size[k] = 1;
@@ -96,18 +95,19 @@ static enum status sample(void *state, struct simulation *simulation) {
         squares += size * size;
         largest = fmax(largest, size);
     }
-    s->mean[s->samples] = squares / (double)s->count;
-    s->largest[s->samples++] = largest / (double)s->count;
-    return STATUS_OK;
+    const double numbers[NUMBERS] = {squares / (double)s->count, largest / (double)s->count};
+    return mf_sample_series_add(&s->series, numbers);
 }
 
 static size_t spans(void *state, struct memory_span *spans) {
     struct state *s = state;
-    spans[0] = (struct memory_span){&s->samples, sizeof s->samples};
-    spans[1] = (struct memory_span){s->members, (s->count + 1) * sizeof *s->members};
-    spans[2] = (struct memory_span){s->mean, s->planned * sizeof *s->mean};
-    spans[3] = (struct memory_span){s->largest, s->planned * sizeof *s->largest};
-    return 4;
+    const size_t n = mf_sample_series_spans(&s->series, spans);
+    spans[n] = (struct memory_span){s->members, (s->count + 1) * sizeof *s->members};
+    return n + 1;
+}
+
+static enum status make_room(void *state) {
+    return mf_sample_series_make_room(&((struct state *)state)->series);
 }
 
 /// clusters.tsv: sizes that were seen, the share of particles in clusters of each, and how many
@@ -124,8 +124,8 @@ static enum status write(const void *state, const struct observable_results *res
         if (s->members[k] == 0)
             continue;
         size[rows] = (double)k;
-        share[rows] = s->members[k] / ((double)s->count * (double)s->samples);
-        number[rows++] = s->members[k] / ((double)k * (double)s->samples);
+        share[rows] = s->members[k] / ((double)s->count * (double)s->series.count);
+        number[rows++] = s->members[k] / ((double)k * (double)s->series.count);
     }
     const struct data_column columns[] = {
         {"size[1]", size, "%.0f"}, {"share[1]", share, "%.6g"}, {"clusters[1]", number, "%.6g"}};
@@ -136,20 +136,21 @@ done:
     return status;
 }
 
-static double mean_of(const double *series, size_t samples) {
+static double mean_of(const double *values, size_t samples) {
     double sum = 0;
     for (size_t k = 0; k < samples; k++)
-        sum += series[k];
+        sum += values[k];
     return sum / (double)samples;
 }
 
-static void put_mean(struct json_writer *writer, const char *name, const double *series,
-                     size_t samples) {
+static void put_mean(struct json_writer *writer, const char *name,
+                     const struct sample_series *series, size_t column) {
     char key[64];
-    double error = mf_statistics_correlated_error(series, samples, 1);
+    const double *values = sample_series_column(series, column);
+    double error = mf_statistics_correlated_error(values, series->count, 1);
     mf_statistics_forget_errors(&error, 1);
     snprintf(key, sizeof key, "%s_error", name);
-    mf_json_put_number(writer, name, mean_of(series, samples));
+    mf_json_put_number(writer, name, mean_of(values, series->count));
     mf_json_put_number(writer, key, error);
 }
 
@@ -157,8 +158,8 @@ static void put(const void *state, const struct observable_results *results,
                 struct json_writer *writer) {
     const struct state *s = state;
     (void)results;
-    put_mean(writer, "cluster_size", s->mean, s->samples);
-    put_mean(writer, "largest_cluster", s->largest, s->samples);
+    put_mean(writer, "cluster_size", &s->series, MEAN);
+    put_mean(writer, "largest_cluster", &s->series, LARGEST);
 }
 
 /// Nanoseconds of an entry of the list.
@@ -193,6 +194,7 @@ const struct observable mf_clusters = {
     .clear = clear,
     .sample = sample,
     .spans = spans,
+    .make_room = make_room,
     .write = write,
     .put = put,
     .explain = explain,

@@ -21,6 +21,7 @@
 #include "observe/hard_theory.h"
 #include "observe/maxwell.h"
 #include "observe/measure.h"
+#include "observe/sample_series.h"
 
 #include <math.h>
 
@@ -47,10 +48,10 @@ enum quantity { FACTOR, WALL_FACTOR, RATE, SPEED, QUANTITIES };
 struct collisions {
     struct settings settings;
     int64_t first, every; ///< steps
-    size_t planned, samples;
-    bool begun; ///< what was before the first step of sampling is known
+    size_t planned;       ///< samples
+    bool begun;           ///< what was before the first step of sampling is known
     struct hard_gas_tally last;
-    double *values; ///< shape [QUANTITIES, planned]
+    struct sample_series series; ///< of QUANTITIES
     uint64_t *speeds;
     struct maxwell maxwell;
     struct hard_theory theory;
@@ -116,9 +117,9 @@ static enum status begin(void *state, const void *settings, const struct simulat
     c->first = plan->equilibration;
     c->every = plan->every;
     c->planned = (size_t)plan->samples;
+    c->series.columns = QUANTITIES;
     c->walls = gas->walls != 0;
     c->particles = (size_t)gas->count;
-    NEW_ARRAY(c->values, QUANTITIES * c->planned);
     NEW_ARRAY(c->speeds, (size_t)c->settings.bins + 1);
     CHECK(mf_maxwell_init(&c->maxwell));
     NEW_ARRAY(radius, c->particles);
@@ -137,7 +138,7 @@ done:
 
 static void clear(void *state) {
     struct collisions *c = state;
-    mf_memory_free(c->values);
+    mf_sample_series_clear(&c->series);
     mf_memory_free(c->speeds);
     mf_maxwell_clear(&c->maxwell);
     *c = (struct collisions){0};
@@ -147,7 +148,8 @@ static int64_t due(const void *state) {
     const struct collisions *c = state;
     if (!c->begun)
         return c->first;
-    return c->samples < c->planned ? c->first + (int64_t)(c->samples + 1) * c->every : INT64_MAX;
+    return c->series.count < c->planned ? c->first + (int64_t)(c->series.count + 1) * c->every
+                                        : INT64_MAX;
 }
 
 // Sampling ----------------------------------------------------------------------------------------
@@ -215,14 +217,14 @@ static enum status sample(void *state, struct simulation *simulation) {
         const double time = (double)c->every * simulation->setup.time_step, n = gas->count;
         const double square = kinetic(gas, drift), degrees = degrees_of_freedom(gas);
         const double unit = n * square / degrees * time, dimensions = gas->dimensions;
-        double *here = c->values + c->samples;
-        here[FACTOR * c->planned] =
+        double here[QUANTITIES];
+        here[FACTOR] =
             degrees / (dimensions * n) + (now->virial - c->last.virial) / (dimensions * unit);
-        here[WALL_FACTOR * c->planned] = wall_sum(gas, &c->last) / unit;
-        here[RATE * c->planned] = 2 * (double)(now->collisions - c->last.collisions) / (n * time);
-        here[SPEED * c->planned] = mean_speed(gas, drift);
+        here[WALL_FACTOR] = wall_sum(gas, &c->last) / unit;
+        here[RATE] = 2 * (double)(now->collisions - c->last.collisions) / (n * time);
+        here[SPEED] = mean_speed(gas, drift);
         add_speeds(c, gas, simulation->setup.seed, simulation->step);
-        c->samples++;
+        TRY(mf_sample_series_add(&c->series, here));
     }
     c->begun = true;
     c->last = *now;
@@ -233,13 +235,17 @@ static enum status sample(void *state, struct simulation *simulation) {
 
 static size_t spans(void *state, struct memory_span *spans) {
     struct collisions *c = state;
-    spans[0] = (struct memory_span){&c->samples, sizeof c->samples};
-    spans[1] = (struct memory_span){&c->begun, sizeof c->begun};
-    spans[2] = (struct memory_span){&c->last, sizeof c->last};
-    spans[3] = (struct memory_span){c->values, QUANTITIES * c->planned * sizeof *c->values};
-    spans[4] = (struct memory_span){c->speeds, ((size_t)c->settings.bins + 1) * sizeof *c->speeds};
-    spans[5] = (struct memory_span){c->maxwell.counts, MAXWELL_BINS * sizeof *c->maxwell.counts};
-    return 6;
+    size_t n = mf_sample_series_spans(&c->series, spans);
+    spans[n++] = (struct memory_span){&c->begun, sizeof c->begun};
+    spans[n++] = (struct memory_span){&c->last, sizeof c->last};
+    spans[n++] =
+        (struct memory_span){c->speeds, ((size_t)c->settings.bins + 1) * sizeof *c->speeds};
+    spans[n++] = (struct memory_span){c->maxwell.counts, MAXWELL_BINS * sizeof *c->maxwell.counts};
+    return n;
+}
+
+static enum status make_room(void *state) {
+    return mf_sample_series_make_room(&((struct collisions *)state)->series);
 }
 
 // Results -----------------------------------------------------------------------------------------
@@ -249,15 +255,15 @@ struct result {
 };
 
 static const double *series(const struct collisions *c, enum quantity quantity) {
-    return c->values + (size_t)quantity * c->planned;
+    return sample_series_column(&c->series, (size_t)quantity);
 }
 
 static struct result result_of(const struct collisions *c, enum quantity quantity) {
     struct running_mean mean = {0};
-    for (size_t k = 0; k < c->samples; k++)
+    for (size_t k = 0; k < c->series.count; k++)
         mf_statistics_add(&mean, series(c, quantity)[k]);
-    struct result result = {mean.mean,
-                            mf_statistics_correlated_error(series(c, quantity), c->samples, 1)};
+    struct result result = {
+        mean.mean, mf_statistics_correlated_error(series(c, quantity), c->series.count, 1)};
     mf_statistics_forget_errors(&result.error, 1);
     return result;
 }
@@ -319,9 +325,9 @@ static enum status write_series(const struct collisions *c,
     enum status status = STATUS_OK;
     char path[OUTPUT_PATH_SIZE];
     double *step = NULL, *time = NULL;
-    NEW_ARRAY(step, c->samples);
-    NEW_ARRAY(time, c->samples);
-    for (size_t k = 0; k < c->samples; k++) {
+    NEW_ARRAY(step, c->series.count);
+    NEW_ARRAY(time, c->series.count);
+    for (size_t k = 0; k < c->series.count; k++) {
         step[k] = (double)(c->first + (int64_t)(k + 1) * c->every);
         time[k] = step[k] * results->setup->time_step;
     }
@@ -333,8 +339,8 @@ static enum status write_series(const struct collisions *c,
         {"mean_speed[lambda/tau]", series(c, SPEED), "%.8g"},
         {"compressibility_factor_walls[1]", series(c, WALL_FACTOR), "%.8g"}};
     mf_observable_file(results, "collisions.tsv", path);
-    CHECK(
-        mf_data_table_write_in(path, results->units, NULL, columns, c->walls ? 6 : 5, c->samples));
+    CHECK(mf_data_table_write_in(path, results->units, NULL, columns, c->walls ? 6 : 5,
+                                 c->series.count));
 done:
     mf_memory_free(step);
     mf_memory_free(time);
@@ -350,7 +356,7 @@ static enum status write_speeds(const struct collisions *c,
     const size_t bins = (size_t)c->settings.bins;
     const int dimensions = results->setup->box.dimensions;
     const double width = c->settings.speed_maximum / (double)bins;
-    const double all = (double)c->samples * (double)c->particles * width;
+    const double all = (double)c->series.count * (double)c->particles * width;
     double *values = NULL;
     NEW_ARRAY(values, 4 * bins);
     double *speed = values, *density = speed + bins, *error = density + bins,
@@ -412,6 +418,7 @@ const struct observable mf_collisions = {
     .due = due,
     .sample = sample,
     .spans = spans,
+    .make_room = make_room,
     .write = write,
     .put = put,
     .say = say,

@@ -6,12 +6,17 @@
 #include "dynamics/solvent.h"
 #include "io/data_table.h"
 #include "observe/measure.h"
+#include "observe/sample_series.h"
 
 #include <math.h>
 
 struct settings {
     double spacing;
 };
+
+/// Of a sample, along x: the mean velocity of all, and the drag since the last; the first drag is
+/// not known.
+enum { VELOCITY, DRAG, NUMBERS };
 
 struct flow_field {
     struct simulation_setup setup; ///< with the parameters of the solvent
@@ -21,11 +26,9 @@ struct flow_field {
     double mass;                ///< of the solvent and its beads
     double width[2], thickness; ///< of a bin; of the slice, 0 in two dimensions
     double every;               ///< steps between samples
-    uint64_t samples, planned;
-    double *sums;     ///< shape [bins y, bins x, 3]: Σ 1, Σ v
-    double *velocity; ///< shape [planned]: mean velocity of all along x
-    double *drag;     ///< shape [planned]: along x since the last sample; the first is not known
-    int64_t given;    ///< at the last sample, in SOLVENT_IMPULSE
+    struct sample_series series;
+    double *sums;  ///< shape [bins y, bins x, 3]: Σ 1, Σ v
+    int64_t given; ///< at the last sample, in SOLVENT_IMPULSE
 };
 
 static const struct field fields[] = {
@@ -64,11 +67,9 @@ static enum status begin(void *state, const void *settings, const struct simulat
         f->width[d] = f->box.length[d] / (double)f->bins[d];
     }
     f->thickness = f->box.dimensions == 3 ? f->width[0] : 0;
-    f->planned = (uint64_t)plan->samples;
+    f->series.columns = NUMBERS;
     f->every = (double)plan->every;
     NEW_ARRAY(f->sums, 3 * f->bins[0] * f->bins[1]);
-    NEW_ARRAY(f->velocity, f->planned);
-    NEW_ARRAY(f->drag, f->planned);
 done:
     return status;
 }
@@ -76,8 +77,7 @@ done:
 static void clear(void *state) {
     struct flow_field *f = state;
     mf_memory_free(f->sums);
-    mf_memory_free(f->velocity);
-    mf_memory_free(f->drag);
+    mf_sample_series_clear(&f->series);
     *f = (struct flow_field){0};
 }
 
@@ -90,8 +90,6 @@ static enum status sample(void *state, struct simulation *simulation) {
     struct flow_field *f = state;
     const struct solvent *solvent = mf_collision_dynamics_solvent(simulation);
     double along = 0;
-    if (f->samples == f->planned)
-        return STATUS_OK;
     for (size_t k = 0; k < solvent->count; k++) {
         const double vx = solvent->velocity[0][k];
         along += vx;
@@ -108,22 +106,23 @@ static enum status sample(void *state, struct simulation *simulation) {
         sum[2] += solvent->velocity[1][k];
     }
     const double time = f->every * f->setup.time_step;
-    f->velocity[f->samples] = along / (double)solvent->count;
-    f->drag[f->samples] = (double)(solvent->given[0] - f->given) * SOLVENT_IMPULSE / time;
+    const double numbers[NUMBERS] = {along / (double)solvent->count,
+                                     (double)(solvent->given[0] - f->given) * SOLVENT_IMPULSE /
+                                         time};
     f->given = solvent->given[0];
-    f->samples++;
-    return STATUS_OK;
+    return mf_sample_series_add(&f->series, numbers);
 }
 
 static size_t spans(void *state, struct memory_span *spans) {
     struct flow_field *f = state;
-    const size_t bytes = f->planned * sizeof(double);
-    spans[0] = (struct memory_span){&f->samples, sizeof f->samples};
-    spans[1] = (struct memory_span){&f->given, sizeof f->given};
-    spans[2] = (struct memory_span){f->sums, 3 * f->bins[0] * f->bins[1] * sizeof *f->sums};
-    spans[3] = (struct memory_span){f->velocity, bytes};
-    spans[4] = (struct memory_span){f->drag, bytes};
-    return 5;
+    size_t n = mf_sample_series_spans(&f->series, spans);
+    spans[n++] = (struct memory_span){&f->given, sizeof f->given};
+    spans[n++] = (struct memory_span){f->sums, 3 * f->bins[0] * f->bins[1] * sizeof *f->sums};
+    return n;
+}
+
+static enum status make_room(void *state) {
+    return mf_sample_series_make_room(&((struct flow_field *)state)->series);
 }
 
 // Results -----------------------------------------------------------------------------------------
@@ -153,7 +152,7 @@ static double find_vorticity(const struct flow_field *f, const struct flow_table
 /// to the middle of a bin, relative to the mean density.
 static void find_tables(const struct flow_field *f, const struct flow_tables *t) {
     const double whole = f->thickness > 0 ? f->thickness : 1;
-    const double volume = f->width[0] * f->width[1] * whole * fmax(1, (double)f->samples);
+    const double volume = f->width[0] * f->width[1] * whole * fmax(1, (double)f->series.count);
     const double mean =
         f->parameters.particles_per_cell / pow(f->parameters.cell, f->box.dimensions);
     for (size_t i = 0; i < f->bins[0]; i++) {
@@ -221,10 +220,12 @@ struct flow_field_summary mf_flow_field_result(const void *state) {
     const double density = f->parameters.mass * f->parameters.particles_per_cell /
                            pow(f->parameters.cell, f->box.dimensions);
     const double area = f->box.dimensions == 2 ? 2 * radius : M_PI * radius * radius;
-    const size_t intervals = f->samples > 0 ? (size_t)f->samples - 1 : 0;
+    const size_t samples = f->series.count, intervals = samples > 0 ? samples - 1 : 0;
+    const double *velocity = sample_series_column(&f->series, VELOCITY);
+    const double *drag = sample_series_column(&f->series, DRAG);
     struct flow_field_summary found;
-    found.velocity = average(f->velocity, (size_t)f->samples, &found.velocity_error);
-    found.drag = average(f->drag + 1, intervals, &found.drag_error);
+    found.velocity = average(velocity, samples, &found.velocity_error);
+    found.drag = average(samples > 0 ? drag + 1 : NULL, intervals, &found.drag_error);
     found.driving_force = f->mass * f->parameters.acceleration[0];
     // What is not told from 0 is no flow, and what it would be divided by is noise.
     const bool flows = fabs(found.velocity) > 3 * found.velocity_error;
@@ -281,6 +282,7 @@ const struct observable mf_flow_field = {
     .clear = clear,
     .sample = sample,
     .spans = spans,
+    .make_room = make_room,
     .write = write,
     .put = put,
     .explain = explain,

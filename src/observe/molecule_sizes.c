@@ -12,12 +12,13 @@
 #include "io/data_table.h"
 #include "observe/measure.h"
 #include "observe/sample_blocks.h"
+#include "observe/sample_series.h"
 #include "system/whole_molecules.h"
 
 #include <math.h>
-#include <string.h>
 
-enum { FIRST_ROOM = 256 }; ///< for samples, if their number is not known
+/// Means over the molecules of a kind in a sample: ⟨R_g²⟩, ⟨R_e²⟩ [λ²].
+enum { GYRATION, END, NUMBERS };
 
 struct settings {
     int64_t lags;
@@ -26,13 +27,13 @@ struct settings {
 struct state {
     const struct molecules *molecules;
     struct sample_blocks blocks;
-    size_t room, lags, every; ///< room: for samples
-    double begin, time_step;  ///< step of the first sample, Δt or 1 sweep
-    const char *clock;        ///< what tables call it
-    double *gyration, *end;   ///< shape [kinds, room]: means over the molecules [λ²]
-    double *ends;             ///< shape [lags + 1, molecules, 3]: the last end-to-end vectors [λ]
-    double *products;         ///< shape [blocks, kinds, lags + 1]: sums of R(t)·R(0) [λ²]
-    double *origins;          ///< shape [blocks, lags + 1]: samples in them
+    size_t lags, every;
+    double begin, time_step;     ///< step of the first sample, Δt or 1 sweep
+    const char *clock;           ///< what tables call it
+    struct sample_series series; ///< NUMBERS of each kind
+    double *ends;     ///< shape [lags + 1, molecules, 3]: the last end-to-end vectors [λ]
+    double *products; ///< shape [blocks, kinds, lags + 1]: sums of R(t)·R(0) [λ²]
+    double *origins;  ///< shape [blocks, lags + 1]: samples in them
     struct whole_molecules whole;
 };
 
@@ -77,15 +78,13 @@ static enum status begin(void *state, const void *settings, const struct simulat
     const bool sweeps = setup->integrator && setup->integrator->samples;
     const size_t lags = (size_t)((const struct settings *)settings)->lags;
     *s = (struct state){.molecules = molecules,
-                        .room = planned > 0 ? planned : FIRST_ROOM,
                         .lags = planned == 0 || lags < planned ? lags : planned - 1,
                         .every = (size_t)plan->every,
                         .begin = (double)plan->equilibration,
                         .time_step = sweeps ? 1 : setup->time_step,
-                        .clock = sweeps ? "sweeps[1]" : "time[tau]"};
+                        .clock = sweeps ? "sweeps[1]" : "time[tau]",
+                        .series.columns = NUMBERS * kinds};
     CHECK(mf_sample_blocks_init(&s->blocks, planned));
-    NEW_ARRAY(s->gyration, kinds * s->room);
-    NEW_ARRAY(s->end, kinds * s->room);
     NEW_ARRAY(s->ends, 3 * (s->lags + 1) * (size_t)topology->molecules);
     NEW_ARRAY(s->products, s->blocks.count * kinds * (s->lags + 1));
     NEW_ARRAY(s->origins, s->blocks.count * (s->lags + 1));
@@ -96,8 +95,7 @@ done:
 
 static void clear(void *state) {
     struct state *s = state;
-    mf_memory_free(s->gyration);
-    mf_memory_free(s->end);
+    mf_sample_series_clear(&s->series);
     mf_memory_free(s->ends);
     mf_memory_free(s->products);
     mf_memory_free(s->origins);
@@ -110,35 +108,15 @@ static double *vectors_of(const struct state *s, size_t sample) {
     return s->ends + 3 * (sample % (s->lags + 1)) * (size_t)s->molecules->topology.molecules;
 }
 
-/// Twice the room for means of samples.
-static enum status grow(struct state *s, double **series) {
-    enum status status = STATUS_OK;
-    double *larger = NULL;
-    NEW_ARRAY(larger, 2 * s->room * (size_t)s->molecules->topology.kinds);
-    for (int k = 0; k < s->molecules->topology.kinds; k++)
-        memcpy(larger + 2 * (size_t)k * s->room, *series + (size_t)k * s->room,
-               s->room * sizeof *larger);
-    mf_memory_free(*series);
-    *series = larger;
-done:
-    return status;
-}
-
-/// Make room for a sample whose number was not planned; returns its block.
-static enum status begin_sample(struct state *s, size_t *block) {
+/// The block of the next sample.
+static size_t begin_sample(struct state *s) {
     const size_t row = s->lags + 1;
-    if (s->blocks.taken == s->room) {
-        TRY(grow(s, &s->gyration));
-        TRY(grow(s, &s->end));
-        s->room *= 2;
-    }
     if (mf_sample_blocks_are_full(&s->blocks)) {
         mf_sample_blocks_join(&s->blocks, s->products, (size_t)s->molecules->topology.kinds * row);
         mf_sample_blocks_join(&s->blocks, s->origins, row);
         mf_sample_blocks_double(&s->blocks);
     }
-    *block = mf_sample_blocks_take(&s->blocks);
-    return STATUS_OK;
+    return mf_sample_blocks_take(&s->blocks);
 }
 
 /// Products of a sample's end-to-end vectors with those of the samples before.
@@ -165,9 +143,8 @@ static enum status sample(void *state, struct simulation *simulation) {
     struct state *s = state;
     const struct topology *topology = &s->molecules->topology;
     const size_t number = s->blocks.taken;
-    double *vectors = vectors_of(s, number);
-    size_t block;
-    TRY(begin_sample(s, &block));
+    double *vectors = vectors_of(s, number), numbers[NUMBERS * TOPOLOGY_MOST_KINDS];
+    const size_t block = begin_sample(s);
     for (int k = 0; k < topology->kinds; k++) {
         const struct topology_kind *kind = &topology->kind[k];
         double gyration = 0, end = 0;
@@ -180,11 +157,11 @@ static enum status sample(void *state, struct simulation *simulation) {
                 end += vector[d] * vector[d];
             }
         }
-        s->gyration[(size_t)k * s->room + number] = gyration / (double)kind->count;
-        s->end[(size_t)k * s->room + number] = end / (double)kind->count;
+        numbers[NUMBERS * k + GYRATION] = gyration / (double)kind->count;
+        numbers[NUMBERS * k + END] = end / (double)kind->count;
     }
     correlate(s, number, block);
-    return STATUS_OK;
+    return mf_sample_series_add(&s->series, numbers);
 }
 
 static size_t spans(void *state, struct memory_span *spans) {
@@ -192,17 +169,24 @@ static size_t spans(void *state, struct memory_span *spans) {
     const size_t kinds = (size_t)s->molecules->topology.kinds, row = s->lags + 1;
     const size_t vectors = 3 * row * (size_t)s->molecules->topology.molecules;
     const size_t blocks = s->blocks.count;
-    spans[0] = (struct memory_span){s->gyration, kinds * s->room * sizeof *s->gyration};
-    spans[1] = (struct memory_span){s->end, kinds * s->room * sizeof *s->end};
-    spans[2] = (struct memory_span){s->ends, vectors * sizeof *s->ends};
-    spans[3] = (struct memory_span){s->products, blocks * kinds * row * sizeof *s->products};
-    spans[4] = (struct memory_span){s->origins, blocks * row * sizeof *s->origins};
-    return 5 + mf_sample_blocks_spans(&s->blocks, spans + 5);
+    size_t n = mf_sample_series_spans(&s->series, spans);
+    spans[n++] = (struct memory_span){s->ends, vectors * sizeof *s->ends};
+    spans[n++] = (struct memory_span){s->products, blocks * kinds * row * sizeof *s->products};
+    spans[n++] = (struct memory_span){s->origins, blocks * row * sizeof *s->origins};
+    return n + mf_sample_blocks_spans(&s->blocks, spans + n);
+}
+
+static enum status make_room(void *state) {
+    return mf_sample_series_make_room(&((struct state *)state)->series);
 }
 
 // Results -----------------------------------------------------------------------------------------
 
 enum { MOST_COLUMNS = 1 + 2 * TOPOLOGY_MOST_KINDS, HEAD_SIZE = TOPOLOGY_NAME_SIZE + 32 };
+
+static const double *series_of(const struct state *s, int k, int which) {
+    return sample_series_column(&s->series, (size_t)(NUMBERS * k + which));
+}
 
 /// molecule_sizes.tsv: time, and means over the molecules of each kind.
 static enum status write_sizes(const struct state *s, const struct observable_results *results) {
@@ -217,11 +201,10 @@ static enum status write_sizes(const struct state *s, const struct observable_re
         time[k] = (s->begin + (double)((k + 1) * s->every)) * s->time_step;
     columns[n++] = (struct data_column){s->clock, time, NULL};
     for (int k = 0; k < topology->kinds; k++)
-        for (int which = 0; which < 2; which++) {
-            const double *series = which == 0 ? s->gyration : s->end;
-            snprintf(names[n], HEAD_SIZE, "%s_%s[lambda^2]", which == 0 ? "gyration" : "end",
+        for (int which = 0; which < NUMBERS; which++) {
+            snprintf(names[n], HEAD_SIZE, "%s_%s[lambda^2]", which == GYRATION ? "gyration" : "end",
                      topology->kind[k].name);
-            columns[n] = (struct data_column){names[n], series + (size_t)k * s->room, "%.8g"};
+            columns[n] = (struct data_column){names[n], series_of(s, k, which), "%.8g"};
             n++;
         }
     mf_observable_file(results, "molecule_sizes.tsv", path);
@@ -296,8 +279,8 @@ static enum status write(const void *state, const struct observable_results *res
     return write_sizes(state, results);
 }
 
-static double mean_of(const struct state *s, const double *series, int k, double *error) {
-    const double *own = series + (size_t)k * s->room;
+static double mean_of(const struct state *s, int k, int which, double *error) {
+    const double *own = series_of(s, k, which);
     double sum = 0;
     for (size_t n = 0; n < s->blocks.taken; n++)
         sum += own[n];
@@ -311,11 +294,11 @@ static void put(const void *state, const struct observable_results *results,
     (void)results;
     mf_json_begin(writer, "molecule_sizes");
     for (int k = 0; k < s->molecules->topology.kinds; k++) {
-        double error, mean = mean_of(s, s->gyration, k, &error);
+        double error, mean = mean_of(s, k, GYRATION, &error);
         mf_json_begin(writer, s->molecules->topology.kind[k].name);
         mf_json_put_quantity(writer, "gyration_squared", "lambda^2", mean);
         mf_json_put_quantity(writer, "gyration_squared_error", "lambda^2", error);
-        mean = mean_of(s, s->end, k, &error);
+        mean = mean_of(s, k, END, &error);
         mf_json_put_quantity(writer, "end_to_end_squared", "lambda^2", mean);
         mf_json_put_quantity(writer, "end_to_end_squared_error", "lambda^2", error);
         mf_json_end(writer);
@@ -329,9 +312,9 @@ static void say(const void *state, const struct observable_results *results, cha
     const struct state *s = state;
     const double factor = mf_units_factor(results->units, "lambda^2");
     char end[NUMBER_TEXT_SIZE], gyration[NUMBER_TEXT_SIZE], unit[UNITS_NAME_SIZE];
-    double error, mean = mean_of(s, s->end, 0, &error);
+    double error, mean = mean_of(s, 0, END, &error);
     mf_number_text(factor * mean, factor * error, end);
-    mean = mean_of(s, s->gyration, 0, &error);
+    mean = mean_of(s, 0, GYRATION, &error);
     mf_number_text(factor * mean, factor * error, gyration);
     snprintf(line, size, "%s: R_e^2 %s, R_g^2 %s%s", s->molecules->topology.kind[0].name, end,
              gyration, mf_units_suffix(results->units, "lambda^2", unit));
@@ -362,6 +345,7 @@ const struct observable mf_molecule_sizes = {
     .clear = clear,
     .sample = sample,
     .spans = spans,
+    .make_room = make_room,
     .write = write,
     .put = put,
     .say = say,

@@ -9,11 +9,11 @@
 
 #include "dynamics/brownian.h"
 #include "observe/motion.h"
+#include "observe/sample_series.h"
 
 struct polarity {
     struct motion motion;
-    size_t planned;
-    double *order; ///< shape [planned]: |⟨n⟩| of each sample
+    struct sample_series order; ///< |⟨n⟩|
     /// What is known exactly: no interaction but self-propulsion.
     bool lone;
     struct brownian_free free;

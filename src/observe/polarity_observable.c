@@ -29,10 +29,9 @@ static enum status begin(void *state, const void *settings, const struct simulat
                               "\"interactions\" gives them some");
     CHECK(mf_motion_init(&polarity->motion, settings, simulation, plan->equilibration, steps));
     polarity->motion.polar = true;
-    polarity->planned = (size_t)(steps / polarity->motion.plan.every) + 1;
+    polarity->order.columns = 1;
     polarity->lone = is_lone(&simulation->setup);
     polarity->free = mf_brownian_free(&simulation->setup);
-    NEW_ARRAY(polarity->order, polarity->planned);
 done:
     return status;
 }
@@ -40,7 +39,7 @@ done:
 static void clear(void *state) {
     struct polarity *polarity = state;
     mf_motion_clear(&polarity->motion);
-    mf_memory_free(polarity->order);
+    mf_sample_series_clear(&polarity->order);
     *polarity = (struct polarity){0};
 }
 
@@ -61,17 +60,23 @@ static double find_order(const struct motion *motion) {
 
 static enum status sample(void *state, struct simulation *simulation) {
     struct polarity *polarity = state;
-    const size_t number = polarity->motion.samples;
     mf_motion_sample(&polarity->motion, simulation);
-    polarity->order[number] = find_order(&polarity->motion);
-    return STATUS_OK;
+    const double order = find_order(&polarity->motion);
+    return mf_sample_series_add(&polarity->order, &order);
 }
 
 static size_t spans(void *state, struct memory_span *spans) {
     struct polarity *polarity = state;
-    const size_t n = mf_motion_spans(&polarity->motion, spans);
-    spans[n] = (struct memory_span){polarity->order, polarity->planned * sizeof *polarity->order};
-    return n + 1;
+    const size_t n = mf_sample_series_spans(&polarity->order, spans);
+    return n + mf_motion_spans(&polarity->motion, spans + n);
+}
+
+static enum status make_room(void *state) {
+    return mf_sample_series_make_room(&((struct polarity *)state)->order);
+}
+
+static const double *orders_of(const struct polarity *polarity) {
+    return sample_series_column(&polarity->order, 0);
 }
 
 // Results -----------------------------------------------------------------------------------------
@@ -126,7 +131,7 @@ static enum status write(const void *state, const struct observable_results *res
     for (size_t k = 0; k < motion->samples; k++)
         time[k] = (double)motion->begin * motion->time_step + (double)k * interval(motion);
     const struct data_column columns[] = {{"time[tau]", time, NULL},
-                                          {"order[1]", polarity->order, "%.8g"}};
+                                          {"order[1]", orders_of(polarity), "%.8g"}};
     mf_observable_file(results, "polar_order.tsv", path);
     CHECK(mf_data_table_write_in(path, results->units, NULL, columns, 2, motion->samples));
     CHECK(write_curves(polarity, results));
@@ -136,11 +141,12 @@ done:
 }
 
 static double mean_order(const struct polarity *polarity, double *error) {
-    const size_t samples = polarity->motion.samples;
+    const size_t samples = polarity->order.count;
+    const double *orders = orders_of(polarity);
     double sum = 0;
     for (size_t k = 0; k < samples; k++)
-        sum += polarity->order[k];
-    *error = mf_statistics_correlated_error(polarity->order, samples, 1);
+        sum += orders[k];
+    *error = mf_statistics_correlated_error(orders, samples, 1);
     return sum / (double)samples;
 }
 
@@ -152,7 +158,7 @@ static void put(const void *state, const struct observable_results *results,
     (void)results;
     mf_json_put_number(writer, "polar_order", mean_order(polarity, &error));
     mf_json_put_number(writer, "polar_order_error", error);
-    mf_json_put_number(writer, "polar_order_last", polarity->order[polarity->motion.samples - 1]);
+    mf_json_put_number(writer, "polar_order_last", orders_of(polarity)[polarity->order.count - 1]);
     mf_json_put_quantity(writer, "effective_diffusion", "lambda^2/tau", fit.effective_diffusion);
     mf_json_put_quantity(writer, "effective_diffusion_error", "lambda^2/tau",
                          fit.effective_diffusion_error);
@@ -273,6 +279,7 @@ const struct observable mf_polarity_observable = {
     .due = due,
     .sample = sample,
     .spans = spans,
+    .make_room = make_room,
     .write = write,
     .put = put,
     .say = say,

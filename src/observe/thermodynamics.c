@@ -10,15 +10,12 @@
 /// Longer series are averaged in blocks first, so that their autocovariances stay cheap.
 enum { MOST_BLOCKS = 4096 };
 
-enum status mf_thermodynamics_init(struct thermodynamics *thermodynamics, size_t planned) {
-    *thermodynamics = (struct thermodynamics){.planned = planned};
-    thermodynamics->values = mf_memory_zeroed(THERMODYNAMICS_QUANTITIES * planned, sizeof(double));
-    return thermodynamics->values ? STATUS_OK : STATUS_NO_MEMORY;
+void mf_thermodynamics_init(struct thermodynamics *thermodynamics) {
+    *thermodynamics = (struct thermodynamics){.series.columns = THERMODYNAMICS_QUANTITIES};
 }
 
 void mf_thermodynamics_clear(struct thermodynamics *thermodynamics) {
-    mf_memory_free(thermodynamics->values);
-    *thermodynamics = (struct thermodynamics){0};
+    mf_sample_series_clear(&thermodynamics->series);
 }
 
 /// Numerator and denominator of the configurational temperature; the potentials beside the pairs
@@ -52,33 +49,31 @@ enum status mf_thermodynamics_temperature(const struct simulation *simulation, d
 
 enum status mf_thermodynamics_sample(struct thermodynamics *thermodynamics,
                                      const struct simulation *simulation) {
-    double *here = thermodynamics->values + thermodynamics->samples;
-    const size_t stride = thermodynamics->planned;
+    double here[THERMODYNAMICS_QUANTITIES] = {0};
     const double count = (double)simulation->particles.count;
-    here[THERMODYNAMICS_TEMPERATURE * stride] = mf_simulation_temperature(simulation);
-    here[THERMODYNAMICS_POTENTIAL_ENERGY * stride] = simulation->sums.energy / count;
-    here[THERMODYNAMICS_PRESSURE * stride] = mf_simulation_pressure(simulation);
-    here[THERMODYNAMICS_TOTAL_ENERGY * stride] =
+    here[THERMODYNAMICS_TEMPERATURE] = mf_simulation_temperature(simulation);
+    here[THERMODYNAMICS_POTENTIAL_ENERGY] = simulation->sums.energy / count;
+    here[THERMODYNAMICS_PRESSURE] = mf_simulation_pressure(simulation);
+    here[THERMODYNAMICS_TOTAL_ENERGY] =
         (simulation->sums.energy + mf_particles_kinetic_energy(&simulation->particles)) / count;
     if (simulation->law.potential)
-        TRY(configurational(simulation, &here[THERMODYNAMICS_FORCE_SQUARES * stride],
-                            &here[THERMODYNAMICS_LAPLACIAN * stride]));
-    thermodynamics->samples++;
-    return STATUS_OK;
+        TRY(configurational(simulation, &here[THERMODYNAMICS_FORCE_SQUARES],
+                            &here[THERMODYNAMICS_LAPLACIAN]));
+    return mf_sample_series_add(&thermodynamics->series, here);
 }
 
 const double *mf_thermodynamics_series(const struct thermodynamics *thermodynamics,
                                        enum thermodynamics_quantity quantity) {
-    return thermodynamics->values + (size_t)quantity * thermodynamics->planned;
+    return sample_series_column(&thermodynamics->series, (size_t)quantity);
 }
 
 double mf_thermodynamics_energy_drift(const struct thermodynamics *thermodynamics) {
     const double *energy = mf_thermodynamics_series(thermodynamics, THERMODYNAMICS_TOTAL_ENERGY);
-    const double last = (double)thermodynamics->samples - 1;
+    const double last = (double)thermodynamics->series.count - 1;
     double mean = 0, products = 0, squares = 0;
-    for (size_t k = 0; k < thermodynamics->samples; k++)
+    for (size_t k = 0; k < thermodynamics->series.count; k++)
         mean += energy[k] / (last + 1);
-    for (size_t k = 0; k < thermodynamics->samples; k++) {
+    for (size_t k = 0; k < thermodynamics->series.count; k++) {
         const double time = (double)k - 0.5 * last;
         products += time * (energy[k] - mean);
         squares += time * time;
@@ -100,7 +95,7 @@ static double block_mean(const struct thermodynamics *replica,
 static double mean_of(const struct thermodynamics *replicas, size_t count, int quantity) {
     struct running_mean mean = {0};
     for (size_t r = 0; quantity >= 0 && r < count; r++)
-        for (size_t k = 0; k < replicas[r].samples; k++)
+        for (size_t k = 0; k < replicas[r].series.count; k++)
             mf_statistics_add(&mean, mf_thermodynamics_series(
                                          &replicas[r], (enum thermodynamics_quantity)quantity)[k]);
     return quantity < 0 ? 1 : mean.mean;
@@ -115,9 +110,9 @@ static size_t ratio(const struct thermodynamics *replicas, size_t count,
     double deviations[MOST_BLOCKS];
     const double below = mean_of(replicas, count, denominator);
     *mean = mean_of(replicas, count, numerator) / below;
-    size_t shortest = replicas[0].samples;
+    size_t shortest = replicas[0].series.count;
     for (size_t r = 1; r < count; r++)
-        shortest = replicas[r].samples < shortest ? replicas[r].samples : shortest;
+        shortest = replicas[r].series.count < shortest ? replicas[r].series.count : shortest;
     const size_t each = (shortest * count + MOST_BLOCKS - 1) / MOST_BLOCKS;
     const size_t blocks = each ? shortest / each : 0;
     for (size_t r = 0; r < count; r++)

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "dynamics/simulation.h"
+#include "observe/sample_series.h"
 
 /// Quantities of one sample, in the order of thermodynamics_names.
 enum thermodynamics_quantity {
@@ -16,11 +17,10 @@ enum thermodynamics_quantity {
 };
 
 struct thermodynamics {
-    size_t planned, samples;
-    double *values; ///< shape [THERMODYNAMICS_QUANTITIES, planned]
+    struct sample_series series; ///< of THERMODYNAMICS_QUANTITIES
 };
 
-enum status mf_thermodynamics_init(struct thermodynamics *thermodynamics, size_t planned) MUST_USE;
+void mf_thermodynamics_init(struct thermodynamics *thermodynamics);
 void mf_thermodynamics_clear(struct thermodynamics *thermodynamics);
 
 /// Add a sample; the simulation's last step must have wanted its sums. Fails: NO_MEMORY.

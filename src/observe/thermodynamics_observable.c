@@ -10,8 +10,9 @@
 
 static enum status begin(void *state, const void *settings, const struct simulation *simulation,
                          const struct measure_plan *plan) {
-    (void)settings, (void)simulation;
-    return mf_thermodynamics_init(state, (size_t)plan->samples);
+    (void)settings, (void)simulation, (void)plan;
+    mf_thermodynamics_init(state);
+    return STATUS_OK;
 }
 
 static void clear(void *state) {
@@ -23,11 +24,11 @@ static enum status sample(void *state, struct simulation *simulation) {
 }
 
 static size_t spans(void *state, struct memory_span *spans) {
-    struct thermodynamics *t = state;
-    spans[0] = (struct memory_span){&t->samples, sizeof t->samples};
-    spans[1] =
-        (struct memory_span){t->values, THERMODYNAMICS_QUANTITIES * t->planned * sizeof *t->values};
-    return 2;
+    return mf_sample_series_spans(&((struct thermodynamics *)state)->series, spans);
+}
+
+static enum status make_room(void *state) {
+    return mf_sample_series_make_room(&((struct thermodynamics *)state)->series);
 }
 
 /// thermodynamics.tsv: a row for each sample.
@@ -42,10 +43,10 @@ static enum status write(const void *state, const struct observable_results *res
     const bool sweeps = setup->integrator->samples; // in the place of times
     const double time_step = sweeps ? 1 : setup->time_step;
     char path[OUTPUT_PATH_SIZE];
-    NEW_ARRAY(step, t->samples);
-    NEW_ARRAY(time, t->samples);
-    NEW_ARRAY(configurational, t->samples);
-    for (size_t k = 0; k < t->samples; k++) {
+    NEW_ARRAY(step, t->series.count);
+    NEW_ARRAY(time, t->series.count);
+    NEW_ARRAY(configurational, t->series.count);
+    for (size_t k = 0; k < t->series.count; k++) {
         step[k] = (double)(results->plan->equilibration + (int64_t)(k + 1) * results->plan->every);
         time[k] = step[k] * time_step;
         configurational[k] = mf_thermodynamics_series(t, THERMODYNAMICS_FORCE_SQUARES)[k] /
@@ -53,10 +54,11 @@ static enum status write(const void *state, const struct observable_results *res
     }
     // bar is a force on an area.
     const bool known = mf_units_beside(units), in_space = setup->box.dimensions == 3;
-    physical[0] = mf_units_column(time, t->samples, known ? mf_units_time_ps(units) : 0);
+    physical[0] = mf_units_column(time, t->series.count, known ? mf_units_time_ps(units) : 0);
     physical[1] =
-        mf_units_column(energy, t->samples, known ? mf_units_energy_kj_per_mol(units) : 0);
-    physical[2] = mf_units_column(pressure, t->samples, known ? mf_units_pressure_bar(units) : 0);
+        mf_units_column(energy, t->series.count, known ? mf_units_energy_kj_per_mol(units) : 0);
+    physical[2] =
+        mf_units_column(pressure, t->series.count, known ? mf_units_pressure_bar(units) : 0);
     CHECK(physical[0] && physical[1] && physical[2] ? STATUS_OK : STATUS_NO_MEMORY);
     enum { REDUCED = 6, PHYSICAL = 3 };
     struct data_column columns[REDUCED + PHYSICAL] = {
@@ -74,7 +76,7 @@ static enum status write(const void *state, const struct observable_results *res
     if (known && in_space)
         columns[n++] = (struct data_column){"pressure[bar]", physical[2], "%.8g"};
     mf_observable_file(results, "thermodynamics.tsv", path);
-    CHECK(mf_data_table_write_in(path, results->units, NULL, columns, n, t->samples));
+    CHECK(mf_data_table_write_in(path, results->units, NULL, columns, n, t->series.count));
 done:
     for (int k = 0; k < 3; k++)
         mf_memory_free(physical[k]);
@@ -90,9 +92,10 @@ static enum status judge(const void *state, const struct simulation_setup *setup
     const struct thermodynamics_summary s = mf_thermodynamics_result(t, 1);
     TRY(mf_thermodynamics_judge(&s, setup));
     TRY(mf_settled_judge("potential energy",
-                         mf_thermodynamics_series(t, THERMODYNAMICS_POTENTIAL_ENERGY), t->samples));
+                         mf_thermodynamics_series(t, THERMODYNAMICS_POTENTIAL_ENERGY),
+                         t->series.count));
     return mf_settled_judge("pressure", mf_thermodynamics_series(t, THERMODYNAMICS_PRESSURE),
-                            t->samples);
+                            t->series.count);
 }
 
 /// One sample tells no error: null.
@@ -164,6 +167,7 @@ const struct observable mf_thermodynamics_observable = {
     .sums = true,
     .sample = sample,
     .spans = spans,
+    .make_room = make_room,
     .write = write,
     .put = put,
     .judge = judge,

@@ -290,8 +290,6 @@ struct inverse_method {
     const struct inverse_table *tables; ///< of the parameter struct; ended by one without fields
     size_t parameters_size;
     size_t state_size;
-    uint32_t (*most_iterations)(const struct inverse_method *method,
-                                const struct inverse_problem *problem, const void *parameters);
     struct inverse_sampling (*sampling)(const void *parameters); ///< NULL of an inversion
     bool keeps_parts;
     const char *const *columns;        ///< names of `extra`, NULL-terminated

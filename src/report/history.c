@@ -7,26 +7,49 @@
 #include <math.h>
 #include <string.h>
 
-enum { COMMON = 5, MOST_COLUMNS = COMMON + INVERSE_EXTRA };
+enum { COMMON = 5, MOST_COLUMNS = COMMON + INVERSE_EXTRA, FIRST_ROOM = 32 };
 
-enum status mf_history_init(struct history *history, const struct inverse_method *method,
-                            const size_t points[UNKNOWNS], const struct inverse_problem *problem,
-                            size_t capacity) {
-    enum status status = STATUS_OK;
-    *history = (struct history){.capacity = capacity, .problem = problem};
+void mf_history_init(struct history *history, const struct inverse_method *method,
+                     const size_t points[UNKNOWNS], const struct inverse_problem *problem) {
+    *history = (struct history){.problem = problem};
     while (method->columns[history->extra])
         history->extra++;
-    NEW_ARRAY(history->rows, capacity * (COMMON + history->extra));
-    NEW_ARRAY(history->seconds, capacity);
-    if (problem->numbers > 0)
-        NEW_ARRAY(history->numbers, capacity * 2 * problem->numbers);
-    for (int kind = 0; kind < UNKNOWNS; kind++) {
+    for (int kind = 0; kind < UNKNOWNS; kind++)
         history->points[kind] = points[kind];
-        if (points[kind] > 0)
-            NEW_ARRAY(history->curve[kind], capacity * points[kind]);
-    }
+}
+
+/// Move rows of `row` numbers to where there is room for more.
+static enum status enlarge(double **values, size_t row, size_t used, size_t room) {
+    enum status status = STATUS_OK;
+    double *larger = NULL;
+    if (row == 0)
+        return STATUS_OK;
+    NEW_ARRAY(larger, row * room);
+    if (used > 0)
+        memcpy(larger, *values, row * used * sizeof *larger);
+    mf_memory_free(*values);
+    *values = larger;
 done:
     return status;
+}
+
+/// Twice the room, or more, so that it is made seldom.
+static enum status grow(struct history *history, size_t wanted) {
+    const size_t used = history->room;
+    size_t room = used > 0 ? used : FIRST_ROOM;
+    while (room < wanted)
+        room *= 2;
+    TRY(enlarge(&history->rows, COMMON + history->extra, used, room));
+    TRY(enlarge(&history->seconds, 1, used, room));
+    TRY(enlarge(&history->numbers, 2 * history->problem->numbers, used, room));
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        TRY(enlarge(&history->curve[kind], history->points[kind], used, room));
+    history->room = room;
+    return STATUS_OK;
+}
+
+enum status mf_history_make_room(struct history *history) {
+    return history->iterations > history->room ? grow(history, history->iterations) : STATUS_OK;
 }
 
 double mf_history_first_error(const struct history *history) {
@@ -42,7 +65,10 @@ void mf_history_clear(struct history *history) {
     *history = (struct history){0};
 }
 
-void mf_history_add(struct history *history, const struct inverse_step *step, double seconds) {
+enum status mf_history_add(struct history *history, const struct inverse_step *step,
+                           double seconds) {
+    if (history->iterations == history->room)
+        TRY(grow(history, history->iterations + 1));
     const size_t k = history->iterations++;
     double *row = history->rows + k * (COMMON + history->extra);
     row[0] = (double)step->iteration;
@@ -61,6 +87,7 @@ void mf_history_add(struct history *history, const struct inverse_step *step, do
         if (history->points[kind] > 0)
             memcpy(history->curve[kind] + k * history->points[kind], step->curve[kind],
                    history->points[kind] * sizeof(double));
+    return STATUS_OK;
 }
 
 /// Write a row-major table of `rows` by `columns` numbers, transposed into columns.
@@ -213,12 +240,12 @@ enum status mf_history_write(const struct history *history, const struct inverse
 }
 
 size_t mf_history_spans(struct history *history, struct memory_span *spans) {
-    const size_t columns = COMMON + history->extra, n = history->capacity;
+    const size_t columns = COMMON + history->extra, n = history->iterations;
     size_t count = 0;
     spans[count++] = (struct memory_span){&history->iterations, sizeof history->iterations};
     spans[count++] = (struct memory_span){history->rows, n * columns * sizeof(double)};
     spans[count++] = (struct memory_span){history->seconds, n * sizeof(double)};
-    if (history->numbers)
+    if (history->problem->numbers > 0)
         spans[count++] = (struct memory_span){history->numbers,
                                               n * 2 * history->problem->numbers * sizeof(double)};
     for (int kind = 0; kind < UNKNOWNS; kind++)

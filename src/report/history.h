@@ -10,33 +10,34 @@
 #include "report/run_folder.h"
 
 struct history {
-    size_t iterations, capacity;
+    size_t iterations, room;
     size_t extra;            ///< columns of the method's own
     size_t points[UNKNOWNS]; ///< of the curves; 0: not fitted
-    double *rows;    ///< shape [capacity, 5 + extra]: iteration, evaluations, engine_steps, …
-    double *seconds; ///< shape [capacity]
-    double *curve[UNKNOWNS];               ///< shape [capacity, points]
+    double *rows;            ///< shape [room, 5 + extra]: iteration, evaluations, engine_steps, …
+    double *seconds;         ///< shape [room]
+    double *curve[UNKNOWNS]; ///< shape [room, points]
     const struct inverse_problem *problem; ///< whose numbers are found; borrowed
-    double *numbers;                       ///< shape [capacity, 2 numbers]: value and error of each
+    double *numbers;                       ///< shape [room, 2 numbers]: value and error of each
 };
 
-/// Room for `capacity` iterations of a method. Fails: NO_MEMORY.
-enum status mf_history_init(struct history *history, const struct inverse_method *method,
-                            const size_t points[UNKNOWNS], const struct inverse_problem *problem,
-                            size_t capacity) MUST_USE;
+void mf_history_init(struct history *history, const struct inverse_method *method,
+                     const size_t points[UNKNOWNS], const struct inverse_problem *problem);
 /// Error of the first iteration; NaN before it.
 double mf_history_first_error(const struct history *history);
 
 void mf_history_clear(struct history *history);
 
-/// Append an iteration.
-void mf_history_add(struct history *history, const struct inverse_step *step, double seconds);
+/// Append an iteration. Fails: NO_MEMORY.
+enum status mf_history_add(struct history *history, const struct inverse_step *step,
+                           double seconds) MUST_USE;
 
 /// Write the tables in these units.
 enum status mf_history_write(const struct history *history, const struct inverse_method *method,
                              const struct unknowns *unknowns, const struct units *units,
                              const struct run_folder *folder) MUST_USE;
 
-/// Pieces for a checkpoint.
+/// Pieces for a checkpoint. The lengths of all but the first, the number of iterations, depend on
+/// it: after it was restored there is to be made room.
 enum { HISTORY_SPANS = 4 + UNKNOWNS };
 size_t mf_history_spans(struct history *history, struct memory_span *spans);
+enum status mf_history_make_room(struct history *history) MUST_USE;

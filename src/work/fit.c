@@ -7,6 +7,7 @@
 #include "base/visible.h"
 #include "input/fit_states.h"
 #include "io/checkpoint.h"
+#include "io/checkpoint_pace.h"
 #include "report/fit_output.h"
 #include "report/fit_report.h"
 #include "report/fit_verdict.h"
@@ -20,7 +21,7 @@
 #include <math.h>
 #include <string.h>
 
-/// Seconds between checkpoints inside an iteration.
+/// Seconds between checkpoints inside an iteration, at least.
 static const double checkpoint_interval = 30;
 
 struct run {
@@ -32,7 +33,7 @@ struct run {
     bool created;
     struct history history;
     uint64_t digest; ///< of used.json
-    double last_checkpoint;
+    struct checkpoint_pace pace;
     double seconds_before;                           ///< of a run before a restart
     double *curve[UNKNOWNS], *curve_error[UNKNOWNS]; ///< shape [mf_unknowns_points]
     double *curve_flat[UNKNOWNS];                    ///< shape [INVERSE_FLAT, mf_unknowns_points]
@@ -55,9 +56,10 @@ static double seconds(const struct run *run) {
 
 enum { MAX_SPANS = INVERSE_MAX_SPANS + HISTORY_SPANS + 2 + 3 * UNKNOWNS };
 
+/// The history first, on whose iterations its lengths depend.
 static size_t run_spans(struct run *run, struct memory_span *spans) {
-    size_t n = run->fit.method->spans(run->state, spans);
-    n += mf_history_spans(&run->history, spans + n);
+    size_t n = mf_history_spans(&run->history, spans);
+    n += run->fit.method->spans(run->state, spans + n);
     spans[n++] = (struct memory_span){&run->standing, sizeof run->standing};
     for (int kind = 0; kind < UNKNOWNS; kind++) {
         const size_t bytes = mf_unknowns_points(&run->unknowns, kind) * sizeof(double);
@@ -79,15 +81,20 @@ static enum status save(struct run *run) {
     if (!ranks_lead())
         return STATUS_OK;
     mf_run_folder_file(&run->folder, "checkpoint.bin", path);
-    run->last_checkpoint = mf_progress_seconds(&run->progress);
+    const double begun = mf_progress_seconds(&run->progress);
     run->standing.seconds = seconds(run);
-    return mf_checkpoint_save(path, run->digest, spans, run_spans(run, spans));
+    const enum status status = mf_checkpoint_save(path, run->digest, spans, run_spans(run, spans));
+    mf_checkpoint_pace_saved(&run->pace, begun, mf_progress_seconds(&run->progress));
+    return status;
 }
 
 static enum status load(struct run *run) {
     struct memory_span spans[MAX_SPANS];
     char path[OUTPUT_PATH_SIZE];
     mf_run_folder_file(&run->folder, "checkpoint.bin", path);
+    run_spans(run, spans);
+    TRY(mf_checkpoint_load_span(path, run->digest, 0, &spans[0]));
+    TRY(mf_history_make_room(&run->history));
     TRY(mf_checkpoint_load(path, run->digest, spans, run_spans(run, spans)));
     run->seconds_before = run->standing.seconds;
     return STATUS_OK;
@@ -122,9 +129,7 @@ static enum status create(struct run *run) {
     }
     if (points[UNKNOWN_POTENTIAL] > 0)
         NEW_ARRAY(run->without_ramp, points[UNKNOWN_POTENTIAL]);
-    CHECK(mf_history_init(
-        &run->history, fit->method, points, &fit->problem,
-        fit->method->most_iterations(fit->method, &fit->problem, fit->method_parameters)));
+    mf_history_init(&run->history, fit->method, points, &fit->problem);
     CHECK((run->state = mf_memory_zeroed(1, fit->method->state_size)) ? STATUS_OK
                                                                       : STATUS_NO_MEMORY);
     run->created = true;
@@ -155,12 +160,21 @@ static enum status begin_folder(struct run *run, const struct run_options *optio
     return mf_fit_verify_begin(&run->fit, &run->folder, options->resume);
 }
 
-static enum status prepare(struct run *run, const char *file, const struct run_options *options) {
+/// What rank 0 has loaded, for the others.
+static enum status share(struct run *run) {
     struct memory_span spans[MAX_SPANS];
+    run_spans(run, spans);
+    mf_parallel_share(spans, 1);
+    TRY(mf_parallel_agree(mf_history_make_room(&run->history), 0));
+    mf_parallel_share(spans, run_spans(run, spans));
+    return STATUS_OK;
+}
+
+static enum status prepare(struct run *run, const char *file, const struct run_options *options) {
     TRY(mf_parallel_agree(read_and_create(run, file, options), mf_fit_ranks_digest(&run->fit)));
     TRY(mf_parallel_agree(ranks_lead() ? begin_folder(run, options) : STATUS_OK, 0));
     if (options->resume)
-        mf_parallel_share(spans, run_spans(run, spans));
+        TRY(share(run));
     mf_progress_tell_run(&run->progress, &(struct watcher_run){RUN_FIT, run->folder.path,
                                                                .units = &run->fit.scene.units});
     return mf_fit_tell_targets(&run->progress, &run->fit);
@@ -179,8 +193,7 @@ static void tell(void *context, const struct inverse_progress *p) {
                  (unsigned long long)p->failures);
     snprintf(text, sizeof text, "iteration %u%s%s%s", p->iteration, error, least, mean);
     mf_progress_tell_iteration(&run->progress, p, text);
-    if (run->fit.method->keeps_parts &&
-        mf_progress_seconds(&run->progress) - run->last_checkpoint > checkpoint_interval &&
+    if (run->fit.method->keeps_parts && mf_progress_seconds(&run->progress) > run->pace.next &&
         save(run) != STATUS_OK)
         mf_progress_say(&run->progress, "mesofit: warning: %s", mf_status_message());
 }
@@ -255,7 +268,7 @@ static enum status record(struct run *run, const struct inverse_step *step) {
     memcpy(run->standing.number, step->number, sizeof run->standing.number);
     memcpy(run->standing.reason, step->reason, sizeof run->standing.reason);
     mf_fit_report_formula(&run->fit, step->formula, run->standing.formula);
-    mf_history_add(&run->history, step, run->standing.seconds);
+    TRY(mf_history_add(&run->history, step, run->standing.seconds));
     TRY(mf_history_write(&run->history, run->fit.method, &run->unknowns, &run->fit.scene.units,
                          &run->folder));
     const struct fit_result result = result_so_far(run, STATUS_UNCONVERGED);
@@ -404,6 +417,7 @@ enum status mf_fit_run(const char *file, const struct run_options *options) {
     enum status status = STATUS_OK;
     struct run *run = NULL;
     NEW_ARRAY(run, 1);
+    run->pace.interval = run->pace.next = checkpoint_interval;
     run->progress = mf_progress_begin(options->quiet, options->watcher);
     run->progress.may_end_early = true; // it may converge before the last iteration
     CHECK(prepare(run, file, options));

@@ -5,13 +5,14 @@
 #include "input/heading.h"
 #include "input/scene.h"
 #include "io/checkpoint.h"
+#include "io/checkpoint_pace.h"
 #include "mesofit.h"
 #include "report/progress.h"
 #include "work/explain.h"
 #include "work/simulate_changes.h"
 #include "work/simulate_observables.h"
 
-/// Seconds between checkpoints of a long simulation.
+/// Seconds between checkpoints of a long simulation, at least.
 static const double checkpoint_interval = 60;
 
 struct run {
@@ -23,7 +24,7 @@ struct run {
     struct input_files inputs;
     int64_t equilibration; ///< of the file; that of the plan grows with a change
     uint64_t digest;       ///< of used.json
-    double last_checkpoint;
+    struct checkpoint_pace pace;
     struct simulation simulation;
     struct simulate_observables observables;
     struct simulate_changes changes;
@@ -94,10 +95,12 @@ static enum status save(struct run *run) {
     struct memory_span spans[1 + SIMULATE_MOST_SPANS] = {mf_simulate_changes_span(&run->changes)};
     char path[OUTPUT_PATH_SIZE];
     mf_run_folder_file(&run->folder, "checkpoint.bin", path);
-    run->last_checkpoint = mf_progress_seconds(&run->progress);
+    const double begun = mf_progress_seconds(&run->progress);
     const size_t count =
         mf_simulate_observables_spans(&run->observables, &run->simulation, spans + 1);
-    return mf_checkpoint_save(path, run->digest, spans, 1 + count);
+    const enum status status = mf_checkpoint_save(path, run->digest, spans, 1 + count);
+    mf_checkpoint_pace_saved(&run->pace, begun, mf_progress_seconds(&run->progress));
+    return status;
 }
 
 /// What was measured before a change is not of what comes after it: the simulation equilibrates
@@ -134,8 +137,7 @@ static void tell(void *context, const struct simulation *simulation, uint64_t do
                  mf_simulation_temperature(simulation) * mf_units_factor(units, "T_0"),
                  mf_units_suffix(units, "T_0", unit));
     mf_progress_tell(&run->progress, done, total, "steps", text);
-    if (mf_progress_seconds(&run->progress) - run->last_checkpoint > checkpoint_interval &&
-        save(run) != STATUS_OK)
+    if (mf_progress_seconds(&run->progress) > run->pace.next && save(run) != STATUS_OK)
         mf_progress_say(&run->progress, "mesofit: warning: %s", mf_status_message());
     struct simulation_change wanted;
     if (done < total && mf_progress_ask_change(&run->progress, &wanted) &&
@@ -282,6 +284,7 @@ enum status mf_simulate_file(const char *file, const struct run_options *options
     enum status status = STATUS_OK;
     struct run *run = NULL;
     NEW_ARRAY(run, 1);
+    run->pace.interval = run->pace.next = checkpoint_interval;
     run->progress = mf_progress_begin(options->quiet, options->watcher);
     CHECK(prepare(run, file, options));
     status = mf_units_mark(&run->scene.units, carry_out(run));

@@ -152,7 +152,7 @@ static struct thermodynamics_summary simulate(const struct simulation_setup *set
     double temperature;
     const struct rdf_bins bins = {.width = 1.0 / BINS, .count = BINS};
     assert_ok(mf_simulation_init(&simulation, setup, NULL));
-    assert_ok(mf_thermodynamics_init(&thermodynamics, (size_t)plan->samples));
+    mf_thermodynamics_init(&thermodynamics);
     assert_ok(mf_rdf_init(&rdf, &bins, &setup->box, PARTICLES, 1, (size_t)plan->samples));
     assert_ok(mf_measure_equilibrate(&simulation, plan, &temperature, NULL));
     const struct watched watched = {.rdf = &rdf, .thermodynamics = &thermodynamics};

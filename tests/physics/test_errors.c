@@ -35,7 +35,7 @@ static void measure(const struct simulation_setup *setup, struct measured *measu
     double temperature;
     assert_ok(mf_simulation_init(&simulation, setup, NULL));
     assert_ok(mf_motion_init(&motion, &plan, &simulation, when.equilibration, 1200));
-    assert_ok(mf_thermodynamics_init(&thermodynamics, 300));
+    mf_thermodynamics_init(&thermodynamics);
     assert_ok(mf_measure_equilibrate(&simulation, &when, &temperature, NULL));
     const struct watched observables = {.thermodynamics = &thermodynamics, .motion = &motion};
     assert_ok(watched_sample(&simulation, &when, observables, NULL));

@@ -29,7 +29,7 @@ static struct thermodynamics_summary measure(const struct simulation_setup *setu
     trapped.interaction[0] = (struct interaction_choice){&mf_harmonic_trap, trap};
     trapped.interactions = 1;
     assert_ok(mf_simulation_init(&simulation, &trapped, NULL));
-    assert_ok(mf_thermodynamics_init(&thermodynamics, (size_t)plan->samples));
+    mf_thermodynamics_init(&thermodynamics);
     assert_ok(mf_measure_equilibrate(&simulation, plan, &temperature, NULL));
     const struct watched watched = {.thermodynamics = &thermodynamics};
     assert_ok(watched_sample(&simulation, plan, watched, NULL));

@@ -37,7 +37,7 @@ static struct thermodynamics_summary simulate(const struct simulation_setup *set
     struct thermodynamics thermodynamics;
     double temperature;
     assert_ok(mf_simulation_init(&simulation, setup, NULL));
-    assert_ok(mf_thermodynamics_init(&thermodynamics, (size_t)samples));
+    mf_thermodynamics_init(&thermodynamics);
     assert_ok(mf_measure_equilibrate(&simulation, &plan, &temperature, NULL));
     const struct watched observables = {.rdf = rdf, .thermodynamics = &thermodynamics};
     assert_ok(watched_sample(&simulation, &plan, observables, NULL));
@@ -205,7 +205,7 @@ static void check_heating(const struct heating *heating) {
     if (heating->integrator == &mf_dpd_verlet)
         fluid.setup.integrator_parameters = &prediction;
     assert_ok(mf_simulation_init(&simulation, &fluid.setup, NULL));
-    assert_ok(mf_thermodynamics_init(&thermodynamics, (size_t)plan.samples));
+    mf_thermodynamics_init(&thermodynamics);
     assert_ok(mf_measure_equilibrate(&simulation, &plan, &temperature, NULL));
     const struct watched observables = {.thermodynamics = &thermodynamics};
     const struct measure_listener listener = {.tell = add_end, .context = &ends};

@@ -26,7 +26,7 @@ static struct thermodynamics_summary simulate(const struct simulation_setup *set
     struct thermodynamics thermodynamics;
     double temperature;
     assert_ok(mf_simulation_init(simulation, setup, NULL));
-    assert_ok(mf_thermodynamics_init(&thermodynamics, (size_t)plan.samples));
+    mf_thermodynamics_init(&thermodynamics);
     assert_ok(mf_measure_equilibrate(simulation, &plan, &temperature, NULL));
     assert_ok(watched_sample(
         simulation, &plan, (struct watched){.rdf = rdf, .thermodynamics = &thermodynamics}, NULL));

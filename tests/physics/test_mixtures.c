@@ -34,7 +34,7 @@ static void measure(const struct simulation_setup *setup, int64_t equilibration,
     struct rdf rdf;
     double temperature;
     assert_ok(mf_simulation_init(&simulation, setup, NULL));
-    assert_ok(mf_thermodynamics_init(&thermodynamics, SAMPLES));
+    mf_thermodynamics_init(&thermodynamics);
     assert_ok(mf_rdf_init_mixture(&rdf, &bins, &setup->box, mixed ? &setup->composition : &one, 1,
                                   SAMPLES));
     assert_ok(mf_measure_equilibrate(&simulation, &plan, &temperature, NULL));

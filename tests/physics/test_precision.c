@@ -207,7 +207,7 @@ static void measure(const struct simulation_setup *setup, struct measured *measu
     struct rdf rdf;
     double temperature;
     assert_ok(mf_simulation_init(&simulation, setup, NULL));
-    assert_ok(mf_thermodynamics_init(&thermodynamics, SAMPLES));
+    mf_thermodynamics_init(&thermodynamics);
     // Beyond the cutoff, so that the RDF makes its own list.
     assert_ok(mf_rdf_init(&rdf, &(struct rdf_bins){0, 0.05, BINS}, &setup->box,
                           simulation.particles.count, 1, SAMPLES));

@@ -27,7 +27,7 @@ static void check_temperatures(const struct simulation_setup *setup) {
     struct thermodynamics thermodynamics;
     double temperature;
     assert_ok(mf_simulation_init(&simulation, setup, NULL));
-    assert_ok(mf_thermodynamics_init(&thermodynamics, (size_t)plan.samples));
+    mf_thermodynamics_init(&thermodynamics);
     assert_ok(mf_measure_equilibrate(&simulation, &plan, &temperature, NULL));
     assert_ok(watched_sample(&simulation, &plan,
                              (struct watched){.thermodynamics = &thermodynamics}, NULL));

@@ -82,7 +82,7 @@ static void measure(const struct simulation_setup *setup, struct etd *etd,
     double temperature;
     assert_ok(mf_simulation_init(&simulation, setup, NULL));
     assert_ok(mf_etd_init(etd, grid, plan, &simulation, EQUILIBRATION, steps));
-    assert_ok(mf_thermodynamics_init(&thermodynamics, (size_t)when.samples));
+    mf_thermodynamics_init(&thermodynamics);
     assert_ok(mf_measure_equilibrate(&simulation, &when, &temperature, NULL));
     const struct watched observables = {.thermodynamics = &thermodynamics, .etd = etd};
     assert_ok(watched_sample(&simulation, &when, observables, NULL));

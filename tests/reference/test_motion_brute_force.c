@@ -117,7 +117,7 @@ static void assert_motion(const struct simulation_setup *setup) {
     centre(&trajectory);
     assert_ok(mf_simulation_init(&simulation, setup, NULL));
     assert_ok(mf_motion_init(&motion, &plan, &simulation, EQUILIBRATION, 990));
-    assert_ok(mf_thermodynamics_init(&thermodynamics, 99));
+    mf_thermodynamics_init(&thermodynamics);
     assert_ok(mf_measure_equilibrate(&simulation, &when, &temperature, NULL));
     const struct watched observables = {.thermodynamics = &thermodynamics, .motion = &motion};
     assert_ok(watched_sample(&simulation, &when, observables, NULL));

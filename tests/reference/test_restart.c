@@ -26,7 +26,7 @@ static void begin(struct run *run, const struct simulation_setup *setup) {
     assert_ok(mf_rdf_init_mixture(
         &run->rdf, &bins, &setup->box,
         composition_is_mixed(&setup->composition) ? &setup->composition : &alike, 1, SAMPLES));
-    assert_ok(mf_thermodynamics_init(&run->thermodynamics, SAMPLES));
+    mf_thermodynamics_init(&run->thermodynamics);
 }
 
 static void clear(struct run *run) {
@@ -63,8 +63,12 @@ static void assert_same(const struct run *a, const struct run *b) {
     assert_int_equal(a->rdf.samples, b->rdf.samples);
     assert_memory_equal(a->rdf.histogram, b->rdf.histogram,
                         a->rdf.blocks * a->rdf.pairs * BINS * sizeof *a->rdf.histogram);
-    assert_memory_equal(a->thermodynamics.values, b->thermodynamics.values,
-                        THERMODYNAMICS_QUANTITIES * SAMPLES * sizeof(double));
+    assert_int_equal(a->thermodynamics.series.count, SAMPLES);
+    assert_int_equal(b->thermodynamics.series.count, SAMPLES);
+    for (int q = 0; q < THERMODYNAMICS_QUANTITIES; q++)
+        assert_memory_equal(mf_thermodynamics_series(&a->thermodynamics, q),
+                            mf_thermodynamics_series(&b->thermodynamics, q),
+                            SAMPLES * sizeof(double));
 }
 
 /// Every step of the run is one at which it is saved.

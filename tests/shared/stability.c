@@ -16,7 +16,7 @@ static enum status measure(const struct simulation_setup *setup,
     struct simulation simulation = {0};
     struct thermodynamics thermodynamics = {0};
     double temperature;
-    assert_ok(mf_thermodynamics_init(&thermodynamics, (size_t)plan->samples));
+    mf_thermodynamics_init(&thermodynamics);
     CHECK(mf_simulation_init(&simulation, setup, start));
     CHECK(mf_measure_equilibrate(&simulation, plan, &temperature, NULL));
     CHECK(watched_sample(&simulation, plan, (struct watched){.thermodynamics = &thermodynamics},

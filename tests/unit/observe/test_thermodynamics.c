@@ -41,7 +41,7 @@ static void test_thermodynamics_sample_is_exact_when_there_are_two_particles(voi
     struct simulation simulation;
     struct thermodynamics thermodynamics;
     make_pair(&fluid, &simulation, 2, -1);
-    assert_ok(mf_thermodynamics_init(&thermodynamics, 1));
+    mf_thermodynamics_init(&thermodynamics);
     assert_ok(mf_thermodynamics_sample(&thermodynamics, &simulation));
     const struct thermodynamics_summary s = mf_thermodynamics_result(&thermodynamics, 1);
     // Velocities about their mean are ±1.5: Σ v² = 4.5 with 3 degrees of freedom.
@@ -80,7 +80,7 @@ test_thermodynamics_has_no_configurational_temperature_when_there_is_no_potentia
     assert_ok(mf_simulation_init(&simulation, &fluid.setup, NULL));
     simulation.wants = PAIR_FORCES_AND_SUMS;
     assert_ok(mf_simulation_run(&simulation, 1));
-    assert_ok(mf_thermodynamics_init(&thermodynamics, 1));
+    mf_thermodynamics_init(&thermodynamics);
     assert_ok(mf_thermodynamics_sample(&thermodynamics, &simulation));
     const struct thermodynamics_summary s = mf_thermodynamics_result(&thermodynamics, 1);
     assert_true(isnan(s.temperature_configurational));
@@ -94,32 +94,31 @@ test_thermodynamics_has_no_configurational_temperature_when_there_is_no_potentia
 /// A series of independent normal numbers in place of each quantity, about 1, 2, 3, 8 and 4; the
 /// numerator of the configurational temperature moves with its denominator.
 static void make_series(struct thermodynamics *thermodynamics, uint32_t trial, uint32_t replica) {
-    assert_ok(mf_thermodynamics_init(thermodynamics, SAMPLES));
+    mf_thermodynamics_init(thermodynamics);
     for (uint32_t k = 0; k < SAMPLES; k++) {
         double a[4], b[4];
         mf_rng_normal4(mf_rng_philox(3, RNG_INITIAL, trial, replica, 2 * k), a);
         mf_rng_normal4(mf_rng_philox(3, RNG_INITIAL, trial, replica, 2 * k + 1), b);
-        double *here = thermodynamics->values + k;
-        here[THERMODYNAMICS_TEMPERATURE * SAMPLES] = 1 + 0.1 * a[0];
-        here[THERMODYNAMICS_POTENTIAL_ENERGY * SAMPLES] = 2 + 0.2 * a[1];
-        here[THERMODYNAMICS_PRESSURE * SAMPLES] = 3 + 0.3 * a[2];
-        here[THERMODYNAMICS_FORCE_SQUARES * SAMPLES] = 8 + 1.6 * b[0] + 0.1 * b[1];
-        here[THERMODYNAMICS_LAPLACIAN * SAMPLES] = 4 + 0.8 * b[0];
+        const double here[THERMODYNAMICS_QUANTITIES] = {
+            [THERMODYNAMICS_TEMPERATURE] = 1 + 0.1 * a[0],
+            [THERMODYNAMICS_POTENTIAL_ENERGY] = 2 + 0.2 * a[1],
+            [THERMODYNAMICS_PRESSURE] = 3 + 0.3 * a[2],
+            [THERMODYNAMICS_FORCE_SQUARES] = 8 + 1.6 * b[0] + 0.1 * b[1],
+            [THERMODYNAMICS_LAPLACIAN] = 4 + 0.8 * b[0]};
+        assert_ok(mf_sample_series_add(&thermodynamics->series, here));
     }
-    thermodynamics->samples = SAMPLES;
 }
 
 static void test_thermodynamics_series_are_kept_when_there_is_room_for_more(void **state) {
     (void)state;
     struct thermodynamics thermodynamics;
     make_series(&thermodynamics, 0, 0);
-    thermodynamics.samples = 7;
-    const double *energy = thermodynamics.values + THERMODYNAMICS_POTENTIAL_ENERGY * SAMPLES;
+    thermodynamics.series.count = 7;
+    const double *energy =
+        mf_thermodynamics_series(&thermodynamics, THERMODYNAMICS_POTENTIAL_ENERGY);
     double sum = 0;
     for (int k = 0; k < 7; k++)
         sum += energy[k];
-    assert_ptr_equal(mf_thermodynamics_series(&thermodynamics, THERMODYNAMICS_POTENTIAL_ENERGY),
-                     energy);
     assert_close(mf_thermodynamics_result(&thermodynamics, 1).potential_energy, sum / 7, rounding);
     mf_thermodynamics_clear(&thermodynamics);
 }
@@ -133,14 +132,16 @@ static void test_thermodynamics_energy_drift_is_that_of_a_line(void **state) {
     enum { ROWS = 41 };
     struct thermodynamics thermodynamics;
     (void)state;
-    assert_ok(mf_thermodynamics_init(&thermodynamics, ROWS));
-    double *energy = thermodynamics.values + THERMODYNAMICS_TOTAL_ENERGY * ROWS;
-    for (int k = 0; k < ROWS; k++)
-        energy[k] = 90 + 0.5 * k + (k % 4 == 2 ? 3 : k % 4 == 0 && k % (ROWS - 1) != 0 ? -3 : 0);
+    mf_thermodynamics_init(&thermodynamics);
+    for (int k = 0; k < ROWS; k++) {
+        const double swings = k % 4 == 2 ? 3 : k % 4 == 0 && k % (ROWS - 1) != 0 ? -3 : 0;
+        const double here[THERMODYNAMICS_QUANTITIES] = {[THERMODYNAMICS_TOTAL_ENERGY] =
+                                                            90 + 0.5 * k + swings};
+        assert_ok(mf_sample_series_add(&thermodynamics.series, here));
+    }
     const double swing = 3.0 * 10 - 3.0 * 9; // what the swing leaves in the mean
-    thermodynamics.samples = ROWS;
     assert_close(mf_thermodynamics_energy_drift(&thermodynamics), 20 / (100 + swing / ROWS), 1e-12);
-    thermodynamics.samples = 1;
+    thermodynamics.series.count = 1;
     assert_true(isnan(mf_thermodynamics_energy_drift(&thermodynamics)));
     mf_thermodynamics_clear(&thermodynamics);
 }
@@ -174,7 +175,7 @@ static void test_thermodynamics_errors_grow_when_samples_are_correlated(void **s
     for (uint32_t trial = 0; trial < TRIALS; trial++) {
         struct thermodynamics thermodynamics;
         make_series(&thermodynamics, trial, 2);
-        double *series = thermodynamics.values + THERMODYNAMICS_TEMPERATURE * SAMPLES;
+        double *series = sample_series_column(&thermodynamics.series, THERMODYNAMICS_TEMPERATURE);
         for (size_t k = 0; k < SAMPLES; k++)
             series[k] = series[k / 10 * 10];
         const double error = mf_thermodynamics_result(&thermodynamics, 1).temperature_error;

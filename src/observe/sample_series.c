@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "observe/sample_series.h"
+
+#include <string.h>
+
+enum { FIRST_ROOM = 256 };
+
+void mf_sample_series_clear(struct sample_series *series) {
+    mf_memory_free(series->values);
+    *series = (struct sample_series){0};
+}
+
+/// Twice the room, or more, so that it is made seldom.
+static enum status grow(struct sample_series *series, size_t wanted) {
+    enum status status = STATUS_OK;
+    size_t room = series->room > 0 ? series->room : FIRST_ROOM;
+    double *values = NULL;
+    while (room < wanted)
+        room *= 2;
+    NEW_ARRAY(values, series->columns * room);
+    for (size_t c = 0; c < series->columns && series->room > 0; c++)
+        memcpy(values + c * room, sample_series_column(series, c), series->room * sizeof *values);
+    mf_memory_free(series->values);
+    series->values = values;
+    series->room = room;
+done:
+    return status;
+}
+
+enum status mf_sample_series_make_room(struct sample_series *series) {
+    return series->count > series->room ? grow(series, series->count) : STATUS_OK;
+}
+
+enum status mf_sample_series_add(struct sample_series *series, const double *numbers) {
+    if (series->count == series->room)
+        TRY(grow(series, series->count + 1));
+    for (size_t c = 0; c < series->columns; c++)
+        series->values[c * series->room + series->count] = numbers[c];
+    series->count++;
+    return STATUS_OK;
+}
+
+size_t mf_sample_series_spans(struct sample_series *series, struct memory_span *spans) {
+    spans[0] = (struct memory_span){&series->count, sizeof series->count};
+    for (size_t c = 0; c < series->columns; c++)
+        spans[1 + c] = (struct memory_span){sample_series_column(series, c),
+                                            series->count * sizeof *series->values};
+    return 1 + series->columns;
+}
