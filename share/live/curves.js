@@ -119,17 +119,6 @@ function showExcess(plot, table, name, context) {
   plot.say("Pairs in each bin of the sampled system, less those of the target. Grey: earlier iterations.");
 }
 
-// Singular values of the last step by what it took of them, over those before it.
-function showSingular(plot, table, name, context) {
-  const x = table.column(0), used = table.values("used"), values = table.values("singular_value");
-  const part = (label, test, k) => ({ label, data: points(x, values.map((v, n) => (test(used[n]) && v > 0 ? v : NaN))), showLine: false,
-    pointRadius: 3, borderColor: colour(k), backgroundColor: colour(k) });
-  const sets = [part("used", (u) => u >= 0.5, 0), part("left out, or less than half used", (u) => u < 0.5, 1)];
-  plot.show([...earlier(context.tables.get("singular_values_history.tsv")), ...sets.filter((set) => set.data.length)],
-    { x: "number", y: "singular value" });
-  plot.say(`The last step took ${used.reduce((sum, u) => sum + u, 0).toFixed(1)} of ${used.length}. Grey: earlier iterations.`);
-}
-
 // What a history without units is in; with units its head says them.
 const reduced = { pressure: " [k_B T_0/λᵈ]", potential_energy: " [k_B T_0]" };
 
@@ -167,7 +156,6 @@ const kinds = [
   { file: groupFile, title: (n) => groupOf(n) + nowOf(n), show: showTarget },
   { file: groupFile, title: (n) => groupOf(n) + " less their target" + nowOf(n), show: showDifference, when: (t) => t.has("target") },
   { file: /^rdf_now(_[^_]+-[^_]+)?\.tsv$/, title: (n) => "S − S* by bin" + pairOf(n), show: showExcess },
-  { file: /^singular_values\.tsv$/, title: () => "singular values of the step", show: showSingular, logarithmic: true },
   { file: /^history\.tsv$/, title: () => "error of the fit", show: showColumns(["error", "noise", "least", "mean"]), logarithmic: true, when: positive(["error"]) },
   { file: /^history\.tsv$/, title: () => "pressure", show: showColumns(["pressure"]), when: hasColumns(["pressure"]) },
   { file: /^history\.tsv$/, title: () => "potential energy of a bead in the fit's samples", show: showColumns(["potential_energy"]),

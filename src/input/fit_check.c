@@ -100,8 +100,8 @@ static enum status check_integrals(const struct fit_file *fit, const char *file)
         return STATUS_OK;
     return mf_status_fail(STATUS_BAD_INPUT,
                           "%s: target.kirkwood_buff: \"%s\" does not fit it; \"imc\", \"auto\", "
-                          "\"joint-imc\", \"gauss-newton\" and the optimisers do; with "
-                          "\"fitted\": \"no\" it is compared with",
+                          "\"gauss-newton\" and the optimisers do; with \"fitted\": \"no\" it "
+                          "is compared with",
                           file, fit->method->name);
 }
 

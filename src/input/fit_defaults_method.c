@@ -126,7 +126,7 @@ enum status mf_fit_defaults_method(struct fit_choice *c) {
     const bool both = simulates && c->finds[UNKNOWN_POTENTIAL] && c->read->numbers == 0;
     const struct inverse_method *method = both               ? &mf_successive
                                           : simulates        ? &mf_gauss_newton
-                                          : c->read->name[0] ? &mf_joint_imc
+                                          : c->read->name[0] ? &mf_imc
                                                              : &mf_automatic;
     const double particles = choose_particles(c);
     TRY(mf_fit_choice_give_text(c->root, "method", "name", method->name));

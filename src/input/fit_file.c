@@ -45,12 +45,18 @@ static void check_estimator(const struct fit_file *fit, struct json_object *meth
 static void refuse_removed(struct json_object *method) {
     mf_json_refuse(method, "asynchronous",
                    "candidates are measured by rounds alone; delete the line");
+    mf_json_refuse(method, "regularisation",
+                   "the step is as smooth as the noise asks; delete the line");
+    mf_json_refuse(method, "strength", "it is chosen from the noise; delete the line");
 }
 
 static enum status read_method(struct fit_file *fit, struct json_object *root) {
     const char **names;
     struct json_object object = mf_json_child_of(root, "method", true, "name");
     if (object.item == NULL)
+        return STATUS_OK;
+    if (mf_json_refuse_choice(&object, "name", "joint-imc",
+                              "write \"imc\", which fits one state or several"))
         return STATUS_OK;
     TRY(mf_names_collect(mf_inverse_methods, NULL, &names));
     const char *name = mf_json_choice(&object, "name", names, NULL);

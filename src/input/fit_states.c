@@ -185,9 +185,10 @@ static enum status check_alike(const struct fit_file *fit, const struct fit_file
 
 enum status mf_fit_states_check(const struct fit_file *fit, const char *file) {
     if (fit->others > 0 && !fit->method->knows_states)
-        return mf_status_fail(STATUS_BAD_INPUT,
-                              "%s: method.name: \"%s\" fits one state; \"joint-imc\" fits several",
-                              file, fit->method->name);
+        return mf_status_fail(
+            STATUS_BAD_INPUT,
+            "%s: method.name: \"%s\" fits one state; \"imc\" and \"auto\" fit several", file,
+            fit->method->name);
     for (size_t s = 0; s < fit->others; s++)
         TRY(check_alike(fit, &fit->other[s], file));
     return STATUS_OK;

@@ -6,8 +6,8 @@
 // Newton step converges at once near the solution and leads away from far off it (its basin; P.
 // Deuflhard, Newton Methods for Nonlinear Problems (2004), section 2.1, which tests it as here, by
 // what the last step did against what was predicted).
-#include "inversion/inversion.h"
 #include "inversion/inversion_coarse.h"
+#include "inversion/joint.h"
 
 #include <math.h>
 #include <string.h>
@@ -67,18 +67,25 @@ static enum status careful_step(struct inversion *inversion, double *step) {
     return STATUS_OK;
 }
 
-/// The Newton step with the careful one in reserve, or that alone.
-static enum status update(struct inversion *inversion, double *extra) {
-    const struct imc_parameters noise = {0};
+static enum status newton_step(struct inversion *inversion, double *extra) {
     double newton[3] = {0};
-    if (!in_basin(inversion))
-        return careful_step(inversion, inversion->step);
-    TRY(careful_step(inversion, inversion->other_step));
-    TRY(mf_imc_step(inversion, &noise, inversion->step, newton));
-    extra[0] = inversion->has_other = true;
+    TRY(mf_imc_step(inversion, inversion->step, newton));
+    extra[0] = !mf_inversion_is_coarse(inversion);
     extra[1] = newton[1];
     extra[2] = newton[2];
     return STATUS_OK;
+}
+
+/// The Newton step with the careful one in reserve, or that alone. A careful step is of one state:
+/// what several say together are the equations of the other.
+static enum status update(struct inversion *inversion, double *extra) {
+    if (inversion->joint && inversion->joint->states > 1)
+        return newton_step(inversion, extra);
+    if (!in_basin(inversion))
+        return careful_step(inversion, inversion->step);
+    TRY(careful_step(inversion, inversion->other_step));
+    inversion->has_other = true;
+    return newton_step(inversion, extra);
 }
 
 const struct inverse_method mf_automatic = {
@@ -92,6 +99,5 @@ const struct inverse_method mf_automatic = {
     .knows_molecules = true,
     .meets_integrals = true,
     .columns = columns,
-    .create = mf_inversion_create,
-    INVERSION_RECORD,
+    JOINT_RECORD,
 };

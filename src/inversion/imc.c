@@ -2,41 +2,20 @@
 //
 // Inverse Monte Carlo. A. P. Lyubartsev and A. Laaksonen, Phys. Rev. E 52, 3730 (1995).
 #include "inversion/imc_solve.h"
-#include "inversion/inversion.h"
 #include "inversion/inversion_coarse.h"
-#include "observe/kirkwood_buff_observable.h"
+#include "inversion/joint.h"
 
 #include <math.h>
-
-/// How the linear equations are solved, in the order of `regularisations`.
-static enum status (*const solvers[])(const struct imc_system *, double, double *,
-                                      struct imc_solution *) = {mf_imc_solve, mf_imc_truncated,
-                                                                mf_imc_votca};
-static const char *const regularisations[] = {"noise", "truncated", "votca", NULL};
-
-#define MEMBER(name) .offset = offsetof(struct imc_parameters, name)
-static const struct field own_fields[] = {
-    {"regularisation", FIELD_CHOICE, MEMBER(regularisation), .choices = regularisations,
-     .initial = 0, .unit = "",
-     .help = "noise: smooth, as strong as the noise asks; truncated: singular values above the "
-             "noise; votca: Tikhonov's lambda, as there"},
-    {"strength", FIELD_NUMBER, MEMBER(strength), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
-     .unit = "",
-     .help = "of the regularisation; of \"truncated\" the least singular value over the largest; "
-             "0: chosen from the noise, or none with \"votca\""},
-    FIELD_END,
-};
+#include <string.h>
 
 static const char *const columns[] = {INVERSION_COLUMNS, "regularisation[1]", "misfit[1]",
                                       "directions", NULL};
 
 /// Near the noise a step that is as smooth as the noise allows is none at all, though g still asks
 /// for one along the ramp. There the step is the most probable one, with the prior of the band.
-static double choose_strength(struct inversion *inversion,
-                              const struct imc_parameters *parameters) {
-    if (parameters->regularisation != 0 || parameters->strength > 0 ||
-        !mf_inversion_is_near(inversion))
-        return parameters->strength;
+static double choose_strength(struct inversion *inversion) {
+    if (!mf_inversion_is_near(inversion))
+        return 0; // by the noise
     inversion->settling = true;
     return mf_inversion_band_prior(inversion);
 }
@@ -71,33 +50,33 @@ static void doubt_response(struct inversion *inversion, double *scratch,
     system->variance = inversion->doubt;
 }
 
-/// The step far from the targets of groups.
+/// The step far from the targets of groups, which several states have taken together.
 static enum status step_coarsely(struct inversion *inversion, double *step) {
+    if (inversion->joint && inversion->joint->coarse) {
+        memcpy(step, inversion->joint->coarse, inversion->grid.points * sizeof *step);
+        return STATUS_OK;
+    }
     TRY(mf_inversion_coarse_step(inversion, step));
     mf_inversion_pressure_add_ramp(inversion, step);
     return STATUS_OK;
 }
 
-enum status mf_imc_step(struct inversion *inversion, const struct imc_parameters *parameters,
-                        double *step, double extra[3]) {
+enum status mf_imc_step(struct inversion *inversion, double *step, double extra[3]) {
     const struct inverse_problem *problem = inversion->problem;
     const struct potential_grid *grid = &inversion->grid;
     enum status status = STATUS_OK;
     struct imc_solution solution;
     double *x = NULL;
     struct imc_system system = mf_inversion_system(inversion);
-    if (mf_inversion_is_coarse(inversion) && parameters->regularisation == 0 &&
-        !(parameters->strength > 0))
+    if (mf_inversion_is_coarse(inversion))
         return step_coarsely(inversion, step);
-    mf_inversion_trail_take(&inversion->trail, &system);
     if (targets_ask(&problem->targets, TARGET_PRESSURE) && inversion->joint == NULL) {
         system.constraint = inversion->pressure.slope;
         system.wanted = *problem->targets.target[TARGET_PRESSURE].value - inversion->pressure.value;
     }
     NEW_ARRAY(x, grid->known);
     doubt_response(inversion, step, &system);
-    CHECK(solvers[parameters->regularisation](&system, choose_strength(inversion, parameters), x,
-                                              &solution));
+    CHECK(mf_imc_solve(&system, choose_strength(inversion), x, &solution));
     for (size_t a = 0; a < grid->known; a++)
         step[grid->known_point[a]] = x[a];
     extra[0] = solution.strength;
@@ -108,20 +87,8 @@ done:
     return status;
 }
 
-/// VOTCA's lambda is of equations that are not over their errors, which integrals need.
-static enum status create(void *memory, const struct inverse_method *method,
-                          const struct inverse_problem *problem, const void *parameters) {
-    const struct inversion_settings *settings = parameters;
-    if (solvers[settings->imc.regularisation] == mf_imc_votca &&
-        targets_ask(&problem->targets, mf_kirkwood_buff_kind()))
-        return mf_status_fail(STATUS_BAD_INPUT,
-                              "method.regularisation: \"votca\" does not fit "
-                              "target.kirkwood_buff; \"noise\" and \"truncated\" do");
-    return mf_inversion_create(memory, method, problem, parameters);
-}
-
 static enum status update(struct inversion *inversion, double *extra) {
-    return mf_imc_step(inversion, &inversion->settings.imc, inversion->step, extra);
+    return mf_imc_step(inversion, inversion->step, extra);
 }
 
 const struct inverse_method mf_imc = {
@@ -129,12 +96,9 @@ const struct inverse_method mf_imc = {
     .summary = "inverse Monte Carlo; A. P. Lyubartsev and A. Laaksonen, Phys. Rev. E 52, 3730 "
                "(1995)",
     .own = &(const struct inversion_rule){.update = update},
-    .tables = (const struct inverse_table[]){INVERSION_TABLE,
-                                             {own_fields, offsetof(struct inversion_settings, imc)},
-                                             {NULL, 0}},
+    .tables = (const struct inverse_table[]){INVERSION_TABLE, {NULL, 0}},
     .knows_molecules = true,
     .meets_integrals = true,
     .columns = columns,
-    .create = create,
-    INVERSION_RECORD,
+    JOINT_RECORD,
 };

@@ -124,7 +124,8 @@ static double square_rows(const gsl_matrix *rows, size_t begin, size_t end) {
     return sum;
 }
 
-double mf_imc_solve_misfit(const struct imc_system *s, const double *x) {
+/// χ² by bin of what x leaves.
+static double misfit(const struct imc_system *s, const double *x) {
     double sum = 0;
     for (size_t a = 0; a < s->size; a++) {
         double left = s->excess[a];
@@ -135,7 +136,9 @@ double mf_imc_solve_misfit(const struct imc_system *s, const double *x) {
     return sum / (double)s->size;
 }
 
-void mf_imc_solve_meet(const struct imc_system *s, const double *u, double *x) {
+/// Meet the constraint: x ← x + u (wanted − p·x)/(p·u), which is the constrained minimum if x is
+/// the free one and u = H⁻¹ p, H the matrix of the normal equations.
+static void meet(const struct imc_system *s, const double *u, double *x) {
     double missing = s->wanted, response = 0;
     for (size_t k = 0; k < s->size; k++) {
         missing -= s->constraint[k] * x[k];
@@ -148,7 +151,10 @@ void mf_imc_solve_meet(const struct imc_system *s, const double *u, double *x) {
         x[k] += u[k] * missing / response;
 }
 
-double mf_imc_solve_discrepancy(double least) {
+/// What is left in a discrepancy principle: 1, or more where not even the weakest regularisation,
+/// which leaves `least`, comes so far. To follow the excess down to that would make the potential
+/// large in directions that do not matter.
+static double discrepancy(double least) {
     return fmax(1, least + noise_share);
 }
 
@@ -171,9 +177,9 @@ static double solve_at(struct workspace *w, double strength) {
     gsl_linalg_QR_lssolve(w->factor, w->reflect, w->rhs, w->x, w->residual);
     if (w->system->constraint) {
         find_meet(w);
-        mf_imc_solve_meet(w->system, w->meet->data, w->x->data);
+        meet(w->system, w->meet->data, w->x->data);
     }
-    return mf_imc_solve_misfit(w->system, w->x->data);
+    return misfit(w->system, w->x->data);
 }
 
 /// Largest strength whose misfit is within the noise, by bisection of its logarithm.
@@ -183,7 +189,7 @@ static double find_strength(struct workspace *w) {
     // Many blocks are slow to solve, and a hundredth of a decade is enough.
     const int rounds = w->system->shape ? 11 : 40;
     double low = -12, high = 6;
-    const double wanted = mf_imc_solve_discrepancy(solve_at(w, unit * pow(10, low)));
+    const double wanted = discrepancy(solve_at(w, unit * pow(10, low)));
     for (int k = 0; k < rounds; k++) {
         const double middle = 0.5 * (low + high);
         if (solve_at(w, unit * pow(10, middle)) > wanted)

@@ -30,9 +30,6 @@ struct imc_system {
     double spacing;                ///< of the bins [λ]
     const double *constraint;      ///< p, shape [size]: x is to meet p·x = wanted exactly; or NULL
     double wanted;
-    /// Where a solver that has them puts its singular values, falling, and the part of each that x
-    /// takes, shape [size]; or NULL.
-    double *singular, *used;
 };
 
 struct imc_solution {
@@ -51,43 +48,12 @@ struct imc_solution {
 /// as it stands: C has directions that the sampling does not determine, and their noise would be
 /// amplified into the potential.
 /// @param[out] x  shape [size] [k_B T_0]
-/// Fails: NO_MEMORY. Tested: test_imc_solve.
+/// Fails: NO_MEMORY. Tested: test_imc_solve, and against VOTCA's answers test_imc_solve_votca.
 enum status mf_imc_solve(const struct imc_system *system, double strength, double *x,
                          struct imc_solution *solution) MUST_USE;
 
-/// The step as VOTCA's csg_imc_solve takes it, for those who come from there:
-///   x = −k_B T (AᵀA + λ)⁻¹ Aᵀ · excess,   A = −C (VOTCA's .gmc), excess (its .imc),
-/// where λ is `strength`, and where eigenvalues of AᵀA + λ below 1e-12 are left out. The unit of λ
-/// is that of S⁴: what is right depends on the number of particles. Several pair types are blocks
-/// of one C. D. Rosenberger, M. Hanke and N. F. A. van der Vegt, Eur. Phys. J. Spec. Top. 225, 1323
-/// (2016). Parameters and failures as mf_imc_solve; `spacing` is not read. Tested: test_imc_votca.
-enum status mf_imc_votca(const struct imc_system *system, double strength, double *x,
-                         struct imc_solution *solution) MUST_USE;
-
-/// The step by truncated singular values of the whitened response B_ab = C_ab/(k_B T σ_a) = U s Vᵀ:
-///   x = Σ_{k ≤ K} v_k (u_k · excess/σ) / s_k,
-/// each of which is determined within 1/s_k [k_B T_0]. K is the least whose predicted excess is
-/// within the noise, as the strength of mf_imc_solve is the largest; `strength` > 0 keeps those
-/// with s_k > strength · s_1 instead. P. C. Hansen, BIT 27, 534 (1987). With the constraint, x
-/// meets it within the span of the v_k kept, of which there is then one at least. Parameters and
-/// failures as mf_imc_solve; `spacing` is not read. Tested: test_imc_truncated.
-enum status mf_imc_truncated(const struct imc_system *system, double strength, double *x,
-                             struct imc_solution *solution) MUST_USE;
-
 /// The whitened response B_ab = C_ab/(k_B T σ_a), shape [size, size].
 void mf_imc_solve_response(const struct imc_system *system, gsl_matrix *response);
-
-/// χ² by bin of what x leaves.
-double mf_imc_solve_misfit(const struct imc_system *system, const double *x);
-
-/// Meet the constraint: x ← x + u (wanted − p·x)/(p·u), which is the constrained minimum if x is
-/// the free one and u = H⁻¹ p, H the matrix of the normal equations.
-void mf_imc_solve_meet(const struct imc_system *system, const double *u, double *x);
-
-/// What is left in a discrepancy principle: 1, or more where not even the weakest regularisation,
-/// which leaves `least`, comes so far. To follow the excess down to that would make the potential
-/// large in directions that do not matter.
-double mf_imc_solve_discrepancy(double least);
 
 /// Rows of the smoothness prior in `rows`, shape [2 size − 1, size]: D, the second difference over
 /// a tenth of λ, or over the bins of a shape, and sqrt(ρ). A curve of pairs ends at 0 half a

@@ -43,11 +43,6 @@ struct inversion_parameters {
 
 enum { INVERSION_FROM_HNC, INVERSION_FROM_MEAN_FORCE };
 
-struct imc_parameters {
-    double strength;
-    int regularisation;
-};
-
 struct hnc_parameters {
     double ridge; ///< structure factors below this are not trusted
 };
@@ -55,7 +50,6 @@ struct hnc_parameters {
 /// The parameters of an inversion: what is common, and those of single methods.
 struct inversion_settings {
     struct inversion_parameters common;
-    struct imc_parameters imc;
     struct hnc_parameters hnc;
     struct entropy_parameters entropy;
 };
@@ -316,11 +310,10 @@ void mf_ibi_step(const struct inversion *inversion, double *step);
 /// The same with the slope of the hypernetted chain. Fails: NO_MEMORY.
 enum status mf_hnc_step(const struct inversion *inversion, double ridge, double *step) MUST_USE;
 
-/// The regularised Newton step, or, with groups far from their targets and without a regularisation
-/// of the user's, that of mf_inversion_coarse_step; `extra` are strength, misfit and directions.
-/// Sets `settling`. Fails: NO_MEMORY.
-enum status mf_imc_step(struct inversion *inversion, const struct imc_parameters *parameters,
-                        double *step, double extra[3]) MUST_USE;
+/// The regularised Newton step, or, with groups far from their targets, that of
+/// mf_inversion_coarse_step; of several states by what all say. `extra` are strength, misfit and
+/// directions. Sets `settling`. Fails: NO_MEMORY.
+enum status mf_imc_step(struct inversion *inversion, double *step, double extra[3]) MUST_USE;
 
 /// Fill `doubt`, the variances of what C predicts. C is itself sampled: of n independent samples
 /// C_ab has the variance (C_aa C_bb + C_ab²)/n (normal S), and so Σ_b C_ab x_b/k_B T has

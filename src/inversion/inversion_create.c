@@ -103,7 +103,7 @@ static enum status allocate(struct inversion *inversion) {
     CHECK(mf_inversion_band_init(&inversion->band, known, points));
     CHECK(mf_inversion_response_init(inversion));
     CHECK(mf_inversion_trail_init(&inversion->trail, (size_t)inversion->settings.common.iterations,
-                                  bins, inversion->settings.imc.regularisation == 0 ? 0 : known));
+                                  bins));
 done:
     return status;
 }

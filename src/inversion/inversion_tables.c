@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // g(r) and p of groups of the last iteration's samples beside their targets, so that a fit can be
-// seen while it works; S − S* and singular values of all iterations.
+// seen while it works; S − S* of all iterations.
 #include "inversion/inversion.h"
 
 #include "base/memory.h"
@@ -149,36 +149,10 @@ static enum status write_excess(const struct inversion *inversion,
     return STATUS_OK;
 }
 
-/// Those of the last step with the part of each that was taken, and those of all.
-static enum status write_singular(const struct inversion *inversion,
-                                  const struct inverse_folder *folder) {
-    const struct inversion_trail *trail = &inversion->trail;
-    const size_t size = trail->singular_values;
-    enum status status = STATUS_OK;
-    double *number = NULL;
-    char path[OUTPUT_PATH_SIZE];
-    NEW_ARRAY(number, size);
-    for (size_t k = 0; k < size; k++)
-        number[k] = (double)(k + 1);
-    const struct data_column columns[] = {
-        {"number", number, NULL},
-        {"singular_value", trail->singular + (trail->iterations - 1) * size, "%.6g"},
-        {"used[1]", trail->used, "%.6g"}};
-    folder->file(folder->context, "singular_values.tsv", path);
-    CHECK(mf_data_table_write(path, NULL, columns, 3, size));
-    folder->file(folder->context, "singular_values_history.tsv", path);
-    CHECK(write_iterations(path, folder->units, columns[0], trail->singular, size,
-                           trail->iterations, size));
-done:
-    mf_memory_free(number);
-    return status;
-}
-
 enum status mf_inversion_write(const void *state, const struct inverse_folder *folder) {
     const struct inversion *inversion = state;
     if (!(inversion->replicas.counts.count > 0))
         return STATUS_OK;
     TRY(write_now(inversion, folder));
-    TRY(write_excess(inversion, folder));
-    return inversion->trail.singular_values > 0 ? write_singular(inversion, folder) : STATUS_OK;
+    return write_excess(inversion, folder);
 }

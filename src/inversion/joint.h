@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// @file One potential for several states: temperatures, densities, compositions. Each state is an
-/// inversion with samples of its own; the first one takes the step for all of them.
+/// inversion with samples of its own; the first one takes the step for all of them. One state is
+/// that inversion and nothing else.
 ///
 /// Near the targets, and of pairs alone always, the step is that of the linear equations of all
 /// states (inversion_rows). With groups it is, as long as one state is far from its targets, the
@@ -24,6 +25,26 @@ struct joint {
 static inline struct inversion *joint_leader(const struct joint *joint) {
     return &joint->state[0];
 }
+
+/// @name For the records of the methods that fit several states: struct inverse_method has a word
+/// on each.
+
+enum status mf_joint_create(void *joint, const struct inverse_method *method,
+                            const struct inverse_problem *problem, const void *parameters) MUST_USE;
+void mf_joint_destroy(void *joint);
+enum status mf_joint_iterate(void *joint, struct inverse_step *step,
+                             const struct inverse_listener *listener) MUST_USE;
+size_t mf_joint_spans(void *joint, struct memory_span *span);
+enum status mf_joint_write(const void *joint, const struct inverse_folder *folder) MUST_USE;
+
+/// What their records have in common, in place of INVERSION_RECORD.
+#define JOINT_RECORD                                                                               \
+    .kind = INVERSE_INVERSION, .parameters_size = sizeof(struct inversion_settings),               \
+    .state_size = sizeof(struct joint), .finds_potential = true, .knows_states = true,             \
+    .create = mf_joint_create, .destroy = mf_joint_destroy, .iterate = mf_joint_iterate,           \
+    .spans = mf_joint_spans, .write = mf_joint_write
+
+/// @name The parts of an iteration of several states
 
 /// The mean of the states' steps of mf_inversion_coarse_step, each bin weighted by 1/(k_B T
 /// σ_a/S_a)² of the states, 0 where a state has not seen it. U of a group is known but for a

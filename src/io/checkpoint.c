@@ -47,7 +47,11 @@ static enum status check_magic(FILE *stream, const char *file) {
     char found[sizeof magic];
     if (read_exactly(stream, found, sizeof found) && memcmp(found, magic, sizeof magic) == 0)
         return STATUS_OK;
-    return mf_status_fail(STATUS_BAD_INPUT, "%s: not a checkpoint of this version", file);
+    return mf_status_fail(
+        STATUS_BAD_INPUT,
+        "%s: not a checkpoint of this version; begin anew with --force, or go on with "
+        "the version that wrote it",
+        file);
 }
 
 static enum status check_digest(FILE *stream, const char *file, uint64_t digest) {

@@ -245,6 +245,15 @@ void mf_json_refuse(struct json_object *object, const char *key, const char *rea
         mf_json_fault(object, key, "unknown key: %s", reason);
 }
 
+bool mf_json_refuse_choice(struct json_object *object, const char *key, const char *old,
+                           const char *reason) {
+    const char *given = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(object->item, key));
+    const bool refused = given && strcmp(given, old) == 0;
+    if (refused)
+        mf_json_fault(object, key, "\"%s\" is of an earlier version: %s", old, reason);
+    return refused;
+}
+
 /// A key that is nearly that of what is missing tells why it is.
 static void take_back_missing(struct json_object *object, const char *given) {
     const char *meant = mf_nearest_name(given, object->asked, object->asked_count);

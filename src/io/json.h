@@ -87,6 +87,11 @@ void mf_json_renamed(struct json_object *object, const char *old, const char *to
 /// Refuse a key that has no place here, if it is present, with the reason. Tested: test_json.
 void mf_json_refuse(struct json_object *object, const char *key, const char *reason);
 
+/// Refuse the text that a choice had in an earlier version, if it is there, with what to write now.
+/// Returns whether it was. Tested: test_bad_input.
+bool mf_json_refuse_choice(struct json_object *object, const char *key, const char *old,
+                           const char *reason);
+
 /// The number, or the list of up to `most` numbers, at `key` as they stand there; 0 if there are
 /// none. Counts as nothing, and faults are left to the reader. Tested: test_units.
 int mf_json_numbers(const struct json_object *object, const char *key, double *values, int most);

@@ -318,7 +318,6 @@ struct inverse_method {
     EACH(imc)                                                                                      \
     EACH(ibi)                                                                                      \
     EACH(hnc)                                                                                      \
-    EACH(joint_imc)                                                                                \
     EACH(relative_entropy)                                                                         \
     OPTIMISERS(EACH##_MATCHING)                                                                    \
     EACH(gauss_newton)                                                                             \

@@ -46,8 +46,6 @@ static const char *const results[] = {
     "now_dihedral_angles_*-*.tsv",
     "excess_history.tsv",
     "excess_*-*.tsv",
-    "singular_values.tsv",
-    "singular_values_history.tsv",
     "potential.tsv",
     "potential_*-*.tsv",
     "potential_history.tsv",
@@ -97,9 +95,11 @@ static const char *const results[] = {
     "pareto_potential.tsv",
     "pareto_potential_*-*.tsv",
     "checkpoint.bin",
-    // As version 0.1.0 called them, in whose folder this may be.
+    // Of earlier versions, in whose folder this may be.
     "weight_history.tsv",
     "pareto_weight.tsv",
+    "singular_values.tsv",
+    "singular_values_history.tsv",
 };
 
 /// Whether a pattern is a file's name, each * being a name of a type or a mode: a date is none.

@@ -247,6 +247,16 @@ static const struct fault run_faults[] = {
           "\"samples\": 8, \"asynchronous\": \"no\"",
           "input.json: method.asynchronous: unknown key: candidates are measured by rounds alone; "
           "delete the line"),
+    FAULT("a solver of an earlier version", "\"samples\": 8",
+          "\"samples\": 8, \"regularisation\": \"truncated\"",
+          "input.json: method.regularisation: unknown key: the step is as smooth as the noise "
+          "asks; delete"),
+    FAULT("a solver's strength of an earlier version", "\"samples\": 8",
+          "\"samples\": 8, \"strength\": 1000",
+          "input.json: method.strength: unknown key: it is chosen from the noise; delete"),
+    FAULT("a method of an earlier version", "\"imc\"", "\"joint-imc\"",
+          "input.json: method.name: \"joint-imc\" is of an earlier version: write \"imc\", which "
+          "fits one state or several"),
 };
 
 #define TYPES "\"types\": {\"A\": 40, \"B\": 41}"

@@ -157,8 +157,7 @@ static void assert_refused(struct temporary_folder *folder, const char *const re
 }
 
 static void test_inversions_refuse_to_fit_the_structure_between_molecules(void **state) {
-    static const char *const methods[] = {INVERSION("imc"), INVERSION("ibi"), INVERSION("auto"),
-                                          INVERSION("joint-imc")};
+    static const char *const methods[] = {INVERSION("imc"), INVERSION("ibi"), INVERSION("auto")};
     simulate(*state, NULL, NULL);
     for (size_t k = 0; k < sizeof methods / sizeof *methods; k++)
         assert_refused(*state,

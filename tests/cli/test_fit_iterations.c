@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What an inversion writes of each of its iterations: energy, acceptance, S − S*, singular values.
+// What an inversion writes of each of its iterations: energy, acceptance, S − S*.
 #include "io/data_table.h"
 #include "shared/results.h"
 #include "shared/run_program.h"
@@ -11,13 +11,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static const char *const tables[] = {"history.tsv",
-                                     "rdf_now.tsv",
-                                     "excess_history.tsv",
-                                     "singular_values.tsv",
-                                     "potential.tsv",
-                                     "singular_values_history.tsv",
-                                     NULL};
+static const char *const tables[] = {"history.tsv", "rdf_now.tsv", "excess_history.tsv",
+                                     "potential.tsv", NULL};
 
 static struct run_program_result result;
 
@@ -118,51 +113,18 @@ static void check_excess(const char *folder, size_t iterations) {
     mf_data_table_clear(&excess);
 }
 
-/// They fall, and as many are used as the history says: 1 or 0 each if they are cut.
-static void check_singular_values(const char *file, const char *beside, bool cut) {
-    struct data_table values, history;
-    double used = 0;
-    read_table(&values, file);
-    read_table(&history, beside);
-    assert_int_equal(values.columns, 3);
-    for (size_t k = 0; k < values.rows; k++) {
-        const double *row = values.values + 3 * k;
-        assert_true(row[0] == (double)(k + 1));
-        assert_true(row[1] >= 0 && (k == 0 || row[1] <= row[-2]));
-        assert_true(row[2] >= 0 && row[2] <= 1 && (!cut || row[2] == 0 || row[2] == 1));
-        used += row[2];
-    }
-    assert_true(fabs(used - last(&history, "directions", 0)) < 1e-4);
-    mf_data_table_clear(&values);
-    mf_data_table_clear(&history);
-}
-
-static void test_singular_values_are_those_that_the_step_has_used(void **state) {
+static void test_excess_of_each_iteration_has_a_column(void **state) {
     run_fit(*state,
-            "\"method\": {\"name\": \"imc\", \"regularisation\": \"truncated\", \"replicas\": 2, "
-            "\"iterations\": 3, \"precision\": 0.0001, \"samples\": 20}",
-            (const char *[]){"cut", "--threads", "1"});
-    check_singular_values("cut/singular_values.tsv", "cut/history.tsv", true);
-    check_excess("cut", 3);
-    results_assert_table("cut/singular_values_history.tsv", 4, 5);
-    run_fit(*state,
-            "\"method\": {\"name\": \"imc\", \"regularisation\": \"votca\", \"strength\": 10, "
-            "\"replicas\": 2, \"iterations\": 2, \"precision\": 0.0001, \"samples\": 20}",
-            (const char *[]){"votca", "--threads", "1"});
-    check_singular_values("votca/singular_values.tsv", "votca/history.tsv", false);
-    // Without them there is no table, also where one was before.
-    run_fit(*state, "\"method\": {\"name\": \"ibi\", \"replicas\": 2, \"iterations\": 1}",
-            (const char *[]){"cut", "--threads", "1"});
-    assert_false(temporary_folder_exists("cut/singular_values.tsv"));
-    assert_false(temporary_folder_exists("cut/singular_values_history.tsv"));
-    assert_true(temporary_folder_exists("cut/excess_history.tsv"));
+            "\"method\": {\"name\": \"imc\", \"replicas\": 2, \"iterations\": 3, \"precision\": "
+            "0.0001, \"samples\": 20}",
+            (const char *[]){"out", "--threads", "1"});
+    check_excess("out", 3);
 }
 
 /// Stopped after some iterations and gone on with, by other threads.
 static void test_tables_are_the_same_bits_after_a_restart(void **state) {
-    const char *method =
-        "\"method\": {\"name\": \"imc\", \"regularisation\": \"truncated\", \"replicas\": 4, "
-        "\"iterations\": 6, \"precision\": 0.0001, \"samples\": 2000}";
+    const char *method = "\"method\": {\"name\": \"imc\", \"replicas\": 4, "
+                         "\"iterations\": 6, \"precision\": 0.0001, \"samples\": 2000}";
     run_fit(*state, method, (const char *[]){"whole", "--threads", "1"});
     run_program_in_pieces(result.code, (const char *const[]){"fit", "run.json", "-o", "parts",
                                                              "--threads", "2", NULL});
@@ -176,7 +138,7 @@ int main(void) {
             small_inputs_enter_without_gnuplot, small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_energy_is_that_of_the_verification,
                                         small_inputs_enter_without_gnuplot, small_inputs_leave),
-        cmocka_unit_test_setup_teardown(test_singular_values_are_those_that_the_step_has_used,
+        cmocka_unit_test_setup_teardown(test_excess_of_each_iteration_has_a_column,
                                         small_inputs_enter_without_gnuplot, small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_tables_are_the_same_bits_after_a_restart,
                                         small_inputs_enter_without_gnuplot, small_inputs_leave),

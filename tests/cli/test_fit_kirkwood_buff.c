@@ -104,26 +104,6 @@ static void test_fit_of_integrals_has_the_same_bits_when_it_is_resumed(void **st
     results_assert_same("coarse", "pieces", same);
 }
 
-/// One state of `joint-imc` is the fit of `imc`, as with g(r) alone.
-static void test_integrals_of_one_state_are_fitted_with_the_bits_of_imc(void **state) {
-    static const char *const same[] = {"potential_A-B.tsv", "rdf_A-B.tsv", "history.tsv", NULL};
-    char *text;
-    write_run(*state, "plain.json", "yes", 10 * integrals.error, SHORT_PLAN);
-    RUN_PROGRAM(&result, "fit", "plain.json", "-o", "plain", "--threads", "2");
-    const int code = result.code;
-    assert_contains(result.err, "Kirkwood-Buff integral of A-B = ");
-    text = temporary_folder_read("plain.json");
-    small_inputs_write(*state, "one.json", text, "\"imc\"", "\"joint-imc\"");
-    free(text);
-    text = temporary_folder_read("one.json");
-    small_inputs_write(*state, "one.json", text, "{\"seed\": 4,",
-                       "{\"seed\": 4, \"states\": {\"only\": {}},");
-    free(text);
-    RUN_PROGRAM(&result, "fit", "one.json", "-o", "one", "--threads", "2");
-    run_program_assert_code(&result, code);
-    results_assert_same("plain", "one", same);
-}
-
 /// a of A-B is 14. Nothing else is fitted, from a = 11. In 24 seeds, of truth and fit, what was
 /// found was off by 1.25(18) times its error, so that five errors are a false alarm in thousands.
 static void test_optimiser_finds_a_repulsion_from_the_integrals_alone(void **state) {
@@ -179,9 +159,6 @@ static void test_fit_refuses_integrals_that_cannot_be_met(void **state) {
                    NULL, "all have one length");
     assert_refused(*state, GOOD, "\"name\": \"imc\"", "\"name\": \"ibi\"",
                    "target.kirkwood_buff: \"ibi\" does not fit it");
-    assert_refused(*state, GOOD, "\"name\": \"imc\"",
-                   "\"name\": \"imc\", \"regularisation\": \"votca\", \"strength\": 1",
-                   "\"votca\" does not fit target.kirkwood_buff");
 }
 
 int main(void) {
@@ -189,7 +166,6 @@ int main(void) {
         cmocka_unit_test(test_g_alone_leaves_the_integrals_of_a_mixture_off),
         cmocka_unit_test(test_fit_meets_the_integrals_of_a_mixture),
         cmocka_unit_test(test_fit_of_integrals_has_the_same_bits_when_it_is_resumed),
-        cmocka_unit_test(test_integrals_of_one_state_are_fitted_with_the_bits_of_imc),
         cmocka_unit_test(test_optimiser_finds_a_repulsion_from_the_integrals_alone),
         cmocka_unit_test(test_fit_refuses_integrals_that_cannot_be_met),
     };

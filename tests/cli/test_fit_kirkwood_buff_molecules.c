@@ -82,14 +82,13 @@ static void test_fit_meets_the_integrals_of_molecules(void **state) {
     assert_true(results_number("both/summary.json", "rdf_rmse") < 1.5 * tilt);
 }
 
-/// With coarse integrals, which take few samples; whether they are met is no matter here. One state
-/// of `joint-imc` is the fit of `imc`.
+/// With coarse integrals, which take few samples; whether they are met is no matter here.
 static void test_fit_of_molecules_has_the_same_bits_however_it_is_run(void **state) {
     static const char *const same[] = {"potential_W-A.tsv", "bonds_spring.tsv", "history.tsv",
                                        NULL};
     static const char *const pieces[] = {"fit",       "coarse.json", "-o", "pieces",
                                          "--threads", "1",           NULL};
-    char members[1024], *text;
+    char members[1024];
     integrals_of_truth(&integrals, 10 * integrals.error, members, sizeof members);
     write_run(*state, "coarse.json", members, PLAN, SHORT_PLAN);
     RUN_PROGRAM(&result, "fit", "coarse.json", "-o", "coarse", "--threads", "2");
@@ -97,16 +96,6 @@ static void test_fit_of_molecules_has_the_same_bits_however_it_is_run(void **sta
     assert_contains(result.err, "Kirkwood-Buff integral of dimer-W = ");
     run_program_in_pieces(code, pieces);
     results_assert_same("coarse", "pieces", same);
-    text = temporary_folder_read("coarse.json");
-    small_inputs_write(*state, "one.json", text, "\"imc\"", "\"joint-imc\"");
-    free(text);
-    text = temporary_folder_read("one.json");
-    small_inputs_write(*state, "one.json", text, "{\"seed\": 14,",
-                       "{\"seed\": 14, \"states\": {\"only\": {}},");
-    free(text);
-    RUN_PROGRAM(&result, "fit", "one.json", "-o", "one", "--threads", "2");
-    run_program_assert_code(&result, code);
-    results_assert_same("coarse", "one", same);
     RUN_PROGRAM(&result, "fit", "coarse/used.json", "-o", "again", "--threads", "2");
     run_program_assert_code(&result, code);
     results_assert_same("coarse", "again", same);

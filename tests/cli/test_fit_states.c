@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Fits of several states that share a potential: that of one state is the fit of a file without
-// states; two densities find a known potential, with their pressures, too; states that contradict
-// each other do not converge; and what is refused.
+// states, of several `auto` is `imc`; two densities find a known potential, with their pressures,
+// too; states that contradict each other do not converge; and what is refused.
 #include "shared/results.h"
 #include "shared/run_program.h"
 #include "shared/small_inputs.h"
@@ -10,6 +10,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -35,7 +36,7 @@ static const char scene[] =
     "\"unknowns\": {\"potential\": {\"truth\": {\"law\": \"soft-repulsion\", \"a\": 25}}},\n"      \
     "\"verification\": {\"replicas\": 2, \"equilibration\": 300, \"samples\": 100, \"every\": "    \
     "20},\n"                                                                                       \
-    "\"method\": {\"name\": \"joint-imc\", \"replicas\": 4, \"samples\": 100, \"precision\": "     \
+    "\"method\": {\"name\": \"imc\", \"replicas\": 4, \"samples\": 100, \"precision\": "           \
     "0.008}"
 static const char run[] = "{\"seed\": 4, " COMMON ",\n" STATES "}\n";
 
@@ -121,6 +122,24 @@ static void test_two_densities_find_a_known_potential(void **state) {
     results_assert_same("out", "pieces", (const char *const[]){same[0], same[1], same[3], NULL});
 }
 
+/// Of several states `auto` has no other steps.
+static void test_auto_takes_the_steps_of_imc_when_there_are_several_states(void **state) {
+    static const char *const same[] = {"potential.tsv", "potential_history.tsv", "rdf.tsv", NULL};
+    char *text;
+    small_inputs_write(*state, "imc.json", run, "\"samples\": 100, \"precision\": 0.008",
+                       "\"samples\": 20, \"precision\": 0.1, \"iterations\": 2");
+    text = temporary_folder_read("imc.json");
+    small_inputs_write(*state, "imc.json", text, "\"equilibration\": 300, \"samples\": 100",
+                       "\"equilibration\": 30, \"samples\": 4");
+    free(text);
+    text = temporary_folder_read("imc.json");
+    small_inputs_write(*state, "auto.json", text, "\"imc\"", "\"auto\"");
+    free(text);
+    RUN_PROGRAM(&result, "fit", "imc.json", "-o", "imc");
+    RUN_PROGRAM(&result, "fit", "auto.json", "-o", "auto");
+    results_assert_same("imc", "auto", same);
+}
+
 /// The run with the pressures of the truth among the targets.
 static void write_with_pressures(struct temporary_folder *folder) {
     static const char with[] = "{\"seed\": 4, " COMMON ",\n\"states\": {\n"
@@ -155,7 +174,10 @@ static void test_what_no_states_can_be_is_refused(void **state) {
     static const struct {
         const char *from, *to, *words[4];
     } cases[] = {
-        {"\"joint-imc\"", "\"imc\"", {"method.name", "\"imc\" fits one state", NULL}},
+        {"\"imc\"", "\"ibi\"", {"method.name", "\"ibi\" fits one state", NULL}},
+        {"\"imc\"",
+         "\"joint-imc\"",
+         {"bad.json: method.name: \"joint-imc\" is of an earlier version: write \"imc\"", NULL}},
         {"\"dense/rdf.tsv\"", "\"dense/rdf.tsv\", \"cutoff\": 1", {"states.dense", "same bins"}},
         {"\"dense\": {", "\"../dense\": {", {"states", "\"../dense\"", "letters"}},
         {"\"dense\": {", "\"dense\": 4, \"x\": {", {"states.dense", "expected an object"}},
@@ -269,6 +291,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_one_state_is_a_fit_without_states),
         cmocka_unit_test(test_two_densities_find_a_known_potential),
+        cmocka_unit_test(test_auto_takes_the_steps_of_imc_when_there_are_several_states),
         cmocka_unit_test(test_pressures_of_two_densities_are_met),
         cmocka_unit_test(test_states_that_contradict_each_other_do_not_converge),
         cmocka_unit_test(test_what_no_states_can_be_is_refused),

@@ -47,8 +47,8 @@ static const char scene[] = "{\"seed\": 11, " TEMPERATURE(
 #define SCENE "\"scene\": {" SETUP ", " FRICTION "}"
 static const char run[] =
     "{" COMMON ", " SCENE
-    ",\n" METHOD("joint-imc") ",\n"
-                              "\"states\": {" STATE("cold", "0.8") ",\n" STATE("hot", "1.6") "}}\n";
+    ",\n" METHOD("imc") ",\n"
+                        "\"states\": {" STATE("cold", "0.8") ",\n" STATE("hot", "1.6") "}}\n";
 
 static struct run_program_result result;
 
@@ -94,8 +94,8 @@ static void assert_fitted(void) {
 static void test_one_state_of_chains_is_a_fit_without_states(void **state) {
     small_inputs_write(*state, "one.json",
                        "{" COMMON ", " SCENE
-                       ",\n" METHOD("joint-imc") ",\n"
-                                                 "\"states\": {" STATE("hot", "1.6") "}}\n",
+                       ",\n" METHOD("imc") ",\n"
+                                           "\"states\": {" STATE("hot", "1.6") "}}\n",
                        NULL, NULL);
     small_inputs_write(*state, "plain.json",
                        "{" COMMON
@@ -166,12 +166,12 @@ static void test_bins_of_states_are_those_of_all(void **state) {
 /// Chains that bend otherwise have no potential in common.
 static void test_chains_that_contradict_each_other_do_not_converge(void **state) {
     simulate(*state, "bent", "\"angle\": 110", "\"angle\": 80");
-    small_inputs_write(*state, "run.json",
-                       "{" COMMON ", " SCENE
-                       ",\n" METHOD("joint-imc") ",\n"
-                                                 "\"states\": {" STATE("cold", "0.8") ",\n" STATE(
-                                                     "bent", "0.8") "}}\n",
-                       "\"iterations\": 4", "\"iterations\": 20");
+    small_inputs_write(
+        *state, "run.json",
+        "{" COMMON ", " SCENE
+        ",\n" METHOD("imc") ",\n"
+                            "\"states\": {" STATE("cold", "0.8") ",\n" STATE("bent", "0.8") "}}\n",
+        "\"iterations\": 4", "\"iterations\": 20");
     RUN_PROGRAM(&result, "fit", "run.json", "-o", "out", "--force");
     run_program_assert_code(&result, 1);
     print_message("%s", result.err);

@@ -22,25 +22,12 @@ class Panels(PageTest):
     def titles(self):
         return [c.text for c in self.browser.find_elements("css selector", "#panels figcaption")]
 
-    def test_inverse_monte_carlo_has_excess_energy_and_singular_values(self):
-        run = water_fit(3)
-        run["method"]["regularisation"] = "truncated"
-        self.run_file("cut.json", run, "cut")
-        self.begin("live", "cut", dark=True)
-        self.wait(lambda: "singular_values.tsv" in self.panels())
+    def test_inverse_monte_carlo_has_excess_and_energy(self):
+        self.run_file("fit.json", water_fit(3), "fit")
+        self.begin("live", "fit", dark=True)
         self.wait(lambda: "potential energy of a bead in the fit's samples" in self.titles())
-        values = self.rows("cut", "singular_values.tsv")
-        used = sum(row[2] == "1" for row in values)
-        shown = dict(self.chart("singular_values.tsv")[2:])
-        self.assertEqual([label for label, _ in self.chart("singular_values.tsv")[:2]], ["", ""]) # two earlier iterations
-        self.assertEqual(shown["used"], used)
-        self.assertEqual(shown["left out, or less than half used"], sum(row[2] == "0" and float(row[1]) > 0 for row in values))
-        bins = len(self.rows("cut", "rdf_now.tsv"))
-        self.assertEqual(self.chart("rdf_now.tsv", 2), [["", bins], ["", bins], ["S − S*", bins]])
-        panel = self.browser.find_element("css selector", "[data-table='singular_values.tsv']")
-        self.assertIn(f"took {used}.0 of {len(values)}", panel.text)
-        self.browser.execute_script("arguments[0].scrollIntoView({ block: 'center' })", panel)
-        self.shoot("singular")
+        bins = len(self.rows("fit", "rdf_now.tsv"))
+        self.assertEqual(self.chart("rdf_now.tsv", 2), [["", bins], ["", bins], ["S − S*", bins]]) # two earlier iterations
         self.check_console()
 
     def test_molecules_have_their_bonds_and_angles(self):

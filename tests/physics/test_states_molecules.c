@@ -42,7 +42,7 @@ static const char run[] =
     "\"states\": {" STATE("cold", "1") ",\n" STATE(
         "hot",
         "1.6") "},\n"
-               "\"method\": {\"name\": \"joint-imc\", \"replicas\": 4, \"equilibration\": 100,\n"
+               "\"method\": {\"name\": \"imc\", \"replicas\": 4, \"equilibration\": 100,\n"
                "  \"samples\": 200, \"iterations\": 20, \"precision\": 0.006},\n"
                "\"verification\": {\"replicas\": 4, \"equilibration\": 1000, \"samples\": 300, "
                "\"every\": "

@@ -102,9 +102,9 @@ run relative-entropy "$rdf" '"potential": {}' "\"name\": \"relative-entropy\", \
 run auto "$rdf" '"potential": {}' "\"name\": \"auto\", $sampled"
 sed 's/"count": 192/"count": 128/; s/"seed": 3/"seed": 5/' scene.json >dilute.json
 "$without" simulate dilute.json -o dilute --quiet 2>words || exit 1
-run joint-imc "$rdf" '"potential": {}' "\"name\": \"joint-imc\", $sampled"
+run states "$rdf" '"potential": {}' "\"name\": \"imc\", $sampled"
 sed -i 's|"method"|"states": {"dense": {}, "dilute": {"scene": {"particles": {"count": 128}},\
-  "target": {"rdf": {"file": "dilute/rdf.tsv"}}}}, "method"|' joint-imc.json
+  "target": {"rdf": {"file": "dilute/rdf.tsv"}}}}, "method"|' states.json
 run genetic "$rdf" "$potential" "\"name\": \"genetic\", \"population\": 12, \"generations\": 4, \"racing\": 2, \"warm_start\": \"yes\", $simulated"
 run cma-es "$rdf, $etd, $moves" "$potential, $omega" "\"name\": \"cma-es\", \"rounds\": 4, $simulated"
 run nlopt "$rdf" "$potential" "\"name\": \"nlopt\", \"evaluations\": 12, $simulated"
@@ -120,11 +120,11 @@ sed "s/\"particles\": {\"count\": 192}/$laws, $chain/; s/\"etd\".*/\"bond_length
     scene.json >trimers.json
 "$without" simulate trimers.json -o trimers --quiet 2>words || cat words
 groups='"bond_lengths": {"rod": {"file": "trimers/bond_lengths.tsv"}}, "bond_angles": {"bend": {"file": "trimers/bond_angles.tsv"}}'
-for name in imc joint-imc; do
-    run $name-molecules '"rdf": {"file": "trimers/rdf.tsv"}, '"$groups" '"potential": {}' "\"name\": \"$name\", ${sampled/12/6}"
+for name in imc states; do
+    run $name-molecules '"rdf": {"file": "trimers/rdf.tsv"}, '"$groups" '"potential": {}' "\"name\": \"imc\", ${sampled/12/6}"
     sed -i "s/\"particles\": {\"count\": 192}/$chain/" $name-molecules.json
 done
-sed -i 's|"method"|"states": {"cold": {"scene": {"temperature": 0.9}}, "warm": {"scene": {"temperature": 1}}}, "method"|' joint-imc-molecules.json
+sed -i 's|"method"|"states": {"cold": {"scene": {"temperature": 0.9}}, "warm": {"scene": {"temperature": 1}}}, "method"|' states-molecules.json
 
 for method in ${METHODS-$methods}; do
     "$without" fit "$method.json" -o "$method" --quiet --threads 1 2>words

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Inverse Monte Carlo of several states: their iterations, and the record of the method.
-#include "inversion/inversion_coarse.h"
+// The iterations of several states together.
 #include "inversion/joint.h"
 
 #include <stdio.h>
@@ -96,15 +95,15 @@ static enum status join(struct joint *joint) {
     return STATUS_OK;
 }
 
-static enum status iterate(void *memory, struct inverse_step *step,
-                           const struct inverse_listener *listener) {
+enum status mf_joint_iterate(void *memory, struct inverse_step *step,
+                             const struct inverse_listener *listener) {
     struct joint *joint = memory;
     struct inversion *leader = joint_leader(joint);
     enum status status;
+    if (joint->states == 1)
+        return mf_inversion_iterate(leader, step, listener);
     follow(joint);
     TRY(observe(joint, listener));
-    if (joint->states == 1)
-        return mf_inversion_advance(leader, step);
     const struct joint_worst worst = mf_joint_targets_worst(joint);
     const double distance = mf_joint_targets_distance(joint);
     TRY(join(joint));
@@ -116,16 +115,6 @@ static enum status iterate(void *memory, struct inverse_step *step,
     end_at_standstill(joint, distance, &worst, step);
     return STATUS_OK;
 }
-
-static enum status update(struct inversion *inversion, double *extra) {
-    const double *coarse = inversion->joint ? inversion->joint->coarse : NULL;
-    if (coarse == NULL || !mf_inversion_is_coarse(inversion))
-        return mf_imc_step(inversion, &(const struct imc_parameters){0}, inversion->step, extra);
-    memcpy(inversion->step, coarse, inversion->grid.points * sizeof *inversion->step);
-    return STATUS_OK;
-}
-
-// The record --------------------------------------------------------------------------------------
 
 static enum status allocate(struct joint *joint) {
     enum status status = STATUS_OK;
@@ -141,8 +130,8 @@ done:
     return status;
 }
 
-static enum status create(void *memory, const struct inverse_method *method,
-                          const struct inverse_problem *problem, const void *parameters) {
+enum status mf_joint_create(void *memory, const struct inverse_method *method,
+                            const struct inverse_problem *problem, const void *parameters) {
     enum status status = STATUS_OK;
     struct joint *joint = memory;
     const size_t states = problem->states > 0 ? problem->states : 1;
@@ -161,7 +150,7 @@ done:
     return status;
 }
 
-static void destroy(void *memory) {
+void mf_joint_destroy(void *memory) {
     struct joint *joint = memory;
     for (size_t s = 0; s < joint->states; s++)
         mf_inversion_destroy(&joint->state[s]);
@@ -171,7 +160,7 @@ static void destroy(void *memory) {
     mf_memory_free(joint->coarse);
 }
 
-static size_t spans(void *memory, struct memory_span *span) {
+size_t mf_joint_spans(void *memory, struct memory_span *span) {
     struct joint *joint = memory;
     size_t n = 0;
     span[n++] = (struct memory_span){&joint->least, sizeof joint->least};
@@ -181,31 +170,6 @@ static size_t spans(void *memory, struct memory_span *span) {
     return n;
 }
 
-static enum status write(const void *memory, const struct inverse_folder *folder) {
+enum status mf_joint_write(const void *memory, const struct inverse_folder *folder) {
     return mf_inversion_write(joint_leader(memory), folder);
 }
-
-static const char *const columns[] = {INVERSION_COLUMNS, "regularisation[1]", "misfit[1]",
-                                      "directions", NULL};
-
-const struct inverse_method mf_joint_imc = {
-    .name = "joint-imc",
-    .summary = "inverse Monte Carlo of several \"states\" that share a potential; A. P. "
-               "Lyubartsev and A. Laaksonen, Phys. Rev. E 52, 3730 (1995), with the equations of "
-               "all states",
-    .kind = INVERSE_INVERSION,
-    .own = &(const struct inversion_rule){.update = update},
-    .tables = (const struct inverse_table[]){INVERSION_TABLE, {NULL, 0}},
-    .parameters_size = sizeof(struct inversion_settings),
-    .state_size = sizeof(struct joint),
-    .columns = columns,
-    .finds_potential = true,
-    .knows_molecules = true,
-    .knows_states = true,
-    .meets_integrals = true,
-    .create = create,
-    .destroy = destroy,
-    .iterate = iterate,
-    .spans = spans,
-    .write = write,
-};
