@@ -1,11 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // DL_POLY: TABLE has energies and −r dΦ/dr, four numbers a line, at multiples of
-// cutoff/(rows − 4), so that it takes them over as they are.
+// cutoff/(rows − 4), so that it takes them over as they are. Of a name it reads eight letters.
 #include "export/export_engine.h"
 
 static void print_four(FILE *stream, size_t k, size_t rows, double value) {
     fprintf(stream, " %.12e%s", value, k % 4 == 3 || k + 1 == rows ? "\n" : "");
+}
+
+static void name_pair(const char *a, const char *b, char name[EXPORT_PAIR_NAME_SIZE]) {
+    snprintf(name, EXPORT_PAIR_NAME_SIZE, "%-8.8s %-8.8s", a, b);
+}
+
+static void print_pair(const struct export_job *job, int pair, FILE *stream) {
+    char name[COMPOSITION_PAIR_NAME_SIZE], called[EXPORT_PAIR_NAME_SIZE];
+    int type[2];
+    mf_export_model_pair(job->model, pair, type, name);
+    name_pair(job->model->name[type[0]], job->model->name[type[1]], called);
+    fprintf(stream, "%s", called);
 }
 
 static void print_curve(const struct export_job *job, enum export_curve curve, FILE *stream) {
@@ -15,11 +27,8 @@ static void print_curve(const struct export_job *job, enum export_curve curve, F
             spacing * (double)first->rows, first->rows);
     for (int pair = 0; pair < job->grids.pairs; pair++) {
         const struct export_grid *grid = &job->grids.grid[curve][pair];
-        char name[COMPOSITION_PAIR_NAME_SIZE];
-        int type[2];
-        mf_export_model_pair(job->model, pair, type, name);
-        fprintf(stream, "%-8s %-8s 0.0 0.0\n", job->model->name[type[0]],
-                job->model->name[type[1]]);
+        print_pair(job, pair, stream);
+        fprintf(stream, " 0.0 0.0\n");
         for (size_t k = 0; k < grid->rows; k++)
             print_four(stream, k, grid->rows, grid->phi[k] * job->units.energy);
         for (size_t k = 0; k < grid->rows; k++)
@@ -44,15 +53,13 @@ static void print_field(const struct export_job *job, FILE *stream) {
     fprintf(stream, "%s\nunits kJ\nmolecules %d\n", model->title[0] ? model->title : "beads",
             model->types);
     for (int type = 0; type < model->types; type++)
-        fprintf(stream, "%s\nnummols %zu\natoms 1\n%-8s %.9g 0.0\nfinish\n", model->name[type],
+        fprintf(stream, "%s\nnummols %zu\natoms 1\n%-8.8s %.9g 0.0\nfinish\n", model->name[type],
                 mf_export_count(model, type), model->name[type],
                 model->mass[type] * job->units.mass);
     fprintf(stream, "vdw %d\n", job->grids.pairs);
     for (int pair = 0; pair < job->grids.pairs; pair++) {
-        char name[COMPOSITION_PAIR_NAME_SIZE];
-        int type[2];
-        mf_export_model_pair(model, pair, type, name);
-        fprintf(stream, "%-8s %-8s tab\n", model->name[type[0]], model->name[type[1]]);
+        print_pair(job, pair, stream);
+        fprintf(stream, " tab\n");
     }
     fprintf(stream, "close\n");
 }
@@ -68,7 +75,7 @@ static void print_config(const struct export_job *job, FILE *stream) {
         fprintf(stream, "%20.10f%20.10f%20.10f\n", d == 0 ? box[0] * length : 0,
                 d == 1 ? box[1] * length : 0, d == 2 ? box[2] * length : 0);
     for (size_t k = 0; k < model->count; k++) {
-        fprintf(stream, "%-8s%10zu\n", model->name[mf_export_type(model, k)], k + 1);
+        fprintf(stream, "%-8.8s%10zu\n", model->name[mf_export_type(model, k)], k + 1);
         for (int d = 0; d < 3; d++)
             fprintf(stream, "%20.10f", (mf_export_place(model, d, k) - 0.5 * box[d]) * length);
         fprintf(stream, "\n");
@@ -121,6 +128,7 @@ const struct export_engine mf_export_dl_poly = {
                 "was run.",
     .most_types = COMPOSITION_MOST_TYPES,
     .one_cutoff = true,
+    .pair_name = name_pair,
     .write = write,
     .explain = explain,
 };

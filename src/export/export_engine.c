@@ -74,6 +74,27 @@ static bool is_free(const char *folder) {
     return ours || count <= 2; // "." and ".."
 }
 
+/// Where two pairs of types would be one to the engine, the potential of one would stand for both.
+static enum status check_pair_names(const struct export_job *job) {
+    const struct export_model *model = job->model;
+    const int pairs = mf_export_model_pairs(model);
+    char called[COMPOSITION_MOST_PAIRS][EXPORT_PAIR_NAME_SIZE];
+    char name[COMPOSITION_MOST_PAIRS][COMPOSITION_PAIR_NAME_SIZE];
+    for (int pair = 0; job->engine->pair_name && pair < pairs; pair++) {
+        int type[2];
+        mf_export_model_pair(model, pair, type, name[pair]);
+        job->engine->pair_name(model->name[type[0]], model->name[type[1]], called[pair]);
+        for (int other = 0; other < pair; other++)
+            if (strcmp(called[other], called[pair]) == 0)
+                return mf_status_fail(STATUS_BAD_INPUT,
+                                      "%s: cannot be exported: %s would know the pairs %s and %s "
+                                      "by one name, \"%s\"; call a type differently",
+                                      model->folder, job->engine->title, name[other], name[pair],
+                                      called[pair]);
+    }
+    return STATUS_OK;
+}
+
 static enum status check(const struct export_job *job, bool bands) {
     const struct export_model *model = job->model;
     const struct export_engine *engine = job->engine;
@@ -104,6 +125,7 @@ static enum status check(const struct export_job *job, bool bands) {
                               "%s: cannot be exported: what is written for %s is of single beads, "
                               "and there are molecules",
                               model->folder, engine->title);
+    TRY(check_pair_names(job));
     return job->projected ? check_friction(job) : STATUS_OK;
 }
 

@@ -35,6 +35,8 @@ struct export_job {
 /// type only, A (1 − r/r_c)^s.
 enum export_friction { EXPORT_NO_FRICTION, EXPORT_LINEAR, EXPORT_LINEAR_OF_ONE_TYPE, EXPORT_POWER };
 
+enum { EXPORT_PAIR_NAME_SIZE = 2 * COMPOSITION_NAME_SIZE + 8 };
+
 struct export_engine {
     const char *name;
     const char *title;   ///< as its authors write it
@@ -49,8 +51,10 @@ struct export_engine {
     const char *verified; ///< whether such folders were run: a sentence of the README
     int most_types;       ///< that it is written for
     bool one_cutoff;      ///< all its tables end at the same distance
-    bool flat;            ///< also in two dimensions
-    bool molecules;       ///< bonds, angles and dihedrals are written, too
+    /// What it calls a pair of types, if not A-B: no two may have one name.
+    void (*pair_name)(const char *a, const char *b, char name[EXPORT_PAIR_NAME_SIZE]);
+    bool flat;                                    ///< also in two dimensions
+    bool molecules;                               ///< bonds, angles and dihedrals are written, too
     enum status (*check)(struct export_job *job); ///< before anything is written; NULL: nothing
     enum status (*write)(const struct export_job *job);
     /// What a person should know of the thermostat, for the README.

@@ -26,15 +26,21 @@ static enum status write_table(const struct export_job *job, const struct export
     return mf_output_commit(&output);
 }
 
+static void name_pair(const char *a, const char *b, char name[EXPORT_PAIR_NAME_SIZE]) {
+    snprintf(name, EXPORT_PAIR_NAME_SIZE, "%s_%s", a, b);
+}
+
 static enum status write_tables(const struct export_job *job) {
     TRY(write_table(job, &job->grids.grid[0][0], "table.xvg"));
     for (int n = 0; n < job->grids.curves * job->grids.pairs; n++) {
         const int curve = n / job->grids.pairs, pair = n % job->grids.pairs;
-        char name[4 * COMPOSITION_NAME_SIZE], of[COMPOSITION_PAIR_NAME_SIZE];
+        char name[2 * EXPORT_PAIR_NAME_SIZE], of[COMPOSITION_PAIR_NAME_SIZE];
+        char called[EXPORT_PAIR_NAME_SIZE];
         int type[2];
         mf_export_model_pair(job->model, pair, type, of);
-        snprintf(name, sizeof name, "table_%s_%s%s.xvg", job->model->name[type[0]],
-                 job->model->name[type[1]], mf_export_curve_name((enum export_curve)curve));
+        name_pair(job->model->name[type[0]], job->model->name[type[1]], called);
+        snprintf(name, sizeof name, "table_%s%s.xvg", called,
+                 mf_export_curve_name((enum export_curve)curve));
         TRY(write_table(job, &job->grids.grid[curve][pair], name));
     }
     return STATUS_OK;
@@ -64,7 +70,7 @@ static void print_topology(const struct export_job *job, FILE *stream) {
         fprintf(stream, "%s %.9g 0.0 A 0.0 1.0\n", model->name[type],
                 model->mass[type] * job->units.mass);
     for (int type = 0; type < model->types; type++)
-        fprintf(stream, "\n[ moleculetype ]\n%s 0\n\n[ atoms ]\n1 %s 1 %s %s 1 0.0 %.9g\n",
+        fprintf(stream, "\n[ moleculetype ]\n%s 0\n\n[ atoms ]\n1 %s 1 %s %.5s 1 0.0 %.9g\n",
                 model->name[type], model->name[type], model->name[type], model->name[type],
                 model->mass[type] * job->units.mass);
     fprintf(stream, "\n[ system ]\nbeads\n\n[ molecules ]\n");
@@ -131,6 +137,7 @@ const struct export_engine mf_export_gromacs = {
     .verified = "Such folders were checked against the manual of GROMACS, and not run.",
     .most_types = COMPOSITION_MOST_TYPES,
     .one_cutoff = true,
+    .pair_name = name_pair,
     .molecules = true,
     .has_law = mf_export_gromacs_has_law,
     .write = write,

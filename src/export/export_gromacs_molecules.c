@@ -122,8 +122,8 @@ static void print_kind(const struct export_job *job, const struct topology_kind 
     fprintf(stream, "\n[ moleculetype ]\n%s %d\n\n[ atoms ]\n", kind->name, kind->exclude);
     for (int bead = 0; bead < kind->beads; bead++) {
         const char *type = model->name[kind->type[bead]];
-        fprintf(stream, "%d %s 1 %.5s %s %d 0.0 %.9g\n", bead + 1, type, kind->name, type, bead + 1,
-                model->mass[kind->type[bead]] * job->units.mass);
+        fprintf(stream, "%d %s 1 %.5s %.5s %d 0.0 %.9g\n", bead + 1, type, kind->name, type,
+                bead + 1, model->mass[kind->type[bead]] * job->units.mass);
     }
     for (int order = 0; order < TOPOLOGY_ORDERS; order++) {
         if (kind->terms[order] > 0)
@@ -151,7 +151,7 @@ static int64_t count_single(const struct export_model *model, int type) {
 /// A single bead is a molecule whose name no kind can have.
 static void print_single(const struct export_job *job, int type, FILE *stream) {
     const char *name = job->model->name[type];
-    fprintf(stream, "\n[ moleculetype ]\nsingle.%s 0\n\n[ atoms ]\n1 %s 1 %.5s %s 1 0.0 %.9g\n",
+    fprintf(stream, "\n[ moleculetype ]\nsingle.%s 0\n\n[ atoms ]\n1 %s 1 %.5s %.5s 1 0.0 %.9g\n",
             name, name, name, name, job->model->mass[type] * job->units.mass);
 }
 

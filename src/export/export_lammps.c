@@ -243,6 +243,9 @@ static void print_system(const struct export_job *job, FILE *stream) {
     fprintf(stream, "\n");
 }
 
+/// A folder whose name has one of these can only be run where it is.
+static const char unquotable[] = "'\"$\n\r";
+
 static void print_input(const struct export_job *job, FILE *stream) {
     const struct export_model *model = job->model;
     fprintf(
@@ -258,10 +261,11 @@ static void print_input(const struct export_job *job, FILE *stream) {
         "variable seed index 12345\n\n",
         model->title[0] ? model->title : "beads", model->equilibrated ? 1000 : 5000,
         job->projected ? "dpd" : "langevin");
-    fprintf(stream,
-            "# in this folder, or where it was written from\n"
-            "if \"$(is_file(data.mesofit)) == 0\" then 'shell cd \"%s\"'\n\n",
-            job->folder);
+    if (job->folder[strcspn(job->folder, unquotable)] == '\0')
+        fprintf(stream,
+                "# in this folder, or where it was written from\n"
+                "if \"$(is_file(data.mesofit)) == 0\" then 'shell cd \"%s\"'\n\n",
+                job->folder);
     print_system(job, stream);
     print_thermostat(job, stream);
     fprintf(stream,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "input/fit_unknowns.h"
 
+#include "base/own_words.h"
 #include "input/fit_base.h"
 
 #include <math.h>
@@ -40,7 +41,8 @@ static void enter_group(struct scene_fitted *fitted, enum topology_order order, 
     if (has_law || fitted->count[order] == MOLECULES_MOST_GROUPS)
         return;
     if (!mf_topology_is_name(name)) {
-        mf_json_fault(from, name, "a group is called by up to %d letters, digits, _ and -",
+        mf_json_fault(from, name,
+                      "a group is called by up to %d letters, digits, _ and -, " OWN_WORDS,
                       TOPOLOGY_NAME_SIZE - 1);
         return;
     }

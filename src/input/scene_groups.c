@@ -3,6 +3,7 @@
 #include "base/memory.h"
 #include "base/names.h"
 #include "base/nearest.h"
+#include "base/own_words.h"
 #include "curves/bonded_table.h"
 #include "input/scene_molecules.h"
 
@@ -86,7 +87,8 @@ static enum status read_known(struct molecules *molecules, int order, struct jso
             mf_json_fault(&groups, name, "there are more than %d groups", MOLECULES_MOST_GROUPS);
             mf_json_has(&groups, name);
         } else if (!mf_topology_is_name(name)) {
-            mf_json_fault(&groups, name, "a group is called by up to %d letters, digits, _ and -",
+            mf_json_fault(&groups, name,
+                          "a group is called by up to %d letters, digits, _ and -, " OWN_WORDS,
                           TOPOLOGY_NAME_SIZE - 1);
             mf_json_has(&groups, name);
         } else {
@@ -113,9 +115,10 @@ static enum status open_group(struct molecules *molecules, struct json_object *o
         if (strcmp(molecules->group[order][g].name, name) == 0)
             return STATUS_OK;
     if (molecules->groups[order] == MOLECULES_MOST_GROUPS || !mf_topology_is_name(name)) {
-        mf_json_fault(object, name,
-                      "there are at most %d groups, called by up to %d letters, digits, _ and -",
-                      MOLECULES_MOST_GROUPS, TOPOLOGY_NAME_SIZE - 1);
+        mf_json_fault(
+            object, name,
+            "there are at most %d groups, called by up to %d letters, digits, _ and -, " OWN_WORDS,
+            MOLECULES_MOST_GROUPS, TOPOLOGY_NAME_SIZE - 1);
         return STATUS_OK;
     }
     TRY(mf_bonded_create(&group->curve, mf_bonded_laws[order][0]));

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "input/scene_memory.h"
 
+#include "base/own_words.h"
+
 #define MEMBER(name) .offset = offsetof(struct scene_memory_mode, name)
 const struct field mf_scene_memory_fields[] = {
     {"time", FIELD_NUMBER, MEMBER(time), .required = true, .minimum = FIELD_ABOVE_ZERO,
@@ -27,8 +29,10 @@ static enum status tabulate(struct scene_law *law, struct json_object *object, c
 
 /// Whether a name can be a part of a file's.
 static bool is_plain(const char *name) {
-    return name[0] && name[strspn(name, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
-                                        "0123456789-_")] == '\0';
+    return name[0] &&
+           name[strspn(name, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                             "0123456789-_")] == '\0' &&
+           !mf_own_words_has(name);
 }
 
 static enum status read_mode(struct scene_memory *memory, struct json_object *object,
@@ -38,7 +42,7 @@ static enum status read_mode(struct scene_memory *memory, struct json_object *ob
         !is_plain(name)) {
         mf_json_fault(
             object, name,
-            "there are at most %d modes, with names of at most %d letters, digits, - or _",
+            "there are at most %d modes, called by up to %d letters, digits, - and _, " OWN_WORDS,
             PAIR_MEMORY_MOST_MODES, SCENE_MEMORY_NAME_SIZE - 1);
         return STATUS_OK;
     }

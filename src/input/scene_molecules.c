@@ -3,6 +3,7 @@
 
 #include "base/memory.h"
 #include "base/nearest.h"
+#include "base/own_words.h"
 #include "input/scene_topology.h"
 #include "io/json_list.h"
 #include "observe/bonded_distribution.h"
@@ -99,7 +100,8 @@ static int find_type(struct reading *reading, struct json_object *object, const 
         if (strcmp(composition->name[type], name) == 0)
             return type;
     if (!mf_composition_is_name(name))
-        mf_json_fault(object, key, "\"%.60s\": a type is called by up to %d letters, digits and _",
+        mf_json_fault(object, key,
+                      "\"%.60s\": a type is called by up to %d letters, digits and _, " OWN_WORDS,
                       name, COMPOSITION_NAME_SIZE - 1);
     else if (composition->types == COMPOSITION_MOST_TYPES)
         mf_json_fault(object, key, "\"%s\" would be a type more than %d", name,
@@ -371,7 +373,8 @@ static enum status read_kinds(struct reading *reading, struct json_object *scene
     for (size_t n = 0; (name = mf_json_key(&object, n)); n++) {
         if (n >= TOPOLOGY_MOST_KINDS || !mf_topology_is_name(name)) {
             mf_json_fault(&object, name,
-                          "there are at most %d kinds, called by up to %d letters, digits, _ and -",
+                          "there are at most %d kinds, called by up to %d letters, digits, _ and "
+                          "-, " OWN_WORDS,
                           TOPOLOGY_MOST_KINDS, TOPOLOGY_NAME_SIZE - 1);
             mf_json_has(&object, name);
         } else {

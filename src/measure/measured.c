@@ -2,6 +2,7 @@
 #include "measure/measured.h"
 
 #include "base/memory.h"
+#include "base/own_words.h"
 #include "base/parallel.h"
 
 #include <math.h>
@@ -35,7 +36,8 @@ static enum status find_composition(const struct mapping *mapping,
         if (!mf_composition_is_name(name))
             return mf_status_fail(STATUS_BAD_INPUT,
                                   "the type of beads \"%s\": a type is called by up to %d letters, "
-                                  "digits and _; give it another name in a map (--map)",
+                                  "digits and _, " OWN_WORDS
+                                  "; give it another name in a map (--map)",
                                   name, COMPOSITION_NAME_SIZE - 1);
         snprintf(composition->name[type], COMPOSITION_NAME_SIZE, "%.*s", COMPOSITION_NAME_SIZE - 1,
                  name);

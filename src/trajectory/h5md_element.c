@@ -27,6 +27,26 @@ static enum status fail(const struct h5md_element *element, const char *what) {
 
 // Opening -----------------------------------------------------------------------------------------
 
+/// A file could name any other of its reader's, which would be taken for coordinates, or a pipe.
+static herr_t refuse(const char *from, const char *group, const char *to, const char *object,
+                     unsigned *access, hid_t how, void *context) {
+    (void)from, (void)group, (void)to, (void)object, (void)access, (void)how, (void)context;
+    return -1;
+}
+
+/// How to open what is in this file: no link is followed into another one.
+static hid_t access_here(hid_t class) {
+    const hid_t access = H5Pcreate(class);
+    H5Pset_elink_cb(access, refuse, NULL);
+    return access;
+}
+
+hid_t mf_h5md_element_group(hid_t place, const char *name) {
+    const hid_t access = access_here(H5P_GROUP_ACCESS), group = H5Gopen(place, name, access);
+    H5Pclose(access);
+    return group;
+}
+
 static bool is_of_numbers(hid_t dataset) {
     const hid_t type = H5Dget_type(dataset);
     const H5T_class_t kind = H5Tget_class(type);
@@ -84,14 +104,31 @@ static void read_offset(hid_t dataset, double *begin) {
     H5Aclose(attribute);
 }
 
+/// Open a dataset whose numbers are in this file, with room for the chunks that a frame is in, so
+/// that each is unpacked once. It is negative if there is none.
+static enum status open_dataset(const struct h5md_element *element, hid_t place, const char *name,
+                                hid_t *dataset) {
+    const hid_t access = access_here(H5P_DATASET_ACCESS);
+    H5Pset_chunk_cache(access, 10007, CHUNKS_IN_MEMORY, 1);
+    *dataset = H5Dopen(place, name, access);
+    H5Pclose(access);
+    if (*dataset < 0)
+        return STATUS_OK;
+    const hid_t how = H5Dget_create_plist(*dataset);
+    const bool here = H5Pget_external_count(how) == 0 && H5Pget_layout(how) != H5D_VIRTUAL;
+    H5Pclose(how);
+    return here ? STATUS_OK : fail(element, "has its numbers in other files, which are not read");
+}
+
 static enum status open_clock(const struct h5md_element *element, hid_t group, const char *name,
                               struct h5md_clock *clock) {
     *clock = (struct h5md_clock){.dataset = -1};
     if (H5Lexists(group, name, H5P_DEFAULT) <= 0)
         return STATUS_OK;
-    const hid_t dataset = H5Dopen(group, name, H5P_DEFAULT);
+    TRY(open_dataset(element, group, name, &clock->dataset));
+    const hid_t dataset = clock->dataset;
     if (dataset < 0)
-        return fail(element, "has a step or time that is no dataset");
+        return fail(element, "has a step or time that is no dataset of this file");
     const hid_t space = H5Dget_space(dataset);
     const int rank = H5Sget_simple_extent_ndims(space);
     const hssize_t count = H5Sget_simple_extent_npoints(space);
@@ -103,10 +140,9 @@ static enum status open_clock(const struct h5md_element *element, hid_t group, c
         status = read_number(element, dataset, &clock->increment);
         read_offset(dataset, &clock->begin);
         H5Dclose(dataset);
-    } else {
-        clock->dataset = dataset;
-        if (rank != 1 || count != (hssize_t)element->frames || !is_of_numbers(dataset))
-            status = fail(element, "has not one step, and one time, for each of its frames");
+        clock->dataset = -1;
+    } else if (rank != 1 || count != (hssize_t)element->frames || !is_of_numbers(dataset)) {
+        status = fail(element, "has not one step, and one time, for each of its frames");
     }
     return status;
 }
@@ -134,21 +170,12 @@ static enum status find_sizes(struct h5md_element *element, uint64_t bytes) {
     return STATUS_OK;
 }
 
-/// Room for the chunks that a frame is in, so that each is unpacked once.
-static hid_t open_dataset(hid_t place, const char *name) {
-    const hid_t access = H5Pcreate(H5P_DATASET_ACCESS);
-    H5Pset_chunk_cache(access, 10007, CHUNKS_IN_MEMORY, 1);
-    const hid_t dataset = H5Dopen(place, name, access);
-    H5Pclose(access);
-    return dataset;
-}
-
 static enum status open_timed(struct h5md_element *element, hid_t group, uint64_t bytes) {
     element->timed = true;
     if (H5Lexists(group, "value", H5P_DEFAULT) > 0)
-        element->value = open_dataset(group, "value");
+        TRY(open_dataset(element, group, "value", &element->value));
     if (element->value < 0)
-        return fail(element, "is a group without a dataset \"value\"");
+        return fail(element, "is a group without a dataset \"value\" of this file");
     TRY(find_sizes(element, bytes));
     TRY(open_clock(element, group, "step", &element->step));
     return open_clock(element, group, "time", &element->time);
@@ -161,16 +188,18 @@ enum status mf_h5md_element_open(struct h5md_element *element, const char *file,
         .file = file, .name = name, .value = -1, .step = {.dataset = -1}, .time = {.dataset = -1}};
     if (H5Lexists(group, name, H5P_DEFAULT) <= 0)
         return STATUS_OK;
-    const hid_t object = H5Oopen(group, name, H5P_DEFAULT);
+    const hid_t access = access_here(H5P_LINK_ACCESS), object = H5Oopen(group, name, access);
+    H5Pclose(access);
     const H5I_type_t kind = object < 0 ? H5I_BADID : H5Iget_type(object);
     element->there = true;
     if (kind == H5I_GROUP)
         status = open_timed(element, object, bytes);
     else if (kind == H5I_DATASET) {
-        element->value = open_dataset(group, name);
-        status = find_sizes(element, bytes);
+        status = open_dataset(element, group, name, &element->value);
+        if (status == STATUS_OK)
+            status = find_sizes(element, bytes);
     } else
-        status = fail(element, "is neither a group nor a dataset");
+        status = fail(element, "is neither a group nor a dataset of this file");
     if (object >= 0)
         H5Oclose(object);
     if (status == STATUS_OK)

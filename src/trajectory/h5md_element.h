@@ -41,6 +41,9 @@ struct h5md_element {
 /// BAD_INPUT with what HDF5 says of its last failure: "file: what: reason".
 enum status mf_h5md_element_fail(const char *file, const char *what);
 
+/// Open a group of the file, and of no other that a link would lead to; negative if there is none.
+hid_t mf_h5md_element_group(hid_t place, const char *name);
+
 /// A type of texts of `size` bytes, in the characters of `type`, as which HDF5 reads those of fixed
 /// length, however long: longer ones are cut. The caller closes it.
 hid_t mf_h5md_element_text_type(hid_t type, size_t size);

@@ -27,7 +27,7 @@ void mf_h5md_file_close(struct h5md_file *h5md) {
 // Which particles ---------------------------------------------------------------------------------
 
 static bool has_positions(hid_t particles, const char *name) {
-    const hid_t group = H5Gopen(particles, name, H5P_DEFAULT);
+    const hid_t group = mf_h5md_element_group(particles, name);
     const bool has = group >= 0 && H5Lexists(group, "position", H5P_DEFAULT) > 0;
     if (group >= 0)
         H5Gclose(group);
@@ -63,7 +63,7 @@ static enum status choose_group(struct h5md_file *h5md, hid_t particles, const c
     list_groups(particles, &groups);
     const bool known = wish && H5Lexists(particles, wish, H5P_DEFAULT) > 0;
     if (groups.count == 0)
-        return fail(file, "no group of \"particles\" has positions");
+        return fail(file, "no group of \"particles\" in this file has positions");
     if (wish && !(known && has_positions(particles, wish)))
         return mf_status_fail(STATUS_BAD_INPUT,
                               "%s: no group of particles with positions is called \"%s\"; there is "
@@ -74,16 +74,16 @@ static enum status choose_group(struct h5md_file *h5md, hid_t particles, const c
                               "%s: there are several groups of particles, %s: --file-group tells "
                               "which",
                               file, groups.names);
-    h5md->group = H5Gopen(particles, wish ? wish : groups.last, H5P_DEFAULT);
-    return h5md->group >= 0 ? STATUS_OK : mf_h5md_element_fail(file, "the group of particles");
+    h5md->group = mf_h5md_element_group(particles, wish ? wish : groups.last);
+    return h5md->group >= 0 ? STATUS_OK : fail(file, "its particles are no group of this file");
 }
 
 static enum status open_group(struct h5md_file *h5md, const char *file, const char *wish) {
     if (H5Lexists(h5md->file, "particles", H5P_DEFAULT) <= 0)
         return fail(file, "it is HDF5 and no H5MD: there is no group \"particles\"");
-    const hid_t particles = H5Gopen(h5md->file, "particles", H5P_DEFAULT);
+    const hid_t particles = mf_h5md_element_group(h5md->file, "particles");
     if (particles < 0)
-        return mf_h5md_element_fail(file, "\"particles\"");
+        return fail(file, "\"particles\" is no group of this file");
     const enum status status = choose_group(h5md, particles, file, wish);
     H5Gclose(particles);
     return status;
@@ -152,9 +152,9 @@ static void read_boundary(hid_t box, bool periodic[3]) {
 static enum status open_box(struct h5md_file *h5md, const char *file) {
     if (H5Lexists(h5md->group, "box", H5P_DEFAULT) <= 0)
         return STATUS_OK;
-    const hid_t box = H5Gopen(h5md->group, "box", H5P_DEFAULT);
+    const hid_t box = mf_h5md_element_group(h5md->group, "box");
     if (box < 0)
-        return fail(file, "\"box\" is no group");
+        return fail(file, "\"box\" is no group of this file");
     read_boundary(box, h5md->periodic);
     const enum status status = mf_h5md_element_open(&h5md->edges, file, box, "edges", h5md->bytes);
     H5Gclose(box);

@@ -288,6 +288,8 @@ static const struct fault mixture_faults[] = {
           "letters"),
     FAULT("one bead of a type", "\"A\": 40", "\"A\": 1",
           "input.json: particles.types.A: 1 is out of range"),
+    FAULT("a name that tables end with", "\"A\": 40", "\"A_history\": 40",
+          "particles.types.A_history", "nor end with _history"),
     FAULT("types and a count", TYPES, TYPES ", \"count\": 81",
           "input.json: particles.count: stands beside \"types\""),
     FAULT("one type and a count", TYPES, "\"types\": {\"A\": 81}, \"count\": 81",

@@ -11,7 +11,9 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 static void run_export(struct run_program_result *result, const char *engine, const char *folder) {
     RUN_PROGRAM(result, "export", "out", "--engine", engine, "-o", folder);
@@ -96,6 +98,59 @@ static void test_title_stays_in_the_line_of_its_comment(void **state) {
     assert_null(strstr(input, "\nshell ls"));
     assert_contains(input, "# soft shell ls: written by mesofit");
     free(input);
+}
+
+static void write_types(struct temporary_folder *folder, const char *types) {
+    char scene[1024];
+    snprintf(scene, sizeof scene,
+             "{\"seed\": 1, \"box\": [3, 3, 3], \"particles\": {\"types\": {%s}}, \"time_step\": "
+             "0.01,\n\"conservative\": {\"law\": \"soft-repulsion\"}, \"measure\": "
+             "{\"equilibration\": 5, \"samples\": 2, \"every\": 2}}\n",
+             types);
+    small_inputs_write(folder, "scene.json", scene, NULL, NULL);
+}
+
+/// Of GROMACS the names of two files, of DL_POLY eight letters of each name.
+static void test_pairs_that_an_engine_would_take_for_one_are_refused(void **state) {
+    static struct run_program_result result;
+    write_types(*state, "\"A\": 20, \"B_C\": 20, \"A_B\": 20, \"C\": 20");
+    assert_int_equal(mkdir("empty", 0777), 0);
+    small_scenes_simulate(&result, "out");
+    assert_refused("out", "gromacs", NULL, "pairs A-B_C and A_B-C by one name, \"A_B_C\"");
+    run_export(&result, "dl_poly", "dl_poly");
+    write_types(*state, "\"LongNameAlpha1\": 40, \"LongNameAlpha2\": 40");
+    small_scenes_simulate(&result, "out");
+    assert_refused("out", "dl_poly", NULL, "by one name, \"LongName LongName\"");
+    run_export(&result, "gromacs", "gromacs");
+    write_types(*state, "\"LongNameAlpha\": 40, \"Short\": 40");
+    small_scenes_simulate(&result, "out");
+    run_export(&result, "dl_poly", "one-long");
+    char *text = temporary_folder_read("one-long/FIELD");
+    assert_contains(text, "\nLongName Short    tab\n");
+    free(text);
+}
+
+/// What LAMMPS cannot have between its quotes does not stand in its input.
+static void test_folders_may_have_quotes_in_their_names(void **state) {
+    static struct run_program_result result;
+    static const char *const folders[] = {"it's", "q\"q", "d$x", "plain one"};
+    const bool runs = system("command -v lmp >/dev/null") == 0;
+    small_scenes_write(*state, small_scenes_dpd, NULL, NULL);
+    small_scenes_simulate(&result, "out");
+    for (int k = 0; k < 4; k++) {
+        char path[64];
+        run_export(&result, "lammps", folders[k]);
+        snprintf(path, sizeof path, "%s/in.mesofit", folders[k]);
+        char *input = temporary_folder_read(path);
+        assert_int_equal(strstr(input, "shell cd") != NULL, k == 3);
+        free(input);
+        assert_int_equal(chdir(folders[k]), 0);
+        if (runs)
+            assert_int_equal(system("lmp -in in.mesofit -var steps 10 -var equilibration 10 -var "
+                                    "every 5 -log none >lmp.out 2>&1"),
+                             0);
+        assert_int_equal(chdir(".."), 0);
+    }
 }
 
 static void test_folders_of_others_are_spared(void **state) {
@@ -183,6 +238,8 @@ int main(void) {
         TEST(test_what_cannot_be_exported_is_one_line),
         TEST(test_friction_with_memory_is_left_out_and_told),
         TEST(test_title_stays_in_the_line_of_its_comment),
+        TEST(test_pairs_that_an_engine_would_take_for_one_are_refused),
+        TEST(test_folders_may_have_quotes_in_their_names),
         TEST(test_folders_of_others_are_spared),
         TEST(test_fit_leaves_where_another_run_begins),
         TEST(test_fit_in_nm_and_ps_is_exported),

@@ -497,13 +497,89 @@ static void test_h5md_is_refused_when_it_is_cut_or_damaged(void **state) {
     close_all();
 }
 
+static void link_elsewhere(hid_t place, const char *name, const char *to) {
+    assert_true(H5Lcreate_external("other.h5", to, place, name, H5P_DEFAULT, H5P_DEFAULT) >= 0);
+}
+
+static void assert_elsewhere(const char *words) {
+    end_file();
+    assert_int_equal(try(&nothing), STATUS_BAD_INPUT);
+    assert_contains(mf_status_message(), words);
+    close_all();
+}
+
+/// A whole file, some of which is read from "a.h5" by links.
+static void make_other(void **state) {
+    char other[1100];
+    begin_file(state);
+    const hid_t group = begin_group("all");
+    put_positions(group, H5T_IEEE_F64LE, true, NULL);
+    put_cube(group, 400);
+    H5Gclose(group);
+    end_file();
+    snprintf(other, sizeof other, "%s/other.h5", ((struct temporary_folder *)*state)->path);
+    assert_int_equal(rename(path, other), 0);
+}
+
+static void test_h5md_is_refused_when_links_lead_into_other_files(void **state) {
+    make_other(state);
+    begin_file(state);
+    hid_t group = begin_group("all");
+    link_elsewhere(group, "position", "/particles/all/position");
+    H5Gclose(group);
+    assert_elsewhere("\"position\" is neither a group nor a dataset of this file");
+    begin_file(state);
+    group = begin_group("all");
+    link_elsewhere(file, "away", "/particles/all/position/value");
+    const hid_t position = make_group(group, "position");
+    assert_true(H5Lcreate_soft("/away", position, "value", H5P_DEFAULT, H5P_DEFAULT) >= 0);
+    H5Gclose(position);
+    H5Gclose(group);
+    assert_elsewhere("\"position\" is a group without a dataset \"value\" of this file");
+    begin_file(state);
+    group = begin_group("all");
+    put_positions(group, H5T_IEEE_F64LE, true, NULL);
+    link_elsewhere(group, "box", "/particles/all/box");
+    H5Gclose(group);
+    assert_elsewhere("\"box\" is no group of this file");
+    begin_file(state);
+    group = H5Gopen(file, "particles", H5P_DEFAULT);
+    link_elsewhere(group, "all", "/particles/all");
+    H5Gclose(group);
+    assert_elsewhere("no group of \"particles\" in this file has positions");
+}
+
+/// Numbers in a pipe, which would wait for a writer, and in the dataset of another file.
+static void test_h5md_is_refused_when_its_numbers_are_elsewhere(void **state) {
+    char pipe[1100];
+    make_other(state);
+    snprintf(pipe, sizeof pipe, "%s/pipe", ((struct temporary_folder *)*state)->path);
+    assert_int_equal(mkfifo(pipe, 0600), 0);
+    for (int virtual = 0; virtual <= 1; virtual ++) {
+        begin_file(state);
+        const hid_t group = begin_group("all"), position = make_group(group, "position");
+        const hid_t space = H5Screate_simple(3, vectors, NULL), how = H5Pcreate(H5P_DATASET_CREATE);
+        if (virtual)
+            H5Pset_virtual(how, space, "other.h5", "/particles/all/position/value", space);
+        else
+            H5Pset_external(how, pipe, 0, H5F_UNLIMITED);
+        H5Dclose(
+            H5Dcreate(position, "value", H5T_IEEE_F64LE, space, H5P_DEFAULT, how, H5P_DEFAULT));
+        H5Pclose(how);
+        H5Sclose(space);
+        H5Gclose(position);
+        H5Gclose(group);
+        assert_elsewhere("\"position\" has its numbers in other files");
+    }
+}
+
 static void test_h5md_is_told_apart_when_it_is_other_hdf5(void **state) {
     snprintf(path, sizeof path, "%s/a.h5", ((struct temporary_folder *)*state)->path);
     H5Fclose(H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT));
     assert_fails(try(&nothing), STATUS_BAD_INPUT, "it is HDF5 and no H5MD");
     begin_file(state);
     end_file();
-    assert_fails(try(&nothing), STATUS_BAD_INPUT, "no group of \"particles\" has positions");
+    assert_fails(try(&nothing), STATUS_BAD_INPUT, "no group of \"particles\" in this file has positions");
 }
 
 static void test_h5md_units_are_products_when_written_as_such(void **state) {
@@ -545,6 +621,8 @@ int main(void) {
         TEST(test_h5md_is_refused_when_its_box_or_steps_do_not_fit),
         TEST(test_h5md_is_refused_when_it_promises_more_than_it_holds),
         TEST(test_h5md_is_refused_when_it_is_cut_or_damaged),
+        TEST(test_h5md_is_refused_when_links_lead_into_other_files),
+        TEST(test_h5md_is_refused_when_its_numbers_are_elsewhere),
         TEST(test_h5md_is_told_apart_when_it_is_other_hdf5),
         TEST(test_h5md_units_are_products_when_written_as_such),
     };
