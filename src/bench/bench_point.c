@@ -134,8 +134,7 @@ static struct motion_plan motion_plan_of(const struct bench_common *common,
     const int64_t lags = (int64_t)fmax(4, rint(window_length * flight(common->setup) / between));
     return (struct motion_plan){.every = plan->every,
                                 .lags = lags,
-                                .origin_every = (int64_t)fmax(1, (double)(lags / ORIGINS)),
-                                .fit_from = 0.5};
+                                .origin_every = (int64_t)fmax(1, (double)(lags / ORIGINS))};
 }
 
 uint64_t mf_bench_point_steps(const struct bench_common *common, const struct bench_point *point) {

@@ -59,7 +59,7 @@ static struct plan make_plan(const struct export_model *model) {
     return (struct plan){
         .etd = {{.r_maximum = reach, .bins = EXPORT_BINS, .times = EXPORT_TIMES},
                 {.every = 2 * every, .origin_every = 5}},
-        .motion = {.every = every, .lags = LAGS, .origin_every = 5, .fit_from = 0.5},
+        .motion = {.every = every, .lags = LAGS, .origin_every = 5},
         .measure = {.equilibration = WINDOWS_BEFORE * LAGS * every,
                     .samples = LAGS / 2 * (int64_t)fmin(fmax(20, windows), 200),
                     .every = 2 * every},

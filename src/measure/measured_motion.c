@@ -68,7 +68,7 @@ static enum status choose_lags(const struct measured_motion *motion,
                               "%s: --window %g: frames are %g ps apart, and a window has 2 to "
                               "100000 intervals",
                               first->file, wish->window, motion->interval);
-    *plan = (struct motion_plan){.every = 1, .lags = USUAL_LAGS, .fit_from = 0.5};
+    *plan = (struct motion_plan){.every = 1, .lags = USUAL_LAGS};
     if (wish->window > 0)
         plan->lags = (int64_t)lags;
     else if (wish->expected > 0 && part < USUAL_LAGS)

@@ -27,18 +27,17 @@
 
 static const double pi = 3.14159265358979323846;
 
+/// Largest speed of the distribution [sqrt(k_B T/m)].
+static const double speed_maximum = 5;
+
 struct settings {
-    double speed_maximum; ///< of the distribution [sqrt(k_B T/m)]
     int64_t bins;
 };
 
 #define MEMBER(name) .offset = offsetof(struct settings, name)
 static const struct field fields[] = {
-    {"speed_maximum", FIELD_NUMBER, MEMBER(speed_maximum), .initial = 5,
-     .minimum = FIELD_ABOVE_ZERO, .maximum = 100, .unit = "thermal speeds",
-     .help = "largest speed of the distribution in speeds.tsv"},
     {"bins", FIELD_INTEGER, MEMBER(bins), .initial = 50, .minimum = 1, .maximum = 10000, .unit = "",
-     .help = "of the distribution of speeds"},
+     .help = "of the distribution of speeds, up to five thermal ones"},
     FIELD_END,
 };
 
@@ -189,7 +188,7 @@ static void add_speeds(struct collisions *c, const struct hard_gas *gas, uint64_
         const double u = sqrt(own * gas->label[k].mass / temperature);
         const double share = maxwell_share(gas->dimensions, u);
         const size_t bin = (size_t)(share * MAXWELL_BINS);
-        const double place = u / c->settings.speed_maximum * (double)c->settings.bins;
+        const double place = u / speed_maximum * (double)c->settings.bins;
         c->maxwell.counts[bin < MAXWELL_BINS ? bin : MAXWELL_BINS - 1]++;
         c->speeds[(size_t)fmin(place, (double)c->settings.bins)]++;
     }
@@ -355,7 +354,7 @@ static enum status write_speeds(const struct collisions *c,
     char path[OUTPUT_PATH_SIZE];
     const size_t bins = (size_t)c->settings.bins;
     const int dimensions = results->setup->box.dimensions;
-    const double width = c->settings.speed_maximum / (double)bins;
+    const double width = speed_maximum / (double)bins;
     const double all = (double)c->series.count * (double)c->particles * width;
     double *values = NULL;
     NEW_ARRAY(values, 4 * bins);

@@ -19,8 +19,6 @@ const struct field mf_motion_plan_fields[] = {
     {"origin_every", FIELD_INTEGER, MEMBER(origin_every), .initial = 10, .minimum = 1,
      .maximum = 1e5, .unit = "samples",
      .help = "between time origins: fewer of them cost less and say little less"},
-    {"fit_from", FIELD_NUMBER, MEMBER(fit_from), .initial = 0.5, .minimum = 0, .maximum = 0.99,
-     .unit = "", .help = "part of the window at which the line on the MSD begins"},
     FIELD_END,
 };
 
@@ -297,9 +295,9 @@ static double read_lag(const struct motion *motion, const double *curve, size_t 
     return curve[lag];
 }
 
+/// The line on the MSD begins at half of the window.
 static size_t fit_first(const struct motion_plan *plan) {
-    const int64_t first = (int64_t)ceil(plan->fit_from * (double)plan->lags);
-    return (size_t)(first < plan->lags ? first : plan->lags - 1); // a line has two points
+    return (size_t)(plan->lags + 1) / 2;
 }
 
 static double lag_time(const struct motion *motion, size_t lag) {

@@ -25,7 +25,6 @@ struct motion_plan {
     int64_t every;        ///< steps between samples
     int64_t lags;         ///< length of the window [samples]
     int64_t origin_every; ///< samples between time origins
-    double fit_from;      ///< where the line on the MSD begins, as a part of the window
 };
 
 extern const struct field mf_motion_plan_fields[];

@@ -27,7 +27,6 @@ static const char *const omega_curves[] = {"bezier", "bspline", "power", NULL};
 /// In the order of enum unknown_base.
 static const char *const potential_bases[] = {"none", "start", "mean-force", "hypernetted-chain",
                                               "auto", NULL};
-static const char *const spacings[] = {"even", "steep", NULL};
 static const char *const omega_bases[] = {"none", "start", NULL};
 
 #define MEMBER(name) .offset = offsetof(struct unknown_parameters, name)
@@ -69,9 +68,6 @@ const struct field mf_inverse_potential_fields[] = {
           "mean-force, -k_B T ln g. "
           "Default: none where \"minimum\" or \"maximum\" is given, else auto",
           6.5, "k_B T_0") // ends at the target's range
-    {"spacing", FIELD_CHOICE, MEMBER(spacing), .choices = spacings, .initial = SPACING_EVEN,
-     .unit = "",
-     .help = "of the coefficients along r; steep: half of them evenly, half where g(r) is steep"},
     FIELD_END,
 };
 

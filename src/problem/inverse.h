@@ -41,10 +41,6 @@ enum { INVERSE_CURVE_BEZIER, INVERSE_CURVE_BSPLINE, INVERSE_CURVE_POWER };
 /// start where the file gives one, else that inversion, in two dimensions −k_B T ln g.
 enum unknown_base { BASE_NONE, BASE_START, BASE_MEAN_FORCE, BASE_HNC, BASE_AUTO };
 
-/// How the coefficients of a potential are spread over its range: evenly, or half of them by how
-/// steep the target's g(r) is.
-enum unknown_spacing { SPACING_EVEN, SPACING_STEEP };
-
 /// Parameters of the formula, in this order everywhere: σ [sqrt(mass/time)], s, r_0 [λ]. Each is a
 /// variable unless it is held fixed.
 enum { INVERSE_SIGMA, INVERSE_EXPONENT, INVERSE_INNER_CUTOFF, INVERSE_PARAMETERS };
@@ -57,7 +53,6 @@ struct unknown_parameters {
     double inner_cutoff, cutoff;      ///< of a friction weight [λ]
     double fixed[INVERSE_PARAMETERS]; ///< of the formula; NaN: to be found
     int base;                         ///< enum unknown_base, as the file says
-    int spacing;                      ///< enum unknown_spacing, of a potential
 };
 
 extern const struct field mf_inverse_potential_fields[], mf_inverse_omega_fields[];

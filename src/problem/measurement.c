@@ -45,8 +45,7 @@ static void set_settings(const struct measurement_setup *setup, double time_step
         *(struct motion_plan *)settings =
             (struct motion_plan){.every = steps_of(targets->motion_interval, time_step),
                                  .lags = lags_of(targets, time_step),
-                                 .origin_every = 5,
-                                 .fit_from = 0.5};
+                                 .origin_every = 5};
     else if (targets->settings[place])
         memcpy(settings, targets->settings[place], observable->settings_size);
 }

@@ -60,23 +60,6 @@ size_t mf_parametrisation_first_point(const struct parametrisation *parametrisat
                                      : 0;
 }
 
-/// The same, but half of the way is that which the target's g(r) goes up and down.
-static void add_steepness(const struct parametrisation *parametrisation, size_t curve,
-                          double *place) {
-    const struct potential_grid *grid = &parametrisation->unknowns.potential;
-    const size_t first = grid->core[curve];
-    const double *g =
-        parametrisation->unknowns.problem->targets.target[TARGET_RDF].value + curve * grid->bins;
-    double whole = 0, way = 0;
-    for (size_t k = first + 1; k < grid->bins; k++)
-        whole += fabs(g[k] - g[k - 1]);
-    for (size_t k = first; k <= grid->bins; k++) {
-        if (k > first && k < grid->bins)
-            way += fabs(g[k] - g[k - 1]);
-        place[k - first] = 0.5 * (place[k - first] + (whole > 0 ? way / whole : place[k - first]));
-    }
-}
-
 void mf_parametrisation_places(const struct parametrisation *parametrisation,
                                enum unknown_kind kind, size_t curve, double *place) {
     const size_t points = mf_unknowns_part(&parametrisation->unknowns, kind, 0).points;
@@ -84,8 +67,6 @@ void mf_parametrisation_places(const struct parametrisation *parametrisation,
     const double *r = mf_unknowns_r(&parametrisation->unknowns, kind) + curve * points;
     for (size_t k = first; k < points; k++)
         place[k - first] = (r[k] - r[first]) / (r[points - 1] - r[first]);
-    if (unknown_of(parametrisation, kind)->parameters.spacing == SPACING_STEEP)
-        add_steepness(parametrisation, curve, place);
 }
 
 static bool is_formula(const struct parametrisation *parametrisation, enum unknown_kind kind) {

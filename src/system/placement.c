@@ -18,10 +18,8 @@ const struct field mf_placement_count_fields[] = {
 const struct field mf_placement_fields[] = {
     {"placement", FIELD_CHOICE, MEMBER(kind), .initial = PLACEMENT_LATTICE, .choices = kinds,
      .unit = "",
-     .help = "simple cubic lattice with jitter, random without overlap, or a file of "
+     .help = "simple cubic lattice, nearly, random without overlap, or a file of "
              "coordinates; molecules grow from there along their bonds"},
-    {"jitter", FIELD_NUMBER, MEMBER(jitter), .initial = 0.05, .minimum = 0, .maximum = 0.5,
-     .unit = "lattice spacings", .help = "lattice: largest random shift along an axis"},
     {"separation", FIELD_NUMBER, MEMBER(separation), .initial = 0.5, .minimum = 0,
      .maximum = DBL_MAX, .unit = "lambda", .help = "random: least distance of any two"},
     {"file", FIELD_FILE, MEMBER(file), .unit = "",

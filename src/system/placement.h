@@ -5,13 +5,16 @@
 #include "base/fields.h"
 #include "system/particles.h"
 
+#define PLACEMENT_JITTER 0.05
+
 enum placement_kind { PLACEMENT_LATTICE, PLACEMENT_RANDOM, PLACEMENT_FILE };
 
 /// How the particles of a scene are placed.
 struct placement {
     int64_t count;
     int kind;          ///< enum placement_kind
-    double jitter;     ///< lattice: largest shift along an axis, as a fraction of the spacing
+    double jitter;     ///< lattice: largest shift along an axis, as a fraction of the spacing;
+                       ///< of a scene PLACEMENT_JITTER
     double separation; ///< random: least distance of any two [λ]
     int speeds;        ///< enum particles_speeds, unless the file has velocities
     char file[FIELD_TEXT_SIZE];

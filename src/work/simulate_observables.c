@@ -9,6 +9,12 @@ static bool is_usual(const struct observable *observable, const struct simulatio
            (observable != &mf_rdf_observable || mf_simulation_range(setup) > 0);
 }
 
+/// What files of earlier versions may say.
+static void refuse_removed(struct json_object *object) {
+    mf_json_refuse(object, "fit_from", "the line begins at half of the window; delete the line");
+    mf_json_refuse(object, "speed_maximum", "it is 5 always; delete the line");
+}
+
 /// Monte Carlo goes through configurations in no time.
 static void check_time(const struct observable *observable, const struct integrator *integrator,
                        struct json_object *root) {
@@ -41,6 +47,7 @@ enum status mf_simulate_observables_read(struct simulate_observables *observable
                 return STATUS_NO_MEMORY;
             mf_json_fields(&object, observable->fields, use->settings);
         }
+        refuse_removed(&object);
         if (object.item)
             mf_json_finish(&object);
         use++;

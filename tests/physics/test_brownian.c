@@ -66,8 +66,7 @@ static void test_motion_of_free_particles_is_exact_at_every_lag(void **state) {
     enum { COUNT = 4, LAGS = 10, WINDOWS = 4000 };
     static const struct brownian_parameters parameters = {.friction = 2.5};
     static const struct { double force[3]; } drift = {{0, 30, 0}};
-    const struct motion_plan plan = {
-        .every = 1, .lags = LAGS, .origin_every = LAGS, .fit_from = 0.5};
+    const struct motion_plan plan = {.every = 1, .lags = LAGS, .origin_every = LAGS};
     const struct measure_plan when = {.equilibration = 1, .samples = 1, .every = LAGS * WINDOWS};
     for (int n = 0; n < 2; n++) {
         struct fluid fluid;

@@ -50,7 +50,7 @@ static const double published = 0.520, published_tolerance = 0.05;
 static void test_diffusion_of_the_ideal_gas_is_that_published(void **state) {
     (void)state;
     struct fluid fluid;
-    const struct motion_plan plan = {.every = 2, .lags = 100, .origin_every = 5, .fit_from = 0.5};
+    const struct motion_plan plan = {.every = 2, .lags = 100, .origin_every = 5};
     const struct measure_plan when = {.equilibration = 300, .samples = 1, .every = 4000};
     make_gas(&fluid, 3000, 10, 0.04);
     const struct motion_summary s = simulate(&fluid, &plan, &when);
@@ -72,7 +72,7 @@ static const double false_alarm_rate = 0.001;
 static void test_velocities_are_those_of_maxwell_when_the_time_step_is_short(void **state) {
     (void)state;
     struct fluid fluid;
-    const struct motion_plan plan = {.every = 10, .lags = 20, .origin_every = 5, .fit_from = 0.5};
+    const struct motion_plan plan = {.every = 10, .lags = 20, .origin_every = 5};
     const struct measure_plan when = {.equilibration = 200, .samples = 1, .every = 8000};
     make_gas(&fluid, 375, 5, 0.01);
     const struct motion_summary s = simulate(&fluid, &plan, &when);

@@ -28,7 +28,7 @@ static void measure(const struct simulation_setup *setup, struct measured *measu
     // 48 τ of a fluid whose velocities remember 0.3 τ: samples at 0.16 τ are correlated, and 24
     // windows overlap.
     const struct measure_plan when = {.equilibration = 150, .samples = 300, .every = 4};
-    const struct motion_plan plan = {.every = 2, .lags = 25, .origin_every = 5, .fit_from = 0.5};
+    const struct motion_plan plan = {.every = 2, .lags = 25, .origin_every = 5};
     struct simulation simulation;
     struct motion motion;
     struct thermodynamics thermodynamics;

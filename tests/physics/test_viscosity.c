@@ -123,8 +123,7 @@ static void test_viscosity_of_a_lennard_jones_liquid_is_the_published_one(void *
 
 static struct motion_summary diffuse(int64_t count, int64_t samples) {
     const struct measure_plan plan = {.equilibration = 2000, .samples = samples, .every = 10};
-    const struct motion_plan motion_plan = {
-        .every = 10, .lags = 60, .origin_every = 5, .fit_from = 0.5};
+    const struct motion_plan motion_plan = {.every = 10, .lags = 60, .origin_every = 5};
     struct fluid fluid;
     struct simulation simulation;
     struct motion motion;

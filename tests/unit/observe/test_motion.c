@@ -14,8 +14,7 @@ enum { PARTICLES = 60, LAGS = 40 };
 /// Of positions of some hundred λ, relative to a step of a hundredth.
 static const double rounding = 1e-9;
 
-static const struct motion_plan plan = {
-    .every = 5, .lags = LAGS, .origin_every = 7, .fit_from = 0.5};
+static const struct motion_plan plan = {.every = 5, .lags = LAGS, .origin_every = 7};
 
 struct curves {
     double msd[LAGS + 1], msd_error[LAGS + 1], vacf[LAGS + 1], vacf_error[LAGS + 1];
@@ -148,15 +147,14 @@ enum { MADE_LAGS = 60 };
 /// τ_c.
 static struct motion_summary of_decay(double h, double msd_slope) {
     double squares[MADE_LAGS + 1], products[MADE_LAGS + 1];
-    struct motion motion = {
-        .plan = {.every = 1, .lags = MADE_LAGS, .origin_every = 1, .fit_from = 0.5},
-        .dimensions = 1,
-        .time_step = h,
-        .blocks = 1,
-        .each = 1,
-        .samples = MADE_LAGS + 1,
-        .squares = squares,
-        .products = products};
+    struct motion motion = {.plan = {.every = 1, .lags = MADE_LAGS, .origin_every = 1},
+                            .dimensions = 1,
+                            .time_step = h,
+                            .blocks = 1,
+                            .each = 1,
+                            .samples = MADE_LAGS + 1,
+                            .squares = squares,
+                            .products = products};
     for (int k = 0; k <= MADE_LAGS; k++) {
         products[k] = exp(-h * k);
         squares[k] = 2 * msd_slope * h * k;

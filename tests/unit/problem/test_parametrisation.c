@@ -40,11 +40,11 @@ static void begin(struct both *both, bool potential, bool omega) {
         .targets = {.bins = {0, 0.1, BINS},
                     .target[TARGET_RDF] = {.count = BINS, .value = both->g}},
         .unknown = {{potential,
-                     {bspline, POTENTIAL_GENES, -20, 80, 0, 0, {0}, BASE_NONE, SPACING_EVEN},
+                     {bspline, POTENTIAL_GENES, -20, 80, 0, 0, {0}, BASE_NONE},
                      {&both->potential},
                      NULL},
                     {omega,
-                     {bspline, WEIGHT_GENES, 0, 5, 0.1, 1.5, {0}, BASE_NONE, SPACING_EVEN},
+                     {bspline, WEIGHT_GENES, 0, 5, 0.1, 1.5, {0}, BASE_NONE},
                      {&both->omega},
                      NULL}},
         .scene = {.temperature = 1},
@@ -131,36 +131,6 @@ static void test_parametrisation_start_falls_from_the_middle_when_no_weight_is_g
 
 /// Without a start of its own a fit begins with the base itself, and a change of coefficients
 /// changes the curve as without a base.
-/// A Bézier curve whose control points fall evenly is 1 − t: it shows where the points lie. They
-/// are half by r, which goes from the first centre above the core to the end of the range, and half
-/// by what g has risen and fallen: here in four bins beyond the core, and nowhere else.
-static void test_parametrisation_steep_spacing_follows_the_target(void **state) {
-    enum { RISE = 4 };
-    struct both both;
-    double curve[MOST_POINTS], variables[POTENTIAL_GENES];
-    (void)state;
-    begin(&both, true, false);
-    mf_parametrisation_clear(&both.parametrisation);
-    for (int k = CORE; k < BINS; k++)
-        both.g[k] = 0.5 * (1 + (k < CORE + RISE ? k - CORE : RISE));
-    both.problem.unknown[UNKNOWN_POTENTIAL].parameters.shape = index_of(mf_shape_find("bezier"));
-    both.problem.unknown[UNKNOWN_POTENTIAL].parameters.minimum = 0;
-    both.problem.unknown[UNKNOWN_POTENTIAL].parameters.maximum = 1;
-    both.problem.unknown[UNKNOWN_POTENTIAL].parameters.spacing = SPACING_STEEP;
-    assert_ok(mf_parametrisation_init(&both.parametrisation, &both.problem));
-    for (int k = 0; k < POTENTIAL_GENES; k++)
-        variables[k] = 1 - (double)k / (POTENTIAL_GENES - 1);
-    mf_parametrisation_curve(&both.parametrisation, UNKNOWN_POTENTIAL, variables, curve);
-    const double range = 0.1 * (BINS - CORE - 0.5); // from the centre of the first bin
-    for (int k = CORE; k < BINS; k++) {
-        const int risen = k < CORE + RISE ? k - CORE : RISE;
-        const double place = 0.5 * (0.1 * (k - CORE) / range + (double)risen / RISE);
-        assert_close(curve[k], 1 - place, 1e-12);
-    }
-    assert_close(curve[BINS], 0, 1e-12);
-    mf_parametrisation_clear(&both.parametrisation);
-}
-
 static void test_parametrisation_adds_coefficients_to_the_base(void **state) {
     (void)state;
     struct both both;
@@ -442,7 +412,6 @@ int main(void) {
         cmocka_unit_test(test_parametrisation_start_is_the_same_alone_and_beside_the_other),
         cmocka_unit_test(test_parametrisation_start_is_clamped_when_it_leaves_the_range),
         cmocka_unit_test(test_parametrisation_start_falls_from_the_middle_when_no_weight_is_given),
-        cmocka_unit_test(test_parametrisation_steep_spacing_follows_the_target),
         cmocka_unit_test(test_parametrisation_adds_coefficients_to_the_base),
         cmocka_unit_test(test_parametrisation_curve_of_a_weight_is_never_negative),
         cmocka_unit_test(
