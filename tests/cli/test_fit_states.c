@@ -126,8 +126,10 @@ static void test_two_densities_find_a_known_potential(void **state) {
 static void test_auto_takes_the_steps_of_imc_when_there_are_several_states(void **state) {
     static const char *const same[] = {"potential.tsv", "potential_history.tsv", "rdf.tsv", NULL};
     char *text;
-    small_inputs_write(*state, "imc.json", run, "\"samples\": 100, \"precision\": 0.008",
-                       "\"samples\": 20, \"precision\": 0.1, \"iterations\": 2");
+    small_inputs_write(*state, "imc.json", run,
+                       "\"replicas\": 4, \"samples\": 100, \"precision\": 0.008",
+                       "\"replicas\": 2, \"equilibration\": 10, \"samples\": 20, "
+                       "\"precision\": 0.1, \"iterations\": 2");
     text = temporary_folder_read("imc.json");
     small_inputs_write(*state, "imc.json", text, "\"equilibration\": 300, \"samples\": 100",
                        "\"equilibration\": 30, \"samples\": 4");
