@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "dynamics/unstable.h"
 
+#include "base/visible.h"
+
 #include <stdio.h>
+
+enum { ADVICE_SIZE = 160 };
 
 /// The largest force that an interaction has now, alone; 0 if that cannot be found.
 static double largest_of(const struct simulation *simulation, const struct interaction_use *use) {
@@ -21,16 +25,25 @@ static double largest_of(const struct simulation *simulation, const struct inter
     return largest;
 }
 
-void mf_unstable_advise(const struct simulation *simulation, char advice[UNSTABLE_ADVICE_SIZE]) {
+static void advise(const struct simulation *simulation, char advice[ADVICE_SIZE]) {
     static const double part = 0.5;
     const double largest = mf_particles_largest_force(&simulation->particles);
-    snprintf(advice, UNSTABLE_ADVICE_SIZE, "lower \"time_step\" or soften the potential");
+    snprintf(advice, ADVICE_SIZE, "lower \"time_step\" or soften the potential");
     for (int k = 1; k < simulation->interactions; k++) {
         const struct interaction_use *use = &simulation->interaction[k];
         if (largest_of(simulation, use) > part * largest)
-            snprintf(advice, UNSTABLE_ADVICE_SIZE,
+            snprintf(advice, ADVICE_SIZE,
                      "most of it from \"%s\", in which particles may have begun far up: weaken it, "
                      "or lower \"time_step\"",
                      use->choice.kind->name);
     }
+}
+
+enum status mf_unstable_fail(const struct simulation *simulation, const char *what) {
+    char advice[ADVICE_SIZE];
+    advise(simulation, advice);
+    return mf_status_fail(STATUS_UNSTABLE, "unstable at step %llu: %s, largest force %.3g; %s",
+                          (unsigned long long)simulation->step, what,
+                          mf_visible_number(mf_particles_largest_force(&simulation->particles)),
+                          advice);
 }

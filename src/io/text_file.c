@@ -62,6 +62,13 @@ static void drop_byte_order_mark(char *text, size_t *length) {
     memmove(text, text + 3, *length + 1);
 }
 
+/// A CR alone ends a line, too: texts of old Macs have no other ends.
+static void end_lines(char *text, size_t length) {
+    for (char *at = text; (at = memchr(at, '\r', length - (size_t)(at - text))); at++)
+        if (at[1] != '\n')
+            *at = '\n';
+}
+
 static enum status check_is_text(const char *file, const char *text, size_t length) {
     if (length == 0)
         return mf_status_fail(STATUS_BAD_INPUT, "%s: the file is empty", file);
@@ -94,6 +101,7 @@ static enum status copy_lent(const char *file, const char *lent, char **text, si
     CHECK(check_is_text(file, lent, bytes));
     NEW_ARRAY(*text, bytes + 1);
     memcpy(*text, lent, bytes + 1);
+    end_lines(*text, bytes);
     *length = bytes;
 done:
     return status;
@@ -114,6 +122,7 @@ enum status mf_text_file_read(const char *file, char **text, size_t *length) {
     CHECK(read_all(stream, file, text, length));
     drop_byte_order_mark(*text, length);
     CHECK(check_is_text(file, *text, *length));
+    end_lines(*text, *length);
 done:
     fclose(stream);
     if (status != STATUS_OK) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "measure/frame_box.h"
 
+#include "base/visible.h"
+
 #include <math.h>
 
 static double product(const double a[3], const double b[3]) {
@@ -54,9 +56,20 @@ enum status mf_frame_box_check_range(const struct frame_box *box,
                           frame->file, frame->number, what, range, half);
 }
 
-void mf_frame_box_places(const struct frame_box *box, const struct trajectory_frame *frame,
-                         int32_t *const place[3]) {
+/// Boxes beyond which a fraction is none (box_fraction): no digit of the place in a box is left.
+static const double most_boxes = 0x1p19;
+
+enum status mf_frame_box_places(const struct frame_box *box, const struct trajectory_frame *frame,
+                                int32_t *const place[3]) {
     for (int i = 0; i < 3; i++)
-        for (size_t k = 0; k < frame->atoms; k++)
-            place[i][k] = box_fraction(product(frame->position[k], box->inverse[i]), 1);
+        for (size_t k = 0; k < frame->atoms; k++) {
+            const double boxes = product(frame->position[k], box->inverse[i]);
+            if (!(fabs(boxes) < most_boxes))
+                return mf_status_fail(STATUS_BAD_INPUT,
+                                      "%s: frame %zu: bead %zu is %.3g boxes away, so that its "
+                                      "place in a box is lost",
+                                      frame->file, frame->number, k + 1, mf_visible_number(boxes));
+            place[i][k] = box_fraction(boxes, 1);
+        }
+    return STATUS_OK;
 }

@@ -37,6 +37,8 @@ enum status mf_frame_box_check_range(const struct frame_box *box,
                                      const struct trajectory_frame *frame, double range,
                                      const char *what) MUST_USE;
 
-/// Fractions of the positions; place[i] has shape [frame->atoms].
-void mf_frame_box_places(const struct frame_box *box, const struct trajectory_frame *frame,
-                         int32_t *const place[3]);
+/// Fractions of the positions; place[i] has shape [frame->atoms]. Fails: BAD_INPUT, naming frame
+/// and bead, if one is so many boxes away that its place in a box is lost. Tested:
+/// test_frame_pairs.
+enum status mf_frame_box_places(const struct frame_box *box, const struct trajectory_frame *frame,
+                                int32_t *const place[3]) MUST_USE;

@@ -131,6 +131,10 @@ enum status mf_measured_begin(struct measured *measured, const struct measured_p
     struct frame_box box;
     *measured = (struct measured){.plan = *plan, .mapping = mapping};
     CHECK(mf_frame_box_find(&box, first));
+    if (mapping->beads < 2)
+        CHECK(mf_status_fail(STATUS_BAD_INPUT,
+                             "%s: there is a single bead, and a measurement is of pairs of them",
+                             first->file));
     CHECK(find_composition(mapping, &measured->pairs.composition));
     CHECK(find_molecules(measured));
     CHECK(take_molecules(measured));
@@ -234,7 +238,7 @@ static enum status look_at(void *context, size_t task, void *result) {
     TRY(mf_frame_box_find(&slot->box, &slot->beads));
     TRY(mf_frame_box_check_range(&slot->box, &slot->beads, measured->pairs.range,
                                  "the range of g(r)"));
-    mf_frame_box_places(&slot->box, &slot->beads, slot->place);
+    TRY(mf_frame_box_places(&slot->box, &slot->beads, slot->place));
     TRY(find_waves(measured, slot));
     return find_pairs(measured, measured->frames + task, slot);
 }

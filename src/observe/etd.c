@@ -238,6 +238,14 @@ size_t mf_etd_complete(const struct etd *etd) {
     return complete < etd->origins ? complete : etd->origins;
 }
 
+uint64_t mf_etd_pairs(const struct etd *etd) {
+    uint64_t pairs = 0;
+    for (size_t block = 0; block < etd->blocks; block++)
+        for (int64_t bin = 0; bin < etd->grid.bins; bin++)
+            pairs += etd->counts[block * etd_cells(etd) + (size_t)bin];
+    return pairs;
+}
+
 /// Add the window that ends with this sample, if one does.
 static void search_window(struct etd *etd) {
     const uint64_t window = (uint64_t)etd->grid.times - 1, every = (uint64_t)etd->plan.origin_every;

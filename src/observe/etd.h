@@ -89,6 +89,9 @@ void mf_etd_clear(struct etd *etd);
 /// Origins whose windows are complete.
 size_t mf_etd_complete(const struct etd *etd);
 
+/// Pairs that began at those origins: without any there is no E.
+uint64_t mf_etd_pairs(const struct etd *etd);
+
 /// The step of the next sample, or INT64_MAX after the last.
 int64_t mf_etd_due(const struct etd *etd);
 

@@ -96,6 +96,18 @@ done:
     return status;
 }
 
+/// Tables without a number are not written, and that is told.
+static enum status judge(const void *state, const struct simulation_setup *setup) {
+    const struct etd *etd = state;
+    (void)setup;
+    return mf_etd_pairs(etd) > 0
+               ? STATUS_OK
+               : mf_status_fail(STATUS_UNCONVERGED,
+                                "there are no escape times: no pair was between %.4g and %.4g at "
+                                "an origin",
+                                etd->grid.r_minimum, etd->grid.r_maximum);
+}
+
 /// etd.tsv and etd_error.tsv: time, then E or its standard error for each bin of r_0, nan where no
 /// pair began; and etd_bins.tsv: r_0, pairs.
 static enum status write(const void *state, const struct observable_results *results) {
@@ -103,6 +115,8 @@ static enum status write(const void *state, const struct observable_results *res
     const struct etd *etd = state;
     double *survival = NULL, *error = NULL;
     uint64_t *pairs = NULL;
+    if (mf_etd_pairs(etd) == 0)
+        return STATUS_OK;
     NEW_ARRAY(survival, etd_cells(etd));
     NEW_ARRAY(error, etd_cells(etd));
     NEW_ARRAY(pairs, (size_t)etd->grid.bins);
@@ -120,13 +134,9 @@ done:
 static void put(const void *state, const struct observable_results *results,
                 struct json_writer *writer) {
     const struct etd *etd = state;
-    uint64_t pairs = 0;
-    for (size_t block = 0; block < etd->blocks; block++)
-        for (int64_t bin = 0; bin < etd->grid.bins; bin++)
-            pairs += etd->counts[block * etd_cells(etd) + (size_t)bin];
     mf_json_begin(writer, "etd");
     mf_json_put_integer(writer, "origins", (int64_t)mf_etd_complete(etd));
-    mf_json_put_integer(writer, "pairs", (int64_t)pairs);
+    mf_json_put_integer(writer, "pairs", (int64_t)mf_etd_pairs(etd));
     mf_json_put_quantity(writer, "interval", "tau", interval(etd, results));
     mf_json_end(writer);
 }
@@ -181,6 +191,7 @@ const struct observable mf_etd_observable = {
     .spans = spans,
     .make_room = make_room,
     .write = write,
+    .judge = judge,
     .put = put,
     .explain = explain,
     .stage = "escape times",

@@ -147,6 +147,10 @@ void mf_rdf_observable_file(const char *folder, const char *name,
              kind);
 }
 
+bool mf_rdf_observable_has(const struct composition *composition, int pair) {
+    return mf_composition_possible_pairs(composition, pair) > 0;
+}
+
 /// rdf.tsv, or in a mixture rdf_A-A.tsv, rdf_A-B.tsv and so on: r, g as the estimator tells it, g
 /// as counted, each with its standard error.
 static enum status write(const void *state, const struct observable_results *results) {
@@ -175,6 +179,8 @@ static enum status write(const void *state, const struct observable_results *res
     for (size_t pair = 0; pair < rdf->pairs; pair++) {
         const size_t first = pair * bins->count;
         size_t count = force ? 5 : 3;
+        if (!mf_rdf_observable_has(&rdf->composition, (int)pair))
+            continue;
         mf_statistics_forget_errors(counted_error + first, bins->count);
         mf_statistics_forget_errors(error, force ? bins->count : 0);
         struct data_column columns[6] = {
@@ -197,6 +203,22 @@ done:
     mf_memory_free(counted);
     mf_memory_free(counted_error);
     return status;
+}
+
+/// A table without a number is not written, and that is told.
+static enum status judge(const void *state, const struct simulation_setup *setup) {
+    const struct rdf *rdf = &((const struct rdf_observed *)state)->counted;
+    char name[COMPOSITION_PAIR_NAME_SIZE];
+    (void)setup;
+    for (int pair = 0; pair < (int)rdf->pairs; pair++) {
+        mf_composition_pair_name(&rdf->composition, pair, name);
+        if (!mf_rdf_observable_has(&rdf->composition, pair))
+            return mf_status_fail(STATUS_UNCONVERGED,
+                                  "there is no pair %s, and so no g(r) of it: a single bead is of "
+                                  "that type",
+                                  name);
+    }
+    return STATUS_OK;
 }
 
 /// Nanoseconds of a pair and sample: to count it, and to see what forces tell.
@@ -281,6 +303,7 @@ const struct observable mf_rdf_observable = {
     .sample = sample,
     .spans = spans,
     .write = write,
+    .judge = judge,
     .explain = explain,
     .stage = "g(r)",
     .targets = targets,

@@ -128,7 +128,8 @@ size_t mf_neighbours_listed(const struct neighbours *neighbours) {
 
 enum status mf_neighbours_sort_and_build(struct neighbours *neighbours,
                                          struct particles *particles) {
-    mf_particles_wrap(particles);
+    if (!mf_particles_wrap(particles))
+        return mf_status_fail(STATUS_UNSTABLE, "a position is nan, or beyond the reach of the box");
     mf_particles_update_fractions(particles);
     mf_neighbours_sort(neighbours, particles);
     mf_particles_permute(particles, neighbours->order);

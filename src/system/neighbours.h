@@ -89,7 +89,8 @@ size_t mf_neighbours_entries(const struct neighbours *neighbours);
 /// Entries without what fills the rows: pairs on a half list, twice as many on a full one.
 size_t mf_neighbours_listed(const struct neighbours *neighbours);
 
-/// Wrap and sort the particles in space, then build the list. Fails: NO_MEMORY.
+/// Wrap and sort the particles in space, then build the list. Fails: NO_MEMORY; UNSTABLE if there
+/// is one that cannot be wrapped.
 enum status mf_neighbours_sort_and_build(struct neighbours *neighbours,
                                          struct particles *particles) MUST_USE;
 

@@ -156,25 +156,34 @@ double mf_particles_density(const struct particles *particles) {
     return (double)particles->count / mf_box_volume(&particles->box);
 }
 
-SIMD_CLONES static void wrap(void *context, size_t begin, size_t end) {
-    struct particles *particles = context;
+/// Boxes beyond which a fraction of the box is none (box_fraction), and their number no integer.
+static const double reach = 0x1p18;
+
+/// How many coordinates are beyond reach, or NaN: these stay as they are.
+SIMD_CLONES static double wrap(const void *context, size_t begin, size_t end) {
+    const struct particles *particles = context;
+    int lost = 0;
     for (int d = 0; d < particles->box.dimensions; d++) {
         const double length = particles->box.length[d];
         double *restrict x = particles->position[d];
         int32_t *restrict image = particles->image[d];
         for (size_t k = begin; k < end; k++) {
-            const double boxes = floor(x[k] / length);
+            const double away = floor(x[k] / length);
+            const bool within = fabs(away) <= reach;
+            const double boxes = within ? away : 0;
             const double inside = x[k] - boxes * length;
             // A tiny negative x rounds to exactly `length`: that is the next box's corner.
-            const double carry = inside >= length ? 1 : 0;
+            const double carry = within && inside >= length ? 1 : 0;
             x[k] = inside - carry * length;
             image[k] += (int32_t)(boxes + carry);
+            lost += !within;
         }
     }
+    return lost;
 }
 
-void mf_particles_wrap(struct particles *particles) {
-    mf_parallel_for(particles->count, particles->threads, wrap, particles);
+bool mf_particles_wrap(struct particles *particles) {
+    return mf_parallel_sum(particles->count, particles->threads, wrap, particles) == 0;
 }
 
 SIMD_CLONES static void update_fractions(void *context, size_t begin, size_t end) {

@@ -111,8 +111,9 @@ double mf_particles_total_mass(const struct particles *particles);
 /// Particles per volume [1/λ^d].
 double mf_particles_density(const struct particles *particles);
 
-/// Put every position into [0, length) and count the boxes crossed.
-void mf_particles_wrap(struct particles *particles);
+/// Put every position into [0, length) and count the boxes crossed. False if one is NaN or more
+/// than 2¹⁸ boxes away: it stays there.
+bool mf_particles_wrap(struct particles *particles);
 
 /// Refresh `fraction`, `kernel_place` and `precise_place` from `position`.
 void mf_particles_update_fractions(struct particles *particles);

@@ -142,8 +142,10 @@ enum status mf_source_line(struct source *source, struct bytes *bytes, bool *the
     source->broken_line = !ended;
     if (memchr(bytes->data + first, '\0', bytes->size - first))
         return mf_source_fail_line(source, "a NUL byte: this is no text");
-    if (bytes->size > first && bytes->data[bytes->size - 1] == '\r')
+    while (bytes->size > first && bytes->data[bytes->size - 1] == '\r')
         bytes->size--;
+    if (memchr(bytes->data + first, '\r', bytes->size - first))
+        return mf_source_fail_line(source, "lines end with CR alone, as on old Macs: convert them");
     bytes->data[bytes->size++] = '\0';
     return STATUS_OK;
 }

@@ -163,11 +163,25 @@ bool mf_trajectory_peek(const struct trajectory *trajectory, struct trajectory_f
     return true;
 }
 
+/// Vectors as formats have them that tell lengths or bounds of a box: lower triangular.
+static enum status check_box(const struct trajectory_frame *frame) {
+    const double(*box)[3] = (const double(*)[3])frame->box;
+    const bool triangular = box[0][1] == 0 && box[0][2] == 0 && box[1][2] == 0;
+    for (int d = 0; d < 3 && triangular; d++)
+        if (box[d][d] < 0)
+            return mf_status_fail(STATUS_BAD_INPUT,
+                                  "%s: frame %zu: edge %d of the box is %.6g nm: it ends before it "
+                                  "begins",
+                                  frame->file, frame->number, d + 1, box[d][d]);
+    return STATUS_OK;
+}
+
 enum status mf_trajectory_decode(const struct trajectory *trajectory,
                                  struct trajectory_frame *frame) {
     frame->step = -1;
     frame->time = NAN;
     TRY(trajectory->format->decode(trajectory, frame));
+    TRY(check_box(frame));
     if (isnan(frame->time) && frame->step >= 0 && trajectory->time_step > 0)
         frame->time = (double)frame->step * trajectory->time_step;
     return STATUS_OK;

@@ -7,6 +7,7 @@
 #include "base/statistics.h"
 #include "mesofit.h"
 #include "observe/kirkwood_buff.h"
+#include "observe/rdf_observable.h"
 #include "work/measure_tables.h"
 
 #include <math.h>
@@ -217,6 +218,8 @@ static void put_rdf(const struct measure_result *result, struct json_writer *wri
     for (int pair = 0;
          composition_is_mixed(composition) && pair < mf_composition_pairs(composition); pair++) {
         char name[COMPOSITION_PAIR_NAME_SIZE], file[COMPOSITION_PAIR_NAME_SIZE + 16];
+        if (!mf_rdf_observable_has(composition, pair))
+            continue;
         mf_composition_pair_name(composition, pair, name);
         snprintf(file, sizeof file, "rdf_%s.tsv", name);
         mf_json_begin(writer, name);

@@ -173,9 +173,14 @@ static void say_motion(struct run *run, const struct units *units) {
     else
         say_diffusion(run, units);
     const struct etd_grid *const grid = &motion->etd.grid;
-    mf_progress_say(&run->progress,
-                    "escape times of pairs from %.4g to %.4g nm, in windows of %.4g ps",
-                    grid->r_minimum, grid->r_maximum, (double)(grid->times - 1) * motion->interval);
+    if (mf_etd_complete(&motion->etd) > 0 && mf_etd_pairs(&motion->etd) == 0)
+        mf_progress_say(&run->progress,
+                        "mesofit: warning: no escape times: no pair was between %.4g and %.4g nm",
+                        grid->r_minimum, grid->r_maximum);
+    else
+        mf_progress_say(
+            &run->progress, "escape times of pairs from %.4g to %.4g nm, in windows of %.4g ps",
+            grid->r_minimum, grid->r_maximum, (double)(grid->times - 1) * motion->interval);
     if (!motion->has_vacf && motion->plan.velocities == MEASURED_VELOCITIES_USUAL)
         mf_progress_say(&run->progress, "no VACF: there are no velocities (--velocities "
                                         "differences makes them of positions)");
@@ -230,6 +235,8 @@ static void say_results(struct run *run, const struct measure_result *result) {
                     measured->pairs.within     ? ", without pairs that molecules exclude"
                     : measured->pairs.molecule ? ", without pairs of one molecule or residue"
                                                : "");
+    if (mf_rdf_observable.judge(&measured->rdf, NULL) != STATUS_OK)
+        mf_progress_say(&run->progress, "mesofit: warning: %s", mf_status_message());
     if (measured->plan.q_maximum > 0)
         mf_progress_say(&run->progress, "S(q) to %.4g 1/nm, of at most %lld waves in a bin",
                         measured->plan.q_maximum, (long long)measured->plan.waves);

@@ -13,7 +13,7 @@ bool mf_measure_tables_have_motion(const struct measure_result *result) {
 
 bool mf_measure_tables_have_etd(const struct measure_result *result) {
     const struct measured_motion *const motion = &result->measured->motion;
-    return motion->begun && mf_etd_complete(&motion->etd) > 0;
+    return motion->begun && mf_etd_pairs(&motion->etd) > 0;
 }
 
 struct simulation_setup mf_measure_tables_setup(const struct measure_result *result) {

@@ -79,6 +79,31 @@ static void test_a_topology_says_what_molecules_are(void **state) {
     results_assert_same("out", "again", (const char *const[]){"bond_lengths.tsv", NULL});
 }
 
+/// Sections of such a text were one long comment.
+static void test_a_topology_may_have_the_lines_of_old_macs(void **state) {
+    static struct run_program_result result;
+    static char text[sizeof topology];
+    write_inputs(*state, NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out", "--quiet");
+    run_program_assert_code(&result, 0);
+    memcpy(text, topology, sizeof text);
+    for (char *at = text; (at = strchr(at, '\n')); at++)
+        *at = '\r';
+    temporary_folder_write(*state, "topol.top", text, strlen(text));
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "mac", "--quiet");
+    run_program_assert_code(&result, 0);
+    results_assert_same("out", "mac", (const char *const[]){"bond_lengths.tsv", "used.json", NULL});
+}
+
+/// It takes beads nowhere, before the first step.
+static void test_a_coefficient_beyond_numbers_is_unstable(void **state) {
+    static struct run_program_result result;
+    write_inputs(*state, "1 2 3 4 5 6 ; the same", "1 2 3 4 5 1e308 ; the same");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out", "--quiet");
+    run_program_assert_code(&result, 1);
+    assert_contains(result.err, "scene.json: unstable at step 0: a position is nan");
+}
+
 static void test_what_is_not_taken_is_told(void **state) {
     static struct run_program_result result;
     write_inputs(*state, "3 4 7 0.8 500", "3 4 1 0.4 500");
@@ -259,6 +284,8 @@ static void test_coordinates_come_with_a_topology(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(test_a_topology_says_what_molecules_are),
+        TEST(test_a_topology_may_have_the_lines_of_old_macs),
+        TEST(test_a_coefficient_beyond_numbers_is_unstable),
         TEST(test_what_is_not_taken_is_told),
         TEST(test_an_angle_without_its_bonds_is_warned_of),
         TEST(test_our_own_export_is_read_again),

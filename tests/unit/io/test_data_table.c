@@ -44,10 +44,9 @@ static void test_data_table_read_finds_rows_when_comments_and_blanks_surround_th
     assert_null(table.values);
 }
 
-static void test_data_table_read_takes_windows_line_ends_when_present(void **state) {
+static void assert_lines(void **state, const char *text) {
     struct data_table table;
-    assert_ok(mf_data_table_read(&table,
-                                 write_text(state, "\xEF\xBB\xBF# r g\r\n1 2\r\n\r\n3 4\r\n"), 2));
+    assert_ok(mf_data_table_read(&table, write_text(state, text), 2));
     assert_int_equal(table.rows, 2);
     assert_int_equal(table.columns, 2);
     assert_identical(table.values[3], 4.0);
@@ -55,6 +54,12 @@ static void test_data_table_read_takes_windows_line_ends_when_present(void **sta
     assert_string_equal(table.header, "r g");
     assert_string_equal(table.comments, "# r g\n");
     mf_data_table_clear(&table);
+}
+
+static void test_data_table_read_takes_line_ends_of_other_systems(void **state) {
+    assert_lines(state, "\xEF\xBB\xBF# r g\r\n1 2\r\n\r\n3 4\r\n");
+    assert_lines(state, "# r g\r1 2\r\r3 4\r");
+    assert_lines(state, "# r g\r1 2\n\r3 4"); // whatever made it
 }
 
 static void test_data_table_read_takes_a_line_of_names_for_the_header(void **state) {
@@ -249,7 +254,7 @@ static void test_data_table_find_knows_columns_by_their_names_without_units(void
 int main(void) {
     const struct CMUnitTest tests[] = {
         IN_FOLDER(test_data_table_read_finds_rows_when_comments_and_blanks_surround_them),
-        IN_FOLDER(test_data_table_read_takes_windows_line_ends_when_present),
+        IN_FOLDER(test_data_table_read_takes_line_ends_of_other_systems),
         IN_FOLDER(test_data_table_read_takes_a_line_of_names_for_the_header),
         IN_FOLDER(test_data_table_read_has_an_empty_header_when_there_is_no_comment),
         IN_FOLDER(test_data_table_read_takes_nan_when_it_stands_beyond_the_wanted_columns),

@@ -55,7 +55,7 @@ static struct system *make_system(const double box[3][3], const struct compositi
     for (int i = 0; i < 3; i++)
         s->place[i] = s->memory[i];
     assert_ok(mf_frame_box_find(&s->box, &s->frame));
-    mf_frame_box_places(&s->box, &s->frame, s->place);
+    assert_ok(mf_frame_box_places(&s->box, &s->frame, s->place));
     s->plan.range = share * mf_frame_box_least_height(&s->box);
     return s;
 }
@@ -166,7 +166,7 @@ static void test_frame_pairs_see_each_other_when_a_corner_is_between(void **stat
             s->position[0][d] = -0.5 * x;
             s->position[1][d] = 0.5 * x + 7 * boxes[b][0][d] - 3 * boxes[b][2][d];
         }
-        mf_frame_box_places(&s->box, &s->frame, s->place);
+        assert_ok(mf_frame_box_places(&s->box, &s->frame, s->place));
         assert_ok(mf_frame_pairs_count(&pairs, &s->plan, &s->box, s->place));
         for (size_t k = 0; k < BINS; k++)
             assert_int_equal(pairs.counts[k], k == (size_t)(0.777 * BINS));
@@ -191,7 +191,7 @@ static void test_frame_pairs_are_those_of_a_lattice_when_it_is_simple_cubic(void
         s->position[k][1] = k / EDGE % EDGE;
         s->position[k][2] = k / EDGE / EDGE;
     }
-    mf_frame_box_places(&s->box, &s->frame, s->place);
+    assert_ok(mf_frame_box_places(&s->box, &s->frame, s->place));
     s->plan.range = 2.5; // bins of 0.05: shells at 1, √2, √3, 2, √5, √6 are inside one each
     s->box.edge[0][0] *= 1 + 1e-6; // and not on an edge
     s->box.edge[1][1] *= 1 + 1e-6;

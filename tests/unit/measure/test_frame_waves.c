@@ -32,7 +32,7 @@ static void scene_init(struct scene *scene, const double box[3][3], uint64_t see
     assert_ok(mf_frame_box_find(&scene->box, &scene->frame));
     for (int i = 0; i < 3; i++)
         scene->place[i] = calloc(BEADS, sizeof *scene->place[i]);
-    mf_frame_box_places(&scene->box, &scene->frame, scene->place);
+    assert_ok(mf_frame_box_places(&scene->box, &scene->frame, scene->place));
 }
 
 static void scene_clear(struct scene *scene) {

@@ -103,6 +103,28 @@ test_particles_wrap_stays_below_the_length_when_position_is_a_tiny_negative(void
     mf_particles_clear(&particles);
 }
 
+/// Before they become numbers of boxes.
+static void test_particles_wrap_leaves_what_is_nowhere(void **state) {
+    static const double nowhere[] = {NAN, INFINITY, -1e300, 5 * 0x1p19};
+    (void)state;
+    struct particles particles;
+    assert_ok(mf_particles_init(&particles, &three, 2));
+    for (int k = 0; k < 4; k++) {
+        particles.position[0][0] = nowhere[k];
+        particles.position[0][1] = -1;
+        particles.image[0][0] = particles.image[0][1] = 7;
+        assert_false(mf_particles_wrap(&particles));
+        assert_memory_equal(&particles.position[0][0], &nowhere[k], sizeof(double));
+        assert_int_equal(particles.image[0][0], 7);
+        assert_identical(particles.position[0][1], 4);
+        assert_int_equal(particles.image[0][1], 6);
+    }
+    particles.position[0][0] = 5 * 0x1p17;
+    assert_true(mf_particles_wrap(&particles));
+    assert_int_equal(particles.image[0][0], 7 + 0x20000);
+    mf_particles_clear(&particles);
+}
+
 /// The difference of fractions is the separation of the nearest images.
 static void
 test_particles_fractions_differ_by_the_nearest_image_when_positions_are_unwrapped(void **state) {
@@ -282,6 +304,7 @@ int main(void) {
         cmocka_unit_test(test_particles_density_is_per_area_when_in_two_dimensions),
         cmocka_unit_test(test_particles_init_fails_when_there_are_too_many),
         cmocka_unit_test(test_particles_wrap_keeps_the_unwrapped_position_when_boxes_are_crossed),
+        cmocka_unit_test(test_particles_wrap_leaves_what_is_nowhere),
         cmocka_unit_test(
             test_particles_wrap_stays_below_the_length_when_position_is_a_tiny_negative),
         cmocka_unit_test(

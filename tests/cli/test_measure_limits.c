@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// `mesofit measure` on what is no box, no line and no place, and on so few beads that tables would
+// have no number.
+#include "shared/results.h"
+#include "shared/run_program.h"
+#include "shared/small_inputs.h"
+#include "shared/testing.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { FRAMES = 3, TEXT_SIZE = 1 << 16 };
+
+static struct run_program_result result;
+
+/// A dump of atoms at k/10 nm along the diagonal, which stay; `bounds` are those of each axis.
+static void write_dump(struct temporary_folder *folder, const char *bounds, int atoms,
+                       const char *first_x, const char *first_type) {
+    char text[TEXT_SIZE] = "";
+    size_t length = 0;
+    for (int t = 0; t < FRAMES; t++) {
+        length += (size_t)snprintf(
+            text + length, TEXT_SIZE - length,
+            "ITEM: TIMESTEP\n%d\nITEM: NUMBER OF ATOMS\n%d\nITEM: BOX BOUNDS pp pp pp\n%s\n%s\n%s\n"
+            "ITEM: ATOMS id element x y z\n",
+            t, atoms, bounds, "0 3", "0 3");
+        for (int k = 0; k < atoms; k++) {
+            char x[32];
+            snprintf(x, sizeof x, "%g", 0.1 * k);
+            length += (size_t)snprintf(text + length, TEXT_SIZE - length, "%d %s %s %g %g\n", k + 1,
+                                       k ? "B" : first_type, k ? x : first_x, 0.1 * k, 0.1 * k);
+        }
+    }
+    temporary_folder_write(folder, "a.dump", text, length);
+}
+
+static void run(void) {
+    RUN_PROGRAM(&result, "measure", "a.dump", "--file-units", "nano", "--file-time-step", "0.1",
+                "--range", "1", "-o", "out");
+}
+
+static void assert_refused(const char *words) {
+    run();
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err, words);
+    assert_false(temporary_folder_exists("out/summary.json"));
+}
+
+static void test_boxes_and_places_that_are_none_are_refused(void **state) {
+    write_dump(*state, "3 0", 20, "0", "B");
+    assert_refused("a.dump: frame 0: edge 1 of the box is -3 nm");
+    write_dump(*state, "0 3", 20, "1e300", "B");
+    assert_refused("a.dump: frame 0: bead 1 is 3.33e+299 boxes away");
+    write_dump(*state, "0 3", 20, "9e7", "B"); // of 2^19 boxes 5.7e7 are too many
+    assert_refused("boxes away, so that its place in a box is lost");
+    write_dump(*state, "0 3", 20, "-3e5", "B");
+    run();
+    run_program_assert_code(&result, 0);
+}
+
+static void test_lines_of_old_macs_are_refused(void **state) {
+    write_dump(*state, "0 3", 20, "0", "B");
+    char *text = temporary_folder_read("a.dump");
+    for (char *at = text; (at = strchr(at, '\n')); at++)
+        *at = '\r';
+    temporary_folder_write(*state, "a.dump", text, strlen(text));
+    free(text);
+    assert_refused("a.dump:1: frame 0: lines end with CR alone");
+}
+
+static void test_tables_without_a_number_are_not_written(void **state) {
+    write_dump(*state, "0 3", 1, "0", "B");
+    assert_refused("a.dump: there is a single bead");
+    write_dump(*state, "0 3", 20, "0", "A");
+    small_inputs_write(*state, "map.json",
+                       "{\"beads\": {\"A\": {\"first\": 1, \"last\": 1, \"size\": 1}, "
+                       "\"B\": {\"first\": 2, \"last\": 20, \"size\": 1}}}\n",
+                       NULL, NULL);
+    RUN_PROGRAM(&result, "measure", "a.dump", "--file-units", "nano", "--file-time-step", "0.1",
+                "--range", "1", "--map", "map.json", "-o", "mixed");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.err, "warning: there is no pair A-A, and so no g(r) of it");
+    assert_false(temporary_folder_exists("mixed/rdf_A-A.tsv"));
+    assert_true(temporary_folder_exists("mixed/rdf_A-B.tsv"));
+    char *target = temporary_folder_read("mixed/target.json");
+    assert_null(strstr(target, "A-A"));
+    assert_contains(target, "rdf_B-B.tsv");
+    free(target);
+    write_dump(*state, "0 30", 2, "15", "B"); // far apart
+    run();
+    run_program_assert_code(&result, 0);
+    assert_contains(result.err, "warning: no escape times: no pair was between");
+    assert_false(temporary_folder_exists("out/etd.tsv"));
+    target = temporary_folder_read("out/target.json");
+    assert_null(strstr(target, "etd"));
+    free(target);
+}
+
+#define TEST(name)                                                                                 \
+    cmocka_unit_test_setup_teardown(name, small_inputs_enter_without_gnuplot, small_inputs_leave)
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        TEST(test_boxes_and_places_that_are_none_are_refused),
+        TEST(test_lines_of_old_macs_are_refused),
+        TEST(test_tables_without_a_number_are_not_written),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
