@@ -41,13 +41,37 @@ static void check_estimator(const struct fit_file *fit, struct json_object *meth
                       "\"force\" knows the forces of pairs alone, not \"interactions\"");
 }
 
+static bool knows(const struct inverse_method *method, const char *key) {
+    for (const struct inverse_table *table = method->tables; table->fields; table++)
+        for (const struct field *field = table->fields; field->name; field++)
+            if (strcmp(field->name, key) == 0)
+                return true;
+    return false;
+}
+
 /// What files of earlier versions may say.
-static void refuse_removed(struct json_object *method) {
-    mf_json_refuse(method, "asynchronous",
-                   "candidates are measured by rounds alone; delete the line");
-    mf_json_refuse(method, "regularisation",
-                   "the step is as smooth as the noise asks; delete the line");
-    mf_json_refuse(method, "strength", "it is chosen from the noise; delete the line");
+static void refuse_removed(const struct inverse_method *method, struct json_object *object) {
+    static const char usual[] = "what was its default is taken always; delete the line";
+    static const char *const removed[][2] = {
+        {"asynchronous", "candidates are measured by rounds alone; delete the line"},
+        {"regularisation", "the step is as smooth as the noise asks; delete the line"},
+        {"strength", "it is chosen from the noise; delete the line"},
+        {"islands", "all of a population breed with all; delete the line"},
+        {"migration", "all of a population breed with all; delete the line"},
+        {"common_noise", "each candidate has random numbers of its own; delete the line"},
+        {"restarts", "delete the line, and begin again with another \"seed\""},
+        {"remeasurements", usual},
+        {"mutated_genes", usual},
+        {"additive", usual},
+        {"crossover", usual},
+        {"crossover_exponent", usual},
+        {"mutation", usual},
+        {"remeasured", usual},
+        {"depth", usual},
+    };
+    for (size_t k = 0; k < sizeof removed / sizeof *removed; k++)
+        if (!knows(method, removed[k][0]))
+            mf_json_refuse(object, removed[k][0], removed[k][1]);
 }
 
 static enum status read_method(struct fit_file *fit, struct json_object *root) {
@@ -70,7 +94,7 @@ static enum status read_method(struct fit_file *fit, struct json_object *root) {
     for (const struct inverse_table *table = fit->method->tables; table->fields; table++)
         mf_json_fields(&object, table->fields, (char *)fit->method_parameters + table->offset);
     check_estimator(fit, &object);
-    refuse_removed(&object);
+    refuse_removed(fit->method, &object);
     mf_json_finish(&object);
     return STATUS_OK;
 }

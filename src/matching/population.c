@@ -38,8 +38,6 @@ const struct field mf_population_fields[] = {
 const struct field mf_population_round_fields[] = {
     {"warm_start", FIELD_CHOICE, MEMBER(warm_start), .choices = mf_population_no_or_yes,
      .initial = 0, .unit = "", .help = "begin where the best simulation of the last round ended"},
-    {"common_noise", FIELD_CHOICE, MEMBER(common_noise), .choices = mf_population_no_or_yes,
-     .initial = 0, .unit = "", .help = "the same random numbers for all candidates of a round"},
     FIELD_END,
 };
 
@@ -207,7 +205,7 @@ static void take(struct population *population, size_t index, const struct evalu
     memcpy(population->best_position, end, mf_population_coordinates(population) * sizeof *end);
 }
 
-/// Equal candidates of a round are measurements of their own, also with common noise.
+/// How many candidates of a round before one are the same.
 static uint32_t copies_before(const struct optimiser_round *round, size_t variables, size_t index) {
     uint32_t copies = 0;
     for (size_t k = 0; k < index; k++)
@@ -216,14 +214,9 @@ static uint32_t copies_before(const struct optimiser_round *round, size_t variab
     return copies;
 }
 
-static uint64_t seed_of(const struct population *population, const struct optimiser_round *round,
-                        size_t index) {
-    const uint32_t number =
-        population->parameters.common_noise
-            ? copies_before(round, population->parametrisation->variables, index)
-            : (uint32_t)index;
+static uint64_t seed_of(const struct population *population, size_t index) {
     return mf_rng_child_seed(population->parametrisation->unknowns.problem->seed, RNG_EVALUATION,
-                             (uint32_t)population->totals.rounds, number);
+                             (uint32_t)population->totals.rounds, (uint32_t)index);
 }
 
 /// What a simulation of a candidate leaves.
@@ -249,7 +242,7 @@ static enum status measure_one(void *context, size_t task, void *memory) {
     const size_t index = work->index[task];
     const struct population_task one = {
         .parameters = &population->parameters.evaluate,
-        .seed = seed_of(population, work->round, index),
+        .seed = seed_of(population, index),
         .discard_above = work->discard_above,
         .threads = work->threads,
         .features = population->features + index * population->surrogate.features,

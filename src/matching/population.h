@@ -14,7 +14,7 @@ enum { POPULATION_MOST = 1024 }; ///< in a round
 /// every method of the kind INVERSE_MATCHING.
 struct population_parameters {
     struct evaluate_parameters evaluate;
-    int warm_start, common_noise; ///< 0: no
+    int warm_start; ///< 0: no
 };
 
 /// Of struct population_parameters: of every simulation, and of rounds of them. "racing" stands

@@ -12,8 +12,6 @@
 // of the variance among a round's errors that the noise of their measurement explains is smoothed
 // over rounds; above a half of it the population grows, below a quarter it shrinks back: its mean
 // then sees what no single candidate shows.
-//
-// Restarts with twice the population: A. Auger and N. Hansen, CEC 2005, 1769 ("IPOP").
 #include "optimise/cmaes.h"
 
 #include "base/rng.h"
@@ -30,9 +28,7 @@ const struct field mf_cmaes_fields[] = {
     {"step", FIELD_NUMBER, MEMBER(step), .initial = 0.3, .minimum = FIELD_ABOVE_ZERO, .maximum = 1,
      .unit = "", .help = "first standard deviation, as a fraction of the range"},
     {"rounds", FIELD_INTEGER, MEMBER(rounds), .initial = 500, .minimum = 1, .maximum = 1e6,
-     .unit = "", .help = "after which it ends, over all restarts"},
-    {"restarts", FIELD_INTEGER, MEMBER(restarts), .initial = 0, .minimum = 0, .maximum = 6,
-     .unit = "", .help = "from new places with twice the population, once errors stand still"},
+     .unit = "", .help = "after which it ends"},
     {"tolerance", FIELD_NUMBER, MEMBER(tolerance), .initial = 1e-12, .minimum = 0,
      .maximum = DBL_MAX, .unit = "error", .help = "within which errors stand still"},
     FIELD_END,
@@ -59,13 +55,11 @@ struct state {
     double *history;   ///< least errors of the last rounds, a ring, shape [most_history]
     uint64_t sampled;  ///< the round whose candidates these are, counted from 1; 0: none yet
     struct progress {
-        uint64_t rounds;        ///< told
-        uint64_t descents;      ///< ended
-        uint64_t history_count; ///< of this descent
-        double population;      ///< of this descent, not yet rounded
-        double noise;           ///< smoothed share of noise among errors
-        double record_error;    ///< of the best candidate, or, with noise, of the best descent
-        double median;          ///< of the last round
+        uint64_t rounds; ///< told
+        uint64_t history_count;
+        double population;   ///< not yet rounded
+        double noise;        ///< smoothed share of noise among errors
+        double record_error; ///< of the best candidate
         double discard_above;
         int64_t noisy, over, settled, known;
     } progress;
@@ -101,32 +95,12 @@ static void destroy(void *memory) {
     *state = (struct state){0};
 }
 
-/// Of a number of candidates, as many as a round may have.
-static size_t limit(const struct state *state, size_t candidates) {
-    const size_t most = state->space.most;
-    return most > 0 && candidates > most ? most : candidates;
-}
-
-static size_t descent_population(const struct state *state) {
-    return limit(state, usual_population(&state->parameters, state->space.variables)
-                            << state->progress.descents);
-}
-
 /// Numbers of the strategy, which no checkpoint keeps since they follow from the population.
 static void follow_population(struct state *state) {
     if (state->strategy.population == (size_t)state->progress.population)
         return;
     state->strategy.population = (size_t)state->progress.population;
     mf_cmaes_strategy_set(&state->strategy, state->space.variables);
-}
-
-/// Begin a descent; the mean is to be set.
-static void begin_descent(struct state *state) {
-    struct progress *p = &state->progress;
-    p->population = (double)descent_population(state);
-    p->history_count = 0;
-    p->noise = 0;
-    mf_cmaes_begin(&state->distribution, state->parameters.step);
 }
 
 /// This round's candidates: a function of the distribution, the seed and the round, so no
@@ -163,7 +137,9 @@ static enum status create(void *memory, const struct optimiser_space *space,
     state->space.start = NULL;
     const size_t usual = usual_population(&state->parameters, space->variables);
     CHECK(mf_optimiser_check_round(space, usual));
-    state->most = limit(state, MOST_GROWTH * (usual << state->parameters.restarts));
+    state->most = MOST_GROWTH * usual;
+    if (space->most > 0 && state->most > space->most)
+        state->most = space->most;
     NEW_ARRAY(state->strategy.weights, state->most);
     NEW_ARRAY(state->steps, state->most * space->variables);
     NEW_ARRAY(state->variables, state->most * space->variables);
@@ -172,7 +148,8 @@ static enum status create(void *memory, const struct optimiser_space *space,
     NEW_ARRAY(state->history, most_history(state));
     CHECK(mf_cmaes_init(&state->distribution, space->variables));
     state->progress.record_error = state->progress.discard_above = HUGE_VAL;
-    begin_descent(state);
+    state->progress.population = (double)usual;
+    mf_cmaes_begin(&state->distribution, state->parameters.step);
     for (size_t k = 0; k < space->variables; k++)
         state->distribution.mean[k] = mf_optimiser_start(space, k);
 done:
@@ -213,10 +190,9 @@ static void watch_noise(struct state *state, const double *variances) {
 
 static void react_to_noise(struct state *state) {
     struct progress *p = &state->progress;
-    const double usual = (double)descent_population(state);
+    const double usual = (double)usual_population(&state->parameters, state->space.variables);
     if (p->noise > noise_grows)
-        p->population =
-            fmin(p->population * growth, fmin(MOST_GROWTH * usual, (double)state->most));
+        p->population = fmin(p->population * growth, (double)state->most);
     else if (p->noise < noise_shrinks)
         p->population = fmax(p->population / growth, usual);
 }
@@ -238,13 +214,12 @@ static void mean_variables(const struct state *state, double *variables) {
             optimiser_variable(&state->space, mf_optimiser_reflect(state->distribution.mean[k]));
 }
 
-/// The least error of the round, the median, and the one above which a candidate changes nothing;
-/// sorts the errors.
+/// The least error of the round, and the one above which a candidate changes nothing; sorts the
+/// errors.
 static void survey(struct state *state) {
     struct progress *p = &state->progress;
     const struct cmaes_strategy *s = &state->strategy;
     qsort(state->errors, s->population, sizeof(double), compare_numbers);
-    p->median = state->errors[s->population / 2];
     p->discard_above = state->errors[s->parents - 1];
     state->history[p->history_count++ % most_history(state)] = state->errors[0];
 }
@@ -284,37 +259,12 @@ static bool is_degenerate(const struct state *state) {
     return widest(state) < 1e-12 || mf_cmaes_axis_ratio(&state->distribution) > 1e7;
 }
 
-/// With noise the record is the mean of the descent whose last errors were lowest.
-static void keep_descent(struct state *state) {
-    struct progress *p = &state->progress;
-    if (!p->noisy || (p->descents > 0 && p->median >= p->record_error))
-        return;
-    p->record_error = p->median;
-    mean_variables(state, state->record);
-}
-
-/// A new descent from anywhere.
-static void restart(struct state *state) {
-    struct rng_sequence random = mf_rng_sequence_begin(state->space.seed, RNG_INITIAL,
-                                                       (uint32_t)++state->progress.descents, 0);
-    begin_descent(state);
-    for (size_t k = 0; k < state->space.variables; k++)
-        state->distribution.mean[k] = mf_rng_sequence_uniform(&random);
-}
-
 /// What follows a round, whose errors are sorted.
 static void go_on(struct state *state) {
     struct progress *p = &state->progress;
-    const bool ended = stands_still(state) || is_degenerate(state);
-    if (ended)
-        keep_descent(state);
-    p->settled = ended && p->descents >= (uint64_t)state->parameters.restarts;
+    p->settled = stands_still(state) || is_degenerate(state);
     p->over = ++p->rounds >= (uint64_t)state->parameters.rounds || p->settled;
-    if (p->over)
-        return;
-    if (ended)
-        restart(state);
-    else
+    if (!p->over)
         react_to_noise(state);
 }
 
@@ -347,8 +297,7 @@ static bool incumbent(const void *memory, double *variables) {
     const struct progress *p = &state->progress;
     if (!p->known)
         return false;
-    const bool former = p->descents > 0 && p->record_error <= p->median;
-    if (p->noisy && !former)
+    if (p->noisy)
         mean_variables(state, variables);
     else
         memcpy(variables, state->record, state->space.variables * sizeof *variables);

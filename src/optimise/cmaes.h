@@ -34,7 +34,7 @@ struct cmaes_distribution {
     size_t variables;
     struct cmaes_moments {
         double sigma;
-        uint64_t updates;    ///< since the beginning of the descent
+        uint64_t updates;    ///< since the beginning
         uint64_t decomposed; ///< of them when axes and lengths were made
     } moments;
     double *mean;                    ///< shape [variables]
@@ -50,7 +50,7 @@ struct cmaes_distribution {
 enum status mf_cmaes_init(struct cmaes_distribution *distribution, size_t variables) MUST_USE;
 void mf_cmaes_clear(struct cmaes_distribution *distribution);
 
-/// Begin a descent: covariance 1, paths 0. The mean is the caller's to set.
+/// Begin: covariance 1, paths 0. The mean is the caller's to set.
 void mf_cmaes_begin(struct cmaes_distribution *distribution, double sigma);
 
 /// A step y = B D z of individual (round, row), so that its candidate is mean + σ y.

@@ -9,8 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const crossovers[] = {"one-point", "two-point", "blend", NULL};
-static const char *const mutations[] = {"scale", "correlated", "walk", NULL};
+static const char *const crossovers[] = {"one-point", "blend", NULL};
+static const char *const mutations[] = {"scale", "walk", NULL};
 static const char *const initials[] = {"walks", "uniform", NULL};
 
 #define MEMBER(name) .offset = offsetof(struct genetic_parameters, name)
@@ -27,21 +27,13 @@ const struct field mf_genetic_fields[] = {
      .help = "probability that a child is mutated"},
     {"mutation_kind", FIELD_CHOICE, MEMBER(mutation_kind), .choices = mutations,
      .initial = GENETIC_WALK, .unit = "",
-     .help = "scale: single genes; correlated: a smooth bump over neighbouring genes; walk: a "
-             "smooth random walk, as long as the survivors differ"},
-    {"mutated_genes", FIELD_NUMBER, MEMBER(mutated_genes), .initial = 0.1, PROBABILITY,
-     .help =
-         "probability of each gene of a mutated child to be scaled by 1/2 to 2; width of a bump"},
-    {"additive", FIELD_NUMBER, MEMBER(additive), .initial = 0.1, PROBABILITY,
-     .help =
-         "share of scaled genes to which a normal number of a tenth of the range is added instead"},
+     .help = "scale: one gene in ten by 1/2 to 2; walk: a smooth random walk, as long as the "
+             "survivors differ"},
     {"tournament_size", FIELD_INTEGER, MEMBER(tournament_size), .initial = 8, .minimum = 1,
      .maximum = GENETIC_LARGEST_TOURNAMENT, .unit = "",
      .help = "individuals drawn for a tournament"},
     {"tournament_probability", FIELD_NUMBER, MEMBER(tournament_probability), .initial = 0.75,
      PROBABILITY, .help = "with which the best wins; else the second best, and so on"},
-    {"remeasurements", FIELD_INTEGER, MEMBER(remeasurements), .initial = 2, .minimum = 1,
-     .maximum = 1000, .unit = "", .help = "fresh measurements before the elite is replaced"},
     {"initial", FIELD_CHOICE, MEMBER(initial), .choices = initials, .initial = GENETIC_WALKS,
      .unit = "",
      .help = "first generation: random walks from where the fit begins, or genes uniform in their "
@@ -51,10 +43,6 @@ const struct field mf_genetic_fields[] = {
     {"patience", FIELD_INTEGER, MEMBER(patience), .initial = 10, .minimum = 0, .maximum = 1e6,
      .unit = "",
      .help = "generations without a better elite, after which it has settled; 0: never"},
-    {"islands", FIELD_INTEGER, MEMBER(islands), .initial = 1, .minimum = 1, .maximum = 1000,
-     .unit = "", .help = "parts of the population that breed alone"},
-    {"migration", FIELD_INTEGER, MEMBER(migration), .initial = 5, .minimum = 1, .maximum = 1e6,
-     .unit = "", .help = "every so many generations all islands breed with all"},
     {"generations", FIELD_INTEGER, MEMBER(generations), .initial = 21, .minimum = 1, .maximum = 1e6,
      .unit = "", .help = "after which the fit ends"},
     FIELD_END,
@@ -119,18 +107,14 @@ enum status mf_genetic_init(struct genetic *genetic, const struct genetic_parame
     p.genes = (int64_t)space->variables;
     p.gene_minimum = space->minimum;
     p.gene_maximum = space->maximum;
-    if (2 * p.islands > p.population)
-        return mf_status_fail(STATUS_BAD_INPUT,
-                              "\"islands\": %lld of a population of %lld: each needs two",
-                              (long long)p.islands, (long long)p.population);
     *genetic = (struct genetic){.parameters = p,
                                 .seed = space->seed,
                                 .rows = p.population,
                                 .blocks = space->blocks > 0 ? space->blocks : 1,
                                 .median = HUGE_VAL,
                                 .elite_error = GENETIC_FAILED};
-    NEW_ARRAY(genetic->population, (size_t)((p.population + p.remeasurements) * p.genes));
-    NEW_ARRAY(genetic->parent, (size_t)(2 * (p.population + p.remeasurements + 1)));
+    NEW_ARRAY(genetic->population, (size_t)((p.population + GENETIC_REMEASUREMENTS) * p.genes));
+    NEW_ARRAY(genetic->parent, (size_t)(2 * (p.population + GENETIC_REMEASUREMENTS + 1)));
     // Children come in pairs: one place more for the last of an odd population.
     NEW_ARRAY(genetic->offspring, total_genes(genetic) + (size_t)p.genes);
     NEW_ARRAY(genetic->ranked, (size_t)p.population);
@@ -179,34 +163,12 @@ bool mf_genetic_offer(struct genetic *genetic, const double *genes, double error
     return true;
 }
 
-/// First individual of an island: couples of children stay together.
-static int64_t shore(const struct genetic_parameters *p, int64_t island) {
-    return island == p->islands ? p->population
-                                : 2 * ((p->population + 1) / 2 * island / p->islands);
-}
-
-/// Rows from which the parents of a couple of children are drawn.
-struct parents {
-    int64_t first, count;
-};
-
-static struct parents parents_of(const struct genetic *genetic, int64_t child) {
-    const struct genetic_parameters *p = &genetic->parameters;
-    int64_t island = 0;
-    if (p->islands <= 1 || genetic->generation % (uint64_t)p->migration == 0)
-        return (struct parents){0, genetic->rows};
-    while (shore(p, island + 1) <= child)
-        island++;
-    return (struct parents){shore(p, island), shore(p, island + 1) - shore(p, island)};
-}
-
 /// A copy of the winner of a tournament. Returns its number.
-static uint64_t copy_winner(const struct genetic *genetic, struct parents parents,
-                            const double *errors, double *child, struct rng_sequence *random) {
+static uint64_t copy_winner(const struct genetic *genetic, const double *errors, double *child,
+                            struct rng_sequence *random) {
     const struct genetic_parameters *p = &genetic->parameters;
-    const int64_t winner = parents.first + mf_genetic_tournament(errors + parents.first,
-                                                                 parents.count, p->tournament_size,
-                                                                 p->tournament_probability, random);
+    const int64_t winner = mf_genetic_tournament(errors, genetic->rows, p->tournament_size,
+                                                 p->tournament_probability, random);
     memcpy(child, mf_genetic_individual(genetic, winner), (size_t)p->genes * sizeof *child);
     return genetic->measured + (uint64_t)winner + 1;
 }
@@ -259,11 +221,10 @@ void mf_genetic_next_generation(struct genetic *genetic, const double *errors) {
     for (int64_t pair = 0; pair < p->population; pair += 2) {
         struct rng_sequence random = mf_rng_sequence_begin(genetic->seed, RNG_SELECTION,
                                                            genetic->generation, (uint32_t)pair);
-        const struct parents parents = parents_of(genetic, pair);
         double *first = genetic->offspring + pair * p->genes, *second = first + p->genes;
         uint64_t *parent = genetic->parent + 2 * pair; // of both children
-        parent[0] = copy_winner(genetic, parents, errors, first, &random);
-        parent[2] = copy_winner(genetic, parents, errors, second, &random);
+        parent[0] = copy_winner(genetic, errors, first, &random);
+        parent[2] = copy_winner(genetic, errors, second, &random);
         parent[1] = parent[3] = 0;
         if (mf_rng_sequence_uniform(&random) < p->crossover) {
             mf_genetic_recombine(first, second, p, &random);

@@ -19,9 +19,12 @@
 
 #define GENETIC_FAILED OPTIMISER_FAILED
 
-enum genetic_crossover_kind { GENETIC_ONE_POINT, GENETIC_TWO_POINT, GENETIC_BLEND };
-enum genetic_mutation_kind { GENETIC_SCALE, GENETIC_CORRELATED, GENETIC_WALK };
+enum genetic_crossover_kind { GENETIC_ONE_POINT, GENETIC_BLEND };
+enum genetic_mutation_kind { GENETIC_SCALE, GENETIC_WALK };
 enum genetic_initial_kind { GENETIC_WALKS, GENETIC_UNIFORM };
+
+/// Fresh measurements of a challenger before it replaces the elite.
+enum { GENETIC_REMEASUREMENTS = 2 };
 
 struct genetic_parameters {
     int64_t population;                ///< individuals
@@ -31,17 +34,12 @@ struct genetic_parameters {
     int crossover_kind;
     double mutation; ///< probability that a child is mutated
     int mutation_kind;
-    double mutated_genes;          ///< probability for each of its genes then
-    double additive;               ///< share of mutations that add instead of scaling
     int64_t tournament_size;       ///< individuals drawn for a tournament
     double tournament_probability; ///< with which the best of those left wins
-    int64_t remeasurements;        ///< of a challenger before it replaces the elite
     int64_t generations;
-    int initial;       ///< enum genetic_initial_kind: the first generation
-    double step;       ///< rms of a walk of the first generation, as a fraction of the range
-    int64_t patience;  ///< generations without a better elite after which it has settled; 0: never
-    int64_t islands;   ///< parts of the population that breed alone, but for every
-    int64_t migration; ///< so many generations, when all breed with all
+    int initial;      ///< enum genetic_initial_kind: the first generation
+    double step;      ///< rms of a walk of the first generation, as a fraction of the range
+    int64_t patience; ///< generations without a better elite after which it has settled; 0: never
 };
 
 struct genetic {
@@ -49,8 +47,8 @@ struct genetic {
     uint64_t seed;
     uint32_t generation; ///< of `population`, from 0
     int64_t rows; ///< individuals of `population`: more than its number when a challenger follows
-    /// shape [rows, genes], room for population + remeasurements; individual 0 is the elite once
-    /// there is one
+    /// shape [rows, genes], room for a challenger's behind the population; individual 0 is the
+    /// elite once there is one
     double *population;
     /// shape [room, 2]: whose child each is, as numbers of individuals in the order in which they
     /// were measured, from 1; 0: nobody's. The elite, and copies of a challenger, have the one that
@@ -74,7 +72,7 @@ struct genetic {
 /// First generation: genes uniform in their range, or the start and random walks from it; blocks of
 /// one gene, which are no curve, are uniform in any case. Of `space` it takes variables, range,
 /// seed, blocks and the start, which becomes individual 0; without one walks are about the middle.
-/// Fails: NO_MEMORY; BAD_INPUT if an island has no couple.
+/// Fails: NO_MEMORY.
 enum status mf_genetic_init(struct genetic *genetic, const struct genetic_parameters *parameters,
                             const struct optimiser_space *space) MUST_USE;
 void mf_genetic_clear(struct genetic *genetic);
@@ -90,9 +88,7 @@ void mf_genetic_remeasure_elite(struct genetic *genetic, double error);
 bool mf_genetic_offer(struct genetic *genetic, const double *genes, double error, double measured);
 
 /// Replace the population by the offspring of all rows; individual 0 becomes the elite. Genes that
-/// left their range are reflected into it. With islands parents are of the same island, and what
-/// follows the population has children in generations of migration alone (R. Tanese, Proc. 3rd Int.
-/// Conf. Genetic Algorithms, 434 (1989)). Tested: test_genetic.
+/// left their range are reflected into it. Tested: test_genetic.
 /// @param[in] errors  shape [rows]
 void mf_genetic_next_generation(struct genetic *genetic, const double *errors);
 
@@ -121,10 +117,6 @@ void mf_genetic_recombine(double *a, double *b, const struct genetic_parameters 
 /// Exchange the genes beyond one random point of two individuals, in place.
 void mf_genetic_crossover(double *a, double *b, int64_t genes, struct rng_sequence *random);
 
-/// Exchange the genes between two random points, in place.
-void mf_genetic_crossover_two_points(double *a, double *b, int64_t genes,
-                                     struct rng_sequence *random);
-
 /// Blend two curves along their genes without a step:
 ///   a_k ← w_k a_k + (1 − w_k) b_k,  b_k the other way round,  w_k = 1/(1 + exp((k − c)/s)),
 /// c uniform along the genes and s uniform up to an eighth of their number. One-point crossover is
@@ -147,20 +139,12 @@ void mf_genetic_mutate_walk(double *genes, const struct genetic *genetic,
 /// A child mutates with probability `mutation`, in the way that `mutation_kind` names.
 void mf_genetic_mutate(double *genes, const struct genetic *genetic, struct rng_sequence *random);
 
-/// Each gene, with probability `mutated_genes`, is scaled by 2^u, u uniform in (−1, 1), which has
-/// no drift; or, in a share `additive` of cases, a normal number of a tenth of the range is added,
-/// since a scale alone never crosses zero.
+/// Each gene, with some probability, is scaled by 2^u, u uniform in (−1, 1), which has no drift;
+/// or, in a share `additive` of cases, a normal number of a tenth of the range is added, since a
+/// scale alone never crosses zero.
 ///
-/// The thesis's rate of 0.1, taken for every gene of every child, moves 10 of 100 genes each time:
-/// the individuals then never come closer to each other (measured: diversity grows over 15
-/// generations).
+/// The thesis's rate of 0.1 for a gene, taken for every gene of every child, moves 10 of 100 genes
+/// each time: the individuals then never come closer to each other (measured: diversity grows over
+/// 15 generations).
 void mf_genetic_mutate_scale(double *genes, const struct genetic_parameters *parameters,
-                             struct rng_sequence *random);
-
-/// A smooth bump is added: range · 0.1 z · 2^(−6u) · exp(−((k − c)/s)²/2), z normal, u uniform in
-/// (0, 1), c uniform along the genes, s half of `mutated_genes` of their number, at least a half.
-/// Neighbours move together, as those of a smooth curve must. Steps over six octaves, as in
-/// H. Mühlenbein and D. Schlierkamp-Voosen, Evol. Comput. 1, 25 (1993), explore at first and refine
-/// in the end.
-void mf_genetic_mutate_correlated(double *genes, const struct genetic_parameters *parameters,
-                                  struct rng_sequence *random);
+                             double probability, double additive, struct rng_sequence *random);

@@ -34,20 +34,6 @@ void mf_genetic_crossover(double *a, double *b, int64_t genes, struct rng_sequen
         exchange(&a[k], &b[k]);
 }
 
-void mf_genetic_crossover_two_points(double *a, double *b, int64_t genes,
-                                     struct rng_sequence *random) {
-    if (genes < 2)
-        return;
-    // Two different places before genes. So the last gene stays: to exchange a stretch that ends
-    // with it gives the same two children as to exchange all the rest.
-    const int64_t first = mf_rng_sequence_below(random, (uint32_t)genes);
-    const int64_t other = mf_rng_sequence_below(random, (uint32_t)(genes - 1));
-    const int64_t second = other < first ? other : other + 1;
-    const int64_t begin = first < second ? first : second, end = first + second - begin;
-    for (int64_t k = begin; k < end; k++)
-        exchange(&a[k], &b[k]);
-}
-
 void mf_genetic_blend(double *a, double *b, int64_t genes, struct rng_sequence *random) {
     const double centre = (double)genes * mf_rng_sequence_uniform(random) - 0.5;
     const double width = (double)genes / 8 * mf_rng_sequence_uniform(random);
@@ -65,9 +51,6 @@ void mf_genetic_recombine(double *a, double *b, const struct genetic_parameters 
     case GENETIC_ONE_POINT:
         mf_genetic_crossover(a, b, parameters->genes, random);
         break;
-    case GENETIC_TWO_POINT:
-        mf_genetic_crossover_two_points(a, b, parameters->genes, random);
-        break;
     case GENETIC_BLEND:
         mf_genetic_blend(a, b, parameters->genes, random);
         break;
@@ -81,37 +64,24 @@ static double normal(double u, double v) {
     return pair[0];
 }
 
-/// Largest usual step of what is added, as a share of the range.
-static const double added = 0.1;
+/// Of a child that is mutated by scaling: probability of each gene, and share of those to which is
+/// added instead, and how much usually at most, as a share of the range.
+static const double mutated_genes = 0.1, additive_share = 0.1, added = 0.1;
 
 /// Least spread that steps are taken from, as a share of the range.
 static const double least_spread = 1e-4;
 
 void mf_genetic_mutate_scale(double *genes, const struct genetic_parameters *parameters,
-                             struct rng_sequence *random) {
+                             double probability, double additive, struct rng_sequence *random) {
     const double range = parameters->gene_maximum - parameters->gene_minimum;
     for (int64_t k = 0; k < parameters->genes; k++) {
-        if (mf_rng_sequence_uniform(random) >= parameters->mutated_genes)
+        if (mf_rng_sequence_uniform(random) >= probability)
             continue;
         const double u = mf_rng_sequence_uniform(random), v = mf_rng_sequence_uniform(random);
-        if (mf_rng_sequence_uniform(random) < parameters->additive)
+        if (mf_rng_sequence_uniform(random) < additive)
             genes[k] += added * range * normal(u, v);
         else
             genes[k] *= exp2(2 * u - 1);
-    }
-}
-
-void mf_genetic_mutate_correlated(double *genes, const struct genetic_parameters *parameters,
-                                  struct rng_sequence *random) {
-    const double count = (double)parameters->genes;
-    const double range = parameters->gene_maximum - parameters->gene_minimum;
-    const double u = mf_rng_sequence_uniform(random), v = mf_rng_sequence_uniform(random);
-    const double height = range * added * normal(u, v) * exp2(-6 * mf_rng_sequence_uniform(random));
-    const double centre = count * mf_rng_sequence_uniform(random) - 0.5;
-    const double width = fmax(0.5, 0.5 * parameters->mutated_genes * count);
-    for (int64_t k = 0; k < parameters->genes; k++) {
-        const double away = ((double)k - centre) / width;
-        genes[k] += height * exp(-0.5 * away * away);
     }
 }
 
@@ -160,10 +130,7 @@ void mf_genetic_mutate(double *genes, const struct genetic *genetic, struct rng_
         return;
     switch ((enum genetic_mutation_kind)parameters->mutation_kind) {
     case GENETIC_SCALE:
-        mf_genetic_mutate_scale(genes, parameters, random);
-        break;
-    case GENETIC_CORRELATED:
-        mf_genetic_mutate_correlated(genes, parameters, random);
+        mf_genetic_mutate_scale(genes, parameters, mutated_genes, additive_share, random);
         break;
     case GENETIC_WALK:
         mf_genetic_mutate_walk(genes, genetic, random);

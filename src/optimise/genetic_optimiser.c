@@ -12,7 +12,7 @@
 
 struct state {
     struct genetic genetic;
-    double *errors;     ///< shape [population + remeasurements]: scratch
+    double *errors;     ///< shape [population + GENETIC_REMEASUREMENTS]: scratch
     double *challenger; ///< shape [genes]: scratch
 };
 
@@ -37,8 +37,8 @@ static enum status create(void *memory, const struct optimiser_space *space,
     struct optimiser_space inside = *space;
     double *start = NULL;
     CHECK(mf_optimiser_check_space(space));
-    CHECK(mf_optimiser_check_round(space, (size_t)(p->population + p->remeasurements)));
-    NEW_ARRAY(state->errors, (size_t)(p->population + p->remeasurements));
+    CHECK(mf_optimiser_check_round(space, (size_t)(p->population + GENETIC_REMEASUREMENTS)));
+    NEW_ARRAY(state->errors, (size_t)(p->population + GENETIC_REMEASUREMENTS));
     NEW_ARRAY(state->challenger, space->variables);
     NEW_ARRAY(start, space->variables);
     for (size_t k = 0; space->start && k < space->variables; k++)
@@ -88,11 +88,10 @@ static enum status ask(void *memory, struct optimiser_round *round) {
 
 /// Offer the challenger the place of the elite for the mean of its fresh measurements.
 static void judge_challenger(struct genetic *genetic, const double *fresh) {
-    const int64_t count = genetic->parameters.remeasurements;
     double mean = 0;
-    for (int64_t k = 0; k < count; k++)
-        mean += fresh[k] / (double)count;
-    mf_genetic_offer(genetic, last_challenger(genetic), mean, (double)count);
+    for (int k = 0; k < GENETIC_REMEASUREMENTS; k++)
+        mean += fresh[k] / GENETIC_REMEASUREMENTS;
+    mf_genetic_offer(genetic, last_challenger(genetic), mean, GENETIC_REMEASUREMENTS);
 }
 
 static bool is_elite(const struct genetic *genetic, int64_t row) {
@@ -121,7 +120,7 @@ static void add_challenger(struct state *state, uint64_t number) {
     struct genetic *genetic = &state->genetic;
     const int64_t population = genetic->parameters.population;
     const size_t genes = (size_t)genetic->parameters.genes;
-    genetic->rows = population + genetic->parameters.remeasurements;
+    genetic->rows = population + GENETIC_REMEASUREMENTS;
     for (int64_t k = population; k < genetic->rows; k++) {
         memcpy(genetic->population + (size_t)k * genes, state->challenger, genes * sizeof(double));
         genetic->parent[2 * k] = number;
@@ -221,14 +220,15 @@ static size_t spans(void *memory, struct memory_span *span) {
     span[n++] = (struct memory_span){&genetic->generation, sizeof genetic->generation};
     span[n++] = (struct memory_span){&genetic->rows, sizeof genetic->rows};
     span[n++] = (struct memory_span){genetic->population,
-                                     (size_t)(p->population + p->remeasurements) * row};
+                                     (size_t)(p->population + GENETIC_REMEASUREMENTS) * row};
     span[n++] = (struct memory_span){genetic->elite, row};
     span[n++] = (struct memory_span){&genetic->elite_error, sizeof genetic->elite_error};
     span[n++] = (struct memory_span){&genetic->elite_measured, sizeof genetic->elite_measured};
     span[n++] = (struct memory_span){genetic->spread, genetic->blocks * sizeof *genetic->spread};
     span[n++] = (struct memory_span){&genetic->measured, sizeof genetic->measured};
-    span[n++] = (struct memory_span){genetic->parent, (size_t)(p->population + p->remeasurements) *
-                                                          2 * sizeof *genetic->parent};
+    span[n++] =
+        (struct memory_span){genetic->parent, (size_t)(p->population + GENETIC_REMEASUREMENTS) * 2 *
+                                                  sizeof *genetic->parent};
     span[n++] = (struct memory_span){&genetic->elite_since, sizeof genetic->elite_since};
     return n;
 }

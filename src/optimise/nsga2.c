@@ -15,18 +15,14 @@ const struct field mf_nsga2_fields[] = {
      .maximum = 10000, .unit = "", .help = "after which the fit ends"},
     {"spread", FIELD_NUMBER, MEMBER(spread), .initial = 0.1, .minimum = 0, .maximum = 1, .unit = "",
      .help = "of the first population's genes about the start; 0: they are anywhere"},
-    {"crossover", FIELD_NUMBER, MEMBER(crossover), .initial = 0.9, .minimum = 0, .maximum = 1,
-     .unit = "", .help = "probability of crossover of two parents"},
-    {"crossover_exponent", FIELD_NUMBER, MEMBER(crossover_exponent), .initial = 15, .minimum = 0,
-     .maximum = 1000, .unit = "", .help = "larger: children nearer to their parents"},
-    {"mutation", FIELD_NUMBER, MEMBER(mutation), .initial = 1, .minimum = 0, .maximum = 1000,
-     .unit = "genes", .help = "of a child that mutate, on average"},
     {"mutation_exponent", FIELD_NUMBER, MEMBER(mutation_exponent), .initial = 20, .minimum = 0,
      .maximum = 1000, .unit = "", .help = "larger: smaller mutations"},
-    {"remeasured", FIELD_NUMBER, MEMBER(remeasured), .initial = 0.25, .minimum = 0, .maximum = 1,
-     .unit = "", .help = "part of the parents that every generation measures again"},
     FIELD_END,
 };
+
+/// Probability of crossover of two parents, and its exponent; genes of a child that mutate, on
+/// average; part of the parents that every generation measures again.
+static const double crossover = 0.9, crossover_exponent = 15, mutation = 1, remeasured = 0.25;
 
 /// Widths of the first population about the start: from this part of `spread` to all of it.
 static const double least_spread = 0.1;
@@ -139,7 +135,7 @@ static bool is_twin(const struct nsga2 *nsga2, const double *child) {
 static void mutate(const struct nsga2 *nsga2, double *child, struct rng_sequence *random) {
     const struct nsga2_parameters *p = &nsga2->parameters;
     for (size_t n = 0; n < nsga2->genes; n++)
-        if (mf_rng_sequence_uniform(random) * (double)nsga2->genes < p->mutation)
+        if (mf_rng_sequence_uniform(random) * (double)nsga2->genes < mutation)
             child[n] = mf_nsga2_mutate(child[n], p->mutation_exponent, random);
     if (!is_twin(nsga2, child))
         return;
@@ -148,7 +144,6 @@ static void mutate(const struct nsga2 *nsga2, double *child, struct rng_sequence
 }
 
 static void make_children(struct nsga2 *nsga2) {
-    const struct nsga2_parameters *p = &nsga2->parameters;
     for (size_t k = 0; k < nsga2->population; k += 2) {
         struct rng_sequence random = mf_rng_sequence_begin(nsga2->seed, RNG_SELECTION,
                                                            nsga2->progress.generation, (uint32_t)k);
@@ -156,8 +151,8 @@ static void make_children(struct nsga2 *nsga2) {
         double *a = row(nsga2, nsga2->population + k), *b = a + nsga2->genes;
         copy_winner(nsga2, a, &random);
         copy_winner(nsga2, b, &random);
-        if (mf_rng_sequence_uniform(&random) < p->crossover)
-            mf_nsga2_cross(a, b, nsga2->genes, p->crossover_exponent, &random);
+        if (mf_rng_sequence_uniform(&random) < crossover)
+            mf_nsga2_cross(a, b, nsga2->genes, crossover_exponent, &random);
         mutate(nsga2, a, &random);
         mutate(nsga2, b, &random);
     }
@@ -187,7 +182,7 @@ static size_t least_measured(const struct nsga2 *nsga2) {
 }
 
 static void choose_again(struct nsga2 *nsga2) {
-    const size_t most = (size_t)ceil(nsga2->parameters.remeasured * (double)nsga2->population);
+    const size_t most = (size_t)ceil(remeasured * (double)nsga2->population);
     nsga2->progress.again = 0;
     while (nsga2->progress.again < most) {
         const size_t parent = least_measured(nsga2);

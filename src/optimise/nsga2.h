@@ -16,10 +16,8 @@
 
 struct nsga2_parameters {
     int64_t population, generations;
-    double spread;                        ///< of the first population about the start
-    double crossover, crossover_exponent; ///< its probability, and eta of SBX
-    double mutation, mutation_exponent;   ///< expected genes of a child, and its eta
-    double remeasured;                    ///< part of the population, in every round
+    double spread;            ///< of the first population about the start
+    double mutation_exponent; ///< eta of polynomial mutation
 };
 
 extern const struct field mf_nsga2_fields[];

@@ -131,7 +131,7 @@ double mf_optimiser_start(const struct optimiser_space *space, size_t variable);
 struct cmaes_parameters {
     int64_t population;
     double step;
-    int64_t rounds, restarts;
+    int64_t rounds;
     double tolerance;
 };
 struct nlopt_parameters {

@@ -16,8 +16,6 @@ const struct field mf_programming_fields[] = {
     {"nodes", FIELD_INTEGER, MEMBER(nodes), .initial = 12, .minimum = 1,
      .maximum = PROGRAMMING_MOST_NODES, .unit = "",
      .help = "of a formula at most: each constant, r, operator, power and exp is one"},
-    {"depth", FIELD_INTEGER, MEMBER(depth), .initial = 7, .minimum = 1, .maximum = 30, .unit = "",
-     .help = "levels of a formula at most"},
     {"islands", FIELD_INTEGER, MEMBER(islands), .initial = 8, .minimum = 1,
      .maximum = PROGRAMMING_MOST_ISLANDS, .unit = "", .help = "groups of formulas that rarely mix"},
     {"rounds", FIELD_INTEGER, MEMBER(rounds), .initial = 12, .minimum = 1, .maximum = 10000,
@@ -26,6 +24,9 @@ const struct field mf_programming_fields[] = {
      .unit = "", .help = "formulas that an island breeds in a round"},
     FIELD_END,
 };
+
+/// Levels of a formula.
+enum { MOST_DEPTH = 7 };
 
 /// Steps of the fit of a child's constants, from the best of so many starts; of those whose error
 /// is then this multiple of what is kept at least; and of the members of a front. Measured: of
@@ -136,7 +137,7 @@ static bool is_allowed(const struct programming_parameters *parameters,
     for (int k = 0; k < child->length; k++)
         depends = depends || child->node[k].kind == EXPRESSION_DISTANCE;
     return depends && child->length <= parameters->nodes &&
-           mf_expression_depth(child) <= parameters->depth;
+           mf_expression_depth(child) <= MOST_DEPTH;
 }
 
 /// Whether a formula has no pole between the points.

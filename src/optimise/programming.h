@@ -38,7 +38,7 @@ struct programming_points {
 enum { PROGRAMMING_MOST_NODES = 30, PROGRAMMING_KEPT = 16, PROGRAMMING_MOST_ISLANDS = 64 };
 
 struct programming_parameters {
-    int64_t nodes, depth, islands, rounds, children;
+    int64_t nodes, islands, rounds, children;
 };
 
 extern const struct field mf_programming_fields[]; ///< of struct programming_parameters

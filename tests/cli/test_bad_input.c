@@ -267,6 +267,14 @@ static const struct fault run_faults[] = {
     FAULT("a method of an earlier version", "\"imc\"", "\"joint-imc\"",
           "input.json: method.name: \"joint-imc\" is of an earlier version: write \"imc\", which "
           "fits one state or several"),
+    FAULT(
+        "a constant of an earlier version", "\"samples\": 8", "\"samples\": 8, \"depth\": 7",
+        "input.json: method.depth: unknown key: what was its default is taken always; delete the"),
+    FAULT("islands of an earlier version",
+          "{\"name\": \"imc\", \"replicas\": 2, \"equilibration\": 1, \"samples\": 8,\n"
+          "             \"every\": 1, \"iterations\": 1}",
+          "{\"name\": \"genetic\", \"islands\": 2}",
+          "input.json: method.islands: unknown key: all of a population breed with all; delete"),
 };
 
 #define TYPES "\"types\": {\"A\": 40, \"B\": 41}"

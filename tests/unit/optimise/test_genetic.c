@@ -9,7 +9,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { GENES = 10, REMEASUREMENTS = 2 };
+enum { GENES = 10 };
 
 static const struct genetic_parameters usual = {
     .population = 100,
@@ -18,8 +18,6 @@ static const struct genetic_parameters usual = {
     .gene_maximum = 6.5,
     .crossover = 0.91,
     .mutation = 1,
-    .mutated_genes = 0.1,
-    .additive = 0.1,
     .tournament_size = 8,
     .tournament_probability = 0.75,
     .generations = 60,
@@ -68,13 +66,14 @@ static void step(struct genetic *genetic, struct problem *problem, double *error
         if (errors[k] < errors[best])
             best = k;
     double fresh = 0;
-    for (int k = 0; k < REMEASUREMENTS; k++)
-        fresh += measure(problem, mf_genetic_individual(genetic, best)) / REMEASUREMENTS;
+    for (int k = 0; k < GENETIC_REMEASUREMENTS; k++)
+        fresh += measure(problem, mf_genetic_individual(genetic, best)) / GENETIC_REMEASUREMENTS;
     const double before = genetic->elite_error;
     if (has_elite)
         mf_genetic_remeasure_elite(genetic, errors[0]);
     if (errors[best] < before)
-        mf_genetic_offer(genetic, mf_genetic_individual(genetic, best), fresh, REMEASUREMENTS);
+        mf_genetic_offer(genetic, mf_genetic_individual(genetic, best), fresh,
+                         GENETIC_REMEASUREMENTS);
     mf_genetic_next_generation(genetic, errors);
 }
 
@@ -182,49 +181,12 @@ static void test_genetic_next_generation_fills_any_population(void **state) {
     }
 }
 
-/// The island of an individual, by the definition: a fourth of a population of eight.
-static int island_of(int64_t individual) {
-    return (int)individual / 2;
-}
-
-/// Without mutation children are copies of their parents: of their own island, but for every third
-/// generation, in which the best of all, in the first island, is somewhere else, too.
-static void test_genetic_islands_breed_alone_but_for_migrations(void **state) {
-    static const double errors[8] = {1, 2, 3, 4, 5, 6, 7, 8};
-    struct genetic_parameters parameters = usual;
-    struct genetic genetic;
-    (void)state;
-    parameters.population = 8;
-    parameters.crossover = parameters.mutation = 0;
-    parameters.islands = 4;
-    parameters.migration = 3;
-    assert_ok(begin(&genetic, &parameters, 3));
-    for (int generation = 1; generation <= 6; generation++) {
-        double before[8 * GENES];
-        int strangers = 0;
-        for (int k = 0; k < 8 * GENES; k++)
-            before[k] = genetic.population[k] = (double)(k / GENES) / 4; // each its own
-        mf_genetic_next_generation(&genetic, errors);
-        for (int64_t child = 0; child < 8; child++) {
-            int64_t parent = 0;
-            while (!is_identical(before[parent * GENES], genetic.population[child * GENES]))
-                parent++;
-            strangers += island_of(parent) != island_of(child);
-        }
-        assert_true(generation % 3 == 0 ? strangers > 0 : strangers == 0);
-    }
-    mf_genetic_clear(&genetic);
-    parameters.islands = 5; // one without a couple
-    assert_fails(begin(&genetic, &parameters, 3), STATUS_BAD_INPUT, "islands");
-}
-
 static void test_genetic_genes_stay_in_their_range(void **state) {
     struct genetic_parameters parameters = usual;
     struct genetic genetic;
     (void)state;
     parameters.gene_minimum = 3;
     parameters.gene_maximum = 4; // half or twice of which is outside
-    parameters.mutated_genes = 1;
     double errors[100] = {0};
     assert_ok(begin(&genetic, &parameters, 3));
     for (int generation = 0; generation < 5; generation++) {
@@ -293,7 +255,6 @@ int main(void) {
         cmocka_unit_test(test_genetic_knows_the_error_of_its_elite_when_there_is_noise),
         cmocka_unit_test(test_genetic_gives_the_same_bits_for_a_seed),
         cmocka_unit_test(test_genetic_next_generation_fills_any_population),
-        cmocka_unit_test(test_genetic_islands_breed_alone_but_for_migrations),
         cmocka_unit_test(test_genetic_genes_stay_in_their_range),
         cmocka_unit_test(test_genetic_has_no_elite_when_all_have_failed),
         cmocka_unit_test(test_genetic_remeasure_elite_is_the_mean_of_all_measurements),

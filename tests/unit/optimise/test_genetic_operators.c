@@ -114,33 +114,6 @@ static void test_genetic_crossover_leaves_single_genes_alone(void **state) {
     assert_close(b, 2, 0);
 }
 
-static void test_genetic_crossover_two_points_exchanges_a_stretch(void **state) {
-    enum { GENES = 5 };
-    int stretches[GENES][GENES + 1] = {0};
-    double chi_squared = 0;
-    struct rng_sequence random = begin(6);
-    (void)state;
-    for (int trial = 0; trial < DRAWS; trial++) {
-        double a[GENES] = {0}, b[GENES] = {1, 1, 1, 1, 1};
-        int first = 0, end = GENES;
-        mf_genetic_crossover_two_points(a, b, GENES, &random);
-        while (first < GENES && a[first] == 0)
-            first++;
-        while (end > 0 && a[end - 1] == 0)
-            end--;
-        for (int k = 0; k < GENES; k++) {
-            assert_close(a[k], k >= first && k < end, 0);
-            assert_close(b[k], 1 - a[k], 0);
-        }
-        assert_true(first < end && end < GENES);
-        stretches[first][end]++;
-    }
-    for (int first = 0; first < GENES; first++)
-        for (int end = first + 1; end < GENES; end++)
-            chi_squared += pow(stretches[first][end] - DRAWS / 10.0, 2) / (DRAWS / 10.0);
-    assert_true(chi_squared < 44.8); // 9 degrees of freedom
-}
-
 /// Both children keep the sum; each lies between its parents, and nearer to one of them at each end
 /// of a curve when the blend is narrow.
 static void test_genetic_blend_mixes_smoothly(void **state) {
@@ -174,8 +147,6 @@ static void test_genetic_recombine_does_what_its_kind_says(void **state) {
         mf_genetic_recombine(a, b, &p, &first);
         if (kind == GENETIC_ONE_POINT)
             mf_genetic_crossover(c, d, 3, &second);
-        else if (kind == GENETIC_TWO_POINT)
-            mf_genetic_crossover_two_points(c, d, 3, &second);
         else
             mf_genetic_blend(c, d, 3, &second);
         assert_memory_equal(a, c, sizeof a);
@@ -185,21 +156,16 @@ static void test_genetic_recombine_does_what_its_kind_says(void **state) {
 
 // Mutation ----------------------------------------------------------------------------------------
 
-static const struct genetic_parameters scaling = {.genes = DRAWS,
-                                                  .gene_minimum = -2,
-                                                  .gene_maximum = 8,
-                                                  .mutation = 1,
-                                                  .mutated_genes = 1,
-                                                  .additive = 0};
-
 /// DRAWS genes of one value, mutated; free() them.
-static double *mutated(double gene, const struct genetic_parameters *parameters, uint64_t seed) {
+static double *mutated(double gene, double probability, double additive, uint64_t seed) {
+    const struct genetic_parameters parameters = {
+        .genes = DRAWS, .gene_minimum = -2, .gene_maximum = 8};
     struct rng_sequence random = begin(seed);
     double *genes = calloc(DRAWS, sizeof *genes);
     assert_non_null(genes);
     for (int k = 0; k < DRAWS; k++)
         genes[k] = gene;
-    mf_genetic_mutate(genes, &(struct genetic){.parameters = *parameters}, &random);
+    mf_genetic_mutate_scale(genes, &parameters, probability, additive, &random);
     return genes;
 }
 
@@ -211,7 +177,7 @@ static int compare_numbers(const void *a, const void *b) {
 /// log2 of the factor is uniform in (−1, 1) by the test of Kolmogorov; so its mean is 0, and genes
 /// do not drift.
 static void test_genetic_mutate_scales_without_drift(void **state) {
-    double *genes = mutated(-3, &scaling, 2), mean = 0, largest = 0;
+    double *genes = mutated(-3, 1, 0, 2), mean = 0, largest = 0;
     (void)state;
     for (int k = 0; k < DRAWS; k++) {
         genes[k] = log2(genes[k] / -3);
@@ -228,12 +194,10 @@ static void test_genetic_mutate_scales_without_drift(void **state) {
 
 /// A normal number of a tenth of the range, 1 here, is added: half of the genes near 0 change sign.
 static void test_genetic_mutate_crosses_zero_when_it_adds(void **state) {
-    struct genetic_parameters adding = scaling;
     int negative = 0;
     double squares = 0, mean = 0;
+    double *genes = mutated(0, 1, 1, 3);
     (void)state;
-    adding.additive = 1;
-    double *genes = mutated(0, &adding, 3);
     for (int k = 0; k < DRAWS; k++) {
         negative += genes[k] < 0;
         mean += genes[k] / DRAWS;
@@ -247,12 +211,9 @@ static void test_genetic_mutate_crosses_zero_when_it_adds(void **state) {
 
 /// Genes that are 0 stay 0 when scaled: those that do not are the additive share.
 static void test_genetic_mutate_keeps_to_its_probabilities(void **state) {
-    struct genetic_parameters rare = scaling;
     int scaled = 0, added = 0;
+    double *ones = mutated(1, 0.2, 0.3, 4), *zeros = mutated(0, 0.2, 0.3, 5);
     (void)state;
-    rare.mutated_genes = 0.2;
-    rare.additive = 0.3;
-    double *ones = mutated(1, &rare, 4), *zeros = mutated(0, &rare, 5);
     for (int k = 0; k < DRAWS; k++) {
         scaled += ones[k] != 1;
         added += zeros[k] != 0;
@@ -265,47 +226,24 @@ static void test_genetic_mutate_keeps_to_its_probabilities(void **state) {
 
 static void test_genetic_mutate_spares_the_children_that_are_not_drawn(void **state) {
     (void)state;
-    enum { CHILDREN = 20000, GENES = 4 };
-    const struct genetic_parameters some = {
-        .genes = GENES, .gene_maximum = 1, .mutation = 0.3, .mutated_genes = 1};
+    enum { CHILDREN = 20000, GENES = 200 }; // all of which a mutation spares once in 1e9 children
+    const struct genetic_parameters some = {.genes = GENES, .gene_maximum = 1, .mutation = 0.3};
     struct rng_sequence random = begin(11);
-    int mutated = 0;
+    int mutated = 0, all = 0;
     for (int child = 0; child < CHILDREN; child++) {
-        double genes[GENES] = {1, 1, 1, 1};
-        mf_genetic_mutate(genes, &(struct genetic){.parameters = some}, &random);
+        double genes[GENES];
         int changed = 0;
         for (int k = 0; k < GENES; k++)
+            genes[k] = 1;
+        mf_genetic_mutate(genes, &(struct genetic){.parameters = some}, &random);
+        for (int k = 0; k < GENES; k++)
             changed += genes[k] != 1;
-        assert_true(changed == 0 || changed == GENES);
         mutated += changed > 0;
+        all += changed;
     }
+    assert_close_relative(all, 0.1 * GENES * mutated, 0.005);
     // Five standard deviations of a binomial number.
     assert_close(mutated, 0.3 * CHILDREN, 5 * sqrt(CHILDREN * 0.3 * 0.7));
-}
-
-/// The bump's largest gene has about the height 0.1 z 2^(−6u) of the range: its mean square is
-/// 0.01 (1 − 2^−12)/(12 ln 2). Far from the middle of a bump genes stay.
-static void test_genetic_mutate_correlated_adds_a_smooth_bump(void **state) {
-    enum { GENES = 50, TRIALS = 20000 };
-    const struct genetic_parameters parameters = {
-        .genes = GENES, .gene_minimum = -5, .gene_maximum = 5, .mutated_genes = 0.1};
-    struct rng_sequence random = begin(12);
-    double mean = 0, squares = 0;
-    (void)state;
-    for (int trial = 0; trial < TRIALS; trial++) {
-        double genes[GENES] = {0}, largest = 0;
-        mf_genetic_mutate_correlated(genes, &parameters, &random);
-        for (int k = 0; k < GENES; k++)
-            if (fabs(genes[k]) > fabs(largest))
-                largest = genes[k];
-        for (int k = 1; k < GENES; k++) // the steepest slope of the bump of width 2.5
-            assert_true(fabs(genes[k] - genes[k - 1]) <= fabs(largest) * 0.3);
-        mean += largest / TRIALS;
-        squares += largest * largest / TRIALS;
-    }
-    // Between genes 1 % of the height is missed, 2 % of its square.
-    assert_close(squares, 0.98 * 1 / (12 * log(2)), 0.01);
-    assert_close(mean, 0, 5 * sqrt(squares / TRIALS));
 }
 
 /// The variance of Brownian motion grows in proportion to the way from where it is 0: at the last
@@ -361,14 +299,12 @@ int main(void) {
         cmocka_unit_test(test_genetic_tournament_wins_with_the_probabilities_of_its_rule),
         cmocka_unit_test(test_genetic_crossover_exchanges_all_genes_beyond_one_point),
         cmocka_unit_test(test_genetic_crossover_leaves_single_genes_alone),
-        cmocka_unit_test(test_genetic_crossover_two_points_exchanges_a_stretch),
         cmocka_unit_test(test_genetic_blend_mixes_smoothly),
         cmocka_unit_test(test_genetic_recombine_does_what_its_kind_says),
         cmocka_unit_test(test_genetic_mutate_scales_without_drift),
         cmocka_unit_test(test_genetic_mutate_crosses_zero_when_it_adds),
         cmocka_unit_test(test_genetic_mutate_keeps_to_its_probabilities),
         cmocka_unit_test(test_genetic_mutate_spares_the_children_that_are_not_drawn),
-        cmocka_unit_test(test_genetic_mutate_correlated_adds_a_smooth_bump),
         cmocka_unit_test(test_genetic_walk_has_its_height_and_ends_at_zero),
         cmocka_unit_test(test_genetic_mutate_walk_steps_as_far_as_survivors_differ),
     };

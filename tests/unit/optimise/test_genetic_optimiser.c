@@ -8,7 +8,7 @@
 
 #include <math.h>
 
-enum { POPULATION = 6, GENES = 3, REMEASUREMENTS = 2, ROWS = POPULATION + REMEASUREMENTS };
+enum { POPULATION = 6, GENES = 3, ROWS = POPULATION + GENETIC_REMEASUREMENTS };
 
 struct run {
     void *state;
@@ -33,8 +33,7 @@ static struct run begin(int64_t generations) {
     mf_fields_set_defaults(mf_genetic_fields, &run.parameters);
     run.parameters.population = POPULATION;
     run.parameters.generations = generations;
-    run.parameters.mutation = run.parameters.mutated_genes = 1; // so nobody is a twin by chance
-    assert_int_equal(run.parameters.remeasurements, REMEASUREMENTS);
+    run.parameters.mutation = 1; // so nobody is a twin by chance
     assert_ok(mf_genetic_optimiser.create(run.state, &space, &run.parameters));
     ask(&run);
     return run;
@@ -113,7 +112,7 @@ static void test_last_round_measures_the_last_challenger_alone(void **state) {
     tell(&run, (double[]){5, 4, 3, 2, 1, 6});
     copy_row(&run, 1, challenger);
     tell(&run, (double[]){9, 0.5, 9, 9, 9, 9, 1, 1});
-    assert_int_equal(run.round.count, REMEASUREMENTS);
+    assert_int_equal(run.round.count, GENETIC_REMEASUREMENTS);
     assert_genes(row(&run, 0), challenger);
     tell(&run, (double[]){0.5, 0.7});
     assert_int_equal(run.round.count, 0);
@@ -152,8 +151,7 @@ static void test_first_walks_are_about_the_start(void **state) {
     double start[COUNT], squares = 0, mean = 0, spread = 0;
     for (int k = 0; k < COUNT; k++)
         start[k] = 0.3 + 0.005 * k;
-    const struct genetic_parameters parameters = {
-        .population = MANY, .step = 0.02, .remeasurements = 1};
+    const struct genetic_parameters parameters = {.population = MANY, .step = 0.02};
     assert_ok(mf_genetic_init(&genetic, &parameters,
                               &(struct optimiser_space){.variables = COUNT,
                                                         .maximum = 1,
@@ -193,7 +191,7 @@ static void test_it_settles_when_its_patience_is_over(void **state) {
     tell(&run, (double[]){1, 9, 9, 9, 9, 9});
     assert_false(mf_genetic_optimiser.settled(run.state));
     tell(&run, (double[]){1, 9, 9, 9, 0.5, 9}); // a challenger at the last moment
-    assert_int_equal(run.round.count, REMEASUREMENTS);
+    assert_int_equal(run.round.count, GENETIC_REMEASUREMENTS);
     double challenger[GENES];
     copy_row(&run, 0, challenger);
     tell(&run, (double[]){0.5, 0.5}); // is better: three more

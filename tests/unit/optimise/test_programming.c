@@ -51,8 +51,8 @@ static double morse(double r) {
     return 1.5 * x * x;
 }
 
-static const struct programming_parameters usual = {12, 7, 8, 6, 1000},
-                                           longer = {10, 7, 8, 24, 1000};
+static const struct programming_parameters usual = {12, 8, 6, 1000},
+                                           longer = {10, 8, 24, 1000};
 
 static struct programming_member search(const struct sample *sample, uint64_t seed, int threads,
                                         const struct programming_parameters *parameters) {
@@ -144,7 +144,7 @@ static void test_programming_finds_lennard_jones_when_its_points_are_noisy(void 
 /// One round, and two: the spans carry all of the state.
 static void test_programming_gives_the_same_bits_for_any_threads_and_after_a_restart(void **state) {
     (void)state;
-    static const struct programming_parameters few = {9, 5, 3, 2, 100};
+    static const struct programming_parameters few = {9, 3, 2, 100};
     struct sample sample;
     struct programming programming[3];
     struct memory_span from[3], to[3];
