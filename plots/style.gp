@@ -8,6 +8,8 @@ set minussign
 # called. A name that begins with < or | would be a command.
 table = "./" . system("printf %s \"$MESOFIT_TABLE\"")
 figure = system("printf %s \"$MESOFIT_FIGURE\"")
+# While a figure is drawn, its file's name ends so.
+partial = system("printf %s \"$MESOFIT_PARTIAL\"")
 
 # A figure is drawn once for each kind, between eval open(…) and eval close: its file is
 # figures/<name>.<kind>, width and height count pixels of the SVG. The PNG has twice as many, for
@@ -18,7 +20,7 @@ svg(width, height) = sprintf("set terminal svg size %d,%d font 'Helvetica,13' " 
 png(width, height) = sprintf("set terminal pngcairo size %d,%d font 'Liberation Sans,13' " . \
     "fontscale 2 linewidth 2 pointscale 2 background '#ffffff' rounded; ", 2 * width, 2 * height)
 # The name stays in a variable: as a part of the command it could be one itself.
-open(kind, name, width, height) = (figure_file = sprintf("figures/%s.%s", name, kind), \
+open(kind, name, width, height) = (figure_file = sprintf("figures/%s.%s", name, kind) . partial, \
     (kind eq "svg" ? svg(width, height) : png(width, height)) . "set output figure_file")
 close = "set output"
 

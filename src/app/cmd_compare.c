@@ -5,7 +5,7 @@
 static enum status run(const struct command_line *line) {
     return mf_compare_folders(line->files, line->file_count,
                               line->options.folder ? line->options.folder : "compare",
-                              line->options.quiet);
+                              line->options.force, line->options.quiet);
 }
 
 const struct command cmd_compare = {

@@ -40,6 +40,7 @@ static enum status run(const struct command_line *line) {
         .bands = line->own[BANDS] != NULL,
         .project = line->own[PROJECT] != NULL,
         .quiet = line->options.quiet,
+        .force = line->options.force,
         .threads = line->options.threads,
         .listener = &(struct measure_listener){.tell = tell, .context = &progress}});
 }

@@ -3,7 +3,7 @@
 #include "report/figures.h"
 
 static enum status run(const struct command_line *line) {
-    return mf_figures_draw_again(line->files[0]);
+    return mf_figures_draw_again(line->files[0], line->options.force);
 }
 
 const struct command cmd_plot = {

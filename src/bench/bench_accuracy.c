@@ -329,6 +329,8 @@ static enum status carry_out(struct run *run, const char *file) {
                               file, run->scene.scene.setup.integrator->name);
     TRY(choose(run));
     if (run->options->output) { // two minutes are not to be lost
+        if (!run->common->force)
+            TRY(mf_figures_check_accuracy(run->options->output));
         TRY(mf_output_open(&probe, run->options->output));
         mf_output_abandon(&probe);
     }

@@ -4,6 +4,7 @@
 
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 
 /// "a/b/thesis.json" is the scene "thesis".
 static void name_scene(struct bench_scene *scene, const char *file) {
@@ -31,13 +32,25 @@ static enum status read_file(struct bench_scene *scene, const char *file, struct
     return mf_json_close(document, status);
 }
 
+/// A file of results is none that the program may know: it replaces no file without a word.
+static enum status check_output(const struct input_files *inputs, const char *output, bool force) {
+    struct stat about;
+    if (output == NULL || lstat(output, &about) != 0)
+        return STATUS_OK;
+    TRY(mf_input_files_spare(inputs, output));
+    if (force)
+        return STATUS_OK;
+    return mf_status_fail(STATUS_BAD_INPUT, "%s is there: --force replaces it, -o OTHER keeps it",
+                          output);
+}
+
 enum status mf_bench_scene_read(struct bench_scene *scene, const char *file, const char *output,
                                 const struct run_options *options) {
     struct heading heading;
     struct input_files inputs = {0};
     enum status status = read_file(scene, file, &heading, &inputs);
-    if (status == STATUS_OK && output)
-        status = mf_input_files_spare(&inputs, output);
+    if (status == STATUS_OK)
+        status = check_output(&inputs, output, options->force);
     mf_input_files_clear(&inputs);
     TRY(status);
     scene->scene.setup.seed = options->has_seed ? options->seed : heading.seed;

@@ -4,10 +4,10 @@
 #include "base/memory.h"
 #include "base/nearest.h"
 #include "dynamics/hybrid_step.h"
+#include "io/own_files.h"
 #include "mesofit.h"
 
 #include <ctype.h>
-#include <dirent.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,9 +17,6 @@
 const struct export_engine *const mf_export_engines[] = {EXPORT_ENGINES(EXPORT_LIST) NULL};
 
 enum { MOST_ENGINES = 16 };
-
-/// How a line of README begins that tells who wrote the folder.
-static const char written_by[] = "Written by mesofit";
 
 static enum status find_engine(const char *name, const struct export_engine **engine) {
     const char *names[MOST_ENGINES];
@@ -54,26 +51,6 @@ static enum status check_friction(const struct export_job *job) {
     return STATUS_OK;
 }
 
-/// Whether a folder has nothing, or what an export wrote before, whose README tells so.
-static bool is_free(const char *folder) {
-    char path[OUTPUT_PATH_SIZE], line[1024];
-    struct dirent **entries;
-    const int count = scandir(folder, &entries, NULL, alphasort);
-    bool ours = false;
-    if (count < 0) // there is none, or making it will say why
-        return true;
-    for (int k = 0; k < count; k++)
-        free(entries[k]);
-    free(entries);
-    snprintf(path, sizeof path, "%.4000s/README", folder);
-    FILE *readme = fopen(path, "r");
-    while (readme && !ours && fgets(line, sizeof line, readme))
-        ours = strncmp(line, written_by, strlen(written_by)) == 0;
-    if (readme)
-        fclose(readme);
-    return ours || count <= 2; // "." and ".."
-}
-
 /// Where two pairs of types would be one to the engine, the potential of one would stand for both.
 static enum status check_pair_names(const struct export_job *job) {
     const struct export_model *model = job->model;
@@ -95,20 +72,29 @@ static enum status check_pair_names(const struct export_job *job) {
     return STATUS_OK;
 }
 
-static enum status check(const struct export_job *job, bool bands) {
-    const struct export_model *model = job->model;
-    const struct export_engine *engine = job->engine;
+/// The folder is empty, or an export wrote it that nobody has changed; other files beside it, as
+/// those of the program that has run there, stay.
+static enum status open_folder(struct own_files *own, const struct export_job *job, bool force) {
     char path[OUTPUT_PATH_SIZE];
     struct stat found;
     snprintf(path, sizeof path, "%.4000s/used.json", job->folder);
     if (stat(path, &found) == 0)
         return mf_status_fail(STATUS_BAD_INPUT, "%s: holds a result; give another folder with -o",
                               job->folder);
-    if (!is_free(job->folder))
+    TRY(mf_own_files_make(own, job->folder, OWN_FILES_OF_EXPORT));
+    own->force = force;
+    if (!own->list.there && mf_own_files_has_others(own))
         return mf_status_fail(STATUS_BAD_INPUT,
                               "%s: holds files that are not of an export; give another folder with "
                               "-o",
                               job->folder);
+    TRY(mf_own_files_lock(own));
+    return mf_own_files_check(own, NULL);
+}
+
+static enum status check(const struct export_job *job, bool bands) {
+    const struct export_model *model = job->model;
+    const struct export_engine *engine = job->engine;
     if (bands && !model->bands)
         return mf_status_fail(STATUS_BAD_INPUT, "%s: --bands: its potential has no errors",
                               model->folder);
@@ -229,9 +215,9 @@ static void print_readme(const struct export_job *job, FILE *stream) {
     const struct export_model *model = job->model;
     const struct export_error *error = &job->grids.error;
     const struct export_units *units = &job->units;
-    fprintf(stream, "%s, for %s\n\n%s %s from %s. Run it here:\n\n",
-            model->title[0] ? model->title : "A result of mesofit", job->engine->title, written_by,
-            MESOFIT_VERSION, model->folder);
+    fprintf(
+        stream, "%s, for %s\n\nWritten by mesofit " MESOFIT_VERSION " from %s. Run it here:\n\n",
+        model->title[0] ? model->title : "A result of mesofit", job->engine->title, model->folder);
     fprintf(stream, "%s\n", job->engine->commands);
     fprintf(stream, "Units: %s, %s, %s, %s, %s. Time step %.6g %s; mesofit's own was %.6g.\n\n",
             units->length_name, units->time_name, units->energy_name, units->temperature_name,
@@ -292,12 +278,18 @@ static void say(const struct export_job *job) {
     fprintf(stderr, "%s: see README\n", job->folder);
 }
 
-static enum status write_folder(struct export_job *job) {
-    TRY(mf_output_make_folder(job->folder));
-    TRY(mf_export_file(job, "README", print_readme)); // by which the folder is known
+static enum status write_files(struct export_job *job) {
+    TRY(mf_export_file(job, "README", print_readme));
     if (job->projected)
         TRY(mf_export_file(job, "projection.tsv", print_escapes));
     return job->engine->write(job);
+}
+
+/// What an earlier export left, and this one has not replaced, goes: tables of types that are gone.
+static enum status write_folder(struct export_job *job, struct own_files *own) {
+    TRY(mf_own_files_begin(own, 0));
+    TRY(write_files(job));
+    return mf_own_files_sweep(own);
 }
 
 /// Share by which a temperature, or the variance of a bond, may be off.
@@ -325,6 +317,7 @@ static double safe_step(const struct export_model *model) {
 static enum status run(struct export_job *job, const struct export_request *request) {
     enum status status = STATUS_OK;
     const struct export_model *model = job->model;
+    struct own_files own = {.open = false};
     TRY(check(job, request->bands));
     job->units = mf_export_units(job->engine->system, &model->scene.units, job->engine->physical);
     job->time_step = safe_step(model);
@@ -333,14 +326,16 @@ static enum status run(struct export_job *job, const struct export_request *requ
     CHECK(mf_export_bonded_make(&job->bonded, model, job->engine->has_law));
     if (job->engine->check)
         CHECK(job->engine->check(job));
+    CHECK(open_folder(&own, job, request->force));
     find_powers(job);
     if (job->projected)
         CHECK(mf_export_project(model, job->power, request->threads, request->listener,
                                 &job->projection));
-    CHECK(write_folder(job));
+    CHECK(write_folder(job, &own));
     if (!request->quiet)
         say(job);
 done:
+    mf_own_files_close(&own);
     mf_export_grids_clear(&job->grids);
     mf_export_bonded_clear(&job->bonded);
     return status;

@@ -85,15 +85,16 @@ struct export_request {
     bool bands;     ///< Φ less and plus one standard error, too
     bool project;   ///< the nearest power law of the engine stands for ω, and its cost is measured
     bool quiet;
-    int threads;                             ///< of that measurement
+    bool force;  ///< replace also files of an earlier export that were changed since
+    int threads; ///< of that measurement
     const struct measure_listener *listener; ///< of its progress; NULL: none
 };
 
 /// Write the folder for an engine of a result, and say what was written on stderr unless `quiet`.
 /// Fails: BAD_INPUT for an engine or a result that is none, interactions that the engine does not
-/// express, no friction to project, and a folder `to` that holds a result; IO; NO_MEMORY; with
-/// `project` as mf_export_project. Nothing is written before all was
-/// read and checked. Tested: cli/test_export.
+/// express, no friction to project, and a folder `to` that holds a result, files of others alone,
+/// or an export that was changed since; IO; NO_MEMORY; with `project` as mf_export_project. Nothing
+/// is written before all was read and checked. Tested: cli/test_export.
 enum status mf_export_run(const struct export_request *request) MUST_USE;
 
 /// @name For the engines

@@ -354,8 +354,7 @@ static void write_states(const struct fit_file *fit, struct json_writer *writer)
     mf_json_end(writer);
 }
 
-enum status mf_fit_file_write(const struct fit_file *fit, const char *path) {
-    struct json_writer *writer = mf_json_writer_create();
+void mf_fit_file_write(const struct fit_file *fit, struct json_writer *writer) {
     mf_json_put_fields(writer, mf_heading_fields, &fit->heading);
     mf_units_write(&fit->scene.units, writer);
     if (fit->name[0])
@@ -372,9 +371,6 @@ enum status mf_fit_file_write(const struct fit_file *fit, const char *path) {
     mf_json_begin(writer, "core");
     mf_json_put_fields(writer, mf_fit_core_fields, &fit->core);
     mf_json_end(writer);
-    const enum status status = mf_json_write(writer, path);
-    mf_json_writer_free(writer);
-    return status;
 }
 
 static void digest_curve(const struct curve *curve, uint64_t *digest) {

@@ -66,8 +66,8 @@ enum status mf_fit_file_read(struct fit_file *fit, const char *file,
                              const struct run_options *options) MUST_USE;
 void mf_fit_file_clear(struct fit_file *fit);
 
-/// Write all values, defaults filled in, so that running the written file gives the same bits.
-enum status mf_fit_file_write(const struct fit_file *fit, const char *path) MUST_USE;
+/// Write all values, defaults filled in, so that running what is written gives the same bits.
+void mf_fit_file_write(const struct fit_file *fit, struct json_writer *writer);
 
 /// Add what used.json only names to the digest of a checkpoint: targets, tables, curves to begin
 /// with.

@@ -4,9 +4,11 @@
 #include "io/output.h"
 
 #include "base/ranks.h"
+#include "io/own_files.h"
 
 #include <errno.h>
 #include <fcntl.h>
+#include <stdatomic.h>
 #include <stdbool.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -36,23 +38,63 @@ static int close_file(void *context) {
     return result;
 }
 
+void mf_output_partial(char ending[OUTPUT_PARTIAL_SIZE]) {
+    static atomic_uint number;
+    snprintf(ending, OUTPUT_PARTIAL_SIZE, ".%ld-%u" OUTPUT_PARTIAL, (long)getpid(),
+             atomic_fetch_add(&number, 1));
+}
+
+/// Go back over digits before `end`, of which there must be some.
+static const char *before_digits(const char *begin, const char *end) {
+    const char *first = end;
+    while (first && first > begin && first[-1] >= '0' && first[-1] <= '9')
+        first--;
+    return first == end ? NULL : first;
+}
+
+size_t mf_output_partial_stem(const char *name) {
+    const size_t length = strlen(name), last = sizeof OUTPUT_PARTIAL - 1;
+    if (length < last || strcmp(name + length - last, OUTPUT_PARTIAL) != 0)
+        return 0;
+    const char *at = before_digits(name, name + length - last);
+    if (at && at > name && at[-1] == '-')
+        at = before_digits(name, at - 1);
+    else
+        at = NULL;
+    return at && at - name > 1 && at[-1] == '.' ? (size_t)(at - name) - 1 : 0;
+}
+
+/// A file of our own: never one that is there, nor one that a link leads to.
+static void make_temporary(struct output *output) {
+    char ending[OUTPUT_PARTIAL_SIZE];
+    do {
+        mf_output_partial(ending);
+        snprintf(output->temporary, sizeof output->temporary, "%s%s", output->path, ending);
+        output->file =
+            open(output->temporary, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+    } while (output->file < 0 && errno == EEXIST);
+}
+
+/// The whole folder may have gone.
+static enum status fail(const struct output *output, int error) {
+    if (error == ENOENT)
+        TRY(mf_own_files_claim(output->path));
+    return mf_status_fail(STATUS_IO, "cannot write %s: %s", output->path, strerror(error));
+}
+
 enum status mf_output_open(struct output *output, const char *path) {
     *output = (struct output){.file = -1};
     const int length = snprintf(output->path, sizeof output->path, "%s", path);
     if (length < 0 || (size_t)length >= sizeof output->path)
         return mf_status_fail(STATUS_IO, "%.60s…: the path is longer than %d bytes", path,
                               OUTPUT_PATH_SIZE - 1);
-    snprintf(output->temporary, sizeof output->temporary, "%s.%ld" OUTPUT_PARTIAL, output->path,
-             (long)getpid());
     if (!ranks_lead()) {
         output->stream = fopen("/dev/null", "wb");
         return output->stream ? STATUS_OK
                               : mf_status_fail(STATUS_IO, "/dev/null: %s", strerror(errno));
     }
-    // A file of our own: never one that is there, nor one that a link leads to.
-    unlink(output->temporary);
-    output->file =
-        open(output->temporary, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+    TRY(mf_own_files_claim(output->path));
+    make_temporary(output);
     if (output->file >= 0)
         output->stream = fopencookie(
             output, "wb", (cookie_io_functions_t){.write = write_bytes, .close = close_file});
@@ -63,7 +105,7 @@ enum status mf_output_open(struct output *output, const char *path) {
         close_file(output);
         unlink(output->temporary);
     }
-    return mf_status_fail(STATUS_IO, "cannot write %s: %s", output->path, strerror(error));
+    return fail(output, error);
 }
 
 /// Close the stream, its bytes on the disk; 0 or the error number of the first write that failed.
@@ -97,28 +139,44 @@ static void sync_folder(const char *path) {
     close(file);
 }
 
-enum status mf_output_commit(struct output *output) {
+enum status mf_output_finish(struct output *output) {
     if (!ranks_lead()) {
         mf_output_abandon(output);
         return STATUS_OK;
     }
-    int error = search_stream(output);
-    if (error == 0 && rename(output->temporary, output->path) != 0)
-        error = errno;
-    if (error == 0) {
-        sync_folder(output->path);
+    const int error = search_stream(output);
+    output->finished = error == 0;
+    if (error == 0)
         return STATUS_OK;
-    }
     remove(output->temporary);
-    return mf_status_fail(STATUS_IO, "cannot write %s: %s", output->path, strerror(error));
+    return fail(output, error);
+}
+
+enum status mf_output_publish(struct output *output) {
+    if (!ranks_lead())
+        return STATUS_OK;
+    output->finished = false;
+    if (rename(output->temporary, output->path) != 0) {
+        const int error = errno;
+        remove(output->temporary);
+        return fail(output, error);
+    }
+    sync_folder(output->path);
+    return STATUS_OK;
+}
+
+enum status mf_output_commit(struct output *output) {
+    TRY(mf_output_finish(output));
+    return mf_output_publish(output);
 }
 
 void mf_output_abandon(struct output *output) {
-    if (output->stream == NULL)
-        return;
-    fclose(output->stream);
+    const bool begun = output->stream || output->finished;
+    if (output->stream)
+        fclose(output->stream);
     output->stream = NULL;
-    if (ranks_lead())
+    output->finished = false;
+    if (begun && ranks_lead())
         remove(output->temporary);
 }
 
@@ -142,7 +200,11 @@ static enum status make_one_folder(const char *folder, const char *path) {
 
 enum status mf_output_make_folder(const char *path) {
     char folder[OUTPUT_PATH_SIZE];
+    bool done;
     if (!ranks_lead())
+        return STATUS_OK;
+    TRY(mf_own_files_make_folder(path, &done));
+    if (done)
         return STATUS_OK;
     const int length = snprintf(folder, sizeof folder, "%s", path);
     if (length <= 0 || (size_t)length >= sizeof folder)

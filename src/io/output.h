@@ -5,25 +5,29 @@
 
 #include "base/status.h"
 
+#include <stdbool.h>
 #include <stdio.h>
 
 enum { OUTPUT_PATH_SIZE = 4096 };
 
-/// Ends the name of a file that is being written: path, number of the process and this.
+/// Ends the name of a file that is being written: path, number of the process, that of the file in
+/// it, and this.
 #define OUTPUT_PARTIAL ".partial"
+enum { OUTPUT_PARTIAL_SIZE = 48 };
 
 /// A file being written under a temporary name beside its place. The stream knows its address: it
 /// must not be copied.
 struct output {
     FILE *stream;
-    int file;  ///< that the stream writes to
-    int error; ///< number of the first write that failed, or 0
+    int file;      ///< that the stream writes to
+    int error;     ///< number of the first write that failed, or 0
+    bool finished; ///< and not published
     char path[OUTPUT_PATH_SIZE];
-    char temporary[OUTPUT_PATH_SIZE + 32];
+    char temporary[OUTPUT_PATH_SIZE + OUTPUT_PARTIAL_SIZE];
 };
 
-/// Open "path.PROCESS.partial" for writing, a new file: one of that name is removed, and a link is
-/// not followed.
+/// Open "path.PROCESS-NUMBER.partial" for writing, a new file that no other process or thread has.
+/// Fails: IO; as mf_own_files_claim, before anything is written.
 enum status mf_output_open(struct output *output, const char *path) MUST_USE;
 
 /// Flush, check every write, bring the bytes to the disk and rename to the final path, so that
@@ -31,8 +35,18 @@ enum status mf_output_open(struct output *output, const char *path) MUST_USE;
 /// temporary file is removed and the status is STATUS_IO. Tested: test_output.
 enum status mf_output_commit(struct output *output) MUST_USE;
 
+/// The same in two steps: all bytes are on the disk, and the file gets its name.
+enum status mf_output_finish(struct output *output) MUST_USE;
+enum status mf_output_publish(struct output *output) MUST_USE;
+
 /// Give up: remove the temporary file. Allowed after a failed commit.
 void mf_output_abandon(struct output *output);
 
-/// Make a folder and its missing parents; an existing folder is fine.
+/// What a new temporary name ends with, ".PROCESS-NUMBER.partial"; and how long the name is without
+/// it, 0 if it does not end so.
+void mf_output_partial(char ending[OUTPUT_PARTIAL_SIZE]);
+size_t mf_output_partial_stem(const char *name);
+
+/// Make a folder and its missing parents; an existing folder is fine. Fails: IO; as
+/// mf_own_files_make_folder.
 enum status mf_output_make_folder(const char *path) MUST_USE;

@@ -2,11 +2,10 @@
 #include "io/snapshot.h"
 
 #include "base/memory.h"
-#include "io/output.h"
+#include "io/own_files.h"
 
 #include <errno.h>
 #include <fcntl.h>
-#include <fnmatch.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -175,18 +174,6 @@ const char *mf_snapshot_type_name(const struct snapshot *snapshot, size_t partic
                : "A";
 }
 
-bool mf_snapshot_is_file(const char *name) {
-    char pattern[64];
-    for (size_t k = 0; mf_snapshot_formats[k]; k++) {
-        const struct snapshot_format *format = mf_snapshot_formats[k];
-        snprintf(pattern, sizeof pattern, format->appended ? "trajectory.%s" : "step_[0-9]*.%s",
-                 format->suffix);
-        if (fnmatch(pattern, name, 0) == 0)
-            return true;
-    }
-    return false;
-}
-
 // Writing -----------------------------------------------------------------------------------------
 
 static enum status write_whole(const struct snapshot *snapshot,
@@ -222,6 +209,7 @@ static int append(const struct snapshot *snapshot, const struct snapshot_format 
 static enum status write_appended(const struct snapshot *snapshot,
                                   const struct snapshot_format *format, const char *path,
                                   int64_t *size) {
+    TRY(mf_own_files_claim(path));
     const int file = open(path, O_WRONLY | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
     const int error = file < 0 ? errno : append(snapshot, format, file, size);
     if (file >= 0)

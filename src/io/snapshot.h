@@ -109,6 +109,3 @@ enum status mf_snapshot_write(const struct snapshot *snapshot, const struct snap
 /// Fails: BAD_INPUT with all faults, IO, NO_MEMORY. Tested: cli/test_snapshots.
 enum status mf_snapshot_read(struct data_table *table, const char *file, int dimensions,
                              const struct composition *composition) MUST_USE;
-
-/// Whether a file has the name of a snapshot.
-bool mf_snapshot_is_file(const char *name);

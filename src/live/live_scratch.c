@@ -1,18 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#define _GNU_SOURCE // scandirat
 #include "live/live_scratch.h"
 
 #include <dirent.h>
-#include <fcntl.h>
-#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 static const char stem[] = "mesofit-live-";
-enum { LETTERS = 6, TRIES = 10 }; // of mkdtemp
 
 static const char *find_place(void) {
     const char *place = getenv("TMPDIR");
@@ -20,84 +15,59 @@ static const char *find_place(void) {
 }
 
 static int is_scratch(const struct dirent *entry) {
-    return strncmp(entry->d_name, stem, strlen(stem)) == 0 &&
-           strlen(entry->d_name) == strlen(stem) + LETTERS;
+    return strncmp(entry->d_name, stem, strlen(stem)) == 0;
 }
 
-static int open_folder(int place, const char *name) {
-    return openat(place, name, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
-}
-
-/// Whether the folder is ours, and still has its name.
-static bool is_own(int folder) {
+static bool is_own(const char *path) {
     struct stat about;
-    return fstat(folder, &about) == 0 && about.st_uid == geteuid() && about.st_nlink > 0;
+    return lstat(path, &about) == 0 && S_ISDIR(about.st_mode) && about.st_uid == geteuid();
 }
 
-/// A folder with the files in it; folders in it, of which we make none, keep it.
-static void remove_folder(int place, const char *name, int folder) {
-    struct dirent **entries;
-    const int count = scandirat(folder, ".", &entries, NULL, NULL);
-    for (int k = 0; k < count; k++) {
-        unlinkat(folder, entries[k]->d_name, 0);
-        free(entries[k]);
-    }
-    if (count >= 0)
-        free(entries);
-    unlinkat(place, name, AT_REMOVEDIR);
+/// What has a list and no process is left over.
+static void remove_if_left(const char *path) {
+    struct own_files own = {.open = false};
+    if (is_own(path) && mf_own_files_open(&own, path, OWN_FILES_OF_LIVE) == STATUS_OK &&
+        own.list.there && mf_own_files_lock(&own) == STATUS_OK)
+        mf_own_files_remove_all(&own);
+    mf_own_files_close(&own);
 }
 
-/// What no process has locked is left over. Who has just made one and comes second to the lock
-/// finds it gone, and makes another.
-static void remove_left_over(int place) {
+static void remove_left_over(const char *place) {
     struct dirent **entries;
-    const int count = scandirat(place, ".", &entries, is_scratch, NULL);
+    const int count = scandir(place, &entries, is_scratch, NULL);
     for (int k = 0; k < count; k++) {
-        const int folder = open_folder(place, entries[k]->d_name);
-        if (folder >= 0 && is_own(folder) && flock(folder, LOCK_EX | LOCK_NB) == 0)
-            remove_folder(place, entries[k]->d_name, folder);
-        if (folder >= 0)
-            close(folder);
+        char path[OUTPUT_PATH_SIZE];
+        snprintf(path, sizeof path, "%.3800s/%s", place, entries[k]->d_name);
+        remove_if_left(path);
         free(entries[k]);
     }
     if (count >= 0)
         free(entries);
 }
 
-/// Make a folder and lock it; false if it went before it was locked, or cannot be made. Where files
-/// cannot be locked it goes on without: then nobody else gets the lock, either.
-static bool try_to_make(struct live_scratch *scratch) {
-    const char *place = find_place();
-    if (snprintf(scratch->path, sizeof scratch->path, "%s/%sXXXXXX", place, stem) >=
-            (int)sizeof scratch->path ||
-        mkdtemp(scratch->path) == NULL)
-        return false;
-    scratch->folder = open_folder(AT_FDCWD, scratch->path);
-    if (scratch->folder < 0)
-        return false;
-    flock(scratch->folder, LOCK_EX);
-    if (is_own(scratch->folder))
-        return true;
-    close(scratch->folder);
-    return false;
+/// The list is there once the folder is locked: nobody takes it for left over.
+static bool try_to_make(struct live_scratch *scratch, const char *place) {
+    return snprintf(scratch->path, sizeof scratch->path, "%s/%sXXXXXX", place, stem) <
+               (int)sizeof scratch->path &&
+           mkdtemp(scratch->path) &&
+           mf_own_files_open(&scratch->own, scratch->path, OWN_FILES_OF_LIVE) == STATUS_OK &&
+           mf_own_files_lock(&scratch->own) == STATUS_OK &&
+           mf_own_files_begin(&scratch->own, 0) == STATUS_OK;
 }
 
 void mf_live_scratch_make(struct live_scratch *scratch) {
-    const int place = open(find_place(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (place >= 0) {
-        remove_left_over(place);
-        close(place);
-    }
-    for (int k = 0; k < TRIES; k++)
-        if (try_to_make(scratch))
-            return;
+    const char *place = find_place();
+    remove_left_over(place);
+    if (try_to_make(scratch, place))
+        return;
+    if (scratch->own.open)
+        mf_own_files_remove_all(&scratch->own);
     scratch->path[0] = '\0';
 }
 
 void mf_live_scratch_remove(struct live_scratch *scratch) {
     if (scratch->path[0] == '\0')
         return;
-    remove_folder(AT_FDCWD, scratch->path, scratch->folder);
-    close(scratch->folder);
+    mf_own_files_remove_all(&scratch->own);
     scratch->path[0] = '\0';
 }

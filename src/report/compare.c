@@ -3,7 +3,7 @@
 
 #include "base/memory.h"
 #include "io/data_table.h"
-#include "io/output.h"
+#include "io/own_files.h"
 #include "report/compare_table.h"
 #include "report/figures.h"
 
@@ -121,19 +121,20 @@ static const struct result_table *table_of(const struct compared *fit, const str
     return (const struct result_table *)((const char *)&fit->result + block->table);
 }
 
-/// One block a fit; no file if no fit has the table, not even that of an earlier comparison.
+/// Whether any fit has the table.
+static bool is_wanted(const struct block *block, const struct compared *fits, size_t count) {
+    size_t rows = 0;
+    for (size_t k = 0; k < count; k++)
+        rows += table_of(&fits[k], block)->rows;
+    return rows > 0;
+}
+
+/// One block a fit.
 static enum status write_blocks(const char *out, const struct block *block,
                                 const struct compared *fits, size_t count) {
     struct output output;
     char file[PATH_SIZE];
-    size_t rows = 0;
     snprintf(file, sizeof file, "%s/%s", out, block->name);
-    for (size_t k = 0; k < count; k++)
-        rows += table_of(&fits[k], block)->rows;
-    if (rows == 0)
-        return remove(file) == 0 || errno == ENOENT
-                   ? STATUS_OK
-                   : mf_status_fail(STATUS_IO, "%s: %s", file, strerror(errno));
     TRY(mf_output_open(&output, file));
     for (size_t k = 0; k < count; k++) {
         fprintf(output.stream, "%s# %zu\t%s\n# ", k ? "\n\n" : "", k, fits[k].name);
@@ -143,12 +144,31 @@ static enum status write_blocks(const char *out, const struct block *block,
     return mf_output_commit(&output);
 }
 
-static enum status write_tables(const char *out, const struct compared *fits, size_t count) {
-    TRY(mf_output_make_folder(out));
-    TRY(mf_compare_table_write(out, fits, count));
-    for (size_t k = 0; k < sizeof blocks / sizeof blocks[0]; k++)
-        TRY(write_blocks(out, &blocks[k], fits, count));
+enum { BLOCKS = sizeof blocks / sizeof blocks[0] };
+
+/// Nothing is written if something may not be. The figure is reserved, too: if it fails, the tables
+/// are there all the same.
+static enum status reserve(struct own_files *own, const struct compared *fits, size_t count) {
+    TRY(mf_own_files_reserve(own, "figures/"));
+    TRY(mf_own_files_reserve(own, "figures/compare.svg"));
+    TRY(mf_own_files_reserve(own, "figures/compare.png"));
+    TRY(mf_own_files_reserve(own, "compare.tsv"));
+    for (size_t k = 0; k < BLOCKS; k++)
+        if (is_wanted(&blocks[k], fits, count))
+            TRY(mf_own_files_reserve(own, blocks[k].name));
     return STATUS_OK;
+}
+
+/// What an earlier comparison left, and this one does not write, goes.
+static enum status write_tables(struct own_files *own, const struct compared *fits, size_t count) {
+    TRY(mf_own_files_lock(own));
+    TRY(reserve(own, fits, count));
+    TRY(mf_own_files_begin(own, 0));
+    TRY(mf_compare_table_write(own->folder, fits, count));
+    for (size_t k = 0; k < BLOCKS; k++)
+        if (is_wanted(&blocks[k], fits, count))
+            TRY(write_blocks(own->folder, &blocks[k], fits, count));
+    return mf_own_files_sweep(own);
 }
 
 /// What a folder calls 1 of a reduced unit, in nm, ps, u and so on.
@@ -182,7 +202,7 @@ static void convert(struct compared *fit, const struct units *to) {
             value *= size_of(&summary->units, field->unit) / size_of(to, field->unit);
             memcpy(member, &value, sizeof value);
         }
-    for (size_t k = 0; k < sizeof blocks / sizeof blocks[0]; k++)
+    for (size_t k = 0; k < BLOCKS; k++)
         convert_table((struct result_table *)((char *)&fit->result + blocks[k].table),
                       blocks[k].header, &summary->units, to);
     summary->units = *to;
@@ -248,9 +268,10 @@ static void warn_of_lengths(const struct compared *fits, size_t count, const cha
 }
 
 enum status mf_compare_folders(const char *const *folders, size_t count, const char *out,
-                               bool quiet) {
+                               bool force, bool quiet) {
     enum status status = STATUS_OK;
     struct compared *fits = NULL;
+    struct own_files own = {.open = false};
     if (count == 0)
         return mf_status_fail(STATUS_BAD_INPUT, "compare: give the folder of at least one fit");
     NEW_ARRAY(fits, count);
@@ -263,12 +284,15 @@ enum status mf_compare_folders(const char *const *folders, size_t count, const c
     if (!quiet)
         warn_of_lengths(fits, count, folders);
     name_fits(fits, count);
-    CHECK(write_tables(out, fits, count));
+    CHECK(mf_own_files_make(&own, out, OWN_FILES_OF_COMPARISON));
+    own.force = force;
+    CHECK(write_tables(&own, fits, count));
     if (!quiet)
         CHECK(mf_compare_table_print(fits, count));
     if (mf_figures_draw_comparison(out) != STATUS_OK)
         fprintf(stderr, "mesofit: warning: %s\n", mf_status_message());
 done:
+    mf_own_files_close(&own);
     for (size_t k = 0; fits && k < count; k++)
         mf_result_clear(&fits[k].result);
     mf_memory_free(fits);

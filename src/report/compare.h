@@ -20,8 +20,8 @@
 /// Of Φ and ω there is what was fitted. A simulation has a g(r) without a
 /// target. A fit is called after the last part of its path that is not "out", with as many parts
 /// before it as are needed to tell the fits apart; the same folder again gets a number. `out` may
-/// be the folder of a run: nothing there is replaced but an earlier comparison. Fails: BAD_INPUT,
-/// also if two units of length differ, or IO with one line that names the file. A figure that fails
-/// is a warning on stderr. Tested: test_compare.
+/// be the folder of a run: nothing there is replaced but an earlier comparison, unless `force`.
+/// Fails: BAD_INPUT, also if two units of length differ, or IO with one line that names the file. A
+/// figure that fails is a warning on stderr. Tested: test_compare.
 enum status mf_compare_folders(const char *const *folders, size_t count, const char *out,
-                               bool quiet) MUST_USE;
+                               bool force, bool quiet) MUST_USE;

@@ -2,9 +2,10 @@
 #include "report/figure_script.h"
 
 #include "io/input.h"
-#include "io/output.h"
+#include "io/own_files.h"
 #include "report/program.h"
 
+#include <errno.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -31,13 +32,20 @@ static enum status run_gnuplot(const char *folder, const char *script) {
     return mf_program_run(folder, words, PROGRAM_ERRORS, drawing_time, errors, sizeof errors);
 }
 
-/// A figure that was begun and not finished would look like one.
-static void remove_figure(const char *folder, const char *name) {
-    char path[PATH_SIZE];
-    snprintf(path, sizeof path, "%s/figures/%s.svg", folder, name);
-    remove(path);
-    snprintf(path, sizeof path, "%s/figures/%s.png", folder, name);
-    remove(path);
+static const char *const kinds[] = {"svg", "png"};
+enum { KINDS = 2 };
+
+/// The path of a figure of one kind.
+static void find_figure(const char *folder, const char *name, int kind, char path[PATH_SIZE]) {
+    snprintf(path, PATH_SIZE, "%s/figures/%s.%s", folder, name, kinds[kind]);
+}
+
+/// While it is drawn, the names of both kinds end so.
+static void find_temporary(const char *folder, const char *name, int kind, const char *ending,
+                           char path[PATH_SIZE + OUTPUT_PARTIAL_SIZE]) {
+    char figure[PATH_SIZE];
+    find_figure(folder, name, kind, figure);
+    snprintf(path, PATH_SIZE + OUTPUT_PARTIAL_SIZE, "%s%s", figure, ending);
 }
 
 /// Whether a file ends as it must, a blank or two behind not counted: gnuplot says nothing of a
@@ -55,15 +63,46 @@ static bool ends_with(const char *path, const char *end, size_t length) {
     return bytes >= length && memcmp(tail + bytes - length, end, length) == 0;
 }
 
-static enum status check_figure(const char *folder, const char *name) {
+static enum status check_figure(const char *folder, const char *name, const char *ending) {
     static const char svg_end[] = "</svg>", png_end[] = "IEND\xae\x42\x60\x82";
-    char path[PATH_SIZE];
-    snprintf(path, sizeof path, "%s/figures/%s.svg", folder, name);
+    char path[PATH_SIZE + OUTPUT_PARTIAL_SIZE];
+    find_temporary(folder, name, 0, ending, path);
     bool whole = ends_with(path, svg_end, sizeof svg_end - 1);
-    snprintf(path, sizeof path, "%s/figures/%s.png", folder, name);
+    find_temporary(folder, name, 1, ending, path);
     whole = whole && ends_with(path, png_end, sizeof png_end - 1);
     return whole ? STATUS_OK
                  : mf_status_fail(STATUS_IO, "gnuplot left it unfinished; is the disk full?");
+}
+
+/// Both kinds get their names, or none does: a figure of other tables is worse than none.
+static enum status publish(const char *folder, const char *name, const char *ending,
+                           enum status status) {
+    char path[PATH_SIZE], temporary[PATH_SIZE + OUTPUT_PARTIAL_SIZE];
+    for (int kind = 0; kind < KINDS && status == STATUS_OK; kind++) {
+        find_figure(folder, name, kind, path);
+        find_temporary(folder, name, kind, ending, temporary);
+        if (rename(temporary, path) != 0)
+            status = mf_status_fail(STATUS_IO, "%s: %s", path, strerror(errno));
+    }
+    for (int kind = 0; kind < KINDS && status != STATUS_OK; kind++) {
+        find_figure(folder, name, kind, path);
+        find_temporary(folder, name, kind, ending, temporary);
+        remove(temporary);
+        mf_own_files_remove(path);
+    }
+    return status;
+}
+
+/// Before gnuplot takes its second.
+static enum status claim(const char *folder, const char *name) {
+    char path[PATH_SIZE];
+    snprintf(path, sizeof path, "%s/figures", folder);
+    TRY(mf_output_make_folder(path));
+    for (int kind = 0; kind < KINDS; kind++) {
+        find_figure(folder, name, kind, path);
+        TRY(mf_own_files_claim(path));
+    }
+    return STATUS_OK;
 }
 
 static enum status tell(const char *name, const char *text) {
@@ -71,22 +110,26 @@ static enum status tell(const char *name, const char *text) {
                                       : mf_status_fail(STATUS_NO_MEMORY, "out of memory");
 }
 
-enum status mf_figure_script_draw(const char *folder, const char *plots, const char *script,
-                                  const char *table, const char *figure) {
-    char path[PATH_SIZE], file[PATH_SIZE + 64];
-    snprintf(path, sizeof path, "%s/figures", folder);
-    TRY(mf_output_make_folder(path));
+static enum status draw(const char *folder, const char *plots, const char *script,
+                        const char *table, const char *figure) {
+    char file[PATH_SIZE + 64], ending[OUTPUT_PARTIAL_SIZE];
     snprintf(file, sizeof file, "%s/%s.gp", plots, script);
+    mf_output_partial(ending);
+    TRY(claim(folder, figure));
     TRY(tell("MESOFIT_PLOTS", plots));
     TRY(tell("MESOFIT_TABLE", table));
     TRY(tell("MESOFIT_FIGURE", figure));
-    // An earlier one goes first, and with it a link that would be followed.
-    remove_figure(folder, figure);
+    TRY(tell("MESOFIT_PARTIAL", ending));
     enum status status = run_gnuplot(folder, file);
     if (status == STATUS_OK)
-        status = check_figure(folder, figure);
-    if (status == STATUS_OK)
-        return STATUS_OK;
-    remove_figure(folder, figure);
-    return mf_status_prefix(status, "no figure %s/%s", path, figure);
+        status = check_figure(folder, figure, ending);
+    return publish(folder, figure, ending, status);
+}
+
+enum status mf_figure_script_draw(const char *folder, const char *plots, const char *script,
+                                  const char *table, const char *figure) {
+    const enum status status = draw(folder, plots, script, table, figure);
+    return status == STATUS_OK
+               ? STATUS_OK
+               : mf_status_prefix(status, "no figure %s/figures/%s", folder, figure);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "report/figures.h"
 
+#include "io/own_files.h"
 #include "observe/observable.h"
 #include "report/figure_script.h"
 #include "system/composition.h"
@@ -234,12 +235,16 @@ static enum status draw_measured(const char *folder, const char *plots, size_t *
     return first;
 }
 
+static enum status check_access(const char *folder) {
+    return access(folder, X_OK) == 0 ? STATUS_OK
+                                     : mf_status_fail(STATUS_IO, "%s: %s", folder, strerror(errno));
+}
+
 /// Draw all figures, and count them, also those that fail.
 static enum status draw_all(const char *folder, size_t *count) {
     enum status first = STATUS_OK;
     char message[MESSAGE_SIZE], plots[PATH_SIZE];
-    if (access(folder, X_OK) != 0)
-        return mf_status_fail(STATUS_IO, "%s: %s", folder, strerror(errno));
+    TRY(check_access(folder));
     TRY(mf_figure_script_find(plots));
     const size_t fixed = sizeof figures / sizeof *figures;
     TRY(draw_measured(folder, plots, count));
@@ -260,9 +265,15 @@ enum status mf_figures_draw(const char *folder) {
     return draw_all(folder, &count);
 }
 
-enum status mf_figures_draw_again(const char *folder) {
+enum status mf_figures_draw_again(const char *folder, bool force) {
+    struct own_files own;
     size_t count = 0;
-    TRY(draw_all(folder, &count));
+    TRY(check_access(folder));
+    TRY(mf_own_files_open(&own, folder, OWN_FILES_OF_RUN));
+    own.force = force;
+    const enum status status = draw_all(folder, &count);
+    mf_own_files_close(&own);
+    TRY(status);
     return count > 0 ? STATUS_OK
                      : mf_status_fail(STATUS_BAD_INPUT,
                                       "%s: there is nothing to draw: no table that a fit or a "
@@ -279,17 +290,40 @@ enum status mf_figures_draw_comparison(const char *folder) {
     return mf_figure_script_draw(folder, plots, "compare", tables[0], "compare");
 }
 
-enum status mf_figures_draw_accuracy(const char *table) {
+/// Folder and name of the figure of a table, and the table's name there.
+static enum status find_accuracy(const char *path, char folder[OUTPUT_PATH_SIZE], char name[256],
+                                 const char **table) {
     static const char ending[] = ".tsv";
-    char plots[PATH_SIZE], folder[OUTPUT_PATH_SIZE - 256], name[256];
-    const char *slash = strrchr(table, '/');
-    snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - table) : 1, slash ? table : ".");
-    snprintf(name, sizeof name, "%s", slash ? slash + 1 : table);
-    if (strlen(slash ? slash + 1 : table) >= sizeof name || strlen(table) >= sizeof folder)
-        return mf_status_fail(STATUS_IO, "no figure of %.60s…: its path is too long", table);
-    const size_t length = strlen(name), cut = sizeof ending - 1;
+    const char *slash = strrchr(path, '/');
+    *table = slash ? slash + 1 : path;
+    const size_t length = strlen(*table), cut = sizeof ending - 1;
+    if (length >= 256 || strlen(path) >= OUTPUT_PATH_SIZE - 256)
+        return mf_status_fail(STATUS_IO, "no figure of %.60s…: its path is too long", path);
+    snprintf(folder, OUTPUT_PATH_SIZE, "%.*s", slash ? (int)(slash - path) : 1, slash ? path : ".");
+    snprintf(name, 256, "%s", *table);
     if (length > cut && strcmp(name + length - cut, ending) == 0)
         name[length - cut] = '\0';
+    return STATUS_OK;
+}
+
+enum status mf_figures_check_accuracy(const char *path) {
+    char folder[OUTPUT_PATH_SIZE], name[256], figure[PATH_SIZE + 256];
+    const char *table;
+    struct stat about;
+    TRY(find_accuracy(path, folder, name, &table));
+    for (int kind = 0; kind < 2; kind++) {
+        snprintf(figure, sizeof figure, "%s/figures/%s.%s", folder, name, kind ? "png" : "svg");
+        if (lstat(figure, &about) == 0)
+            return mf_status_fail(STATUS_BAD_INPUT,
+                                  "%s is there: --force replaces it, -o OTHER keeps it", figure);
+    }
+    return STATUS_OK;
+}
+
+enum status mf_figures_draw_accuracy(const char *path) {
+    char folder[OUTPUT_PATH_SIZE], name[256], plots[PATH_SIZE];
+    const char *table;
+    TRY(find_accuracy(path, folder, name, &table));
     TRY(mf_figure_script_find(plots));
-    return mf_figure_script_draw(folder, plots, "accuracy", slash ? slash + 1 : table, name);
+    return mf_figure_script_draw(folder, plots, "accuracy", table, name);
 }

@@ -8,14 +8,17 @@
 
 #include "base/status.h"
 
+#include <stdbool.h>
+
 /// Draw every figure whose tables are in `folder`, to figures/<name>.svg and .png in it.
 /// IO with one line if gnuplot is missing or a figure fails; the others are drawn all the same.
 /// Threads: one at a time, since the environment is changed. Tested: test_figures.
 enum status mf_figures_draw(const char *folder) MUST_USE;
 
-/// The same for a person who asks for them. BAD_INPUT if there is no table to draw.
-/// Tested: test_bad_lines_are_refused_with_a_hint.
-enum status mf_figures_draw_again(const char *folder) MUST_USE;
+/// The same for a person who asks for them, in the folder of a run: figures that are of the run and
+/// that nobody has changed are replaced, others with `force` alone. BAD_INPUT if there is no table
+/// to draw. Tested: test_bad_lines_are_refused_with_a_hint, test_own_files.
+enum status mf_figures_draw_again(const char *folder, bool force) MUST_USE;
 
 /// Draw figures/compare.svg and .png from the tables that mf_compare_folders wrote to `folder`.
 enum status mf_figures_draw_comparison(const char *folder) MUST_USE;
@@ -23,3 +26,6 @@ enum status mf_figures_draw_comparison(const char *folder) MUST_USE;
 /// Draw the work-precision diagram of a table of `mesofit bench accuracy`, folder/NAME.tsv, to
 /// folder/figures/NAME.svg and .png. Tested: test_bench_accuracy.
 enum status mf_figures_draw_accuracy(const char *table);
+
+/// Refuse to replace one that is there. Fails: BAD_INPUT.
+enum status mf_figures_check_accuracy(const char *table) MUST_USE;

@@ -4,6 +4,7 @@
 #include "base/clock.h"
 #include "base/terminal.h"
 #include "io/json_write.h"
+#include "io/own_files.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -71,7 +72,7 @@ void mf_progress_end(const struct progress *progress) {
     if (progress->folder == NULL)
         return;
     find_file(progress, path);
-    unlink(path);
+    mf_own_files_remove(path);
 }
 
 void mf_progress_tell(struct progress *progress, uint64_t done, uint64_t total, const char *unit,

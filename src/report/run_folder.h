@@ -5,8 +5,9 @@
 #include "base/status.h"
 #include "input/run_options.h"
 #include "io/input.h"
+#include "io/json_write.h"
+#include "io/own_files.h"
 #include "io/output.h"
-#include "system/composition.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -17,15 +18,18 @@
 /// The folder of the folders of a fit's states.
 #define STATES_FOLDER "states"
 
-/// A simulation or a measurement may replace an earlier one of its kind, a fit nothing without
-/// --force.
+/// A simulation or a measurement may replace an earlier one of its kind that is finished, a fit
+/// nothing without --force.
 enum run_kind { RUN_SIMULATION, RUN_FIT, RUN_MEASUREMENT };
 
-/// A folder while a run writes it. Zeros are one that is not open.
+/// A folder while a run writes it. Zeros are one that is not open. One that is open must not be
+/// moved.
 struct run_folder {
     char path[OUTPUT_PATH_SIZE];
-    bool locked;
-    int lock; ///< the folder, open
+    struct own_files own;
+    struct output used; ///< used.json, until the run has begun
+    char *settings;     ///< what stands in it
+    size_t settings_size;
 };
 
 /// Set the path of the folder of a run of `input`, and nothing else. Fails: BAD_INPUT if it is too
@@ -35,23 +39,35 @@ enum status mf_run_folder_choose(struct run_folder *folder, enum run_kind kind, 
 
 /// Choose, make and lock the folder of a run of `input`, `out` beside it unless the options say
 /// where, and `target` here for a measurement, in which nothing changes before
-/// mf_run_folder_begin. Of several ranks (base/ranks.h) rank 0 alone does so. Where files cannot be
-/// locked, it goes on without. Fails: BAD_INPUT if the path is too long, another process runs in
-/// the folder, a file that the run reads has the name of a result, there is nothing to resume, or
-/// there are results that only
-/// --force may replace: those of an earlier fit, of a simulation if this is a fit, and files with
-/// such names that are of no run (there is no used.json); IO. Tested: test_folder.
+/// mf_run_folder_begin. Of several ranks (base/ranks.h) rank 0 alone does so. Fails: BAD_INPUT if
+/// the path is too long, the folder is a link or has links to folders of results, another process
+/// runs in it, a file that the run reads would be replaced, there is nothing to resume, or there
+/// are results that only --force may replace: those of an earlier fit, an unfinished simulation, a
+/// simulation if this is a fit, and what a person has changed since; results that no list says the
+/// program wrote; IO. Tested: test_folder.
 enum status mf_run_folder_open(struct run_folder *folder, enum run_kind kind, const char *input,
                                const struct input_files *inputs,
                                const struct run_options *options) MUST_USE;
 
-/// Remove what killed processes had begun to write and, unless the run goes on with them, the
-/// results of an earlier run, so that a folder never mixes two: once used.json and checkpoint.bin
-/// are those of the new run, which so has room to begin. Fails: IO.
-enum status mf_run_folder_begin(const struct run_folder *folder, bool resume) MUST_USE;
+/// Refuse now what would be refused when the file of this name is written. Fails: BAD_INPUT.
+enum status mf_run_folder_reserve(struct run_folder *folder, const char *name) MUST_USE;
 
-/// Whether a run writes files of this name beside used.json.
-bool mf_run_folder_is_result(const char *name);
+/// Keep the settings, for used.json, which is not written yet. @param[out] digest  of them
+/// Fails: NO_MEMORY.
+enum status mf_run_folder_keep_settings(struct run_folder *folder, const struct json_writer *writer,
+                                        uint64_t *digest) MUST_USE;
+
+/// Begin a run that is not resumed: its results will be its own, what is there is of an earlier
+/// one. There is room for used.json. Fails: IO; as mf_own_files_claim.
+enum status mf_run_folder_begin(struct run_folder *folder, uint64_t digest) MUST_USE;
+
+/// The run has begun, its checkpoint is there if it has one: give used.json its name, and remove
+/// what an earlier run left, so that a folder never mixes two. Fails: IO.
+enum status mf_run_folder_take_over(struct run_folder *folder) MUST_USE;
+
+/// The run goes on from its checkpoint: finish what it may have begun to take over, and leave
+/// used.json alone if it is there. Fails: IO; as mf_own_files_claim.
+enum status mf_run_folder_resume(struct run_folder *folder, uint64_t digest) MUST_USE;
 
 /// Unlock it.
 void mf_run_folder_close(struct run_folder *folder);
@@ -59,18 +75,13 @@ void mf_run_folder_close(struct run_folder *folder);
 /// Path of a file in the folder, into `path` of OUTPUT_PATH_SIZE bytes.
 void mf_run_folder_file(const struct run_folder *folder, const char *name, char *path);
 
-/// The folder of a state of a fit in that of the fit, which is made with it; it is not locked by
-/// itself. Fails: BAD_INPUT if its path is too long; IO.
+/// The folder of a state of a fit in that of the fit, which is made with it; what is written there
+/// is the fit's. Fails: BAD_INPUT if its path is too long or a link leads there; IO.
 enum status mf_run_folder_state(const struct run_folder *folder, const char *name,
                                 struct run_folder *state) MUST_USE;
 
-/// Find out whether that folder can be written, as mf_run_folder_open: refused are a link, a folder
-/// with a run of its own, and one with a file that the run reads. And remove from it what an
-/// earlier run left, as mf_run_folder_begin.
-enum status mf_run_folder_open_state(const struct run_folder *folder, const char *name,
-                                     const struct input_files *inputs) MUST_USE;
-enum status mf_run_folder_begin_state(const struct run_folder *folder, const char *name,
-                                      bool resume) MUST_USE;
+/// Refuse now what would be refused then, and a folder that holds a run of its own.
+enum status mf_run_folder_check_state(struct run_folder *folder, const char *name) MUST_USE;
 
 /// Draw the figures of the folder; what fails is a warning on stderr.
 void mf_run_folder_draw(const struct run_folder *folder);

@@ -100,18 +100,14 @@ static enum status load(struct run *run) {
     return STATUS_OK;
 }
 
-/// Write all settings to used.json and take their digest. A run that is resumed leaves used.json
-/// alone, since the settings may turn out to be others.
-static enum status write_used(struct run *run, bool resume) {
-    const struct fit_file *fit = &run->fit;
-    char path[OUTPUT_PATH_SIZE];
-    mf_run_folder_file(&run->folder, resume ? "used.json.resumed" : "used.json", path);
-    TRY(mf_fit_file_write(fit, path));
-    TRY(mf_checkpoint_digest(path, &run->digest));
-    mf_fit_file_digest(fit, &run->digest);
-    if (resume)
-        remove(path);
-    return STATUS_OK;
+/// Keep all settings, and take their digest.
+static enum status keep_settings(struct run *run) {
+    struct json_writer *writer = mf_json_writer_create();
+    mf_fit_file_write(&run->fit, writer);
+    const enum status status = mf_run_folder_keep_settings(&run->folder, writer, &run->digest);
+    mf_json_writer_free(writer);
+    mf_fit_file_digest(&run->fit, &run->digest);
+    return status;
 }
 
 static enum status create(struct run *run) {
@@ -151,13 +147,16 @@ static enum status read_and_create(struct run *run, const char *file,
                : mf_status_prefix(mf_units_mark(&run->fit.scene.units, status), "%s", file);
 }
 
-static enum status begin_folder(struct run *run, const struct run_options *options) {
-    TRY(write_used(run, options->resume));
+static enum status begin_folder(struct run *run, bool resume) {
+    TRY(keep_settings(run));
+    if (resume) {
+        TRY(load(run));
+        return mf_run_folder_resume(&run->folder, run->digest);
+    }
+    TRY(mf_run_folder_begin(&run->folder, run->digest));
     // Saved now, so that a run interrupted in its first iteration can be resumed like any other.
-    TRY(options->resume ? load(run) : save(run));
-    // What an earlier run left is touched once this one has begun.
-    TRY(mf_run_folder_begin(&run->folder, options->resume));
-    return mf_fit_verify_begin(&run->fit, &run->folder, options->resume);
+    TRY(save(run));
+    return mf_run_folder_take_over(&run->folder);
 }
 
 /// What rank 0 has loaded, for the others.
@@ -172,7 +171,7 @@ static enum status share(struct run *run) {
 
 static enum status prepare(struct run *run, const char *file, const struct run_options *options) {
     TRY(mf_parallel_agree(read_and_create(run, file, options), mf_fit_ranks_digest(&run->fit)));
-    TRY(mf_parallel_agree(ranks_lead() ? begin_folder(run, options) : STATUS_OK, 0));
+    TRY(mf_parallel_agree(ranks_lead() ? begin_folder(run, options->resume) : STATUS_OK, 0));
     if (options->resume)
         TRY(share(run));
     mf_progress_tell_run(&run->progress, &(struct watcher_run){RUN_FIT, run->folder.path,

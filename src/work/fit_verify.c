@@ -5,22 +5,27 @@
 #include "problem/unknowns.h"
 #include "report/fit_output.h"
 #include "report/fit_verdict.h"
-#include "report/stale_states.h"
 
-enum status mf_fit_verify_folders(const struct fit_file *fit, const struct run_folder *folder) {
-    for (size_t s = 0; s < fit->others; s++)
-        TRY(mf_run_folder_open_state(folder, fit->other[s].name, &fit->inputs));
+/// The tables of a verification, which come at the end.
+static enum status reserve(const struct fit_file *fit, size_t s, struct run_folder *folder) {
+    const struct fit_file *state = s == 0 ? fit : &fit->other[s - 1];
+    for (int kind = 0; mf_targets_name(kind); kind++) {
+        char name[OUTPUT_PATH_SIZE];
+        snprintf(name, sizeof name, "%s%s%s%s.tsv", s > 0 ? STATES_FOLDER "/" : "",
+                 s > 0 ? state->name : "", s > 0 ? "/" : "", mf_targets_name(kind));
+        if (targets_ask(&state->problem.targets, (enum target_kind)kind))
+            TRY(mf_run_folder_reserve(folder, name));
+    }
     return STATUS_OK;
 }
 
-enum status mf_fit_verify_begin(const struct fit_file *fit, const struct run_folder *folder,
-                                bool resume) {
-    const char *name[INVERSE_MOST_STATES];
-    for (size_t s = 0; s < fit->others; s++) {
-        name[s] = fit->other[s].name;
-        TRY(mf_run_folder_begin_state(folder, name[s], resume));
+enum status mf_fit_verify_folders(const struct fit_file *fit, struct run_folder *folder) {
+    for (size_t s = 0; s <= fit->others; s++) {
+        if (s > 0)
+            TRY(mf_run_folder_check_state(folder, fit->other[s - 1].name));
+        TRY(reserve(fit, s, folder));
     }
-    return resume ? STATUS_OK : mf_stale_states_remove(folder, name, fit->others);
+    return STATUS_OK;
 }
 
 /// Simulations of a state, told among those of all.

@@ -6,13 +6,9 @@
 #include "problem/verify.h"
 #include "report/run_folder.h"
 
-/// Open the folders of the states behind the first, and begin to write there; what an earlier fit
-/// left of other states is removed. Fails: as mf_run_folder_open_state, mf_run_folder_begin_state
-/// and mf_stale_states_remove.
-enum status mf_fit_verify_folders(const struct fit_file *fit,
-                                  const struct run_folder *folder) MUST_USE;
-enum status mf_fit_verify_begin(const struct fit_file *fit, const struct run_folder *folder,
-                                bool resume) MUST_USE;
+/// Refuse now a fit that could not write the folders of its states, or the tables of their
+/// verifications. Fails: as mf_run_folder_check_state and mf_run_folder_reserve.
+enum status mf_fit_verify_folders(const struct fit_file *fit, struct run_folder *folder) MUST_USE;
 
 /// Simulate all states with what was found; the listener is told of the simulations of all.
 /// @param[in]  curve         shape [UNKNOWNS][points]

@@ -267,7 +267,8 @@ static enum status write_results(struct run *run, bool interrupted) {
                                           .folder = run->folder.path,
                                           .interrupted = interrupted,
                                           .seconds = mf_progress_seconds(&run->progress)};
-    TRY(mf_run_folder_begin(&run->folder, false));
+    TRY(mf_run_folder_begin(&run->folder, 0));
+    TRY(mf_run_folder_take_over(&run->folder));
     TRY(mf_measure_output_write(&result));
     mf_run_folder_draw(&run->folder);
     say_lines(&run->progress, &run->frames.notes);

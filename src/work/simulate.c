@@ -68,10 +68,8 @@ static enum status read_file(struct run *run, const char *file, const struct run
     return STATUS_OK;
 }
 
-/// Write all settings to used.json and take their digest. A run that is resumed leaves used.json
-/// alone, since the settings may turn out to be others.
-static enum status write_used(struct run *run, bool resume) {
-    char path[OUTPUT_PATH_SIZE];
+/// Keep all settings, and take their digest.
+static enum status keep_settings(struct run *run) {
     struct json_writer *writer = mf_json_writer_create();
     mf_json_put_fields(writer, mf_heading_fields, &run->heading);
     mf_units_write(&run->scene.units, writer);
@@ -80,15 +78,10 @@ static enum status write_used(struct run *run, bool resume) {
     mf_json_put_fields(writer, mf_measure_plan_fields, &run->plan);
     mf_json_end(writer);
     mf_simulate_observables_write_used(&run->observables, writer);
-    mf_run_folder_file(&run->folder, resume ? "used.json.resumed" : "used.json", path);
-    const enum status status = mf_json_write(writer, path);
+    const enum status status = mf_run_folder_keep_settings(&run->folder, writer, &run->digest);
     mf_json_writer_free(writer);
-    TRY(status);
-    TRY(mf_checkpoint_digest(path, &run->digest));
     mf_scene_digest(&run->scene, &run->digest);
-    if (resume)
-        remove(path);
-    return STATUS_OK;
+    return status;
 }
 
 static enum status save(struct run *run) {
@@ -209,14 +202,24 @@ static enum status begin_measuring(struct run *run, const char *file) {
                : mf_status_prefix(mf_units_mark(&run->scene.units, status), "%s", file);
 }
 
+static enum status begin_folder(struct run *run, bool resume) {
+    if (resume) {
+        TRY(load(run));
+        return mf_run_folder_resume(&run->folder, run->digest);
+    }
+    TRY(mf_run_folder_begin(&run->folder, run->digest));
+    TRY(save(run));
+    return mf_run_folder_take_over(&run->folder);
+}
+
 /// What an earlier run left is touched once this one can begin.
 static enum status prepare(struct run *run, const char *file, const struct run_options *options) {
     TRY(read_file(run, file, options));
     TRY(mf_run_folder_open(&run->folder, RUN_SIMULATION, file, &run->inputs, options));
+    TRY(mf_simulate_observables_reserve(&run->observables, &run->folder));
     TRY(begin_measuring(run, file));
-    TRY(write_used(run, options->resume));
-    TRY(options->resume ? load(run) : save(run));
-    return mf_run_folder_begin(&run->folder, options->resume);
+    TRY(keep_settings(run));
+    return begin_folder(run, options->resume);
 }
 
 static void warn(struct run *run) {
@@ -253,14 +256,19 @@ static enum status carry_out(struct run *run) {
     return status;
 }
 
+/// Nothing is left to go on with.
+static void remove_checkpoint(const struct run *run) {
+    char path[OUTPUT_PATH_SIZE];
+    mf_run_folder_file(&run->folder, "checkpoint.bin", path);
+    mf_own_files_remove(path);
+}
+
 static enum status write_results(struct run *run) {
     const double seconds = mf_progress_seconds(&run->progress);
     const struct observable_results results = results_of(run);
-    char path[OUTPUT_PATH_SIZE];
     TRY(mf_simulate_observables_write(&run->observables, &results));
     TRY(write_summary(run, seconds));
-    mf_run_folder_file(&run->folder, "checkpoint.bin", path); // nothing is left to go on with
-    remove(path);
+    remove_checkpoint(run);
     mf_run_folder_draw(&run->folder);
     mf_simulate_observables_say(&run->observables, &results, &run->progress);
     mf_progress_say(&run->progress, "%llu steps in %.3g s; results in %s",
@@ -293,6 +301,8 @@ enum status mf_simulate_file(const char *file, const struct run_options *options
         status = mf_status_fail(STATUS_INTERRUPTED, "interrupted at step %llu; go on with --resume",
                                 (unsigned long long)run->simulation.step);
     }
+    if (status == STATUS_UNSTABLE) // it would be so again
+        remove_checkpoint(run);
     if (status == STATUS_OK)
         status = write_results(run);
 done:

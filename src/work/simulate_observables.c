@@ -3,6 +3,8 @@
 
 #include "io/checkpoint.h"
 
+#include <string.h>
+
 /// Whether what is always measured can be: g(r) without a word of it as far as forces reach.
 static bool is_usual(const struct observable *observable, const struct simulation_setup *setup) {
     return observable->always && setup->placement.count >= 2 &&
@@ -104,6 +106,15 @@ void mf_simulate_observables_open(const struct simulate_observables *observables
     for (const struct observable_use *use = observables->use; use->observable; use++)
         if (use->observable->open)
             use->observable->open(use->state, results);
+}
+
+enum status mf_simulate_observables_reserve(const struct simulate_observables *observables,
+                                            struct run_folder *folder) {
+    for (const struct observable_use *use = observables->use; use->observable; use++)
+        for (const char *const *file = use->observable->files; file && *file; file++)
+            if (strchr(*file, '*') == NULL)
+                TRY(mf_run_folder_reserve(folder, *file));
+    return STATUS_OK;
 }
 
 size_t mf_simulate_observables_spans(struct simulate_observables *observables,

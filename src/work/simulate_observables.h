@@ -5,6 +5,7 @@
 #include "io/json.h"
 #include "observe/measure.h"
 #include "report/progress.h"
+#include "report/run_folder.h"
 
 struct simulate_observables {
     struct observable_use use[OBSERVABLES_MOST + 1]; ///< settings are NULL of one without fields
@@ -34,6 +35,11 @@ enum status mf_simulate_observables_begin_anew(struct simulate_observables *obse
 /// Tell those that write while they measure where their files go.
 void mf_simulate_observables_open(const struct simulate_observables *observables,
                                   const struct observable_results *results);
+
+/// Refuse now a table that could not be written, as far as its name is known. Fails: as
+/// mf_run_folder_reserve.
+enum status mf_simulate_observables_reserve(const struct simulate_observables *observables,
+                                            struct run_folder *folder) MUST_USE;
 
 enum { SIMULATE_MOST_SPANS = SIMULATION_SPANS + OBSERVABLES_MOST * OBSERVABLE_MOST_SPANS };
 

@@ -18,5 +18,5 @@ name=$(cpuinfo 'model name' | sed 's/([RTM]*)//g; s/ CPU.*//; s/ @.*//')
 cpu=$(printf '%s %s %s' "${name:-$(uname -m)}" "$(cpuinfo 'cpu family')" "$(cpuinfo model)" |
     tr '[:upper:]' '[:lower:]' | sed 's/[^a-z0-9]\{1,\}/-/g; s/^-//; s/-$//')
 mkdir -p "$results"
-"$program" bench engine -o "$results/$cpu.tsv"
+"$program" bench engine --force -o "$results/$cpu.tsv"
 printf '\nresults in %s\n' "$results/$cpu.tsv"

@@ -236,12 +236,10 @@ static void test_folders_of_states_are_the_fits_own(void **state) {
 
 /// What a forced run finds of states with other names is removed, but for files of others.
 static void test_states_with_other_names_leave_nothing(void **state) {
-    static const char figures[] = "out/states/dense/figures", note[] = "kept";
+    static const char note[] = "kept";
     small_inputs_write(*state, "run.json", run, NULL, NULL);
     RUN_PROGRAM(&result, "fit", "run.json", "-o", "out", "--force");
     run_program_assert_code(&result, 0);
-    mkdir(figures, 0777);
-    temporary_folder_write(*state, "out/states/dense/figures/rdf.svg", note, strlen(note));
     temporary_folder_write(*state, "out/states/dilute-notes.txt", note, strlen(note));
     small_inputs_write(*state, "run.json", run, "\"dense\": {", "\"thick\": {");
     RUN_PROGRAM(&result, "fit", "run.json", "-o", "out", "--force");
@@ -250,12 +248,13 @@ static void test_states_with_other_names_leave_nothing(void **state) {
     assert_int_equal(access("out/states/dilute-notes.txt", F_OK), 0);
     assert_int_equal(access("out/states/dense", F_OK), -1);
     // What is not of a run stays, and its folder with it.
-    temporary_folder_write(*state, "out/states/thick/notes.txt", note, strlen(note));
+    mkdir("out/states/thick/figures", 0777);
+    temporary_folder_write(*state, "out/states/thick/figures/notes.svg", note, strlen(note));
     RUN_PROGRAM(&result, "fit", "run.json", "-o", "out", "--force");
     small_inputs_write(*state, "run.json", run, NULL, NULL);
     RUN_PROGRAM(&result, "fit", "run.json", "-o", "out", "--force");
     run_program_assert_code(&result, 0);
-    assert_int_equal(access("out/states/thick/notes.txt", F_OK), 0);
+    assert_int_equal(access("out/states/thick/figures/notes.svg", F_OK), 0);
     assert_int_equal(access("out/states/thick/rdf.tsv", F_OK), -1);
 }
 

@@ -149,15 +149,15 @@ static void test_a_new_run_removes_the_results_of_the_one_before(void **state) {
     static struct run_program_result result;
     small_scenes_write(*state, small_scenes_dpd, NULL, NULL);
     small_scenes_simulate(&result, "out");
-    temporary_folder_write(*state, "out/checkpoint.bin", "old", 3);
     small_scenes_write(*state, small_scenes_dpd, "0.04", "4");
     RUN_PROGRAM(&result, "simulate", "scene.json");
     run_program_assert_code(&result, 1);
     assert_false(temporary_folder_exists("out/summary.json"));
     assert_false(temporary_folder_exists("out/rdf.tsv"));
-    char *saved = temporary_folder_read("out/checkpoint.bin"); // from before the first step
-    assert_int_equal(strncmp(saved, "mesofit state", 13), 0);
-    free(saved);
+    // It would be unstable again: the next one may begin without a word.
+    assert_false(temporary_folder_exists("out/checkpoint.bin"));
+    small_scenes_write(*state, small_scenes_dpd, NULL, NULL);
+    small_scenes_simulate(&result, "out");
 }
 
 #define TEST_WITHOUT_FIGURES(name)                                                                 \

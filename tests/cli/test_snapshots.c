@@ -51,6 +51,11 @@ static void test_killed_run_leaves_the_same_snapshots(void **state) {
     assert_non_null(trajectory);
     fputs("300\nhalf a frame\n", trajectory);
     fclose(trajectory);
+    // As a process that is killed leaves the list.
+    FILE *list = fopen("out/.mesofit-run", "a");
+    assert_non_null(list);
+    fputs("-\t-\tsnapshots/trajectory.extxyz\n", list);
+    fclose(list);
     RUN_PROGRAM(&result, "simulate", "scene.json", "--resume");
     run_program_assert_code(&result, 0);
     results_assert_same("whole", "out",

@@ -66,7 +66,10 @@ static void test_fit_defaults_stand_in_used_json(void **state) {
     write_target(state);
     assert_ok(read_run(state, &fit, "run.json", TARGET "\"scene\": {\"density\": 0.3}}"));
     snprintf(path, sizeof path, "%s", temporary_folder_file(*state, "used.json"));
-    assert_ok(mf_fit_file_write(&fit, path));
+    struct json_writer *writer = mf_json_writer_create();
+    mf_fit_file_write(&fit, writer);
+    assert_ok(mf_json_write(writer, path));
+    mf_json_writer_free(writer);
     assert_ok(mf_fit_file_read(&again, path, &options));
     assert_int_equal(again.choices.count, 0);
     assert_identical(again.scene.setup.time_step, fit.scene.setup.time_step);

@@ -215,17 +215,6 @@ static void test_extxyz_is_continued_behind_the_bytes_that_count(void **state) {
     mf_particles_clear(&particles);
 }
 
-static void test_names_of_snapshots_are_known(void **state) {
-    (void)state;
-    assert_true(mf_snapshot_is_file("step_000000100.vtp"));
-    assert_true(mf_snapshot_is_file("step_12345678901.json"));
-    assert_true(mf_snapshot_is_file("trajectory.extxyz"));
-    assert_true(mf_snapshot_is_file("trajectory.lammpstrj"));
-    assert_false(mf_snapshot_is_file("step_one.vtp"));
-    assert_false(mf_snapshot_is_file("step_000000100.png"));
-    assert_false(mf_snapshot_is_file("notes.extxyz"));
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(test_extxyz_has_a_line_for_each_particle_by_id,
@@ -240,7 +229,6 @@ int main(void) {
                                         temporary_folder_remove),
         cmocka_unit_test_setup_teardown(test_companions_follow_as_a_type_of_their_own,
                                         temporary_folder_create, temporary_folder_remove),
-        cmocka_unit_test(test_names_of_snapshots_are_known),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -37,6 +37,14 @@ static bool put_file(const char *folder) {
     return file && fclose(file) == 0;
 }
 
+/// A table of the program, in a folder that it has made.
+static bool put_table(const char *folder) {
+    char path[OUTPUT_PATH_SIZE];
+    struct output output;
+    snprintf(path, sizeof path, "%.4000s/rdf.tsv", folder);
+    return mf_output_open(&output, path) == STATUS_OK && mf_output_commit(&output) == STATUS_OK;
+}
+
 /// Another process makes one, puts a file into it, says its path and waits to be killed.
 static pid_t begin_other(char *path) {
     int ends[2];
@@ -46,7 +54,7 @@ static pid_t begin_other(char *path) {
         struct live_scratch scratch;
         prctl(PR_SET_PDEATHSIG, SIGKILL); // should the test have ended without killing it
         mf_live_scratch_make(&scratch);
-        if (put_file(scratch.path) && write(ends[1], scratch.path, sizeof scratch.path) > 0)
+        if (put_table(scratch.path) && write(ends[1], scratch.path, sizeof scratch.path) > 0)
             pause();
         _exit(0);
     }
@@ -70,7 +78,7 @@ static void test_scratch_goes_with_its_files(void **state) {
     snprintf(path, sizeof path, "%s", scratch.path);
     assert_int_equal(stat(path, &about), 0);
     assert_int_equal(about.st_mode & 0777, 0700);
-    assert_true(put_file(path));
+    assert_true(put_table(path));
     mf_live_scratch_remove(&scratch);
     assert_false(exists(path));
     assert_string_equal(scratch.path, "");
@@ -94,10 +102,10 @@ static void test_what_a_killed_process_leaves_goes_and_that_of_a_living_one_stay
     end_other(second);
 }
 
-/// Names of another form, links, files, and folders of other users.
+/// Folders of no scratch, whatever they are called, links, files, and folders of other users.
 static void test_what_is_of_others_stays(void **state) {
     const char *place = ((struct temporary_folder *)*state)->path;
-    static const char *const names[] = {"mesofit-live", "mesofit-live-long-name", "elsewhere"};
+    static const char *const names[] = {"mesofit-live", "mesofit-live-backup", "elsewhere"};
     char path[4][OUTPUT_PATH_SIZE];
     struct live_scratch scratch;
     for (size_t k = 0; k < 3; k++) {
@@ -108,8 +116,7 @@ static void test_what_is_of_others_stays(void **state) {
     snprintf(path[3], sizeof path[3], "%s/mesofit-live-linked", place);
     assert_int_equal(symlink(path[2], path[3]), 0);
     char foreign[OUTPUT_PATH_SIZE];
-    snprintf(foreign, sizeof foreign, "%s/mesofit-live-others", place);
-    assert_int_equal(mkdir(foreign, 0700), 0);
+    end_other(begin_other(foreign));
     const bool is_foreign = geteuid() == 0 && chown(foreign, 54321, 54321) == 0;
     mf_live_scratch_make(&scratch);
     for (size_t k = 0; k < 3; k++) {
@@ -119,6 +126,23 @@ static void test_what_is_of_others_stays(void **state) {
     }
     assert_true(exists(path[3]));
     assert_int_equal(exists(foreign), is_foreign);
+    mf_live_scratch_remove(&scratch);
+}
+
+/// What a person has put into the folder of a process that was killed stays, and the folder with
+/// it.
+static void test_files_of_others_in_a_scratch_stay(void **state) {
+    char killed[OUTPUT_PATH_SIZE], table[OUTPUT_PATH_SIZE + 16], mine[OUTPUT_PATH_SIZE + 16];
+    struct live_scratch scratch;
+    (void)state;
+    end_other(begin_other(killed));
+    snprintf(table, sizeof table, "%s/rdf.tsv", killed);
+    snprintf(mine, sizeof mine, "%s/thesis.txt", killed);
+    FILE *file = fopen(mine, "w");
+    assert_true(file && fclose(file) == 0);
+    mf_live_scratch_make(&scratch);
+    assert_false(exists(table));
+    assert_true(exists(mine));
     mf_live_scratch_remove(&scratch);
 }
 
@@ -156,6 +180,7 @@ int main(void) {
         cmocka_unit_test_setup_teardown(
             test_what_a_killed_process_leaves_goes_and_that_of_a_living_one_stays, enter, leave),
         cmocka_unit_test_setup_teardown(test_what_is_of_others_stays, enter, leave),
+        cmocka_unit_test_setup_teardown(test_files_of_others_in_a_scratch_stay, enter, leave),
         cmocka_unit_test_setup_teardown(test_many_processes_at_once_keep_theirs, enter, leave),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -94,7 +94,7 @@ static enum status compare(const char *first, const char *second, bool quiet) {
     snprintf(paths[0], PATH, "%s/%s", root, first);
     snprintf(paths[1], PATH, "%s/%s", root, second ? second : "");
     snprintf(out, sizeof out, "%s/cmp", root);
-    return mf_compare_folders((const char *const[]){paths[0], paths[1]}, second ? 2 : 1, out,
+    return mf_compare_folders((const char *const[]){paths[0], paths[1]}, second ? 2 : 1, out, false,
                               quiet);
 }
 
@@ -429,7 +429,7 @@ static void test_faults_name_the_file(void **state) {
 
 static void test_no_folder_is_refused(void **state) {
     (void)state;
-    assert_int_equal(mf_compare_folders(NULL, 0, root, true), STATUS_BAD_INPUT);
+    assert_int_equal(mf_compare_folders(NULL, 0, root, false, true), STATUS_BAD_INPUT);
     assert_string_equal(mf_status_message(), "compare: give the folder of at least one fit");
 }
 

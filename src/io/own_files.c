@@ -1,0 +1,447 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/own_files.h"
+
+#include "base/memory.h"
+#include "base/ranks.h"
+#include "io/own_file.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/// So much of a folder is read for digests, of what was written last; of the rest, sizes are known
+/// [bytes].
+static const int64_t most_read = (int64_t)1 << 30;
+
+/// All folders that are open.
+static struct own_files *all;
+static pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER;
+
+/// A run may take days: the folder is still that which was opened.
+static enum status check_place(const struct own_files *own) {
+    struct stat then, now;
+    if (fstat(own->list.place, &then) == 0 && stat(own->folder, &now) == 0 &&
+        then.st_dev == now.st_dev && then.st_ino == now.st_ino)
+        return STATUS_OK;
+    return mf_status_fail(STATUS_IO, "%s is gone: it was removed, or replaced, while it was used",
+                          own->folder);
+}
+
+// One folder --------------------------------------------------------------------------------------
+
+/// Links are not followed: what they lead to is somebody else's.
+static enum status check_link(const char *folder) {
+    char path[OUTPUT_PATH_SIZE];
+    struct stat about;
+    size_t length = strlen(folder);
+    while (length > 1 && folder[length - 1] == '/')
+        length--;
+    snprintf(path, sizeof path, "%.*s", (int)length, folder);
+    if (lstat(path, &about) != 0 || !S_ISLNK(about.st_mode))
+        return STATUS_OK;
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "%s is a link: give -o the folder that it leads to, or another", path);
+}
+
+enum status mf_own_files_open(struct own_files *own, const char *folder, const char *list) {
+    enum status status = STATUS_OK;
+    *own = (struct own_files){.list = {.name = list, .file = -1}};
+    snprintf(own->folder, sizeof own->folder, "%s", folder);
+    TRY(check_link(folder));
+    own->list.folder = own->folder;
+    own->list.place = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (own->list.place < 0)
+        return mf_status_fail(STATUS_IO, "%s: %s", folder, strerror(errno));
+    CHECK(mf_own_list_read(&own->list));
+    pthread_mutex_lock(&mutex);
+    own->open = true;
+    own->next = all;
+    all = own;
+    pthread_mutex_unlock(&mutex);
+done:
+    if (status != STATUS_OK) {
+        mf_own_list_clear(&own->list);
+        close(own->list.place);
+    }
+    return status;
+}
+
+enum status mf_own_files_make(struct own_files *own, const char *folder, const char *list) {
+    struct stat about;
+    const bool missing = stat(folder, &about) != 0 && errno == ENOENT;
+    *own = (struct own_files){.open = false};
+    TRY(check_link(folder));
+    TRY(mf_output_make_folder(folder));
+    TRY(mf_own_files_open(own, folder, list));
+    own->made = missing;
+    return STATUS_OK;
+}
+
+enum status mf_own_files_lock(struct own_files *own) {
+    own->alone = flock(own->list.place, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
+    if (own->alone)
+        return STATUS_OK;
+    return mf_status_fail(STATUS_BAD_INPUT, "%s: another process is running in this folder",
+                          own->folder);
+}
+
+bool mf_own_files_has(const struct own_files *own, const char *name) {
+    const struct own_entry *entry = mf_own_list_find(&own->list, name);
+    return entry && mf_own_file_look(own->list.place, name, entry) != OWN_FILE_ABSENT;
+}
+
+bool mf_own_files_has_others(const struct own_files *own) {
+    struct dirent **entries;
+    bool others = false;
+    const int count = scandir(own->folder, &entries, NULL, NULL);
+    for (int k = 0; k < count; k++) {
+        const char *name = entries[k]->d_name;
+        char folder[sizeof entries[k]->d_name + 1];
+        snprintf(folder, sizeof folder, "%s/", name);
+        others = others ||
+                 (strcmp(name, ".") != 0 && strcmp(name, "..") != 0 &&
+                  strcmp(name, own->list.name) != 0 && mf_own_list_find(&own->list, name) == NULL &&
+                  mf_own_list_find(&own->list, folder) == NULL);
+        free(entries[k]);
+    }
+    if (count >= 0)
+        free(entries);
+    return others;
+}
+
+static enum status spare_input(const struct own_files *own, const char *name) {
+    char path[2 * OUTPUT_PATH_SIZE];
+    snprintf(path, sizeof path, "%s/%s", own->folder, name);
+    return own->inputs ? mf_input_files_spare(own->inputs, path) : STATUS_OK;
+}
+
+/// Whether a file may be replaced. @param[in] entry  its own, or NULL: it is not
+static enum status check_replaced(const struct own_files *own, const char *name,
+                                  const struct own_entry *entry) {
+    const enum own_file_found found =
+        entry && entry->claimed ? OWN_FILE_AS_LEFT : mf_own_file_look(own->list.place, name, entry);
+    if (found == OWN_FILE_ABSENT)
+        return STATUS_OK;
+    TRY(spare_input(own, name));
+    if (found == OWN_FILE_AS_LEFT || own->force)
+        return STATUS_OK;
+    return mf_status_fail(
+        STATUS_BAD_INPUT, "%s/%s %s: move it away, or write elsewhere with -o; --force replaces it",
+        own->folder, name,
+        entry ? "was changed since mesofit wrote it" : "is there, and mesofit did not write it");
+}
+
+static bool is_among(const char *const *names, const char *name) {
+    for (; names && *names; names++)
+        if (strcmp(*names, name) == 0)
+            return true;
+    return false;
+}
+
+enum status mf_own_files_spare_inputs(struct own_files *own, const char *const *but) {
+    for (size_t k = 0; k < own->list.count; k++)
+        if (!is_among(but, own->list.entry[k].name))
+            TRY(spare_input(own, own->list.entry[k].name));
+    return STATUS_OK;
+}
+
+enum status mf_own_files_check(struct own_files *own, const char *const *but) {
+    for (size_t k = 0; k < own->list.count; k++) {
+        const struct own_entry *entry = &own->list.entry[k];
+        if (!mf_own_file_is_folder(entry->name) && !is_among(but, entry->name))
+            TRY(check_replaced(own, entry->name, entry));
+    }
+    return STATUS_OK;
+}
+
+enum status mf_own_files_reserve(struct own_files *own, const char *name) {
+    if (!mf_own_file_is_folder(name))
+        return check_replaced(own, name, mf_own_list_find(&own->list, name));
+    if (!mf_own_file_is_link(own->list.place, name))
+        return STATUS_OK;
+    return mf_status_fail(STATUS_BAD_INPUT, "%s/%.*s is a link, and links are not followed",
+                          own->folder, (int)strlen(name) - 1, name);
+}
+
+// From one run to the next ------------------------------------------------------------------------
+
+enum status mf_own_files_begin(struct own_files *own, uint64_t digest) {
+    TRY(mf_own_list_begin(&own->list, digest));
+    own->begun = true;
+    return STATUS_OK;
+}
+
+/// What an earlier run left, if nobody has changed it meanwhile.
+static enum status remove_earlier(struct own_files *own, struct own_entry *entry, bool folder) {
+    const int place = own->list.place;
+    if (!entry->earlier || entry->claimed || mf_own_file_is_folder(entry->name) != folder ||
+        (!folder && !own->force && mf_own_file_look(place, entry->name, entry) == OWN_FILE_OTHER))
+        return STATUS_OK;
+    const int error = mf_own_file_remove(place, entry->name);
+    entry->gone = error == 0 || error == ENOENT || error == ENOTDIR || error == ELOOP; // a link
+    if (entry->gone || folder)
+        return STATUS_OK;
+    return mf_status_fail(STATUS_IO, "%s/%s: %s", own->folder, entry->name, strerror(error));
+}
+
+/// What processes that were killed had begun to write in one folder: "rdf.tsv.12-3.partial" and the
+/// like. @param[in] folder  its name, with / at its end, or ""
+static void remove_partial(struct own_files *own, const char *folder) {
+    char path[2 * OUTPUT_PATH_SIZE], name[OUTPUT_PATH_SIZE], whole[OUTPUT_PATH_SIZE];
+    struct dirent **entries;
+    snprintf(path, sizeof path, "%s/%s", own->folder, folder);
+    const int count = scandir(path, &entries, NULL, NULL);
+    for (int k = 0; k < count; k++) {
+        const size_t stem = mf_output_partial_stem(entries[k]->d_name);
+        snprintf(name, sizeof name, "%.3800s%s", folder, entries[k]->d_name);
+        snprintf(whole, sizeof whole, "%.3800s%.*s", folder, (int)stem, entries[k]->d_name);
+        if (stem > 0 && mf_own_list_find(&own->list, whole))
+            mf_own_file_remove(own->list.place, name);
+        free(entries[k]);
+    }
+    if (count >= 0)
+        free(entries);
+}
+
+static void remove_all_partial(struct own_files *own) {
+    char before[OUTPUT_PATH_SIZE] = "";
+    remove_partial(own, "");
+    for (size_t k = 0; k < own->list.count; k++) {
+        char folder[OUTPUT_PATH_SIZE];
+        const char *name = own->list.entry[k].name, *slash = strrchr(name, '/');
+        snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - name) + 1 : 0, name);
+        if (strcmp(folder, before) != 0)
+            remove_partial(own, folder);
+        memcpy(before, folder, sizeof before);
+    }
+}
+
+enum status mf_own_files_sweep(struct own_files *own) {
+    struct own_list *list = &own->list;
+    remove_all_partial(own);
+    for (size_t k = 0; k < list->count; k++)
+        TRY(remove_earlier(own, &list->entry[k], false));
+    for (size_t k = list->count; k-- > 0;) // folders in a folder are behind it
+        TRY(remove_earlier(own, &list->entry[k], true));
+    own->begun = false;
+    mf_own_list_compact(list);
+    return STATUS_OK;
+}
+
+enum status mf_own_files_resume(struct own_files *own, uint64_t digest) {
+    bool earlier = false;
+    for (size_t k = 0; k < own->list.count; k++)
+        earlier = earlier || own->list.entry[k].earlier;
+    if (earlier && own->list.began != digest)
+        TRY(mf_own_list_keep(&own->list));
+    else if (earlier)
+        return mf_own_files_sweep(own);
+    remove_all_partial(own);
+    return STATUS_OK;
+}
+
+/// Tell the list how the files were left that this process has written. Where that fails, their
+/// names are known alone.
+static bool seal(struct own_files *own) {
+    struct own_list *list = &own->list;
+    struct own_entry **entry = mf_memory_zeroed(list->count + 1, sizeof *entry);
+    int64_t bytes = most_read;
+    size_t count = 0;
+    bool left = false;
+    for (size_t k = list->count; entry && k-- > 0;) {
+        if (list->entry[k].claimed && !mf_own_file_is_folder(list->entry[k].name)) {
+            mf_own_file_seal(list->place, &list->entry[k], &bytes);
+            entry[count++] = &list->entry[k];
+        }
+        left = left || !list->entry[k].gone;
+    }
+    const bool entered = entry && mf_own_list_enter(list, entry, count) == STATUS_OK;
+    mf_memory_free(entry);
+    return left || !entered;
+}
+
+static void forget(struct own_files *own) {
+    pthread_mutex_lock(&mutex);
+    struct own_files **link = &all;
+    while (*link && *link != own)
+        link = &(*link)->next;
+    if (*link)
+        *link = own->next;
+    pthread_mutex_unlock(&mutex);
+    close(own->list.place);
+    mf_own_list_clear(&own->list);
+    own->open = false;
+}
+
+void mf_own_files_close(struct own_files *own) {
+    char message[STATUS_MESSAGE_SIZE]; // of why it is closed
+    if (!own->open)
+        return;
+    snprintf(message, sizeof message, "%s", mf_status_message());
+    if (own->begun && mf_own_list_keep(&own->list) != STATUS_OK)
+        own->begun = false;
+    if (!seal(own) && own->made && own->alone) {
+        unlinkat(own->list.place, own->list.name, 0);
+        rmdir(own->folder);
+    }
+    forget(own);
+    mf_status_fail(STATUS_OK, "%s", message);
+}
+
+void mf_own_files_remove_all(struct own_files *own) {
+    struct own_list *list = &own->list;
+    remove_all_partial(own);
+    for (size_t k = 0; k < list->count; k++)
+        if (!mf_own_file_is_folder(list->entry[k].name))
+            mf_own_file_remove(list->place, list->entry[k].name);
+    for (size_t k = list->count; k-- > 0;)
+        if (mf_own_file_is_folder(list->entry[k].name))
+            mf_own_file_remove(list->place, list->entry[k].name);
+    unlinkat(list->place, list->name, 0);
+    rmdir(own->folder); // unless there is something else in it
+    forget(own);
+}
+
+// By their paths ----------------------------------------------------------------------------------
+
+/// The name that a path has in a folder, or NULL if it is not in it.
+static const char *name_in(const struct own_files *own, const char *path) {
+    const size_t length = strlen(own->folder);
+    if (length == 0 || strncmp(path, own->folder, length) != 0)
+        return NULL;
+    path += length;
+    return *path == '/' || *path == '\0' || path[-1] == '/' ? path + strspn(path, "/") : NULL;
+}
+
+/// The innermost folder that is open.
+static struct own_files *find(const char *path, const char **name) {
+    struct own_files *found = NULL;
+    *name = NULL;
+    for (struct own_files *own = all; own; own = own->next) {
+        const char *in = name_in(own, path);
+        if (in && (found == NULL || in > *name)) {
+            found = own;
+            *name = in;
+        }
+    }
+    return found;
+}
+
+/// Read the list once more: another process may have entered something.
+static enum status read_again(struct own_list *list) {
+    struct own_list now = *list;
+    now.file = -1;
+    now.entry = NULL;
+    now.count = now.room = now.sorted = 0;
+    const enum status status = mf_own_list_read(&now);
+    for (size_t k = 0; status == STATUS_OK && k < list->count; k++) {
+        struct own_entry *same = mf_own_list_find(&now, list->entry[k].name);
+        if (same && list->entry[k].claimed) {
+            same->claimed = true;
+            same->digested = false;
+            same->bytes = -1;
+        }
+    }
+    mf_own_list_clear(list);
+    *list = now;
+    return status;
+}
+
+static enum status find_entry(struct own_files *own, const char *name, struct own_entry **entry) {
+    struct own_list *list = &own->list;
+    *entry = mf_own_list_find(list, name);
+    if ((*entry && !(*entry)->gone) || mf_own_file_look(list->place, name, NULL) == OWN_FILE_ABSENT)
+        return STATUS_OK;
+    TRY(read_again(list));
+    *entry = mf_own_list_find(list, name);
+    return STATUS_OK;
+}
+
+static enum status claim(struct own_files *own, const char *name) {
+    struct own_entry *entry;
+    TRY(check_place(own));
+    if (!mf_own_list_takes(name))
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: no file can have the name \"%s\"", own->folder,
+                              name);
+    TRY(find_entry(own, name, &entry));
+    if (entry && entry->claimed && !entry->gone)
+        return STATUS_OK;
+    if (!mf_own_file_is_folder(name))
+        TRY(check_replaced(own, name, entry && entry->gone ? NULL : entry));
+    if (entry == NULL)
+        TRY(mf_own_list_add(&own->list, name, &entry));
+    entry->claimed = true;
+    entry->gone = entry->earlier = entry->digested = false;
+    entry->bytes = -1;
+    return mf_own_list_enter(&own->list, &entry, 1);
+}
+
+enum status mf_own_files_claim(const char *path) {
+    const char *name;
+    pthread_mutex_lock(&mutex);
+    struct own_files *own = find(path, &name);
+    const enum status status = own ? claim(own, name) : STATUS_OK;
+    pthread_mutex_unlock(&mutex);
+    return status;
+}
+
+void mf_own_files_remove(const char *path) {
+    const char *name;
+    if (!ranks_lead())
+        return;
+    pthread_mutex_lock(&mutex);
+    struct own_files *own = find(path, &name);
+    struct own_entry *entry = own ? mf_own_list_find(&own->list, name) : NULL;
+    if (own == NULL)
+        unlink(path);
+    else if (entry &&
+             (entry->claimed || mf_own_file_look(own->list.place, name, entry) == OWN_FILE_AS_LEFT))
+        entry->gone = mf_own_file_remove(own->list.place, name) == 0 || entry->gone;
+    pthread_mutex_unlock(&mutex);
+}
+
+/// @param[in] name  with / at its end
+static enum status make_one(struct own_files *own, const char *name) {
+    const int place = own->list.place, length = (int)strlen(name) - 1;
+    struct stat about;
+    TRY(mf_own_files_reserve(own, name));
+    if (mf_own_file_look(place, name, NULL) == OWN_FILE_ABSENT) {
+        TRY(claim(own, name));
+        if (mkdirat(place, name, 0777) != 0 && errno != EEXIST)
+            return mf_status_fail(STATUS_IO, "cannot make folder %s/%.*s: %s", own->folder, length,
+                                  name, strerror(errno));
+    }
+    if (fstatat(place, name, &about, AT_SYMLINK_NOFOLLOW) == 0 && S_ISDIR(about.st_mode))
+        return STATUS_OK;
+    return mf_status_fail(STATUS_IO, "cannot make folder %s/%.*s: it is not a folder", own->folder,
+                          length, name);
+}
+
+static enum status make_all(struct own_files *own, const char *name) {
+    char folder[OUTPUT_PATH_SIZE];
+    size_t length = 0;
+    TRY(check_place(own));
+    while (name[length]) {
+        length += strcspn(name + length, "/");
+        snprintf(folder, sizeof folder, "%.*s/", (int)length, name);
+        TRY(make_one(own, folder));
+        length += strspn(name + length, "/");
+    }
+    return STATUS_OK;
+}
+
+enum status mf_own_files_make_folder(const char *path, bool *done) {
+    const char *name;
+    pthread_mutex_lock(&mutex);
+    struct own_files *own = find(path, &name);
+    *done = own != NULL;
+    const enum status status = own ? make_all(own, name) : STATUS_OK;
+    pthread_mutex_unlock(&mutex);
+    return status;
+}

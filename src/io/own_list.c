@@ -1,0 +1,305 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/own_list.h"
+
+#include "base/memory.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static const char head[] =
+    "# Files that mesofit wrote here: digest, bytes, name. It replaces and removes no others.\n";
+
+static enum status fail_to_read(const struct own_list *list) {
+    return mf_status_fail(STATUS_IO, "%s/%s: %s", list->folder, list->name, strerror(errno));
+}
+
+static enum status fail_to_write(const struct own_list *list) {
+    return mf_status_fail(STATUS_IO, "cannot write %s/%s: %s", list->folder, list->name,
+                          strerror(errno));
+}
+
+bool mf_own_list_takes(const char *name) {
+    for (const char *letter = name; *letter; letter++)
+        if ((unsigned char)*letter < ' ' || *letter == 127)
+            return false;
+    if (*name == '\0')
+        return false;
+    while (*name) {
+        const size_t part = strcspn(name, "/");
+        if (part == 0 || strncmp(name, "..", part) == 0)
+            return false;
+        name += part + (name[part] == '/');
+    }
+    return true;
+}
+
+// In memory ---------------------------------------------------------------------------------------
+
+static enum status make_room(struct own_list *list) {
+    enum status status = STATUS_OK;
+    struct own_entry *larger = NULL;
+    const size_t room = list->room ? 2 * list->room : 64;
+    if (list->count < list->room)
+        return STATUS_OK;
+    NEW_ARRAY(larger, room);
+    if (list->count > 0)
+        memcpy(larger, list->entry, list->count * sizeof *larger);
+    mf_memory_free(list->entry);
+    list->entry = larger;
+    list->room = room;
+done:
+    return status;
+}
+
+enum status mf_own_list_add(struct own_list *list, const char *name, struct own_entry **entry) {
+    TRY(make_room(list));
+    char *copy = mf_memory_zeroed(strlen(name) + 1, 1);
+    if (copy == NULL)
+        return STATUS_NO_MEMORY;
+    strcpy(copy, name);
+    *entry = &list->entry[list->count];
+    **entry = (struct own_entry){.name = copy, .line = list->count, .bytes = -1};
+    list->count++;
+    return STATUS_OK;
+}
+
+struct own_entry *mf_own_list_find(const struct own_list *list, const char *name) {
+    size_t low = 0, high = list->sorted;
+    while (low < high) {
+        const size_t middle = low + (high - low) / 2;
+        const int order = strcmp(list->entry[middle].name, name);
+        if (order == 0)
+            return &list->entry[middle];
+        if (order < 0)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    for (size_t k = list->sorted; k < list->count; k++)
+        if (strcmp(list->entry[k].name, name) == 0)
+            return &list->entry[k];
+    return NULL;
+}
+
+static void age(struct own_list *list, bool earlier) {
+    for (size_t k = 0; k < list->count; k++)
+        list->entry[k].earlier = earlier;
+}
+
+static int by_name_and_line(const void *a, const void *b) {
+    const struct own_entry *first = a, *second = b;
+    const int order = strcmp(first->name, second->name);
+    return order ? order : (first->line > second->line) - (first->line < second->line);
+}
+
+/// Of a name the last line counts.
+static void sort(struct own_list *list) {
+    size_t kept = 0;
+    if (list->count > 0)
+        qsort(list->entry, list->count, sizeof *list->entry, by_name_and_line);
+    for (size_t k = 0; k < list->count; k++) {
+        const struct own_entry *entry = &list->entry[k];
+        const bool last = k + 1 == list->count || strcmp(entry->name, list->entry[k + 1].name) != 0;
+        if (last && !entry->gone)
+            list->entry[kept++] = *entry;
+        else
+            mf_memory_free(entry->name);
+    }
+    list->count = list->sorted = kept;
+}
+
+void mf_own_list_clear(struct own_list *list) {
+    for (size_t k = 0; k < list->count; k++)
+        mf_memory_free(list->entry[k].name);
+    mf_memory_free(list->entry);
+    if (list->file >= 0)
+        close(list->file);
+    list->entry = NULL;
+    list->count = list->room = list->sorted = 0;
+    list->file = -1;
+    list->began = 0;
+}
+
+// On the disk -------------------------------------------------------------------------------------
+
+static enum status read_line(struct own_list *list, char *line) {
+    char *bytes, *name;
+    struct own_entry *entry;
+    if (strncmp(line, "begin ", 6) == 0) {
+        list->began = strtoull(line + 6, NULL, 16);
+        age(list, true);
+    }
+    if (strcmp(line, "keep") == 0)
+        age(list, false);
+    bytes = strchr(line, '\t');
+    name = bytes ? strchr(bytes + 1, '\t') : NULL;
+    if (name == NULL || !mf_own_list_takes(name + 1))
+        return STATUS_OK;
+    *bytes = *name = '\0';
+    TRY(mf_own_list_add(list, name + 1, &entry));
+    entry->gone = strcmp(line, "gone") == 0;
+    entry->digested = strspn(line, "0123456789abcdef") == 16;
+    entry->digest = entry->digested ? strtoull(line, NULL, 16) : 0;
+    entry->bytes = bytes[1] == '-' ? -1 : strtoll(bytes + 1, NULL, 10);
+    return STATUS_OK;
+}
+
+static enum status read_lines(struct own_list *list, FILE *stream) {
+    enum status status = STATUS_OK;
+    char *line = NULL;
+    size_t size = 0;
+    ssize_t length;
+    while (status == STATUS_OK && (length = getline(&line, &size, stream)) > 0) {
+        if (line[length - 1] != '\n')
+            break;
+        line[length - 1] = '\0';
+        status = read_line(list, line);
+    }
+    free(line);
+    return status == STATUS_OK && ferror(stream) ? fail_to_read(list) : status;
+}
+
+enum status mf_own_list_read(struct own_list *list) {
+    struct stat about;
+    mf_own_list_clear(list);
+    const int file =
+        openat(list->place, list->name, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    list->there = file >= 0 || errno != ENOENT;
+    if (!list->there)
+        return STATUS_OK;
+    if (file < 0 && errno != ELOOP)
+        return fail_to_read(list);
+    FILE *stream =
+        file >= 0 && fstat(file, &about) == 0 && S_ISREG(about.st_mode) ? fdopen(file, "rb") : NULL;
+    if (stream == NULL) {
+        if (file >= 0)
+            close(file);
+        return mf_status_fail(STATUS_BAD_INPUT, "%s/%s is no file of its own: remove it",
+                              list->folder, list->name);
+    }
+    const enum status status = read_lines(list, stream);
+    fclose(stream);
+    sort(list);
+    return status;
+}
+
+static bool write_whole(int file, const char *text, size_t length) {
+    const off_t before = lseek(file, 0, SEEK_END);
+    size_t written = 0;
+    while (written < length) {
+        const ssize_t more = write(file, text + written, length - written);
+        if (more < 0 && errno == EINTR)
+            continue;
+        if (more <= 0)
+            break;
+        written += (size_t)more;
+    }
+    const int error = errno;
+    const bool whole = written == length;
+    if (!whole && written > 0 && ftruncate(file, before) != 0)
+        return false;
+    errno = error;
+    return whole;
+}
+
+/// A new file says what it is; a line that was cut short is ended.
+static enum status open_to_append(struct own_list *list) {
+    char last = '\n';
+    if (list->file >= 0)
+        return STATUS_OK;
+    list->file = openat(list->place, list->name,
+                        O_RDWR | O_CREAT | O_APPEND | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0666);
+    if (list->file < 0)
+        return fail_to_write(list);
+    const off_t size = lseek(list->file, 0, SEEK_END);
+    if (size > 0 && pread(list->file, &last, 1, size - 1) != 1)
+        return fail_to_write(list);
+    const char *text = size > 0 ? "\n" : head;
+    if ((size > 0 && last == '\n') || write_whole(list->file, text, strlen(text)))
+        return STATUS_OK;
+    return fail_to_write(list);
+}
+
+/// A power cut must not leave a file that is not in the list.
+static enum status append(struct own_list *list, const char *text, size_t length) {
+    TRY(open_to_append(list));
+    if (!write_whole(list->file, text, length))
+        return fail_to_write(list);
+    fdatasync(list->file);
+    return STATUS_OK;
+}
+
+static void print(const struct own_entry *entry, FILE *stream) {
+    if (entry->gone)
+        fputs("gone\t-", stream);
+    else if (entry->digested)
+        fprintf(stream, "%016" PRIx64 "\t%" PRId64, entry->digest, entry->bytes);
+    else if (entry->bytes >= 0)
+        fprintf(stream, "-\t%" PRId64, entry->bytes);
+    else
+        fputs("-\t-", stream);
+    fprintf(stream, "\t%s\n", entry->name);
+}
+
+enum status mf_own_list_begin(struct own_list *list, uint64_t digest) {
+    char line[32];
+    const int length = snprintf(line, sizeof line, "begin %016" PRIx64 "\n", digest);
+    TRY(append(list, line, (size_t)length));
+    list->began = digest;
+    age(list, true);
+    return STATUS_OK;
+}
+
+enum status mf_own_list_keep(struct own_list *list) {
+    TRY(append(list, "keep\n", 5));
+    age(list, false);
+    return STATUS_OK;
+}
+
+enum status mf_own_list_enter(struct own_list *list, struct own_entry *const *entry, size_t count) {
+    char *text = NULL;
+    size_t length = 0;
+    FILE *stream = count > 0 ? open_memstream(&text, &length) : NULL;
+    if (count == 0)
+        return STATUS_OK;
+    for (size_t k = 0; stream && k < count; k++)
+        print(entry[k], stream);
+    const bool printed = stream && fclose(stream) == 0;
+    const enum status status =
+        printed ? append(list, text, length) : mf_status_fail(STATUS_NO_MEMORY, "out of memory");
+    free(text);
+    return status;
+}
+
+static void print_all(const struct own_list *list, FILE *stream) {
+    fprintf(stream, "%sbegin %016" PRIx64 "\n", head, list->began);
+    for (size_t k = 0; k < list->count; k++)
+        if (!list->entry[k].gone && !list->entry[k].earlier)
+            print(&list->entry[k], stream);
+}
+
+void mf_own_list_compact(struct own_list *list) {
+    char whole[64];
+    snprintf(whole, sizeof whole, "%s.new", list->name);
+    const int file =
+        openat(list->place, whole, O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666);
+    FILE *stream = file >= 0 ? fdopen(file, "wb") : NULL;
+    if (stream == NULL)
+        return;
+    print_all(list, stream);
+    bool written = fflush(stream) == 0 && fsync(file) == 0;
+    written = fclose(stream) == 0 && written;
+    if (!written || renameat(list->place, whole, list->place, list->name) != 0) {
+        unlinkat(list->place, whole, 0);
+        return;
+    }
+    if (list->file >= 0)
+        close(list->file);
+    list->file = -1;
+}

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file The list of the files that this program wrote into a folder, as it stands in that folder.
+///
+/// A text that only grows, a line for what happens: "begin DIGEST" (a run begins, and what stands
+/// before is of earlier ones), "keep" (it did not come so far), "-", "-" and a name between tabs (a
+/// file is about to come or to change), its digest, bytes and name (a file as it was left), "gone",
+/// "-" and its name. Of a name the last line counts. A line that is cut short, or is none of these,
+/// says nothing.
+#pragma once
+
+#include "base/status.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+struct own_entry {
+    char *name;      ///< seen from the folder; that of a folder ends with /
+    size_t line;     ///< at which it was read
+    int64_t bytes;   ///< as it was left; −1: not known
+    uint64_t digest; ///< of those, if `digested`
+    bool digested;
+    bool gone;
+    bool earlier; ///< of a run before the last that began
+    bool claimed; ///< by this process
+};
+
+struct own_list {
+    int place;          ///< the folder, open
+    const char *folder; ///< its path, for messages
+    const char *name;   ///< of the list's file
+    int file;           ///< open to be written; −1: not yet
+    struct own_entry *entry;
+    size_t count, room;
+    size_t sorted;  ///< so many of them are, by their names
+    uint64_t began; ///< digest of the last run that began
+    bool there;     ///< the file
+};
+
+/// Read the list, of which place, folder and name are set; a folder without one has an empty one.
+/// Fails: IO, NO_MEMORY; BAD_INPUT if it is a link or no file.
+enum status mf_own_list_read(struct own_list *list) MUST_USE;
+void mf_own_list_clear(struct own_list *list);
+
+/// The entry of a name, or NULL.
+struct own_entry *mf_own_list_find(const struct own_list *list, const char *name);
+
+/// Add an entry, in memory alone. Fails: NO_MEMORY.
+enum status mf_own_list_add(struct own_list *list, const char *name,
+                            struct own_entry **entry) MUST_USE;
+
+/// Whether a name may stand in a list: it stays in the folder, and in its line.
+bool mf_own_list_takes(const char *name);
+
+/// @name Lines of the file, whole or not at all, and on the disk; made if there is none. Fail: IO.
+/// A run begins: all entries are of earlier ones; or it did not come so far, and none is; and
+/// entries as they are now.
+enum status mf_own_list_begin(struct own_list *list, uint64_t digest) MUST_USE;
+enum status mf_own_list_keep(struct own_list *list) MUST_USE;
+enum status mf_own_list_enter(struct own_list *list, struct own_entry *const *entry,
+                              size_t count) MUST_USE;
+
+/// Write the file anew, without what is gone or of an earlier run. If that fails, the old one says
+/// the same.
+void mf_own_list_compact(struct own_list *list);
