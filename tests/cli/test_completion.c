@@ -15,7 +15,7 @@ static char *complete(const char *words) {
     snprintf(line, sizeof line,
              "\"$MESOFIT\" describe --format bash >mesofit.bash && bash -uc '"
              ". ./mesofit.bash; COMP_WORDS=(mesofit %s); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); "
-             "_mesofit; printf \"%%s\\n\" \"${COMPREPLY[@]}\" | sort | tr \"\\n\" \" \"' "
+             "_mesofit; printf \"%%s\\n\" \"${COMPREPLY[@]}\" | LC_ALL=C sort | tr \"\\n\" \" \"' "
              ">completions.txt 2>&1",
              words);
     assert_int_equal(system(line), 0);
