@@ -2,6 +2,7 @@
 #include "live/live_view.h"
 
 #include "base/memory.h"
+#include "base/visible.h"
 #include "io/json.h"
 #include "io/json_write.h"
 #include "io/text_file.h"
@@ -57,6 +58,13 @@ void mf_live_view_publish(struct live_view *view, enum live_slot slot, struct js
     mf_json_writer_free(writer);
 }
 
+/// A path as a person can read it: JSON is UTF-8, and names of files need not be.
+static void put_path(struct json_writer *writer, const char *key, const char *path) {
+    char shown[OUTPUT_PATH_SIZE];
+    mf_visible_copy(shown, sizeof shown, path, "");
+    mf_json_put_text(writer, key, shown);
+}
+
 /// The lock is held.
 static void publish_state(struct live_view *view) {
     struct json_writer *writer = mf_json_writer_create();
@@ -67,8 +75,8 @@ static void publish_state(struct live_view *view) {
                      view->file[0] == '\0' ? (view->folder[0] ? "results" : "")
                      : view->is_fit        ? "fit"
                                            : "simulation");
-    mf_json_put_text(writer, "file", view->file);
-    mf_json_put_text(writer, "folder", view->folder);
+    put_path(writer, "file", view->file);
+    put_path(writer, "folder", view->folder);
     mf_json_put_text(writer, "message", view->message);
     mf_json_put_integer(writer, "stays", view->stays);
     mf_json_put_text(writer, "version", MESOFIT_VERSION);

@@ -291,6 +291,15 @@ static void test_second_server_on_the_port_is_refused(void **state) {
     assert_fails(mf_live_server_start(&second, server.port), STATUS_IO, port);
 }
 
+/// The command line may name such a file; JSON cannot.
+static void test_state_is_utf8_whatever_the_file_is_called(void **state) {
+    temporary_folder_write(*state, "caf\xe9.json", "{\"box\": [5, 5, 5]}", 18);
+    assert_ok(mf_live_view_show_file(&view, "caf\xe9.json"));
+    assert_int_equal(ask("GET /api/state", GOOD, ""), 200);
+    assert_contains(answer, "caf\\\\xe9.json");
+    assert_null(strchr(answer, '\xe9'));
+}
+
 /// A file of one letter, sent by a thread.
 struct upload {
     const char *query;
@@ -366,6 +375,7 @@ int main(void) {
         SERVED(test_events_come_while_the_stream_is_open),
         SERVED(test_too_large_and_broken_requests_end_alone),
         SERVED(test_connections_that_say_little_do_not_keep_the_page_out),
+        SERVED(test_state_is_utf8_whatever_the_file_is_called),
         SERVED(test_uploads_at_once_get_their_own_bytes),
         SERVED(test_one_of_two_uploads_of_a_name_wins),
         SERVED(test_second_server_on_the_port_is_refused),
