@@ -22,7 +22,8 @@ except ImportError:
     MISSING = "python3-selenium"
 
 SHOTS = os.environ.get("LIVE_SHOTS", "")
-PATIENCE = 120
+# No more than a limit: a busy machine may take ten times as long as an idle one.
+PATIENCE = 600
 
 
 def open_browser(profile, downloads, width=1280, height=800, dark=False):
@@ -62,9 +63,9 @@ class PageTest(unittest.TestCase):
         self.browser.get(self.served.address)
         self.wait(lambda: self.text("phase") != "connecting")
 
-    def wait(self, condition, seconds=PATIENCE):
+    def wait(self, condition):
         """What the condition gives once it is true; an element that is drawn anew in between is asked for again."""
-        patience = WebDriverWait(self.browser, seconds, 0.1, ignored_exceptions=(StaleElementReferenceException,))
+        patience = WebDriverWait(self.browser, PATIENCE, 0.1, ignored_exceptions=(StaleElementReferenceException,))
         return patience.until(lambda _: condition())
 
     def at(self, name):

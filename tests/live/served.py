@@ -59,7 +59,7 @@ class Served:
 
     def ask(self, path, body=None):
         """The code and the bytes of an answer."""
-        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=30)
+        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=120)
         connection.request("GET" if body is None else "POST", path, body, {"X-Mesofit-Token": self.token})
         answer = connection.getresponse()
         result = answer.status, answer.read()
@@ -72,7 +72,7 @@ class Served:
     def state(self):
         return json.loads(self.ask("/api/state")[1])
 
-    def wait(self, seconds=120):
+    def wait(self, seconds=600):
         code = self.process.wait(seconds)
         self.reader.join(5)
         return code
@@ -80,7 +80,7 @@ class Served:
     def end(self):
         if self.process.poll() is None:
             self.process.terminate()
-        code = self.wait(60)
+        code = self.wait()
         self.process.stdout.close()
         self.process.stderr.close()
         return code

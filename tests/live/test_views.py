@@ -190,24 +190,24 @@ class Views(PageTest):
         self.click_button(name)
         return self.wait(lambda: next(iter(self.at("files").find_elements("css selector", f"[aria-label='contents of {name}']")), None))
 
-    def write(self, name, contents):
+    def put(self, name, contents):
         with open(os.path.join(self.folder, name), "wb") as file:
             file.write(contents)
 
-    def read(self, name):
+    def get(self, name):
         with open(os.path.join(self.folder, name), "rb") as file:
             return file.read()
 
     def test_texts_are_saved_as_they_were_but_for_what_was_edited(self):
         """Line ends and letters stay; what would not is shown alone, and of a long file its beginning."""
         mark, long = b"\xef\xbb\xbf", 2 << 30
-        self.write("dos.txt", mark + "# r\r\n1 \u00e9\r\n".encode())
-        self.write("mac.txt", b"# r\r1 2\r")
+        self.put("dos.txt", mark + "# r\r\n1 \u00e9\r\n".encode())
+        self.put("mac.txt", b"# r\r1 2\r")
         refused = {"latin.txt": (b"caf\xe9\r\n", "caf\u00e9\n", "not UTF-8"), "mixed.txt": (b"1\r\n2\n", "1\n2\n", "lines end"),
                    "nul.dat": (b"1\0\n", "1\0\n", "NUL")}
         for name, (contents, _, _) in refused.items():
-            self.write(name, contents)
-        self.write("long.lammpstrj", b"ITEM: TIMESTEP\n")
+            self.put(name, contents)
+        self.put("long.lammpstrj", b"ITEM: TIMESTEP\n")
         os.truncate(os.path.join(self.folder, "long.lammpstrj"), long)
         self.begin("live")
         self.at("tab-files").click()
@@ -215,13 +215,13 @@ class Views(PageTest):
             field = self.look_at(name)
             self.browser.execute_script("arguments[0].value += '3 4\\n'", field)
             self.click_button("save " + name)
-            self.wait(lambda: self.read(name) == expected, 30)
+            self.wait(lambda: self.get(name) == expected)
         for name, (contents, shown, why) in refused.items():
             field = self.look_at(name)
             self.assertEqual((field.get_property("readOnly"), field.get_property("value")), (True, shown))
             self.assertIn(why, self.text("files"))
             self.assertIsNone(self.button("save " + name))
-            self.assertEqual(self.read(name), contents)
+            self.assertEqual(self.get(name), contents)
         field = self.look_at("long.lammpstrj")
         self.assertTrue(field.get_property("readOnly"))
         self.assertEqual(len(field.get_property("value")), 200000)
@@ -233,7 +233,7 @@ class Views(PageTest):
         self.served.wish(wish="speed", speed=100)
         self.press("start")
         self.wait(lambda: "left" in self.text("progress-text"))
-        self.wait(lambda: 90 < self.rate() < 110, 30)
+        self.wait(lambda: 90 < self.rate() < 110)
         self.check_console()
 
     def rate(self):
