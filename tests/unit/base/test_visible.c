@@ -19,7 +19,8 @@ static void test_visible_copy_shows_control_characters(void **state) {
          "2J\xc2\xb5",
          "", "\\xc2\\x9b2J\xc2\xb5"}, // CSI as one character; µ
         {"\xf0\x9f\x98\x80", "", "\xf0\x9f\x98\x80"},
-        // No UTF-8: CSI of a terminal of ISO 8859, longer spellings, a surrogate, too large, cut off.
+        // No UTF-8: CSI of a terminal of ISO 8859, longer spellings, a surrogate, too large, cut
+        // off.
         {"\x9b"
          "2J",
          "", "\\x9b2J"},
