@@ -34,7 +34,8 @@ do for [kind in kinds] {
     set rmargin at screen 0.97
     set tmargin at screen 0.86
     set bmargin at screen 0.14
-    set xrange [high(X_min, K_min - around):low(X_max, K_max + around)]
+    begin = high(X_min, K_min - around)
+    set xrange [begin:above(begin, low(X_max, K_max + around))]
     set yrange [kJ * (A_min - 0.06 * height):kJ * (B_max + 0.2 * height)]
     set xlabel per_unit(symbol, table, 1)
     eval name_axis(energy_axis, 0.024)

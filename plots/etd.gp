@@ -37,7 +37,7 @@ do for [kind in kinds] {
     set rmargin at screen 0.80
     set tmargin at screen 0.95
     set bmargin at screen 0.15
-    set xrange [0:T_max]
+    set xrange [0:above(0, T_max)]
     set yrange [0:1.04]
     set ytics 0.2
     set xlabel t_axis

@@ -36,7 +36,7 @@ do for [kind in kinds] {
     set multiplot
     set lmargin at screen 0.125
     set rmargin at screen 0.79
-    set xrange [0:T_max + 0.5 * step]
+    set xrange [0:above(0, T_max + 0.5 * step)]
 
     set tmargin at screen 0.97
     set bmargin at screen 0.50

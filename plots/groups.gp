@@ -28,7 +28,8 @@ if (of_fit) { drawn = "4" }
 
 do for [kind in kinds] {
     eval open(kind, figure, 720, 440)
-    set xrange [X_min > X_max / 4 ? X_min : low(0, X_min):X_max]
+    begin = X_min > X_max / 4 ? X_min : low(0, X_min)
+    set xrange [begin:above(begin, X_max)]
     set yrange [1.04 * lowest:end_of(highest)]
     set xlabel first eq "sweeps" ? first : per_unit(symbol, table, 1)
     set ylabel figure eq "molecule_motion" ? per_unit("⟨|Δ{/:Bold R}({/:Italic t})|^2⟩", table, 2) : of_time ? "⟨{/:Bold R}({/:Italic t})·{/:Bold R}(0)⟩ / ⟨{/:Italic R}²⟩" : per_unit("{/:Italic p}(" . symbol . ")", table, 2)

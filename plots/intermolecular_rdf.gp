@@ -18,7 +18,7 @@ do for [file in tables] {
 
 do for [kind in kinds] {
     eval open(kind, figure, 720, 440)
-    set xrange [0:R_max]
+    set xrange [0:above(0, R_max)]
     set yrange [0:top > 0 ? 1.08 * top : 1]
     set xlabel r_axis_of(word(tables, 1))
     set ylabel "{/:Italic g}({/:Italic r}) between molecules"

@@ -41,7 +41,7 @@ do for [kind in kinds] {
         set tmargin at screen 0.50
         set bmargin at screen 0.125
         unset logscale
-        set xrange [0:T_max]
+        set xrange [0:above(0, T_max)]
         set xtics autofreq
         set yrange [low(-0.05, V_min / first):1.05]
         set ytics 0.2

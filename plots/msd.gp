@@ -19,7 +19,7 @@ do for [kind in kinds] {
     set multiplot
     set lmargin at screen 0.155
     set rmargin at screen 0.97
-    set xrange [0:T_max]
+    set xrange [0:above(0, T_max)]
 
     set tmargin at screen 0.925
     set bmargin at screen 0.40

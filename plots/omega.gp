@@ -53,7 +53,7 @@ do for [kind in kinds] {
     set rmargin at screen 0.97
     set tmargin at screen 0.91
     set bmargin at screen 0.14
-    set xrange [0:R_max]
+    set xrange [0:above(0, R_max)]
     set yrange [0:top > 0 ? 1.08 * top : 1]
     set xlabel r_axis_of("omega.tsv")
     eval name_axis(axis_of("omega.tsv", "omega", "{/:Italic ω}({/:Italic r})", omega_label), 0.024)

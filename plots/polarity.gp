@@ -28,7 +28,7 @@ do for [kind in kinds] {
     set tmargin at screen 0.47
     set bmargin at screen 0.10
     set rmargin at screen 0.50
-    set xrange [0:T_max]
+    set xrange [0:above(0, T_max)]
     set yrange [-0.1:1.05]
     set ylabel "⟨{/:Bold n}({/:Italic t})·{/:Bold n}(0)⟩"
     plot "polarity.tsv" using 1:(band_low(2, 3)):(band_high(2, 3)) with filledcurves @band linecolor rgb vermillion, \

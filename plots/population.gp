@@ -32,7 +32,7 @@ do for [kind in kinds] {
     set rmargin at screen 0.97
     set tmargin at screen 0.97
     set bmargin at screen 0.14
-    set xrange [nm * begin:nm * R_max]
+    set xrange [nm * begin:above(nm * begin, nm * R_max)]
     set yrange [kJ * bottom:kJ * top]
     set xlabel r_axis_of(table)
     eval name_axis(phi_axis, 0.024)

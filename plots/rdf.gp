@@ -17,11 +17,11 @@ do for [kind in kinds] {
     set multiplot
     set lmargin at screen 0.17
     set rmargin at screen 0.97
-    set xrange [0:R_max]
+    set xrange [0:above(0, R_max)]
 
     set tmargin at screen 0.925
     set bmargin at screen 0.40
-    set yrange [0:1.08 * G_max]
+    set yrange [0:G_max > 0 ? 1.08 * G_max : 1]
     set ytics autofreq
     set format x ""
     eval name_axis(g_label, 0.024)

@@ -52,7 +52,7 @@ do for [kind in kinds] {
         set rmargin at screen 0.485
         set tmargin at screen 0.93
         set bmargin at screen 0.14
-        set xrange [0:R_max]
+        set xrange [0:above(0, R_max)]
         set xtics autofreq
         set ytics autofreq
         set yrange [0:(g_top > 0 ? 1.08 * g_top : 1) / (1 - 0.075 * rows)]

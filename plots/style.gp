@@ -153,6 +153,9 @@ step_of(x) = x <= 0 ? 1 : power(x) * (x >= 5 * power(x) ? 5 : x >= 2 * power(x) 
 # End of an axis from 0 to x, with a little room.
 end_of(x) = x > 0 ? 1.04 * x : 1
 
+# End of an axis from a to b, which may be one value alone: no axis is empty.
+above(a, b) = b > a ? b : a + (a == 0 ? 1 : 0.1 * abs(a))
+
 # Commands for a logarithmic axis with a little room around the values a to b, labelled at 1, 2 and
 # 5 times the powers of ten, or at the powers only when there are many.
 decade(p, many) = many ? sprintf("%g, ", p) : sprintf("%g, %g, %g, ", p, 2 * p, 5 * p)
@@ -174,7 +177,8 @@ thermal_energy(file) = energy_of(file) > 0 ? energy_of(file) * high(1, kelvins) 
 # of a file with r and Φ in columns 1 and 2 and Φ's errors in column `errors`. A soft core, up to
 # 20 k_B T_0, is shown whole. A core that no particle enters would squeeze everything else into a line:
 # it is cut off above the highest barrier behind it, and at three depths of the well; but not so low
-# that less than 85 % of the way from 20 k_B T_0 to the cutoff were to be seen.
+# that less than 85 % of the way from 20 k_B T_0 to the cutoff were to be seen. Above a flat one there
+# is room for k_B T_0.
 potential_view(file, errors) = system(sprintf("awk -v e=%d -v u=%g -v n=0 '\
     function high(a, b) { return a > b ? a : b } function low(a, b) { return a < b ? a : b } \
     /^#/ || NF < 2 || $2 !~ /[0-9]/ { next } \
@@ -197,4 +201,5 @@ potential_view(file, errors) = system(sprintf("awk -v e=%d -v u=%g -v n=0 '\
             top = low(top, 20 * u); begin = end; \
             for (k = 0; k < n; k++) if (p[k] < top) begin = low(begin, r[k]); \
             begin = high(0, begin - 0.05 * (end - begin)) } \
+        if (top <= lowest) top = lowest + u; \
         print top, begin, lowest }'", errors, thermal_energy(file)) . from(file))

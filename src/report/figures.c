@@ -138,9 +138,9 @@ static enum status draw(const char *folder, const char *plots, const struct figu
     return mf_figure_script_draw(folder, plots, figure->script, table, drawn);
 }
 
-/// Whether a file is a table of one part that the figure is drawn from, like rdf_A-B.tsv. A name
-/// such as "rdf_now_A-B" or "potential_A-B_history" could be of types "now_A" and "B_history"; the
-/// columns tell another table.
+/// Whether a file is a table of one part that the figure is drawn from, like rdf_A-B.tsv: no type
+/// is called "now_A" or "B_history" (base/own_words.h). The columns tell the rdf.tsv of a fit from
+/// that of a simulation.
 static bool is_of_part(const char *folder, const struct figure *figure, const char *name,
                        char part[PART_SIZE]) {
     char path[PATH_SIZE];

@@ -163,6 +163,30 @@ static void test_potential_is_shown_up_to_its_barrier(void **state) {
     assert_false(figure_folders_say(folder, "potential", ">2<"));
 }
 
+/// Ideal particles, distances that no pair has, laws of one strength, and one bin: no axis is
+/// empty.
+static void test_draws_tables_whose_numbers_are_all_the_same(void **state) {
+    static const char *const names[] = {"potential", "rdf", "bonds_even", "bond_lengths_even"};
+    (void)state;
+    figure_folders_skip_without_gnuplot();
+    char folder[FIGURE_PATH];
+    figure_folders_make(folder, "flat");
+    figure_folders_write(folder, "potential.tsv",
+                         "# r[lambda]\tphi[k_B.T_0]\tforce[k_B.T_0/lambda]\tphi_error[k_B.T_0]\n"
+                         "0.5\t0\t0\tnan\n1\t0\t0\tnan\n");
+    figure_folders_write(folder, "rdf.tsv",
+                         "# r[lambda]\ttarget[1]\ttarget_error[1]\tresult[1]\tresult_error[1]\n"
+                         "0.5\t0\t0\t0\t0\n1\t0\t0\t0\t0\n");
+    figure_folders_write(folder, "bonds_even.tsv",
+                         "# r[lambda]\tenergy[k_B.T_0]\tenergy_error[k_B.T_0]\n1\t0\tnan\n");
+    figure_folders_write(folder, "bond_lengths_even.tsv",
+                         "# r[lambda]\ttarget[1/lambda]\ttarget_error[1/lambda]\t"
+                         "result[1/lambda]\tresult_error[1/lambda]\n0.8\t1\t0\t1\t0\n");
+    figure_folders_draw(folder);
+    for (size_t k = 0; k < sizeof names / sizeof *names; k++)
+        assert_true(figure_folders_drawn(folder, names[k]));
+}
+
 /// A soft repulsion whose core goes on steeply where no pair was seen, in nm and kJ/mol.
 static void test_soft_potential_is_shown_almost_whole(void **state) {
     (void)state;
@@ -313,8 +337,8 @@ static void test_error_is_named_after_what_was_fitted(void **state) {
     assert_true(figure_folders_say(folder, "error", "τ")); // its unit
 }
 
-/// Of a mixture's inversion: tables whose names look like those of a pair type have other columns,
-/// and types may have names that look like those of such tables.
+/// Of a mixture's inversion: tables whose names look like those of a pair type are others, since no
+/// type has a name that begins or ends so.
 static void test_pairs_are_drawn_of_their_own_tables_only(void **state) {
     (void)state;
     figure_folders_skip_without_gnuplot();
@@ -337,7 +361,7 @@ static void test_pairs_are_drawn_of_their_own_tables_only(void **state) {
     figure_folders_draw(folder);
     assert_true(figure_folders_drawn(folder, "rdf_A-B"));
     assert_true(figure_folders_drawn(folder, "potential_A-B"));
-    assert_true(figure_folders_drawn(folder, "potential_A-of_history"));
+    assert_false(figure_folders_drawn(folder, "potential_A-of_history"));
     assert_false(figure_folders_drawn(folder, "rdf_now_A-B"));
     assert_false(figure_folders_drawn(folder, "potential_A-B_history"));
     assert_false(figure_folders_drawn(folder, "potential_A-B_flat"));
@@ -402,6 +426,7 @@ int main(void) {
         cmocka_unit_test(test_draws_simulation_and_no_fit),
         cmocka_unit_test(test_draws_simulation_of_a_mixture_in_its_units),
         cmocka_unit_test(test_potential_is_shown_up_to_its_barrier),
+        cmocka_unit_test(test_draws_tables_whose_numbers_are_all_the_same),
         cmocka_unit_test(test_soft_potential_is_shown_almost_whole),
         cmocka_unit_test(test_draws_dynamics_of_a_fit),
         cmocka_unit_test(test_draws_etd_of_the_bins_with_pairs_enough),
