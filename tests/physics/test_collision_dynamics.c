@@ -9,6 +9,7 @@
 #include "observe/maxwell.h"
 #include "observe/measure.h"
 #include "shared/is_close.h"
+#include "shared/length.h"
 #include "shared/testing.h"
 
 #include <math.h>
@@ -62,7 +63,8 @@ static struct flow_profile_summary measure_wave(struct simulation_setup *setup,
     return measure(setup, (int64_t)(3 * decay), 10 * (int64_t)(times * decay / 10));
 }
 
-/// ν within 2 % of theory in three dimensions, each measured to about ½ %.
+/// ν within 2 % of theory in three dimensions, each measured to about ½ %; in short at two angles,
+/// to 1 %.
 static void test_viscosity_in_space_is_that_of_theory(void **state) {
     (void)state;
     static const struct {
@@ -72,19 +74,21 @@ static void test_viscosity_in_space_is_that_of_theory(void **state) {
                 {150, 0.1, 10, 0.5, 80},
                 {150, 0.5, 20, 0.3, 80},
                 {150, 1, 10, 0.15, 800}};
-    for (size_t n = 0; n < sizeof grid / sizeof *grid; n++) {
+    const size_t cases = length_is_long() ? sizeof grid / sizeof *grid : 2;
+    for (size_t n = 0; n < cases; n++) {
         struct collision_dynamics_parameters parameters = plain;
         parameters.angle = grid[n].angle;
         parameters.particles_per_cell = grid[n].mean;
         parameters.thermostat = 1;
         struct simulation_setup setup = setup_of(3, 8, 24, grid[n].dt, &parameters);
         const struct flow_profile_summary flow =
-            measure_wave(&setup, &parameters, grid[n].height, grid[n].times);
+            measure_wave(&setup, &parameters, grid[n].height,
+                         length_is_long() ? grid[n].times : grid[n].times / 4);
         const double theory = mf_collision_dynamics_viscosity(&setup);
         print_message("3-D, alpha %g, dt %g, M %g: nu %.4f(%.4f), theory %.4f, %+.1f %%; T %.4f\n",
                       grid[n].angle, grid[n].dt, grid[n].mean, flow.viscosity, flow.viscosity_error,
                       theory, 100 * (flow.viscosity / theory - 1), flow.temperature);
-        assert_close_relative(flow.viscosity, theory, 0.02);
+        assert_close_relative(flow.viscosity, theory, length_is_long() ? 0.02 : 0.04);
         assert_close(flow.temperature, 1, 0.002);
     }
 }
@@ -167,7 +171,7 @@ static void test_viscosity_is_galilean_invariant_with_the_shift_alone(void **sta
 }
 
 /// The parabola between plates: ν within 2 % of theory, slip below 1 % of the peak, T within 0.2 %
-/// although the force heats.
+/// although the force heats; in short with twice the errors.
 static void test_flow_between_plates_is_poiseuilles(void **state) {
     (void)state;
     struct collision_dynamics_parameters parameters = plain;
@@ -177,13 +181,14 @@ static void test_flow_between_plates_is_poiseuilles(void **state) {
     parameters.walls = COLLISION_PLATES;
     parameters.acceleration[0] = 0.015;
     const struct simulation_setup setup = setup_of(2, 100, 20, 0.1, &parameters);
-    const struct flow_profile_summary flow = measure(&setup, 1500, 15000);
+    const double most = length_is_long() ? 0.02 : 0.04;
+    const struct flow_profile_summary flow = measure(&setup, 1500, length_is_long() ? 15000 : 3750);
     const double theory = mf_collision_dynamics_viscosity(&setup);
     print_message("plates: nu %.4f(%.4f), theory %.4f; slip %.4f(%.4f) of the peak; T %.5f(%.5f)\n",
                   flow.viscosity, flow.viscosity_error, theory, flow.slip, flow.slip_error,
                   flow.temperature, flow.temperature_error);
-    assert_close_relative(flow.viscosity, theory, 0.02);
-    assert_close(flow.slip, 0, 0.01);
+    assert_close_relative(flow.viscosity, theory, most);
+    assert_close(flow.slip, 0, most / 2);
     assert_close(flow.temperature, 1, 0.002);
 }
 
@@ -249,7 +254,7 @@ static double measure_diffusion(const struct simulation_setup *setup, int lag, i
 
 /// Tagged particles of the solvent, and beads ten times as heavy, at a free path of a cell and
 /// more, where a bead meets others in each collision: within 3 % of theory. The flow brings some
-/// back.
+/// back. In short with twice the error.
 static void test_beads_diffuse_as_theory_says(void **state) {
     (void)state;
     for (int heavy = 0; heavy < 2; heavy++) {
@@ -263,18 +268,20 @@ static void test_beads_diffuse_as_theory_says(void **state) {
         setup.placement = (struct placement){.count = heavy ? 100 : 400, .kind = PLACEMENT_LATTICE};
         setup.attribute[ATTRIBUTES_MASS] =
             (struct attributes_source){.ranges = 1, .range = {{mass, mass}}};
-        const double found = measure_diffusion(&setup, 100, heavy ? 32 : 8);
+        const double error = length_is_long() ? 0.015 : 0.03;
+        const int windows = (heavy ? 32 : 8) / (length_is_long() ? 1 : 4);
+        const double found = measure_diffusion(&setup, 100, windows);
         const double theory = mf_collision_dynamics_diffusion(&setup, mass);
-        print_message("beads of mass %g: D %.4f, theory %.4f, %+.1f %%, error 1.5 %%\n", mass,
-                      found, theory, 100 * (found / theory - 1));
-        assert_close_relative(found, theory, 0.045);
+        print_message("beads of mass %g: D %.4f, theory %.4f, %+.1f %%, error %.1f %%\n", mass,
+                      found, theory, 100 * (found / theory - 1), 100 * error);
+        assert_close_relative(found, theory, 3 * error);
     }
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_viscosity_in_space_is_that_of_theory),
-        cmocka_unit_test(test_viscosity_in_the_plane_has_a_long_time_tail),
+        LENGTH_ONLY_LONG(cmocka_unit_test(test_viscosity_in_the_plane_has_a_long_time_tail)),
         cmocka_unit_test(test_viscosity_is_galilean_invariant_with_the_shift_alone),
         cmocka_unit_test(test_flow_between_plates_is_poiseuilles),
         cmocka_unit_test(test_velocities_become_maxwellian),

@@ -6,6 +6,7 @@
 #include "observe/finite_size.h"
 #include "shared/fluids.h"
 #include "shared/is_close.h"
+#include "shared/length.h"
 #include "shared/watched.h"
 #include "shared/testing.h"
 
@@ -83,7 +84,9 @@ static struct means measure(int64_t particles, const struct table *potential, in
 /// comparisons, of which there are 6, with fixed seeds), and within what s may be off by, 0.15 of
 /// its 1/FEW: oscillations cut off at 1.6 leave that much, and terms in dg/dρ.
 static void compare(const struct table *potential, const char *name) {
-    const struct means few = measure(FEW, potential, 8000), many = measure(MANY, potential, 800);
+    const int64_t part = length_is_long() ? 1 : 3;
+    const struct means few = measure(FEW, potential, 8000 / part),
+                       many = measure(MANY, potential, 800 / part);
     for (int pair = 0; pair < PAIRS; pair++) {
         print_message("%s, pairs %d: from %d %.4f(%.4f), of %d %.4f(%.4f)\n", name, pair, FEW,
                       few.value[pair], few.error[pair], MANY, many.value[pair], many.error[pair]);

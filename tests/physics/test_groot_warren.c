@@ -7,6 +7,7 @@
 #include "io/data_table.h"
 #include "shared/fluids.h"
 #include "shared/is_close.h"
+#include "shared/length.h"
 #include "shared/watched.h"
 #include "shared/testing.h"
 #include "shared/variants.h"
@@ -138,7 +139,8 @@ static void test_standard_fluid_heats_as_known_when_the_variant_changes(void **s
         fluid.setup.seed = 10 + (uint64_t)v;
         variants_select(&variants[v]);
         print_message("%s: ", variants[v].name);
-        const struct thermodynamics_summary s = simulate(&fluid.setup, 150, 150, NULL);
+        const struct thermodynamics_summary s =
+            simulate(&fluid.setup, 150, length_is_long() ? 150 : 50, NULL);
         assert_temperatures(&s, 1.0281, 1.0551);
         assert_close(s.potential_energy, 4.5758, energy_tolerance);
         assert_close(s.pressure, 23.649, pressure_tolerance);
@@ -193,7 +195,8 @@ static void add_end(void *context, const struct simulation *simulation, uint64_t
 
 /// The statistical error of the temperature at the end of a step is that in the middle.
 static void check_heating(const struct heating *heating) {
-    const struct measure_plan plan = {.equilibration = 500, .samples = 1000, .every = 10};
+    const struct measure_plan plan = {
+        .equilibration = 500, .samples = length_is_long() ? 1000 : 150, .every = 10};
     struct fluid fluid;
     struct simulation simulation;
     struct thermodynamics thermodynamics;
@@ -233,10 +236,12 @@ static void check_heating(const struct heating *heating) {
 /// temperature off by −0.64(6), −1.44(5) and −2.21(4) % at 0.04, 0.06 and 0.08, the last 2.2
 /// combined errors beyond the digits of −2.5. Implicit friction, −2.16(8), and 100 particles,
 /// −2.25(8), do not explain it; of 32 one or two stray beyond two by chance.
+/// In short each integrator at 0.06 alone, with errors of 0.2 %, where it heats by 1 to 14 %.
 static void test_standard_fluid_heats_as_published_when_the_integrator_changes(void **state) {
     (void)state;
     for (size_t k = 0; k < sizeof heatings / sizeof *heatings; k++)
-        check_heating(&heatings[k]);
+        if (length_is_long() || heatings[k].time_step == 0.06)
+            check_heating(&heatings[k]);
 }
 
 /// Published pressures at Δt = 0.02, some of them twice.
@@ -277,7 +282,8 @@ static struct thermodynamics_summary measure_pressure(const struct published_pre
     fluid.setup.integrator = &mf_aboba;
     print_message("density %g, a %g, temperature %g: ", published->density, published->a,
                   published->temperature);
-    const struct thermodynamics_summary s = simulate(&fluid.setup, 500, 16000, NULL);
+    const int64_t samples = length_is_long() ? 16000 : 3000;
+    const struct thermodynamics_summary s = simulate(&fluid.setup, 500, samples, NULL);
     mf_table_clear(&potential);
     fluid_clear(&fluid);
     return s;

@@ -7,12 +7,17 @@
 #include "shared/fluids.h"
 #include "shared/hotelling.h"
 #include "shared/is_close.h"
+#include "shared/length.h"
 #include "shared/testing.h"
 #include "shared/variants.h"
 
 #include <stdio.h>
 
-enum { PARTICLES = 120, REPLICAS = 40, BINS = 10, SAMPLES = 40 };
+enum { PARTICLES = 120, BINS = 10, SAMPLES = 40 };
+
+static uint64_t replicas_count(void) {
+    return length_is_long() ? 40 : 20;
+}
 
 /// Probability of such a deviation from 1 by chance. The replicas are independent, so that the rate
 /// is exact whatever the correlations of bins and samples. Sixteen comparisons at most: with a new
@@ -51,7 +56,7 @@ static void assert_dynamics_gives_unity(struct fluid *fluid, uint64_t every, uin
                                         const char *what) {
     struct comoments replicas;
     assert_ok(mf_comoments_init(&replicas, BINS));
-    for (uint64_t k = 0; k < REPLICAS; k++) {
+    for (uint64_t k = 0; k < replicas_count(); k++) {
         double g[BINS];
         fluid->setup.seed = seed + k;
         sample_dynamics(&fluid->setup, every, g);
@@ -126,7 +131,7 @@ static void test_ideal_gas_has_no_structure_when_sampled_by_metropolis(void **st
         fluid_ideal_gas(&fluid, dimensions, PARTICLES, 0.01);
         fluid_no_potential(&nothing);
         assert_ok(mf_comoments_init(&replicas, BINS));
-        for (uint64_t k = 0; k < REPLICAS; k++) {
+        for (uint64_t k = 0; k < replicas_count(); k++) {
             double g[BINS];
             sample_monte_carlo(&fluid.setup.box, &nothing, 200 + k, g);
             mf_comoments_add(&replicas, g);

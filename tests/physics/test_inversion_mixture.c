@@ -5,6 +5,7 @@
 #include "curves/formula.h"
 #include "shared/fluids.h"
 #include "shared/inversions.h"
+#include "shared/length.h"
 #include "shared/testing.h"
 
 #include <math.h>
@@ -192,9 +193,10 @@ static void test_imc_finds_equal_potentials_when_the_types_are_alike(void **stat
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_imc_finds_the_potentials_of_a_mixture),
-        cmocka_unit_test(test_hnc_finds_the_potentials_of_a_mixture),
-        cmocka_unit_test(test_auto_finds_the_potentials_of_a_mixture),
-        cmocka_unit_test(test_imc_finds_equal_potentials_when_the_types_are_alike),
+        LENGTH_ONLY_LONG(cmocka_unit_test(test_hnc_finds_the_potentials_of_a_mixture)),
+        LENGTH_ONLY_LONG(cmocka_unit_test(test_auto_finds_the_potentials_of_a_mixture)),
+        LENGTH_ONLY_LONG(
+            cmocka_unit_test(test_imc_finds_equal_potentials_when_the_types_are_alike)),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -4,6 +4,7 @@
 // and g(r) of the standard fluid, also where it is ten times as strong.
 #include "io/data_table.h"
 #include "shared/is_close.h"
+#include "shared/length.h"
 #include "shared/remembering.h"
 #include "shared/testing.h"
 #include "shared/watched.h"
@@ -143,7 +144,7 @@ static void test_a_strong_memory_does_too(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_memory_leaves_the_standard_fluid_alone),
+        LENGTH_ONLY_LONG(cmocka_unit_test(test_memory_leaves_the_standard_fluid_alone)),
         cmocka_unit_test(test_a_strong_memory_does_too),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

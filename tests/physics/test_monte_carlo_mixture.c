@@ -7,12 +7,17 @@
 #include "observe/rdf.h"
 #include "shared/fluids.h"
 #include "shared/hotelling.h"
+#include "shared/length.h"
 #include "shared/testing.h"
 
 #include <math.h>
 
 /// Six pair types, of which each has three bins, and the virial.
-enum { COUNT = 300, PAIRS = 6, BINS = 3, SIZE = PAIRS * BINS + 1, BLOCKS = 40, SAMPLES = 20 };
+enum { COUNT = 300, PAIRS = 6, BINS = 3, SIZE = PAIRS * BINS + 1, SAMPLES = 20 };
+
+static int blocks_count(void) {
+    return length_is_long() ? 40 : 25;
+}
 
 static const struct rdf_bins bins = {0.3, 0.2, BINS};
 
@@ -36,7 +41,7 @@ static void measure_sampler(const struct fluid *fluid, enum sampler_kind kind, u
     assert_ok(mf_sampler_init(&sampler, kind, &system));
     assert_ok(mf_sampler_begin(&sampler));
     assert_ok(mf_sampler_equilibrate(&sampler, 500));
-    for (int block = 0; block < BLOCKS; block++) {
+    for (int block = 0; block < blocks_count(); block++) {
         double mean[SIZE] = {0}, sample[SIZE];
         for (int n = 0; n < SAMPLES; n++) {
             // The first of a block comes after a gap, in which the mixture mixes: with a quarter of
@@ -57,7 +62,7 @@ static void measure_dynamics(const struct fluid *fluid, struct comoments *blocks
     assert_ok(mf_simulation_init(&simulation, &fluid->setup, NULL));
     simulation.wants = PAIR_FORCES_AND_SUMS;
     assert_ok(mf_simulation_run(&simulation, 1000));
-    for (int block = 0; block < BLOCKS; block++) {
+    for (int block = 0; block < blocks_count(); block++) {
         double mean[SIZE] = {0};
         assert_ok(mf_simulation_run(&simulation, 800));
         for (int n = 0; n < SAMPLES; n++) {
@@ -82,11 +87,11 @@ static void assert_equal_within_errors(const struct comoments *first,
                       first->mean[pair * BINS + 1],
                       sqrt(mf_comoments_covariance(first, (size_t)(pair * BINS + 1),
                                                    (size_t)(pair * BINS + 1)) /
-                           BLOCKS),
+                           blocks_count()),
                       second->mean[pair * BINS + 1],
                       sqrt(mf_comoments_covariance(second, (size_t)(pair * BINS + 1),
                                                    (size_t)(pair * BINS + 1)) /
-                           BLOCKS));
+                           blocks_count()));
     print_message("p = %.3f\n", p);
     assert_true(p > false_alarm_rate);
 }

@@ -46,18 +46,21 @@ static enum status take(void *state, struct simulation *simulation) {
 
 static const struct observable probing = {.name = "probe", .sums = true, .sample = take};
 
-/// Equilibrate and sample the setup by Monte Carlo.
+/// Equilibrate and sample the setup by Monte Carlo, for probes of as many samples a block.
 static void measure(const struct simulation_setup *setup, int64_t equilibration, int64_t every,
-                    struct probe *probe) {
+                    struct probe *probes, size_t count) {
     const struct measure_plan plan = {
-        .equilibration = equilibration, .samples = BLOCKS * probe->each, .every = every};
-    const struct observable_use uses[] = {{&probing, probe, NULL}, {NULL, NULL, NULL}};
+        .equilibration = equilibration, .samples = BLOCKS * probes[0].each, .every = every};
+    struct observable_use uses[TOPOLOGY_ORDERS + 1] = {{NULL, NULL, NULL}};
     struct simulation_setup by_moves = *setup;
     struct simulation simulation;
     double temperature;
     by_moves.integrator = &mf_monte_carlo;
     by_moves.omega = NULL;
-    assert_ok(mf_comoments_init(&probe->blocks, probe->size));
+    for (size_t k = 0; k < count; k++) {
+        uses[k] = (struct observable_use){&probing, &probes[k], NULL};
+        assert_ok(mf_comoments_init(&probes[k].blocks, probes[k].size));
+    }
     assert_ok(mf_simulation_init(&simulation, &by_moves, NULL));
     assert_ok(mf_measure_equilibrate(&simulation, &plan, &temperature, NULL));
     assert_ok(mf_measure_sample(&simulation, &plan, uses, NULL));
@@ -163,12 +166,15 @@ static void test_free_chains_have_the_distributions_of_their_integrals(void **st
     molecules_add_group(&molecules, TOPOLOGY_DIHEDRAL, &mf_dihedral_periodic, twist);
     fluid_ideal_gas(&fluid, 3, COUNT, 0.01);
     molecules_enter(&fluid.setup, &molecules, &composition);
+    struct probe probes[TOPOLOGY_ORDERS];
+    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+        probes[order] =
+            (struct probe){.look = look[order], .size = (size_t)ranges[order].bins, .each = 40};
+    measure(&fluid.setup, 600, 24, probes, TOPOLOGY_ORDERS);
     for (int order = 0; order < TOPOLOGY_ORDERS; order++) {
         double exact[MOST];
-        struct probe probe = {.look = look[order], .size = (size_t)ranges[order].bins, .each = 40};
         find_probabilities(order, exact);
-        measure(&fluid.setup, 600, 24, &probe);
-        compare(names[order], &probe, exact);
+        compare(names[order], &probes[order], exact);
     }
     mf_molecules_clear(&molecules);
     fluid_clear(&fluid);
@@ -226,7 +232,7 @@ static void test_two_particles_meet_as_their_potential_lets_them(void **state) {
     for (int d = 0; d < 3; d++)
         fluid.setup.box.length[d] = edge;
     find_pair(exact);
-    measure(&fluid.setup, 600, 10, &probe);
+    measure(&fluid.setup, 600, 10, &probe, 1);
     compare("two particles", &probe, exact);
     fluid_clear(&fluid);
 }
