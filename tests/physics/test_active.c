@@ -175,9 +175,10 @@ static void test_order_is_that_of_chance_without_alignment_and_high_with_it(void
         const struct observable_use uses[] = {{&mf_polarity_observable, &polarity, NULL}, {0}};
         assert_ok(mf_measure_equilibrate(&simulation, &plan, &temperature, NULL));
         assert_ok(mf_measure_sample(&simulation, &plan, uses, NULL));
-        for (size_t k = 0; k < polarity.motion.samples; k++) {
-            squares += pow(polarity.order[k], 2) / (double)polarity.motion.samples;
-            least = fmin(least, polarity.order[k]);
+        const double *order = sample_series_column(&polarity.order, 0);
+        for (size_t k = 0; k < polarity.order.count; k++) {
+            squares += pow(order[k], 2) / (double)polarity.order.count;
+            least = fmin(least, order[k]);
         }
         print_message("%s: N <|n|^2> = %.3f, least order %.3f\n", aligned ? "aligned" : "alone",
                       COUNT * squares, least);

@@ -227,7 +227,7 @@ static void measure_rounds(const struct made *made, int threads, struct rounds *
     double variables[CANDIDATES * VARIABLES];
     const struct inverse_listener listener = {ignore, NULL};
     const struct optimiser_round round = {variables, CANDIDATES};
-    const struct population_parameters parameters = {made->parameters, 1, 0};
+    const struct population_parameters parameters = {made->parameters, 1};
     problem.threads = threads;
     for (int k = 0; k < CANDIDATES * VARIABLES; k++)
         variables[k] = 0.2 + 0.03 * k;
@@ -279,7 +279,7 @@ static void test_checks_together_have_the_noise_of_their_mean(void **state) {
     made.problem.scene.potential = NULL;
     for (int k = 0; k < BINS; k++)
         made.error[k] = 0;
-    const struct population_parameters parameters = {made.parameters, 0, 0};
+    const struct population_parameters parameters = {made.parameters, 0};
     assert_ok(mf_parametrisation_init(&parametrisation, &made.problem));
     assert_ok(mf_population_init(&population, &parametrisation, &parameters));
     assert_ok(mf_population_check(&population, variables, CHECKS, 1, &check));

@@ -68,7 +68,7 @@ static void make_twin(struct twin *twin) {
     problem->targets.bins = (struct rdf_bins){0, 0.1, PAIR_BINS};
     problem->targets.target[TARGET_RDF] = (struct target){.count = PAIR_BINS, .value = twin->g};
     problem->unknown[UNKNOWN_POTENTIAL] =
-        (struct unknown){true, {INVERSE_CURVE_BSPLINE, 7, -3, 3, 0, 0, {0}, 0, 0}, {NULL}, NULL};
+        (struct unknown){true, {INVERSE_CURVE_BSPLINE, 7, -3, 3, 0, 0, {0}, 0}, {NULL}, NULL};
     problem->unknown[UNKNOWN_BONDED].wanted = true;
     for (enum topology_order order = 0; order < TOPOLOGY_ORDERS; order++) {
         make_target(twin, order);
