@@ -68,6 +68,8 @@ static void refuse_removed(const struct inverse_method *method, struct json_obje
         {"mutation", usual},
         {"remeasured", usual},
         {"depth", usual},
+        {"damping", usual},
+        {"ridge", usual},
     };
     for (size_t k = 0; k < sizeof removed / sizeof *removed; k++)
         if (!knows(method, removed[k][0]))

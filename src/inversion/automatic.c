@@ -15,9 +15,6 @@
 /// The response holds if it tells what the last step did within this part.
 static const double trust = 0.3;
 
-/// Ridge of the hypernetted chain, its default.
-static const double ridge = 0.35;
-
 static const char *const columns[] = {INVERSION_COLUMNS, "newton", "misfit[1]", "directions", NULL};
 
 /// Whether −C ΔΦ/k_B T is the change of S from the best potential to this one, in the norm of their
@@ -60,7 +57,7 @@ static enum status careful_step(struct inversion *inversion, double *step) {
     const struct simulation_setup *scene = &inversion->problem->scene;
     if (inversion->box.dimensions == 3 &&
         mf_molecules_find(scene->interaction, scene->interactions) == NULL)
-        return mf_hnc_step(inversion, ridge, step);
+        return mf_hnc_step(inversion, step);
     if (inversion->coarse.count > 0)
         return mf_inversion_coarse_step(inversion, step);
     mf_ibi_step(inversion, step);

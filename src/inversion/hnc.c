@@ -10,16 +10,12 @@
 #include "inversion/hnc_closure.h"
 #include "inversion/inversion.h"
 
-static const struct field own_fields[] = {
-    {"ridge", FIELD_NUMBER, .offset = offsetof(struct hnc_parameters, ridge), .initial = 0.35,
-     .minimum = 0.01, .maximum = 10, .unit = "",
-     .help = "structure factors below this are not trusted"},
-    FIELD_END,
-};
+/// Structure factors below this are not trusted.
+static const double ridge = 0.35;
 
 static const char *const columns[] = {INVERSION_COLUMNS, NULL};
 
-enum status mf_hnc_step(const struct inversion *inversion, double ridge, double *step) {
+enum status mf_hnc_step(const struct inversion *inversion, double *step) {
     enum status status = STATUS_OK;
     const struct potential_grid *grid = &inversion->grid;
     double *target = NULL, *difference = NULL, *indirect = NULL;
@@ -46,7 +42,7 @@ done:
 
 static enum status update(struct inversion *inversion, double *extra) {
     (void)extra;
-    return mf_hnc_step(inversion, inversion->settings.hnc.ridge, inversion->step);
+    return mf_hnc_step(inversion, inversion->step);
 }
 
 static enum status create(void *inversion, const struct inverse_method *method,
@@ -61,9 +57,7 @@ const struct inverse_method mf_hnc = {
     .summary = "Newton steps by the hypernetted chain; F. Delbary, M. Hanke and D. Ivanizki, J. "
                "Inverse Ill-Posed Probl. 28 (2020)",
     .own = &(const struct inversion_rule){.update = update, .forgets = true},
-    .tables = (const struct inverse_table[]){INVERSION_TABLE,
-                                             {own_fields, offsetof(struct inversion_settings, hnc)},
-                                             {NULL, 0}},
+    .tables = (const struct inverse_table[]){INVERSION_TABLE, {NULL, 0}},
     .columns = columns,
     .create = create,
     INVERSION_RECORD,

@@ -170,7 +170,7 @@ static void go_back(struct inversion *inversion) {
     }
     memcpy(inversion->best_step, inversion->best_other, bytes);
     progress->best_other = false;
-    progress->damping = inversion->settings.common.damping;
+    progress->damping = 1;
 }
 
 /// S_rel is convex: its Newton steps promise less and less, unless one was too long.
@@ -224,7 +224,7 @@ static enum status go_on(struct inversion *inversion, bool kept) {
     }
     progress->best[TARGET_RDF].rms = progress->least_decrement = INFINITY;
     progress->drift.count = 0;
-    progress->damping = inversion->settings.common.damping;
+    progress->damping = 1;
     progress->anew = true;
     return mf_inversion_start_again(inversion);
 }
@@ -265,7 +265,7 @@ static void describe(const struct inversion *inversion, const double *own, bool 
                      struct inverse_step *step) {
     const struct inversion_progress *progress = &inversion->progress;
     const struct inversion_parameters *p = &inversion->settings.common;
-    const bool stuck = progress->damping < mf_inversion_least_damping * p->damping;
+    const bool stuck = progress->damping < mf_inversion_least_damping;
     const double particles = (double)mf_composition_particles(&inversion->composition);
     const struct replicas_mean energy =
         mf_replicas_mean(&inversion->replicas, SAMPLER_ENERGY, inversion->inefficiency);

@@ -36,21 +36,16 @@ struct inversion_parameters {
     int64_t particles, replicas;
     int64_t equilibration, samples, every;
     int64_t iterations;
-    double precision, damping;
+    double precision;
     int start;   ///< INVERSION_FROM_…
     int sampler; ///< enum sampler_kind
 };
 
 enum { INVERSION_FROM_HNC, INVERSION_FROM_MEAN_FORCE };
 
-struct hnc_parameters {
-    double ridge; ///< structure factors below this are not trusted
-};
-
 /// The parameters of an inversion: what is common, and those of single methods.
 struct inversion_settings {
     struct inversion_parameters common;
-    struct hnc_parameters hnc;
     struct entropy_parameters entropy;
 };
 
@@ -295,7 +290,7 @@ bool mf_inversion_has_converged(struct inversion *inversion, bool kept);
 /// Whether the ramp of the potential grows without end; never with a pressure, which holds it.
 bool mf_inversion_runs_away(const struct inversion *inversion);
 
-/// Damping below this part of the first: the step leads nowhere, and the fit ends.
+/// Damping below this: the step leads nowhere, and the fit ends.
 extern const double mf_inversion_least_damping;
 
 /// k_B T ln(g/g*) of the known bins.
@@ -308,7 +303,7 @@ void mf_ibi_logarithms(const struct inversion *inversion, double *step);
 void mf_ibi_step(const struct inversion *inversion, double *step);
 
 /// The same with the slope of the hypernetted chain. Fails: NO_MEMORY.
-enum status mf_hnc_step(const struct inversion *inversion, double ridge, double *step) MUST_USE;
+enum status mf_hnc_step(const struct inversion *inversion, double *step) MUST_USE;
 
 /// The regularised Newton step, or, with groups far from their targets, that of
 /// mf_inversion_coarse_step; of several states by what all say. `extra` are strength, misfit and

@@ -34,8 +34,6 @@ const struct field mf_inversion_fields[] = {
      .maximum = 1, .unit = "",
      .help = "statistical error of g, rms over bins, at which an "
              "agreement is believed"},
-    {"damping", FIELD_NUMBER, MEMBER(damping), .initial = 1, .minimum = FIELD_ABOVE_ZERO,
-     .maximum = 1, .unit = "", .help = "share of a method's step taken at first; adapts"},
     {"start", FIELD_CHOICE, MEMBER(start), .choices = starts, .initial = INVERSION_FROM_HNC,
      .unit = "",
      .help = "without unknowns.potential.start: the hypernetted-chain inversion, and -k_B T ln g "
@@ -265,7 +263,7 @@ enum status mf_inversion_create(void *memory, const struct inverse_method *metho
                                  .q_maximum = inversion->kirkwood_buff.q_maximum,
                                  .seed = problem->seed}));
     inversion->progress = (struct inversion_progress){.anew = true,
-                                                      .damping = p->damping,
+                                                      .damping = 1,
                                                       .best[TARGET_RDF].rms = INFINITY,
                                                       .least_decrement = INFINITY,
                                                       .miss = INFINITY};

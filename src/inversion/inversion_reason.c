@@ -112,7 +112,7 @@ void mf_inversion_reason_tell(const struct inversion *inversion, char reason[INV
     }
     const struct inversion_parameters *settings = &inversion->settings.common;
     const struct target_distance *rdf = &p->best[TARGET_RDF];
-    const bool stuck = p->damping < mf_inversion_least_damping * settings->damping;
+    const bool stuck = p->damping < mf_inversion_least_damping;
     const bool agrees = rdf->rms <= mf_inverse_noise_margin * rdf->noise;
     const double improved = rdf->rms / p->first_error;
     if (!agrees && mf_inversion_runs_away(inversion))

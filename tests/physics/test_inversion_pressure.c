@@ -31,8 +31,7 @@ static void measure(const struct fluid *fluid, const struct rdf_bins *bins, cons
                                                      .samples = length_is_long() ? 1500 : 240,
                                                      .every = 4,
                                                      .iterations = 1,
-                                                     .precision = 1,
-                                                     .damping = 1}};
+                                                     .precision = 1}};
     const struct inverse_problem problem = {
         .targets = {.bins = *bins, .target[TARGET_RDF] = {bins->count, g, errors, 0}},
         .unknown[UNKNOWN_POTENTIAL] = {.wanted = true, .start = {potential}},

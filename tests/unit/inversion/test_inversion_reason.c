@@ -12,16 +12,15 @@ static struct inversion make_inversion(struct inverse_problem *problem, double r
     problem->targets.target[TARGET_RDF].count = 1;
     problem->targets.target[TARGET_PRESSURE] =
         (struct target){.count = pressure, .value = &target, .error = &target};
-    return (struct inversion){
-        .problem = problem,
-        .method = &mf_imc,
-        .settings.common = {.iterations = 30, .precision = 0.002, .damping = 1},
-        .progress = {.damping = 1,
-                     .best[TARGET_RDF] = {.rms = rms, .noise = 0.003},
-                     .best[TARGET_PRESSURE] = {.rms = 2, .noise = 0.1},
-                     .best_own_noise = 0.0025,
-                     .first_error = 0.11,
-                     .second_error = 0.08}};
+    return (struct inversion){.problem = problem,
+                              .method = &mf_imc,
+                              .settings.common = {.iterations = 30, .precision = 0.002},
+                              .progress = {.damping = 1,
+                                           .best[TARGET_RDF] = {.rms = rms, .noise = 0.003},
+                                           .best[TARGET_PRESSURE] = {.rms = 2, .noise = 0.1},
+                                           .best_own_noise = 0.0025,
+                                           .first_error = 0.11,
+                                           .second_error = 0.08}};
 }
 
 static void assert_says(const struct inversion *inversion, const char *words) {

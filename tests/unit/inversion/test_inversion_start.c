@@ -54,7 +54,6 @@ static void make(struct made *made, int start) {
                                                             .every = 1,
                                                             .iterations = 2,
                                                             .precision = 1,
-                                                            .damping = 1,
                                                             .start = start}};
 }
 
