@@ -14,10 +14,11 @@
 
 static struct run_program_result result;
 
-#define COMMANDS                                                                                   \
+#define IN_TABLE                                                                                   \
     "\x1b]0;title\x07\x1b]52;c;aGk=\x07\xc2\x9b"                                                   \
     "2J\x9b"                                                                                       \
-    "2J\r"
+    "2J"
+#define COMMANDS IN_TABLE "\r" // which ends a line of a table
 #define IN_JSON "\\u001b]0;title\\u0007\\u001b]52;c;aGk=\\u0007\\u009b2J\\r"
 
 /// Returns how many commands are shown.
@@ -71,7 +72,7 @@ static void test_texts_of_results_are_shown(void **state) {
     small_inputs_write(*state, "out/summary.json", summary, "\"ok\"", "\"" IN_JSON "\"");
     free(summary);
     char *table = temporary_folder_read("out/rdf.tsv");
-    small_inputs_write(*state, "out/rdf.tsv", table, "[lambda]", "[" COMMANDS "]");
+    small_inputs_write(*state, "out/rdf.tsv", table, "[lambda]", "[" IN_TABLE "]");
     free(table);
     assert_true(RUN("compare", "out") > 0);
     assert_true(RUN("export", "out", "--engine", "lammps") > 0);
@@ -93,7 +94,7 @@ static void test_texts_of_scenes_and_run_files_are_shown(void **state) {
     assert_true(RUN("fit", "run.json") > 0);
     small_inputs_write(*state, "run.json", small_inputs_run, "\"imc\"", "\"" IN_JSON "\"");
     assert_true(RUN("fit", "run.json", "--explain") > 0);
-    small_inputs_write(*state, "target.tsv", small_inputs_target, "# r", "# r[" COMMANDS "]");
+    small_inputs_write(*state, "target.tsv", small_inputs_target, "# r", "# r[" IN_TABLE "]");
     small_inputs_write(*state, "run.json", small_inputs_run, NULL, NULL);
     RUN("fit", "run.json");
 }

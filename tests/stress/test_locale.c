@@ -120,8 +120,11 @@ static int compare_file(const char *path, const struct stat *about, int type, st
     static const char *const timed[] = {"tasks.tsv", "checkpoint.bin", "compare.tsv"};
     char other[4096];
     (void)about;
+    // What a run has written is listed with digests of all of it, in files that begin so.
+    if (type != FTW_F || strncmp(path + place->base, ".mesofit-", 9) == 0)
+        return 0;
     for (size_t k = 0; k < sizeof timed / sizeof *timed; k++)
-        if (type != FTW_F || strcmp(path + place->base, timed[k]) == 0)
+        if (strcmp(path + place->base, timed[k]) == 0)
             return 0;
     snprintf(other, sizeof other, "%s%s", twin, path + strcspn(path, "/"));
     if (access(other, R_OK) != 0)
