@@ -19,7 +19,7 @@ void *mf_letter_or_stop(void *memory) {
 }
 
 static size_t words_of(const struct letter *letter) {
-    return (sizeof *letter + letter->bytes + sizeof(uint64_t) - 1) / sizeof(uint64_t);
+    return letter_room(letter) / sizeof(uint64_t);
 }
 
 struct letter *mf_letter_new(const struct letter *head) {
@@ -36,15 +36,20 @@ struct letter *mf_letter_of_message(const struct letter *head, const char *messa
     return letter;
 }
 
-struct letter *mf_letter_of_task(const struct letter *head, const struct parallel_tasks *tasks,
-                                 const void *result) {
+struct letter mf_letter_sized(const struct letter *head, const struct parallel_tasks *tasks) {
     struct memory_span span[PARALLEL_MOST_SPANS];
     const size_t spans = tasks->spans(tasks->context, head->task, span);
     struct letter with = *head;
     with.bytes = tasks->result_size;
     for (size_t k = 0; k < spans; k++)
         with.bytes += sizeof(uint64_t) + span[k].bytes;
-    struct letter *letter = mf_letter_new(&with);
+    return with;
+}
+
+void mf_letter_write(struct letter *letter, const struct parallel_tasks *tasks,
+                     const void *result) {
+    struct memory_span span[PARALLEL_MOST_SPANS];
+    const size_t spans = tasks->spans(tasks->context, letter->task, span);
     char *to = letter_bytes(letter);
     if (tasks->result_size > 0)
         memcpy(to, result, tasks->result_size);
@@ -56,6 +61,13 @@ struct letter *mf_letter_of_task(const struct letter *head, const struct paralle
             memcpy(to + sizeof bytes, span[k].memory, bytes);
         to += sizeof bytes + bytes;
     }
+}
+
+struct letter *mf_letter_of_task(const struct letter *head, const struct parallel_tasks *tasks,
+                                 const void *result) {
+    const struct letter with = mf_letter_sized(head, tasks);
+    struct letter *letter = mf_letter_new(&with);
+    mf_letter_write(letter, tasks, result);
     return letter;
 }
 
@@ -89,7 +101,8 @@ static bool unpack_span(const struct parallel_tasks *tasks, uint64_t task, size_
     return true;
 }
 
-const void *mf_letter_unpack(const struct letter *letter, const struct parallel_tasks *tasks) {
+bool mf_letter_read(const struct letter *letter, const struct parallel_tasks *tasks,
+                    const void **result) {
     const char *from = letter_bytes(letter);
     size_t left = letter->bytes;
     bool fits = left >= tasks->result_size;
@@ -97,12 +110,18 @@ const void *mf_letter_unpack(const struct letter *letter, const struct parallel_
     left -= fits ? tasks->result_size : left;
     for (size_t number = 0; fits && left > 0; number++)
         fits = unpack_span(tasks, letter->task, number, &from, &left);
-    if (!fits)
+    *result = tasks->result_size > 0 ? letter_bytes(letter) : NULL;
+    return fits;
+}
+
+const void *mf_letter_unpack(const struct letter *letter, const struct parallel_tasks *tasks) {
+    const void *result;
+    if (!mf_letter_read(letter, tasks, &result))
         mf_ranks_stop(2,
                       "ranks do not run the same program on the same input: task %llu left "
                       "something else",
                       (unsigned long long)letter->task);
-    return tasks->result_size > 0 ? letter_bytes(letter) : NULL;
+    return result;
 }
 
 void mf_letter_stop_strayed(int from, const struct letter *letter) {

@@ -38,6 +38,23 @@ static inline void *letter_bytes(const struct letter *letter) {
     return (void *)(letter + 1);
 }
 
+/// Bytes that a letter takes among others, with its head: whole words.
+static inline size_t letter_room(const struct letter *letter) {
+    return (sizeof *letter + letter->bytes + sizeof(uint64_t) - 1) / sizeof(uint64_t) *
+           sizeof(uint64_t);
+}
+
+/// A head with the bytes of what its task leaves.
+struct letter mf_letter_sized(const struct letter *head, const struct parallel_tasks *tasks);
+
+/// Write what a task leaves behind such a head: its result, and its part of the context.
+void mf_letter_write(struct letter *letter, const struct parallel_tasks *tasks, const void *result);
+
+/// Put what a task left into the context; false if it does not fit.
+/// @param[out] result  in the letter; NULL if it has none
+bool mf_letter_read(const struct letter *letter, const struct parallel_tasks *tasks,
+                    const void **result);
+
 /// New memory, or the end of the job where there is none: the others would wait for this rank.
 void *mf_letter_or_stop(void *memory);
 

@@ -3,6 +3,7 @@
 
 #include "base/clock.h"
 #include "base/memory.h"
+#include "base/parallel_keep.h"
 #include "base/parallel_ranks.h"
 #include "base/parallel_times.h"
 #include "base/ranks.h"
@@ -80,11 +81,15 @@ static enum status try_alone(const struct parallel_tasks *tasks) {
     return parallel_failure_status(&failure);
 }
 
-enum status mf_parallel_try(const struct parallel_tasks *tasks) {
+static enum status try_all(const struct parallel_tasks *tasks) {
     const double begin = clock_seconds();
     const enum status status =
         tasks->spans && mf_ranks_count() > 1 ? mf_parallel_try_together(tasks) : try_alone(tasks);
     if (tasks->spans)
         mf_parallel_times_end(tasks->count, clock_seconds() - begin);
     return status;
+}
+
+enum status mf_parallel_try(const struct parallel_tasks *tasks) {
+    return mf_parallel_keep_try(tasks, try_all);
 }

@@ -41,7 +41,8 @@ struct parallel_tasks {
     void (*take)(void *context, size_t task, const void *result);
     size_t result_size;
     void *context;
-    /// List the part of `context` that a task has changed, for the ranks that did not do it, at
+    /// List the part of `context` that a task has changed, for the ranks that did not do it and for
+    /// who begins again after an interruption (base/parallel_keep.h), at
     /// most PARALLEL_MOST_SPANS; returns their number. Lengths may follow from the spans before: it
     /// is asked again after each that has arrived. NULL: every rank does all tasks itself.
     size_t (*spans)(void *context, size_t task, struct memory_span *spans);

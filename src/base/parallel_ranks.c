@@ -287,7 +287,7 @@ static void work_together(struct round *round) {
     pthread_join(talker, NULL);
 }
 
-/// Bytes that a letter takes among others.
+/// Bytes of a piece that a letter of so many bytes takes, with its head.
 static size_t room(uint64_t bytes) {
     return (bytes + sizeof(uint64_t) - 1) / sizeof(uint64_t) * sizeof(uint64_t);
 }

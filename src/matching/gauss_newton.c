@@ -395,7 +395,6 @@ const struct inverse_method mf_gauss_newton = {
     .finds_omega = true,
     .knows_molecules = true,
     .sampling = mf_population_sampling,
-    .keeps_parts = true,
     .columns = columns,
     .create = create,
     .destroy = destroy,

@@ -358,7 +358,6 @@ static enum status write(const void *memory, const struct inverse_folder *folder
         .finds_omega = true,                                                                       \
         .knows_molecules = true,                                                                   \
         .sampling = mf_population_sampling,                                                        \
-        .keeps_parts = true,                                                                       \
         .columns = columns,                                                                        \
         .create = create,                                                                          \
         .destroy = destroy,                                                                        \

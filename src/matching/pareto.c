@@ -297,7 +297,6 @@ const struct inverse_method mf_pareto = {
     .finds_omega = true,
     .knows_molecules = true,
     .sampling = mf_population_sampling,
-    .keeps_parts = true,
     .columns = columns,
     .create = create,
     .destroy = destroy,

@@ -76,7 +76,7 @@ void mf_population_clear(struct population *population);
 
 /// Measure all candidates that have no error yet. A failed simulation is the worst error.
 /// Seeds depend on the round and the candidate's number alone: the same bits for any threads.
-/// Fails: INTERRUPTED, with what was measured kept for a checkpoint; NO_MEMORY; BAD_INPUT.
+/// Fails: INTERRUPTED, NO_MEMORY, BAD_INPUT.
 enum status mf_population_measure(struct population *population,
                                   const struct optimiser_round *round, double discard_above,
                                   const struct inverse_listener *listener) MUST_USE;

@@ -286,7 +286,6 @@ struct inverse_method {
     size_t parameters_size;
     size_t state_size;
     struct inverse_sampling (*sampling)(const void *parameters); ///< NULL of an inversion
-    bool keeps_parts;
     const char *const *columns;        ///< names of `extra`, NULL-terminated
     bool finds_potential, finds_omega; ///< whether it can
     bool knows_molecules;              ///< and finds what is unknown of their bonds, too
@@ -297,8 +296,8 @@ struct inverse_method {
     enum status (*create)(void *state, const struct inverse_method *method,
                           const struct inverse_problem *problem, const void *parameters);
     void (*destroy)(void *state);
-    /// One iteration. After INTERRUPTED the state is fit for a checkpoint if `keeps_parts`, else
-    /// only that from before the iteration is.
+    /// One iteration, which from the same state does the same tasks (base/parallel.h): after an
+    /// interruption it begins again from before, with what its tasks have left.
     enum status (*iterate)(void *state, struct inverse_step *step,
                            const struct inverse_listener *listener);
     /// List the state; returns the number of spans.

@@ -6,13 +6,13 @@
 #include "base/ranks.h"
 #include "base/visible.h"
 #include "input/fit_states.h"
-#include "io/checkpoint.h"
 #include "io/checkpoint_pace.h"
 #include "report/fit_output.h"
 #include "report/fit_report.h"
 #include "report/fit_verdict.h"
 #include "report/history.h"
 #include "report/progress.h"
+#include "work/fit_checkpoint.h"
 #include "work/fit_ranks.h"
 #include "work/fit_tasks.h"
 #include "work/fit_tell.h"
@@ -32,6 +32,7 @@ struct run {
     void *state;
     bool created;
     struct history history;
+    struct fit_checkpoint checkpoint;
     uint64_t digest; ///< of used.json
     struct checkpoint_pace pace;
     double seconds_before;                           ///< of a run before a restart
@@ -54,48 +55,22 @@ static double seconds(const struct run *run) {
     return run->seconds_before + mf_progress_seconds(&run->progress);
 }
 
-enum { MAX_SPANS = INVERSE_MAX_SPANS + HISTORY_SPANS + 2 + 3 * UNKNOWNS };
-
-/// The history first, on whose iterations its lengths depend.
-static size_t run_spans(struct run *run, struct memory_span *spans) {
-    size_t n = mf_history_spans(&run->history, spans);
-    n += run->fit.method->spans(run->state, spans + n);
-    spans[n++] = (struct memory_span){&run->standing, sizeof run->standing};
-    for (int kind = 0; kind < UNKNOWNS; kind++) {
-        const size_t bytes = mf_unknowns_points(&run->unknowns, kind) * sizeof(double);
-        if (bytes == 0)
-            continue;
-        spans[n++] = (struct memory_span){run->curve[kind], bytes};
-        spans[n++] = (struct memory_span){run->curve_error[kind], bytes};
-        spans[n++] = (struct memory_span){run->curve_flat[kind], INVERSE_FLAT * bytes};
-    }
-    const size_t points = mf_unknowns_points(&run->unknowns, UNKNOWN_POTENTIAL);
-    if (points > 0)
-        spans[n++] = (struct memory_span){run->without_ramp, points * sizeof(double)};
-    return n;
-}
-
 static enum status save(struct run *run) {
-    struct memory_span spans[MAX_SPANS];
     char path[OUTPUT_PATH_SIZE];
     if (!ranks_lead())
         return STATUS_OK;
     mf_run_folder_file(&run->folder, "checkpoint.bin", path);
     const double begun = mf_progress_seconds(&run->progress);
     run->standing.seconds = seconds(run);
-    const enum status status = mf_checkpoint_save(path, run->digest, spans, run_spans(run, spans));
+    const enum status status = mf_fit_checkpoint_save(&run->checkpoint, path, run->digest);
     mf_checkpoint_pace_saved(&run->pace, begun, mf_progress_seconds(&run->progress));
     return status;
 }
 
 static enum status load(struct run *run) {
-    struct memory_span spans[MAX_SPANS];
     char path[OUTPUT_PATH_SIZE];
     mf_run_folder_file(&run->folder, "checkpoint.bin", path);
-    run_spans(run, spans);
-    TRY(mf_checkpoint_load_span(path, run->digest, 0, &spans[0]));
-    TRY(mf_history_make_room(&run->history));
-    TRY(mf_checkpoint_load(path, run->digest, spans, run_spans(run, spans)));
+    TRY(mf_fit_checkpoint_load(&run->checkpoint, path, run->digest));
     run->seconds_before = run->standing.seconds;
     return STATUS_OK;
 }
@@ -108,6 +83,22 @@ static enum status keep_settings(struct run *run) {
     mf_json_writer_free(writer);
     mf_fit_file_digest(&run->fit, &run->digest);
     return status;
+}
+
+/// What a checkpoint keeps.
+static void list_state(struct run *run) {
+    struct fit_checkpoint *to = &run->checkpoint;
+    *to = (struct fit_checkpoint){
+        .method = run->fit.method, .state = run->state, .history = &run->history};
+    mf_fit_checkpoint_add(to, &run->standing, sizeof run->standing);
+    for (int kind = 0; kind < UNKNOWNS; kind++) {
+        const size_t bytes = mf_unknowns_points(&run->unknowns, kind) * sizeof(double);
+        mf_fit_checkpoint_add(to, run->curve[kind], bytes);
+        mf_fit_checkpoint_add(to, run->curve_error[kind], bytes);
+        mf_fit_checkpoint_add(to, run->curve_flat[kind], INVERSE_FLAT * bytes);
+    }
+    mf_fit_checkpoint_add(to, run->without_ramp,
+                          mf_unknowns_points(&run->unknowns, UNKNOWN_POTENTIAL) * sizeof(double));
 }
 
 static enum status create(struct run *run) {
@@ -130,6 +121,8 @@ static enum status create(struct run *run) {
                                                                       : STATUS_NO_MEMORY);
     run->created = true;
     CHECK(fit->method->create(run->state, fit->method, &fit->problem, fit->method_parameters));
+    list_state(run);
+    CHECK(mf_fit_checkpoint_begin(&run->checkpoint));
 done:
     return status;
 }
@@ -159,24 +152,19 @@ static enum status begin_folder(struct run *run, bool resume) {
     return mf_run_folder_take_over(&run->folder);
 }
 
-/// What rank 0 has loaded, for the others.
-static enum status share(struct run *run) {
-    struct memory_span spans[MAX_SPANS];
-    run_spans(run, spans);
-    mf_parallel_share(spans, 1);
-    TRY(mf_parallel_agree(mf_history_make_room(&run->history), 0));
-    mf_parallel_share(spans, run_spans(run, spans));
-    return STATUS_OK;
-}
-
 static enum status prepare(struct run *run, const char *file, const struct run_options *options) {
     TRY(mf_parallel_agree(read_and_create(run, file, options), mf_fit_ranks_digest(&run->fit)));
     TRY(mf_parallel_agree(ranks_lead() ? begin_folder(run, options->resume) : STATUS_OK, 0));
     if (options->resume)
-        TRY(share(run));
+        TRY(mf_fit_checkpoint_share(&run->checkpoint));
     mf_progress_tell_run(&run->progress, &(struct watcher_run){RUN_FIT, run->folder.path,
                                                                .units = &run->fit.scene.units});
     return mf_fit_tell_targets(&run->progress, &run->fit);
+}
+
+static void save_now_and_then(struct run *run) {
+    if (mf_progress_seconds(&run->progress) > run->pace.next && save(run) != STATUS_OK)
+        mf_progress_say(&run->progress, "mesofit: warning: %s", mf_status_message());
 }
 
 /// Progress inside an iteration, and a checkpoint now and then.
@@ -192,13 +180,19 @@ static void tell(void *context, const struct inverse_progress *p) {
                  (unsigned long long)p->failures);
     snprintf(text, sizeof text, "iteration %u%s%s%s", p->iteration, error, least, mean);
     mf_progress_tell_iteration(&run->progress, p, text);
-    if (run->fit.method->keeps_parts && mf_progress_seconds(&run->progress) > run->pace.next &&
-        save(run) != STATUS_OK)
-        mf_progress_say(&run->progress, "mesofit: warning: %s", mf_status_message());
+    save_now_and_then(run);
 }
 
+/// The verification has a progress of its own.
+struct verifying {
+    struct run *run;
+    struct progress progress;
+};
+
 static void tell_verification(void *context, const struct inverse_progress *p) {
-    mf_progress_tell(context, p->done, p->total, "simulations", "verification");
+    struct verifying *verifying = context;
+    mf_progress_tell(&verifying->progress, p->done, p->total, "simulations", "verification");
+    save_now_and_then(verifying->run);
 }
 
 /// What the tables and the summary say at this point.
@@ -281,6 +275,7 @@ static enum status record(struct run *run, const struct inverse_step *step) {
     mf_progress_say(&run->progress, "iteration %u  error %.4f  noise %.4f  %.1f s", step->iteration,
                     mf_visible_number(step->error), mf_visible_number(step->noise),
                     run->standing.seconds);
+    TRY(mf_fit_checkpoint_begin(&run->checkpoint));
     return save(run);
 }
 
@@ -289,9 +284,9 @@ static enum status iterate(struct run *run) {
     const struct inverse_listener listener = {tell, run};
     while (!run->standing.finished) {
         struct inverse_step step;
+        mf_parallel_keep(&run->checkpoint.kept);
         const enum status status = method->iterate(run->state, &step, &listener);
-        if (status == STATUS_INTERRUPTED && method->keeps_parts)
-            TRY(save(run));
+        mf_parallel_keep(NULL);
         TRY(status);
         TRY(mf_parallel_agree(record(run, &step),
                               mf_fit_ranks_digest_curves(&run->unknowns, run->curve)));
@@ -363,14 +358,17 @@ static void doubt(struct run *run, const struct verification *verification) {
 /// The independent verification of the result, and everything that rests on it.
 static enum status verify_and_write(struct run *run) {
     struct verification *verification = NULL;
-    struct progress progress = mf_progress_begin(run->progress.quiet, run->progress.watcher);
-    progress.folder = run->progress.folder;
-    const struct inverse_listener listener = {tell_verification, &progress};
+    struct verifying verifying = {run,
+                                  mf_progress_begin(run->progress.quiet, run->progress.watcher)};
+    verifying.progress.folder = run->progress.folder;
+    const struct inverse_listener listener = {tell_verification, &verifying};
     const size_t states = mf_fit_states_count(&run->fit);
     enum status status = STATUS_OK;
     NEW_ARRAY(verification, states);
+    mf_parallel_keep(&run->checkpoint.kept);
     status =
         mf_fit_verify_states(&run->fit, run->curve, run->standing.number, &listener, verification);
+    mf_parallel_keep(NULL);
     if (status == STATUS_UNSTABLE)
         status = write_unstable(run);
     CHECK(status);
@@ -399,8 +397,9 @@ done:
     return status;
 }
 
-/// A fit that is stopped leaves a summary that says so.
+/// A fit that is stopped leaves what it has done, and a summary that says so.
 static enum status write_interrupted(struct run *run) {
+    TRY(save(run));
     const struct fit_result result = result_so_far(run, STATUS_INTERRUPTED);
     if (run->standing.iterations > 0) {
         TRY(mf_fit_output_summary(&run->fit, &run->unknowns, &result, &run->folder));
@@ -438,6 +437,7 @@ done:
             mf_memory_free(run->curve_flat[kind]);
         }
         mf_memory_free(run->without_ramp);
+        mf_fit_checkpoint_clear(&run->checkpoint);
         mf_fit_file_clear(&run->fit);
         mf_progress_end(&run->progress);
         mf_run_folder_close(&run->folder);

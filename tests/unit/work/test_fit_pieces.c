@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// A fit that is interrupted again and again, after a task or two each time, comes to its end with
+// the same bits: no task that was finished is done again, of whatever method and verification.
+#include "base/interrupt.h"
+#include "base/parallel_times.h"
+#include "report/watcher.h"
+#include "shared/results.h"
+#include "shared/small_inputs.h"
+#include "shared/testing.h"
+#include "work/fit.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#define METHOD                                                                                     \
+    "\"method\": {\"name\": \"imc\", \"replicas\": 2, \"equilibration\": 1, \"samples\": 8,\n"     \
+    "             \"every\": 1, \"iterations\": 1}"
+#define VERIFICATION "\"verification\": {\"replicas\": 1,"
+#define SIMULATED                                                                                  \
+    "\"equilibration\": 20, \"samples\": 4, \"every\": 1, \"temperature_tolerance\": 1"
+
+static const char *const methods[] = {
+    "\"method\": {\"name\": \"ibi\", \"replicas\": 4, \"equilibration\": 1, \"samples\": 8,\n"
+    "             \"every\": 1, \"iterations\": 3}",
+    "\"method\": {\"name\": \"genetic\", \"population\": 6, \"generations\": 3, " SIMULATED "}",
+    "\"method\": {\"name\": \"gauss-newton\", \"iterations\": 2, " SIMULATED "},\n"
+    "\"unknowns\": {\"potential\": {\"coefficients\": 4}}",
+};
+enum { METHODS = sizeof methods / sizeof *methods };
+
+static const char *const tables[] = {"history.tsv", "potential.tsv", "potential_history.tsv",
+                                     "rdf.tsv",     "used.json",     NULL};
+
+/// Someone who wants to stop after so many words.
+struct impatient {
+    int words, patience; ///< 0: never
+};
+
+static void tell(void *context, const struct watcher_progress *progress) {
+    struct impatient *impatient = context;
+    (void)progress;
+    if (++impatient->words == impatient->patience)
+        mf_interrupt_wish(true);
+}
+
+static void begin(void *context, const struct watcher_run *run) {
+    (void)context, (void)run;
+}
+
+static void say(void *context, const char *line) {
+    (void)context, (void)line;
+}
+
+static void write(void *context) {
+    (void)context;
+}
+
+static enum status run(const char *folder, bool resume, int patience) {
+    struct impatient impatient = {.patience = patience};
+    const struct watcher watcher = {
+        .context = &impatient, .begin = begin, .tell = tell, .say = say, .write = write};
+    const struct run_options options = {
+        .folder = folder, .threads = 1, .quiet = true, .resume = resume, .watcher = &watcher};
+    const enum status status = mf_fit_run("run.json", &options);
+    mf_interrupt_wish(false);
+    return status;
+}
+
+/// Tasks that this process has begun.
+static double count_tasks(void) {
+    const struct parallel_times times = mf_parallel_times();
+    double tasks = 0;
+    for (size_t k = 0; k < times.sizes; k++)
+        tasks += times.size[k].done;
+    return tasks;
+}
+
+static void test_no_task_is_done_twice(void **state) {
+    for (int k = 0; k < METHODS; k++) {
+        char text[4096], whole[16], pieces[16];
+        snprintf(whole, sizeof whole, "whole%d", k);
+        snprintf(pieces, sizeof pieces, "pieces%d", k);
+        small_inputs_write(*state, "target.tsv", small_inputs_target, NULL, NULL);
+        small_inputs_write(*state, "run.json", small_inputs_run, METHOD, methods[k]);
+        char *run_file = temporary_folder_read("run.json");
+        snprintf(text, sizeof text, "%s", run_file);
+        free(run_file);
+        small_inputs_write(*state, "run.json", text, VERIFICATION,
+                           "\"verification\": {\"replicas\": 4,");
+        const double before = count_tasks();
+        const enum status status = run(whole, false, 0);
+        if (status != STATUS_OK && status != STATUS_UNCONVERGED)
+            fail_msg("%s", mf_status_message());
+        const double all = count_tasks() - before;
+        // Words of what was done before are told, too: patience grows until there is something new.
+        int runs = 1;
+        enum status now = run(pieces, false, 1);
+        for (; now == STATUS_INTERRUPTED; runs++)
+            now = run(pieces, true, runs + 1);
+        assert_int_equal(now, status);
+        const double done = count_tasks() - before - all;
+        print_message("%s: %.0f tasks, in %d pieces %.0f\n", whole, all, runs, done);
+        assert_true(runs > 3);
+        assert_true(done <= all + runs); // one is begun, and stopped, as the wish comes
+        results_assert_same(whole, pieces, tables);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(test_no_task_is_done_twice,
+                                        small_inputs_enter_without_gnuplot, small_inputs_leave),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
