@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const crossovers[] = {"one-point", "blend", NULL};
+static const char *const crossovers[] = {"one-point", "two-point", "blend", NULL};
 static const char *const mutations[] = {"scale", "walk", NULL};
 static const char *const initials[] = {"walks", "uniform", NULL};
 

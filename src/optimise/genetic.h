@@ -19,7 +19,7 @@
 
 #define GENETIC_FAILED OPTIMISER_FAILED
 
-enum genetic_crossover_kind { GENETIC_ONE_POINT, GENETIC_BLEND };
+enum genetic_crossover_kind { GENETIC_ONE_POINT, GENETIC_TWO_POINT, GENETIC_BLEND };
 enum genetic_mutation_kind { GENETIC_SCALE, GENETIC_WALK };
 enum genetic_initial_kind { GENETIC_WALKS, GENETIC_UNIFORM };
 
@@ -116,6 +116,10 @@ void mf_genetic_recombine(double *a, double *b, const struct genetic_parameters 
 
 /// Exchange the genes beyond one random point of two individuals, in place.
 void mf_genetic_crossover(double *a, double *b, int64_t genes, struct rng_sequence *random);
+
+/// Exchange the genes between two random points, in place.
+void mf_genetic_crossover_two_points(double *a, double *b, int64_t genes,
+                                     struct rng_sequence *random);
 
 /// Blend two curves along their genes without a step:
 ///   a_k ← w_k a_k + (1 − w_k) b_k,  b_k the other way round,  w_k = 1/(1 + exp((k − c)/s)),

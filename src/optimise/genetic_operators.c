@@ -34,6 +34,20 @@ void mf_genetic_crossover(double *a, double *b, int64_t genes, struct rng_sequen
         exchange(&a[k], &b[k]);
 }
 
+void mf_genetic_crossover_two_points(double *a, double *b, int64_t genes,
+                                     struct rng_sequence *random) {
+    if (genes < 2)
+        return;
+    // Two different places before genes. So the last gene stays: to exchange a stretch that ends
+    // with it gives the same two children as to exchange all the rest.
+    const int64_t first = mf_rng_sequence_below(random, (uint32_t)genes);
+    const int64_t other = mf_rng_sequence_below(random, (uint32_t)(genes - 1));
+    const int64_t second = other < first ? other : other + 1;
+    const int64_t begin = first < second ? first : second, end = first + second - begin;
+    for (int64_t k = begin; k < end; k++)
+        exchange(&a[k], &b[k]);
+}
+
 void mf_genetic_blend(double *a, double *b, int64_t genes, struct rng_sequence *random) {
     const double centre = (double)genes * mf_rng_sequence_uniform(random) - 0.5;
     const double width = (double)genes / 8 * mf_rng_sequence_uniform(random);
@@ -50,6 +64,9 @@ void mf_genetic_recombine(double *a, double *b, const struct genetic_parameters 
     switch ((enum genetic_crossover_kind)parameters->crossover_kind) {
     case GENETIC_ONE_POINT:
         mf_genetic_crossover(a, b, parameters->genes, random);
+        break;
+    case GENETIC_TWO_POINT:
+        mf_genetic_crossover_two_points(a, b, parameters->genes, random);
         break;
     case GENETIC_BLEND:
         mf_genetic_blend(a, b, parameters->genes, random);

@@ -114,6 +114,33 @@ static void test_genetic_crossover_leaves_single_genes_alone(void **state) {
     assert_close(b, 2, 0);
 }
 
+static void test_genetic_crossover_two_points_exchanges_a_stretch(void **state) {
+    enum { GENES = 5 };
+    int stretches[GENES][GENES + 1] = {0};
+    double chi_squared = 0;
+    struct rng_sequence random = begin(6);
+    (void)state;
+    for (int trial = 0; trial < DRAWS; trial++) {
+        double a[GENES] = {0}, b[GENES] = {1, 1, 1, 1, 1};
+        int first = 0, end = GENES;
+        mf_genetic_crossover_two_points(a, b, GENES, &random);
+        while (first < GENES && a[first] == 0)
+            first++;
+        while (end > 0 && a[end - 1] == 0)
+            end--;
+        for (int k = 0; k < GENES; k++) {
+            assert_close(a[k], k >= first && k < end, 0);
+            assert_close(b[k], 1 - a[k], 0);
+        }
+        assert_true(first < end && end < GENES);
+        stretches[first][end]++;
+    }
+    for (int first = 0; first < GENES; first++)
+        for (int end = first + 1; end < GENES; end++)
+            chi_squared += pow(stretches[first][end] - DRAWS / 10.0, 2) / (DRAWS / 10.0);
+    assert_true(chi_squared < 44.8); // 9 degrees of freedom
+}
+
 /// Both children keep the sum; each lies between its parents, and nearer to one of them at each end
 /// of a curve when the blend is narrow.
 static void test_genetic_blend_mixes_smoothly(void **state) {
@@ -147,6 +174,8 @@ static void test_genetic_recombine_does_what_its_kind_says(void **state) {
         mf_genetic_recombine(a, b, &p, &first);
         if (kind == GENETIC_ONE_POINT)
             mf_genetic_crossover(c, d, 3, &second);
+        else if (kind == GENETIC_TWO_POINT)
+            mf_genetic_crossover_two_points(c, d, 3, &second);
         else
             mf_genetic_blend(c, d, 3, &second);
         assert_memory_equal(a, c, sizeof a);
@@ -299,6 +328,7 @@ int main(void) {
         cmocka_unit_test(test_genetic_tournament_wins_with_the_probabilities_of_its_rule),
         cmocka_unit_test(test_genetic_crossover_exchanges_all_genes_beyond_one_point),
         cmocka_unit_test(test_genetic_crossover_leaves_single_genes_alone),
+        cmocka_unit_test(test_genetic_crossover_two_points_exchanges_a_stretch),
         cmocka_unit_test(test_genetic_blend_mixes_smoothly),
         cmocka_unit_test(test_genetic_recombine_does_what_its_kind_says),
         cmocka_unit_test(test_genetic_mutate_scales_without_drift),
