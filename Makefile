@@ -184,7 +184,7 @@ KILLS ?= 3
 check-mpi: all $(if $(shell command -v $(MPICC)),$(WITH_MPI))
 	tests/tools/check_mpi.sh $(PROGRAM) $(WITH_MPI) $(KILLS)
 
-# Faults that are preloaded: a process is killed at one of its renames (tests/stress/test_kill.c), its
+# Faults that are preloaded: a process is killed at one of its steps on the disk (tests/stress/test_kill.c), its
 # clock is set back (test_clock.c).
 KILL_HOOK  = $(BUILD)/tests/stress/hooks/kill_at.so
 CLOCK_HOOK = $(BUILD)/tests/stress/hooks/clock_back.so

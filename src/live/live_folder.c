@@ -9,7 +9,6 @@
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
-#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -160,11 +159,11 @@ static enum status give_name(int folder, const char *partial, const char *name, 
 /// A new file of a name that nothing has: each connection writes from a thread of its own, and a
 /// program before this one may have had the same number.
 static int open_partial(int folder, char *partial, size_t size) {
-    static atomic_uint count;
+    char ending[OUTPUT_PARTIAL_SIZE];
     int file;
     do {
-        snprintf(partial, size, ".live.%ld.%u" OUTPUT_PARTIAL, (long)getpid(),
-                 atomic_fetch_add(&count, 1));
+        mf_output_partial(ending);
+        snprintf(partial, size, ".live%s", ending);
         file = openat(folder, partial, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
     } while (file < 0 && errno == EEXIST);
     return file;

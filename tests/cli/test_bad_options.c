@@ -1,18 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Command lines that cannot be right, and folders that cannot be written.
-#define _GNU_SOURCE // unshare
 #include "shared/results.h"
 #include "shared/run_program.h"
+#include "shared/small_disk.h"
 #include "shared/small_inputs.h"
 #include "shared/testing.h"
 
-#include <fcntl.h>
-#include <sched.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <sys/mount.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -111,16 +108,6 @@ static void test_full_disk_is_an_error_and_leaves_nothing_half_written(void **st
     }
 }
 
-/// A file system of so many pages in a name space of this process alone.
-static bool mount_small(const char *path, int pages) {
-    char size[32];
-    snprintf(size, sizeof size, "size=%dk", 4 * pages);
-    if (unshare(CLONE_NEWNS) != 0 && unshare(CLONE_NEWUSER | CLONE_NEWNS) != 0)
-        return false;
-    return mount("none", "/", NULL, MS_REC | MS_PRIVATE, NULL) == 0 &&
-           mount("none", path, "tmpfs", 0, size) == 0;
-}
-
 /// From a disk that holds nothing to one that holds all: the fit fails at one file after another.
 static void test_full_file_system_is_an_error_wherever_it_is_met(void **state) {
     static struct run_program_result result;
@@ -129,7 +116,7 @@ static void test_full_file_system_is_an_error_wherever_it_is_met(void **state) {
     small_inputs_write(*state, "run.json", small_inputs_run, NULL, NULL);
     small_inputs_write(*state, "target.tsv", small_inputs_target, NULL, NULL);
     for (int pages = 1; failures == pages - 1; pages++) {
-        if (!mount_small("disk", pages))
+        if (!small_disk_mount("disk", pages))
             skip();
         RUN_PROGRAM(&result, "fit", "run.json", "--quiet", "-o", "disk");
         if (result.code == 2) {
@@ -138,22 +125,10 @@ static void test_full_file_system_is_an_error_wherever_it_is_met(void **state) {
                 (const char *[]){"cannot write disk/", "No space left", NULL});
             failures++;
         }
-        umount("disk");
+        small_disk_unmount("disk");
     }
     assert_in_range(result.code, 0, 1);
     assert_in_range(failures, 8, 100);
-}
-
-/// Fill the disk but for so many pages.
-static void fill_disk(int pages) {
-    static const char page[4096];
-    off_t size = 0;
-    const int file = open("disk/filler", O_WRONLY | O_CREAT | O_TRUNC, 0666);
-    assert_true(file >= 0);
-    while (write(file, page, sizeof page) == (ssize_t)sizeof page)
-        size += (off_t)sizeof page;
-    assert_int_equal(ftruncate(file, size - pages * (off_t)sizeof page), 0);
-    assert_int_equal(close(file), 0);
 }
 
 static void assert_text(const char *name, const char *text) {
@@ -175,7 +150,7 @@ static enum barrier force_fit(int pages) {
     assert_in_range(result.code, 0, 1);
     for (int k = 0; k < KEPT; k++)
         text[k] = temporary_folder_read(names[k]);
-    fill_disk(pages);
+    small_disk_fill("disk", pages);
     RUN_PROGRAM(&result, "fit", "run.json", "--quiet", "-o", "disk", "--seed", "7", "--force");
     const enum barrier barrier = result.code != 2 ? NOWHERE
                                  : strstr(result.err, "cannot write disk/.mesofit-run") ||
@@ -207,16 +182,16 @@ static void test_forced_fit_on_a_full_disk_keeps_the_earlier_one_until_it_has_be
     small_inputs_write(*state, "run.json", small_inputs_run, NULL, NULL);
     small_inputs_write(*state, "target.tsv", small_inputs_target, NULL, NULL);
     for (int pages = 0; met[NOWHERE] == 0 && pages < MOST; pages++) {
-        if (!mount_small("disk", PAGES))
+        if (!small_disk_mount("disk", PAGES))
             skip();
         met[force_fit(pages)]++;
-        umount("disk");
+        small_disk_unmount("disk");
     }
     assert_true(met[AT_SETTINGS] > 0 && met[AT_CHECKPOINT] > 0 && met[NOWHERE] > 0);
 }
 
 static int leave_disk(void **state) {
-    umount("disk"); // if the test has failed
+    small_disk_unmount("disk"); // if the test has failed
     return small_inputs_leave(state);
 }
 

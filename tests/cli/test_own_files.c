@@ -110,7 +110,7 @@ static void test_files_that_were_changed_are_not_replaced(void **state) {
 
 /// An interrupted simulation is worth as much as an interrupted fit.
 static void test_forgotten_resume_keeps_the_simulation(void **state) {
-    const struct run_program_how how = {.interrupt_after = 0.02};
+    const struct run_program_how how = {.interrupt_with = SIGINT, .interrupt_after = 0.02};
     (void)state;
     run_program(&result, &how, (const char *const[]){"simulate", "long.json", NULL});
     assert_int_equal(result.code, 130);
