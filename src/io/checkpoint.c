@@ -19,6 +19,8 @@ struct writer {
 
 /// Write errors are remembered by the stream and found by mf_output_commit.
 static void put(struct writer *writer, const void *memory, size_t bytes) {
+    if (bytes == 0) // of no memory, perhaps
+        return;
     fwrite(memory, 1, bytes, writer->stream);
     mf_digest_add(&writer->checksum, memory, bytes);
 }
@@ -40,7 +42,7 @@ enum status mf_checkpoint_save(const char *file, uint64_t digest, const struct m
 }
 
 static bool read_exactly(FILE *stream, void *memory, size_t bytes) {
-    return fread(memory, 1, bytes, stream) == bytes;
+    return bytes == 0 || fread(memory, 1, bytes, stream) == bytes;
 }
 
 static enum status check_magic(FILE *stream, const char *file) {

@@ -22,9 +22,9 @@
 
 static const char *const methods[] = {
     "\"method\": {\"name\": \"ibi\", \"replicas\": 4, \"equilibration\": 1, \"samples\": 8,\n"
-    "             \"every\": 1, \"iterations\": 3}",
+    "             \"every\": 1, \"iterations\": 2}",
     "\"method\": {\"name\": \"genetic\", \"population\": 6, \"generations\": 3, " SIMULATED "}",
-    "\"method\": {\"name\": \"gauss-newton\", \"iterations\": 2, " SIMULATED "},\n"
+    "\"method\": {\"name\": \"gauss-newton\", \"iterations\": 1, " SIMULATED "},\n"
     "\"unknowns\": {\"potential\": {\"coefficients\": 4}}",
 };
 enum { METHODS = sizeof methods / sizeof *methods };
