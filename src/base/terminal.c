@@ -6,16 +6,8 @@
 
 #include <errno.h>
 #include <stdbool.h>
-#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-/// What is left of a character whose end has not been printed yet.
-struct terminal {
-    int file;
-    char begun[4];
-    size_t size;
-};
 
 static bool write_all(int file, const char *bytes, size_t count) {
     while (count > 0) {
@@ -58,25 +50,15 @@ static ssize_t show(void *context, const char *bytes, size_t count) {
     return (ssize_t)count;
 }
 
-static int forget(void *context) {
-    free(context);
-    return 0;
-}
-
-FILE *mf_terminal_open(int file) {
-    struct terminal *terminal = calloc(1, sizeof *terminal);
-    if (terminal == NULL)
-        return NULL;
-    terminal->file = file;
-    FILE *stream =
-        fopencookie(terminal, "w", (cookie_io_functions_t){.write = show, .close = forget});
-    if (stream == NULL)
-        free(terminal);
-    return stream;
+FILE *mf_terminal_open(struct terminal *terminal, int file) {
+    *terminal = (struct terminal){.file = file};
+    return fopencookie(terminal, "w", (cookie_io_functions_t){.write = show});
 }
 
 enum status mf_terminal_begin(void) {
-    FILE *out = mf_terminal_open(STDOUT_FILENO), *err = mf_terminal_open(STDERR_FILENO);
+    static struct terminal terminals[2];
+    FILE *out = mf_terminal_open(&terminals[0], STDOUT_FILENO);
+    FILE *err = mf_terminal_open(&terminals[1], STDERR_FILENO);
     if (out == NULL || err == NULL)
         return mf_status_fail(STATUS_NO_MEMORY, "out of memory");
     // As they were: lines to a terminal, pieces to a file; errors at once.

@@ -14,9 +14,16 @@
 /// From now on stdout and stderr are such streams. Fails: NO_MEMORY. Tested: test_escapes.
 enum status mf_terminal_begin(void) MUST_USE;
 
-/// A stream that shows what is printed into it on an open file, which stays the caller's; NULL if
-/// there is no memory for it. Tested: test_terminal.
-FILE *mf_terminal_open(int file);
+struct terminal {
+    int file;
+    char begun[4]; ///< a character whose end has not been printed yet
+    size_t size;
+};
+
+/// A stream that shows what is printed into it on an open file, which stays the caller's, as the
+/// memory of `terminal` does until the stream is closed; NULL without memory. Tested:
+/// test_terminal.
+FILE *mf_terminal_open(struct terminal *terminal, int file);
 
 /// Empty the line of stderr that the cursor is in, for one that changes. Of a terminal alone.
 void mf_terminal_clear_line(void);

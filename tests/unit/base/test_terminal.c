@@ -9,11 +9,12 @@
 #include <unistd.h>
 
 static int ends[2];
+static struct terminal terminal;
 static FILE *stream;
 
 static int enter(void **state) {
     (void)state;
-    return pipe(ends) == 0 && (stream = mf_terminal_open(ends[1])) ? 0 : -1;
+    return pipe(ends) == 0 && (stream = mf_terminal_open(&terminal, ends[1])) ? 0 : -1;
 }
 
 static int leave(void **state) {
@@ -71,7 +72,8 @@ static void test_full_disk_is_an_error(void **state) {
     FILE *full = fopen("/dev/full", "w");
     (void)state;
     assert_non_null(full);
-    FILE *out = mf_terminal_open(fileno(full));
+    static struct terminal broken;
+    FILE *out = mf_terminal_open(&broken, fileno(full));
     fputs("x", out);
     assert_int_equal(fflush(out), EOF);
     assert_true(ferror(out));
