@@ -104,20 +104,23 @@ static void clear(void *state) {
 }
 
 static size_t spans(void *state, struct memory_span *spans) {
-    return mf_hard_gas_spans(&((struct event_driven *)state)->gas, spans);
+    struct event_driven *own = state;
+    const size_t n = mf_hard_gas_spans(&own->gas, spans);
+    spans[n] = (struct memory_span){&own->virial, sizeof own->virial};
+    return n + 1;
 }
 
 /// The virial of the step, as if forces had acted in it: that of its collisions over its time. No
 /// forces are computed, and no list is built: there are none for which it would be needed.
 static enum status step(struct simulation *simulation) {
     struct event_driven *state = simulation->integrator_state;
-    const struct hard_gas_tally before = state->gas.now.tally;
+    const uint64_t collisions = state->gas.now.tally.collisions;
     const double dt = simulation->setup.time_step, time = (double)simulation->step * dt;
     const double begin = clock_seconds();
     const enum status status = mf_hard_gas_run(&state->gas, time, simulation->setup.cancel);
     const struct hard_gas_tally *after = &state->gas.now.tally;
     state->seconds += clock_seconds() - begin;
-    state->collisions += after->collisions - before.collisions;
+    state->collisions += after->collisions - collisions;
     if (status != STATUS_OK) {
         simulation->step--; // the rest of it is done by the next call
         return status;
@@ -125,7 +128,8 @@ static enum status step(struct simulation *simulation) {
     mf_hard_gas_write(&state->gas, time, &simulation->particles);
     mf_particles_wrap(&simulation->particles);
     mf_particles_update_fractions(&simulation->particles);
-    simulation->sums = (struct pair_sums){.virial = (after->virial - before.virial) / dt};
+    simulation->sums = (struct pair_sums){.virial = (after->virial - state->virial) / dt};
+    state->virial = after->virial;
     return STATUS_OK;
 }
 

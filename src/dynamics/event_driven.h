@@ -12,7 +12,8 @@ struct event_driven_parameters {
 /// What a simulation with this integrator keeps.
 struct event_driven {
     struct hard_gas gas;
-    double seconds;      ///< spent on events, by this process
+    double virial;  ///< its sum at the end of the last step, which may have been interrupted since
+    double seconds; ///< spent on events, by this process
     uint64_t collisions; ///< in them
 };
 

@@ -85,13 +85,19 @@ static void test_event_driven_goes_on_when_it_was_interrupted_in_a_step(void **s
     assert_ok(mf_simulation_init(&stopped, &scene.setup, NULL));
     assert_ok(mf_simulation_run(&whole, 2));
     assert_ok(mf_simulation_run(&stopped, 1));
-    stopped.setup.cancel = &cancel; // after mf_simulation_run has looked, in the step
+    // Half of the step's collisions, and then a signal, after mf_simulation_run has looked.
+    struct event_driven *own = stopped.integrator_state;
+    const uint64_t collisions = own->gas.now.tally.collisions;
+    assert_ok(mf_hard_gas_run(&own->gas, 1.5 * scene.setup.time_step, NULL));
+    assert_true(own->gas.now.tally.collisions > collisions);
+    stopped.setup.cancel = &cancel;
     stopped.step++;
     assert_int_equal(mf_event_driven.step(&stopped), STATUS_INTERRUPTED);
     assert_int_equal(stopped.step, 1);
     cancel = false;
     assert_ok(mf_simulation_run(&stopped, 1));
     restart_assert_same(&whole, &stopped);
+    assert_close(stopped.sums.virial, whole.sums.virial, 0);
     mf_simulation_clear(&whole);
     mf_simulation_clear(&stopped);
 }
