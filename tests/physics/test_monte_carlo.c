@@ -16,11 +16,6 @@
 
 enum { BLOCKS = 20, BINS = 8 };
 
-/// Of a block.
-static int samples_of_block(void) {
-    return length_is_long() ? 40 : 20;
-}
-
 /// Probability of a difference like this by chance. Six comparisons are made here: with a new seed
 /// the file would fail once in 170 times.
 static const double false_alarm_rate = 0.001;
@@ -29,7 +24,13 @@ static const double false_alarm_rate = 0.001;
 /// the configurations of a block.
 struct schedule {
     uint64_t equilibration, gap, every; ///< steps, or sweeps
+    bool is_long;                       ///< also in the short form of the tests
 };
+
+/// Of a block.
+static int samples_of_block(const struct schedule *schedule) {
+    return schedule->is_long || length_is_long() ? 40 : 20;
+}
 
 /// Means of the blocks.
 struct measurement {
@@ -48,11 +49,12 @@ static void measurement_clear(struct measurement *measurement) {
 }
 
 /// End a block: `energy` [total, summed over samples] and the RDF that saw its samples.
-static void add_block(struct measurement *measurement, double energy, const struct rdf *rdf) {
+static void add_block(struct measurement *measurement, const struct schedule *schedule,
+                      double energy, const struct rdf *rdf) {
     double g[BINS];
     assert_ok(mf_rdf_result(rdf, 1, g, NULL));
     mf_comoments_add(&measurement->g, g);
-    energy /= samples_of_block() * (double)rdf->particle_count;
+    energy /= samples_of_block(schedule) * (double)rdf->particle_count;
     mf_comoments_add(&measurement->energy, &energy);
 }
 
@@ -67,14 +69,14 @@ static void measure_dynamics(const struct simulation_setup *setup, const struct 
         struct rdf rdf;
         double energy = 0;
         assert_ok(mf_rdf_init(&rdf, bins, &setup->box, (size_t)setup->placement.count,
-                              setup->potential->cutoff, (size_t)samples_of_block()));
+                              setup->potential->cutoff, (size_t)samples_of_block(schedule)));
         assert_ok(mf_simulation_run(&simulation, schedule->gap));
-        for (int sample = 0; sample < samples_of_block(); sample++) {
+        for (int sample = 0; sample < samples_of_block(schedule); sample++) {
             assert_ok(mf_simulation_run(&simulation, schedule->every));
             assert_ok(mf_rdf_sample(&rdf, &simulation.particles, &simulation.neighbours));
             energy += simulation.sums.energy;
         }
-        add_block(measurement, energy, &rdf);
+        add_block(measurement, schedule, energy, &rdf);
         mf_rdf_clear(&rdf);
     }
     mf_simulation_clear(&simulation);
@@ -97,9 +99,10 @@ static void measure_monte_carlo(const struct simulation_setup *setup, const stru
         struct rdf rdf;
         double energy = 0;
         // The list of the sampler is a full one: the RDF has to make its own.
-        assert_ok(mf_rdf_init(&rdf, bins, &setup->box, count, 0, (size_t)samples_of_block()));
+        assert_ok(
+            mf_rdf_init(&rdf, bins, &setup->box, count, 0, (size_t)samples_of_block(schedule)));
         assert_ok(mf_metropolis_run(&metropolis, (uint32_t)schedule->gap));
-        for (int sample = 0; sample < samples_of_block(); sample++) {
+        for (int sample = 0; sample < samples_of_block(schedule); sample++) {
             struct pair_sums sums, fast;
             assert_ok(mf_metropolis_run(&metropolis, (uint32_t)schedule->every));
             assert_ok(mf_rdf_sample(&rdf, &metropolis.particles, &metropolis.neighbours));
@@ -112,7 +115,7 @@ static void measure_monte_carlo(const struct simulation_setup *setup, const stru
                                           &fast));
             assert_close(fast.virial, sums.virial, 1e-4 * (double)count + edge);
         }
-        add_block(measurement, energy, &rdf);
+        add_block(measurement, schedule, energy, &rdf);
         mf_rdf_clear(&rdf);
     }
     mf_metropolis_clear(&metropolis);
@@ -132,15 +135,16 @@ static void measure_hybrid(const struct simulation_setup *setup, const struct rd
     for (int block = 0; block < BLOCKS; block++) {
         struct rdf rdf;
         double energy = 0;
-        assert_ok(mf_rdf_init(&rdf, bins, &setup->box, count, 0, (size_t)samples_of_block()));
+        assert_ok(
+            mf_rdf_init(&rdf, bins, &setup->box, count, 0, (size_t)samples_of_block(schedule)));
         assert_ok(mf_hybrid_run(&hybrid, schedule->gap));
-        for (int sample = 0; sample < samples_of_block(); sample++) {
+        for (int sample = 0; sample < samples_of_block(schedule); sample++) {
             assert_ok(mf_hybrid_run(&hybrid, schedule->every));
             assert_ok(
                 mf_rdf_sample(&rdf, &hybrid.simulation.particles, &hybrid.simulation.neighbours));
             energy += hybrid.sums.energy;
         }
-        add_block(measurement, energy, &rdf);
+        add_block(measurement, schedule, energy, &rdf);
         mf_rdf_clear(&rdf);
     }
     mf_hybrid_clear(&hybrid);
@@ -177,8 +181,8 @@ static void compare(const struct fluid *fluid, const struct rdf_bins *bins,
 // Δt = 0.01) and about as much for Lennard-Jones.
 
 /// Hybrid Monte Carlo has steps 2.5 times as long as tuned, so that many trajectories go back: if
-/// all were taken, U/N was off by six of its errors (1.5 times as long: by two, which went
-/// unnoticed).
+/// all were taken, U/N was off by six of its errors (1.5 times as long, or with half of the
+/// samples, this went unnoticed).
 static void
 test_metropolis_agrees_with_dynamics_and_hybrid_when_the_liquid_is_lennard_jones(void **state) {
     (void)state;
@@ -186,9 +190,9 @@ test_metropolis_agrees_with_dynamics_and_hybrid_when_the_liquid_is_lennard_jones
     struct measurement dynamics, moves, trajectories;
     const struct rdf_bins bins = {0.85, 0.2, BINS};
     fluid_lennard_jones(&fluid, 500, 0.003);
-    measure_dynamics(&fluid.setup, &bins, &(struct schedule){2000, 200, 15}, &dynamics);
-    measure_monte_carlo(&fluid.setup, &bins, &(struct schedule){1000, 200, 15}, &moves);
-    measure_hybrid(&fluid.setup, &bins, &(struct schedule){1000, 100, 8}, &trajectories);
+    measure_dynamics(&fluid.setup, &bins, &(struct schedule){2000, 200, 15, false}, &dynamics);
+    measure_monte_carlo(&fluid.setup, &bins, &(struct schedule){1000, 200, 15, true}, &moves);
+    measure_hybrid(&fluid.setup, &bins, &(struct schedule){1000, 100, 8, true}, &trajectories);
     assert_equal_within_errors(&dynamics, &moves);
     assert_equal_within_errors(&trajectories, &moves);
     measurement_clear(&dynamics);
@@ -201,8 +205,8 @@ static void test_metropolis_agrees_with_dynamics_when_the_fluid_is_soft(void **s
     (void)state;
     struct fluid fluid;
     fluid_groot_warren(&fluid, 648, 0.005);
-    compare(&fluid, &(struct rdf_bins){0.2, 0.1, BINS}, &(struct schedule){1000, 100, 10},
-            &(struct schedule){500, 50, 5});
+    compare(&fluid, &(struct rdf_bins){0.2, 0.1, BINS}, &(struct schedule){1000, 100, 10, false},
+            &(struct schedule){500, 50, 5, false});
     fluid_clear(&fluid);
 }
 
@@ -211,8 +215,8 @@ static void test_metropolis_agrees_with_dynamics_when_the_scene_is_flat(void **s
     struct fluid fluid;
     fluid_soft_discs(&fluid, 400, 0.005);
     // Beyond the cutoff of 1.
-    compare(&fluid, &(struct rdf_bins){0.1, 0.25, BINS}, &(struct schedule){1000, 100, 10},
-            &(struct schedule){500, 50, 5});
+    compare(&fluid, &(struct rdf_bins){0.1, 0.25, BINS}, &(struct schedule){1000, 100, 10, false},
+            &(struct schedule){500, 50, 5, false});
     fluid_clear(&fluid);
 }
 
