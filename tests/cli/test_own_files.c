@@ -200,8 +200,9 @@ static void test_folder_that_is_removed_is_not_made_anew(void **state) {
     static const char *const words[] = {"simulate", "long.json", "--quiet", NULL};
     small_inputs_write(*state, "long.json", scene, "\"samples\": 4", "\"samples\": 100000");
     // Who waits for the first snapshot, and removes all.
-    assert_int_equal(system("(PATH=/bin:/usr/bin; until [ -e out/snapshots/step_000000004.vtp ]; "
-                            "do sleep 0.01; done; mv out away) &"),
+    assert_int_equal(system("(PATH=/bin:/usr/bin; n=0; "
+                            "until [ -e out/snapshots/step_000000004.vtp ] || [ $n = 30000 ]; "
+                            "do sleep 0.01; n=$((n + 1)); done; mv out away) &"),
                      0);
     run_program(&result, &(struct run_program_how){0}, words);
     assert_refused("out is gone: it was removed, or replaced, while it was used", "mesofit: ");
