@@ -139,6 +139,25 @@ static enum status run_target(const char *folder, const struct command_line *lin
     return run_file(file, line);
 }
 
+static bool has_file(const char *folder, const char *name) {
+    char path[OUTPUT_PATH_SIZE];
+    const int length = snprintf(path, sizeof path, "%s/%s", folder, name);
+    return length > 0 && (size_t)length < sizeof path && access(path, F_OK) == 0;
+}
+
+/// A folder in the place of its run file, or of --target.
+static enum status check_no_folder(const char *file) {
+    if (has_file(file, "run.json"))
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s is a folder: fit its file by mesofit fit %s/run.json", file,
+                              file);
+    if (has_file(file, "target.json") || has_file(file, "rdf.tsv"))
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s is a folder: fit the target in it by mesofit fit --target %s",
+                              file, file);
+    return STATUS_OK;
+}
+
 static enum status run(const struct command_line *line) {
     const char *folder = line->own[TARGET];
     if ((folder != NULL) == (line->file_count > 0))
@@ -148,6 +167,7 @@ static enum status run(const struct command_line *line) {
         return run_target(folder, line);
     if (line->own[DENSITY] || line->own[TEMPERATURE])
         return mf_status_fail(STATUS_BAD_INPUT, "--density and --temperature are for --target DIR");
+    TRY(check_no_folder(line->files[0]));
     return run_file(line->files[0], line);
 }
 

@@ -40,12 +40,28 @@ static void put_names(FILE *stream, const struct command_option *option) {
         fprintf(stream, " %s", option->name);
 }
 
-/// Every name that `describe` knows: topics, and each group once.
+static bool is_name(const struct topic *topics, size_t count, const char *name) {
+    for (size_t k = 0; k < count; k++)
+        if (strcmp(topics[k].name, name) == 0)
+            return true;
+    return false;
+}
+
+static bool is_group(const struct topic *topics, size_t count, const char *name) {
+    for (size_t k = 0; k < count; k++)
+        if (strcmp(topics[k].group, name) == 0)
+            return true;
+    return false;
+}
+
+/// Every name that `describe` knows, of topics and of groups, once.
 static void put_topics(FILE *stream, const struct topic *topics, size_t count) {
     for (size_t k = 0; k < count; k++) {
-        if (k == 0 || strcmp(topics[k].group, topics[k - 1].group) != 0)
-            fprintf(stream, " %s", topics[k].group);
-        fprintf(stream, " %s", topics[k].name);
+        const char *group = topics[k].group, *name = topics[k].name;
+        if (!is_group(topics, k, group) && !is_name(topics, count, group))
+            fprintf(stream, " %s", group);
+        if (!is_name(topics, k, name))
+            fprintf(stream, " %s", name);
     }
 }
 

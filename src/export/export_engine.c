@@ -219,10 +219,10 @@ static void print_readme(const struct export_job *job, FILE *stream) {
         stream, "%s, for %s\n\nWritten by mesofit " MESOFIT_VERSION " from %s. Run it here:\n\n",
         model->title[0] ? model->title : "A result of mesofit", job->engine->title, model->folder);
     fprintf(stream, "%s\n", job->engine->commands);
-    fprintf(stream, "Units: %s, %s, %s, %s, %s. Time step %.6g %s; mesofit's own was %.6g.\n\n",
+    fprintf(stream, "Units: %s, %s, %s, %s, %s. Time step %.6g %s; mesofit's own was %.6g %s.\n\n",
             units->length_name, units->time_name, units->energy_name, units->temperature_name,
             units->pressure_name, units->time * job->time_step, units->time_name,
-            units->time * model->setup.time_step);
+            units->time * model->setup.time_step, units->time_name);
     fprintf(
         stream,
         "Tables of %zu rows, read by %s as it reads them (%s), are within %.2g k_B T of the\n"

@@ -288,8 +288,8 @@ enum status mf_fit_check(const struct fit_file *fit, const char *file) {
             "%s: scene.particles.placement: a fit places its particles on a lattice "
             "or at random",
             file);
+    // Targets first: a potential begins with that of g(r).
+    TRY(mf_target_sanity_check(files, &fit->scene, file));
     const enum status status = try_scene(fit);
-    if (status != STATUS_OK)
-        return mf_status_prefix(status, "%s: scene", file);
-    return mf_target_sanity_check(files, &fit->scene, file);
+    return status == STATUS_OK ? status : mf_status_prefix(status, "%s: scene", file);
 }

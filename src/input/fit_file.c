@@ -51,15 +51,15 @@ static bool knows(const struct inverse_method *method, const char *key) {
 
 /// What files of earlier versions may say.
 static void refuse_removed(const struct inverse_method *method, struct json_object *object) {
-    static const char usual[] = "what was its default is taken always; delete the line";
+    static const char usual[] = "what was its default is taken always; leave it out";
     static const char *const removed[][2] = {
-        {"asynchronous", "candidates are measured by rounds alone; delete the line"},
-        {"regularisation", "the step is as smooth as the noise asks; delete the line"},
-        {"strength", "it is chosen from the noise; delete the line"},
-        {"islands", "all of a population breed with all; delete the line"},
-        {"migration", "all of a population breed with all; delete the line"},
-        {"common_noise", "each candidate has random numbers of its own; delete the line"},
-        {"restarts", "delete the line, and begin again with another \"seed\""},
+        {"asynchronous", "candidates are measured by rounds alone; leave it out"},
+        {"regularisation", "the step is as smooth as the noise asks; leave it out"},
+        {"strength", "it is chosen from the noise; leave it out"},
+        {"islands", "all of a population breed with all; leave it out"},
+        {"migration", "all of a population breed with all; leave it out"},
+        {"common_noise", "each candidate has random numbers of its own; leave it out"},
+        {"restarts", "leave it out, and begin again with another \"seed\""},
         {"remeasurements", usual},
         {"mutated_genes", usual},
         {"additive", usual},
@@ -73,7 +73,7 @@ static void refuse_removed(const struct inverse_method *method, struct json_obje
     };
     for (size_t k = 0; k < sizeof removed / sizeof *removed; k++)
         if (!knows(method, removed[k][0]))
-            mf_json_refuse(object, removed[k][0], removed[k][1]);
+            mf_json_retired(object, removed[k][0], removed[k][1]);
 }
 
 static enum status read_method(struct fit_file *fit, struct json_object *root) {

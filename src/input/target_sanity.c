@@ -227,6 +227,16 @@ static enum status check_compressibility(const struct view *view, const char *fi
         file, view->name, density, value, demixing);
 }
 
+/// As of a wrong column, or of pairs that a program did not count.
+static enum status check_nonzero(const struct view *view, const char *file) {
+    for (size_t k = 0; k < view->bins->count; k++)
+        if (view->g[k] > 0)
+            return STATUS_OK;
+    return mf_status_fail(
+        STATUS_BAD_INPUT, "%s: target.%s.file: %s: g is 0 in all rows: is it in column %lld?", file,
+        view->name, view->target->parameters.file, (long long)view->target->parameters.g_column);
+}
+
 /// Of all g(r) one behind the other.
 static size_t views(const struct target_files *files) {
     return files->rdf.pairs + files->apart.pairs;
@@ -243,6 +253,7 @@ enum status mf_target_sanity_check(const struct target_files *files, const struc
                                    const char *file) {
     for (size_t n = 0; n < views(files); n++) {
         const struct view view = view_at(files, scene, n);
+        TRY(check_nonzero(&view, file));
         TRY(check_tail(&view, file));
         if (scene_has_molecules(&scene->molecules))
             continue; // beads of a molecule are no particles of a fluid

@@ -17,15 +17,16 @@ struct target_sanity_listener {
 
 /// Refuse what cannot be, for g(r) of each pair type, converted to the scene's number of beads.
 ///
-/// Its mean over the last quarter of the file must be within 0.25 of 1, or within twice the scatter
-/// that oscillations make there. Pairs of one type must have ρ d³ ≤ √2 (in two dimensions ρ d² ≤
-/// 2/√3), the closest packing of beads no two of which are nearer than d, up to where g stays below
-/// 0.01. In three dimensions they must have 1 + ρG ≥ 0, the variance of their number over its mean
-/// in a large volume (J. G. Kirkwood and F. P. Buff, J. Chem. Phys. 19, 774 (1951)): refused is
-/// what stays below zero by three standard errors up to any range from half of the target's on, and
-/// with 1.03 g, too. In a mixture a fault of the mean or of 1 + ρG asks for demixing if the
-/// integrals G of two types are above 0 for pairs of one type and below 0 for pairs of two. Fails:
-/// BAD_INPUT with `file`, the key and the likely reason; NO_MEMORY. Tested: test_target_sanity.
+/// It must not be 0 everywhere. Its mean over the last quarter of the file must be within 0.25 of
+/// 1, or within twice the scatter that oscillations make there. Pairs of one type must have ρ d³ ≤
+/// √2 (in two dimensions ρ d² ≤ 2/√3), the closest packing of beads no two of which are nearer than
+/// d, up to where g stays below 0.01. In three dimensions they must have 1 + ρG ≥ 0, the variance
+/// of their number over its mean in a large volume (J. G. Kirkwood and F. P. Buff, J. Chem. Phys.
+/// 19, 774 (1951)): refused is what stays below zero by three standard errors up to any range from
+/// half of the target's on, and with 1.03 g, too. In a mixture a fault of the mean or of 1 + ρG
+/// asks for demixing if the integrals G of two types are above 0 for pairs of one type and below 0
+/// for pairs of two. Fails: BAD_INPUT with `file`, the key and the likely reason; NO_MEMORY.
+/// Tested: test_target_sanity.
 enum status mf_target_sanity_check(const struct target_files *files, const struct scene *scene,
                                    const char *file) MUST_USE;
 

@@ -164,11 +164,19 @@ struct json_object mf_json_root(struct json_document *document) {
     return root;
 }
 
-static bool was_asked(const struct json_object *object, const char *key) {
-    for (size_t k = 0; k < object->asked_count; k++)
-        if (strcmp(object->asked[k], key) == 0)
+static bool is_among(const char *const *keys, size_t count, const char *key) {
+    for (size_t k = 0; k < count; k++)
+        if (strcmp(keys[k], key) == 0)
             return true;
     return false;
+}
+
+static bool was_asked(const struct json_object *object, const char *key) {
+    return is_among(object->asked, object->asked_count, key);
+}
+
+static bool was_refused(const struct json_object *object, const char *key) {
+    return is_among(object->refused, object->refused_count, key);
 }
 
 const void *mf_json_ask(struct json_object *object, const char *key) {
@@ -224,9 +232,22 @@ int mf_json_count(const struct json_object *object, const char *key) {
     return cJSON_IsArray(item) ? cJSON_GetArraySize(item) : 0;
 }
 
+/// Whether the key is there. It is not one that the reader knows, and is not proposed as such.
+static bool refuses(struct json_object *object, const char *key) {
+    if (cJSON_GetObjectItemCaseSensitive(object->item, key) == NULL)
+        return false;
+    if (object->refused_count < JSON_MAX_KEYS)
+        object->refused[object->refused_count++] = key;
+    return true;
+}
+
+void mf_json_retired(struct json_object *object, const char *old, const char *reason) {
+    if (refuses(object, old))
+        mf_json_fault(object, old, "no longer a key: %s", reason);
+}
+
 void mf_json_renamed(struct json_object *object, const char *old, const char *today) {
-    // Only then: the name is not to be proposed as the nearest one.
-    if (cJSON_GetObjectItemCaseSensitive(object->item, old) && mf_json_ask(object, old))
+    if (refuses(object, old))
         mf_json_fault(object, old, "is called \"%s\" now", today);
 }
 
@@ -240,8 +261,7 @@ const char *mf_json_key(const struct json_object *object, size_t n) {
 }
 
 void mf_json_refuse(struct json_object *object, const char *key, const char *reason) {
-    // Only then: the key is not to be proposed as one that is known.
-    if (cJSON_GetObjectItemCaseSensitive(object->item, key) && mf_json_ask(object, key))
+    if (refuses(object, key))
         mf_json_fault(object, key, "unknown key: %s", reason);
 }
 
@@ -268,7 +288,7 @@ static void take_back_missing(struct json_object *object, const char *given) {
 void mf_json_finish(struct json_object *object) {
     const cJSON *member;
     cJSON_ArrayForEach(member, (const cJSON *)object->item) {
-        if (was_asked(object, member->string))
+        if (was_asked(object, member->string) || was_refused(object, member->string))
             continue;
         char hint[LINE_SIZE / 4];
         mf_nearest_hint(member->string, object->asked, object->asked_count, hint, sizeof hint);

@@ -28,6 +28,8 @@ struct json_object {
     char path[JSON_PATH_SIZE];        ///< "scene.particles"; "" at the root
     const char *asked[JSON_MAX_KEYS]; ///< keys that the reader knows
     size_t asked_count;
+    const char *refused[JSON_MAX_KEYS]; ///< keys that are there and are refused with a reason
+    size_t refused_count;
 };
 
 /// Parse `file`. Malformed text is BAD_INPUT with file:line:column; more than JSON_MOST_MEMBERS
@@ -83,6 +85,9 @@ const char *mf_json_key(const struct json_object *object, size_t n);
 
 /// Refuse the name that a key had in an earlier version, and say its name of today.
 void mf_json_renamed(struct json_object *object, const char *old, const char *today);
+
+/// Refuse a key of an earlier version, if it is present, with the reason. Tested: test_json.
+void mf_json_retired(struct json_object *object, const char *old, const char *reason);
 
 /// Refuse a key that has no place here, if it is present, with the reason. Tested: test_json.
 void mf_json_refuse(struct json_object *object, const char *key, const char *reason);

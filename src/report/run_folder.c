@@ -5,6 +5,7 @@
 #include "base/ranks.h"
 #include "io/checkpoint.h"
 #include "io/json.h"
+#include "io/own_file.h"
 #include "io/snapshot.h"
 #include "report/figures.h"
 
@@ -51,8 +52,23 @@ static bool is_measurement(const struct run_folder *folder) {
     return says(folder, "used.json", "trajectories", NULL);
 }
 
+/// A file of the run's that somebody has changed since, or NULL.
+static const char *find_changed(const struct run_folder *folder) {
+    const struct own_list *list = &folder->own.list;
+    for (size_t k = 0; k < list->count; k++) {
+        const struct own_entry *entry = &list->entry[k];
+        if (!mf_own_file_is_folder(entry->name) &&
+            mf_own_file_look(list->place, entry->name, entry) == OWN_FILE_OTHER)
+            return entry->name;
+    }
+    return NULL;
+}
+
 static enum status refuse(const struct run_folder *folder, const char *what, const char *remedy) {
-    return mf_status_fail(STATUS_BAD_INPUT, "%s holds %s: %s", folder->path, what, remedy);
+    const char *changed = find_changed(folder);
+    return mf_status_fail(STATUS_BAD_INPUT, "%s holds %s%s%s%s: %s", folder->path, what,
+                          changed ? ", in which " : "", changed ? changed : "",
+                          changed ? " was changed since mesofit wrote it" : "", remedy);
 }
 
 /// What is done again in no time may be replaced by its like; hours of work are not to be lost by

@@ -27,8 +27,12 @@ struct run {
     struct checkpoint_pace pace;
     struct simulation simulation;
     struct simulate_observables observables;
-    struct simulate_changes changes;
-    atomic_bool cancel; ///< set for a change
+    struct kept {
+        double seconds; ///< of all pieces until then
+        struct simulate_changes changes;
+    } kept;                ///< in the checkpoint, before the simulation
+    double seconds_before; ///< of the pieces before a restart
+    atomic_bool cancel;    ///< set for a change
 };
 
 /// Threads meet a dozen times in a step: with fewer particles than this each, and a busy machine,
@@ -84,11 +88,20 @@ static enum status keep_settings(struct run *run) {
     return status;
 }
 
+static double seconds(const struct run *run) {
+    return run->seconds_before + mf_progress_seconds(&run->progress);
+}
+
+static struct memory_span kept_span(struct run *run) {
+    return (struct memory_span){&run->kept, sizeof run->kept};
+}
+
 static enum status save(struct run *run) {
-    struct memory_span spans[1 + SIMULATE_MOST_SPANS] = {mf_simulate_changes_span(&run->changes)};
+    struct memory_span spans[1 + SIMULATE_MOST_SPANS] = {kept_span(run)};
     char path[OUTPUT_PATH_SIZE];
     mf_run_folder_file(&run->folder, "checkpoint.bin", path);
     const double begun = mf_progress_seconds(&run->progress);
+    run->kept.seconds = seconds(run);
     const size_t count =
         mf_simulate_observables_spans(&run->observables, &run->simulation, spans + 1);
     const enum status status = mf_checkpoint_save(path, run->digest, spans, 1 + count);
@@ -99,22 +112,23 @@ static enum status save(struct run *run) {
 /// What was measured before a change is not of what comes after it: the simulation equilibrates
 /// once more, and all samples are taken anew.
 static enum status change(struct run *run) {
-    const struct simulation_change *last = mf_simulate_changes_last(&run->changes);
+    const struct simulation_change *last = mf_simulate_changes_last(&run->kept.changes);
     TRY(mf_simulation_change(&run->simulation, last));
     run->plan.equilibration = (int64_t)last->step + run->equilibration;
     return mf_simulate_observables_begin_anew(&run->observables, &run->simulation, &run->plan);
 }
 
 static enum status load(struct run *run) {
-    const struct memory_span changes = mf_simulate_changes_span(&run->changes);
+    const struct memory_span kept = kept_span(run);
     char path[OUTPUT_PATH_SIZE];
     mf_run_folder_file(&run->folder, "checkpoint.bin", path);
-    TRY(mf_checkpoint_load_span(path, run->digest, 0, &changes));
-    if (mf_simulate_changes_last(&run->changes))
+    TRY(mf_checkpoint_load_span(path, run->digest, 0, &kept));
+    if (mf_simulate_changes_last(&run->kept.changes))
         TRY(change(run));
     TRY(mf_simulate_observables_load(&run->observables, &run->simulation, path, run->digest,
-                                     &changes));
+                                     &kept));
     run->progress.done_before = run->simulation.step;
+    run->seconds_before = run->kept.seconds;
     return STATUS_OK;
 }
 
@@ -129,12 +143,14 @@ static void tell(void *context, const struct simulation *simulation, uint64_t do
                  !mf_units_speaks(units) ? 3 : 1,
                  mf_simulation_temperature(simulation) * mf_units_factor(units, "T_0"),
                  mf_units_suffix(units, "T_0", unit));
-    mf_progress_tell(&run->progress, done, total, "steps", text);
+    // Before its first step, what goes on knows neither temperature nor rate.
+    if (done == 0 || done > run->progress.done_before)
+        mf_progress_tell(&run->progress, done, total, "steps", text);
     if (mf_progress_seconds(&run->progress) > run->pace.next && save(run) != STATUS_OK)
         mf_progress_say(&run->progress, "mesofit: warning: %s", mf_status_message());
     struct simulation_change wanted;
     if (done < total && mf_progress_ask_change(&run->progress, &wanted) &&
-        mf_simulate_changes_add(&run->changes, &wanted))
+        mf_simulate_changes_add(&run->kept.changes, &wanted))
         atomic_store(&run->cancel, true);
 }
 
@@ -171,18 +187,17 @@ static void put_numbers(const struct simulation *simulation, struct json_writer 
         mf_json_put_number(writer, number[k].name, number[k].value);
 }
 
-static enum status write_summary(const struct run *run, double seconds) {
+static enum status write_summary(const struct run *run, double taken) {
     const struct observable_results results = results_of(run);
     struct json_writer *writer = mf_json_writer_create();
     char path[OUTPUT_PATH_SIZE];
     mf_units_write_summary(&run->scene.units, writer);
     mf_json_put_text(writer, "status", mf_status_name(STATUS_OK));
     mf_json_put_text(writer, "method", "simulate");
-    mf_json_put_number(writer, "seconds", seconds);
+    mf_json_put_number(writer, "seconds", taken);
     mf_json_put_number(writer, "engine_steps", (double)run->simulation.step);
-    mf_simulate_changes_put(&run->changes, writer);
-    mf_json_put_number(writer, "steps_per_second",
-                       (double)(run->simulation.step - run->progress.done_before) / seconds);
+    mf_simulate_changes_put(&run->kept.changes, writer);
+    mf_json_put_number(writer, "steps_per_second", (double)run->simulation.step / taken);
     put_numbers(&run->simulation, writer);
     mf_simulate_observables_put(&run->observables, &results, writer);
     mf_json_put_number(writer, "seed", (double)run->heading.seed);
@@ -249,7 +264,7 @@ static enum status carry_out(struct run *run) {
     // A person may have stopped it meanwhile: it then begins with the change when it goes on.
     while (status == STATUS_INTERRUPTED && atomic_exchange(&run->cancel, false)) {
         TRY(change(run));
-        mf_simulate_changes_say(&run->changes, &run->scene.units, &run->progress);
+        mf_simulate_changes_say(&run->kept.changes, &run->scene.units, &run->progress);
         TRY(save(run));
         status = measure(run, &listener);
     }
@@ -264,15 +279,15 @@ static void remove_checkpoint(const struct run *run) {
 }
 
 static enum status write_results(struct run *run) {
-    const double seconds = mf_progress_seconds(&run->progress);
+    const double taken = seconds(run);
     const struct observable_results results = results_of(run);
     TRY(mf_simulate_observables_write(&run->observables, &results));
-    TRY(write_summary(run, seconds));
+    TRY(write_summary(run, taken));
     remove_checkpoint(run);
     mf_run_folder_draw(&run->folder);
     mf_simulate_observables_say(&run->observables, &results, &run->progress);
     mf_progress_say(&run->progress, "%llu steps in %.3g s; results in %s",
-                    (unsigned long long)run->simulation.step, seconds, run->folder.path);
+                    (unsigned long long)run->simulation.step, taken, run->folder.path);
     return STATUS_OK;
 }
 

@@ -18,10 +18,6 @@ const struct simulation_change *mf_simulate_changes_last(const struct simulate_c
     return changes->count > 0 ? &changes->change[changes->count - 1] : NULL;
 }
 
-struct memory_span mf_simulate_changes_span(struct simulate_changes *changes) {
-    return (struct memory_span){changes, sizeof *changes};
-}
-
 void mf_simulate_changes_put(const struct simulate_changes *changes, struct json_writer *writer) {
     if (changes->count == 0)
         return;

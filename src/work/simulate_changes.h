@@ -23,8 +23,6 @@ bool mf_simulate_changes_add(struct simulate_changes *changes,
 /// The last one, or NULL.
 const struct simulation_change *mf_simulate_changes_last(const struct simulate_changes *changes);
 
-struct memory_span mf_simulate_changes_span(struct simulate_changes *changes);
-
 /// Put "changed", a list, if there are any. Tested: tests/live/test_changes.py.
 void mf_simulate_changes_put(const struct simulate_changes *changes, struct json_writer *writer);
 

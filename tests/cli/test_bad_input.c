@@ -176,11 +176,11 @@ static const struct fault scene_faults[] = {
           "motion.lag", "did you mean \"lags\"?"),
     FAULT("a lattice of an earlier version", PARTICLES,
           "\"particles\": {\"count\": 81, \"jitter\": 0.1}",
-          "input.json: particles.jitter: unknown key: it is 0.05 always; delete the line"),
-    FAULT(
-        "motion of an earlier version", "\"measure\"",
-        "\"motion\": {\"lags\": 2, \"fit_from\": 0.4}, \"measure\"",
-        "input.json: motion.fit_from: unknown key: the line begins at half of the window; delete"),
+          "input.json: particles.jitter: no longer a key: it is 0.05 always; leave it out"),
+    FAULT("motion of an earlier version", "\"measure\"",
+          "\"motion\": {\"lags\": 2, \"fit_from\": 0.4}, \"measure\"",
+          "input.json: motion.fit_from: no longer a key: the line begins at half of the window; "
+          "leave it out"),
     FAULT("no lags", "\"measure\"", "\"motion\": {\"lags\": 1}, \"measure\"",
           "motion.lags: 1 is out of range"),
     FAULT("a number for motion", "\"measure\"", "\"motion\": 3, \"measure\"",
@@ -228,7 +228,8 @@ static const struct fault run_faults[] = {
           "unknowns.phi: unknown key; known: potential"),
     FAULT("an unknown of an earlier version", "\"verification\"",
           "\"unknowns\": {\"potential\": {\"spacing\": \"steep\"}}, \"verification\"",
-          "unknowns.potential.spacing: unknown key: coefficients are spread evenly; delete"),
+          "unknowns.potential.spacing: no longer a key: coefficients are spread evenly; leave it "
+          "out"),
     FAULT("no target", "target.tsv", "no.tsv", "target.rdf.file", "no.tsv: No such file"),
     TARGET("a gap", ROWS("0.7 1 0.1\n"), "target.rdf.file", "target.tsv:5", "gap"),
     TARGET("unsorted", ROWS("0.9 1 0.1\n0.7 1 0.1\n"), "target.tsv:5", "column 1"),
@@ -241,8 +242,8 @@ static const struct fault run_faults[] = {
     TARGET("too few columns", "0.1\n0.3\n0.5\n0.7\n", "target.tsv:1", "1 columns, at least 2"),
     TARGET("decimal commas", "0,1;1;0,1\n0,3;1;0,1\n", "target.tsv:1", "a decimal comma?"),
     TARGET("a short row", ROWS("0.7 1\n0.9 1 0.1\n"), "target.tsv:4", "2 columns"),
-    TARGET("nothing above 0", "0.1 0 0\n0.3 0 0\n0.5 0 0\n0.7 0 0\n", "input.json",
-           "target is nowhere above"),
+    TARGET("nothing above 0", "0.1 0 0\n0.3 0 0\n0.5 0 0\n0.7 0 0\n",
+           "input.json: target.rdf.file: ", "target.tsv: g is 0 in all rows: is it in column 2?"),
     TARGET("no rows", "# r g error\n", "target.tsv", "without a row"),
     FAULT("small box for the target", "[3, 3, 3]", "[3, 3, 1.99]", "input.json", "scene.box",
           "1.99", "range of the target"),
@@ -255,26 +256,29 @@ static const struct fault run_faults[] = {
           "scene.conservative"),
     FAULT("an optimiser of an earlier version", "\"samples\": 8",
           "\"samples\": 8, \"asynchronous\": \"no\"",
-          "input.json: method.asynchronous: unknown key: candidates are measured by rounds alone; "
-          "delete the line"),
+          "input.json: method.asynchronous: no longer a key: candidates are measured by rounds "
+          "alone; "
+          "leave it out"),
     FAULT("a solver of an earlier version", "\"samples\": 8",
           "\"samples\": 8, \"regularisation\": \"truncated\"",
-          "input.json: method.regularisation: unknown key: the step is as smooth as the noise "
-          "asks; delete"),
-    FAULT("a solver's strength of an earlier version", "\"samples\": 8",
-          "\"samples\": 8, \"strength\": 1000",
-          "input.json: method.strength: unknown key: it is chosen from the noise; delete"),
+          "input.json: method.regularisation: no longer a key: the step is as smooth as the noise "
+          "asks; leave it out"),
+    FAULT(
+        "a solver's strength of an earlier version", "\"samples\": 8",
+        "\"samples\": 8, \"strength\": 1000",
+        "input.json: method.strength: no longer a key: it is chosen from the noise; leave it out"),
     FAULT("a method of an earlier version", "\"imc\"", "\"joint-imc\"",
           "input.json: method.name: \"joint-imc\" is of an earlier version: write \"imc\", which "
           "fits one state or several"),
-    FAULT(
-        "a constant of an earlier version", "\"samples\": 8", "\"samples\": 8, \"depth\": 7",
-        "input.json: method.depth: unknown key: what was its default is taken always; delete the"),
+    FAULT("a constant of an earlier version", "\"samples\": 8", "\"samples\": 8, \"depth\": 7",
+          "input.json: method.depth: no longer a key: what was its default is taken always; leave "
+          "it out"),
     FAULT("islands of an earlier version",
           "{\"name\": \"imc\", \"replicas\": 2, \"equilibration\": 1, \"samples\": 8,\n"
           "             \"every\": 1, \"iterations\": 1}",
           "{\"name\": \"genetic\", \"islands\": 2}",
-          "input.json: method.islands: unknown key: all of a population breed with all; delete"),
+          "input.json: method.islands: no longer a key: all of a population breed with all; leave "
+          "it out"),
 };
 
 #define TYPES "\"types\": {\"A\": 40, \"B\": 41}"

@@ -50,6 +50,9 @@ static void test_completion_knows_subcommands_and_options(void **state) {
 static void test_completion_knows_what_describe_knows(void **state) {
     (void)state;
     assert_completes("describe gau", "gauss-newton gaussian ");
+    assert_completes("describe targ", "target "); // a topic and its group
+    assert_completes("describe unk", "unknowns ");
+    assert_completes("describe tab", "table "); // of several groups
     assert_has("describe \"\"", "cma-es");
     assert_has("describe \"\"", "shardlow");
     assert_has("describe \"\"", "rdf-target");

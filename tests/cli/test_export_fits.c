@@ -120,6 +120,7 @@ static void test_memory_that_was_found_is_left_out_and_told(void **state) {
     for (int k = 0; k < 2; k++) {
         fit_and_export(*state, unknowns[k], scenes[k]);
         char *text = temporary_folder_read("lammps/README");
+        assert_contains(text, "; mesofit's own was 0.02 tau.");
         assert_contains(text, "memory or across pairs is left out");
         free(text);
     }

@@ -86,6 +86,14 @@ static void test_fit_target_tells_what_goes_together(void **state) {
     RUN_PROGRAM(&result, "fit", "--target", "nowhere");
     run_program_assert_code(&result, 2);
     assert_contains(result.err, "there is no nowhere/target.json, and no rdf.tsv beside it");
+    RUN_PROGRAM(&result, "fit", "target");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err,
+                    "target is a folder: fit the target in it by mesofit fit --target target");
+    small_inputs_write(*state, "target/run.json", "{}", NULL, NULL);
+    RUN_PROGRAM(&result, "fit", "target");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err, "target is a folder: fit its file by mesofit fit target/run.json");
     RUN_PROGRAM(&result, "fit");
     run_program_assert_code(&result, 2);
     assert_contains(result.err, "usage: mesofit fit RUN.json, or mesofit fit --target DIR");

@@ -108,6 +108,17 @@ static void test_files_that_were_changed_are_not_replaced(void **state) {
     results_assert_table("out/rdf.tsv", 3, 0);
 }
 
+/// A fit is replaced by --force alone; who may give it knows of the change.
+static void test_fit_in_which_a_file_was_changed_is_told_with_it(void **state) {
+    fit();
+    put(state, "fit/potential.tsv");
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "fit", "--quiet");
+    assert_refused("fit holds a finished fit, in which potential.tsv was changed since mesofit "
+                   "wrote it: --force replaces it, -o OTHER keeps it",
+                   "mesofit: ");
+    assert_mine("fit/potential.tsv");
+}
+
 /// An interrupted simulation is worth as much as an interrupted fit.
 static void test_forgotten_resume_keeps_the_simulation(void **state) {
     const struct run_program_how how = {.interrupt_with = SIGINT, .interrupt_after = 0.02};
@@ -200,8 +211,9 @@ static void test_folder_that_is_removed_is_not_made_anew(void **state) {
     static const char *const words[] = {"simulate", "long.json", "--quiet", NULL};
     small_inputs_write(*state, "long.json", scene, "\"samples\": 4", "\"samples\": 100000");
     // Who waits for the first snapshot, and removes all.
-    assert_int_equal(system("(PATH=/bin:/usr/bin; until [ -e out/snapshots/step_000000004.vtp ]; "
-                            "do sleep 0.01; done; mv out away) &"),
+    assert_int_equal(system("(PATH=/bin:/usr/bin; n=0; "
+                            "until [ -e out/snapshots/step_000000004.vtp ] || [ $n = 30000 ]; "
+                            "do sleep 0.01; n=$((n + 1)); done; mv out away) &"),
                      0);
     run_program(&result, &(struct run_program_how){0}, words);
     assert_refused("out is gone: it was removed, or replaced, while it was used", "mesofit: ");
@@ -326,6 +338,7 @@ int main(void) {
         TEST(test_files_of_a_person_stay_whatever_they_are_called),
         TEST(test_what_a_run_wrote_goes_with_it),
         TEST(test_files_that_were_changed_are_not_replaced),
+        TEST(test_fit_in_which_a_file_was_changed_is_told_with_it),
         TEST(test_forgotten_resume_keeps_the_simulation),
         TEST(test_resume_makes_no_folder),
         TEST(test_results_without_a_list_are_left_alone),

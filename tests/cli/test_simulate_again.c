@@ -2,6 +2,7 @@
 //
 // `mesofit simulate` gives the same bits again: from its used settings, with any number of threads,
 // and interrupted and resumed.
+#include "shared/is_close.h"
 #include "shared/results.h"
 #include "shared/run_program.h"
 #include "shared/small_inputs.h"
@@ -10,6 +11,7 @@
 
 #include <signal.h>
 #include <stdlib.h>
+#include <string.h>
 
 static const char flat[] =
     "{\"seed\": 5, \"dimensions\": 2, \"box\": [11, 11], \"particles\": {\"count\": 300},\n"
@@ -62,6 +64,10 @@ static void check_interruption_of(struct temporary_folder *folder, const char *s
     assert_false(temporary_folder_exists("pieces/checkpoint.bin"));
     results_assert_same("whole", "pieces", expected);
     results_assert_same("whole", "pieces", (const char *const[]){"used.json", NULL});
+    // The seconds are of all steps, whichever piece they are in.
+    const char *const summary = "pieces/summary.json";
+    assert_close(results_number(summary, "steps_per_second") * results_number(summary, "seconds"),
+                 results_number(summary, "engine_steps"), 1e-6);
 }
 
 static void check_interruption(struct temporary_folder *folder, const char *scene, const char *from,
@@ -134,6 +140,10 @@ static void test_interrupted_run_says_so_and_refuses_other_settings(void **state
     assert_contains(result.err, "--resume");
     assert_true(temporary_folder_exists("out/checkpoint.bin"));
     assert_false(temporary_folder_exists("out/summary.json"));
+    run_program(&result, &how, (const char *const[]){"simulate", "scene.json", "--resume", NULL});
+    run_program_assert_code(&result, 130);
+    assert_null(strstr(result.err, "T 0.000")); // nothing is known before the first step
+    assert_null(strstr(result.err, "? left"));
     char *used = temporary_folder_read("out/used.json");
     small_scenes_write(*state, small_scenes_dpd, "\"samples\": 20", "\"samples\": 100001");
     RUN_PROGRAM(&result, "simulate", "scene.json", "--resume");

@@ -220,6 +220,24 @@ static void test_json_finish_suggests_the_nearest_key_when_one_is_unknown(void *
         "temperature: unknown key; known: strength, steps, seed, lengths, name, file, kind, kinds");
 }
 
+static void test_json_finish_proposes_no_key_that_is_refused(void **state) {
+    struct json_document *document =
+        open_text(state, "{\"a\": 1, \"old\": 1, \"mask\": 1, \"away\": 1, \"other\": 1}");
+    struct json_object root = mf_json_root(document);
+    mf_json_retired(&root, "old", "leave it out");
+    mf_json_renamed(&root, "mask", "cover");
+    mf_json_refuse(&root, "away", "it stands elsewhere");
+    assert_true(mf_json_has(&root, "a"));
+    mf_json_finish(&root);
+    assert_int_equal(mf_json_fault_count(document), 4);
+    assert_fails(mf_json_close(document, STATUS_OK), STATUS_BAD_INPUT,
+                 "run.json: old: no longer a key: leave it out");
+    assert_contains(mf_status_message(), "run.json: mask: is called \"cover\" now");
+    assert_contains(mf_status_message(), "run.json: away: unknown key: it stands elsewhere");
+    assert_contains(mf_status_message(), "run.json: other: unknown key; known: a");
+    assert_null(strstr(mf_status_message(), "known: a,"));
+}
+
 static void test_json_open_records_a_fault_when_a_key_stands_twice(void **state) {
     assert_fault(state, "{\"seed\": 1, \"seed\": 1}", "run.json: seed: the key stands here twice");
     struct json_document *document =
@@ -404,6 +422,7 @@ int main(void) {
         IN_FOLDER(test_json_fields_demands_required_ones_when_the_object_is_there),
         IN_FOLDER(test_json_count_is_of_the_items_of_an_array),
         IN_FOLDER(test_json_finish_suggests_the_nearest_key_when_one_is_unknown),
+        IN_FOLDER(test_json_finish_proposes_no_key_that_is_refused),
         IN_FOLDER(test_json_open_records_a_fault_when_a_key_stands_twice),
         IN_FOLDER(test_json_child_reports_paths_when_objects_are_nested),
         IN_FOLDER(test_json_choice_returns_known_texts_when_given_or_falls_back),
