@@ -95,7 +95,7 @@ export class Settings {
     this.place.replaceChildren(
       element("p", { textContent: "What is changed here counts for the next start; the file itself stays as it is. Empty fields have their defaults." }),
       element("div", { className: "tools" }, element("label", {}, "folder for the results ", this.folder),
-        element("label", {}, this.force, " replace a finished fit that is there")),
+        element("label", {}, this.force, " replace what is there")),
       ...(isObject(this.value) ? [this.group(isFit ? "run" : "scene", isFit ? "run" : "scene", this.value, true)] : []),
       element("details", {}, element("summary", { textContent: "The file as text" }), this.raw, this.fault));
   }

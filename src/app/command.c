@@ -21,7 +21,7 @@ const struct command_option mf_command_common[] = {
      "threads (default: all processors; bench engine: 1); results do not depend on it"},
     {"--seed", "N", "seed, instead of the file's"},
     {"--resume", NULL, "go on with an interrupted run in its folder"},
-    {"--force", NULL, "replace the fit that the folder holds"},
+    {"--force", NULL, "replace what the folder holds: a fit, an unfinished run, changed files"},
     {"--quiet", NULL, "no progress"},
     {"--help", NULL, "print a summary of all commands and options"},
     {"--version", NULL, "print the version"},

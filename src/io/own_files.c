@@ -146,7 +146,7 @@ static bool is_among(const char *const *names, const char *name) {
 
 enum status mf_own_files_spare_inputs(struct own_files *own, const char *const *but) {
     for (size_t k = 0; k < own->list.count; k++)
-        if (!is_among(but, own->list.entry[k].name))
+        if (!own->list.entry[k].gone && !is_among(but, own->list.entry[k].name))
             TRY(spare_input(own, own->list.entry[k].name));
     return STATUS_OK;
 }
@@ -154,7 +154,7 @@ enum status mf_own_files_spare_inputs(struct own_files *own, const char *const *
 enum status mf_own_files_check(struct own_files *own, const char *const *but) {
     for (size_t k = 0; k < own->list.count; k++) {
         const struct own_entry *entry = &own->list.entry[k];
-        if (!mf_own_file_is_folder(entry->name) && !is_among(but, entry->name))
+        if (!entry->gone && !mf_own_file_is_folder(entry->name) && !is_among(but, entry->name))
             TRY(check_replaced(own, entry->name, entry));
     }
     return STATUS_OK;
@@ -180,7 +180,8 @@ enum status mf_own_files_begin(struct own_files *own, uint64_t digest) {
 /// What an earlier run left, if nobody has changed it meanwhile.
 static enum status remove_earlier(struct own_files *own, struct own_entry *entry, bool folder) {
     const int place = own->list.place;
-    if (!entry->earlier || entry->claimed || mf_own_file_is_folder(entry->name) != folder ||
+    if (entry->gone || !entry->earlier || entry->claimed ||
+        mf_own_file_is_folder(entry->name) != folder ||
         (!folder && !own->force && mf_own_file_look(place, entry->name, entry) == OWN_FILE_OTHER))
         return STATUS_OK;
     const int error = mf_own_file_remove(place, entry->name);
@@ -225,10 +226,9 @@ static void remove_all_partial(struct own_files *own) {
 enum status mf_own_files_sweep(struct own_files *own) {
     struct own_list *list = &own->list;
     remove_all_partial(own);
-    for (size_t k = 0; k < list->count; k++)
-        TRY(remove_earlier(own, &list->entry[k], false));
-    for (size_t k = list->count; k-- > 0;) // folders in a folder are behind it
-        TRY(remove_earlier(own, &list->entry[k], true));
+    for (int folders = 0; folders < 2; folders++)
+        for (size_t k = list->count; k-- > 0;) // a folder came before those in it
+            TRY(remove_earlier(own, &list->entry[k], folders));
     own->begun = false;
     mf_own_list_compact(list);
     return STATUS_OK;
@@ -237,7 +237,7 @@ enum status mf_own_files_sweep(struct own_files *own) {
 enum status mf_own_files_resume(struct own_files *own, uint64_t digest) {
     bool earlier = false;
     for (size_t k = 0; k < own->list.count; k++)
-        earlier = earlier || own->list.entry[k].earlier;
+        earlier = earlier || (own->list.entry[k].earlier && !own->list.entry[k].gone);
     if (earlier && own->list.began != digest)
         TRY(mf_own_list_keep(&own->list));
     else if (earlier)
@@ -256,7 +256,8 @@ static bool seal(struct own_files *own) {
     bool left = false;
     for (size_t k = list->count; entry && k-- > 0;) {
         if (list->entry[k].claimed && !mf_own_file_is_folder(list->entry[k].name)) {
-            mf_own_file_seal(list->place, &list->entry[k], &bytes);
+            if (!list->entry[k].gone)
+                mf_own_file_seal(list->place, &list->entry[k], &bytes);
             entry[count++] = &list->entry[k];
         }
         left = left || !list->entry[k].gone;
@@ -297,12 +298,10 @@ void mf_own_files_close(struct own_files *own) {
 void mf_own_files_remove_all(struct own_files *own) {
     struct own_list *list = &own->list;
     remove_all_partial(own);
-    for (size_t k = 0; k < list->count; k++)
-        if (!mf_own_file_is_folder(list->entry[k].name))
-            mf_own_file_remove(list->place, list->entry[k].name);
-    for (size_t k = list->count; k-- > 0;)
-        if (mf_own_file_is_folder(list->entry[k].name))
-            mf_own_file_remove(list->place, list->entry[k].name);
+    for (int folders = 0; folders < 2; folders++)
+        for (size_t k = list->count; k-- > 0;)
+            if (!list->entry[k].gone && mf_own_file_is_folder(list->entry[k].name) == folders)
+                mf_own_file_remove(list->place, list->entry[k].name);
     unlinkat(list->place, list->name, 0);
     rmdir(own->folder); // unless there is something else in it
     forget(own);
@@ -338,7 +337,8 @@ static enum status read_again(struct own_list *list) {
     struct own_list now = *list;
     now.file = -1;
     now.entry = NULL;
-    now.count = now.room = now.sorted = 0;
+    now.number = NULL;
+    now.count = now.room = 0;
     const enum status status = mf_own_list_read(&now);
     for (size_t k = 0; status == STATUS_OK && k < list->count; k++) {
         struct own_entry *same = mf_own_list_find(&now, list->entry[k].name);
@@ -356,7 +356,7 @@ static enum status read_again(struct own_list *list) {
 static enum status find_entry(struct own_files *own, const char *name, struct own_entry **entry) {
     struct own_list *list = &own->list;
     *entry = mf_own_list_find(list, name);
-    if ((*entry && !(*entry)->gone) || mf_own_file_look(list->place, name, NULL) == OWN_FILE_ABSENT)
+    if (*entry || mf_own_file_look(list->place, name, NULL) == OWN_FILE_ABSENT)
         return STATUS_OK;
     TRY(read_again(list));
     *entry = mf_own_list_find(list, name);
@@ -370,15 +370,12 @@ static enum status claim(struct own_files *own, const char *name) {
         return mf_status_fail(STATUS_BAD_INPUT, "%s: no file can have the name \"%s\"", own->folder,
                               name);
     TRY(find_entry(own, name, &entry));
-    if (entry && entry->claimed && !entry->gone)
+    if (entry && entry->claimed)
         return STATUS_OK;
     if (!mf_own_file_is_folder(name))
-        TRY(check_replaced(own, name, entry && entry->gone ? NULL : entry));
-    if (entry == NULL)
-        TRY(mf_own_list_add(&own->list, name, &entry));
+        TRY(check_replaced(own, name, entry));
+    TRY(mf_own_list_add(&own->list, name, &entry));
     entry->claimed = true;
-    entry->gone = entry->earlier = entry->digested = false;
-    entry->bytes = -1;
     return mf_own_list_enter(&own->list, &entry, 1);
 }
 

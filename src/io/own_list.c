@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/own_list.h"
 
+#include "base/digest.h"
 #include "base/memory.h"
 
 #include <errno.h>
@@ -41,50 +42,62 @@ bool mf_own_list_takes(const char *name) {
 
 // In memory ---------------------------------------------------------------------------------------
 
+static size_t hash(const struct own_list *list, const char *name) {
+    uint64_t digest = DIGEST_OF_NOTHING;
+    mf_digest_add(&digest, name, strlen(name));
+    return (size_t)digest & (2 * list->room - 1);
+}
+
+/// Where the number of an entry stands, counted from 1, or would.
+static size_t *place_of(const struct own_list *list, const char *name) {
+    size_t at = hash(list, name);
+    while (list->number[at] && strcmp(list->entry[list->number[at] - 1].name, name) != 0)
+        at = (at + 1) & (2 * list->room - 1);
+    return &list->number[at];
+}
+
 static enum status make_room(struct own_list *list) {
+    enum { FIRST = 64 };
     enum status status = STATUS_OK;
-    struct own_entry *larger = NULL;
-    const size_t room = list->room ? 2 * list->room : 64;
+    struct own_list larger = *list;
     if (list->count < list->room)
         return STATUS_OK;
-    NEW_ARRAY(larger, room);
+    larger.room = list->room ? 2 * list->room : FIRST;
+    larger.entry = NULL;
+    larger.number = NULL;
+    NEW_ARRAY(larger.entry, larger.room);
+    NEW_ARRAY(larger.number, 2 * larger.room);
     if (list->count > 0)
-        memcpy(larger, list->entry, list->count * sizeof *larger);
+        memcpy(larger.entry, list->entry, list->count * sizeof *larger.entry);
+    for (size_t k = 0; k < list->count; k++)
+        *place_of(&larger, larger.entry[k].name) = k + 1;
     mf_memory_free(list->entry);
-    list->entry = larger;
-    list->room = room;
+    mf_memory_free(list->number);
+    *list = larger;
+    return STATUS_OK;
 done:
+    mf_memory_free(larger.entry);
     return status;
 }
 
 enum status mf_own_list_add(struct own_list *list, const char *name, struct own_entry **entry) {
     TRY(make_room(list));
-    char *copy = mf_memory_zeroed(strlen(name) + 1, 1);
-    if (copy == NULL)
-        return STATUS_NO_MEMORY;
-    strcpy(copy, name);
-    *entry = &list->entry[list->count];
-    **entry = (struct own_entry){.name = copy, .line = list->count, .bytes = -1};
-    list->count++;
+    size_t *number = place_of(list, name);
+    if (*number == 0) {
+        char *copy = mf_memory_zeroed(strlen(name) + 1, 1);
+        if (copy == NULL)
+            return STATUS_NO_MEMORY;
+        list->entry[list->count].name = strcpy(copy, name);
+        *number = ++list->count;
+    }
+    *entry = &list->entry[*number - 1];
+    **entry = (struct own_entry){.name = (*entry)->name, .bytes = -1};
     return STATUS_OK;
 }
 
 struct own_entry *mf_own_list_find(const struct own_list *list, const char *name) {
-    size_t low = 0, high = list->sorted;
-    while (low < high) {
-        const size_t middle = low + (high - low) / 2;
-        const int order = strcmp(list->entry[middle].name, name);
-        if (order == 0)
-            return &list->entry[middle];
-        if (order < 0)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    for (size_t k = list->sorted; k < list->count; k++)
-        if (strcmp(list->entry[k].name, name) == 0)
-            return &list->entry[k];
-    return NULL;
+    const size_t number = list->room > 0 ? *place_of(list, name) : 0;
+    return number > 0 && !list->entry[number - 1].gone ? &list->entry[number - 1] : NULL;
 }
 
 static void age(struct own_list *list, bool earlier) {
@@ -92,36 +105,16 @@ static void age(struct own_list *list, bool earlier) {
         list->entry[k].earlier = earlier;
 }
 
-static int by_name_and_line(const void *a, const void *b) {
-    const struct own_entry *first = a, *second = b;
-    const int order = strcmp(first->name, second->name);
-    return order ? order : (first->line > second->line) - (first->line < second->line);
-}
-
-/// Of a name the last line counts.
-static void sort(struct own_list *list) {
-    size_t kept = 0;
-    if (list->count > 0)
-        qsort(list->entry, list->count, sizeof *list->entry, by_name_and_line);
-    for (size_t k = 0; k < list->count; k++) {
-        const struct own_entry *entry = &list->entry[k];
-        const bool last = k + 1 == list->count || strcmp(entry->name, list->entry[k + 1].name) != 0;
-        if (last && !entry->gone)
-            list->entry[kept++] = *entry;
-        else
-            mf_memory_free(entry->name);
-    }
-    list->count = list->sorted = kept;
-}
-
 void mf_own_list_clear(struct own_list *list) {
     for (size_t k = 0; k < list->count; k++)
         mf_memory_free(list->entry[k].name);
     mf_memory_free(list->entry);
+    mf_memory_free(list->number);
     if (list->file >= 0)
         close(list->file);
     list->entry = NULL;
-    list->count = list->room = list->sorted = 0;
+    list->number = NULL;
+    list->count = list->room = 0;
     list->file = -1;
     list->began = 0;
 }
@@ -185,7 +178,6 @@ enum status mf_own_list_read(struct own_list *list) {
     }
     const enum status status = read_lines(list, stream);
     fclose(stream);
-    sort(list);
     return status;
 }
 

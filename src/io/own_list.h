@@ -16,23 +16,22 @@
 
 struct own_entry {
     char *name;      ///< seen from the folder; that of a folder ends with /
-    size_t line;     ///< at which it was read
     int64_t bytes;   ///< as it was left; −1: not known
     uint64_t digest; ///< of those, if `digested`
     bool digested;
-    bool gone;
+    bool gone;    ///< it was there once
     bool earlier; ///< of a run before the last that began
     bool claimed; ///< by this process
 };
 
 struct own_list {
-    int place;          ///< the folder, open
-    const char *folder; ///< its path, for messages
-    const char *name;   ///< of the list's file
-    int file;           ///< open to be written; −1: not yet
-    struct own_entry *entry;
+    int place;               ///< the folder, open
+    const char *folder;      ///< its path, for messages
+    const char *name;        ///< of the list's file
+    int file;                ///< open to be written; −1: not yet
+    struct own_entry *entry; ///< in the order in which they came
     size_t count, room;
-    size_t sorted;  ///< so many of them are, by their names
+    size_t *number; ///< by the digest of a name, shape [2 room]: that of its entry from 1 on, or 0
     uint64_t began; ///< digest of the last run that began
     bool there;     ///< the file
 };
@@ -42,10 +41,10 @@ struct own_list {
 enum status mf_own_list_read(struct own_list *list) MUST_USE;
 void mf_own_list_clear(struct own_list *list);
 
-/// The entry of a name, or NULL.
+/// The entry of a name, or NULL if there is none or it is gone.
 struct own_entry *mf_own_list_find(const struct own_list *list, const char *name);
 
-/// Add an entry, in memory alone. Fails: NO_MEMORY.
+/// Add an entry, or make the one that there is new, in memory alone. Fails: NO_MEMORY.
 enum status mf_own_list_add(struct own_list *list, const char *name,
                             struct own_entry **entry) MUST_USE;
 

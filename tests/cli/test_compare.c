@@ -104,8 +104,8 @@ static void test_compare_shows_fits_that_were_not_verified_with_their_status(voi
 static char *snapshot(const char *folder) {
     static char text[4096];
     char command[512];
-    snprintf(command, sizeof command,
-             "find %s -type f ! -name '*compare*' -exec cksum {} + | sort", folder);
+    snprintf(command, sizeof command, "find %s -type f ! -name '*compare*' -exec cksum {} + | sort",
+             folder);
     FILE *stream = popen(command, "r");
     assert_non_null(stream);
     text[fread(text, 1, sizeof text - 1, stream)] = '\0';

@@ -271,7 +271,10 @@ static void test_lists_of_others_lead_nowhere(void **state) {
     put("out/good.tsv", "x");
     put("out/" OWN_FILES_OF_RUN, list);
     assert_ok(open_out(false));
-    assert_int_equal(own.list.count, 1);
+    assert_non_null(mf_own_list_find(&own.list, "good.tsv"));
+    assert_null(mf_own_list_find(&own.list, "mine"));
+    assert_null(mf_own_list_find(&own.list, "min"));
+    assert_int_equal(own.list.count, 2);
     assert_ok(mf_own_files_begin(&own, 2)); // behind a line that is ended first
     assert_ok(mf_own_files_sweep(&own));
     assert_gone("out/good.tsv");
