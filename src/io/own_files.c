@@ -121,6 +121,14 @@ static enum status spare_input(const struct own_files *own, const char *name) {
     return own->inputs ? mf_input_files_spare(own->inputs, path) : STATUS_OK;
 }
 
+/// A run that can go on would be lost by --force.
+static const char *remedy_of(const struct own_files *own) {
+    const char *from = own->goes_on_from;
+    return from && mf_own_file_look(own->list.place, from, NULL) != OWN_FILE_ABSENT
+               ? "move it away, and go on with --resume"
+               : "move it away, or write elsewhere with -o; --force replaces it";
+}
+
 /// Whether a file may be replaced. @param[in] entry  its own, or NULL: it is not
 static enum status check_replaced(const struct own_files *own, const char *name,
                                   const struct own_entry *entry) {
@@ -131,10 +139,10 @@ static enum status check_replaced(const struct own_files *own, const char *name,
     TRY(spare_input(own, name));
     if (found == OWN_FILE_AS_LEFT || own->force)
         return STATUS_OK;
-    return mf_status_fail(
-        STATUS_BAD_INPUT, "%s/%s %s: move it away, or write elsewhere with -o; --force replaces it",
-        own->folder, name,
-        entry ? "was changed since mesofit wrote it" : "is there, and mesofit did not write it");
+    return mf_status_fail(STATUS_BAD_INPUT, "%s/%s %s: %s", own->folder, name,
+                          entry ? "was changed since mesofit wrote it"
+                                : "is there, and mesofit did not write it",
+                          remedy_of(own));
 }
 
 static bool is_among(const char *const *names, const char *name) {

@@ -22,7 +22,8 @@ struct own_files {
     char folder[OUTPUT_PATH_SIZE];
     struct own_list list;
     const struct input_files *inputs; ///< that are never replaced or removed, or NULL
-    bool force;                       ///< also what is not its own may be replaced
+    const char *goes_on_from; ///< the file that a run goes on from, of this name; NULL: none does
+    bool force;               ///< also what is not its own may be replaced
     bool open;
     bool alone; ///< locked
     bool made;  ///< the folder

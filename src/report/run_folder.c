@@ -24,6 +24,9 @@ static bool exists(const struct run_folder *folder, const char *name) {
 
 // May it be written? ------------------------------------------------------------------------------
 
+/// What a run goes on from.
+static const char checkpoint[] = "checkpoint.bin";
+
 /// Whether the object in a JSON file has this key, with this text if one is given. A file that
 /// cannot be read has not.
 static bool says(const struct run_folder *folder, const char *name, const char *key,
@@ -61,7 +64,7 @@ static enum status check_replaced(const struct run_folder *folder, enum run_kind
     static const char replaces[] = "--force replaces it, -o OTHER keeps it",
                       resumes[] = "--resume goes on, --force begins anew";
     const bool summary = mf_own_files_has(&folder->own, "summary.json");
-    const bool saved = mf_own_files_has(&folder->own, "checkpoint.bin");
+    const bool saved = mf_own_files_has(&folder->own, checkpoint);
     if (!summary && !saved)
         return STATUS_OK;
     if (is_measurement(folder))
@@ -80,7 +83,7 @@ static enum status check_replaced(const struct run_folder *folder, enum run_kind
 static enum status check_listed(const struct run_folder *folder, bool resume) {
     const bool others =
         (exists(folder, "used.json") && !mf_own_files_has(&folder->own, "used.json")) ||
-        (resume && !mf_own_files_has(&folder->own, "checkpoint.bin"));
+        (resume && !mf_own_files_has(&folder->own, checkpoint));
     return others ? refuse(folder, "results of an older version, which kept no list of its files",
                            "remove the folder, or write elsewhere with -o")
                   : STATUS_OK;
@@ -88,7 +91,7 @@ static enum status check_listed(const struct run_folder *folder, bool resume) {
 
 static enum status check_resumed(const struct run_folder *folder) {
     char path[OUTPUT_PATH_SIZE];
-    mf_run_folder_file(folder, "checkpoint.bin", path);
+    mf_run_folder_file(folder, checkpoint, path);
     if (access(path, F_OK) == 0)
         return STATUS_OK;
     return mf_status_fail(STATUS_IO, "%s: %s: there is nothing to resume", path, strerror(errno));
@@ -104,9 +107,9 @@ static enum status check_writable(const struct run_folder *folder) {
 /// What any run writes.
 static enum status reserve_all(struct run_folder *folder, bool resume) {
     static const char *const names[] = {
-        "summary.json",  PROGRESS_FILE, "figures/", SNAPSHOT_FOLDER "/", STATES_FOLDER "/",
+        "summary.json", PROGRESS_FILE, "figures/", SNAPSHOT_FOLDER "/", STATES_FOLDER "/",
         "used.json", // a run that goes on reads it, and its checkpoint
-        "checkpoint.bin"};
+        checkpoint};
     for (size_t k = 0; k < sizeof names / sizeof *names - (resume ? 2 : 0); k++)
         TRY(mf_run_folder_reserve(folder, names[k]));
     return STATUS_OK;
@@ -130,7 +133,7 @@ enum status mf_run_folder_choose(struct run_folder *folder, enum run_kind kind, 
 enum status mf_run_folder_open(struct run_folder *folder, enum run_kind kind, const char *input,
                                const struct input_files *inputs,
                                const struct run_options *options) {
-    static const char *const read[] = {"used.json", "checkpoint.bin", NULL};
+    static const char *const read[] = {"used.json", checkpoint, NULL};
     TRY(mf_run_folder_choose(folder, kind, input, options));
     if (!ranks_lead())
         return STATUS_OK;
@@ -139,6 +142,8 @@ enum status mf_run_folder_open(struct run_folder *folder, enum run_kind kind, co
     TRY(mf_own_files_make(&folder->own, folder->path, OWN_FILES_OF_RUN));
     folder->own.inputs = inputs;
     folder->own.force = options->force;
+    if (options->resume)
+        folder->own.goes_on_from = checkpoint;
     TRY(check_writable(folder));
     TRY(mf_own_files_lock(&folder->own));
     TRY(check_listed(folder, options->resume));
@@ -183,6 +188,7 @@ enum status mf_run_folder_begin(struct run_folder *folder, uint64_t digest) {
 enum status mf_run_folder_take_over(struct run_folder *folder) {
     if (folder->settings)
         TRY(mf_output_publish(&folder->used));
+    folder->own.goes_on_from = checkpoint;
     return mf_own_files_sweep(&folder->own);
 }
 

@@ -124,6 +124,33 @@ static void test_forgotten_resume_keeps_the_simulation(void **state) {
     simulate(); // which is finished
 }
 
+static void interrupt(const char *folder) {
+    const struct run_program_how how = {.interrupt_with = SIGINT, .interrupt_after = 0.02};
+    run_program(&result, &how, (const char *const[]){"simulate", "long.json", "-o", folder, NULL});
+    assert_int_equal(result.code, 130);
+}
+
+/// --force would throw away what there is.
+static void test_file_in_the_way_of_a_run_that_goes_on(void **state) {
+    interrupt("out");
+    put(state, "out/rdf.tsv");
+    RUN_PROGRAM(&result, "simulate", "long.json", "--resume");
+    assert_refused("out/rdf.tsv is there, and mesofit did not write it: move it away, and go on "
+                   "with --resume\n",
+                   "mesofit: ");
+    assert_mine("out/rdf.tsv");
+    assert_int_equal(unlink("out/rdf.tsv"), 0);
+    // Names of snapshots are not known before they are written.
+    assert_int_equal(mkdir("new", 0777) | mkdir("new/snapshots", 0777), 0);
+    put(state, "new/snapshots/step_000000004.vtp");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "new", "--quiet");
+    assert_refused("new/snapshots/step_000000004.vtp is there, and mesofit did not write it: ",
+                   "move it away, and go on with --resume\n");
+    assert_int_equal(unlink("new/snapshots/step_000000004.vtp"), 0);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "new", "--quiet", "--resume");
+    run_program_assert_code(&result, 0);
+}
+
 static void test_resume_makes_no_folder(void **state) {
     (void)state;
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "nowhere", "--resume");
@@ -327,6 +354,7 @@ int main(void) {
         TEST(test_what_a_run_wrote_goes_with_it),
         TEST(test_files_that_were_changed_are_not_replaced),
         TEST(test_forgotten_resume_keeps_the_simulation),
+        TEST(test_file_in_the_way_of_a_run_that_goes_on),
         TEST(test_resume_makes_no_folder),
         TEST(test_results_without_a_list_are_left_alone),
         TEST(test_links_to_folders_are_refused),
