@@ -79,14 +79,14 @@ static enum status check_replaced(const struct run_folder *folder, enum run_kind
     return refuse(folder, "an unfinished fit", resumes);
 }
 
-/// Results that are in no list, as those of version 0.2.0: what else is of that run is not known.
-static enum status check_listed(const struct run_folder *folder, bool resume) {
-    const bool others =
-        (exists(folder, "used.json") && !mf_own_files_has(&folder->own, "used.json")) ||
-        (resume && !mf_own_files_has(&folder->own, checkpoint));
-    return others ? refuse(folder, "results of an older version, which kept no list of its files",
-                           "remove the folder, or write elsewhere with -o")
-                  : STATUS_OK;
+/// Results that are in no list, as in a copy without it, and of version 0.2.0: what else is of that
+/// run is not known.
+static enum status check_listed(const struct run_folder *folder) {
+    if (!exists(folder, "used.json") || mf_own_files_has(&folder->own, "used.json"))
+        return STATUS_OK;
+    return refuse(folder, "results without a list of files (" OWN_FILES_OF_RUN ")",
+                  exists(folder, checkpoint) ? "--resume may go on, -o OTHER keeps them"
+                                             : "write elsewhere with -o");
 }
 
 static enum status check_resumed(const struct run_folder *folder) {
@@ -146,7 +146,8 @@ enum status mf_run_folder_open(struct run_folder *folder, enum run_kind kind, co
         folder->own.goes_on_from = checkpoint;
     TRY(check_writable(folder));
     TRY(mf_own_files_lock(&folder->own));
-    TRY(check_listed(folder, options->resume));
+    if (!options->resume)
+        TRY(check_listed(folder));
     TRY(mf_own_files_spare_inputs(&folder->own, options->resume ? read : NULL));
     if (!options->resume && !options->force)
         TRY(check_replaced(folder, kind));
@@ -192,15 +193,18 @@ enum status mf_run_folder_take_over(struct run_folder *folder) {
     return mf_own_files_sweep(&folder->own);
 }
 
-/// A run that was killed may have saved itself and not its settings.
+/// The run has read its checkpoint, which is thus its own, and so are its settings, whether or not
+/// a list says so. A run that was killed may have saved itself and not its settings.
 enum status mf_run_folder_resume(struct run_folder *folder, uint64_t digest) {
     char path[OUTPUT_PATH_SIZE];
     uint64_t found, wanted = DIGEST_OF_NOTHING;
     TRY(mf_own_files_resume(&folder->own, digest));
+    if (exists(folder, checkpoint))
+        TRY(mf_own_files_adopt(&folder->own, checkpoint));
     mf_run_folder_file(folder, "used.json", path);
     mf_digest_add(&wanted, folder->settings, folder->settings_size);
     if (mf_checkpoint_digest(path, &found) == STATUS_OK && found == wanted)
-        return STATUS_OK;
+        return mf_own_files_adopt(&folder->own, "used.json");
     TRY(prepare_settings(folder));
     return mf_output_publish(&folder->used);
 }

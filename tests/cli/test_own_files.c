@@ -168,27 +168,60 @@ static void test_resume_makes_no_folder(void **state) {
 
 /// As of version 0.2.0, or a part of a folder that was copied.
 static void test_results_without_a_list_are_left_alone(void **state) {
-    static const char *const how[] = {NULL, "--force", "--resume"};
+    static const char *const how[] = {NULL, "--force"};
     (void)state;
     simulate();
     fit();
     assert_int_equal(unlink("out/.mesofit-run"), 0);
     assert_int_equal(unlink("fit/.mesofit-run"), 0);
-    put(state, "out/checkpoint.bin");
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 2; k++) {
         RUN_PROGRAM(&result, "simulate", "scene.json", how[k]);
-        assert_refused("out holds results of an older version, which kept no list of its files",
-                       "remove the folder, or write elsewhere with -o");
+        assert_refused("out holds results without a list of files (.mesofit-run): write elsewhere "
+                       "with -o\n",
+                       "mesofit: ");
         RUN_PROGRAM(&result, "fit", "run.json", "-o", "fit", how[k]);
-        assert_refused("fit holds results of an older version", "-o");
+        assert_refused("fit holds results without a list of files (.mesofit-run): --resume may go "
+                       "on, -o OTHER keeps them\n",
+                       "mesofit: ");
     }
-    results_assert_table("out/rdf.tsv", 3, 0);
+    // What else is of that run is not known.
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "fit", "--resume");
+    assert_refused("fit/summary.json is there, and mesofit did not write it: move it away, and go "
+                   "on with --resume\n",
+                   "mesofit: ");
+    assert_false(temporary_folder_exists("fit/.mesofit-run"));
+    // Nor is a checkpoint of somebody.
+    put(state, "out/checkpoint.bin");
+    assert_int_equal(system("/bin/rm -r out/summary.json out/snapshots out/*.tsv"), 0);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "--resume");
+    assert_refused("out/checkpoint.bin", "mesofit: ");
+    assert_mine("out/checkpoint.bin");
     assert_false(temporary_folder_exists("out/.mesofit-run"));
     // They are read as ever.
-    RUN_PROGRAM(&result, "compare", "out", "fit", "--quiet");
+    RUN_PROGRAM(&result, "compare", "fit", "--quiet");
     run_program_assert_code(&result, 0);
     RUN_PROGRAM(&result, "export", "fit", "--engine", "lammps", "--quiet");
     run_program_assert_code(&result, 0);
+}
+
+/// `cp out/* copy` leaves out a list, whose name begins with a dot.
+static void test_copy_without_a_list_goes_on(void **state) {
+    const struct run_program_how how = {.interrupt_with = SIGINT, .interrupt_after = 0.02};
+    (void)state;
+    interrupt("out");
+    assert_int_equal(system("/bin/mkdir copy && /bin/cp out/* copy"), 0);
+    RUN_PROGRAM(&result, "simulate", "long.json", "-o", "copy");
+    assert_refused("copy holds results without a list of files", "--resume may go on");
+    for (int times = 0; times < 2; times++) {
+        run_program(&result, &how,
+                    (const char *const[]){"simulate", "long.json", "-o", "copy", "--resume", NULL});
+        assert_int_equal(result.code, 130);
+    }
+    RUN_PROGRAM(&result, "simulate", "long.json", "-o", "copy");
+    assert_refused("copy holds an unfinished simulation", "--resume goes on");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "copy", "--force", "--quiet");
+    run_program_assert_code(&result, 0);
+    assert_false(temporary_folder_exists("copy/checkpoint.bin"));
 }
 
 static void test_links_to_folders_are_refused(void **state) {
@@ -357,6 +390,7 @@ int main(void) {
         TEST(test_file_in_the_way_of_a_run_that_goes_on),
         TEST(test_resume_makes_no_folder),
         TEST(test_results_without_a_list_are_left_alone),
+        TEST(test_copy_without_a_list_goes_on),
         TEST(test_links_to_folders_are_refused),
         TEST(test_folder_that_is_removed_is_not_made_anew),
         TEST(test_comparison_replaces_its_own_tables),
