@@ -123,14 +123,16 @@ static enum status spare_input(const struct own_files *own, const char *name) {
 }
 
 /// A run that can go on would be lost by --force.
-static const char *remedy_of(const struct own_files *own) {
+static const char *remedy_of(const struct own_files *own, enum own_file_found found) {
     const char *from = own->goes_on_from;
-    return from && mf_own_file_look(own->list.place, from, NULL) != OWN_FILE_ABSENT
-               ? "move it away, and go on with --resume"
+    if (from && mf_own_file_look(own->list.place, from, NULL) != OWN_FILE_ABSENT)
+        return "move it away, and go on with --resume";
+    return found == OWN_FILE_FOLDER
+               ? "move it away, or write elsewhere with -o"
                : "move it away, or write elsewhere with -o; --force replaces it";
 }
 
-/// Whether a file may be replaced. @param[in] entry  its own, or NULL: it is not
+/// Whether a file may be replaced; a folder never is. @param[in] entry  its own, or NULL: it is not
 static enum status check_replaced(const struct own_files *own, const char *name,
                                   const struct own_entry *entry) {
     const enum own_file_found found =
@@ -138,12 +140,13 @@ static enum status check_replaced(const struct own_files *own, const char *name,
     if (found == OWN_FILE_ABSENT)
         return STATUS_OK;
     TRY(spare_input(own, name));
-    if (found == OWN_FILE_AS_LEFT || own->force)
+    if (found == OWN_FILE_AS_LEFT || (found == OWN_FILE_OTHER && own->force))
         return STATUS_OK;
-    return mf_status_fail(STATUS_BAD_INPUT, "%s/%s %s: %s", own->folder, name,
-                          entry ? "was changed since mesofit wrote it"
-                                : "is there, and mesofit did not write it",
-                          remedy_of(own));
+    const char *what = found == OWN_FILE_FOLDER ? "is a folder"
+                       : entry                  ? "was changed since mesofit wrote it"
+                                                : "is there, and mesofit did not write it";
+    return mf_status_fail(STATUS_BAD_INPUT, "%s/%s %s: %s", own->folder, name, what,
+                          remedy_of(own, found));
 }
 
 static bool is_among(const char *const *names, const char *name) {
@@ -189,8 +192,10 @@ enum status mf_own_files_begin(struct own_files *own, uint64_t digest) {
 /// What an earlier run left, if nobody has changed it meanwhile.
 static enum status remove_earlier(struct own_files *own, struct own_entry *entry, bool folder) {
     const int place = own->list.place;
-    if (!entry->earlier || entry->claimed || mf_own_file_is_folder(entry->name) != folder ||
-        (!folder && !own->force && mf_own_file_look(place, entry->name, entry) == OWN_FILE_OTHER))
+    if (!entry->earlier || entry->claimed || mf_own_file_is_folder(entry->name) != folder)
+        return STATUS_OK;
+    const enum own_file_found found = mf_own_file_look(place, entry->name, entry);
+    if (!folder && (found == OWN_FILE_FOLDER || (found == OWN_FILE_OTHER && !own->force)))
         return STATUS_OK;
     const int error = mf_own_file_remove(place, entry->name);
     entry->gone = error == 0 || error == ENOENT || error == ENOTDIR || error == ELOOP; // a link

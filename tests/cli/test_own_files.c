@@ -108,6 +108,25 @@ static void test_files_that_were_changed_are_not_replaced(void **state) {
     results_assert_table("out/rdf.tsv", 3, 0);
 }
 
+/// Nothing of the old results goes before the run is refused.
+static void test_folders_in_the_place_of_files_are_refused(void **state) {
+    static const char *const how[] = {NULL, "--force"};
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        assert_int_equal(mkdir("new", 0777) | mkdir("new/rdf.tsv", 0777), 0);
+        RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "new", "--quiet", how[k]);
+        assert_refused("new/rdf.tsv is a folder: move it away, or write elsewhere with -o\n",
+                       "mesofit: ");
+        assert_int_equal(rmdir("new/rdf.tsv") | rmdir("new"), 0);
+    }
+    simulate();
+    assert_int_equal(unlink("out/configuration.tsv") | mkdir("out/configuration.tsv", 0777), 0);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "--quiet", "--force");
+    assert_refused("out/configuration.tsv is a folder: move it away", "-o");
+    assert_true(temporary_folder_exists("out/summary.json"));
+    results_assert_table("out/rdf.tsv", 3, 0);
+}
+
 /// An interrupted simulation is worth as much as an interrupted fit.
 static void test_forgotten_resume_keeps_the_simulation(void **state) {
     const struct run_program_how how = {.interrupt_with = SIGINT, .interrupt_after = 0.02};
@@ -386,6 +405,7 @@ int main(void) {
         TEST(test_files_of_a_person_stay_whatever_they_are_called),
         TEST(test_what_a_run_wrote_goes_with_it),
         TEST(test_files_that_were_changed_are_not_replaced),
+        TEST(test_folders_in_the_place_of_files_are_refused),
         TEST(test_forgotten_resume_keeps_the_simulation),
         TEST(test_file_in_the_way_of_a_run_that_goes_on),
         TEST(test_resume_makes_no_folder),
