@@ -341,8 +341,16 @@ static void test_export_replaces_its_own_files(void **state) {
     assert_mine("hoomd/B-B.txt");
     // An export of version 0.2.0 kept no list.
     assert_int_equal(unlink("hoomd/.mesofit-export"), 0);
-    run_export("out", "--force", 2);
-    assert_refused("hoomd: holds files that are not of an export", "-o");
+    run_export("out", NULL, 2);
+    assert_refused("hoomd: holds files, and no list of an export (.mesofit-export): ",
+                   "--force replaces those of the same names");
+    put(state, "hoomd/run.py");
+    run_export("out", "--force", 0);
+    assert_mine("hoomd/B-B.txt");
+    run_export("out", NULL, 0);
+    char *text = temporary_folder_read("hoomd/run.py");
+    assert_contains(text, "hoomd");
+    free(text);
 }
 
 static void test_measurement_replaces_its_own_files(void **state) {
