@@ -108,6 +108,33 @@ static void test_files_that_were_changed_are_not_replaced(void **state) {
     results_assert_table("out/rdf.tsv", 3, 0);
 }
 
+static const char mixture[] =
+    "{\"seed\": 1, \"box\": [3, 3, 3], \"particles\": {\"types\": {\"A\": 40, \"B\": 41}},\n"
+    "\"temperature\": 1, \"time_step\": 0.02, \"conservative\": {\"law\": \"soft-repulsion\", "
+    "\"a\": 25},\n\"measure\": {\"equilibration\": 2, \"samples\": 4, \"every\": 1}}\n";
+
+/// Not after hours of work: a run that is refused has made no settings.
+static void test_names_are_refused_at_the_start(void **state) {
+    static const char *const names[] = {"potential.tsv", "potential_history.tsv",
+                                        "rdf.tsv",       "configuration.tsv",
+                                        "history.tsv",   "summary.json"};
+    char path[128];
+    small_inputs_write(*state, "mixture.json", mixture, NULL, NULL);
+    assert_int_equal(mkdir("mixed", 0777) | mkdir("fit", 0777), 0);
+    put(state, "mixed/rdf_A-B.tsv");
+    RUN_PROGRAM(&result, "simulate", "mixture.json", "-o", "mixed", "--quiet");
+    assert_refused("mixed/rdf_A-B.tsv is there, and mesofit did not write it", "-o");
+    assert_false(temporary_folder_exists("mixed/used.json"));
+    for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
+        snprintf(path, sizeof path, "fit/%s", names[k]);
+        put(state, path);
+        RUN_PROGRAM(&result, "fit", "run.json", "-o", "fit", "--quiet");
+        assert_refused(path, "mesofit: fit/");
+        assert_false(temporary_folder_exists("fit/used.json"));
+        assert_int_equal(unlink(path), 0);
+    }
+}
+
 /// Nothing of the old results goes before the run is refused.
 static void test_folders_in_the_place_of_files_are_refused(void **state) {
     static const char *const how[] = {NULL, "--force"};
@@ -127,12 +154,17 @@ static void test_folders_in_the_place_of_files_are_refused(void **state) {
     results_assert_table("out/rdf.tsv", 3, 0);
 }
 
+static void interrupt(const char *folder, const char *how) {
+    run_program(&result,
+                &(struct run_program_how){.interrupt_with = SIGINT, .interrupt_after = 0.02},
+                (const char *const[]){"simulate", "long.json", "-o", folder, how, NULL});
+    assert_int_equal(result.code, 130);
+}
+
 /// An interrupted simulation is worth as much as an interrupted fit.
 static void test_forgotten_resume_keeps_the_simulation(void **state) {
-    const struct run_program_how how = {.interrupt_with = SIGINT, .interrupt_after = 0.02};
     (void)state;
-    run_program(&result, &how, (const char *const[]){"simulate", "long.json", NULL});
-    assert_int_equal(result.code, 130);
+    interrupt("out", NULL);
     RUN_PROGRAM(&result, "simulate", "long.json");
     assert_refused("out holds an unfinished simulation: --resume goes on, --force begins anew",
                    "mesofit: ");
@@ -143,15 +175,9 @@ static void test_forgotten_resume_keeps_the_simulation(void **state) {
     simulate(); // which is finished
 }
 
-static void interrupt(const char *folder) {
-    const struct run_program_how how = {.interrupt_with = SIGINT, .interrupt_after = 0.02};
-    run_program(&result, &how, (const char *const[]){"simulate", "long.json", "-o", folder, NULL});
-    assert_int_equal(result.code, 130);
-}
-
 /// --force would throw away what there is.
 static void test_file_in_the_way_of_a_run_that_goes_on(void **state) {
-    interrupt("out");
+    interrupt("out", NULL);
     put(state, "out/rdf.tsv");
     RUN_PROGRAM(&result, "simulate", "long.json", "--resume");
     assert_refused("out/rdf.tsv is there, and mesofit did not write it: move it away, and go on "
@@ -225,17 +251,13 @@ static void test_results_without_a_list_are_left_alone(void **state) {
 
 /// `cp out/* copy` leaves out a list, whose name begins with a dot.
 static void test_copy_without_a_list_goes_on(void **state) {
-    const struct run_program_how how = {.interrupt_with = SIGINT, .interrupt_after = 0.02};
     (void)state;
-    interrupt("out");
+    interrupt("out", NULL);
     assert_int_equal(system("/bin/mkdir copy && /bin/cp out/* copy"), 0);
     RUN_PROGRAM(&result, "simulate", "long.json", "-o", "copy");
     assert_refused("copy holds results without a list of files", "--resume may go on");
-    for (int times = 0; times < 2; times++) {
-        run_program(&result, &how,
-                    (const char *const[]){"simulate", "long.json", "-o", "copy", "--resume", NULL});
-        assert_int_equal(result.code, 130);
-    }
+    for (int times = 0; times < 2; times++)
+        interrupt("copy", "--resume");
     RUN_PROGRAM(&result, "simulate", "long.json", "-o", "copy");
     assert_refused("copy holds an unfinished simulation", "--resume goes on");
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "copy", "--force", "--quiet");
@@ -316,10 +338,6 @@ static void run_export(const char *from, const char *option, int code) {
 }
 
 static void test_export_replaces_its_own_files(void **state) {
-    static const char mixture[] =
-        "{\"seed\": 1, \"box\": [3, 3, 3], \"particles\": {\"types\": {\"A\": 40, \"B\": 41}},\n"
-        "\"temperature\": 1, \"time_step\": 0.02, \"conservative\": {\"law\": \"soft-repulsion\", "
-        "\"a\": 25},\n\"measure\": {\"equilibration\": 2, \"samples\": 4, \"every\": 1}}\n";
     simulate();
     small_inputs_write(*state, "scene.json", mixture, NULL, NULL);
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "mixed", "--quiet");
@@ -413,6 +431,7 @@ int main(void) {
         TEST(test_files_of_a_person_stay_whatever_they_are_called),
         TEST(test_what_a_run_wrote_goes_with_it),
         TEST(test_files_that_were_changed_are_not_replaced),
+        TEST(test_names_are_refused_at_the_start),
         TEST(test_folders_in_the_place_of_files_are_refused),
         TEST(test_forgotten_resume_keeps_the_simulation),
         TEST(test_file_in_the_way_of_a_run_that_goes_on),
