@@ -72,8 +72,8 @@ static enum status check_pair_names(const struct export_job *job) {
     return STATUS_OK;
 }
 
-/// The folder is empty, or an export wrote it that nobody has changed; other files beside it, as
-/// those of the program that has run there, stay.
+/// The folder is empty, or an export wrote it that nobody has changed, unless `force`; other files
+/// beside it, as those of the program that has run there, stay.
 static enum status open_folder(struct own_files *own, const struct export_job *job, bool force) {
     char path[OUTPUT_PATH_SIZE];
     struct stat found;
@@ -83,10 +83,11 @@ static enum status open_folder(struct own_files *own, const struct export_job *j
                               job->folder);
     TRY(mf_own_files_make(own, job->folder, OWN_FILES_OF_EXPORT));
     own->force = force;
-    if (!own->list.there && mf_own_files_has_others(own))
+    if (!own->list.there && !force && mf_own_files_has_others(own))
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "%s: holds files that are not of an export; give another folder with "
-                              "-o",
+                              "%s: holds files, and no list of an export (" OWN_FILES_OF_EXPORT
+                              "): give another folder with -o; --force replaces those of the "
+                              "same names",
                               job->folder);
     TRY(mf_own_files_lock(own));
     return mf_own_files_check(own, NULL);

@@ -61,6 +61,8 @@ enum own_file_found mf_own_file_look(int place, const char *name, const struct o
                       (!entry->digested || (digest_file(folder, last, entry->bytes, &digest) &&
                                             digest == entry->digest));
     close(folder);
+    if (there && S_ISDIR(about.st_mode) && !mf_own_file_is_folder(name))
+        return OWN_FILE_FOLDER;
     return same ? OWN_FILE_AS_LEFT : there ? OWN_FILE_OTHER : OWN_FILE_ABSENT;
 }
 

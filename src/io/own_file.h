@@ -4,9 +4,10 @@
 
 #include "io/own_list.h"
 
-enum own_file_found { OWN_FILE_ABSENT, OWN_FILE_AS_LEFT, OWN_FILE_OTHER };
+enum own_file_found { OWN_FILE_ABSENT, OWN_FILE_AS_LEFT, OWN_FILE_OTHER, OWN_FILE_FOLDER };
 
-/// What is there in the place of a file. @param[in] entry  of the list, or NULL: it is not in it
+/// What is there in the place of a file, or of a folder, which is never OWN_FILE_FOLDER. @param[in]
+/// entry  of the list, or NULL: it is not in it
 enum own_file_found mf_own_file_look(int place, const char *name, const struct own_entry *entry);
 
 /// Set size and digest of an entry to those of its file, whose size is known alone if it has more

@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "base/ranks.h"
 #include "io/own_file.h"
+#include "io/own_partial.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -121,7 +122,17 @@ static enum status spare_input(const struct own_files *own, const char *name) {
     return own->inputs ? mf_input_files_spare(own->inputs, path) : STATUS_OK;
 }
 
-/// Whether a file may be replaced. @param[in] entry  its own, or NULL: it is not
+/// A run that can go on would be lost by --force.
+static const char *remedy_of(const struct own_files *own, enum own_file_found found) {
+    const char *from = own->goes_on_from;
+    if (from && mf_own_file_look(own->list.place, from, NULL) != OWN_FILE_ABSENT)
+        return "move it away, and go on with --resume";
+    return found == OWN_FILE_FOLDER
+               ? "move it away, or write elsewhere with -o"
+               : "move it away, or write elsewhere with -o; --force replaces it";
+}
+
+/// Whether a file may be replaced; a folder never is. @param[in] entry  its own, or NULL: it is not
 static enum status check_replaced(const struct own_files *own, const char *name,
                                   const struct own_entry *entry) {
     const enum own_file_found found =
@@ -129,12 +140,13 @@ static enum status check_replaced(const struct own_files *own, const char *name,
     if (found == OWN_FILE_ABSENT)
         return STATUS_OK;
     TRY(spare_input(own, name));
-    if (found == OWN_FILE_AS_LEFT || own->force)
+    if (found == OWN_FILE_AS_LEFT || (found == OWN_FILE_OTHER && own->force))
         return STATUS_OK;
-    return mf_status_fail(
-        STATUS_BAD_INPUT, "%s/%s %s: move it away, or write elsewhere with -o; --force replaces it",
-        own->folder, name,
-        entry ? "was changed since mesofit wrote it" : "is there, and mesofit did not write it");
+    const char *what = found == OWN_FILE_FOLDER ? "is a folder"
+                       : entry                  ? "was changed since mesofit wrote it"
+                                                : "is there, and mesofit did not write it";
+    return mf_status_fail(STATUS_BAD_INPUT, "%s/%s %s: %s", own->folder, name, what,
+                          remedy_of(own, found));
 }
 
 static bool is_among(const char *const *names, const char *name) {
@@ -181,8 +193,10 @@ enum status mf_own_files_begin(struct own_files *own, uint64_t digest) {
 static enum status remove_earlier(struct own_files *own, struct own_entry *entry, bool folder) {
     const int place = own->list.place;
     if (entry->gone || !entry->earlier || entry->claimed ||
-        mf_own_file_is_folder(entry->name) != folder ||
-        (!folder && !own->force && mf_own_file_look(place, entry->name, entry) == OWN_FILE_OTHER))
+        mf_own_file_is_folder(entry->name) != folder)
+        return STATUS_OK;
+    const enum own_file_found found = mf_own_file_look(place, entry->name, entry);
+    if (!folder && (found == OWN_FILE_FOLDER || (found == OWN_FILE_OTHER && !own->force)))
         return STATUS_OK;
     const int error = mf_own_file_remove(place, entry->name);
     entry->gone = error == 0 || error == ENOENT || error == ENOTDIR || error == ELOOP; // a link
@@ -191,41 +205,9 @@ static enum status remove_earlier(struct own_files *own, struct own_entry *entry
     return mf_status_fail(STATUS_IO, "%s/%s: %s", own->folder, entry->name, strerror(error));
 }
 
-/// What processes that were killed had begun to write in one folder: "rdf.tsv.12-3.partial" and the
-/// like. @param[in] folder  its name, with / at its end, or ""
-static void remove_partial(struct own_files *own, const char *folder) {
-    char path[2 * OUTPUT_PATH_SIZE], name[OUTPUT_PATH_SIZE], whole[OUTPUT_PATH_SIZE];
-    struct dirent **entries;
-    snprintf(path, sizeof path, "%s/%s", own->folder, folder);
-    const int count = scandir(path, &entries, NULL, NULL);
-    for (int k = 0; k < count; k++) {
-        const size_t stem = mf_output_partial_stem(entries[k]->d_name);
-        snprintf(name, sizeof name, "%.3800s%s", folder, entries[k]->d_name);
-        snprintf(whole, sizeof whole, "%.3800s%.*s", folder, (int)stem, entries[k]->d_name);
-        if (stem > 0 && mf_own_list_find(&own->list, whole))
-            mf_own_file_remove(own->list.place, name);
-        free(entries[k]);
-    }
-    if (count >= 0)
-        free(entries);
-}
-
-static void remove_all_partial(struct own_files *own) {
-    char before[OUTPUT_PATH_SIZE] = "";
-    remove_partial(own, "");
-    for (size_t k = 0; k < own->list.count; k++) {
-        char folder[OUTPUT_PATH_SIZE];
-        const char *name = own->list.entry[k].name, *slash = strrchr(name, '/');
-        snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - name) + 1 : 0, name);
-        if (strcmp(folder, before) != 0)
-            remove_partial(own, folder);
-        memcpy(before, folder, sizeof before);
-    }
-}
-
 enum status mf_own_files_sweep(struct own_files *own) {
     struct own_list *list = &own->list;
-    remove_all_partial(own);
+    mf_own_partial_remove(&own->list);
     for (int folders = 0; folders < 2; folders++)
         for (size_t k = list->count; k-- > 0;) // a folder came before those in it
             TRY(remove_earlier(own, &list->entry[k], folders));
@@ -242,8 +224,20 @@ enum status mf_own_files_resume(struct own_files *own, uint64_t digest) {
         TRY(mf_own_list_keep(&own->list));
     else if (earlier)
         return mf_own_files_sweep(own);
-    remove_all_partial(own);
+    mf_own_partial_remove(&own->list);
     return STATUS_OK;
+}
+
+enum status mf_own_files_adopt(struct own_files *own, const char *name) {
+    struct own_list *list = &own->list;
+    struct own_entry *entry = mf_own_list_find(list, name);
+    int64_t bytes = most_read;
+    if (entry && mf_own_file_look(list->place, name, entry) == OWN_FILE_AS_LEFT)
+        return STATUS_OK;
+    if (entry == NULL)
+        TRY(mf_own_list_add(list, name, &entry));
+    mf_own_file_seal(list->place, entry, &bytes);
+    return mf_own_list_enter(list, &entry, 1);
 }
 
 /// Tell the list how the files were left that this process has written. Where that fails, their
@@ -297,7 +291,7 @@ void mf_own_files_close(struct own_files *own) {
 
 void mf_own_files_remove_all(struct own_files *own) {
     struct own_list *list = &own->list;
-    remove_all_partial(own);
+    mf_own_partial_remove(&own->list);
     for (int folders = 0; folders < 2; folders++)
         for (size_t k = list->count; k-- > 0;)
             if (!list->entry[k].gone && mf_own_file_is_folder(list->entry[k].name) == folders)

@@ -22,7 +22,8 @@ struct own_files {
     char folder[OUTPUT_PATH_SIZE];
     struct own_list list;
     const struct input_files *inputs; ///< that are never replaced or removed, or NULL
-    bool force;                       ///< also what is not its own may be replaced
+    const char *goes_on_from; ///< the file that a run goes on from, of this name; NULL: none does
+    bool force;               ///< also what is not its own may be replaced
     bool open;
     bool alone; ///< locked
     bool made;  ///< the folder
@@ -61,6 +62,9 @@ enum status mf_own_files_sweep(struct own_files *own) MUST_USE;
 
 /// Go on with a run: the same if it had begun, and else nothing is of earlier runs. Fails: IO.
 enum status mf_own_files_resume(struct own_files *own, uint64_t digest) MUST_USE;
+
+/// Enter a file, whoever wrote it: as it is, it is known to be of this run. Fails: IO, NO_MEMORY.
+enum status mf_own_files_adopt(struct own_files *own, const char *name) MUST_USE;
 
 /// Close the folder. What was begun and not swept stays its own; a folder that was made and in
 /// which nothing was written is removed.

@@ -25,6 +25,9 @@ static bool exists(const struct run_folder *folder, const char *name) {
 
 // May it be written? ------------------------------------------------------------------------------
 
+/// What a run goes on from.
+static const char checkpoint[] = "checkpoint.bin";
+
 /// Whether the object in a JSON file has this key, with this text if one is given. A file that
 /// cannot be read has not.
 static bool says(const struct run_folder *folder, const char *name, const char *key,
@@ -77,7 +80,7 @@ static enum status check_replaced(const struct run_folder *folder, enum run_kind
     static const char replaces[] = "--force replaces it, -o OTHER keeps it",
                       resumes[] = "--resume goes on, --force begins anew";
     const bool summary = mf_own_files_has(&folder->own, "summary.json");
-    const bool saved = mf_own_files_has(&folder->own, "checkpoint.bin");
+    const bool saved = mf_own_files_has(&folder->own, checkpoint);
     if (!summary && !saved)
         return STATUS_OK;
     if (is_measurement(folder))
@@ -92,19 +95,19 @@ static enum status check_replaced(const struct run_folder *folder, enum run_kind
     return refuse(folder, "an unfinished fit", resumes);
 }
 
-/// Results that are in no list, as those of version 0.2.0: what else is of that run is not known.
-static enum status check_listed(const struct run_folder *folder, bool resume) {
-    const bool others =
-        (exists(folder, "used.json") && !mf_own_files_has(&folder->own, "used.json")) ||
-        (resume && !mf_own_files_has(&folder->own, "checkpoint.bin"));
-    return others ? refuse(folder, "results of an older version, which kept no list of its files",
-                           "remove the folder, or write elsewhere with -o")
-                  : STATUS_OK;
+/// Results that are in no list, as in a copy without it, and of version 0.2.0: what else is of that
+/// run is not known.
+static enum status check_listed(const struct run_folder *folder) {
+    if (!exists(folder, "used.json") || mf_own_files_has(&folder->own, "used.json"))
+        return STATUS_OK;
+    return refuse(folder, "results without a list of files (" OWN_FILES_OF_RUN ")",
+                  exists(folder, checkpoint) ? "--resume may go on, -o OTHER keeps them"
+                                             : "write elsewhere with -o");
 }
 
 static enum status check_resumed(const struct run_folder *folder) {
     char path[OUTPUT_PATH_SIZE];
-    mf_run_folder_file(folder, "checkpoint.bin", path);
+    mf_run_folder_file(folder, checkpoint, path);
     if (access(path, F_OK) == 0)
         return STATUS_OK;
     return mf_status_fail(STATUS_IO, "%s: %s: there is nothing to resume", path, strerror(errno));
@@ -120,9 +123,9 @@ static enum status check_writable(const struct run_folder *folder) {
 /// What any run writes.
 static enum status reserve_all(struct run_folder *folder, bool resume) {
     static const char *const names[] = {
-        "summary.json",  PROGRESS_FILE, "figures/", SNAPSHOT_FOLDER "/", STATES_FOLDER "/",
+        "summary.json", PROGRESS_FILE, "figures/", SNAPSHOT_FOLDER "/", STATES_FOLDER "/",
         "used.json", // a run that goes on reads it, and its checkpoint
-        "checkpoint.bin"};
+        checkpoint};
     for (size_t k = 0; k < sizeof names / sizeof *names - (resume ? 2 : 0); k++)
         TRY(mf_run_folder_reserve(folder, names[k]));
     return STATUS_OK;
@@ -146,7 +149,7 @@ enum status mf_run_folder_choose(struct run_folder *folder, enum run_kind kind, 
 enum status mf_run_folder_open(struct run_folder *folder, enum run_kind kind, const char *input,
                                const struct input_files *inputs,
                                const struct run_options *options) {
-    static const char *const read[] = {"used.json", "checkpoint.bin", NULL};
+    static const char *const read[] = {"used.json", checkpoint, NULL};
     TRY(mf_run_folder_choose(folder, kind, input, options));
     if (!ranks_lead())
         return STATUS_OK;
@@ -155,9 +158,12 @@ enum status mf_run_folder_open(struct run_folder *folder, enum run_kind kind, co
     TRY(mf_own_files_make(&folder->own, folder->path, OWN_FILES_OF_RUN));
     folder->own.inputs = inputs;
     folder->own.force = options->force;
+    if (options->resume)
+        folder->own.goes_on_from = checkpoint;
     TRY(check_writable(folder));
     TRY(mf_own_files_lock(&folder->own));
-    TRY(check_listed(folder, options->resume));
+    if (!options->resume)
+        TRY(check_listed(folder));
     TRY(mf_own_files_spare_inputs(&folder->own, options->resume ? read : NULL));
     if (!options->resume && !options->force)
         TRY(check_replaced(folder, kind));
@@ -199,18 +205,22 @@ enum status mf_run_folder_begin(struct run_folder *folder, uint64_t digest) {
 enum status mf_run_folder_take_over(struct run_folder *folder) {
     if (folder->settings)
         TRY(mf_output_publish(&folder->used));
+    folder->own.goes_on_from = checkpoint;
     return mf_own_files_sweep(&folder->own);
 }
 
-/// A run that was killed may have saved itself and not its settings.
+/// The run has read its checkpoint, which is thus its own, and so are its settings, whether or not
+/// a list says so. A run that was killed may have saved itself and not its settings.
 enum status mf_run_folder_resume(struct run_folder *folder, uint64_t digest) {
     char path[OUTPUT_PATH_SIZE];
     uint64_t found, wanted = DIGEST_OF_NOTHING;
     TRY(mf_own_files_resume(&folder->own, digest));
+    if (exists(folder, checkpoint))
+        TRY(mf_own_files_adopt(&folder->own, checkpoint));
     mf_run_folder_file(folder, "used.json", path);
     mf_digest_add(&wanted, folder->settings, folder->settings_size);
     if (mf_checkpoint_digest(path, &found) == STATUS_OK && found == wanted)
-        return STATUS_OK;
+        return mf_own_files_adopt(&folder->own, "used.json");
     TRY(prepare_settings(folder));
     return mf_output_publish(&folder->used);
 }

@@ -44,7 +44,7 @@ enum status mf_run_folder_choose(struct run_folder *folder, enum run_kind kind, 
 /// runs in it, a file that the run reads would be replaced, there is nothing to resume, or there
 /// are results that only --force may replace: those of an earlier fit, an unfinished simulation, a
 /// simulation if this is a fit, and what a person has changed since; results that no list says the
-/// program wrote; IO. Tested: test_folder.
+/// program wrote, unless the run goes on; IO. Tested: test_folder.
 enum status mf_run_folder_open(struct run_folder *folder, enum run_kind kind, const char *input,
                                const struct input_files *inputs,
                                const struct run_options *options) MUST_USE;

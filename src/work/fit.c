@@ -9,6 +9,7 @@
 #include "io/checkpoint_pace.h"
 #include "report/fit_output.h"
 #include "report/fit_report.h"
+#include "report/fit_reserve.h"
 #include "report/fit_verdict.h"
 #include "report/history.h"
 #include "report/progress.h"
@@ -135,9 +136,9 @@ static enum status read_and_create(struct run *run, const char *file,
     TRY(mf_fit_verify_folders(&run->fit, &run->folder));
     TRY(mf_fit_states_normalise(&run->fit));
     const enum status status = create(run);
-    return status == STATUS_OK
-               ? STATUS_OK
-               : mf_status_prefix(mf_units_mark(&run->fit.scene.units, status), "%s", file);
+    if (status != STATUS_OK)
+        return mf_status_prefix(mf_units_mark(&run->fit.scene.units, status), "%s", file);
+    return mf_fit_reserve_curves(&run->fit, &run->unknowns, &run->folder);
 }
 
 static enum status begin_folder(struct run *run, bool resume) {

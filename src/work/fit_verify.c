@@ -4,26 +4,17 @@
 #include "input/fit_states.h"
 #include "problem/unknowns.h"
 #include "report/fit_output.h"
+#include "report/fit_reserve.h"
 #include "report/fit_verdict.h"
-
-/// The tables of a verification, which come at the end.
-static enum status reserve(const struct fit_file *fit, size_t s, struct run_folder *folder) {
-    const struct fit_file *state = s == 0 ? fit : &fit->other[s - 1];
-    for (int kind = 0; mf_targets_name(kind); kind++) {
-        char name[OUTPUT_PATH_SIZE];
-        snprintf(name, sizeof name, "%s%s%s%s.tsv", s > 0 ? STATES_FOLDER "/" : "",
-                 s > 0 ? state->name : "", s > 0 ? "/" : "", mf_targets_name(kind));
-        if (targets_ask(&state->problem.targets, (enum target_kind)kind))
-            TRY(mf_run_folder_reserve(folder, name));
-    }
-    return STATUS_OK;
-}
 
 enum status mf_fit_verify_folders(const struct fit_file *fit, struct run_folder *folder) {
     for (size_t s = 0; s <= fit->others; s++) {
         if (s > 0)
             TRY(mf_run_folder_check_state(folder, fit->other[s - 1].name));
-        TRY(reserve(fit, s, folder));
+        char inside[OUTPUT_PATH_SIZE] = "";
+        if (s > 0)
+            snprintf(inside, sizeof inside, STATES_FOLDER "/%.3000s/", fit->other[s - 1].name);
+        TRY(mf_fit_reserve_observables(s == 0 ? fit : &fit->other[s - 1], inside, folder));
     }
     return STATUS_OK;
 }

@@ -231,7 +231,8 @@ static enum status begin_folder(struct run *run, bool resume) {
 static enum status prepare(struct run *run, const char *file, const struct run_options *options) {
     TRY(read_file(run, file, options));
     TRY(mf_run_folder_open(&run->folder, RUN_SIMULATION, file, &run->inputs, options));
-    TRY(mf_simulate_observables_reserve(&run->observables, &run->folder));
+    TRY(mf_simulate_observables_reserve(&run->observables, &run->scene.setup.composition,
+                                        &run->folder));
     TRY(begin_measuring(run, file));
     TRY(keep_settings(run));
     return begin_folder(run, options->resume);

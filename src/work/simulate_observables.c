@@ -2,6 +2,7 @@
 #include "work/simulate_observables.h"
 
 #include "io/checkpoint.h"
+#include "observe/rdf_observable.h"
 
 #include <string.h>
 
@@ -108,11 +109,30 @@ void mf_simulate_observables_open(const struct simulate_observables *observables
             use->observable->open(use->state, results);
 }
 
+/// A table of each pair type, "rdf_*-*.tsv", if there are several.
+static enum status reserve_pairs(const char *file, const struct composition *composition,
+                                 struct run_folder *folder) {
+    const char *stars = strstr(file, "*-*");
+    for (int pair = 0;
+         stars && composition_is_mixed(composition) && pair < mf_composition_pairs(composition);
+         pair++) {
+        char of[COMPOSITION_PAIR_NAME_SIZE], name[COMPOSITION_PAIR_NAME_SIZE + 128];
+        mf_composition_pair_name(composition, pair, of);
+        snprintf(name, sizeof name, "%.*s%s%.60s", (int)(stars - file), file, of, stars + 3);
+        if (mf_rdf_observable_has(composition, pair))
+            TRY(mf_run_folder_reserve(folder, name));
+    }
+    return STATUS_OK;
+}
+
 enum status mf_simulate_observables_reserve(const struct simulate_observables *observables,
+                                            const struct composition *composition,
                                             struct run_folder *folder) {
     for (const struct observable_use *use = observables->use; use->observable; use++)
         for (const char *const *file = use->observable->files; file && *file; file++)
-            if (strchr(*file, '*') == NULL)
+            if (strchr(*file, '*'))
+                TRY(reserve_pairs(*file, composition, folder));
+            else
                 TRY(mf_run_folder_reserve(folder, *file));
     return STATUS_OK;
 }

@@ -36,9 +36,9 @@ enum status mf_simulate_observables_begin_anew(struct simulate_observables *obse
 void mf_simulate_observables_open(const struct simulate_observables *observables,
                                   const struct observable_results *results);
 
-/// Refuse now a table that could not be written, as far as its name is known. Fails: as
-/// mf_run_folder_reserve.
+/// Refuse now a table that could not be written. Fails: as mf_run_folder_reserve.
 enum status mf_simulate_observables_reserve(const struct simulate_observables *observables,
+                                            const struct composition *composition,
                                             struct run_folder *folder) MUST_USE;
 
 enum { SIMULATE_MOST_SPANS = SIMULATION_SPANS + OBSERVABLES_MOST * OBSERVABLE_MOST_SPANS };

@@ -161,7 +161,7 @@ static void test_folders_of_others_are_spared(void **state) {
     temporary_folder_write(*state, "gromacs/topol.top", "mine", 4);
     RUN_PROGRAM(&result, "export", "out", "--engine", "gromacs");
     assert_int_equal(result.code, 2);
-    assert_contains(result.err, "gromacs: holds files that are not of an export");
+    assert_contains(result.err, "gromacs: holds files, and no list of an export");
     temporary_folder_write(*state, "gromacs/README", "of mine", 7);
     RUN_PROGRAM(&result, "export", "out", "--engine", "gromacs");
     assert_int_equal(result.code, 2);

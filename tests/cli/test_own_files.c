@@ -119,12 +119,63 @@ static void test_fit_in_which_a_file_was_changed_is_told_with_it(void **state) {
     assert_mine("fit/potential.tsv");
 }
 
+static const char mixture[] =
+    "{\"seed\": 1, \"box\": [3, 3, 3], \"particles\": {\"types\": {\"A\": 40, \"B\": 41}},\n"
+    "\"temperature\": 1, \"time_step\": 0.02, \"conservative\": {\"law\": \"soft-repulsion\", "
+    "\"a\": 25},\n\"measure\": {\"equilibration\": 2, \"samples\": 4, \"every\": 1}}\n";
+
+/// Not after hours of work: a run that is refused has made no settings.
+static void test_names_are_refused_at_the_start(void **state) {
+    static const char *const names[] = {"potential.tsv", "potential_history.tsv",
+                                        "rdf.tsv",       "configuration.tsv",
+                                        "history.tsv",   "summary.json"};
+    char path[128];
+    small_inputs_write(*state, "mixture.json", mixture, NULL, NULL);
+    assert_int_equal(mkdir("mixed", 0777) | mkdir("fit", 0777), 0);
+    put(state, "mixed/rdf_A-B.tsv");
+    RUN_PROGRAM(&result, "simulate", "mixture.json", "-o", "mixed", "--quiet");
+    assert_refused("mixed/rdf_A-B.tsv is there, and mesofit did not write it", "-o");
+    assert_false(temporary_folder_exists("mixed/used.json"));
+    for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
+        snprintf(path, sizeof path, "fit/%s", names[k]);
+        put(state, path);
+        RUN_PROGRAM(&result, "fit", "run.json", "-o", "fit", "--quiet");
+        assert_refused(path, "mesofit: fit/");
+        assert_false(temporary_folder_exists("fit/used.json"));
+        assert_int_equal(unlink(path), 0);
+    }
+}
+
+/// Nothing of the old results goes before the run is refused.
+static void test_folders_in_the_place_of_files_are_refused(void **state) {
+    static const char *const how[] = {NULL, "--force"};
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        assert_int_equal(mkdir("new", 0777) | mkdir("new/rdf.tsv", 0777), 0);
+        RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "new", "--quiet", how[k]);
+        assert_refused("new/rdf.tsv is a folder: move it away, or write elsewhere with -o\n",
+                       "mesofit: ");
+        assert_int_equal(rmdir("new/rdf.tsv") | rmdir("new"), 0);
+    }
+    simulate();
+    assert_int_equal(unlink("out/configuration.tsv") | mkdir("out/configuration.tsv", 0777), 0);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "--quiet", "--force");
+    assert_refused("out/configuration.tsv is a folder: move it away", "-o");
+    assert_true(temporary_folder_exists("out/summary.json"));
+    results_assert_table("out/rdf.tsv", 3, 0);
+}
+
+static void interrupt(const char *folder, const char *how) {
+    run_program(&result,
+                &(struct run_program_how){.interrupt_with = SIGINT, .interrupt_after = 0.02},
+                (const char *const[]){"simulate", "long.json", "-o", folder, how, NULL});
+    assert_int_equal(result.code, 130);
+}
+
 /// An interrupted simulation is worth as much as an interrupted fit.
 static void test_forgotten_resume_keeps_the_simulation(void **state) {
-    const struct run_program_how how = {.interrupt_with = SIGINT, .interrupt_after = 0.02};
     (void)state;
-    run_program(&result, &how, (const char *const[]){"simulate", "long.json", NULL});
-    assert_int_equal(result.code, 130);
+    interrupt("out", NULL);
     RUN_PROGRAM(&result, "simulate", "long.json");
     assert_refused("out holds an unfinished simulation: --resume goes on, --force begins anew",
                    "mesofit: ");
@@ -133,6 +184,27 @@ static void test_forgotten_resume_keeps_the_simulation(void **state) {
     RUN_PROGRAM(&result, "simulate", "scene.json", "--force", "--quiet");
     run_program_assert_code(&result, 0);
     simulate(); // which is finished
+}
+
+/// --force would throw away what there is.
+static void test_file_in_the_way_of_a_run_that_goes_on(void **state) {
+    interrupt("out", NULL);
+    put(state, "out/rdf.tsv");
+    RUN_PROGRAM(&result, "simulate", "long.json", "--resume");
+    assert_refused("out/rdf.tsv is there, and mesofit did not write it: move it away, and go on "
+                   "with --resume\n",
+                   "mesofit: ");
+    assert_mine("out/rdf.tsv");
+    assert_int_equal(unlink("out/rdf.tsv"), 0);
+    // Names of snapshots are not known before they are written.
+    assert_int_equal(mkdir("new", 0777) | mkdir("new/snapshots", 0777), 0);
+    put(state, "new/snapshots/step_000000004.vtp");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "new", "--quiet");
+    assert_refused("new/snapshots/step_000000004.vtp is there, and mesofit did not write it: ",
+                   "move it away, and go on with --resume\n");
+    assert_int_equal(unlink("new/snapshots/step_000000004.vtp"), 0);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "new", "--quiet", "--resume");
+    run_program_assert_code(&result, 0);
 }
 
 static void test_resume_makes_no_folder(void **state) {
@@ -152,27 +224,56 @@ static void test_resume_makes_no_folder(void **state) {
 
 /// As of version 0.2.0, or a part of a folder that was copied.
 static void test_results_without_a_list_are_left_alone(void **state) {
-    static const char *const how[] = {NULL, "--force", "--resume"};
+    static const char *const how[] = {NULL, "--force"};
     (void)state;
     simulate();
     fit();
     assert_int_equal(unlink("out/.mesofit-run"), 0);
     assert_int_equal(unlink("fit/.mesofit-run"), 0);
-    put(state, "out/checkpoint.bin");
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 2; k++) {
         RUN_PROGRAM(&result, "simulate", "scene.json", how[k]);
-        assert_refused("out holds results of an older version, which kept no list of its files",
-                       "remove the folder, or write elsewhere with -o");
+        assert_refused("out holds results without a list of files (.mesofit-run): write elsewhere "
+                       "with -o\n",
+                       "mesofit: ");
         RUN_PROGRAM(&result, "fit", "run.json", "-o", "fit", how[k]);
-        assert_refused("fit holds results of an older version", "-o");
+        assert_refused("fit holds results without a list of files (.mesofit-run): --resume may go "
+                       "on, -o OTHER keeps them\n",
+                       "mesofit: ");
     }
-    results_assert_table("out/rdf.tsv", 3, 0);
+    // What else is of that run is not known.
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "fit", "--resume");
+    assert_refused("fit/summary.json is there, and mesofit did not write it: move it away, and go "
+                   "on with --resume\n",
+                   "mesofit: ");
+    assert_false(temporary_folder_exists("fit/.mesofit-run"));
+    // Nor is a checkpoint of somebody.
+    put(state, "out/checkpoint.bin");
+    assert_int_equal(system("/bin/rm -r out/summary.json out/snapshots out/*.tsv"), 0);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "--resume");
+    assert_refused("out/checkpoint.bin", "mesofit: ");
+    assert_mine("out/checkpoint.bin");
     assert_false(temporary_folder_exists("out/.mesofit-run"));
     // They are read as ever.
-    RUN_PROGRAM(&result, "compare", "out", "fit", "--quiet");
+    RUN_PROGRAM(&result, "compare", "fit", "--quiet");
     run_program_assert_code(&result, 0);
     RUN_PROGRAM(&result, "export", "fit", "--engine", "lammps", "--quiet");
     run_program_assert_code(&result, 0);
+}
+
+/// `cp out/* copy` leaves out a list, whose name begins with a dot.
+static void test_copy_without_a_list_goes_on(void **state) {
+    (void)state;
+    interrupt("out", NULL);
+    assert_int_equal(system("/bin/mkdir copy && /bin/cp out/* copy"), 0);
+    RUN_PROGRAM(&result, "simulate", "long.json", "-o", "copy");
+    assert_refused("copy holds results without a list of files", "--resume may go on");
+    for (int times = 0; times < 2; times++)
+        interrupt("copy", "--resume");
+    RUN_PROGRAM(&result, "simulate", "long.json", "-o", "copy");
+    assert_refused("copy holds an unfinished simulation", "--resume goes on");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "copy", "--force", "--quiet");
+    run_program_assert_code(&result, 0);
+    assert_false(temporary_folder_exists("copy/checkpoint.bin"));
 }
 
 static void test_links_to_folders_are_refused(void **state) {
@@ -249,10 +350,6 @@ static void run_export(const char *from, const char *option, int code) {
 }
 
 static void test_export_replaces_its_own_files(void **state) {
-    static const char mixture[] =
-        "{\"seed\": 1, \"box\": [3, 3, 3], \"particles\": {\"types\": {\"A\": 40, \"B\": 41}},\n"
-        "\"temperature\": 1, \"time_step\": 0.02, \"conservative\": {\"law\": \"soft-repulsion\", "
-        "\"a\": 25},\n\"measure\": {\"equilibration\": 2, \"samples\": 4, \"every\": 1}}\n";
     simulate();
     small_inputs_write(*state, "scene.json", mixture, NULL, NULL);
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "mixed", "--quiet");
@@ -274,8 +371,16 @@ static void test_export_replaces_its_own_files(void **state) {
     assert_mine("hoomd/B-B.txt");
     // An export of version 0.2.0 kept no list.
     assert_int_equal(unlink("hoomd/.mesofit-export"), 0);
-    run_export("out", "--force", 2);
-    assert_refused("hoomd: holds files that are not of an export", "-o");
+    run_export("out", NULL, 2);
+    assert_refused("hoomd: holds files, and no list of an export (.mesofit-export): ",
+                   "--force replaces those of the same names");
+    put(state, "hoomd/run.py");
+    run_export("out", "--force", 0);
+    assert_mine("hoomd/B-B.txt");
+    run_export("out", NULL, 0);
+    char *text = temporary_folder_read("hoomd/run.py");
+    assert_contains(text, "hoomd");
+    free(text);
 }
 
 static void test_measurement_replaces_its_own_files(void **state) {
@@ -339,9 +444,13 @@ int main(void) {
         TEST(test_what_a_run_wrote_goes_with_it),
         TEST(test_files_that_were_changed_are_not_replaced),
         TEST(test_fit_in_which_a_file_was_changed_is_told_with_it),
+        TEST(test_names_are_refused_at_the_start),
+        TEST(test_folders_in_the_place_of_files_are_refused),
         TEST(test_forgotten_resume_keeps_the_simulation),
+        TEST(test_file_in_the_way_of_a_run_that_goes_on),
         TEST(test_resume_makes_no_folder),
         TEST(test_results_without_a_list_are_left_alone),
+        TEST(test_copy_without_a_list_goes_on),
         TEST(test_links_to_folders_are_refused),
         TEST(test_folder_that_is_removed_is_not_made_anew),
         TEST(test_comparison_replaces_its_own_tables),
