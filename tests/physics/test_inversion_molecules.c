@@ -5,7 +5,7 @@
 // their bands; and relative entropy finds the best parabola where the truth is none.
 #include "base/memory.h"
 #include "curves/formula.h"
-#include "inversion/inversion.h"
+#include "inversion/joint.h"
 #include "problem/verify.h"
 #include "shared/fluids.h"
 #include "shared/length.h"
@@ -224,7 +224,7 @@ static double judge_deviations(const struct inversion *inversion) {
 
 /// Its seed is the twin's.
 static double find(const struct inverse_method *method, const struct twin *twin, judgement *judge) {
-    struct inversion *inversion = mf_memory_zeroed(1, method->state_size);
+    void *state = mf_memory_zeroed(1, method->state_size);
     struct inversion_settings settings = {.common = {0}};
     struct inverse_step step;
     for (const struct inverse_table *table = method->tables; table->fields; table++)
@@ -232,17 +232,18 @@ static double find(const struct inverse_method *method, const struct twin *twin,
     settings.common.replicas = 4;
     settings.common.equilibration = 60;
     settings.common.precision = 0.008;
-    assert_ok(method->create(inversion, method, &twin->problem, &settings));
+    assert_ok(method->create(state, method, &twin->problem, &settings));
     do {
-        assert_ok(method->iterate(inversion, &step, &listener));
+        assert_ok(method->iterate(state, &step, &listener));
         print_message("%s, iteration %u: error %.4f, noise %.4f\n", method->name, step.iteration,
                       step.error, step.noise);
     } while (!step.finished);
     assert_true(step.converged);
+    const struct inversion *inversion = method->knows_states ? joint_leader(state) : state;
     check_pairs(inversion);
     const double squares = judge(inversion);
-    method->destroy(inversion);
-    mf_memory_free(inversion);
+    method->destroy(state);
+    mf_memory_free(state);
     return squares;
 }
 
