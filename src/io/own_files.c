@@ -100,7 +100,7 @@ bool mf_own_files_has(const struct own_files *own, const char *name) {
 bool mf_own_files_has_others(const struct own_files *own) {
     struct dirent **entries;
     bool others = false;
-    const int count = scandir(own->folder, &entries, NULL, NULL);
+    const int count = scandir(own->folder, &entries, NULL, alphasort);
     for (int k = 0; k < count; k++) {
         const char *name = entries[k]->d_name;
         char folder[sizeof entries[k]->d_name + 1];

@@ -158,24 +158,35 @@ static enum status read_lines(struct own_list *list, FILE *stream) {
     return status == STATUS_OK && ferror(stream) ? fail_to_read(list) : status;
 }
 
-enum status mf_own_list_read(struct own_list *list) {
+/// A file, and no link to one; NULL with errno.
+static FILE *open_to_read(const struct own_list *list) {
     struct stat about;
-    mf_own_list_clear(list);
     const int file =
         openat(list->place, list->name, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
-    list->there = file >= 0 || errno != ENOENT;
+    if (file < 0)
+        return NULL;
+    FILE *stream = fdopen(file, "rb");
+    if (stream == NULL)
+        close(file);
+    else if (fstat(file, &about) != 0 || !S_ISREG(about.st_mode)) {
+        fclose(stream);
+        stream = NULL;
+        errno = ELOOP;
+    }
+    return stream;
+}
+
+enum status mf_own_list_read(struct own_list *list) {
+    mf_own_list_clear(list);
+    FILE *stream = open_to_read(list);
+    list->there = stream || errno != ENOENT;
     if (!list->there)
         return STATUS_OK;
-    if (file < 0 && errno != ELOOP)
-        return fail_to_read(list);
-    FILE *stream =
-        file >= 0 && fstat(file, &about) == 0 && S_ISREG(about.st_mode) ? fdopen(file, "rb") : NULL;
-    if (stream == NULL) {
-        if (file >= 0)
-            close(file);
+    if (stream == NULL && errno == ELOOP)
         return mf_status_fail(STATUS_BAD_INPUT, "%s/%s is no file of its own: remove it",
                               list->folder, list->name);
-    }
+    if (stream == NULL)
+        return fail_to_read(list);
     const enum status status = read_lines(list, stream);
     fclose(stream);
     return status;

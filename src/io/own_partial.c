@@ -15,7 +15,7 @@ static void remove_in(const struct own_list *list, const char *folder) {
     char path[2 * OUTPUT_PATH_SIZE], name[OUTPUT_PATH_SIZE], whole[OUTPUT_PATH_SIZE];
     struct dirent **entries;
     snprintf(path, sizeof path, "%s/%s", list->folder, folder);
-    const int count = scandir(path, &entries, NULL, NULL);
+    const int count = scandir(path, &entries, NULL, alphasort);
     for (int k = 0; k < count; k++) {
         const size_t stem = mf_output_partial_stem(entries[k]->d_name);
         snprintf(name, sizeof name, "%.3800s%s", folder, entries[k]->d_name);

@@ -34,7 +34,7 @@ static void remove_if_left(const char *path) {
 
 static void remove_left_over(const char *place) {
     struct dirent **entries;
-    const int count = scandir(place, &entries, is_scratch, NULL);
+    const int count = scandir(place, &entries, is_scratch, alphasort);
     for (int k = 0; k < count; k++) {
         char path[OUTPUT_PATH_SIZE];
         snprintf(path, sizeof path, "%.3800s/%s", place, entries[k]->d_name);
