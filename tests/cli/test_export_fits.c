@@ -6,6 +6,7 @@
 #include "shared/run_program.h"
 #include "shared/small_inputs.h"
 #include "shared/testing.h"
+#include "shared/twins.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -36,8 +37,7 @@ static void fit_and_export(struct temporary_folder *folder, const char *unknowns
                            const char *friction) {
     static struct run_program_result result;
     small_inputs_write(folder, "scene.json", soft_fluid, NULL, NULL);
-    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "target", "--quiet");
-    run_program_assert_code(&result, 0);
+    twins_simulate("scene.json", "target");
     small_inputs_write(folder, "run.json", fit, "UNKNOWNS", unknowns);
     char *text = temporary_folder_read("run.json");
     small_inputs_write(folder, "run.json", text, "FRICTION", friction);

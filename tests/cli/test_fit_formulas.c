@@ -8,6 +8,7 @@
 #include "shared/run_program.h"
 #include "shared/small_inputs.h"
 #include "shared/testing.h"
+#include "shared/twins.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -51,8 +52,7 @@ static struct run_program_result result;
 static void write_fit(struct temporary_folder *folder, const char *fit, const char *from,
                       const char *to) {
     small_inputs_write(folder, "scene.json", soft_fluid, NULL, NULL);
-    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "target", "--quiet");
-    run_program_assert_code(&result, 0);
+    twins_simulate("scene.json", "target");
     small_inputs_write(folder, "run.json", fit, from, to);
 }
 

@@ -5,6 +5,7 @@
 #include "shared/run_program.h"
 #include "shared/small_inputs.h"
 #include "shared/testing.h"
+#include "shared/twins.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -27,15 +28,13 @@ static const char fit[] =
     "\"equilibration\": 20, \"samples\": 8, \"every\": 5}}\n";
 
 static void write_inputs(struct temporary_folder *folder) {
-    static struct run_program_result result;
     small_inputs_write(folder, "scene.json",
                        "{\"seed\": 5, \"conservative\": {\"law\": \"soft-repulsion\", \"a\": 25}, "
                        "\"measure\": {\"equilibration\": 100, \"samples\": 40}, "
                        "\"rdf\": {\"range\": 1, \"bins\": 20}, " SCENE "}",
                        NULL, NULL);
     small_inputs_write(folder, "run.json", fit, NULL, NULL);
-    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "target", "--quiet");
-    run_program_assert_code(&result, 0);
+    twins_simulate("scene.json", "target");
 }
 
 /// The numbers of a table. Returns its rows.

@@ -8,6 +8,7 @@
 #include "shared/run_program.h"
 #include "shared/small_inputs.h"
 #include "shared/testing.h"
+#include "shared/twins.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -64,8 +65,7 @@ static struct run_program_result result;
 
 static void simulate(struct temporary_folder *folder, const char *from, const char *to) {
     small_inputs_write(folder, "twin.json", twin, from, to);
-    RUN_PROGRAM(&result, "simulate", "twin.json", "-o", "twin", "--quiet");
-    run_program_assert_code(&result, 0);
+    twins_simulate("twin.json", "twin");
 }
 
 /// Write run.json with pairs of texts replaced, the last followed by NULL.
@@ -115,7 +115,9 @@ static void test_fit_of_structure_between_molecules_has_the_same_bits_again(void
                                        "intermolecular_rdf.tsv", NULL};
     static const char *const pieces[] = {"fit", "run.json", "-o", "pieces", "--threads", "2", NULL};
     simulate(*state, NULL, NULL);
-    write_fit(*state, (const char *const[]){"\"iterations\": 8", "\"iterations\": 2", NULL});
+    write_fit(*state, (const char *const[]){
+                          "\"iterations\": 8, \"equilibration\": 300, \"samples\": 60",
+                          "\"iterations\": 2, \"equilibration\": 100, \"samples\": 15", NULL});
     RUN_PROGRAM(&result, "fit", "run.json", "-o", "out", "--threads", "1");
     const int code = result.code;
     assert_true(code == 0 || code == 1);

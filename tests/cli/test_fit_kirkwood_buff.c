@@ -4,6 +4,7 @@
 // their cutoff, and tilted within its errors. By g alone the fit's integrals are several errors
 // off; with those of a simulation of the truth they agree. And what is refused.
 #include "shared/integrals.h"
+#include "shared/length.h"
 #include "shared/results.h"
 #include "shared/run_program.h"
 #include "shared/small_inputs.h"
@@ -31,12 +32,19 @@ static const char scene[] =
 #define RDF(pair) "\"" pair "\": {\"file\": \"g_" pair ".tsv\", \"normalisation\": 1}"
 #define METHOD                                                                                     \
     "\"name\": \"imc\", \"replicas\": 8, \"samples\": 400, \"every\": 10, \"precision\": 0.01"
+#define COARSE_METHOD                                                                              \
+    "\"name\": \"imc\", \"replicas\": 4, \"samples\": 100, \"every\": 10, \"precision\": 0.03"
 // Potentials of bins this wide heat a step of 0.05 by 7 %.
 #define CHECKS                                                                                     \
     "\"replicas\": 4, \"equilibration\": 1000, \"samples\": 800, \"every\": 80, "                  \
     "\"time_step\": 0.02"
 
+#define COARSE_CHECKS                                                                              \
+    "\"replicas\": 4, \"equilibration\": 1000, \"samples\": 200, \"every\": 40, "                  \
+    "\"time_step\": 0.02"
+
 #define PLAN METHOD "},\n\"verification\": {" CHECKS
+#define COARSE_PLAN COARSE_METHOD "},\n\"verification\": {" COARSE_CHECKS
 #define SHORT_PLAN                                                                                 \
     "\"name\": \"imc\", \"replicas\": 2, \"samples\": 100, \"precision\": 0.05, \"iterations\": "  \
     "3},\n"                                                                                        \
@@ -48,14 +56,19 @@ static const char head[] =
     "\"method\": {" PLAN
     "},\n\"target\": {\"rdf\": {" RDF("A-A") ", " RDF("A-B") ", " RDF("B-B") "}";
 
-static const struct integrals integrals = {{"A-A", "A-B", "B-B"}, 3, 0.04};
-static const double tilt = 0.06;
+static struct integrals integrals = {{"A-A", "A-B", "B-B"}, 3, 0.04};
+static double tilt = 0.06;
 static struct run_program_result result;
 
+/// In short g is tilted more and integrals are met less closely, which takes fewer samples.
 static int enter(void **state) {
+    if (!length_is_long()) {
+        integrals.error = 0.12;
+        tilt = 0.15;
+    }
     if (small_inputs_enter_without_gnuplot(state) != 0)
         return -1;
-    small_inputs_write(*state, "truth.json", scene, NULL, NULL);
+    small_inputs_write(*state, "truth.json", scene, "6000", length_is_long() ? "6000" : "1500");
     RUN_PROGRAM(&result, "simulate", "truth.json", "-o", "truth");
     run_program_assert_code(&result, 0);
     integrals_tilt(*state, "A-A", 1 - tilt, tilt);
@@ -76,7 +89,7 @@ static void write_run(struct temporary_folder *folder, const char *file, const c
 }
 
 static void test_g_alone_leaves_the_integrals_of_a_mixture_off(void **state) {
-    write_run(*state, "alone.json", "no", integrals.error, PLAN);
+    write_run(*state, "alone.json", "no", integrals.error, length_is_long() ? PLAN : COARSE_PLAN);
     RUN_PROGRAM(&result, "fit", "alone.json", "-o", "alone");
     run_program_assert_code(&result, 0);
     assert_true(integrals_farthest(&integrals, "alone") > 3);
@@ -84,7 +97,7 @@ static void test_g_alone_leaves_the_integrals_of_a_mixture_off(void **state) {
 
 /// 3 errors: as often as the verification itself would say that the fit has not converged.
 static void test_fit_meets_the_integrals_of_a_mixture(void **state) {
-    write_run(*state, "both.json", "yes", integrals.error, PLAN);
+    write_run(*state, "both.json", "yes", integrals.error, length_is_long() ? PLAN : COARSE_PLAN);
     RUN_PROGRAM(&result, "fit", "both.json", "-o", "both", "--threads", "2");
     run_program_assert_code(&result, 0);
     assert_contains(result.err, "Kirkwood-Buff integral of A-B = ");
@@ -106,6 +119,7 @@ static void test_fit_of_integrals_has_the_same_bits_when_it_is_resumed(void **st
 
 /// a of A-B is 14. Nothing else is fitted, from a = 11. In 24 seeds, of truth and fit, what was
 /// found was off by 1.25(18) times its error, so that five errors are a false alarm in thousands.
+/// In short with fewer samples, whose errors are larger.
 static void test_optimiser_finds_a_repulsion_from_the_integrals_alone(void **state) {
     static const char text[] =
         "{\"seed\": 3, \"scene\": {" SETUP
@@ -115,13 +129,14 @@ static void test_optimiser_finds_a_repulsion_from_the_integrals_alone(void **sta
                 "\"maximum\": 20}}},\n"
                 "\"method\": {\"name\": \"cma-es\", \"population\": 6, \"rounds\": 6,\n"
                 "\"equilibration\": 300, \"samples\": 150, \"every\": 20},\n"
-                "\"verification\": {\"replicas\": 2, \"equilibration\": 300, \"samples\": 400, "
+                "\"verification\": {\"replicas\": 2, \"equilibration\": 300, \"samples\": 200, "
                 "\"every\": 20},\n"
                 "\"target\": {\"kirkwood_buff\": {\"q_maximum\": 2.2, %s}}}\n";
     char run[4096], members[1024];
     integrals_of_truth(&integrals, 0.015, members, sizeof members);
     snprintf(run, sizeof run, text, members);
-    small_inputs_write(*state, "number.json", run, NULL, NULL);
+    small_inputs_write(*state, "number.json", run, "\"samples\": 150",
+                       length_is_long() ? "\"samples\": 150" : "\"samples\": 60");
     RUN_PROGRAM(&result, "fit", "number.json", "-o", "number");
     run_program_assert_code(&result, 0);
     const double a = results_parameter("number/summary.json", "conservative.A-B.a", "value");

@@ -3,6 +3,7 @@
 // Integrals of Kirkwood and Buff of molecules as targets: dimers in a solvent of beads, whose g(r)
 // is tilted within its errors, and whose spring is to be found, too. And what is refused.
 #include "shared/integrals.h"
+#include "shared/length.h"
 #include "shared/results.h"
 #include "shared/run_program.h"
 #include "shared/small_inputs.h"
@@ -35,6 +36,11 @@ static const char scene[] =
 #define PLAN                                                                                       \
     "\"name\": \"imc\", \"replicas\": 8, \"samples\": 400, \"every\": 10, \"precision\": 0.01},\n" \
     "\"verification\": {\"replicas\": 4, \"equilibration\": 1000, \"samples\": 800, \"every\": 40"
+// Four iterations, which are not enough to converge.
+#define COARSE_PLAN                                                                                \
+    "\"name\": \"imc\", \"replicas\": 4, \"samples\": 100, \"every\": 2, \"precision\": 0.1, "     \
+    "\"iterations\": 4},\n"                                                                        \
+    "\"verification\": {\"replicas\": 4, \"equilibration\": 1000, \"samples\": 200, \"every\": 40"
 #define SHORT_PLAN                                                                                 \
     "\"name\": \"imc\", \"replicas\": 2, \"samples\": 100, \"precision\": 0.05, \"iterations\": "  \
     "3},\n"                                                                                        \
@@ -45,14 +51,19 @@ static const char head[] =
     "{\"seed\": 14, \"scene\": {" SETUP "}, \"unknowns\": {\"potential\": {}},\n"
     "\"method\": {" PLAN "},\n\"target\": {" TARGETS_BESIDE;
 
-static const struct integrals integrals = {{"dimer-dimer", "dimer-W", "W-W"}, 3, 0.04};
-static const double tilt = 0.06;
+static struct integrals integrals = {{"dimer-dimer", "dimer-W", "W-W"}, 3, 0.04};
+static double tilt = 0.06;
 static struct run_program_result result;
 
+/// In short g is tilted more and integrals are met less closely, which takes fewer samples.
 static int enter(void **state) {
+    if (!length_is_long()) {
+        integrals.error = 0.1;
+        tilt = 0.12;
+    }
     if (small_inputs_enter_without_gnuplot(state) != 0 || mkdir("refused", 0700) != 0)
         return -1;
-    small_inputs_write(*state, "truth.json", scene, NULL, NULL);
+    small_inputs_write(*state, "truth.json", scene, "6000", length_is_long() ? "6000" : "1500");
     RUN_PROGRAM(&result, "simulate", "truth.json", "-o", "truth");
     run_program_assert_code(&result, 0);
     integrals_tilt(*state, "W-W", 1 - tilt, tilt);
@@ -68,6 +79,28 @@ static void write_run(struct temporary_folder *folder, const char *file, const c
     snprintf(text, sizeof text, "%s, \"kirkwood_buff\": {\"q_maximum\": 2.2, %s}}}\n", head,
              members);
     small_inputs_write(folder, file, text, from, to);
+}
+
+static void fit_coarsely(struct temporary_folder *folder, const char *members, const char *out) {
+    char file[64];
+    snprintf(file, sizeof file, "%s.json", out);
+    write_run(folder, file, members, PLAN, COARSE_PLAN);
+    RUN_PROGRAM(&result, "fit", file, "-o", out, "--threads", "2");
+    assert_in_range(result.code, 0, 1);
+}
+
+/// On its way: with the integrals they are off by 0.3 to 0.4 of what they are without them, the rms
+/// of three that are known within a fifth of it.
+static void test_fit_nears_the_integrals_of_molecules(void **state) {
+    char members[1024], compared[1100];
+    integrals_of_truth(&integrals, integrals.error, members, sizeof members);
+    snprintf(compared, sizeof compared, "\"fitted\": \"no\", %s", members);
+    fit_coarsely(*state, compared, "without");
+    fit_coarsely(*state, members, "with");
+    const double without = results_number("without/summary.json", "kirkwood_buff_rmse"),
+                 with = results_number("with/summary.json", "kirkwood_buff_rmse");
+    print_message("rms of integrals: %.3f without them, %.3f with them\n", without, with);
+    assert_true(with < 0.7 * without);
 }
 
 /// By g alone they are 4 to 6 errors off. Seeds: docs/results/molecules.md.
@@ -128,7 +161,8 @@ static void test_fit_refuses_integrals_of_what_is_no_component(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_fit_meets_the_integrals_of_molecules),
+        cmocka_unit_test(test_fit_nears_the_integrals_of_molecules),
+        LENGTH_ONLY_LONG(cmocka_unit_test(test_fit_meets_the_integrals_of_molecules)),
         cmocka_unit_test(test_fit_of_molecules_has_the_same_bits_however_it_is_run),
         cmocka_unit_test(test_fit_refuses_integrals_of_what_is_no_component),
     };

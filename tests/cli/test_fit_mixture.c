@@ -6,6 +6,7 @@
 #include "shared/run_program.h"
 #include "shared/small_inputs.h"
 #include "shared/testing.h"
+#include "shared/twins.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -63,10 +64,8 @@ static const char *const tables[] = {"history.tsv",
 enum { CONVERGED = 0, UNCONVERGED = 1 };
 
 static void write_fit(struct temporary_folder *folder, const char *method) {
-    static struct run_program_result result;
     small_inputs_write(folder, "scene.json", mixture, NULL, NULL);
-    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "target", "--quiet");
-    run_program_assert_code(&result, 0);
+    twins_simulate("scene.json", "target");
     small_inputs_write(folder, "run.json", fit, METHOD, method);
 }
 

@@ -9,6 +9,7 @@
 #include "shared/run_program.h"
 #include "shared/small_inputs.h"
 #include "shared/testing.h"
+#include "shared/twins.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -46,12 +47,10 @@ static const char run[] =
     "25}}\n";
 
 static int enter(void **state) {
-    static struct run_program_result result;
     if (small_inputs_enter_without_gnuplot(state) != 0)
         return -1;
     small_inputs_write(*state, "scene.json", scene, NULL, NULL);
-    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "truth");
-    run_program_assert_code(&result, 0);
+    twins_simulate("scene.json", "truth");
     return 0;
 }
 
@@ -136,10 +135,10 @@ static void test_fit_by_relative_entropy_tells_what_its_form_does_not_meet(void 
                        "\"replicas\": 4");
     char *text = temporary_folder_read("run.json");
     small_inputs_write(*state, "run.json", text, "\"samples\": 60,\n  \"iterations\": 4",
-                       "\"samples\": 300,\n  \"iterations\": 16");
+                       "\"samples\": 150,\n  \"iterations\": 16");
     free(text);
     text = temporary_folder_read("run.json");
-    small_inputs_write(*state, "run.json", text, "\"precision\": 0.02", "\"precision\": 0.005");
+    small_inputs_write(*state, "run.json", text, "\"precision\": 0.02", "\"precision\": 0.01");
     free(text);
     RUN_PROGRAM(&result, "fit", "run.json", "-o", "found");
     run_program_assert_code(&result, 0);

@@ -6,6 +6,7 @@
 #include "shared/run_program.h"
 #include "shared/small_inputs.h"
 #include "shared/testing.h"
+#include "shared/twins.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -72,10 +73,8 @@ static const char *const joint_tables[] = {
 enum { CONVERGED = 0, UNCONVERGED = 1 };
 
 static void write_fit(struct temporary_folder *folder, const char *fit, const char *method) {
-    static struct run_program_result result;
     small_inputs_write(folder, "scene.json", soft_fluid, NULL, NULL);
-    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "target", "--quiet");
-    run_program_assert_code(&result, 0);
+    twins_simulate("scene.json", "target");
     small_inputs_write(folder, "run.json", fit, METHOD, method);
 }
 
@@ -185,7 +184,7 @@ static void test_gauss_newton_has_finished_at_a_standstill_above_its_noise(void 
     small_inputs_write(*state, "run.json", text, "\"maximum\": 6", "\"maximum\": 1");
     free(text);
     text = temporary_folder_read("run.json");
-    small_inputs_write(*state, "run.json", text, "\"samples\": 4", "\"samples\": 200");
+    small_inputs_write(*state, "run.json", text, "\"samples\": 4", "\"samples\": 100");
     free(text);
     RUN_PROGRAM(&result, "fit", "run.json", "-o", "out");
     run_program_assert_code(&result, 0);

@@ -7,6 +7,7 @@
 #include "shared/run_program.h"
 #include "shared/small_inputs.h"
 #include "shared/testing.h"
+#include "shared/twins.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -38,8 +39,7 @@ static struct run_program_result result;
 
 static void write_target(struct temporary_folder *folder) {
     small_inputs_write(folder, "scene.json", soft_fluid, NULL, NULL);
-    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "target", "--quiet");
-    run_program_assert_code(&result, 0);
+    twins_simulate("scene.json", "target");
 }
 
 /// The line "T = 1.0107(18), configurational 1.0009(38), pressure 2.9184(22)" has the numbers of

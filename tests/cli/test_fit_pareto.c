@@ -8,6 +8,7 @@
 #include "shared/run_program.h"
 #include "shared/small_inputs.h"
 #include "shared/testing.h"
+#include "shared/twins.h"
 
 /// A soft fluid whose escape times and g(r) are the targets.
 static const char soft_fluid[] =
@@ -40,10 +41,8 @@ static const char *const tables[] = {"history.tsv",        "omega.tsv",
                                      "pareto_omega.tsv",   NULL};
 
 static void write_fit(struct temporary_folder *folder, const char *from, const char *to) {
-    static struct run_program_result result;
     small_inputs_write(folder, "scene.json", soft_fluid, NULL, NULL);
-    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "target", "--quiet");
-    run_program_assert_code(&result, 0);
+    twins_simulate("scene.json", "target");
     small_inputs_write(folder, "run.json", fit, from, to);
 }
 

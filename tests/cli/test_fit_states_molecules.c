@@ -7,6 +7,7 @@
 #include "shared/run_program.h"
 #include "shared/small_inputs.h"
 #include "shared/testing.h"
+#include "shared/twins.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -57,8 +58,7 @@ static void simulate(struct temporary_folder *folder, const char *name, const ch
     char file[64];
     snprintf(file, sizeof file, "%s.json", name);
     small_inputs_write(folder, file, scene, from, to);
-    RUN_PROGRAM(&result, "simulate", file, "-o", name);
-    run_program_assert_code(&result, 0);
+    twins_simulate(file, name);
 }
 
 static int enter(void **state) {

@@ -6,6 +6,7 @@
 #include "shared/run_program.h"
 #include "shared/small_inputs.h"
 #include "shared/testing.h"
+#include "shared/twins.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -35,10 +36,8 @@ static const char fit[] =
 /// Fit to the target that `plan` makes; its last words go to `result`.
 static void run_fit(struct temporary_folder *folder, const char *plan, const char *method,
                     struct run_program_result *result) {
-    static struct run_program_result simulated;
     small_inputs_write(folder, "scene.json", soft_fluid, PLAN, plan);
-    RUN_PROGRAM(&simulated, "simulate", "scene.json", "-o", "target", "--quiet");
-    run_program_assert_code(&simulated, 0);
+    twins_simulate("scene.json", "target");
     small_inputs_write(folder, "run.json", fit, "METHOD", method);
     RUN_PROGRAM(result, "fit", "run.json", "-o", "out", "--force");
 }
@@ -147,8 +146,7 @@ static void test_cmaes_has_not_converged_when_its_verification_is_worse(void **s
     static struct run_program_result result;
     small_inputs_write(*state, "scene.json", soft_fluid, PLAN, SHORT_PLAN);
     make_slow(*state, "scene.json");
-    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "target", "--quiet");
-    run_program_assert_code(&result, 0);
+    twins_simulate("scene.json", "target");
     small_inputs_write(*state, "run.json", fit, "METHOD",
                        "\"name\": \"cma-es\", \"rounds\": 10, " SHORT_PLAN);
     make_slow(*state, "run.json");

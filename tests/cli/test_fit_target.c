@@ -6,6 +6,7 @@
 #include "shared/run_program.h"
 #include "shared/small_inputs.h"
 #include "shared/testing.h"
+#include "shared/twins.h"
 
 #include <string.h>
 
@@ -23,10 +24,9 @@ static struct run_program_result result;
 static void make_target(struct temporary_folder *folder, const char *file) {
     small_inputs_write(folder, "scene.json", small_inputs_scene,
                        "{\"equilibration\": 2, \"samples\": 4, \"every\": 1}",
-                       "{\"equilibration\": 200, \"samples\": 50, \"every\": 10}, "
+                       "{\"equilibration\": 200, \"samples\": 10, \"every\": 10}, "
                        "\"rdf\": {\"range\": 1.25, \"bins\": 25}");
-    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "target", "--quiet");
-    run_program_assert_code(&result, 0);
+    twins_simulate("scene.json", "target");
     if (file[0])
         small_inputs_write(folder, "target/target.json", file, NULL, NULL);
 }

@@ -260,10 +260,14 @@ static void test_folders_may_have_any_name(void **state) {
     static const char *const names[] = {
         "$(touch pwned)", "`touch pwned`", "it's; touch pwned", "a \"b\" c",    "x\ny",
         "%n%s",           "./-o",          "naïve Φ",           "<touch pwned", "|touch pwned"};
+    char search_path[4096];
+    snprintf(search_path, sizeof search_path, "%s", getenv("PATH"));
     write_inputs(*state);
     for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
         char path[256];
+        setenv("PATH", "/nowhere", 1); // it would draw, too
         RUN_PROGRAM(&result, "fit", "run.json", "-o", names[k], "--quiet");
+        setenv("PATH", search_path, 1);
         assert_in_range(result.code, 0, 1);
         snprintf(path, sizeof path, "%s/potential.tsv", names[k]);
         assert_true(temporary_folder_exists(path));

@@ -148,9 +148,10 @@ static void test_viscosity_can_be_a_target(void **state) {
         "\"every\": 2, \"lags\": 40}},\n"
         "\"unknowns\": {\"numbers\": {\"dissipative.sigma\": {\"minimum\": 1, \"maximum\": 7}}},\n"
         "\"scene\": {" FLUID ", \"dissipative\": {\"law\": \"power\", \"sigma\": 2}},\n"
-        "\"method\": {\"name\": \"gauss-newton\", \"equilibration\": 200, \"samples\": 50, "
+        "\"method\": {\"name\": \"gauss-newton\", \"iterations\": 6, \"equilibration\": 200, "
+        "\"samples\": 50, "
         "\"every\": 20},\n"
-        "\"verification\": {\"replicas\": 4, \"equilibration\": 200, \"samples\": 100, \"every\": "
+        "\"verification\": {\"replicas\": 2, \"equilibration\": 200, \"samples\": 50, \"every\": "
         "20}}\n";
     char text[2048];
     small_inputs_write(*state, "scene.json", scene,

@@ -31,7 +31,8 @@ static void test_a_run_that_is_stopped_is_saved(void **state) {
     for (size_t k = 0; k < sizeof signals / sizeof *signals; k++) {
         const struct run_program_how how = {.interrupt_after = 0.01,
                                             .interrupt_with = signals[k].number};
-        run_program(&result, &how, (const char *const[]){"simulate", "scene.json", "--force", NULL});
+        run_program(&result, &how,
+                    (const char *const[]){"simulate", "scene.json", "--force", NULL});
         run_program_assert_code(&result, signals[k].code);
         assert_contains(result.err, "mesofit: interrupted at step ");
         unsigned long long step = 0;

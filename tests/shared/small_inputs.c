@@ -74,3 +74,10 @@ void small_inputs_write(struct temporary_folder *folder, const char *name, const
     assert_in_range(length, 1, sizeof changed - 1);
     temporary_folder_write(folder, name, changed, (size_t)length);
 }
+
+void small_inputs_change(struct temporary_folder *folder, const char *name, const char *from,
+                         const char *to) {
+    char *text = temporary_folder_read(name);
+    small_inputs_write(folder, name, text, from, to);
+    free(text);
+}

@@ -21,3 +21,7 @@ extern const char small_inputs_target[]; ///< for target.tsv
 /// Write `text` to the file `name`, its first `from` replaced by `to`; `from` NULL: as it is.
 void small_inputs_write(struct temporary_folder *folder, const char *name, const char *text,
                         const char *from, const char *to);
+
+/// Replace `from` by `to` in a file that is there.
+void small_inputs_change(struct temporary_folder *folder, const char *name, const char *from,
+                         const char *to);
