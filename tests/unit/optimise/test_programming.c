@@ -51,8 +51,7 @@ static double morse(double r) {
     return 1.5 * x * x;
 }
 
-static const struct programming_parameters usual = {12, 8, 6, 1000},
-                                           longer = {10, 8, 24, 1000};
+static const struct programming_parameters usual = {12, 8, 6, 1000}, longer = {10, 8, 24, 1000};
 
 static struct programming_member search(const struct sample *sample, uint64_t seed, int threads,
                                         const struct programming_parameters *parameters) {

@@ -579,7 +579,8 @@ static void test_h5md_is_told_apart_when_it_is_other_hdf5(void **state) {
     assert_fails(try(&nothing), STATUS_BAD_INPUT, "it is HDF5 and no H5MD");
     begin_file(state);
     end_file();
-    assert_fails(try(&nothing), STATUS_BAD_INPUT, "no group of \"particles\" in this file has positions");
+    assert_fails(try(&nothing), STATUS_BAD_INPUT,
+                 "no group of \"particles\" in this file has positions");
 }
 
 static void test_h5md_units_are_products_when_written_as_such(void **state) {
