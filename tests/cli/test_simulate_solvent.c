@@ -269,7 +269,7 @@ static void test_simulate_goes_on_with_the_same_bits_with_a_solvent(void **state
         "\"time_step\": 0.05, \"conservative\": {\"law\": \"soft-repulsion\", \"a\": 25},\n"
         "\"dynamics\": {\"integrator\": \"collision-dynamics\", \"interval\": 4,\n"
         "\"thermostat\": \"yes\", \"wave_acceleration\": 0.1},\n"
-        "\"measure\": {\"equilibration\": 200, \"samples\": 60, \"every\": 20},\n" SNAPSHOTS
+        "\"measure\": {\"equilibration\": 500, \"samples\": 300, \"every\": 20},\n" SNAPSHOTS
         "\"flow_profile\": {}, \"flow_field\": {\"spacing\": 2}}\n";
     static struct run_program_result result;
     small_inputs_write(*state, "scene.json", beads, NULL, NULL);

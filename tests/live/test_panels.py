@@ -118,7 +118,7 @@ class Panels(PageTest):
         ActionChains(self.browser).move_to_element_with_offset(front, int(x), int(y)).click().perform()
         shown = "[data-population='pareto_potential.tsv'] canvas"
         labels = self.wait(lambda: self.browser.execute_script("const c = document.querySelector(arguments[0]);"
-            "return c && Chart.getChart(c).data.datasets.map((s) => s.label).filter(Boolean)", shown), 20)
+            "return c && Chart.getChart(c).data.datasets.map((s) => s.label).filter(Boolean)", shown))
         self.assertEqual(labels, [f"member {member}"])
         self.check_console()
 
@@ -150,7 +150,7 @@ class Panels(PageTest):
         self.click_individual(cloud, number)
         for name in ("omega", "omega_transverse", "memory_slow"):
             note = self.wait(lambda name=name: next((p for p in self.browser.find_elements(
-                "css selector", f"[data-population='genes_{name}.tsv'] p") if p.text), None), 20)
+                "css selector", f"[data-population='genes_{name}.tsv'] p") if p.text), None))
             self.assertIn(f"Individual {number}: error", note.text)
             self.check_curve(name, number)
         self.shoot("memory")
