@@ -106,6 +106,7 @@ static void test_parallel_try_takes_each_result_once_and_from_one_thread_at_a_ti
 static void
 test_parallel_try_returns_the_failure_of_the_lowest_task_with_its_message(void **state) {
     (void)state;
+    bool stopped = false;
     for (int round = 0; round < 50; round++)
         for (int threads = 1; threads <= 3; threads++) {
             struct trial trial = {0};
@@ -118,18 +119,26 @@ test_parallel_try_returns_the_failure_of_the_lowest_task_with_its_message(void *
             for (int k = 0; k < 13; k++)
                 assert_int_equal(trial.taken[k], 1);
             assert_int_equal(trial.taken[13], 0);
-            assert_int_equal(trial.runs[TASKS - 1], 0);
+            // A thread that fails may be kept waiting until the others have done all the rest.
+            stopped = stopped || (threads > 1 && trial.runs[TASKS - 1] == 0);
+            assert_true(threads > 1 || trial.runs[TASKS - 1] == 0);
         }
+    assert_true(stopped);
 }
 
 static void test_parallel_try_begins_nothing_more_when_a_task_was_interrupted(void **state) {
     (void)state;
     for (int threads = 1; threads <= 3; threads++) {
-        struct trial trial = {.fails = {[7] = STATUS_INTERRUPTED}};
-        assert_int_equal(try_tasks(&trial, threads), STATUS_INTERRUPTED);
-        assert_int_equal(trial.runs[TASKS - 1], 0);
-        for (int k = 0; k < TASKS; k++)
-            assert_int_equal(trial.taken[k], trial.runs[k] && k != 7);
+        bool stopped = false;
+        // A thread that fails may be kept waiting until the others have done all the rest.
+        for (int round = 0; round < (threads > 1 ? 50 : 1); round++) {
+            struct trial trial = {.fails = {[7] = STATUS_INTERRUPTED}};
+            assert_int_equal(try_tasks(&trial, threads), STATUS_INTERRUPTED);
+            stopped = stopped || trial.runs[TASKS - 1] == 0;
+            for (int k = 0; k < TASKS; k++)
+                assert_int_equal(trial.taken[k], trial.runs[k] && k != 7);
+        }
+        assert_true(stopped);
     }
 }
 
