@@ -34,7 +34,7 @@ static const struct command_option options[] = {
     [MAP] = {"--map", "FILE.json", "atoms to beads (describe map); else a bead a residue"},
     [MOLECULES] = {"--molecules", "FILE",
                    "bonds of beads (a scene's \"molecules\"); without a map a bead an atom"},
-    [BEGIN] = {"--begin", "T", "leave out what is before [ps]"},
+    [BEGIN] = {"--begin", "T", "leave out what is before [ps]; else what is before equilibrium"},
     [END] = {"--end", "T", "leave out what is after [ps]"},
     [EVERY] = {"--every", "T", "take frames so far apart [ps]"},
     [RANGE] = {"--range", "R", "of g(r) [nm]; else most of half the box"},

@@ -125,7 +125,7 @@ size_t mf_frames_expected(const struct frames *frames) {
     double last = begin + (all - 1) * interval;
     if (plan->end < last)
         last = plan->end;
-    return (size_t)fmax(1, (last - begin) / fmax(interval, plan->every) + 1);
+    return (size_t)fmax(1, (last - begin) / fmax(interval, plan->every) + 1 - (double)plan->skip);
 }
 
 // Which are used ----------------------------------------------------------------------------------
@@ -179,7 +179,8 @@ static bool is_wanted(const struct frames *frames, double time) {
            fabs(steps - rint(steps)) < share + time_tolerance(time) / plan->every;
 }
 
-static enum status judge(struct frames *frames, const struct trajectory_frame *frame, bool *use) {
+static enum status judge_time(struct frames *frames, const struct trajectory_frame *frame,
+                              bool *use) {
     const struct frames_plan *const plan = &frames->plan;
     const double time = frame->time;
     *use = true;
@@ -193,6 +194,15 @@ static enum status judge(struct frames *frames, const struct trajectory_frame *f
     }
     TRY(find_order(frames, frame, use));
     *use = *use && is_wanted(frames, time);
+    return STATUS_OK;
+}
+
+static enum status judge(struct frames *frames, const struct trajectory_frame *frame, bool *use) {
+    TRY(judge_time(frames, frame, use));
+    if (*use && frames->skipped < frames->plan.skip) {
+        frames->skipped++;
+        *use = false;
+    }
     return STATUS_OK;
 }
 

@@ -16,6 +16,7 @@ struct frames_plan {
     struct trajectory_options options;
     double begin, end;    ///< what is before or after is left out [ps]; NAN: nothing is
     double every;         ///< frames are taken this far apart, from the first on [ps]; 0: all
+    size_t skip;          ///< of those to be used so many are left out at the beginning
     bool allow_truncated; ///< a file that breaks off is used up to there
     int threads;
 };
@@ -39,7 +40,7 @@ struct frames {
     size_t slots;
     struct trajectory_frame *frame; ///< shape [slots]: a batch, those to be used first
     struct series time;             ///< of all frames in order, so far
-    size_t used;
+    size_t used, skipped;
     uint64_t first_bytes; ///< up to the end of the first frame
     struct bytes notes;   ///< lines for a person: what was left out and why; a text
 };

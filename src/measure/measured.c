@@ -178,6 +178,7 @@ void mf_measured_clear(struct measured *measured) {
     mf_measured_molecules_clear(&measured->molecules);
     mf_structure_factor_clear(&measured->factor);
     mf_measured_motion_clear(&measured->motion);
+    mf_frame_features_clear(&measured->features);
     mf_series_clear(&measured->volume);
     *measured = (struct measured){0};
 }
@@ -260,6 +261,8 @@ static enum status add_one(struct measured *measured, const struct measured_slot
     if (slot->waves.numbers)
         mf_structure_factor_add(&measured->factor, slot->waves.numbers);
     measured->frames++;
+    TRY(mf_frame_features_add(&measured->features, &measured->pairs, &slot->pairs,
+                              slot->box.volume));
     TRY(mf_measured_molecules_add(&measured->molecules, &slot->beads));
     TRY(mf_measured_motion_add(&measured->motion, &slot->beads, &slot->box, slot->place,
                                &slot->pairs));

@@ -6,6 +6,7 @@
 /// are.
 #pragma once
 
+#include "measure/frame_features.h"
 #include "measure/frame_pairs.h"
 #include "measure/frame_waves.h"
 #include "measure/measured_molecules.h"
@@ -44,6 +45,7 @@ struct measured {
     struct density_waves_plan waves;
     struct structure_factor factor;
     struct measured_motion motion;
+    struct frame_features features; ///< by which it is seen where equilibrium begins
     size_t frames;
     struct series volume; ///< [nm³]
 };

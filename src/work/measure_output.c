@@ -187,6 +187,7 @@ static enum status write_summary(const struct measure_result *result) {
     mf_units_write_summary(&result->units, writer);
     mf_json_put_number(writer, "seconds", result->seconds);
     mf_json_put_integer(writer, "frames", (int64_t)result->measured->frames);
+    mf_json_put_integer(writer, "frames_left_out", (int64_t)result->frames->skipped);
     mf_json_put_integer(writer, "particles", (int64_t)result->mapping->beads);
     put_masses(result, writer);
     put_density(result, writer);

@@ -122,7 +122,8 @@ static enum status read_frames(struct run *run) {
         if (count == 0)
             break;
         if (run->measured.mapping == NULL) {
-            say_interval(run, count);
+            if (run->frames.plan.skip == 0)
+                say_interval(run, count);
             TRY(begin_measuring(run));
         }
         TRY(mf_measured_add(&run->measured, run->frames.frame, count));
@@ -132,6 +133,60 @@ static enum status read_frames(struct run *run) {
         return STATUS_OK;
     return mf_status_fail(STATUS_BAD_INPUT, "%s: no frame is left to be measured",
                           run->request->frames.file[0]);
+}
+
+/// "pairs A-B at 0.3 to 0.35 nm", "the volume".
+static void print_slowest(const struct run *run, const struct frame_features_slowest *slowest,
+                          char *text, size_t size) {
+    const struct composition *const composition = &run->measured.pairs.composition;
+    char name[COMPOSITION_PAIR_NAME_SIZE] = "";
+    if (composition_is_mixed(composition))
+        mf_composition_pair_name(composition, slowest->pair, name);
+    if (slowest->volume)
+        snprintf(text, size, "the volume");
+    else
+        snprintf(text, size, "%s%s%s at %.3g to %.3g nm",
+                 slowest->within ? "pairs within molecules" : "pairs", name[0] ? " " : "", name,
+                 slowest->from, slowest->to);
+}
+
+/// Pipes are read once.
+static bool can_be_read_again(const struct frames *frames) {
+    for (size_t k = 0; k < frames->plan.files; k++)
+        if (frames->source[k].bytes == 0)
+            return false;
+    return true;
+}
+
+static enum status read_again(struct run *run, size_t skip) {
+    struct frames_plan plan = run->request->frames;
+    plan.skip = skip;
+    mf_measured_clear(&run->measured);
+    mf_frames_close(&run->frames);
+    TRY(mf_frames_open(&run->frames, &plan, &run->structure.structure, structure_file(run)));
+    return read_frames(run);
+}
+
+/// Leave out what is before equilibrium, unless a person has said where to begin.
+static enum status find_equilibrium(struct run *run) {
+    struct frame_features_slowest slowest;
+    TRY(mf_frame_features_judge(&run->measured.features, &run->measured.pairs, &slowest));
+    if (slowest.frames == 0)
+        return STATUS_OK;
+    char what[128];
+    print_slowest(run, &slowest, what, sizeof what);
+    if (!isnan(run->request->frames.begin) || !can_be_read_again(&run->frames)) {
+        mf_progress_say(&run->progress,
+                        "mesofit: warning: the first %zu frames are not in equilibrium (%s): "
+                        "--begin leaves them out",
+                        slowest.frames, what);
+        return STATUS_OK;
+    }
+    mf_progress_say(&run->progress,
+                    "the first %zu of %zu frames are not in equilibrium (%s) and are left out; "
+                    "--begin 0 keeps them",
+                    slowest.frames, run->measured.frames, what);
+    return read_again(run, slowest.frames);
 }
 
 /// How far beads go, and what is to be known of it: a periodic box slows D.
@@ -303,7 +358,9 @@ static enum status prepare(struct run *run, const struct run_options *options) {
 /// What was measured before a wish to stop is a measurement, too.
 static enum status carry_out(struct run *run, const struct run_options *options) {
     TRY(prepare(run, options));
-    const enum status status = read_frames(run);
+    enum status status = read_frames(run);
+    if (status == STATUS_OK)
+        status = find_equilibrium(run);
     const bool interrupted = status == STATUS_INTERRUPTED && run->measured.frames > 0;
     if (status != STATUS_OK && !interrupted)
         return status;

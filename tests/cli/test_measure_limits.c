@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// `mesofit measure` on what is no box, no line and no place, and on so few beads that tables would
-// have no number.
+// `mesofit measure` on what is no box, no line and no place, on so few beads that tables would
+// have no number, and on frames before equilibrium.
 #include "shared/results.h"
 #include "shared/run_program.h"
 #include "shared/small_inputs.h"
 #include "shared/testing.h"
 
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -98,6 +99,48 @@ static void test_tables_without_a_number_are_not_written(void **state) {
     free(target);
 }
 
+/// Atoms at places of a multiplicative generator (D. H. Lehmer); those of the first 10 of 80 frames
+/// are in half of the box along x.
+static void write_compressed(struct temporary_folder *folder) {
+    enum { ATOMS = 60, SHOTS = 80 };
+    char *text = malloc(SHOTS * (ATOMS + 2) * 48);
+    size_t length = 0;
+    uint64_t random = 12345;
+    for (int t = 0; t < SHOTS; t++) {
+        length += (size_t)sprintf(text + length,
+                                  "%d\nLattice=\"30 0 0 0 30 0 0 0 30\" "
+                                  "Properties=species:S:1:pos:R:3 Time=%d\n",
+                                  ATOMS, 1000 * t);
+        for (int k = 0; k < ATOMS; k++) {
+            double place[3];
+            for (int d = 0; d < 3; d++) {
+                random = random * 48271 % 2147483647;
+                place[d] = 30 * (double)random / 2147483647;
+            }
+            length += (size_t)sprintf(text + length, "Ar %.3f %.3f %.3f\n",
+                                      t < 10 ? place[0] / 2 : place[0], place[1], place[2]);
+        }
+    }
+    temporary_folder_write(folder, "box.xyz", text, length);
+    free(text);
+}
+
+static void test_frames_before_equilibrium_are_left_out(void **state) {
+    write_compressed(*state);
+    RUN_PROGRAM(&result, "measure", "box.xyz", "--static", "-o", "out");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.err, " of 80 frames are not in equilibrium (pairs at ");
+    const double left_out = results_number("out/summary.json", "frames_left_out");
+    assert_true(left_out >= 8 && left_out <= 16);
+    assert_true(results_number("out/summary.json", "frames") == 80 - left_out);
+    RUN_PROGRAM(&result, "measure", "box.xyz", "--static", "--begin", "0", "-o", "all");
+    assert_contains(result.err, "frames are not in equilibrium (pairs at ");
+    assert_contains(result.err, "--begin leaves them out");
+    assert_true(results_number("all/summary.json", "frames") == 80);
+    RUN_PROGRAM(&result, "measure", "box.xyz", "--static", "--begin", "10", "-o", "rest");
+    assert_null(strstr(result.err, "equilibrium"));
+}
+
 #define TEST(name)                                                                                 \
     cmocka_unit_test_setup_teardown(name, small_inputs_enter_without_gnuplot, small_inputs_leave)
 
@@ -106,6 +149,7 @@ int main(void) {
         TEST(test_boxes_and_places_that_are_none_are_refused),
         TEST(test_lines_of_old_macs_are_refused),
         TEST(test_tables_without_a_number_are_not_written),
+        TEST(test_frames_before_equilibrium_are_left_out),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "measure/frame_features.h"
+
+#include "base/memory.h"
+#include "observe/settled_start.h"
+
+#include <math.h>
+#include <string.h>
+
+/// Ranges are joined until they have so many pairs a frame, whose number is then nearly normal; the
+/// farthest that have fewer are left.
+static const double enough = 25;
+
+/// The volume, and all ranges of all pair types.
+static size_t features_of(const struct frame_pairs_plan *plan) {
+    const size_t kinds = plan->within ? 2 : 1;
+    return 1 + kinds * FEATURE_RANGES * (size_t)mf_composition_pairs(&plan->composition);
+}
+
+void mf_frame_features_clear(struct frame_features *features) {
+    mf_memory_free(features->block);
+    *features = (struct frame_features){0};
+}
+
+/// Join blocks two by two.
+static void halve(struct frame_features *features) {
+    const size_t n = features->features;
+    for (size_t b = 0; b < FEATURE_BLOCKS / 2; b++)
+        for (size_t k = 0; k < n; k++)
+            features->block[b * n + k] =
+                features->block[2 * b * n + k] + features->block[(2 * b + 1) * n + k];
+    memset(features->block + FEATURE_BLOCKS / 2 * n, 0,
+           FEATURE_BLOCKS / 2 * n * sizeof *features->block);
+    features->each *= 2;
+}
+
+static size_t range_of(const struct frame_pairs_plan *plan, size_t bin) {
+    return bin * FEATURE_RANGES / plan->bins;
+}
+
+enum status mf_frame_features_add(struct frame_features *features,
+                                  const struct frame_pairs_plan *plan,
+                                  const struct frame_pairs *pairs, double volume) {
+    enum status status = STATUS_OK;
+    const size_t types = (size_t)mf_composition_pairs(&plan->composition);
+    if (features->block == NULL) {
+        features->features = features_of(plan);
+        features->each = 1;
+        NEW_ARRAY(features->block, FEATURE_BLOCKS * features->features);
+    }
+    if (features->frames == FEATURE_BLOCKS * features->each)
+        halve(features);
+    double *const block = features->block + features->frames / features->each * features->features;
+    block[0] += volume;
+    for (size_t pair = 0; pair < types; pair++)
+        for (size_t bin = 0; bin < plan->bins; bin++) {
+            const size_t from = pair * (plan->bins + 1) + bin;
+            const size_t to = 1 + pair * FEATURE_RANGES + range_of(plan, bin);
+            const double apart = (double)pairs->counts[from];
+            block[to] += apart;
+            if (plan->within)
+                block[to + types * FEATURE_RANGES] += (double)pairs->within[from] - apart;
+        }
+    features->frames++;
+done:
+    return status;
+}
+
+/// One series after the other.
+struct look {
+    const struct frame_features *features;
+    size_t blocks;  ///< that are complete
+    double *series; ///< shape [blocks]: pairs of a frame
+};
+
+/// Add a feature to the present series.
+static void add(struct look *look, size_t feature) {
+    const struct frame_features *const all = look->features;
+    for (size_t b = 0; b < look->blocks; b++)
+        look->series[b] += all->block[b * all->features + feature] / (double)all->each;
+}
+
+static void begin(struct look *look) {
+    memset(look->series, 0, look->blocks * sizeof *look->series);
+}
+
+/// Mean of the present series over its second half.
+static double later_mean(const struct look *look) {
+    const size_t half = look->blocks / 2;
+    double sum = 0;
+    for (size_t b = half; b < look->blocks; b++)
+        sum += look->series[b];
+    return sum / (double)(look->blocks - half);
+}
+
+/// Keep what settles later than all before.
+static void keep(struct frame_features_slowest *slowest, struct frame_features_slowest now) {
+    if (now.frames > slowest->frames)
+        *slowest = now;
+}
+
+/// Ranges that are empty in the second half; returns how many.
+static size_t judge_core(struct look *look, size_t first, struct frame_features_slowest now,
+                         struct frame_features_slowest *slowest) {
+    const size_t each = look->features->each;
+    size_t empty = 0;
+    begin(look);
+    while (empty < FEATURE_RANGES) {
+        add(look, first + empty);
+        if (later_mean(look) > 0)
+            break;
+        empty++;
+    }
+    begin(look);
+    for (size_t range = 0; range < empty; range++)
+        add(look, first + range);
+    for (size_t b = 0; b < look->blocks; b++)
+        look->series[b] *= (double)each;
+    now.frames = each * mf_settled_start_of_events(look->series, look->blocks);
+    now.to = now.from + (double)empty * now.to;
+    keep(slowest, now);
+    return empty;
+}
+
+/// The ranges of one pair type. @param[in] now  what it is, with `to` the width of a range
+static void judge_pair(struct look *look, size_t first, struct frame_features_slowest now,
+                       struct frame_features_slowest *slowest) {
+    const double width = now.to;
+    size_t from = judge_core(look, first, now, slowest);
+    begin(look);
+    for (size_t range = from; range < FEATURE_RANGES; range++) {
+        add(look, first + range);
+        if (later_mean(look) < enough)
+            continue;
+        now.frames = look->features->each * mf_settled_start(look->series, look->blocks);
+        now.from = (double)from * width;
+        now.to = (double)(range + 1) * width;
+        keep(slowest, now);
+        from = range + 1;
+        begin(look);
+    }
+}
+
+static void judge_volume(struct look *look, struct frame_features_slowest *slowest) {
+    begin(look);
+    add(look, 0);
+    keep(slowest, (struct frame_features_slowest){
+                      .frames = look->features->each * mf_settled_start(look->series, look->blocks),
+                      .volume = true});
+}
+
+enum status mf_frame_features_judge(const struct frame_features *features,
+                                    const struct frame_pairs_plan *plan,
+                                    struct frame_features_slowest *slowest) {
+    enum status status = STATUS_OK;
+    struct look look = {.features = features};
+    *slowest = (struct frame_features_slowest){0};
+    if (features->block == NULL)
+        return STATUS_OK;
+    look.blocks = features->frames / features->each;
+    NEW_ARRAY(look.series, look.blocks);
+    judge_volume(&look, slowest);
+    const size_t types = (size_t)mf_composition_pairs(&plan->composition);
+    const size_t series = (features->features - 1) / FEATURE_RANGES;
+    for (size_t k = 0; k < series; k++)
+        judge_pair(&look, 1 + k * FEATURE_RANGES,
+                   (struct frame_features_slowest){.pair = (int)(k % types),
+                                                   .within = k >= types,
+                                                   .to = plan->range / FEATURE_RANGES},
+                   slowest);
+done:
+    mf_memory_free(look.series);
+    return status;
+}

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file What each frame of a trajectory has, in few numbers, to find out where it is in
+/// equilibrium: pairs of beads in ranges of their distance, and the volume.
+///
+/// Memory does not grow with the trajectory: neighbouring frames are joined to blocks, twice as
+/// many in each whenever all blocks are taken.
+#pragma once
+
+#include "measure/frame_pairs.h"
+
+/// Ranges of the distance of one pair type, as many of pairs of different molecules as of pairs
+/// within them; blocks.
+enum { FEATURE_RANGES = 32, FEATURE_BLOCKS = 1024 };
+
+/// All zero is none.
+struct frame_features {
+    size_t features;     ///< of a frame
+    double *block;       ///< shape [FEATURE_BLOCKS, features]: sums over the block's frames
+    size_t frames, each; ///< so far; of a block
+};
+
+/// Add a frame. Fails: NO_MEMORY.
+/// @param[in] pairs   counted of it (mf_frame_pairs_count, mf_frame_pairs_exclude)
+/// @param[in] volume  of its box [nm³]
+enum status mf_frame_features_add(struct frame_features *features,
+                                  const struct frame_pairs_plan *plan,
+                                  const struct frame_pairs *pairs, double volume) MUST_USE;
+
+void mf_frame_features_clear(struct frame_features *features);
+
+/// What is the last to reach equilibrium.
+struct frame_features_slowest {
+    size_t frames;   ///< at the beginning that are not in equilibrium (observe/settled_start.h)
+    bool volume;     ///< it is the volume; else pairs
+    bool within;     ///< of one molecule
+    int pair;        ///< of these types
+    double from, to; ///< at this distance [nm]
+};
+
+/// Fails: NO_MEMORY. Tested: test_frame_features.
+enum status mf_frame_features_judge(const struct frame_features *features,
+                                    const struct frame_pairs_plan *plan,
+                                    struct frame_features_slowest *slowest) MUST_USE;
