@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "input/target_sanity.h"
 
+#include "input/target_sanity_state.h"
+
 #include "base/memory.h"
 #include "observe/kirkwood_buff.h"
 #include "observe/rdf_observable.h"
@@ -368,6 +370,18 @@ static enum status warn_of_normalisation(const struct view *view,
     return STATUS_OK;
 }
 
+static void warn_of_state(const struct view *view, const struct target_sanity_listener *listener) {
+    const struct target_state state = {.bins = view->bins,
+                                       .g = view->g,
+                                       .error = view->error,
+                                       .box = &view->scene->setup.box,
+                                       .count = view->like,
+                                       .tail = view->target->tail.mean};
+    char line[TARGET_STATE_LINE];
+    if (mf_target_state_print(&state, line))
+        mf_target_sanity_say(listener, "mesofit: warning: target.%s: %s", view->name, line);
+}
+
 static void warn_of_density(const struct view *view,
                             const struct target_sanity_listener *listener) {
     const double neighbours = neighbours_in_layers(view);
@@ -415,6 +429,7 @@ enum status mf_target_sanity_tell(const struct target_files *files, const struct
             continue;
         TRY(warn_of_normalisation(&view, listener));
         warn_of_density(&view, listener);
+        warn_of_state(&view, listener);
     }
     mf_target_sanity_tell_groups(files, scene, listener);
     tell_normalisation(&files->normalisation, listener);
