@@ -78,7 +78,7 @@ static void test_target_state_tells_a_crystal(void **state) {
     make_crystal(1.05, 0.12);
     assert_true(mf_target_state_print(&look, line));
     assert_contains(line, "of a crystal?");
-    make_crystal(1.05, 0.3); // as blurred as a liquid
+    make_crystal(1.05, 0.2); // its peak is 2.5
     assert_false(mf_target_state_print(&look, line));
 }
 
