@@ -45,7 +45,7 @@ static bool has_same_letters(const char *a, const char *b) {
 
 const char *mf_nearest_name(const char *given, const char *const *known, size_t count) {
     const char *nearest = NULL;
-    size_t least = LONGEST_NAME;
+    size_t least = LONGEST_NAME + 1; // farther than any two names
     const size_t length = strlen(given);
     for (size_t k = 0; k < count; k++) {
         const size_t other = strlen(known[k]);

@@ -50,6 +50,16 @@ static void test_nearest_name_finds_nothing_when_the_name_is_very_long(void **st
     assert_nearest(given, NULL);
 }
 
+/// A name of the greatest length that is compared, of which no letter is known.
+static void test_nearest_name_finds_nothing_when_no_letter_is_the_same(void **state) {
+    (void)state;
+    char name[64] = "";
+    for (int k = 0; k < 63; k++) {
+        name[k] = 'q';
+        assert_null(mf_nearest_name(name, known, 4));
+    }
+}
+
 static void test_nearest_hint_lists_the_known_when_nothing_is_near(void **state) {
     (void)state;
     char text[64], small[12];
@@ -68,6 +78,7 @@ int main(void) {
         cmocka_unit_test(test_nearest_name_finds_the_name_when_one_slip_was_made),
         cmocka_unit_test(test_nearest_name_finds_nothing_when_too_far),
         cmocka_unit_test(test_nearest_name_finds_nothing_when_the_name_is_very_long),
+        cmocka_unit_test(test_nearest_name_finds_nothing_when_no_letter_is_the_same),
         cmocka_unit_test(test_nearest_name_prefers_the_same_letters),
         cmocka_unit_test(test_nearest_hint_lists_the_known_when_nothing_is_near),
     };
