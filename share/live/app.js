@@ -150,7 +150,7 @@ function showProgress() {
     at("progress-text").textContent = "";
     return;
   }
-  const left = progress.rate > 0 ? (progress.total - progress.done) / progress.rate : NaN;
+  const left = progress.left; // null: nobody knows
   const text = !Number.isFinite(left) ? "" : left < 100 ? `${left.toFixed(0)} s` : left < 6000 ? `${(left / 60).toFixed(0)} min` : `${(left / 3600).toFixed(1)} h`;
   const pace = state.phase === "running" ? `, ${round(progress.rate, 3)}/s${text && `, at most ${text} left`}` : "";
   at("progress-text").textContent = `${progress.text}  ${progress.done}/${progress.total} ${progress.unit}${pace}`;

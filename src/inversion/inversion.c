@@ -111,17 +111,29 @@ static struct replicas_plan plan(const struct inversion *inversion) {
                                   .every = p->every};
 }
 
-/// Whether more samples would help: their noise is a large part of the error, and not yet what was
-/// asked for. Replicas that are stuck would never be told apart from noise.
-static bool needs_samples(const struct inversion *inversion, int doublings) {
+/// The error that is farthest from what the samples are to make it: as small as was asked for, or a
+/// small part of what is off.
+static struct inverse_doubling find_noisiest(const struct inversion *inversion) {
     // What is out of reach is no error that hides the noise.
     const double share = inversion->progress.miss < gradient_of_noise ? 0 : noise_share;
+    struct inverse_doubling noisiest = mf_inversion_kirkwood_buff_noise(inversion);
     for (int k = 0; k < inversion->sections; k++) {
         const struct inversion_section *section = &inversion->section[k];
-        if (section->own_noise > fmax(section->precision, share * section->rms))
-            return doublings < MOST_DOUBLINGS;
+        const double wanted = fmax(section->precision, share * section->rms);
+        if (section->own_noise * noisiest.wanted > noisiest.noise * wanted)
+            noisiest = (struct inverse_doubling){
+                .noise = section->own_noise, .wanted = wanted, .unit = ""};
     }
-    return mf_inversion_kirkwood_buff_is_noisy(inversion) && doublings < MOST_DOUBLINGS;
+    return noisiest;
+}
+
+/// Whether more samples help. Replicas that are stuck would never be told apart from noise.
+static bool needs_samples(const struct inversion *inversion, struct inverse_doubling *doubling) {
+    const int before = doubling->number;
+    *doubling = find_noisiest(inversion);
+    doubling->number = before + 1;
+    doubling->most = MOST_DOUBLINGS;
+    return doubling->noise > doubling->wanted && before < MOST_DOUBLINGS;
 }
 
 /// Sample the present potential until the noise is small against its error.
@@ -130,7 +142,7 @@ static enum status sample(struct inversion *inversion, const struct inverse_list
     struct inversion_progress *state = &inversion->progress;
     const int threads = inversion->problem->threads;
     const uint64_t replicas = (uint64_t)inversion->settings.common.replicas;
-    const struct inverse_progress progress = {
+    struct inverse_progress progress = {
         .iteration = state->iteration,
         .iterations = (uint32_t)inversion->settings.common.iterations,
         .best = mf_targets_error(&inversion->problem->targets, state->best),
@@ -141,7 +153,9 @@ static enum status sample(struct inversion *inversion, const struct inverse_list
     state->evaluations += replicas;
     TRY(mf_replicas_run(&inversion->replicas, &now, threads, &progress, listener));
     mf_inversion_assess(inversion);
-    for (int n = 0; needs_samples(inversion, n); n++) {
+    progress.done = progress.total = replicas;
+    while (needs_samples(inversion, &progress.doubling)) {
+        listener->tell(listener->context, &progress); // it takes as long as all before
         TRY(mf_replicas_double(&inversion->replicas, &now, threads, &progress, listener));
         mf_inversion_assess(inversion);
     }

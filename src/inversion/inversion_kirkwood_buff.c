@@ -57,16 +57,21 @@ void mf_inversion_kirkwood_buff_respond(struct inversion *inversion, double shar
         }
 }
 
-bool mf_inversion_kirkwood_buff_is_noisy(const struct inversion *inversion) {
+struct inverse_doubling mf_inversion_kirkwood_buff_noise(const struct inversion *inversion) {
     static const double noise_share = 1.0 / 3;
     const struct inversion_kirkwood_buff *kb = &inversion->kirkwood_buff;
     const struct target *target = target_of(inversion);
+    struct inverse_doubling noisiest = {.wanted = 1, .unit = ""};
     if (!mf_inversion_is_near(inversion))
-        return false;
+        return noisiest;
     for (size_t pair = 0; pair < kb->pairs; pair++) {
         const double off = fabs(kb->value[pair] - target->value[pair]);
-        if (kb->error[pair] > fmax(target->error[pair], noise_share * off))
-            return true;
+        const double wanted = fmax(target->error[pair], noise_share * off);
+        if (kb->error[pair] * noisiest.wanted > noisiest.noise * wanted)
+            noisiest = (struct inverse_doubling){
+                .noise = kb->error[pair],
+                .wanted = wanted,
+                .unit = mf_observable_kind(mf_kirkwood_buff_kind()).target->unit};
     }
-    return false;
+    return noisiest;
 }

@@ -32,6 +32,7 @@ void mf_inversion_kirkwood_buff_measure(struct inversion *inversion);
 /// of all pairs.
 void mf_inversion_kirkwood_buff_respond(struct inversion *inversion, double share);
 
-/// Whether the samples, near to the target's g, know an integral less well than its target, or than
-/// a third of what it is off.
-bool mf_inversion_kirkwood_buff_is_noisy(const struct inversion *inversion);
+/// The error of an integral, and how small the samples are to make it near to the target's g: as
+/// that of its target, or a third of what it is off. Of the one that is farthest from that; 0 of 1
+/// without integrals, and far from g.
+struct inverse_doubling mf_inversion_kirkwood_buff_noise(const struct inversion *inversion);

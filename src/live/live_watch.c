@@ -39,6 +39,9 @@ static double find_rate_ahead(const struct live_watch *watch, double rate) {
 
 static void publish_progress(struct live_watch *watch, const struct watcher_progress *progress) {
     const double begun = clock_thread_seconds();
+    const double rate = find_rate_ahead(watch, progress->rate);
+    const bool known = rate > 0 && !progress->open;
+    const double left = known ? (double)(progress->total - progress->done) / rate : NAN;
     struct json_writer *writer = mf_json_writer_create();
     if (writer == NULL || (!is_due(&watch->progress) && progress->done < progress->total)) {
         mf_json_writer_free(writer);
@@ -48,7 +51,8 @@ static void publish_progress(struct live_watch *watch, const struct watcher_prog
     mf_json_put_integer(writer, "total", (int64_t)progress->total);
     mf_json_put_text(writer, "unit", progress->unit);
     mf_json_put_text(writer, "text", progress->text);
-    mf_json_put_number(writer, "rate", find_rate_ahead(watch, progress->rate));
+    mf_json_put_number(writer, "rate", rate);
+    mf_json_put_number(writer, "left", left);
     mf_live_view_publish(watch->view, LIVE_PROGRESS, writer);
     set_pace(&watch->progress, begun, progress_interval);
 }

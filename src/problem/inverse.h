@@ -232,6 +232,13 @@ void mf_inverse_give_up(struct inverse_step *step);
 /// @param[in] last_better  iteration in which it fell last
 void mf_inverse_use_up(struct inverse_step *step, const char *parameter, uint32_t last_better);
 
+/// Samples that are taken again, as many as there are, until they are as exact as is wanted.
+struct inverse_doubling {
+    int number, most;     ///< which doubling of this iteration, of how many at most; 0: none
+    double noise, wanted; ///< the standard error that is farthest from what it is to be
+    const char *unit;     ///< of both, reduced
+};
+
 /// Told from time to time inside an iteration, from one thread at a time.
 struct inverse_progress {
     uint32_t iteration;
@@ -240,6 +247,7 @@ struct inverse_progress {
     double best;          ///< error of the best so far; not finite if not known yet
     double least, mean;   ///< of this iteration's candidates; not finite without
     uint64_t failures;    ///< simulations that left their temperature or blew up
+    struct inverse_doubling doubling;
 };
 
 struct inverse_listener {

@@ -58,7 +58,8 @@ static void write_file(struct progress *progress, const struct watcher_progress 
     mf_json_put_integer(writer, "total", (int64_t)now->total);
     mf_json_put_text(writer, "unit", now->unit);
     mf_json_put_number(writer, "rate", now->rate);
-    mf_json_put_text(writer, "left", left);
+    if (left[0])
+        mf_json_put_text(writer, "left", left);
     mf_json_put_text(writer, "text", now->text);
     find_file(progress, path);
     const bool written = mf_json_write(writer, path) == STATUS_OK;
@@ -75,34 +76,52 @@ void mf_progress_end(const struct progress *progress) {
     mf_own_files_remove(path);
 }
 
-void mf_progress_tell(struct progress *progress, uint64_t done, uint64_t total, const char *unit,
-                      const char *text) {
+/// One line a while, the last one always.
+static void write_line(struct progress *progress, const struct watcher_progress *told,
+                       const char *left) {
     const double now = clock_seconds();
-    if (progress->pace.period == 0)
-        progress->pace = mf_progress_pace_begin(progress->started, progress->done_before, 1);
-    mf_progress_pace_tell(&progress->pace, now, done);
-    const double rate = mf_progress_pace_rate(&progress->pace, now, done);
-    const double seconds = mf_progress_pace_left(&progress->pace, now, done, total);
-    const struct watcher *watcher = progress->watcher;
-    const struct watcher_progress told = {done, total, unit, text, rate};
-    char time[32] = "?", left[48];
-    if (!isnan(seconds))
-        format_duration(seconds, time);
-    snprintf(left, sizeof left, "%s%s", progress->may_end_early ? "at most " : "", time);
-    write_file(progress, &told, left);
-    if (watcher)
-        watcher->tell(watcher->context, &told);
     const double interval = progress->terminal ? terminal_interval : pipe_interval;
-    const bool ends = done == total && progress->written != total;
+    const bool ends = told->done == told->total && progress->written != told->total;
     if (progress->quiet || (now - progress->last < interval && !ends))
         return;
     progress->last = now;
-    progress->written = done;
+    progress->written = told->done;
     if (progress->terminal)
         mf_terminal_clear_line();
-    fprintf(stderr, "%s  %3.0f %%  %.3g %s/s  %s left%s", text, 100 * (double)done / (double)total,
-            rate, unit, left, progress->terminal ? "" : "\n");
+    fprintf(stderr, "%s  %3.0f %%", told->text, 100 * (double)told->done / (double)told->total);
+    if (!told->open)
+        fprintf(stderr, "  %.3g %s/s", told->rate, told->unit);
+    if (left[0])
+        fprintf(stderr, "  %s left", left);
+    if (!progress->terminal)
+        fputc('\n', stderr);
     progress->open_line = progress->terminal;
+}
+
+/// Tell everybody, with rate and time left, unless what is left is of a size that nobody knows.
+static void tell_all(struct progress *progress, struct watcher_progress told) {
+    const double now = clock_seconds();
+    const struct watcher *watcher = progress->watcher;
+    char time[32], left[48] = "";
+    if (progress->pace.period == 0)
+        progress->pace = mf_progress_pace_begin(progress->started, progress->done_before, 1);
+    mf_progress_pace_tell(&progress->pace, now, told.done);
+    told.rate = mf_progress_pace_rate(&progress->pace, now, told.done);
+    const double seconds = mf_progress_pace_left(&progress->pace, now, told.done, told.total);
+    if (!told.open && !isnan(seconds)) {
+        format_duration(seconds, time);
+        snprintf(left, sizeof left, "%s%s", progress->may_end_early ? "at most " : "", time);
+    }
+    write_file(progress, &told, left);
+    if (watcher)
+        watcher->tell(watcher->context, &told);
+    write_line(progress, &told, left);
+}
+
+void mf_progress_tell(struct progress *progress, uint64_t done, uint64_t total, const char *unit,
+                      const char *text) {
+    tell_all(progress,
+             (struct watcher_progress){.done = done, .total = total, .unit = unit, .text = text});
 }
 
 void mf_progress_tell_iteration(struct progress *progress, const struct inverse_progress *now,
@@ -117,8 +136,12 @@ void mf_progress_tell_iteration(struct progress *progress, const struct inverse_
         now->iteration * progress->round + progress->round * now->done / now->total;
     const uint64_t total = now->iterations * progress->round;
     progress->told = done > progress->told ? done : progress->told;
-    mf_progress_tell(progress, progress->told, total > progress->told ? total : progress->told,
-                     "simulations", text);
+    tell_all(progress,
+             (struct watcher_progress){.done = progress->told,
+                                       .total = total > progress->told ? total : progress->told,
+                                       .unit = "simulations",
+                                       .text = text,
+                                       .open = now->doubling.number > 0});
 }
 
 void mf_progress_say(struct progress *progress, const char *format, ...) {

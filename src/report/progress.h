@@ -33,12 +33,14 @@ struct progress mf_progress_begin(bool quiet, const struct watcher *watcher);
 /// Seconds since mf_progress_begin.
 double mf_progress_seconds(const struct progress *progress);
 
-/// Tell that `done` of `total` parts are done; `text` says the rest. Adds rate and time left.
+/// Tell that `done` of `total` parts are done; `text` says the rest. Adds rate and, once a part is
+/// done, time left.
 void mf_progress_tell(struct progress *progress, uint64_t done, uint64_t total, const char *unit,
                       const char *text);
 
 /// The same of a fit inside an iteration, whose passes or rounds may be of any size: an iteration
-/// counts as many simulations as its first one, and what is done never becomes less.
+/// counts as many simulations as its first one, and what is done never becomes less. While samples
+/// are doubled no time left is told: what is done stands still, for nobody knows how long.
 /// Tested: test_progress.
 void mf_progress_tell_iteration(struct progress *progress, const struct inverse_progress *now,
                                 const char *text);

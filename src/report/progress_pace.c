@@ -20,12 +20,16 @@ void mf_progress_pace_tell(struct progress_pace *pace, double clock, uint64_t do
     pace->between = now;
 }
 
-double mf_progress_pace_rate(const struct progress_pace *pace, double clock, uint64_t done) {
-    const struct progress_mark now = {clock, done};
-    const bool whole = pace->last.done > pace->begin.done;
-    const struct progress_mark from = whole ? pace->half : pace->begin;
-    const struct progress_mark to = whole ? pace->last : now;
+static double rate_between(struct progress_mark from, struct progress_mark to) {
     return to.clock > from.clock ? (double)(to.done - from.done) / (to.clock - from.clock) : 0;
+}
+
+double mf_progress_pace_rate(const struct progress_pace *pace, double clock, uint64_t done) {
+    if (pace->last.done == pace->begin.done)
+        return rate_between(pace->begin, (struct progress_mark){clock, done});
+    // A period that is overdue makes the rate less, as if it ended now.
+    const struct progress_mark next = {clock, pace->last.done + pace->period};
+    return fmin(rate_between(pace->half, pace->last), rate_between(pace->half, next));
 }
 
 double mf_progress_pace_left(const struct progress_pace *pace, double clock, uint64_t done,

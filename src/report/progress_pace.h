@@ -3,7 +3,8 @@
 ///
 /// Parts may come in periods, as the simulations of an iteration that end all at once. The pace is
 /// that of whole periods, from the half of what is done on, as the first ones may be other than the
-/// rest; inside a period the time left runs down with the clock.
+/// rest; inside a period the time left runs down with the clock, and once the period takes longer
+/// than those before, the rate ages.
 #pragma once
 
 #include <stdint.h>

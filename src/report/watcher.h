@@ -28,6 +28,7 @@ struct watcher_progress {
     uint64_t done, total;
     const char *unit, *text; ///< of what `done` counts; what else there is to say
     double rate;             ///< parts a second
+    bool open;               ///< nobody knows how much there is still to be done
 };
 
 struct watcher {

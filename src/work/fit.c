@@ -171,15 +171,8 @@ static void save_now_and_then(struct run *run) {
 /// Progress inside an iteration, and a checkpoint now and then.
 static void tell(void *context, const struct inverse_progress *p) {
     struct run *run = context;
-    char text[160], error[64] = "", least[48] = "", mean[64] = "";
-    if (isfinite(p->best))
-        snprintf(error, sizeof error, "  error %.4f so far", p->best);
-    if (isfinite(p->least))
-        snprintf(least, sizeof least, "  now least %.4f", p->least);
-    if (isfinite(p->mean))
-        snprintf(mean, sizeof mean, "  mean %.4f  failed %llu", p->mean,
-                 (unsigned long long)p->failures);
-    snprintf(text, sizeof text, "iteration %u%s%s%s", p->iteration, error, least, mean);
+    char text[FIT_TELL_SIZE];
+    mf_fit_tell_iteration(p, &run->fit.scene.units, text);
     mf_progress_tell_iteration(&run->progress, p, text);
     save_now_and_then(run);
 }

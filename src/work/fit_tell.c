@@ -86,3 +86,25 @@ enum status mf_fit_tell_targets(struct progress *to, const struct fit_file *fit)
         TRY(tell_state(to, &fit->other[s]));
     return STATUS_OK;
 }
+
+void mf_fit_tell_iteration(const struct inverse_progress *now, const struct units *units,
+                           char text[FIT_TELL_SIZE]) {
+    const struct inverse_doubling *doubling = &now->doubling;
+    char error[48] = "", least[48] = "", mean[64] = "", unit[UNITS_NAME_SIZE];
+    if (doubling->number > 0) {
+        const double factor = mf_units_factor(units, doubling->unit);
+        snprintf(text, FIT_TELL_SIZE,
+                 "iteration %u  doubling samples, %d of %d: noise %.2g, wanted %.2g%s",
+                 now->iteration, doubling->number, doubling->most, factor * doubling->noise,
+                 factor * doubling->wanted, mf_units_suffix(units, doubling->unit, unit));
+        return;
+    }
+    if (isfinite(now->best))
+        snprintf(error, sizeof error, "  error %.4f so far", now->best);
+    if (isfinite(now->least))
+        snprintf(least, sizeof least, "  now least %.4f", now->least);
+    if (isfinite(now->mean))
+        snprintf(mean, sizeof mean, "  mean %.4f  failed %llu", now->mean,
+                 (unsigned long long)now->failures);
+    snprintf(text, FIT_TELL_SIZE, "iteration %u%s%s%s", now->iteration, error, least, mean);
+}

@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file What a fit says before it begins.
+/// @file What a fit says before it begins, and inside its iterations.
 #pragma once
 
 #include "input/fit_file.h"
 #include "input/target_sanity.h"
 #include "report/progress.h"
+
+enum { FIT_TELL_SIZE = 160 };
+
+/// Where an iteration is, in words for the line of its progress. Tested: test_fit_tell.
+void mf_fit_tell_iteration(const struct inverse_progress *now, const struct units *units,
+                           char text[FIT_TELL_SIZE]);
 
 /// Say what is to be fitted, so that a wrong column or unit is seen before the work. Fails: as
 /// mf_target_sanity_tell.

@@ -9,6 +9,8 @@
 #include "shared/testing.h"
 
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
 static void test_pace_is_unknown_before_the_first_part(void **state) {
     (void)state;
@@ -42,11 +44,29 @@ static void test_pace_runs_down_inside_a_period(void **state) {
     assert_close(mf_progress_pace_left(&pace, 25, 16, 40), 25, 1e-9);
     mf_progress_pace_tell(&pace, 29, 17);
     assert_close(mf_progress_pace_left(&pace, 29, 17, 40), 21, 1e-9);
-    // One that takes longer than those before leaves the periods after it, and some of itself.
-    assert_true(mf_progress_pace_left(&pace, 90, 17, 40) > 20);
-    assert_true(mf_progress_pace_left(&pace, 90, 17, 40) < 25);
+    assert_close(mf_progress_pace_left(&pace, 30, 24, 24), 0, 0);
+}
+
+/// A period that takes longer than those before, as one whose samples are doubled, lets the rate
+/// age, and the periods after it are taken to be as those before and it together: two of 8 parts in
+/// 80 s are 5 s each.
+static void test_pace_ages_while_a_period_is_overdue(void **state) {
+    (void)state;
+    struct progress_pace pace = mf_progress_pace_begin(0, 0, 8);
+    for (uint64_t period = 1; period <= 2; period++)
+        mf_progress_pace_tell(&pace, 10 * (double)period, 8 * period);
+    assert_close(mf_progress_pace_rate(&pace, 29.9, 23), 0.8, 1e-9);
+    assert_close(mf_progress_pace_rate(&pace, 90, 17), 0.2, 1e-9);
+    // Two whole periods, and some of this one, of which 7 parts are to come.
+    assert_true(mf_progress_pace_left(&pace, 90, 17, 40) > 2 * 8 * 5);
+    assert_true(mf_progress_pace_left(&pace, 90, 17, 40) < 2 * 8 * 5 + 7 * 5);
     assert_true(mf_progress_pace_left(&pace, 90, 23, 24) > 0);
-    assert_close(mf_progress_pace_left(&pace, 90, 24, 24), 0, 0);
+    double before = 1;
+    for (double clock = 30; clock < 1000; clock += 10) {
+        const double rate = mf_progress_pace_rate(&pace, clock, 23);
+        assert_true(rate > 0 && rate < before);
+        before = rate;
+    }
 }
 
 /// Rate and time left are of the same time, so that who multiplies them has what is to be done.
@@ -99,6 +119,28 @@ static void test_iterations_go_on_when_their_passes_begin_anew(void **state) {
     }
 }
 
+/// While samples are doubled nobody is told a time, in the folder neither.
+static void test_iteration_that_doubles_its_samples_has_no_time_left(void **state) {
+    struct temporary_folder *folder = *state;
+    struct watcher_progress last = {0};
+    const struct watcher watcher = {.context = &last, .tell = keep};
+    struct progress progress = mf_progress_begin(true, &watcher);
+    struct inverse_progress now = {.iterations = 3, .done = 4, .total = 4};
+    progress.folder = folder->path;
+    progress.started -= 100;
+    for (int number = 0; number <= 1; number++) {
+        now.doubling.number = number;
+        progress.next = 0;
+        mf_progress_tell_iteration(&progress, &now, "some");
+        char *text = temporary_folder_read(temporary_folder_file(folder, "progress.json"));
+        assert_int_equal(strstr(text, "\"left\"") == NULL, number > 0);
+        free(text);
+        assert_int_equal(last.open, number > 0);
+        assert_true(last.rate > 0);
+    }
+    mf_progress_end(&progress);
+}
+
 /// What who looks at the folder reads: numbers that agree with each other, and nothing at the end.
 static void test_progress_is_in_the_folder_until_the_end(void **state) {
     struct temporary_folder *folder = *state;
@@ -123,9 +165,12 @@ int main(void) {
         cmocka_unit_test(test_pace_is_unknown_before_the_first_part),
         cmocka_unit_test(test_pace_of_even_parts_is_their_time),
         cmocka_unit_test(test_pace_runs_down_inside_a_period),
+        cmocka_unit_test(test_pace_ages_while_a_period_is_overdue),
         cmocka_unit_test(test_pace_has_a_rate_that_agrees_with_the_time_left),
         cmocka_unit_test(test_pace_forgets_a_slow_beginning),
         cmocka_unit_test(test_iterations_go_on_when_their_passes_begin_anew),
+        cmocka_unit_test_setup_teardown(test_iteration_that_doubles_its_samples_has_no_time_left,
+                                        temporary_folder_create, temporary_folder_remove),
         cmocka_unit_test_setup_teardown(test_progress_is_in_the_folder_until_the_end,
                                         temporary_folder_create, temporary_folder_remove),
     };

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What an iteration tells while it doubles its samples, on the ideal gas that meets its target: all
+// that is off is noise, which each doubling makes sqrt(2) times smaller.
+#include "inversion/inversion.h"
+#include "shared/fluids.h"
+#include "shared/testing.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { BINS = 10, PARTICLES = 100, REPLICAS = 4, MOST_WORDS = 64 };
+
+struct told {
+    struct inverse_progress word[MOST_WORDS];
+    int words;
+};
+
+static void hear(void *context, const struct inverse_progress *progress) {
+    struct told *told = context;
+    assert_true(told->words < MOST_WORDS);
+    told->word[told->words++] = *progress;
+}
+
+/// What is told of one iteration that asks for this noise of g; returns the noise that is left.
+static double observe(double precision, struct told *told) {
+    double g[BINS], error[BINS];
+    struct fluid fluid;
+    struct inversion *inversion = calloc(1, sizeof *inversion);
+    assert_non_null(inversion);
+    fluid_ideal_gas(&fluid, 3, PARTICLES, 0.01);
+    for (int k = 0; k < BINS; k++) {
+        g[k] = 1;
+        error[k] = 1e-4;
+    }
+    const struct inverse_problem problem = {
+        .targets = {.bins = {0, 0.2, BINS},
+                    .target[TARGET_RDF] = {.count = BINS, .value = g, .error = error}},
+        .unknown[UNKNOWN_POTENTIAL] = {.wanted = true},
+        .scene = fluid.setup,
+        .core_threshold = 1e-3,
+        .core_stiffness = 2000,
+        .seed = 5,
+        .threads = 1};
+    const struct inversion_settings settings = {.common = {.replicas = REPLICAS,
+                                                           .equilibration = 10,
+                                                           .samples = 16,
+                                                           .every = 2,
+                                                           .iterations = 2,
+                                                           .precision = precision,
+                                                           .start = INVERSION_FROM_MEAN_FORCE}};
+    *told = (struct told){0};
+    assert_ok(mf_inversion_create(inversion, &mf_imc, &problem, &settings));
+    assert_ok(mf_inversion_observe(inversion, &(struct inverse_listener){hear, told}));
+    const double noise = inversion->own_noise;
+    mf_inversion_destroy(inversion);
+    free(inversion);
+    fluid_clear(&fluid);
+    return noise;
+}
+
+static void test_no_doubling_is_told_where_the_first_samples_are_enough(void **state) {
+    (void)state;
+    static struct told told;
+    observe(1, &told);
+    assert_int_equal(told.words, REPLICAS);
+    for (int k = 0; k < told.words; k++)
+        assert_int_equal(told.word[k].doubling.number, 0);
+}
+
+static void test_doublings_tell_a_noise_that_falls_to_what_is_wanted(void **state) {
+    (void)state;
+    static struct told told;
+    const double first = observe(1, &told), wanted = first / 3;
+    const double left = observe(wanted, &told);
+    print_message("noise %.4f, wanted %.4f, left %.4f\n", first, wanted, left);
+    assert_true(left <= wanted);
+    int number = 0;
+    for (int k = REPLICAS; k < told.words; k++) {
+        const struct inverse_doubling *now = &told.word[k].doubling;
+        // Once before the doubling, once after each replica.
+        assert_int_equal(now->number, 1 + (k - REPLICAS) / (1 + REPLICAS));
+        assert_in_range(now->number, 1, now->most);
+        // A third of what is off, which is the noise of now, while that is more.
+        assert_true(now->wanted >= wanted && now->wanted < 2 * wanted);
+        assert_true(now->noise > now->wanted);
+        const double expected = first / pow(2, (now->number - 1) / 2.0);
+        assert_true(now->noise > expected / 1.7 && now->noise < expected * 1.7);
+        assert_string_equal(now->unit, "");
+        number = now->number;
+    }
+    // Of a third of the noise: 9 times as many samples.
+    assert_in_range(number, 3, 5);
+}
+
+static void test_doublings_end_with_the_last_that_was_told(void **state) {
+    (void)state;
+    static struct told told;
+    const double wanted = 1e-6, left = observe(wanted, &told);
+    const struct inverse_doubling *last = &told.word[told.words - 1].doubling;
+    assert_int_equal(last->number, last->most);
+    assert_true(left > wanted);
+    assert_int_equal(told.words, REPLICAS + last->most * (1 + REPLICAS));
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_no_doubling_is_told_where_the_first_samples_are_enough),
+        cmocka_unit_test(test_doublings_tell_a_noise_that_falls_to_what_is_wanted),
+        cmocka_unit_test(test_doublings_end_with_the_last_that_was_told),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
