@@ -246,8 +246,10 @@ enum status mf_inversion_create(void *memory, const struct inverse_method *metho
                               "target.pressure: no potential of pairs is to be found that could "
                               "meet it; with \"fitted\": \"no\" it is compared with");
     TRY(mf_inversion_tabulate(inversion));
+    // What one cannot sample none can: molecules take long to be placed.
     TRY(mf_replicas_init(
-        &inversion->replicas, (size_t)p->replicas, (enum sampler_kind)p->sampler,
+        &inversion->replicas, problem->trial ? 1 : (size_t)p->replicas,
+        (enum sampler_kind)p->sampler,
         &(struct sampler_system){.cancel = scene->cancel,
                                  .box = &inversion->box,
                                  .composition = &inversion->composition,

@@ -162,6 +162,7 @@ struct inverse_problem {
     double core_stiffness;                    ///< of the core (mf_core_fill) [k_B T_0/λ²]
     uint64_t seed;
     int threads;
+    bool trial; ///< a method is made only to refuse what it cannot fit, and makes no more than that
 };
 
 /// Curves and numbers that are to be found.

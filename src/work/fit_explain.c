@@ -89,7 +89,9 @@ static enum status print_targets(const struct fit_file *state) {
 }
 
 /// The method refuses what it cannot fit when it is created.
-static enum status try_method(const struct fit_file *fit) {
+static enum status try_method(struct fit_file *fit) {
+    for (size_t s = 0; s < mf_fit_states_count(fit); s++)
+        mf_fit_states_at(fit, s)->problem.trial = true;
     void *state = mf_memory_zeroed(1, fit->method->state_size);
     if (state == NULL)
         return STATUS_NO_MEMORY;

@@ -17,6 +17,7 @@ void mf_fit_tell_iteration(const struct inverse_progress *now, const struct unit
 enum status mf_fit_tell_targets(struct progress *to, const struct fit_file *fit) MUST_USE;
 
 /// The lines about the targets of one state, and a warning if the steps of the verification are too
-/// long for the bonds among them. Fails: as mf_target_sanity_tell. Tested: test_fit_molecules.
+/// long for the bonds among them. Fails: as mf_target_sanity_tell. Tested: test_fit_molecules,
+/// test_fit_tell.
 enum status mf_fit_tell_state(const struct fit_file *fit,
                               const struct target_sanity_listener *listener) MUST_USE;

@@ -3,6 +3,7 @@
 // What a look at the targets sees before a fit: g(r) of real fluids passes and is told in a line;
 // wrong columns, units, densities and temperatures are refused with the key, or a warning names
 // them.
+#include "shared/propane.h"
 #include "shared/run_program.h"
 #include "shared/small_inputs.h"
 #include "shared/testing.h"
@@ -357,56 +358,19 @@ static void test_fit_has_nothing_against_soft_fluids_and_gases(void **state) {
     }
 }
 
-/// VOTCA's table of propane in targets/ with all its values times `factor`.
-static void write_scaled(struct temporary_folder *folder, const char *name, double factor) {
-    char file[1024], *rest;
-    snprintf(file, sizeof file, "%s/targets/propane/%s", root, name);
-    char *text = temporary_folder_read(file), *scaled = calloc(2, strlen(text)), *end = scaled;
-    for (char *row = strtok_r(text, "\n", &rest); row; row = strtok_r(NULL, "\n", &rest)) {
-        double r, g;
-        if (sscanf(row, "%lf %lf", &r, &g) == 2)
-            end += sprintf(end, "%.6f %.6f i\n", r, factor * g);
-    }
-    temporary_folder_write(folder, name, scaled, strlen(scaled));
-    free(scaled);
-    free(text);
-}
-
-/// As of a volume that is off by 5 %, or of one file that is over another number of pairs. Pair
-/// types that are off and make up for each other are a mixture whose types gather.
+/// The program says what mf_fit_tell_state tells: see test_fit_tell for all that it warns of.
 static void test_fit_of_molecules_warns_of_g_that_ends_beside_1(void **state) {
-    static const char pairs[][16] = {"A-A.dist.tgt", "A-B.dist.tgt", "B-B.dist.tgt"};
-    static const char run[] =
-        "{\"units\": \"nm-ps\", \"target\": {\"rdf\": {\n"
-        "\"A-A\": {\"file\": \"A-A.dist.tgt\", \"format\": \"votca\", \"normalisation\": 1},\n"
-        "\"A-B\": {\"file\": \"A-B.dist.tgt\", \"format\": \"votca\", \"normalisation\": 1},\n"
-        "\"B-B\": {\"file\": \"B-B.dist.tgt\", \"format\": \"votca\", \"normalisation\": 1}}},\n"
-        "\"scene\": {\"box\": [4.96337, 5.13917, 4.52386], \"temperature\": 200,\n"
-        "\"particles\": {\"mass\": 14.7}, \"bonds\": {\"bond\": {\"law\": \"harmonic\", \"k\": "
-        "50000, \"length\": 0.17}},\n"
-        "\"molecules\": {\"propane\": {\"count\": 1000, \"chain\": {\"beads\": [\"A\", \"B\", "
-        "\"A\"], \"bond\": \"bond\"}}}}}\n";
-    static const struct {
-        double factor[3];
-        const char *words; ///< NULL: no warning
-    } cases[] = {{{1, 1, 1}, NULL},
-                 {{1.05, 1.05, 1.05}, "g of all beads is 1.05"},
-                 {{0.95, 0.95, 0.95}, "g of all beads is 0.95"},
-                 {{1.05, 1, 1}, "target.rdf.A-A: over the last quarter of its range g is 1.05"},
-                 {{1, 0.95, 1}, "target.rdf.A-B: over the last quarter of its range g is 0.9"},
-                 {{1, 1, 1.05}, "target.rdf.B-B: over the last quarter of its range g is 1.05"},
-                 {{1, 1, 1.025}, NULL},
-                 {{1.05, 0.95, 1.05}, NULL}};
     static struct run_program_result result;
-    small_inputs_write(*state, "run.json", run, NULL, NULL);
-    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-        for (int pair = 0; pair < 3; pair++)
-            write_scaled(*state, pairs[pair], cases[k].factor[pair]);
+    small_inputs_write(*state, "run.json", propane_run_small, NULL, NULL);
+    for (int k = 0; k < 2; k++) {
+        for (int pair = 0; pair < PROPANE_PAIRS; pair++)
+            propane_write_target(*state, root, pair, pair == 0 && k == 1 ? 1.05 : 1);
         RUN_PROGRAM(&result, "fit", "run.json", "--explain");
         run_program_assert_code(&result, 0);
         assert_contains(result.out, "target rdf.A-A: ");
-        if (cases[k].words)
-            assert_contains(result.out, cases[k].words);
+        if (k == 1)
+            assert_contains(result.out,
+                            "target.rdf.A-A: over the last quarter of its range g is 1.05");
         else
             assert_null(strstr(result.out, "not 1"));
     }
@@ -425,17 +389,18 @@ static void write_flat(struct temporary_folder *folder, const char *name, int fi
 static void test_fit_warns_of_dihedrals_about_angles_in_a_line(void **state) {
     static const char run[] =
         "{\"units\": \"nm-ps\", \"target\": {\n"
-        "\"rdf\": {\"file\": \"A-A.dist.tgt\", \"format\": \"votca\", \"normalisation\": 1},\n"
+        "\"rdf\": {\"file\": \"A-A.dist.tgt\", \"format\": \"votca\", \"normalisation\": 1, "
+        "\"cutoff\": 1.5},\n"
         "\"bond_angles\": {\"bend\": {\"file\": \"bend.tsv\"}},\n"
         "\"dihedral_angles\": {\"twist\": {\"file\": \"twist.tsv\"}}},\n"
-        "\"scene\": {\"box\": [4.96337, 5.13917, 4.52386], \"temperature\": 200,\n"
+        "\"scene\": {\"box\": " PROPANE_SMALL_BOX ", \"temperature\": 200,\n"
         "\"particles\": {\"mass\": 14.7}, \"bonds\": {\"bond\": {\"law\": \"harmonic\", \"k\": "
         "50000, \"length\": 0.17}},\n"
-        "\"molecules\": {\"butane\": {\"count\": 500, \"chain\": {\"type\": \"A\", \"length\": 4, "
+        "\"molecules\": {\"butane\": {\"count\": 150, \"chain\": {\"type\": \"A\", \"length\": 4, "
         "\"bond\": \"bond\", \"angle\": \"bend\", \"dihedral\": \"twist\"}}}}}\n";
     static struct run_program_result result;
     small_inputs_write(*state, "run.json", run, NULL, NULL);
-    write_scaled(*state, "A-A.dist.tgt", 1);
+    propane_write_target(*state, root, 0, 1);
     write_flat(*state, "twist.tsv", -180, 180);
     for (int last = 160; last <= 180; last += 20) {
         write_flat(*state, "bend.tsv", 100, last);

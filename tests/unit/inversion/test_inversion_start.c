@@ -135,6 +135,19 @@ static void test_inversion_create_refuses_a_hole_beyond_the_core(void **state) {
     clear(&made);
 }
 
+/// What is only to be refused or not needs no more than one sampler.
+static void test_inversion_create_makes_one_sampler_for_a_trial(void **state) {
+    (void)state;
+    struct made made;
+    for (int trial = 0; trial <= 1; trial++) {
+        make(&made, INVERSION_FROM_MEAN_FORCE);
+        made.problem.trial = trial;
+        assert_ok(mf_inversion_create(&made.inversion, &mf_imc, &made.problem, &made.settings));
+        assert_int_equal(made.inversion.replicas.count, trial ? 1 : made.settings.common.replicas);
+        clear(&made);
+    }
+}
+
 static void ignore(void *context, const struct inverse_progress *progress) {
     (void)context, (void)progress;
 }
@@ -250,6 +263,7 @@ int main(void) {
         cmocka_unit_test(test_inversion_band_widens_when_more_than_noise_is_left),
         cmocka_unit_test(test_inversion_band_counts_the_ramp_that_is_asked_for),
         cmocka_unit_test(test_inversion_create_refuses_a_hole_beyond_the_core),
+        cmocka_unit_test(test_inversion_create_makes_one_sampler_for_a_trial),
         cmocka_unit_test(test_inversion_band_looks_at_the_pressures_of_all_states),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
