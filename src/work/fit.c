@@ -276,6 +276,9 @@ static enum status record(struct run *run, const struct inverse_step *step) {
 static enum status iterate(struct run *run) {
     const struct inverse_method *method = run->fit.method;
     const struct inverse_listener listener = {tell, run};
+    if (run->standing.finished)
+        mf_progress_say(&run->progress,
+                        "the fit was finished before: its result alone is verified and written");
     while (!run->standing.finished) {
         struct inverse_step step;
         mf_parallel_keep(&run->checkpoint.kept);

@@ -186,8 +186,13 @@ static void test_a_resumed_run_may_read_its_own_settings(void **state) {
     write_inputs(*state);
     RUN_PROGRAM(&result, "fit", "run.json", "--quiet");
     assert_in_range(result.code, 0, 1);
-    RUN_PROGRAM(&result, "fit", "out/used.json", "-o", "out", "--resume", "--quiet");
+    static const char *const results[] = {"out/used.json", "out/potential.tsv", "out/history.tsv",
+                                          "out/rdf.tsv", NULL};
+    struct kept kept = keep(results);
+    RUN_PROGRAM(&result, "fit", "out/used.json", "-o", "out", "--resume");
     assert_in_range(result.code, 0, 1);
+    assert_contains(result.err, "the fit was finished before: its result alone is verified");
+    assert_kept(&kept);
     RUN_PROGRAM(&result, "fit", "out/used.json", "-o", "out", "--force", "--quiet");
     assert_refused("out/used.json would be replaced", "reads it as out/used.json");
 }
