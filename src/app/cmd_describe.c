@@ -129,7 +129,8 @@ static const struct topic fixed_topics[] = {
     {"files", "run", "the top of a run file, for `mesofit fit`", {mf_heading_fields}},
     {"files",
      "scene",
-     "the top of a scene file, and \"scene\" of a run file, which has no title and seed",
+     "the top of a scene file, for `mesofit simulate`, and \"scene\" of a run file, which has no "
+     "title and seed",
      {mf_heading_fields, mf_scene_fields, mf_scene_density_fields}},
     {"files",
      "particles",
@@ -370,6 +371,16 @@ static enum status print_all(const char *format, const struct topic *topics, siz
     return STATUS_OK;
 }
 
+/// The topic that says which command it is for.
+static const char *find_of_command(const struct topic *topics, size_t count, const char *command) {
+    char words[64];
+    snprintf(words, sizeof words, "`mesofit %.32s`", command);
+    for (size_t k = 0; k < count; k++)
+        if (strstr(topics[k].summary, words))
+            return topics[k].name;
+    return NULL;
+}
+
 static enum status run(const struct command_line *line) {
     struct topic topics[DESCRIBE_MOST_TOPICS];
     const char *names[DESCRIBE_MOST_TOPICS];
@@ -386,7 +397,9 @@ static enum status run(const struct command_line *line) {
         return STATUS_OK;
     for (size_t k = 0; k < count; k++)
         names[k] = topics[k].name;
-    const char *nearest = mf_nearest_name(line->files[0], names, count);
+    const char *nearest = find_of_command(topics, count, line->files[0]);
+    if (nearest == NULL)
+        nearest = mf_nearest_name(line->files[0], names, count);
     return nearest ? mf_status_fail(STATUS_BAD_INPUT,
                                     "describe: \"%s\" is not known; did you mean \"%s\"?",
                                     line->files[0], nearest)

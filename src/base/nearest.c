@@ -12,8 +12,13 @@ static size_t smaller(size_t a, size_t b) {
     return a < b ? a : b;
 }
 
-/// Optimal string alignment distance: one edit inserts, deletes or replaces a letter, or swaps two
-/// neighbours. The swap counts once because it is the commonest slip in short names.
+static char lower(char c) {
+    return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
+}
+
+/// Optimal string alignment distance, of letters of either case: one edit inserts, deletes or
+/// replaces a letter, or swaps two neighbours. The swap counts once because it is the commonest
+/// slip in short names.
 static size_t edit_distance(const char *a, size_t length_a, const char *b, size_t length_b) {
     size_t cost[LONGEST_NAME + 1][LONGEST_NAME + 1];
     for (size_t i = 0; i <= length_a; i++)
@@ -22,9 +27,10 @@ static size_t edit_distance(const char *a, size_t length_a, const char *b, size_
         cost[0][j] = j;
     for (size_t i = 1; i <= length_a; i++)
         for (size_t j = 1; j <= length_b; j++) {
-            const size_t replace = cost[i - 1][j - 1] + (a[i - 1] != b[j - 1]);
+            const size_t replace = cost[i - 1][j - 1] + (lower(a[i - 1]) != lower(b[j - 1]));
             cost[i][j] = smaller(replace, 1 + smaller(cost[i - 1][j], cost[i][j - 1]));
-            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+            if (i > 1 && j > 1 && lower(a[i - 1]) == lower(b[j - 2]) &&
+                lower(a[i - 2]) == lower(b[j - 1]))
                 cost[i][j] = smaller(cost[i][j], cost[i - 2][j - 2] + 1);
         }
     return cost[length_a][length_b];

@@ -4,7 +4,8 @@
 
 #include <stddef.h>
 
-/// Entry of `known` with the fewest edits (insert, delete, replace, swap neighbours) from `given`.
+/// Entry of `known` with the fewest edits (insert, delete, replace, swap neighbours) from `given`;
+/// another case of letters is none.
 /// @param[in] known  shape [count]
 /// @return NULL if even the nearest differs in more than a third of its letters. Tested:
 /// test_nearest.

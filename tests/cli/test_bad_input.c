@@ -250,12 +250,13 @@ static const struct fault run_faults[] = {
     FAULT("small box for the friction weight", DISSIPATIVE, "{\"law\": \"power\", \"cutoff\": 1.6}",
           "input.json", "box", "1.6"),
     FAULT("unknown method", "\"imc\"", "\"imcc\"", "method.name", "did you mean \"imc\"?"),
+    FAULT("a method in capitals", "\"imc\"", "\"IMC\"", "method.name", "did you mean \"imc\"?"),
     FAULT("a key of another method", "\"samples\": 8", "\"generations\": 8",
           "method.generations: unknown"),
     FAULT("a potential in a fit", STEP, STEP ", \"conservative\": {}", "input.json",
           "scene.conservative"),
     FAULT("an optimiser of an earlier version", "\"samples\": 8",
-          "\"samples\": 8, \"asynchronous\": \"no\"",
+          "\"samples\": 8, \"asynchronous\": \"yes\"",
           "input.json: method.asynchronous: no longer a key: candidates are measured by rounds "
           "alone; "
           "leave it out"),

@@ -40,6 +40,8 @@ static const struct command_line bad_lines[] = {
     {{"fit"}, {"usage: mesofit fit RUN.json"}},
     {{"fit", "scene.json", "scene.json"}, {"usage: mesofit fit RUN.json"}},
     {{"compare"}, {"usage: mesofit compare DIR"}},
+    {{"describe", "fit"}, {"\"fit\" is not known", "did you mean \"run\"?"}},
+    {{"describe", "simulate"}, {"did you mean \"scene\"?"}},
     {{"describe", "gaussan"}, {"\"gaussan\" is not known", "did you mean \"gaussian\"?"}},
     {{"simulate", "no/such.json"}, {"no/such.json: No such file"}},
     {{"fit", "no/such.json"}, {"no/such.json: No such file"}},

@@ -21,6 +21,8 @@ static void test_nearest_name_finds_the_name_when_one_slip_was_made(void **state
     assert_nearest("seet", "seed");
     assert_nearest("sede", "seed");
     assert_nearest("Seed", "seed");
+    assert_nearest("SEED", "seed");
+    assert_nearest("TEMPRATURE", "temperature");
     assert_nearest("temprature", "temperature");
     assert_nearest("tempretrue", "temperature");
 }
