@@ -71,6 +71,12 @@ static void wait_for_pages(struct session *session, double seconds) {
         nanosleep(&(struct timespec){.tv_nsec = 20000000}, NULL);
 }
 
+/// What a run without a page says at its end, for the terminal: the program goes on.
+static void tell_end(enum status status) {
+    if (status != STATUS_OK)
+        fprintf(stderr, "mesofit: %s\n", mf_status_message());
+}
+
 /// Take orders until it is time to end.
 static enum status serve(struct session *session) {
     struct live_control *control = &session->view.control;
@@ -84,8 +90,10 @@ static enum status serve(struct session *session) {
         if (mf_interrupt_requested())
             return status;
         const bool refused = status == STATUS_BAD_INPUT || status == STATUS_IO;
-        if (session->view.stays || stopped || (refused && !session->options->start))
+        if (session->view.stays || stopped || (refused && !session->options->start)) {
+            tell_end(status);
             continue;
+        }
         wait_for_pages(session, farewell);
         return status;
     }

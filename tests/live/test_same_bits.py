@@ -103,6 +103,7 @@ class SameBits(unittest.TestCase):
         self.assertEqual(served.ask("/api/start?resume=1", "")[0], 200)
         self.wait_for(served, "ended")
         served.end()
+        self.assertIn("mesofit: interrupted after ", "".join(served.said))  # the terminal hears of it, too
         self.check("plain", "stopped")
 
     def test_refusal_is_the_programs_own(self):
