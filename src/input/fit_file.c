@@ -52,28 +52,30 @@ static bool knows(const struct inverse_method *method, const char *key) {
 /// What files of earlier versions may say.
 static void refuse_removed(const struct inverse_method *method, struct json_object *object) {
     static const char usual[] = "what was its default is taken always; leave it out";
-    static const char *const removed[][2] = {
-        {"asynchronous", "candidates are measured by rounds alone; leave it out"},
-        {"regularisation", "the step is as smooth as the noise asks; leave it out"},
-        {"strength", "it is chosen from the noise; leave it out"},
-        {"islands", "all of a population breed with all; leave it out"},
-        {"migration", "all of a population breed with all; leave it out"},
-        {"common_noise", "each candidate has random numbers of its own; leave it out"},
-        {"restarts", "leave it out, and begin again with another \"seed\""},
-        {"remeasurements", usual},
-        {"mutated_genes", usual},
-        {"additive", usual},
-        {"crossover", usual},
-        {"crossover_exponent", usual},
-        {"mutation", usual},
-        {"remeasured", usual},
-        {"depth", usual},
-        {"damping", usual},
-        {"ridge", usual},
+    static const struct {
+        const char *key, *now, *reason; ///< what is always so now
+    } removed[] = {
+        {"asynchronous", "no", "candidates are measured by rounds alone; leave it out"},
+        {"regularisation", "noise", "the step is as smooth as the noise asks; leave it out"},
+        {"strength", "0", "it is chosen from the noise; leave it out"},
+        {"islands", "1", "all of a population breed with all; leave it out"},
+        {"migration", "5", "all of a population breed with all; leave it out"},
+        {"common_noise", "no", "each candidate has random numbers of its own; leave it out"},
+        {"restarts", "0", "leave it out, and begin again with another \"seed\""},
+        {"remeasurements", "2", usual},
+        {"mutated_genes", "0.1", usual},
+        {"additive", "0.1", usual},
+        {"crossover", "0.9", usual},
+        {"crossover_exponent", "15", usual},
+        {"mutation", "1", usual},
+        {"remeasured", "0.25", usual},
+        {"depth", "7", usual},
+        {"damping", "1", usual},
+        {"ridge", "0.35", usual},
     };
     for (size_t k = 0; k < sizeof removed / sizeof *removed; k++)
-        if (!knows(method, removed[k][0]))
-            mf_json_retired(object, removed[k][0], removed[k][1]);
+        if (!knows(method, removed[k].key))
+            mf_json_retired(object, removed[k].key, removed[k].now, removed[k].reason);
 }
 
 static enum status read_method(struct fit_file *fit, struct json_object *root) {

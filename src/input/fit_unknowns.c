@@ -180,7 +180,7 @@ static enum status read_unknown(struct fit_unknown *unknown, enum unknown_kind k
         return STATUS_OK;
     }
     mf_json_renamed(object, "genes", "coefficients");
-    mf_json_retired(object, "spacing", "coefficients are spread evenly; leave it out");
+    mf_json_retired(object, "spacing", "even", "coefficients are spread evenly; leave it out");
     TRY(mf_scene_law_read(&unknown->start, object, "start", laws, composition, units));
     mf_fit_base_check(unknown, object);
     if (p->maximum <= p->minimum)

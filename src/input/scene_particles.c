@@ -200,7 +200,7 @@ enum status mf_scene_particles_read(struct scene *scene, struct json_object *obj
     make_box(scene);
     mf_json_fields(&particles, mf_placement_fields, placement);
     placement->jitter = PLACEMENT_JITTER;
-    mf_json_retired(&particles, "jitter", "it is 0.05 always; leave it out");
+    mf_json_retired(&particles, "jitter", "0.05", "it is 0.05 always; leave it out");
     mf_scene_attributes_read(scene, &particles);
     if (particles.item == NULL)
         return STATUS_OK;

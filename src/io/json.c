@@ -241,9 +241,42 @@ static bool refuses(struct json_object *object, const char *key) {
     return true;
 }
 
-void mf_json_retired(struct json_object *object, const char *old, const char *reason) {
-    if (refuses(object, old))
-        mf_json_fault(object, old, "no longer a key: %s", reason);
+/// Whether a text or a number is this one.
+static bool is_said(const cJSON *item, const char *fixed) {
+    char number[32];
+    const char *text = cJSON_GetStringValue(item);
+    if (cJSON_IsNumber(item)) {
+        snprintf(number, sizeof number, "%.15g", item->valuedouble);
+        text = number;
+    }
+    return text && strcmp(text, fixed) == 0;
+}
+
+/// The first retired key is told with its reason; with another one all are told by their names.
+static void fault_retired(struct json_object *object, const char *key, const char *reason) {
+    struct json_document *document = object->document;
+    struct json_object root = view(document, NULL);
+    char *all = document->retired, path[2 * JSON_PATH_SIZE], words[LINE_SIZE];
+    const size_t before = strlen(all), room = sizeof document->retired - before;
+    join_path(path, sizeof path, object->path, key);
+    if (before == 0) {
+        snprintf(all, room, "%s", path);
+        mf_json_fault(object, key, "no longer a key: %s", reason);
+        return;
+    }
+    snprintf(words, sizeof words, "%.1024s: %.1024s: no longer a key: ", document->file, all);
+    mf_faults_take_back(&document->faults, words);
+    snprintf(words, sizeof words, "%.1024s: no longer keys: ", document->file);
+    mf_faults_take_back(&document->faults, words);
+    snprintf(all + before, room, ", %s", path);
+    mf_json_fault(&root, NULL, "no longer keys: %s; leave them out", all);
+}
+
+void mf_json_retired(struct json_object *object, const char *old, const char *fixed,
+                     const char *reason) {
+    const cJSON *item = cJSON_GetObjectItemCaseSensitive(object->item, old);
+    if (refuses(object, old) && !(fixed && is_said(item, fixed)))
+        fault_retired(object, old, reason);
 }
 
 void mf_json_renamed(struct json_object *object, const char *old, const char *today) {

@@ -86,8 +86,12 @@ const char *mf_json_key(const struct json_object *object, size_t n);
 /// Refuse the name that a key had in an earlier version, and say its name of today.
 void mf_json_renamed(struct json_object *object, const char *old, const char *today);
 
-/// Refuse a key of an earlier version, if it is present, with the reason. Tested: test_json.
-void mf_json_retired(struct json_object *object, const char *old, const char *reason);
+/// Refuse a key of an earlier version, if it is present, with the reason; but not one that says
+/// what is so now, as in what earlier versions have written. Several in a document are one fault.
+/// @param[in] fixed  the text or the number that it must be, or NULL if it can be none
+/// Tested: test_json, test_json_retired.
+void mf_json_retired(struct json_object *object, const char *old, const char *fixed,
+                     const char *reason);
 
 /// Refuse a key that has no place here, if it is present, with the reason. Tested: test_json.
 void mf_json_refuse(struct json_object *object, const char *key, const char *reason);

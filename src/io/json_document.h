@@ -15,6 +15,7 @@ struct json_document {
     struct input_files *inputs; ///< files that it names, or NULL: nobody wants to know
     struct units units;         ///< in which its numbers are
     struct faults faults;
+    char retired[JSON_LINE_SIZE / 4]; ///< keys of an earlier version so far, "a, b.c", or ""
 };
 
 /// Remember that the reader knows `key`, and find it.

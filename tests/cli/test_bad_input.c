@@ -271,7 +271,7 @@ static const struct fault run_faults[] = {
     FAULT("a method of an earlier version", "\"imc\"", "\"joint-imc\"",
           "input.json: method.name: \"joint-imc\" is of an earlier version: write \"imc\", which "
           "fits one state or several"),
-    FAULT("a constant of an earlier version", "\"samples\": 8", "\"samples\": 8, \"depth\": 7",
+    FAULT("a constant of an earlier version", "\"samples\": 8", "\"samples\": 8, \"depth\": 8",
           "input.json: method.depth: no longer a key: what was its default is taken always; leave "
           "it out"),
     FAULT("islands of an earlier version",
@@ -362,6 +362,24 @@ static void test_fit_tells_of_all_faults_at_once(void **state) {
     run_program_assert_refused(&result, ".", "three faults", 3, words);
 }
 
+/// Results of earlier versions have all settings of their time.
+static void test_keys_of_earlier_versions_may_say_what_is_so_now(void **state) {
+    static const char wrong[] = "\"samples\": 8, \"damping\": 0.5, \"strength\": 1, \"depth\": 7";
+    static struct run_program_result result;
+    small_inputs_write(*state, "target.tsv", small_inputs_target, NULL, NULL);
+    small_inputs_write(*state, "input.json", small_inputs_run, "\"samples\": 8",
+                       "\"samples\": 8, \"damping\": 1, \"strength\": 0, \"asynchronous\": \"no\"");
+    RUN_PROGRAM(&result, "fit", "input.json", "--explain");
+    run_program_assert_code(&result, 0);
+    small_inputs_write(*state, "input.json", small_inputs_run, "\"samples\": 8", wrong);
+    RUN_PROGRAM(&result, "fit", "input.json");
+    run_program_assert_refused(
+        &result, ".", "two keys of earlier versions", 1,
+        (const char *const[]){"input.json: no longer keys: method.strength, method.damping; leave "
+                              "them out",
+                              NULL});
+}
+
 /// The good files are good: the faults above are what is refused.
 static void test_file_for_another_command_is_refused_in_one_line(void **state) {
     static struct run_program_result result;
@@ -398,6 +416,7 @@ int main(void) {
         TEST(test_simulate_refuses_with_a_line_for_each_fault),
         TEST(test_fit_refuses_with_a_line_for_each_fault),
         TEST(test_fit_tells_of_all_faults_at_once),
+        TEST(test_keys_of_earlier_versions_may_say_what_is_so_now),
         TEST(test_file_for_another_command_is_refused_in_one_line),
         TEST(test_good_files_are_accepted),
     };

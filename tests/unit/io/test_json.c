@@ -224,7 +224,7 @@ static void test_json_finish_proposes_no_key_that_is_refused(void **state) {
     struct json_document *document =
         open_text(state, "{\"a\": 1, \"old\": 1, \"mask\": 1, \"away\": 1, \"other\": 1}");
     struct json_object root = mf_json_root(document);
-    mf_json_retired(&root, "old", "leave it out");
+    mf_json_retired(&root, "old", NULL, "leave it out");
     mf_json_renamed(&root, "mask", "cover");
     mf_json_refuse(&root, "away", "it stands elsewhere");
     assert_true(mf_json_has(&root, "a"));
