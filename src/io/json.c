@@ -48,27 +48,40 @@ void mf_json_fault_type(struct json_object *object, const char *key, const char 
     mf_json_fault(object, key, "expected %s, found %s", expected, found);
 }
 
+bool mf_json_is_encoded(struct json_object *object, const char *key, const char *text) {
+    size_t left = strlen(text), bytes;
+    for (; left > 0; text += bytes, left -= bytes)
+        if ((bytes = mf_visible_character(text, left)) == 0) {
+            mf_json_fault(object, key, "byte 0x%02x is not UTF-8; save the file as UTF-8",
+                          (unsigned char)*text);
+            return false;
+        }
+    return true;
+}
+
 // Documents and objects ---------------------------------------------------------------------------
 
 static struct json_object view(struct json_document *document, const cJSON *item) {
     return (struct json_object){.document = document, .item = item};
 }
 
-/// Record each key that an object holds twice, here and in everything below: cJSON would read the
-/// first and pass over the others.
-static void find_duplicates(struct json_object *object) {
+/// Record each key that is not UTF-8, or that an object holds twice, here and in everything below:
+/// cJSON would read the first and pass over the others.
+static void check_keys(struct json_object *object) {
     const cJSON *item = object->item, *member;
     int index = 0;
     cJSON_ArrayForEach(member, item) {
         if (member->string && cJSON_GetObjectItemCaseSensitive(item, member->string) != member)
             mf_json_fault(object, member->string, "the key stands here twice");
+        if (member->string)
+            mf_json_is_encoded(object, member->string, member->string);
         if (member->child) {
             struct json_object inner = view(object->document, member);
             char place[32];
             snprintf(place, sizeof place, "[%d]", index);
             join_path(inner.path, sizeof inner.path, object->path,
                       member->string ? member->string : place);
-            find_duplicates(&inner);
+            check_keys(&inner);
         }
         index++;
     }
@@ -93,7 +106,7 @@ enum status mf_json_open(struct json_document **document, const char *file) {
     CHECK(mf_json_parse(file, text, &opened->root));
     CHECK(mf_json_item_check(file, opened->root));
     struct json_object root = view(opened, opened->root);
-    find_duplicates(&root);
+    check_keys(&root);
     *document = opened;
 done:
     mf_memory_free(text);

@@ -21,6 +21,10 @@ struct json_document {
 /// Remember that the reader knows `key`, and find it.
 const void *mf_json_ask(struct json_object *object, const char *key);
 
+/// Whether what stands at `key`, or the key itself, is UTF-8, as cJSON does not ask; or false and a
+/// fault.
+bool mf_json_is_encoded(struct json_object *object, const char *key, const char *text);
+
 /// Record that another type was expected at `key`.
 void mf_json_fault_type(struct json_object *object, const char *key, const char *expected,
                         const void *item);

@@ -120,21 +120,22 @@ static void read_lengths(struct json_object *object, const struct field *field, 
         memcpy(member, lengths, sizeof lengths);
 }
 
-/// A text that is not empty, or NULL and a fault.
-static const char *read_text(struct json_object *object, const char *key, const char *expected,
+/// A text that is not empty, or NULL and a fault. Names of files need not be UTF-8.
+static const char *read_text(struct json_object *object, const char *key, enum field_type type,
                              const cJSON *item) {
-    if (!cJSON_IsString(item))
-        mf_json_fault_type(object, key, expected, item);
-    else if (item->valuestring[0] == '\0')
+    const char *text = cJSON_GetStringValue(item);
+    if (text == NULL)
+        mf_json_fault_type(object, key, expected_name[type], item);
+    else if (text[0] == '\0')
         mf_json_fault(object, key, "the text is empty");
-    else
-        return item->valuestring;
+    else if (type == FIELD_FILE || mf_json_is_encoded(object, key, text))
+        return text;
     return NULL;
 }
 
 static void read_text_field(struct json_object *object, const struct field *field,
                             const cJSON *item, char *member) {
-    const char *text = read_text(object, field->name, expected_name[field->type], item);
+    const char *text = read_text(object, field->name, field->type, item);
     if (text == NULL)
         return;
     const char *file = object->document->file, *slash = strrchr(file, '/');
@@ -226,7 +227,7 @@ const char *mf_json_choice(struct json_object *object, const char *key, const ch
         return fallback;
     }
     const char *flag = cJSON_IsTrue(item) ? "true" : cJSON_IsFalse(item) ? "false" : NULL;
-    const char *text = known && flag ? flag : read_text(object, key, "a text", item);
+    const char *text = known && flag ? flag : read_text(object, key, FIELD_TEXT, item);
     if (text == NULL || known == NULL)
         return text;
     size_t count = 0;

@@ -183,6 +183,17 @@ static void test_json_fields_refuses_texts_when_they_do_not_fit(void **state) {
     assert_fault(state, text, "file: the text is longer than 1023 bytes");
 }
 
+static void test_json_refuses_texts_and_keys_that_are_not_utf_8(void **state) {
+    struct sample sample;
+    assert_fault(state, "{\"name\": \"caf\xe9\"}",
+                 "run.json: name: byte 0xe9 is not UTF-8; save the file as UTF-8");
+    assert_ok(
+        read_sample(state, "{\"name\": \"caf\u00e9 \u2192\", \"file\": \"caf\xe9\"}", &sample));
+    struct json_document *document = open_text(state, "{\"in\": {\"caf\xe9\": 1}}");
+    assert_fails(mf_json_close(document, STATUS_OK), STATUS_BAD_INPUT,
+                 "run.json: in.caf\\xe9: byte 0xe9 is not UTF-8; save the file as UTF-8");
+}
+
 static void test_json_fields_demands_required_ones_when_the_object_is_there(void **state) {
     struct sample sample;
     struct json_document *document = open_text(state, "{\"here\": {}}");
@@ -419,6 +430,7 @@ int main(void) {
         IN_FOLDER(test_json_fields_refuses_numbers_when_they_are_not_finite_or_lose_digits),
         IN_FOLDER(test_json_fields_says_what_it_found_when_the_type_is_wrong),
         IN_FOLDER(test_json_fields_refuses_texts_when_they_do_not_fit),
+        IN_FOLDER(test_json_refuses_texts_and_keys_that_are_not_utf_8),
         IN_FOLDER(test_json_fields_demands_required_ones_when_the_object_is_there),
         IN_FOLDER(test_json_count_is_of_the_items_of_an_array),
         IN_FOLDER(test_json_finish_suggests_the_nearest_key_when_one_is_unknown),
