@@ -79,7 +79,8 @@ class Numbers(unittest.TestCase):
         self.served.ask("/api/start", b"")
         self.wait("progress", lambda progress: progress["rate"] > 100)
         self.served.wish(wish="speed", speed=20)
-        self.wait("progress", lambda progress: progress["rate"] == 20)
+        told = self.wait("progress", lambda progress: progress["rate"] == 20)
+        self.assertAlmostEqual(told["left"], (told["total"] - told["done"]) / 20)
 
 
 if __name__ == "__main__":
