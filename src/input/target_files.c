@@ -71,12 +71,12 @@ enum status mf_target_files_widen(struct target_files *files, enum topology_orde
 
 /// g of different molecules, and the bins in which it is measured.
 static enum status read_apart(struct target_files *files, size_t place, struct json_object *object,
-                              const struct box *box, const struct units *units) {
+                              const struct finite_size_fluid *fluid, const struct units *units) {
     struct rdf_settings *settings = mf_memory_zeroed(1, sizeof *settings);
     if (settings == NULL)
         return STATUS_NO_MEMORY;
     files->settings[place] = settings;
-    TRY(mf_target_pairs_read(&files->apart, object, box, &files->composition, units));
+    TRY(mf_target_pairs_read(&files->apart, object, fluid, units));
     *settings = (struct rdf_settings){.of_target = true,
                                       .estimator = RDF_FORCE_NOT_USED,
                                       .target = *target_pairs_bins(&files->apart)};
@@ -93,10 +93,14 @@ static enum status read_kind(struct target_files *files, int number, struct json
         return read_groups(files, &kind, order, object, box, molecules, units);
     if (kind.target->has_settings)
         TRY(read_settings(files, &kind, object));
+    const struct finite_size_fluid fluid = {.box = box,
+                                            .composition = &files->composition,
+                                            .topology = molecules ? &molecules->topology : NULL,
+                                            .apart = number == mf_rdf_intermolecular_kind()};
     if (number == TARGET_RDF)
-        return mf_target_pairs_read(&files->rdf, object, box, &files->composition, units);
-    if (number == mf_rdf_intermolecular_kind())
-        return read_apart(files, kind.place, object, box, units);
+        return mf_target_pairs_read(&files->rdf, object, &fluid, units);
+    if (fluid.apart)
+        return read_apart(files, kind.place, object, &fluid, units);
     if (number == TARGET_ETD)
         return mf_target_etd_read(&files->etd, object);
     if (number == mf_kirkwood_buff_kind()) {

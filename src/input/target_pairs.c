@@ -41,8 +41,7 @@ static void check_bins(const struct target_pairs *target, const struct compositi
 
 /// g and errors of all pair types in the numbers of the scene, one behind the other, if all
 /// could be read.
-static enum status collect(struct target_pairs *target, const struct box *box,
-                           const struct composition *composition) {
+static enum status collect(struct target_pairs *target, const struct finite_size_fluid *fluid) {
     enum status status = STATUS_OK;
     const size_t bins = target_pairs_bins(target)->count;
     for (size_t pair = 0; pair < target->pairs; pair++)
@@ -52,16 +51,16 @@ static enum status collect(struct target_pairs *target, const struct box *box,
     NEW_ARRAY(target->error, target->pairs * bins);
     NEW_ARRAY(target->given, target->pairs * bins);
     for (size_t pair = 0; pair < target->pairs; pair++)
-        mf_target_rdf_convert(&target->member[pair], box, composition, (int)pair,
-                              target->g + pair * bins, target->error + pair * bins);
+        mf_target_rdf_convert(&target->member[pair], fluid, (int)pair, target->g + pair * bins,
+                              target->error + pair * bins);
     memcpy(target->given, target->g, target->pairs * bins * sizeof(double));
 done:
     return status;
 }
 
 enum status mf_target_pairs_read(struct target_pairs *target, struct json_object *object,
-                                 const struct box *box, const struct composition *composition,
-                                 const struct units *units) {
+                                 const struct finite_size_fluid *fluid, const struct units *units) {
+    const struct composition *composition = fluid->composition;
     *target = (struct target_pairs){0};
     if (composition->types == 0)
         return STATUS_OK; // a fault of the types is told, those of their pairs would mislead
@@ -69,8 +68,8 @@ enum status mf_target_pairs_read(struct target_pairs *target, struct json_object
     if (!composition_is_mixed(composition)) {
         if (mf_pair_names_refuse(object, composition, "{\"file\": …}"))
             return STATUS_OK;
-        TRY(mf_target_rdf_read(&target->member[0], object, units, box->dimensions));
-        return collect(target, box, composition);
+        TRY(mf_target_rdf_read(&target->member[0], object, units, fluid->box->dimensions));
+        return collect(target, fluid);
     }
     // The object remembers what it was asked for until it is finished.
     char name[COMPOSITION_MOST_PAIRS][COMPOSITION_PAIR_NAME_SIZE];
@@ -81,12 +80,12 @@ enum status mf_target_pairs_read(struct target_pairs *target, struct json_object
         // What is missing may be what a wrong name was to be.
         struct json_object child = mf_json_child(object, key[pair] ? key[pair] : name[pair], known);
         if (child.item)
-            TRY(mf_target_rdf_read(&target->member[pair], &child, units, box->dimensions));
+            TRY(mf_target_rdf_read(&target->member[pair], &child, units, fluid->box->dimensions));
     }
     mf_json_finish(object);
     cut_to_shortest(target);
     check_bins(target, composition, object);
-    return collect(target, box, composition);
+    return collect(target, fluid);
 }
 
 void mf_target_pairs_clear(struct target_pairs *target) {

@@ -29,7 +29,7 @@ static inline size_t target_pairs_values(const struct target_pairs *target) {
 /// types end with the shortest. Faults go to the document. Fails: NO_MEMORY. Tested:
 /// test_target_files, test_target_files_mixture.
 enum status mf_target_pairs_read(struct target_pairs *target, struct json_object *object,
-                                 const struct box *box, const struct composition *composition,
+                                 const struct finite_size_fluid *fluid,
                                  const struct units *units) MUST_USE;
 void mf_target_pairs_clear(struct target_pairs *target);
 void mf_target_pairs_write(const struct target_pairs *target, const struct composition *composition,

@@ -4,7 +4,6 @@
 #include "base/memory.h"
 #include "io/data_table.h"
 #include "io/votca.h"
-#include "observe/finite_size.h"
 #include "input/target_rows.h"
 
 #include <math.h>
@@ -319,20 +318,18 @@ static double possible_share(const struct composition *composition, int pair, do
     return type[0] == type[1] ? 1 - 1 / (share * (double)composition->count[type[0]]) : 1;
 }
 
-void mf_target_rdf_convert(const struct target_rdf *target, const struct box *box,
-                           const struct composition *composition, int pair, double *g,
-                           double *error) {
+void mf_target_rdf_convert(const struct target_rdf *target, const struct finite_size_fluid *fluid,
+                           int pair, double *g, double *error) {
     const struct target_rdf_parameters *p = &target->parameters;
-    const double to = (double)mf_composition_particles(composition);
+    const double to = (double)mf_composition_particles(fluid->composition);
     const double from = p->particles > 0 ? (double)p->particles : to;
     const double votca =
-        p->format == TARGET_RDF_VOTCA ? 1 / possible_share(composition, pair, from) : 1;
+        p->format == TARGET_RDF_VOTCA ? 1 / possible_share(fluid->composition, pair, from) : 1;
     for (size_t k = 0; k < target->bins.count; k++) {
         g[k] = votca * target->g[k];
         error[k] = votca * target->error[k];
     }
-    const double factor =
-        mf_finite_size_factor_of(&target->bins, g, error, box, composition, pair, from, to);
+    const double factor = mf_finite_size_factor_of(&target->bins, g, error, fluid, pair, from, to);
     for (size_t k = 0; k < target->bins.count; k++) {
         g[k] *= factor;
         error[k] *= factor;

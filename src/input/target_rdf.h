@@ -4,7 +4,7 @@
 
 #include "io/data_table.h"
 #include "io/json.h"
-#include "observe/rdf.h"
+#include "observe/finite_size.h"
 #include "input/target_rows.h"
 #include "io/units.h"
 
@@ -51,12 +51,11 @@ enum status mf_target_rdf_error_column(int64_t asked, int64_t first, int64_t sec
 
 /// g and its errors in the numbers of the scene, by mf_finite_size_factor_of. VOTCA's g of like
 /// pairs is normalised by N_a², and needs 1/(1 − 1/N_a) with the N_a that was measured.
-/// @param[in]  box, composition  of the scene
-/// @param[in]  pair              the pair type of this target
-/// @param[out] g, error          shape [bins.count]
+/// @param[in]  fluid     the scene
+/// @param[in]  pair      the pair type of this target
+/// @param[out] g, error  shape [bins.count]
 /// Tested: test_target_rdf, test_target_files_mixture.
-void mf_target_rdf_convert(const struct target_rdf *target, const struct box *box,
-                           const struct composition *composition, int pair, double *g,
-                           double *error);
+void mf_target_rdf_convert(const struct target_rdf *target, const struct finite_size_fluid *fluid,
+                           int pair, double *g, double *error);
 
 void mf_target_rdf_clear(struct target_rdf *target);

@@ -94,7 +94,12 @@ static void print_density(const struct view *view, char *text, size_t size) {
 static double integral_of(const struct view *view, int a, int b) {
     const int pair = mf_composition_pair(&view->scene->setup.composition, a, b);
     const struct view own = view_of(view->all, view->kind, view->scene, (size_t)pair);
-    return mf_kirkwood_buff_integrate(own.bins, own.g, own.error, &own.scene->setup.box, 0)
+    const struct finite_size_fluid fluid = {.box = &own.scene->setup.box,
+                                            .composition = &own.scene->setup.composition,
+                                            .topology = &own.scene->molecules.molecules.topology,
+                                            .apart = own.kind != TARGET_RDF};
+    return mf_kirkwood_buff_integrate(own.bins, own.g, own.error, fluid.box, 0,
+                                      mf_finite_size_inside(&fluid, pair))
         .integral;
 }
 
@@ -185,8 +190,8 @@ static enum status largest_compressibility(const struct view *view, double facto
     *largest = -INFINITY;
     for (struct rdf_bins part = *view->bins; 2 * part.count >= view->bins->count;
          part.count -= step_of_ranges(view)) {
-        const struct kirkwood_buff kb =
-            mf_kirkwood_buff_integrate(&part, g, view->error, &view->scene->setup.box, view->like);
+        const struct kirkwood_buff kb = mf_kirkwood_buff_integrate(
+            &part, g, view->error, &view->scene->setup.box, view->like, 0);
         *largest = fmax(*largest, kb.compressibility + standard_errors * kb.compressibility_error);
     }
 done:
@@ -202,7 +207,7 @@ static void print_compressibility(const struct view *view, char *text, size_t si
     double least = INFINITY, largest = -INFINITY;
     for (; 4 * part.count >= 3 * view->bins->count; part.count -= step_of_ranges(view)) {
         const struct kirkwood_buff kb = mf_kirkwood_buff_integrate(
-            &part, view->g, view->error, &view->scene->setup.box, view->like);
+            &part, view->g, view->error, &view->scene->setup.box, view->like, 0);
         if (part.count == view->bins->count)
             whole = kb;
         least = fmin(least, kb.compressibility);

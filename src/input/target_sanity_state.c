@@ -44,8 +44,8 @@ static struct wave highest_of(const struct target_state *state) {
 bool mf_target_state_print(const struct target_state *state, char line[TARGET_STATE_LINE]) {
     if (state->box->dimensions != 3 || state->count < 2)
         return false;
-    const struct kirkwood_buff kb =
-        mf_kirkwood_buff_integrate(state->bins, state->g, state->error, state->box, state->count);
+    const struct kirkwood_buff kb = mf_kirkwood_buff_integrate(state->bins, state->g, state->error,
+                                                               state->box, state->count, 0);
     if (kb.compressibility - standard_errors * kb.compressibility_error > several) {
         char tail[64] = "";
         if (state->tail > above_1)

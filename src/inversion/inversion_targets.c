@@ -15,11 +15,14 @@ static void count_pairs(struct inversion *inversion) {
     const struct target *target = &problem->targets.target[TARGET_RDF];
     const double from = (double)mf_composition_particles(&scene->composition);
     const double to = (double)mf_composition_particles(&inversion->composition);
+    const struct molecules *molecules = mf_molecules_find(scene->interaction, scene->interactions);
+    const struct finite_size_fluid fluid = {.box = &scene->box,
+                                            .composition = &scene->composition,
+                                            .topology = molecules ? &molecules->topology : NULL};
     for (size_t first = 0; first < inversion->grid.pair_bins; first += bins->count) {
         const int pair = (int)(first / bins->count);
-        const double factor =
-            mf_finite_size_factor_of(bins, target->value + first, target->error + first,
-                                     &scene->box, &scene->composition, pair, from, to);
+        const double factor = mf_finite_size_factor_of(
+            bins, target->value + first, target->error + first, &fluid, pair, from, to);
         for (size_t k = 0; k < bins->count; k++) {
             const size_t bin = first + k;
             const double ideal =

@@ -16,19 +16,65 @@ double mf_finite_size_factor(double s, double from, double to) {
     return (1 + (s - 1) / from) / (1 + (s - 1) / to);
 }
 
+/// N_a² and N_a N_b: twice the possible pairs of like beads in a large system, and all of unlike.
+static double ordered_pairs(const struct composition *composition, const int type[2]) {
+    return (double)composition->count[type[0]] * (double)composition->count[type[1]];
+}
+
+double mf_finite_size_inside(const struct finite_size_fluid *fluid, int pair) {
+    int type[2];
+    if (fluid->topology == NULL)
+        return 0;
+    mf_composition_pair_types(fluid->composition, pair, type);
+    const double inside = mf_topology_pairs_inside(fluid->topology, type, !fluid->apart);
+    return mf_box_volume(fluid->box) * inside / ordered_pairs(fluid->composition, type);
+}
+
+/// Numbers of molecules fluctuate as those of an ideal mixture, M_k, but for Σ n_k M_k, their
+/// beads; a single bead is a molecule of its own.
+double mf_finite_size_rigid(const struct finite_size_fluid *fluid, int pair) {
+    const struct topology *topology = fluid->topology;
+    const struct composition *composition = fluid->composition;
+    const double all = (double)mf_composition_particles(composition);
+    int type[2];
+    if (topology == NULL)
+        return 0;
+    mf_composition_pair_types(composition, pair, type);
+    double single[2], filled[2], room = all, together = 0;
+    for (int t = 0; t < 2; t++)
+        filled[t] = single[t] = (double)composition->count[type[t]];
+    for (int k = 0; k < topology->kinds; k++) {
+        const struct topology_kind *kind = &topology->kind[k];
+        const double count = (double)kind->count, beads = kind->beads;
+        double own[2];
+        for (int t = 0; t < 2; t++) {
+            own[t] = mf_topology_beads_of(kind, type[t]);
+            single[t] -= count * own[t];
+            filled[t] += count * (beads - 1) * own[t];
+        }
+        room += count * beads * (beads - 1);
+        together += count * own[0] * own[1];
+    }
+    const bool alike = type[0] == type[1];
+    const double fluctuation = together + (alike ? single[0] : 0) - filled[0] * filled[1] / room;
+    const double self = alike ? (double)composition->count[type[0]] : 0;
+    return 1 + all * (fluctuation - self) / ordered_pairs(composition, type);
+}
+
 /// s = 1 + ρG by all bins, and the variance of it.
 static double measure(const struct rdf_bins *bins, const double *g, const double *error,
-                      const struct box *box, size_t particles, double *variance) {
-    const struct kirkwood_buff whole = mf_kirkwood_buff_integrate(bins, g, error, box, particles);
+                      const struct box *box, size_t particles, double inside, double *variance) {
+    const struct kirkwood_buff whole =
+        mf_kirkwood_buff_integrate(bins, g, error, box, particles, inside);
     double squares = 0;
     for (int k = 0; k < RANGES; k++) {
         const double part = shortest_range + (1 - shortest_range) * k / RANGES;
         struct rdf_bins fewer = *bins;
         fewer.count = (size_t)ceil(part * (double)bins->count);
-        squares +=
-            pow(mf_kirkwood_buff_integrate(&fewer, g, error, box, particles).compressibility -
-                    whole.compressibility,
-                2);
+        squares += pow(
+            mf_kirkwood_buff_integrate(&fewer, g, error, box, particles, inside).compressibility -
+                whole.compressibility,
+            2);
     }
     *variance = squares / RANGES + whole.compressibility_error * whole.compressibility_error;
     return whole.compressibility;
@@ -44,17 +90,22 @@ static double least(const struct composition *composition, int pair) {
 }
 
 double mf_finite_size_factor_of(const struct rdf_bins *bins, const double *g, const double *error,
-                                const struct box *box, const struct composition *composition,
-                                int pair, double from, double to) {
-    double s = 0, variance;
+                                const struct finite_size_fluid *fluid, int pair, double from,
+                                double to) {
     if (from == to)
         return 1;
-    if (box->dimensions == 3) {
-        const double share = from / (double)mf_composition_particles(composition);
-        const struct box measured = mf_box_scaled(box, share);
-        s = fmax(measure(bins, g, error, &measured, (size_t)from, &variance),
-                 least(composition, pair));
-        s = variance < s * s && fabs(s) < most * from ? s - variance / s : 0;
+    const double rigid = mf_finite_size_rigid(fluid, pair);
+    double s = rigid, variance;
+    if (fluid->box->dimensions == 3) {
+        const double share = from / (double)mf_composition_particles(fluid->composition);
+        const struct box measured = mf_box_scaled(fluid->box, share);
+        const double inside = mf_finite_size_inside(fluid, pair);
+        const double seen =
+            fmax(measure(bins, g, error, &measured, (size_t)from, inside, &variance),
+                 least(fluid->composition, pair));
+        const double away = seen - rigid;
+        if (variance < away * away && fabs(seen) < most * from)
+            s = rigid + (away - variance / away);
     }
     return mf_finite_size_factor(s, from, to);
 }

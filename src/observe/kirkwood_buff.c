@@ -12,11 +12,12 @@ static double weight_below(double r, double range) {
 
 struct kirkwood_buff mf_kirkwood_buff_integrate(const struct rdf_bins *bins, const double *g,
                                                 const double *error, const struct box *box,
-                                                size_t count) {
+                                                size_t count, double inside) {
     const double range = mf_rdf_bins_range(bins);
     const double volume = mf_box_volume(box);
     const double density = (double)count / volume, all = weight_below(range, range);
-    double below = weight_below(mf_rdf_bins_edge(bins, 0), range), sum = -below, squares = 0;
+    double below = weight_below(mf_rdf_bins_edge(bins, 0), range), sum = inside - below,
+           squares = 0;
     for (size_t k = 0; k < bins->count; k++) {
         const double above = weight_below(mf_rdf_bins_edge(bins, k + 1), range);
         const double own_error = isfinite(error[k]) ? error[k] : 0;

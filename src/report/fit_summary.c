@@ -276,9 +276,9 @@ static void put_compressibility(struct json_writer *writer, const struct fit_fil
         scene_has_molecules(&fit->scene.molecules))
         return;
     const struct kirkwood_buff target =
-        mf_kirkwood_buff_integrate(bins, fit->files.rdf.g, fit->files.rdf.error, box, count);
+        mf_kirkwood_buff_integrate(bins, fit->files.rdf.g, fit->files.rdf.error, box, count, 0);
     const struct kirkwood_buff found = mf_kirkwood_buff_integrate(
-        bins, v->observed.value[TARGET_RDF], v->observed.error[TARGET_RDF], box, count);
+        bins, v->observed.value[TARGET_RDF], v->observed.error[TARGET_RDF], box, count, 0);
     put_quantity(writer, "target_kirkwood_buff", "lambda^d", target.integral);
     put_quantity(writer, "target_kirkwood_buff_error", "lambda^d", target.integral_error);
     put_quantity(writer, "kirkwood_buff", "lambda^d", found.integral);

@@ -296,6 +296,30 @@ done:
     return status;
 }
 
+int mf_topology_beads_of(const struct topology_kind *kind, int type) {
+    int beads = 0;
+    for (int bead = 0; bead < kind->beads; bead++)
+        beads += kind->type[bead] == type;
+    return beads;
+}
+
+double mf_topology_pairs_inside(const struct topology *topology, const int type[2], bool excluded) {
+    double pairs = 0;
+    for (int k = 0; k < topology->kinds; k++) {
+        const struct topology_kind *kind = &topology->kind[k];
+        int own = 0;
+        for (int bead = 0; bead < kind->beads; bead++) {
+            if (kind->type[bead] != type[0])
+                continue;
+            own += excluded ? 0 : mf_topology_beads_of(kind, type[1]) - (type[0] == type[1]);
+            for (int n = kind->near_start[bead]; excluded && n < kind->near_start[bead + 1]; n++)
+                own += kind->type[kind->near[n]] == type[1];
+        }
+        pairs += (double)kind->count * own;
+    }
+    return pairs;
+}
+
 void mf_topology_walk(const struct topology_kind *kind, int *order, int *parent) {
     int placed = 0;
     for (int bead = 0; bead < kind->beads; bead++)

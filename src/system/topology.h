@@ -121,5 +121,12 @@ static inline uint32_t topology_id(const struct topology_kind *kind, int64_t m, 
     return kind->id[bead] + (uint32_t)m * kind->step[bead];
 }
 
+/// Beads of a type in a molecule of a kind.
+int mf_topology_beads_of(const struct topology_kind *kind, int type);
+
+/// Ordered pairs of beads of two types, a bead of the first with one of the second, that are in one
+/// molecule, in all molecules: those that are excluded, or all. Tested: test_topology.
+double mf_topology_pairs_inside(const struct topology *topology, const int type[2], bool excluded);
+
 /// Whether the pair of two ids is excluded. NULL: no molecules.
 bool mf_topology_excludes(const struct topology *topology, uint32_t i, uint32_t j);

@@ -88,6 +88,17 @@ static void put_density(const struct measure_result *result, struct json_writer 
     mf_json_put_quantity(writer, "volume", "lambda^3", mean);
 }
 
+/// Share of all pairs that g(r) of one type leaves out: those that molecules exclude, which count
+/// as possible, or those of one residue, which do not.
+static double share_inside(const struct measured *measured) {
+    static const int type[2] = {0, 0};
+    const struct molecules *const molecules = measured->molecules.molecules;
+    if (molecules == NULL)
+        return 1 - measured->share[0];
+    return mf_topology_pairs_inside(&molecules->topology, type, true) / 2 /
+           mf_composition_possible_pairs(&measured->pairs.composition, 0);
+}
+
 /// Kirkwood and Buff's integral of what is of one type.
 static enum status put_kirkwood_buff(const struct measure_result *result,
                                      struct json_writer *writer) {
@@ -100,8 +111,14 @@ static enum status put_kirkwood_buff(const struct measure_result *result,
     NEW_ARRAY(g, rdf->bins.count);
     NEW_ARRAY(error, rdf->bins.count);
     CHECK(mf_rdf_result(rdf, 1, g, error));
-    struct kirkwood_buff found =
-        mf_kirkwood_buff_integrate(&rdf->bins, g, error, &box, rdf->particle_count);
+    const double inside = mf_box_volume(&box) * share_inside(result->measured);
+    const bool possible = result->measured->molecules.molecules != NULL;
+    struct kirkwood_buff found = mf_kirkwood_buff_integrate(
+        &rdf->bins, g, error, &box, rdf->particle_count, possible ? inside : 0);
+    if (!possible) { // their g is higher as a whole, and its tail that of G without them
+        found.integral += inside;
+        found.compressibility += find_density(result) * inside;
+    }
     mf_statistics_forget_errors(&found.integral_error, 1);
     mf_statistics_forget_errors(&found.compressibility_error, 1);
     mf_json_put_quantity(writer, "kirkwood_buff", "lambda^3", found.integral);

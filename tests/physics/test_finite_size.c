@@ -49,8 +49,9 @@ static double convert(const struct rdf *rdf, const double *g, const double *erro
         sum += shell * g[k];
         volume += shell;
     }
+    const struct finite_size_fluid fluid = {.box = &rdf->box, .composition = composition};
     return sum / volume *
-           mf_finite_size_factor_of(&bins, g, error, &rdf->box, composition, pair,
+           mf_finite_size_factor_of(&bins, g, error, &fluid, pair,
                                     (double)mf_composition_particles(composition), MANY);
 }
 

@@ -207,25 +207,27 @@ static void test_target_convert_takes_votca_to_possible_pairs(void **state) {
     static const struct box square = {2, {10, 10, 1}};
     static const struct composition one = {.types = 1, .count = {11}},
                                     binary = {.types = 2, .count = {20, 80}};
+    static const struct finite_size_fluid one_fluid = {.box = &square, .composition = &one},
+                                          binary_fluid = {.box = &square, .composition = &binary};
     static const char table[] = "0.1 0 i\n0.2 0.5 i\n0.3 1.5 i\n0.4 1 i\n0.5 1 i\n";
     struct target_rdf target;
     double g[5], error[5];
     assert_ok(read(state, table, VOTCA, &target));
-    mf_target_rdf_convert(&target, &square, &one, 0, g, error);
+    mf_target_rdf_convert(&target, &one_fluid, 0, g, error);
     assert_close(g[2], 1.65, 1e-15);
-    mf_target_rdf_convert(&target, &square, &binary, 0, g, error);
+    mf_target_rdf_convert(&target, &binary_fluid, 0, g, error);
     assert_close(g[2], 1.5 * 20 / 19, 1e-15);
-    mf_target_rdf_convert(&target, &square, &binary, 1, g, error);
+    mf_target_rdf_convert(&target, &binary_fluid, 1, g, error);
     assert_close(g[2], 1.5, 0);
     mf_target_rdf_clear(&target);
     // Of an incompressible liquid, the tail of a g that is normalised by N² knows no N.
     assert_ok(read(state, table, VOTCA ", \"particles\": 1000", &target));
-    mf_target_rdf_convert(&target, &square, &one, 0, g, error);
+    mf_target_rdf_convert(&target, &one_fluid, 0, g, error);
     assert_close(g[2], 1.65, 1e-14);
     // 200 A of 1000: measured 1 − 1/200 below the possible pairs.
-    mf_target_rdf_convert(&target, &square, &binary, 0, g, error);
+    mf_target_rdf_convert(&target, &binary_fluid, 0, g, error);
     assert_close(g[2], 1.5 * 200 / 199 * (1 - 1e-3) / (1 - 1e-2), 1e-14);
-    mf_target_rdf_convert(&target, &square, &binary, 1, g, error);
+    mf_target_rdf_convert(&target, &binary_fluid, 1, g, error);
     assert_close(g[2], 1.5 * (1 - 1e-3) / (1 - 1e-2), 1e-14);
     mf_target_rdf_clear(&target);
 }

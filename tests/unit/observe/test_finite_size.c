@@ -3,6 +3,7 @@
 
 #include "base/rng.h"
 #include "shared/is_close.h"
+#include "shared/molecules.h"
 #include "shared/testing.h"
 
 #include <math.h>
@@ -52,8 +53,8 @@ static void test_finite_size_factor_is_one_for_an_ideal_gas(void **state) {
 }
 
 /// A hole of radius 1 whose outside is `outside`, with noise, and the factor to ten times as many.
-static double factor_of(double hole, double outside, double noise, const struct composition *of,
-                        int pair, uint32_t seed) {
+static double factor_in(double hole, double outside, double noise,
+                        const struct finite_size_fluid *of, int pair, uint32_t seed) {
     double g[BINS], error[BINS];
     for (uint32_t k = 0; k < BINS; k++) {
         double normal[4];
@@ -61,8 +62,14 @@ static double factor_of(double hole, double outside, double noise, const struct 
         g[k] = (mf_rdf_bins_centre(&bins, k) < 1 ? hole : 1) * outside + noise * normal[0];
         error[k] = noise;
     }
-    const double all = (double)mf_composition_particles(of);
-    return mf_finite_size_factor_of(&bins, g, error, &cube, of, pair, all, 10 * all);
+    const double all = (double)mf_composition_particles(of->composition);
+    return mf_finite_size_factor_of(&bins, g, error, of, pair, all, 10 * all);
+}
+
+static double factor_of(double hole, double outside, double noise, const struct composition *of,
+                        int pair, uint32_t seed) {
+    return factor_in(hole, outside, noise,
+                     &(struct finite_size_fluid){.box = &cube, .composition = of}, pair, seed);
 }
 
 /// s = 1 − 4π/3 · ρ (1 − hole) of a g that is flat outside of the hole. The integral ends at 4
@@ -110,9 +117,90 @@ static void test_finite_size_factor_of_is_of_a_liquid_in_the_plane(void **state)
     const struct box square = {2, {30, 30, 1}};
     const double g[] = {1, 1, 1}, error[] = {0, 0, 0};
     const struct rdf_bins few = {0, 1, 3};
-    assert_close(mf_finite_size_factor_of(&few, g, error, &square, &one, 0, 100, 50),
+    const struct finite_size_fluid of = {.box = &square, .composition = &one};
+    assert_close(mf_finite_size_factor_of(&few, g, error, &of, 0, 100, 50),
                  mf_finite_size_factor(0, 100, 50), 0);
-    assert_identical(mf_finite_size_factor_of(&few, g, error, &square, &one, 0, 100, 100), 1.0);
+    assert_identical(mf_finite_size_factor_of(&few, g, error, &of, 0, 100, 100), 1.0);
+}
+
+enum { TRIMERS = 1000, TRIMER_PAIRS = 3 };
+
+/// Trimers A-B-A, and single beads C if there are any.
+static void make_trimers(struct topology *topology, struct composition *composition,
+                         int64_t single) {
+    static const int aba[] = {0, 1, 0};
+    *composition =
+        (struct composition){.types = single > 0 ? 3 : 2, .count = {2 * TRIMERS, TRIMERS, single}};
+    *topology =
+        (struct topology){.kinds = 1, .kind = {molecules_chain(TRIMERS, aba, 3, TOPOLOGY_BOND, 2)}};
+    assert_ok(mf_topology_complete(topology, composition));
+}
+
+/// g of a pair type that leaves out the pairs of a molecule, of M trimers that do not see each
+/// other: pairs of different molecules over all.
+static double ideal_trimers(int pair, double molecules) {
+    const double of_type[] = {2 * molecules, molecules};
+    static const int type[TRIMER_PAIRS][2] = {{0, 0}, {0, 1}, {1, 1}};
+    const double a = of_type[type[pair][0]], b = of_type[type[pair][1]];
+    const double possible = a * (type[pair][0] == type[pair][1] ? b - 1 : b);
+    return a * b * (1 - 1 / molecules) / possible;
+}
+
+/// With pairs of a molecule in g or not, however few of them are known.
+static void test_finite_size_factor_of_knows_which_pairs_g_leaves_out(void **state) {
+    (void)state;
+    struct topology topology;
+    struct composition composition;
+    make_trimers(&topology, &composition, 0);
+    const struct finite_size_fluid of = {.box = &cube,
+                                         .composition = &composition,
+                                         .topology = &topology},
+                                   apart = {.box = &cube,
+                                            .composition = &composition,
+                                            .topology = &topology,
+                                            .apart = true};
+    for (int pair = 0; pair < TRIMER_PAIRS; pair++) {
+        const double here = ideal_trimers(pair, TRIMERS);
+        const double exact = ideal_trimers(pair, 10 * TRIMERS) / here;
+        print_message("pairs %d of ideal trimers: %.6f, exact %.6f\n", pair,
+                      factor_in(1, here, 1e-7, &of, pair, 1), exact);
+        assert_close(factor_in(1, here, 1e-7, &of, pair, 1), exact, 3e-6);
+        assert_close(factor_in(1, here, 1e-7, &apart, pair, 1), exact, 3e-6);
+    }
+    mf_topology_clear(&topology);
+}
+
+/// Where g tells nothing, as in two dimensions: of one kind of molecule that leaves no room
+/// A-B lie as in the infinite system, A-A and B-B by one over their number too high.
+static void test_finite_size_rigid_molecules_have_numbers_that_do_not_fluctuate(void **state) {
+    (void)state;
+    struct topology topology;
+    struct composition composition;
+    make_trimers(&topology, &composition, 0);
+    static const struct box square = {2, {30, 30, 1}};
+    struct finite_size_fluid of = {
+        .box = &square, .composition = &composition, .topology = &topology};
+    static const double own[TRIMER_PAIRS] = {2 * TRIMERS, INFINITY, TRIMERS};
+    for (int pair = 0; pair < TRIMER_PAIRS; pair++) {
+        const double s = mf_finite_size_rigid(&of, pair);
+        assert_close(s, 1 - 3 * TRIMERS / own[pair], 1e-12);
+        const double factor = factor_in(1, 1, 0, &of, pair, 1);
+        assert_close(factor, (1 - 1 / own[pair]) / (1 - 0.1 / own[pair]), 1e-12);
+    }
+    mf_topology_clear(&topology);
+    // Beside single beads molecules and beads change places: S(0) of all of them stays 0.
+    make_trimers(&topology, &composition, 500);
+    const double all = 3 * TRIMERS + 500;
+    double sum = 0;
+    for (int pair = 0; pair < mf_composition_pairs(&composition); pair++) {
+        int type[2];
+        mf_composition_pair_types(&composition, pair, type);
+        const double share =
+            (double)composition.count[type[0]] / all * (double)composition.count[type[1]] / all;
+        sum += (type[0] == type[1] ? 1 : 2) * share * mf_finite_size_rigid(&of, pair);
+    }
+    assert_close(sum, 0, 1e-12);
+    mf_topology_clear(&topology);
 }
 
 int main(void) {
@@ -123,6 +211,8 @@ int main(void) {
         cmocka_unit_test(test_finite_size_factor_of_believes_no_noise),
         cmocka_unit_test(test_finite_size_factor_of_tells_kinds_of_pairs_apart),
         cmocka_unit_test(test_finite_size_factor_of_is_of_a_liquid_in_the_plane),
+        cmocka_unit_test(test_finite_size_factor_of_knows_which_pairs_g_leaves_out),
+        cmocka_unit_test(test_finite_size_rigid_molecules_have_numbers_that_do_not_fluctuate),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -27,7 +27,7 @@ static struct kirkwood_buff integrate(double (*of)(double), double range, const 
         g[k] = of(mf_rdf_bins_centre(&bins, k));
         error[k] = own_error;
     }
-    return mf_kirkwood_buff_integrate(&bins, g, error, box, count);
+    return mf_kirkwood_buff_integrate(&bins, g, error, box, count, 0);
 }
 
 static void test_kirkwood_buff_is_the_polynomial_of_a_hole(void **state) {
@@ -62,16 +62,32 @@ static void test_kirkwood_buff_takes_out_the_finite_size(void **state) {
     const double infinite = integrate(hole, 5, &huge, 100, 0).integral;
     for (size_t k = 0; k < BINS; k++)
         g[k] = hole(mf_rdf_bins_centre(&bins, k)) - infinite / (12.0 * 12 * 12);
-    const struct kirkwood_buff found = mf_kirkwood_buff_integrate(&bins, g, error, &box, count);
+    const struct kirkwood_buff found = mf_kirkwood_buff_integrate(&bins, g, error, &box, count, 0);
     assert_close_relative(found.integral, infinite, 1e-9);
     assert_close(found.compressibility, 1 + 3000 / 1728.0 * infinite, 1e-9);
+}
+
+/// Dimers that do not see each other, M of them: 1 + ρG is the two beads of one, whether g has the
+/// pairs of a dimer, at a distance, or not.
+static void test_kirkwood_buff_counts_pairs_that_g_leaves_out(void **state) {
+    (void)state;
+    const struct box box = {.dimensions = 3, .length = {12, 12, 12}};
+    const double molecules = 500, beads = 2 * molecules;
+    const double inside = 12.0 * 12 * 12 / (beads - 1); // M pairs of N (N − 1)/2
+    static double g[BINS], error[BINS];
+    const struct rdf_bins bins = {0, 5.0 / BINS, BINS};
+    for (size_t k = 0; k < BINS; k++)
+        g[k] = 1 - 1 / (beads - 1);
+    const struct kirkwood_buff found =
+        mf_kirkwood_buff_integrate(&bins, g, error, &box, (size_t)beads, inside);
+    assert_close(found.compressibility, 2, 2.0 / beads);
 }
 
 static void test_kirkwood_buff_error_is_that_of_independent_bins(void **state) {
     (void)state;
     const struct rdf_bins bins = {0, 1, 2};
     const double g[] = {0.5, 1.2}, error[] = {0.1, NAN};
-    const struct kirkwood_buff found = mf_kirkwood_buff_integrate(&bins, g, error, &huge, 1000);
+    const struct kirkwood_buff found = mf_kirkwood_buff_integrate(&bins, g, error, &huge, 1000, 0);
     const double first =
         4 * M_PI * 8 *
         (0.125 / 3 - 23.0 / 48 * pow(0.5, 6) + 3.0 / 28 * pow(0.5, 7) + 9.0 / 64 * pow(0.5, 8));
@@ -84,6 +100,7 @@ int main(void) {
         cmocka_unit_test(test_kirkwood_buff_is_the_polynomial_of_a_hole),
         cmocka_unit_test(test_kirkwood_buff_converges_as_the_cube_of_the_range),
         cmocka_unit_test(test_kirkwood_buff_takes_out_the_finite_size),
+        cmocka_unit_test(test_kirkwood_buff_counts_pairs_that_g_leaves_out),
         cmocka_unit_test(test_kirkwood_buff_error_is_that_of_independent_bins),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

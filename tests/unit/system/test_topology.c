@@ -3,6 +3,7 @@
 // Molecules: ids of their beads, what they refuse, and that what they exclude is on no list.
 #include "base/memory.h"
 #include "base/simd.h"
+#include "shared/is_close.h"
 #include "shared/molecules.h"
 #include "shared/testing.h"
 #include "system/neighbours.h"
@@ -38,6 +39,28 @@ static void test_ids_follow_from_types_and_molecules(void **state) {
     for (int bead = 0; bead < 4; bead++)
         assert_int_equal(mf_composition_type(&composition, expected[1][bead]), abba[bead]);
     mf_topology_clear(&topology);
+}
+
+static void test_pairs_inside_are_those_that_can_be_counted(void **state) {
+    (void)state;
+    for (int exclude = 0; exclude <= TOPOLOGY_MOST_EXCLUDE; exclude++) {
+        struct topology topology;
+        const struct composition composition = make(&topology, exclude);
+        for (int n = 0; n < 9; n++) {
+            const int type[] = {n / 3, n % 3};
+            double excluded = 0, all = 0;
+            for (uint32_t i = 0; i < 14; i++)
+                for (uint32_t j = 0; j < 14; j++) {
+                    const bool counts = i != j && mf_composition_type(&composition, i) == type[0] &&
+                                        mf_composition_type(&composition, j) == type[1];
+                    excluded += counts && mf_topology_excludes(&topology, i, j);
+                    all += counts && topology.molecule[i] == topology.molecule[j];
+                }
+            assert_identical(mf_topology_pairs_inside(&topology, type, true), excluded);
+            assert_identical(mf_topology_pairs_inside(&topology, type, false), all);
+        }
+        mf_topology_clear(&topology);
+    }
 }
 
 static void test_beads_within_so_many_bonds_exclude_each_other(void **state) {
@@ -206,6 +229,7 @@ static void test_excluded_pairs_are_on_no_list(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_ids_follow_from_types_and_molecules),
+        cmocka_unit_test(test_pairs_inside_are_those_that_can_be_counted),
         cmocka_unit_test(test_beads_within_so_many_bonds_exclude_each_other),
         cmocka_unit_test(test_rings_exclude_each_bead_once),
         cmocka_unit_test(test_terms_that_cannot_be_are_refused),
