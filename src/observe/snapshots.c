@@ -3,6 +3,7 @@
 // Snapshots of a simulation: files while it runs, at steps of their own. A run that was resumed
 // leaves the files of one that was not.
 #include "base/memory.h"
+#include "dynamics/simulation_look.h"
 #include "dynamics/solvent.h"
 #include "io/configuration.h"
 #include "io/snapshot.h"
@@ -24,7 +25,10 @@ struct state {
     const struct topology *topology; ///< of the simulation, or NULL
 };
 
+/// The forces are those of the potentials at the positions beside them, whatever an integrator
+/// keeps.
 static enum status take(struct state *s, const struct simulation *simulation) {
+    struct simulation look;
     const double time = (double)simulation->step * simulation->setup.time_step;
     const struct solvent *solvent = mf_collision_dynamics_solvent(simulation);
     struct snapshot_companions companions = {.name = "solvent"};
@@ -35,8 +39,12 @@ static enum status take(struct state *s, const struct simulation *simulation) {
         companions.mass = solvent->parameters.mass;
     }
     mf_snapshot_clear(&s->last);
-    return mf_snapshot_take(&s->last, &simulation->particles, &simulation->setup.composition,
-                            s->settings.solvent ? &companions : NULL, simulation->step, time);
+    TRY(mf_simulation_look(simulation, &look));
+    const enum status status =
+        mf_snapshot_take(&s->last, &look.particles, &simulation->setup.composition,
+                         s->settings.solvent ? &companions : NULL, simulation->step, time);
+    mf_simulation_clear(&look);
+    return status;
 }
 
 static enum status begin(void *state, const void *settings, const struct simulation *simulation,
@@ -187,7 +195,9 @@ static const char *const files[] = {CONFIGURATION_FILE, NULL};
 const struct observable mf_snapshots = {
     .name = "snapshots",
     .of_solvent = true, // if it is to be shown
-    .summary = "positions, velocities, forces and attributes of all particles, as files",
+    .summary =
+        "positions, velocities, forces of the potentials at these positions, and attributes of "
+        "all particles, as files",
     .fields = fields,
     .settings_size = sizeof(struct settings),
     .state_size = sizeof(struct state),

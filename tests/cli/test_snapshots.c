@@ -7,8 +7,10 @@
 #include "shared/small_scenes.h"
 #include "shared/testing.h"
 
+#include <math.h>
 #include <signal.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define SNAPSHOTS                                                                                  \
@@ -120,6 +122,89 @@ static void test_measure_knows_the_units_of_snapshots(void **state) {
     }
 }
 
+enum { BEADS = 60 };
+static const double edge = 3, strength = 75;
+
+struct bead {
+    double position[3], force[3];
+};
+
+/// One frame behind the others: "A x y z image velocity force id".
+static bool read_frame(FILE *stream, struct bead *beads) {
+    char line[512];
+    if (fgets(line, sizeof line, stream) == NULL)
+        return false;
+    assert_int_equal(atoi(line), BEADS);
+    assert_non_null(fgets(line, sizeof line, stream));
+    assert_non_null(strstr(line, "pos:R:3:image:I:3:velo:R:3:forces:R:3:id"));
+    for (int k = 0; k < BEADS; k++) {
+        struct bead *b = &beads[k];
+        assert_non_null(fgets(line, sizeof line, stream));
+        assert_int_equal(sscanf(line, "%*s %lf %lf %lf %*s %*s %*s %*s %*s %*s %lf %lf %lf",
+                                &b->position[0], &b->position[1], &b->position[2], &b->force[0],
+                                &b->force[1], &b->force[2]),
+                         6);
+    }
+    return true;
+}
+
+/// What a bead's force differs from the sum of a (1 − r) over its neighbours, the largest.
+static double compare_forces(const struct bead *beads) {
+    double worst = 0;
+    for (int i = 0; i < BEADS; i++) {
+        double left[3];
+        memcpy(left, beads[i].force, sizeof left);
+        for (int j = 0; j < BEADS; j++) {
+            double apart[3], square = 0;
+            for (int d = 0; d < 3; d++) {
+                apart[d] = beads[i].position[d] - beads[j].position[d];
+                apart[d] -= edge * round(apart[d] / edge);
+                square += apart[d] * apart[d];
+            }
+            const double r = sqrt(square);
+            for (int d = 0; d < 3 && r > 0 && r < 1; d++)
+                left[d] -= strength * (1 - r) / r * apart[d];
+        }
+        for (int d = 0; d < 3; d++)
+            worst = fmax(worst, fabs(left[d]));
+    }
+    return worst;
+}
+
+/// Whatever an integrator keeps from step to step, from the first snapshot on.
+static void test_forces_are_those_of_the_positions_beside_them(void **state) {
+    static struct run_program_result result;
+    static const char *const integrators[] = {"aboba",           "dpd-verlet",     "dpd-vv",
+                                              "shardlow",        "lowe-andersen",  "monte-carlo",
+                                              "velocity-verlet", "euler-maruyama", NULL};
+    for (int n = 0; integrators[n]; n++) {
+        const bool rubs = n < 5;
+        struct bead beads[BEADS];
+        char scene[1024];
+        int frames = 0;
+        snprintf(scene, sizeof scene,
+                 "{\"box\": [3, 3, 3], \"particles\": {\"count\": 60}, %s%s"
+                 "\"conservative\": {\"law\": \"soft-repulsion\", \"a\": 75},"
+                 "\"dynamics\": {\"integrator\": \"%s\"}, \"rdf\": {\"range\": 1},"
+                 "\"snapshots\": {\"every\": 10, \"formats\": [\"extxyz\"]},"
+                 "\"measure\": {\"equilibration\": 0, \"samples\": 2, \"every\": 15}}",
+                 n == 5 ? "" : "\"time_step\": 0.01, ",
+                 rubs ? "\"dissipative\": {\"law\": \"power\", \"sigma\": 3}, " : "",
+                 integrators[n]);
+        temporary_folder_write(*state, "scene.json", scene, strlen(scene));
+        RUN_PROGRAM(&result, "simulate", "scene.json", "--force");
+        run_program_assert_code(&result, 0);
+        FILE *stream = fopen("out/snapshots/trajectory.extxyz", "r");
+        assert_non_null(stream);
+        for (; read_frame(stream, beads); frames++)
+            if (!(compare_forces(beads) < 1e-3))
+                fail_msg("%s, snapshot %d: a force is off by %g", integrators[n], frames,
+                         compare_forces(beads));
+        fclose(stream);
+        assert_int_equal(frames, 4);
+    }
+}
+
 static const char active[] =
     "{\"seed\": 5, \"dimensions\": 2, \"box\": [12, 12], \"temperature\": 0, "
     "\"particles\": {\"count\": 60, \"placement\": \"random\", \"separation\": 1},\n"
@@ -223,6 +308,8 @@ int main(void) {
         cmocka_unit_test_setup_teardown(test_interrupted_run_leaves_the_same_snapshots,
                                         small_inputs_enter_without_gnuplot, small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_killed_run_leaves_the_same_snapshots,
+                                        small_inputs_enter_without_gnuplot, small_inputs_leave),
+        cmocka_unit_test_setup_teardown(test_forces_are_those_of_the_positions_beside_them,
                                         small_inputs_enter_without_gnuplot, small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_snapshots_change_nothing_else_and_threads_not_them,
                                         small_inputs_enter_without_gnuplot, small_inputs_leave),
