@@ -91,6 +91,29 @@ double mf_statistics_correlated_error(const double *values, size_t length, size_
     return sqrt(variance * mf_statistics_inefficiency(values, length, chains, 1) / (double)n);
 }
 
+void mf_statistics_correlated_errors(const double *values, size_t length, size_t chains,
+                                     size_t numbers, double *error) {
+    const size_t n = length * chains;
+    const double inefficiency = mf_statistics_inefficiency(values, length, chains, numbers);
+    for (size_t k = 0; k < numbers; k++) {
+        struct running_mean mean = {0};
+        for (size_t m = 0; m < n; m++)
+            mf_statistics_add(&mean, values[k * n + m]);
+        error[k] = n < 2 ? 0 : sqrt(mean.squares * inefficiency) / (double)n;
+    }
+}
+
+void mf_statistics_take_larger(double *error, const double *others, size_t count) {
+    double ratio = 0, seen = 0;
+    for (size_t k = 0; k < count; k++)
+        if (error[k] > 0) {
+            ratio += pow(others[k] / error[k], 2);
+            seen += 1;
+        }
+    for (size_t k = 0; k < count && ratio > seen; k++)
+        error[k] = others[k];
+}
+
 void mf_statistics_forget_errors(double *error, size_t count) {
     bool known = false;
     for (size_t k = 0; k < count; k++)

@@ -45,6 +45,19 @@ double mf_statistics_inefficiency(const double *values, size_t length, size_t ch
 /// Tested: test_statistics, test_errors.
 double mf_statistics_correlated_error(const double *values, size_t length, size_t chains);
 
+/// Standard errors of the means of several such numbers that are taken to be correlated alike, as
+/// the bins of a distribution are:
+///   error² = Γ(0)/n times the inefficiency of all of them.
+/// @param[in]  values  shape [numbers, chains, length]
+/// @param[out] error   shape [numbers]; 0 for fewer than two values
+/// Tested: test_statistics.
+void mf_statistics_correlated_errors(const double *values, size_t length, size_t chains,
+                                     size_t numbers, double *error);
+
+/// Of two estimates of the same errors of one curve take that which is larger on the whole, by the
+/// mean of the squares' ratio: `others`, or those that are there. Tested: test_bonded_errors.
+void mf_statistics_take_larger(double *error, const double *others, size_t count);
+
 /// What a person is told of standard errors of one curve: if none is above 0, they are those of a
 /// single value, and all become NaN, not known. Tested: test_statistics.
 void mf_statistics_forget_errors(double *error, size_t count);

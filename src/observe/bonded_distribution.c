@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Errors by the scatter of blocks of time. Tested: test_molecules, test_bonded_distribution.
+// Errors by the scatter of blocks of time, correlated as they are, or of groups of molecules, whose
+// means over all times differ where a molecule keeps what it is for long, as the side of a
+// dihedral. Tested: test_molecules, test_bonded_errors.
 #include "observe/bonded_distribution.h"
 
 #include "base/memory.h"
@@ -12,7 +14,7 @@
 
 #include <math.h>
 
-enum { COLUMNS = 3 };
+enum { COLUMNS = 3, MOST_PARTS = 20 };
 
 struct state {
     const struct molecules *molecules;
@@ -22,6 +24,8 @@ struct state {
     struct bonded_bins bins[MOLECULES_MOST_GROUPS]; ///< of each group
     size_t first[MOLECULES_MOST_GROUPS + 1];        ///< bin of each group among those of all
     double *counts;                                 ///< shape [blocks, bins of all groups]
+    size_t parts;                                   ///< of the molecules
+    double *of_part;                                ///< shape [parts, bins of all groups]
 };
 
 static const struct field fields[] = {
@@ -119,7 +123,10 @@ static enum status begin(struct state *s, enum topology_order order,
                          : settings->target[g];
         s->first[g + 1] = s->first[g] + s->bins[g].count;
     }
+    s->parts = (size_t)molecules->topology.molecules;
+    s->parts = s->parts < MOST_PARTS ? s->parts : MOST_PARTS;
     NEW_ARRAY(s->counts, s->blocks.count * s->first[molecules->groups[order]]);
+    NEW_ARRAY(s->of_part, s->parts * s->first[molecules->groups[order]]);
 done:
     return status;
 }
@@ -127,6 +134,7 @@ done:
 static void clear(void *state) {
     struct state *s = state;
     mf_memory_free(s->counts);
+    mf_memory_free(s->of_part);
     mf_sample_blocks_clear(&s->blocks);
     *s = (struct state){0};
 }
@@ -142,10 +150,17 @@ static int64_t find_bin(const struct bonded_bins *bins, enum topology_order orde
     return place >= 0 && place < count ? (int64_t)place : -1;
 }
 
+/// Counts of all molecules, and of parts of them: every so manieth.
+struct counting {
+    double *all;
+    double *of_part; ///< shape [parts, stride], or NULL
+    size_t parts, stride;
+};
+
 /// Count one term in all molecules of a kind.
 static void count_term(enum topology_order order, const struct bonded_bins *bins,
                        const struct particles *particles, const struct topology_kind *kind,
-                       const struct topology_term *term, double *counts) {
+                       const struct topology_term *term, const struct counting *counting) {
     const int beads = topology_beads(order);
     const double unit = order == TOPOLOGY_BOND ? 1 : 1 / BONDED_RADIANS;
     for (int64_t m = 0; m < kind->count; m += BONDED_BATCH) {
@@ -160,21 +175,32 @@ static void count_term(enum topology_order order, const struct bonded_bins *bins
         mf_bonded_measure(order, some, place, particles, q);
         for (size_t n = 0; n < some; n++) {
             const int64_t bin = find_bin(bins, order, unit * q[n]);
-            if (bin >= 0)
-                counts[bin] += 1;
+            if (bin < 0)
+                continue;
+            counting->all[bin] += 1;
+            if (counting->of_part) {
+                const size_t part = (size_t)(kind->first + m + (int64_t)n) % counting->parts;
+                counting->of_part[part * counting->stride + (size_t)bin] += 1;
+            }
         }
     }
 }
 
-void mf_bonded_distribution_count(const struct molecules *molecules, enum topology_order order,
-                                  int group, const struct bonded_bins *bins,
-                                  const struct particles *particles, double *counts) {
+static void count_group(const struct molecules *molecules, enum topology_order order, int group,
+                        const struct bonded_bins *bins, const struct particles *particles,
+                        const struct counting *counting) {
     const struct topology *topology = &molecules->topology;
     for (int k = 0; k < topology->kinds; k++)
         for (int t = 0; t < topology->kind[k].terms[order]; t++)
             if (topology->kind[k].term[order][t].group == group)
                 count_term(order, bins, particles, &topology->kind[k],
-                           &topology->kind[k].term[order][t], counts);
+                           &topology->kind[k].term[order][t], counting);
+}
+
+void mf_bonded_distribution_count(const struct molecules *molecules, enum topology_order order,
+                                  int group, const struct bonded_bins *bins,
+                                  const struct particles *particles, double *counts) {
+    count_group(molecules, order, group, bins, particles, &(struct counting){.all = counts});
 }
 
 static enum status sample(void *state, struct simulation *simulation) {
@@ -187,60 +213,135 @@ static enum status sample(void *state, struct simulation *simulation) {
     double *counts = s->counts + mf_sample_blocks_take(&s->blocks) * s->first[groups];
     for (int g = 0; g < groups; g++)
         if (s->bins[g].count > 0)
-            mf_bonded_distribution_count(s->molecules, s->order, g, &s->bins[g],
-                                         &simulation->particles, counts + s->first[g]);
+            count_group(s->molecules, s->order, g, &s->bins[g], &simulation->particles,
+                        &(struct counting){counts + s->first[g], s->of_part + s->first[g], s->parts,
+                                           s->first[groups]});
     return STATUS_OK;
 }
 
 static size_t spans(void *state, struct memory_span *spans) {
     struct state *s = state;
-    const size_t numbers = s->blocks.count * s->first[s->molecules->groups[s->order]];
-    spans[0] = (struct memory_span){s->counts, numbers * sizeof *s->counts};
-    return 1 + mf_sample_blocks_spans(&s->blocks, spans + 1);
+    const size_t row = s->first[s->molecules->groups[s->order]] * sizeof *s->counts;
+    spans[0] = (struct memory_span){s->counts, s->blocks.count * row};
+    spans[1] = (struct memory_span){s->of_part, s->parts * row};
+    return 2 + mf_sample_blocks_spans(&s->blocks, spans + 2);
 }
 
 // Results -----------------------------------------------------------------------------------------
 
-/// Add the p of a group's bin in each block of time to a mean.
-static void add_blocks(const struct state *s, int group, size_t bin, struct running_mean *mean) {
+/// Blocks that all states have.
+static size_t whole_blocks(const struct state *const *states, size_t count) {
+    size_t least = SIZE_MAX;
+    for (size_t k = 0; k < count; k++) {
+        const size_t blocks = mf_sample_blocks_whole(&states[k]->blocks);
+        least = blocks < least ? blocks : least;
+    }
+    return least;
+}
+
+/// p of a group's bins in blocks of time and independent states, shape [bins, count, blocks].
+static void find_series(const struct state *const *states, size_t count, int group, size_t blocks,
+                        double *series) {
+    const struct state *s = states[0];
     const double terms = (double)mf_bonded_distribution_terms(s->molecules, s->order, group);
-    const size_t all = s->first[s->molecules->groups[s->order]];
-    for (size_t block = 0; block < mf_sample_blocks_whole(&s->blocks); block++)
-        mf_statistics_add(mean, s->counts[block * all + s->first[group] + bin] /
-                                    (s->blocks.samples[block] * terms * s->bins[group].width));
+    const size_t all = s->first[s->molecules->groups[s->order]], bins = s->bins[group].count;
+    for (size_t bin = 0; bin < bins; bin++)
+        for (size_t n = 0; n < count * blocks; n++) {
+            const struct state *of = states[n / blocks];
+            const size_t block = n % blocks;
+            series[bin * count * blocks + n] =
+                of->counts[block * all + s->first[group] + bin] /
+                (of->blocks.samples[block] * terms * s->bins[group].width);
+        }
+}
+
+/// Terms of a group in a part of the molecules.
+static double terms_of_part(const struct state *s, int group, size_t part) {
+    double terms = 0;
+    for (int k = 0; k < s->molecules->topology.kinds; k++) {
+        const struct topology_kind *kind = &s->molecules->topology.kind[k];
+        int own = 0;
+        for (int t = 0; t < kind->terms[s->order]; t++)
+            own += kind->term[s->order][t].group == group;
+        for (int64_t m = 0; m < kind->count && own > 0; m++)
+            terms += (size_t)(kind->first + m) % s->parts == part ? own : 0;
+    }
+    return terms;
+}
+
+/// Standard errors by parts of the molecules, which count as independent; 0 of fewer than two.
+static void find_errors_of_parts(const struct state *const *states, size_t count, int group,
+                                 double *error) {
+    const struct state *s = states[0];
+    const size_t all = s->first[s->molecules->groups[s->order]], bins = s->bins[group].count;
+    double terms[MOST_PARTS];
+    for (size_t part = 0; part < s->parts; part++)
+        terms[part] = terms_of_part(s, group, part);
+    for (size_t bin = 0; bin < bins; bin++) {
+        struct running_mean mean = {0};
+        for (size_t n = 0; n < count * s->parts; n++) {
+            const struct state *of = states[n / s->parts];
+            const size_t part = n % s->parts;
+            if (terms[part] > 0)
+                mf_statistics_add(
+                    &mean, of->of_part[part * all + s->first[group] + bin] /
+                               ((double)of->blocks.taken * terms[part] * s->bins[group].width));
+        }
+        error[bin] = mf_statistics_standard_error(&mean);
+    }
+}
+
+/// p of a group's bins and their errors: by blocks of time or by parts of the molecules, which of
+/// them scatters more.
+static enum status average(const struct state *const *states, size_t count, int group,
+                           double *value, double *error) {
+    enum status status = STATUS_OK;
+    const size_t bins = states[0]->bins[group].count, blocks = whole_blocks(states, count);
+    const size_t values = count * blocks;
+    double *series = NULL, *of_parts = NULL;
+    NEW_ARRAY(series, bins * values + 1);
+    NEW_ARRAY(of_parts, bins + 1);
+    find_series(states, count, group, blocks, series);
+    for (size_t bin = 0; bin < bins; bin++) {
+        struct running_mean mean = {0};
+        for (size_t n = 0; n < values; n++)
+            mf_statistics_add(&mean, series[bin * values + n]);
+        value[bin] = mean.mean;
+    }
+    mf_statistics_correlated_errors(series, blocks, count, bins, error);
+    find_errors_of_parts(states, count, group, of_parts);
+    if (values > 1)
+        mf_statistics_take_larger(error, of_parts, bins);
+done:
+    mf_memory_free(series);
+    mf_memory_free(of_parts);
+    return status;
 }
 
 /// p, its error and p over the Jacobian with a largest value of 1; shape [COLUMNS, bins].
-static void find_columns(const struct state *s, int group, double *values) {
+static enum status find_columns(const struct state *s, int group, double *values) {
     const struct bonded_bins *own = &s->bins[group];
     double largest = 0;
+    TRY(average(&s, 1, group, values, values + own->count));
     for (size_t bin = 0; bin < own->count; bin++) {
-        struct running_mean mean = {0};
-        add_blocks(s, group, bin, &mean);
-        values[bin] = mean.mean;
-        values[own->count + bin] = mf_statistics_standard_error(&mean);
         values[2 * own->count + bin] =
-            mean.mean / mf_bonded_distribution_jacobian(s->order, s->dimensions, own, bin);
+            values[bin] / mf_bonded_distribution_jacobian(s->order, s->dimensions, own, bin);
         largest = fmax(largest, values[2 * own->count + bin]);
     }
     for (size_t bin = 0; bin < own->count && largest > 0; bin++)
         values[2 * own->count + bin] /= largest;
     mf_statistics_forget_errors(values + own->count, own->count);
+    return STATUS_OK;
 }
 
 /// p of the groups that are measured, one behind the other.
 static enum status result(const void *const *states, size_t count,
                           const struct observable_values *values) {
-    const struct state *first = states[0];
-    size_t n = 0;
+    const struct state *const *all = (const struct state *const *)states;
+    const struct state *first = all[0];
     for (int g = 0; g < first->molecules->groups[first->order]; g++)
-        for (size_t bin = 0; bin < first->bins[g].count; bin++, n++) {
-            struct running_mean mean = {0};
-            for (size_t k = 0; k < count; k++)
-                add_blocks(states[k], g, bin, &mean);
-            values->value[n] = mean.mean;
-            values->error[n] = mf_statistics_standard_error(&mean);
-        }
+        TRY(average(all, count, g, values->value + first->first[g],
+                    values->error + first->first[g]));
     return STATUS_OK;
 }
 
@@ -263,7 +364,7 @@ static enum status write_table(const struct state *s, const char *file,
     columns[0] = (struct data_column){heads[s->order], values, NULL};
     for (int g = 0; g < groups; g++) {
         double *own = values + (1 + COLUMNS * (size_t)g) * bins;
-        find_columns(s, g, own);
+        CHECK(find_columns(s, g, own));
         for (int c = 0; c < COLUMNS; c++) {
             const int n = 1 + COLUMNS * g + c;
             snprintf(names[n], sizeof names[n], "%s%s[%s]", s->molecules->group[s->order][g].name,

@@ -214,30 +214,48 @@ done:
     return status;
 }
 
-/// The normalised correlation of a kind and its error by blocks; shape [2, lags + 1].
-static void find_correlation(const struct state *s, int k, double *values) {
+/// The mean product of a lag in blocks of time; returns how many are whole and have any.
+static size_t find_products(const struct state *s, int k, size_t lag, double *products) {
     const size_t kinds = (size_t)s->molecules->topology.kinds, row = s->lags + 1;
-    double square = 0, samples = 0;
-    for (size_t block = 0; block < s->blocks.count; block++) {
-        square += s->products[(block * kinds + (size_t)k) * row];
-        samples += s->origins[block * row];
+    size_t blocks = 0;
+    for (size_t block = 0; block < mf_sample_blocks_whole(&s->blocks); block++) {
+        const double *own = s->products + (block * kinds + (size_t)k) * row;
+        const double origins = s->origins[block * row + lag];
+        if (origins > 0)
+            products[blocks++] = own[lag] / origins;
     }
-    square /= samples;
+    return blocks;
+}
+
+/// The normalised correlation of a kind and its error by blocks; shape [2, lags + 1]. It is a ratio
+/// c of means, and its error that of the mean of R(t)·R(0) − c R(0)².
+static enum status find_correlation(const struct state *s, int k, double *values) {
+    enum status status = STATUS_OK;
+    const size_t kinds = (size_t)s->molecules->topology.kinds, row = s->lags + 1;
+    double *products = NULL, *squares = NULL, square = NAN;
+    NEW_ARRAY(products, s->blocks.count);
+    NEW_ARRAY(squares, s->blocks.count);
+    const size_t whole = find_products(s, k, 0, squares);
     for (size_t lag = 0; lag < row; lag++) {
-        struct running_mean mean = {0};
-        double all = 0, of_all = 0;
+        double sum = 0, origins = 0;
         for (size_t block = 0; block < s->blocks.count; block++) {
-            const double origins = s->origins[block * row + lag];
-            const double sum = s->products[(block * kinds + (size_t)k) * row + lag] / square;
-            all += sum;
-            of_all += origins;
-            if (origins > 0 && block < mf_sample_blocks_whole(&s->blocks))
-                mf_statistics_add(&mean, sum / origins);
+            sum += s->products[(block * kinds + (size_t)k) * row + lag];
+            origins += s->origins[block * row + lag];
         }
-        values[lag] = of_all > 0 ? all / of_all : NAN;
-        values[row + lag] = mf_statistics_standard_error(&mean);
+        const double mean = origins > 0 ? sum / origins : NAN;
+        square = lag == 0 ? mean : square;
+        values[lag] = mean / square;
+        // Without origins in them are the first blocks, if any.
+        const size_t blocks = find_products(s, k, lag, products);
+        for (size_t block = 0; block < blocks; block++)
+            products[block] -= values[lag] * squares[whole - blocks + block];
+        values[row + lag] = mf_statistics_correlated_error(products, blocks, 1) / square;
     }
     mf_statistics_forget_errors(values + row, row);
+done:
+    mf_memory_free(products);
+    mf_memory_free(squares);
+    return status;
 }
 
 /// end_to_end.tsv: time, correlation and error of each kind.
@@ -256,7 +274,7 @@ static enum status write_correlation(const struct state *s,
     columns[n++] = (struct data_column){s->clock, values, NULL};
     for (int k = 0; k < topology->kinds; k++) {
         double *own = values + (1 + 2 * (size_t)k) * row;
-        find_correlation(s, k, own);
+        CHECK(find_correlation(s, k, own));
         for (int which = 0; which < 2; which++) {
             snprintf(names[n], HEAD_SIZE, "%s%s[1]", topology->kind[k].name,
                      which == 0 ? "" : "_error");

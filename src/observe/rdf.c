@@ -301,17 +301,9 @@ static enum status find_errors(const struct rdf *replicas, size_t count, double 
     const size_t values = count * blocks;
     double *series = NULL;
     CHECK(find_series(replicas, count, blocks, &series));
-    for (size_t pair = 0; pair < replicas->pairs; pair++) {
-        const double *first = series + pair * bins * values;
-        const double inefficiency = mf_statistics_inefficiency(first, blocks, count, bins);
-        for (size_t k = 0; k < bins; k++) {
-            struct running_mean mean = {0};
-            for (size_t n = 0; n < values; n++)
-                mf_statistics_add(&mean, first[k * values + n]);
-            error[pair * bins + k] =
-                values < 2 ? 0 : sqrt(mean.squares * inefficiency) / (double)values;
-        }
-    }
+    for (size_t pair = 0; pair < replicas->pairs; pair++)
+        mf_statistics_correlated_errors(series + pair * bins * values, blocks, count, bins,
+                                        error + pair * bins);
 done:
     mf_memory_free(series);
     return status;
