@@ -120,7 +120,7 @@ static enum status begin(void *state, const void *settings, const struct simulat
     c->walls = gas->walls != 0;
     c->particles = (size_t)gas->count;
     NEW_ARRAY(c->speeds, (size_t)c->settings.bins + 1);
-    CHECK(mf_maxwell_init(&c->maxwell));
+    CHECK(mf_maxwell_init(&c->maxwell, c->planned));
     NEW_ARRAY(radius, c->particles);
     NEW_ARRAY(mass, c->particles);
     for (size_t k = 0; k < c->particles; k++) {
@@ -176,6 +176,7 @@ static void add_speeds(struct collisions *c, const struct hard_gas *gas, uint64_
     mf_rng_normal4(
         mf_rng_philox(seed, RNG_MEAN_VELOCITY, (uint32_t)step, (uint32_t)(step >> 32), 1), normal);
     const double scale = sqrt(chi_squared(degrees, normal[3]) * temperature / square);
+    mf_maxwell_begin(&c->maxwell);
     for (int k = 0; k < gas->count; k++)
         mass += gas->label[k].mass;
     for (int d = 0; d < gas->dimensions; d++)
@@ -186,10 +187,8 @@ static void add_speeds(struct collisions *c, const struct hard_gas *gas, uint64_
         for (int d = 0; d < gas->dimensions; d++)
             own += pow(scale * (gas->body[k].velocity[d] - drift[d]) + shift[d], 2);
         const double u = sqrt(own * gas->label[k].mass / temperature);
-        const double share = maxwell_share(gas->dimensions, u);
-        const size_t bin = (size_t)(share * MAXWELL_BINS);
         const double place = u / speed_maximum * (double)c->settings.bins;
-        c->maxwell.counts[bin < MAXWELL_BINS ? bin : MAXWELL_BINS - 1]++;
+        mf_maxwell_add(&c->maxwell, maxwell_share(gas->dimensions, u));
         c->speeds[(size_t)fmin(place, (double)c->settings.bins)]++;
     }
 }
@@ -239,8 +238,7 @@ static size_t spans(void *state, struct memory_span *spans) {
     spans[n++] = (struct memory_span){&c->last, sizeof c->last};
     spans[n++] =
         (struct memory_span){c->speeds, ((size_t)c->settings.bins + 1) * sizeof *c->speeds};
-    spans[n++] = (struct memory_span){c->maxwell.counts, MAXWELL_BINS * sizeof *c->maxwell.counts};
-    return n;
+    return n + mf_maxwell_spans(&c->maxwell, spans + n);
 }
 
 static enum status make_room(void *state) {
@@ -298,6 +296,7 @@ static void put(const void *state, const struct observable_results *results,
     put_result(writer, "collision_rate", "1/tau", result_of(c, RATE), c->theory.collision_rate);
     put_result(writer, "mean_free_path", "lambda", free_path(c), c->theory.mean_free_path);
     mf_json_put_number(writer, "speeds_tested", maxwell.numbers);
+    mf_json_put_number(writer, "speeds_independent", maxwell.independent);
     mf_json_put_number(writer, "speeds_kolmogorov_smirnov", maxwell.statistic);
     mf_json_put_number(writer, "speeds_p_value", maxwell.probability);
     mf_json_put_number(writer, "collisions", (double)c->last.collisions);

@@ -3,17 +3,47 @@
 
 #include "base/memory.h"
 #include "base/rng.h"
+#include "base/statistics.h"
 
 #include <math.h>
 
-enum status mf_maxwell_init(struct maxwell *maxwell) {
-    maxwell->counts = mf_memory_zeroed(MAXWELL_BINS, sizeof *maxwell->counts);
-    return maxwell->counts ? STATUS_OK : STATUS_NO_MEMORY;
+/// Blocks of time.
+enum { MOST_BLOCKS = 512 };
+
+enum status mf_maxwell_init(struct maxwell *maxwell, size_t planned) {
+    enum status status = STATUS_OK;
+    *maxwell = (struct maxwell){.each = planned / MOST_BLOCKS + 1};
+    maxwell->blocks = planned / maxwell->each + 1;
+    NEW_ARRAY(maxwell->counts, MAXWELL_BINS);
+    NEW_ARRAY(maxwell->cells, maxwell->blocks * MAXWELL_CELLS);
+done:
+    return status;
 }
 
 void mf_maxwell_clear(struct maxwell *maxwell) {
     mf_memory_free(maxwell->counts);
+    mf_memory_free(maxwell->cells);
     *maxwell = (struct maxwell){0};
+}
+
+void mf_maxwell_begin(struct maxwell *maxwell) {
+    maxwell->taken++;
+}
+
+void mf_maxwell_add(struct maxwell *maxwell, double share) {
+    const size_t place = (size_t)(share * MAXWELL_BINS);
+    const size_t bin = place < MAXWELL_BINS ? place : MAXWELL_BINS - 1;
+    const size_t block = (maxwell->taken - 1) / maxwell->each;
+    maxwell->counts[bin]++;
+    maxwell->cells[block * MAXWELL_CELLS + bin / (MAXWELL_BINS / MAXWELL_CELLS)] += 1;
+}
+
+size_t mf_maxwell_spans(struct maxwell *maxwell, struct memory_span *spans) {
+    const size_t cells = maxwell->blocks * MAXWELL_CELLS;
+    spans[0] = (struct memory_span){&maxwell->taken, sizeof maxwell->taken};
+    spans[1] = (struct memory_span){maxwell->counts, MAXWELL_BINS * sizeof *maxwell->counts};
+    spans[2] = (struct memory_span){maxwell->cells, cells * sizeof *maxwell->cells};
+    return MAXWELL_SPANS;
 }
 
 void mf_maxwell_sample(struct maxwell *maxwell, const struct particles *particles,
@@ -21,6 +51,7 @@ void mf_maxwell_sample(struct maxwell *maxwell, const struct particles *particle
     const double *mass = particles_masses(particles);
     const double spread = sqrt(temperature / mf_particles_total_mass(particles));
     double normal[4];
+    mf_maxwell_begin(maxwell);
     mf_rng_normal4(
         mf_rng_philox(seed, RNG_MEAN_VELOCITY, (uint32_t)step, (uint32_t)(step >> 32), 0), normal);
     for (int d = 0; d < particles->box.dimensions; d++) {
@@ -30,11 +61,45 @@ void mf_maxwell_sample(struct maxwell *maxwell, const struct particles *particle
         const double scale = -1 / sqrt(2 * temperature);
         for (size_t k = 0; k < particles->count; k++) {
             const double own = mass ? scale * sqrt(mass[k]) : scale;
-            const double share = 0.5 * erfc(own * (v[k] + shift));
-            const size_t bin = (size_t)(share * MAXWELL_BINS);
-            maxwell->counts[bin < MAXWELL_BINS ? bin : MAXWELL_BINS - 1]++;
+            mf_maxwell_add(maxwell, 0.5 * erfc(own * (v[k] + shift)));
         }
     }
+}
+
+enum { EDGES = MAXWELL_CELLS - 1 };
+
+/// F_n at the edges between cells in each whole block of time, shape [EDGES, blocks].
+static void find_series(const struct maxwell *maxwell, size_t blocks, double *series) {
+    for (size_t b = 0; b < blocks; b++) {
+        const double *cells = maxwell->cells + b * MAXWELL_CELLS;
+        double all = 0, below = 0;
+        for (size_t c = 0; c < MAXWELL_CELLS; c++)
+            all += cells[c];
+        for (size_t c = 0; c < EDGES; c++) {
+            below += cells[c];
+            series[c * blocks + b] = below / all;
+        }
+    }
+}
+
+/// How many numbers stand for one independent: variances of F_n over F (1 − F)/n, the mean over the
+/// edges. What it is more than 1 is drawn towards 0 by the share that its error has in it: of the
+/// edges together 3.4 are independent, (Σ λ)²/Σ λ² with Anderson and Darling's λ = 1/(j (j + 1)).
+static double find_inefficiency(const struct maxwell *maxwell, double total) {
+    static const double edges = 3.4;
+    const size_t blocks = (size_t)maxwell->taken / maxwell->each;
+    double series[EDGES * (MOST_BLOCKS + 1)], error[EDGES], found = 0;
+    if (blocks < 2)
+        return 1;
+    find_series(maxwell, blocks, series);
+    mf_statistics_correlated_errors(series, blocks, 1, EDGES, error);
+    for (size_t c = 0; c < EDGES; c++) {
+        const double below = (double)(c + 1) / MAXWELL_CELLS;
+        found += error[c] * error[c] * total / (below * (1 - below)) / EDGES;
+    }
+    const double memory = 2 * mf_statistics_inefficiency(series, blocks, 1, EDGES) - 1;
+    const double more = found - 1, variance = 2 * found * found * memory / ((double)blocks * edges);
+    return more > 0 && more * more > variance ? 1 + more - variance / more : 1;
 }
 
 struct maxwell_summary mf_maxwell_result(const struct maxwell *maxwell) {
@@ -43,14 +108,15 @@ struct maxwell_summary mf_maxwell_result(const struct maxwell *maxwell) {
     for (size_t k = 0; k < MAXWELL_BINS; k++)
         total += maxwell->counts[k];
     if (total == 0)
-        return (struct maxwell_summary){0, NAN, NAN};
+        return (struct maxwell_summary){.statistic = NAN, .probability = NAN};
     for (size_t k = 0; k < MAXWELL_BINS; k++) {
         below += maxwell->counts[k];
         const double expected = (double)(k + 1) / MAXWELL_BINS;
         largest = fmax(largest, fabs((double)below / (double)total - expected));
     }
-    return (struct maxwell_summary){(double)total, largest,
-                                    mf_maxwell_probability(largest, (double)total)};
+    const double independent = (double)total / find_inefficiency(maxwell, (double)total);
+    return (struct maxwell_summary){(double)total, independent, largest,
+                                    mf_maxwell_probability(largest, independent)};
 }
 
 double mf_maxwell_probability(double statistic, double n) {

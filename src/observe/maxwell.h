@@ -2,18 +2,30 @@
 /// @file Are the velocities those of Maxwell at the set temperature?
 #pragma once
 
+#include "base/memory.h"
 #include "system/particles.h"
 
 /// Bins of equal probability under Maxwell's distribution: their edges are where the distribution
 /// functions are compared, which understates the statistic by 2^-16 at most.
-enum { MAXWELL_BINS = 1 << 16 };
+enum { MAXWELL_BINS = 1 << 16, MAXWELL_CELLS = 16, MAXWELL_SPANS = 3 };
 
 struct maxwell {
-    uint64_t *counts; ///< shape [MAXWELL_BINS]: velocity components of all configurations
+    uint64_t *counts;    ///< shape [MAXWELL_BINS]: numbers of all configurations
+    uint64_t taken;      ///< configurations
+    size_t blocks, each; ///< of time, and configurations of one
+    double *cells;       ///< shape [blocks, MAXWELL_CELLS]: the same numbers in wide bins
 };
 
-enum status mf_maxwell_init(struct maxwell *maxwell) MUST_USE;
+/// @param[in] planned  configurations, at least as many as there will be
+enum status mf_maxwell_init(struct maxwell *maxwell, size_t planned) MUST_USE;
 void mf_maxwell_clear(struct maxwell *maxwell);
+
+/// Begin a configuration, and add a number to it: the share of Maxwell's distribution below it.
+void mf_maxwell_begin(struct maxwell *maxwell);
+void mf_maxwell_add(struct maxwell *maxwell, double share);
+
+/// What a checkpoint must keep.
+size_t mf_maxwell_spans(struct maxwell *maxwell, struct memory_span *spans);
 
 /// Add all velocity components of a configuration, times the square roots of the masses.
 ///
@@ -28,13 +40,15 @@ void mf_maxwell_sample(struct maxwell *maxwell, const struct particles *particle
                        double temperature, uint64_t seed, uint64_t step);
 
 struct maxwell_summary {
-    double numbers;     ///< velocity components in all
+    double numbers;     ///< in all
+    double independent; ///< as many of them would scatter as much
     double statistic;   ///< Kolmogorov and Smirnov's D = sup |F_n − F|; NaN without numbers
-    double probability; ///< of a larger D by chance, if all numbers are independent
+    double probability; ///< of a larger D by chance
 };
 
-/// The p-value is honest if the configurations are so far apart that velocities have forgotten
-/// each other: correlated ones make it too small. Without a thermostat the total energy is
+/// Configurations that are too close for velocities to forget each other count for fewer: by how
+/// much F_n scatters from block to block of time, where that of `independent` numbers would have
+/// the variance F (1 − F)/n, if that is no chance. Without a thermostat the total energy is
 /// remembered for ever.
 /// Tested: test_maxwell.
 struct maxwell_summary mf_maxwell_result(const struct maxwell *maxwell);

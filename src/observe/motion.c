@@ -35,15 +35,23 @@ static bool keeps_momentum(const struct simulation_setup *setup) {
     return simulation_has_velocities(setup) && setup->integrator->companions == NULL;
 }
 
+/// Number of the last sample.
+static size_t last_sample(const struct motion *motion) {
+    const size_t last_origin = motion->blocks * motion->each - 1;
+    return last_origin * (size_t)motion->plan.origin_every + (size_t)motion->plan.lags;
+}
+
 static enum status allocate(struct motion *motion) {
     enum status status = STATUS_OK;
+    // Velocities are tested once in a window.
+    const size_t tested = motion->endless ? 0 : last_sample(motion) / (size_t)motion->plan.lags + 1;
     const size_t state = 2 * (size_t)motion->dimensions, curve = (size_t)motion->plan.lags + 1;
     motion->slots = (size_t)(motion->plan.lags / motion->plan.origin_every + 1);
     NEW_ARRAY(motion->now, state * motion->count);
     NEW_ARRAY(motion->origins, motion->slots * state * motion->count);
     NEW_ARRAY(motion->squares, motion->blocks * curve);
     NEW_ARRAY(motion->products, motion->blocks * curve);
-    CHECK(mf_maxwell_init(&motion->maxwell));
+    CHECK(mf_maxwell_init(&motion->maxwell, tested));
 done:
     if (status != STATUS_OK)
         mf_motion_clear(motion);
@@ -102,11 +110,9 @@ void mf_motion_clear(struct motion *motion) {
 }
 
 int64_t mf_motion_due(const struct motion *motion) {
-    const struct motion_plan *plan = &motion->plan;
-    const int64_t last_origin = (int64_t)(motion->blocks * motion->each) - 1;
-    const int64_t last = last_origin * plan->origin_every + plan->lags;
     const int64_t sample = (int64_t)motion->samples;
-    return sample > last ? INT64_MAX : motion->begin + sample * plan->every;
+    return sample > (int64_t)last_sample(motion) ? INT64_MAX
+                                                 : motion->begin + sample * motion->plan.every;
 }
 
 // Sampling ----------------------------------------------------------------------------------------
@@ -281,9 +287,7 @@ size_t mf_motion_spans(struct motion *motion, struct memory_span *spans) {
     spans[n++] = (struct memory_span){motion->origins, motion->slots * state};
     spans[n++] = (struct memory_span){motion->squares, curves};
     spans[n++] = (struct memory_span){motion->products, curves};
-    spans[n++] =
-        (struct memory_span){motion->maxwell.counts, MAXWELL_BINS * sizeof *motion->maxwell.counts};
-    return n;
+    return n + mf_maxwell_spans(&motion->maxwell, spans + n);
 }
 
 // Results -----------------------------------------------------------------------------------------

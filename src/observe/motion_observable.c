@@ -116,6 +116,7 @@ static void put(const void *state, const struct observable_results *results,
     mf_json_put_quantity(writer, "fit_end", "tau", s.fit_end);
     if (s.maxwell.numbers > 0) {
         mf_json_put_number(writer, "velocities_tested", s.maxwell.numbers);
+        mf_json_put_number(writer, "velocities_independent", s.maxwell.independent);
         mf_json_put_number(writer, "velocities_kolmogorov_smirnov", s.maxwell.statistic);
         mf_json_put_number(writer, "velocities_p_value", s.maxwell.probability);
     }

@@ -202,7 +202,7 @@ static void test_velocities_become_maxwellian(void **state) {
     struct simulation simulation;
     struct maxwell maxwell;
     assert_ok(mf_simulation_init(&simulation, &setup, NULL));
-    assert_ok(mf_maxwell_init(&maxwell));
+    assert_ok(mf_maxwell_init(&maxwell, 20));
     struct solvent *solvent = simulation.integrator_state;
     for (int d = 0; d < 3; d++)
         for (size_t k = 0; k < solvent->count; k++)

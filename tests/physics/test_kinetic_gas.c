@@ -159,7 +159,7 @@ static void test_kinetic_gas_presses_on_walls_as_its_collisions_tell(void **stat
 /// collisions apart.
 static double maxwell_probability(struct simulation *simulation, int samples) {
     struct maxwell maxwell;
-    assert_ok(mf_maxwell_init(&maxwell));
+    assert_ok(mf_maxwell_init(&maxwell, (size_t)samples));
     for (int sample = 0; sample < samples; sample++) {
         run(simulation, sample > 0 ? 20 : 0);
         mf_maxwell_sample(&maxwell, &simulation->particles, 1, simulation->setup.seed,

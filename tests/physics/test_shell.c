@@ -65,7 +65,7 @@ static void check_velocities(const struct simulation_setup *setup) {
     static struct simulation simulation;
     struct maxwell maxwell;
     assert_ok(mf_simulation_init(&simulation, setup, NULL));
-    assert_ok(mf_maxwell_init(&maxwell));
+    assert_ok(mf_maxwell_init(&maxwell, SAMPLES));
     assert_ok(mf_simulation_run(&simulation, 500));
     for (int n = 0; n < SAMPLES; n++) {
         assert_ok(mf_simulation_run(&simulation, EVERY));

@@ -200,7 +200,7 @@ static void test_masses_begin_in_equilibrium(void **state) {
 
 static double probability_of(const struct particles *particles) {
     struct maxwell maxwell;
-    assert_ok(mf_maxwell_init(&maxwell));
+    assert_ok(mf_maxwell_init(&maxwell, 1));
     mf_maxwell_sample(&maxwell, particles, 1, 3, 0);
     const double probability = mf_maxwell_result(&maxwell).probability;
     mf_maxwell_clear(&maxwell);

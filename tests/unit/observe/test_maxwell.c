@@ -31,7 +31,7 @@ static double test_velocities(double drawn_at, double tested_at, uint64_t seed) 
     struct particles particles;
     struct maxwell maxwell;
     assert_ok(mf_particles_init(&particles, &cube, PARTICLES));
-    assert_ok(mf_maxwell_init(&maxwell));
+    assert_ok(mf_maxwell_init(&maxwell, 3));
     for (uint64_t step = 0; step < 3; step++) {
         mf_particles_draw_velocities(&particles, PARTICLES_MAXWELL, drawn_at,
                                      mf_rng_child_seed(seed, RNG_INITIAL, 1, (uint32_t)step));
@@ -64,6 +64,48 @@ static void test_maxwell_p_values_are_uniform_when_velocities_are_of_maxwell(voi
     assert_true(hundredth > 0);
 }
 
+/// Of velocities v ← a v + sqrt(1 − a²) ξ.
+static struct maxwell_summary test_remembering(double a, size_t samples, uint64_t seed) {
+    struct particles particles, noise;
+    struct maxwell maxwell;
+    assert_ok(mf_particles_init(&particles, &cube, PARTICLES));
+    assert_ok(mf_particles_init(&noise, &cube, PARTICLES));
+    assert_ok(mf_maxwell_init(&maxwell, samples));
+    for (uint64_t step = 0; step < samples; step++) {
+        const uint64_t own = mf_rng_child_seed(seed, RNG_INITIAL, 1, (uint32_t)step);
+        mf_particles_draw_velocities(&noise, PARTICLES_MAXWELL, 1, own);
+        for (int d = 0; d < 3; d++)
+            for (size_t k = 0; k < PARTICLES; k++)
+                particles.velocity[d][k] = step == 0 ? noise.velocity[d][k]
+                                                     : a * particles.velocity[d][k] +
+                                                           sqrt(1 - a * a) * noise.velocity[d][k];
+        mf_maxwell_sample(&maxwell, &particles, 1, seed, step);
+    }
+    const struct maxwell_summary s = mf_maxwell_result(&maxwell);
+    mf_maxwell_clear(&maxwell);
+    mf_particles_clear(&particles);
+    mf_particles_clear(&noise);
+    return s;
+}
+
+/// Samples that remember each other, F for three to four of them: counted as independent, 61 % of p
+/// would be below 0.05. Standard errors for 100 trials are 0.05 and 0.022.
+static void test_maxwell_counts_correlated_velocities_for_fewer(void **state) {
+    (void)state;
+    enum { RUNS = 100, SAMPLES = 120 };
+    double half = 0, twentieth = 0, share = 0;
+    for (uint64_t trial = 0; trial < RUNS; trial++) {
+        const struct maxwell_summary s = test_remembering(0.95, SAMPLES, 100 + trial);
+        half += s.probability < 0.5;
+        twentieth += s.probability < 0.05;
+        share += s.independent / s.numbers / RUNS;
+    }
+    print_message("p below 0.5, 0.05: %.0f, %.0f %%; independent %.3f of all\n", 100 * half / RUNS,
+                  100 * twentieth / RUNS, share);
+    assert_close(half / RUNS, 0.5, 0.2);
+    assert_close(twentieth / RUNS, 0.05, 0.08);
+}
+
 static void test_maxwell_p_value_is_small_when_the_temperature_is_another(void **state) {
     (void)state;
     assert_true(test_velocities(3, 2, 1) < 1e-4);
@@ -73,7 +115,7 @@ static void test_maxwell_p_value_is_small_when_the_temperature_is_another(void *
 static void test_maxwell_has_no_p_value_when_nothing_was_sampled(void **state) {
     (void)state;
     struct maxwell maxwell;
-    assert_ok(mf_maxwell_init(&maxwell));
+    assert_ok(mf_maxwell_init(&maxwell, 3));
     const struct maxwell_summary s = mf_maxwell_result(&maxwell);
     assert_identical(s.numbers, 0.0);
     assert_true(isnan(s.statistic) && isnan(s.probability));
@@ -84,6 +126,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_maxwell_probability_is_that_of_tables),
         cmocka_unit_test(test_maxwell_p_values_are_uniform_when_velocities_are_of_maxwell),
+        cmocka_unit_test(test_maxwell_counts_correlated_velocities_for_fewer),
         cmocka_unit_test(test_maxwell_p_value_is_small_when_the_temperature_is_another),
         cmocka_unit_test(test_maxwell_has_no_p_value_when_nothing_was_sampled),
     };

@@ -159,7 +159,7 @@ static struct motion_summary of_decay(double h, double msd_slope) {
         products[k] = exp(-h * k);
         squares[k] = 2 * msd_slope * h * k;
     }
-    assert_ok(mf_maxwell_init(&motion.maxwell));
+    assert_ok(mf_maxwell_init(&motion.maxwell, 0));
     const struct motion_summary s = mf_motion_result(&motion, NULL);
     mf_maxwell_clear(&motion.maxwell);
     return s;
