@@ -2,6 +2,7 @@
 #include "bench/bench_skips.h"
 
 #include "base/memory.h"
+#include "dynamics/respa.h"
 
 /// A step as a fit takes it, and others.
 enum part { PLAIN, WITHOUT_WEIGHT, WITH_SUMS, WITH_RDF, PARTS };
@@ -23,6 +24,9 @@ static enum status time_part(const struct bench_scene *scene, const struct bench
     struct pair_histogram histogram = {.bins = BINS};
     if (part == WITHOUT_WEIGHT) {
         changed.scene.setup.omega = NULL;
+        // Inner steps of bonds are taken in both, other parameters are those of the other one.
+        if (!mf_respa_acts(&scene->scene.setup))
+            changed.scene.setup.integrator_parameters = NULL;
         changed.scene.setup.integrator = &mf_velocity_verlet;
     }
     NEW_ARRAY(histogram.counts, NEIGHBOURS_MOST_PARTS * (BINS + 1));

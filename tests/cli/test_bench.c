@@ -49,6 +49,20 @@ static void test_bench_prints_json_and_writes_a_table(void **state) {
     run_program_assert_no_partial(".");
 }
 
+/// Of a scene with friction, too: without it the step is another integrator's.
+static void test_bench_skips_tells_what_parts_of_a_step_cost(void **state) {
+    static struct run_program_result result;
+    small_inputs_write(*state, "small.json", small_inputs_scene, "\"time_step\"",
+                       "\"dynamics\": {\"integrator\": \"dpd-verlet\"}, \"time_step\"");
+    RUN_PROGRAM(&result, "bench", "engine", "small.json", "--skips", "--isa", "portable",
+                "--precision", "mixed");
+    run_program_assert_code(&result, 0);
+    assert_string_equal(result.err, "");
+    assert_contains(result.out, "small: 81 particles, portable, mixed precision");
+    assert_contains(result.out, "without friction and noise");
+    assert_contains(result.out, "with g(r) at every step");
+}
+
 static const struct {
     const char *words[6];
     const char *says[3];
@@ -105,6 +119,7 @@ static void test_comparison_leaves_out_scenes_with_friction(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(test_bench_prints_json_and_writes_a_table),
+        TEST(test_bench_skips_tells_what_parts_of_a_step_cost),
         TEST(test_bad_bench_lines_are_refused_before_anything_is_timed),
         cmocka_unit_test_setup_teardown(test_comparison_without_lammps_is_one_clear_line,
                                         small_inputs_enter_without_gnuplot, small_inputs_leave),
