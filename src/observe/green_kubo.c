@@ -7,6 +7,10 @@
 
 enum { MOST_BLOCKS = 32, MOST_WINDOWS = 24, SHORTEST_WINDOW = 4 };
 
+/// The window that is taken is so many times doubled from the first one that agrees with the
+/// longer ones.
+enum { DOUBLINGS = 3 };
+
 enum status mf_green_kubo_init(struct green_kubo *green_kubo, size_t lags, size_t components,
                                size_t samples) {
     enum status status = STATUS_OK;
@@ -154,13 +158,12 @@ struct green_kubo_summary mf_green_kubo_result(const struct green_kubo *green_ku
     if (blocks == 0)
         return (struct green_kubo_summary){.value = NAN, .error = NAN};
     const size_t chosen = choose(values, windows, blocks);
-    const struct estimate found = difference(values[chosen], NULL, blocks);
+    const size_t taken = chosen + DOUBLINGS < windows ? chosen + DOUBLINGS : windows - 1;
+    const struct estimate found = difference(values[taken], NULL, blocks);
     const bool reached = chosen + 1 < windows;
-    const struct estimate next =
-        difference(values[reached ? chosen + 1 : chosen], values[chosen], blocks);
     return (struct green_kubo_summary){.value = found.mean,
-                                       .error = hypot(found.error, next.error),
-                                       .window = window[chosen],
+                                       .error = found.error,
+                                       .window = window[taken],
                                        .reached = reached || is_at_rest(values, windows, blocks),
                                        .blocks = (double)blocks};
 }

@@ -7,12 +7,15 @@
 /// Helfand, Phys. Rev. 119, 1 (1960), exact for any length of the intervals, also with noise whose
 /// autocorrelation is a delta function.
 ///
-/// I(k) comes to rest, and its noise grows with k. Of the windows T, T/2, T/4, … that one is
-/// taken, the shortest, from the second half of which I has a mean that agrees with those of all
-/// longer windows within the standard errors of the differences: the rule of O. V. Lepskii, Theory
-/// Probab. Appl. 35, 454 (1991), in place of the threshold by eye of Y. Zhang, A. Otani and E. J.
-/// Maginn, J. Chem. Theory Comput. 11, 3537 (2015). Errors are of blocks of time, and the error of
-/// the difference from the next longer window counts, too.
+/// I(k) comes to rest, and its noise grows with k. Of the windows T, T/2, T/4, … the first one is
+/// looked for, the shortest, from the second half of which I has a mean that agrees with those of
+/// all longer windows within the standard errors of the differences: the rule of O. V. Lepskii,
+/// Theory Probab. Appl. 35, 454 (1991), in place of the threshold by eye of Y. Zhang, A. Otani and
+/// E. J. Maginn, J. Chem. Theory Comput. 11, 3537 (2015). That window agrees because the noise
+/// hides what may still come, and its own error is too small for that: taken is one eight times as
+/// long, or T. Of flows that decay with two or three times, whose last one has a third of the
+/// integral, the values lie 0.9 to 1.1 of their errors from the truth (rms); those of the first
+/// window itself 1.4 to 2.2, all of them low. Errors are of blocks of time.
 #pragma once
 
 #include "base/memory.h"
@@ -50,7 +53,7 @@ struct green_kubo_curves {
 struct green_kubo_summary {
     double value, error;
     size_t window; ///< the one that was taken, in intervals
-    bool reached;  ///< a longer one agrees, or the longest with the one before within two errors
+    bool reached;  ///< windows agree, or the longest with the one before within two errors
     double blocks; ///< complete
 };
 

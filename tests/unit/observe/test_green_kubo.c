@@ -68,6 +68,59 @@ static void test_green_kubo_knows_a_decay_and_its_own_error(void **state) {
     check(exp(-1.0 / 5), 128, 1500);
 }
 
+/// Flows that forget in several times, with these parts of I(∞) = 1.
+enum { MODES = 3 };
+struct modes {
+    const char *name;
+    double part[MODES], time[MODES]; ///< [intervals]; 0: white noise
+};
+
+static struct green_kubo_summary simulate_modes(uint64_t run, const struct modes *modes,
+                                                size_t lags, size_t samples) {
+    enum { BEFORE = 500 };
+    struct green_kubo green_kubo;
+    double x[MODES][COMPONENTS] = {{0}};
+    assert_ok(mf_green_kubo_init(&green_kubo, lags, COMPONENTS, samples));
+    for (uint32_t n = 0; n < samples + BEFORE; n++) {
+        double flow[COMPONENTS] = {0};
+        for (uint32_t m = 0; m < MODES; m++) {
+            const double a = modes->time[m] > 0 ? exp(-1 / modes->time[m]) : 0;
+            for (uint32_t c = 0; c < COMPONENTS; c++) {
+                x[m][c] = a * x[m][c] + sqrt(1 - a * a) * normal(run, n, c + 8 * m);
+                flow[c] += x[m][c] * sqrt(modes->part[m] * 2 * (1 - a) / (1 + a));
+            }
+        }
+        if (n >= BEFORE)
+            mf_green_kubo_add(&green_kubo, flow);
+    }
+    const struct green_kubo_summary s = mf_green_kubo_result(&green_kubo, NULL);
+    mf_green_kubo_clear(&green_kubo);
+    return s;
+}
+
+/// What comes late is hidden by noise: no run may say with a small error that it is not there.
+static void test_green_kubo_error_covers_a_tail_that_noise_hides(void **state) {
+    (void)state;
+    static const struct modes modes[] = {
+        {"as stress of a soft fluid", {0.35, 0.35, 0.3}, {0, 4, 25}},
+        {"noise and a slow tail", {0.7, 0.3, 0}, {0, 40, 0}},
+    };
+    enum { FLUIDS = 40 };
+    for (int k = 0; k < 2; k++) {
+        double squares = 0, worst = 0, sum = 0;
+        for (uint64_t run = 1; run <= FLUIDS; run++) {
+            const struct green_kubo_summary s = simulate_modes(run, &modes[k], 200, 4000);
+            squares += pow((s.value - 1) / s.error, 2) / FLUIDS;
+            worst = fmin(worst, (s.value - 1) / s.error);
+            sum += s.value / FLUIDS;
+        }
+        print_message("%s: mean %.3f, rms deviation %.2f errors, lowest %.1f\n", modes[k].name, sum,
+                      sqrt(squares), worst);
+        assert_in_range((int)(100 * sqrt(squares)), 70, 130);
+        assert_close(sum, 1, 0.1);
+    }
+}
+
 static void test_green_kubo_tells_that_a_window_is_too_short(void **state) {
     (void)state;
     int reached = 0;
@@ -81,6 +134,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_green_kubo_knows_white_noise_and_its_own_error),
         cmocka_unit_test(test_green_kubo_knows_a_decay_and_its_own_error),
+        cmocka_unit_test(test_green_kubo_error_covers_a_tail_that_noise_hides),
         cmocka_unit_test(test_green_kubo_tells_that_a_window_is_too_short),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
