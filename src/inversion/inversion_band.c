@@ -4,6 +4,7 @@
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_eigen.h>
 #include <gsl/gsl_linalg.h>
+#include <gsl/gsl_sf_psi.h>
 #include <math.h>
 
 enum status mf_inversion_band_init(struct inversion_band *band, size_t known, size_t points) {
@@ -194,6 +195,30 @@ static void add_pressure(struct inversion *inversion, double *scratch) {
     add_square(inversion, -1 / (open + noise * noise), scratch);
 }
 
+double mf_inversion_band_of_counts(double counts) {
+    return sqrt(gsl_sf_psi_1(counts + 0.5));
+}
+
+/// What the counts of the target and those of the samples allow the error of Φ of a known bin to be
+/// at least: both of all states together. 0 of groups, which end as smooth as the prior has them.
+static double least_error(const struct inversion *inversion, size_t a) {
+    const struct inversion_joint *joint = inversion->joint;
+    const size_t bin = inversion->grid.known_bin[a];
+    double asked = 0, seen = 0;
+    if (a >= inversion->grid.pairs_known || inversion->basis.count > 0)
+        return 0;
+    for (size_t s = 0; s < (joint ? joint->states : 1); s++) {
+        const struct inversion *own = joint ? &joint->state[s] : inversion;
+        const double target = pow(own->target_error[bin], 2);
+        asked += pow(own->target_counts[bin], 2) / target;
+        seen += pow(own->replicas.counts.mean[bin], 2) / (own->variance[a] - target);
+    }
+    return isfinite(asked) && isfinite(seen)
+               ? inversion->problem->scene.temperature *
+                     hypot(mf_inversion_band_of_counts(asked), mf_inversion_band_of_counts(seen))
+               : 0;
+}
+
 /// Standard errors, those of A, and those of Φ if A were known.
 static void find_errors(struct inversion *inversion, const double *weight, double *scratch) {
     const struct potential_grid *grid = &inversion->grid;
@@ -203,9 +228,10 @@ static void find_errors(struct inversion *inversion, const double *weight, doubl
     for (size_t a = 0; a < n; a++) {
         const double variance = band->covariance[a * n + a];
         const double of_ramp = ramp_variance > 0 ? scratch[a] * scratch[a] / ramp_variance : 0;
-        band->error[grid->known_point[a]] = variance >= 0 ? sqrt(variance) : NAN;
+        const double least = least_error(inversion, a);
+        band->error[grid->known_point[a]] = variance >= 0 ? fmax(sqrt(variance), least) : NAN;
         band->without_ramp[grid->known_point[a]] =
-            variance >= 0 ? sqrt(fmax(0, variance - of_ramp)) : NAN;
+            variance >= 0 ? fmax(sqrt(fmax(0, variance - of_ramp)), least) : NAN;
     }
     for (size_t g = 0; g < grid->groups; g++) {
         mf_potential_grid_close(grid, g, band->error);

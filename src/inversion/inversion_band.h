@@ -29,6 +29,10 @@
 /// 0.1. Targets of 28 twins have sums of pairs along the ramp that scatter by half of what
 /// independent bins give, and so A is off by 0.6 to 0.7 of its stated error.
 ///
+/// Φ follows the target bin by bin, beginning with −ln g, and what noise a bin has there stays in
+/// it, however smooth the prior, and so does that of the samples: where these have few counts, as
+/// in the first bins of a core, the error of Φ is at least theirs (mf_inversion_band_of_counts).
+///
 /// C is itself sampled. Its noise adds to C·C, but what is least known follows the smallest
 /// eigenvalues, and those of a sampled covariance come out too small: the band of few samples is
 /// wider than by the exact C (test_inversion_band: the ramp's error by 27 % with twice as many
@@ -53,6 +57,11 @@ struct inversion_band {
         double way, open;
     } farthest;
 };
+
+/// Standard deviation of ln λ of a Poisson distribution with the mean λ of which so many were
+/// counted: that of its posterior, a gamma distribution of the shape counts + ½ by H. Jeffreys's
+/// prior. Tested: test_inversion_band.
+double mf_inversion_band_of_counts(double counts);
 
 /// (F + prior)⁻¹.
 /// @param[in]  system      size, blocks, C, variances, temperature, spacing

@@ -160,11 +160,33 @@ static void test_inversion_band_is_not_narrower_by_the_noise_of_counts(void **st
     gsl_matrix_free(factor);
 }
 
+/// Of λ that lie anywhere on a wide scale, those of which so many were counted: ln λ by their own
+/// frequency, λ^k e^−λ/k! against steps of ln λ.
+static double scatter_of_logarithm(int counts) {
+    double all = 0, first = 0, second = 0;
+    for (double x = -12; x < 8; x += 1e-3) {
+        const double weight = exp((counts + 0.5) * x - exp(x)); // Jeffreys's prior λ^−½ dλ
+        all += weight;
+        first += weight * x;
+        second += weight * x * x;
+    }
+    return sqrt(second / all - pow(first / all, 2));
+}
+
+static void test_inversion_band_of_counts_is_that_of_the_logarithm_of_their_mean(void **state) {
+    (void)state;
+    static const int counts[] = {1, 2, 5, 40};
+    for (int k = 0; k < 4; k++)
+        assert_close(mf_inversion_band_of_counts(counts[k]), scatter_of_logarithm(counts[k]), 1e-4);
+    assert_close_relative(mf_inversion_band_of_counts(1e8), 1e-4, 1e-6);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_inversion_band_is_the_scatter_when_the_data_say_all),
         cmocka_unit_test(test_inversion_band_is_the_prior_when_the_data_say_nothing),
         cmocka_unit_test(test_inversion_band_is_not_narrower_by_the_noise_of_counts),
+        cmocka_unit_test(test_inversion_band_of_counts_is_that_of_the_logarithm_of_their_mean),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
