@@ -16,6 +16,9 @@ limit = limit > 0 ? limit : 1
 width = X_max + X_min
 height = Y_max + Y_min
 lines = 20
+# Channels longer than six times their height are drawn higher than they are: labels want room.
+longest = 6.0
+tall = high(height / width, 1 / longest)
 
 # Centre and radius of the obstacle; all 0: there is none.
 obstacle = system("awk '/\"obstacle_centre\":/ { sub(/.*:/, \"\"); gsub(/[^0-9.eE, -]/, \"\"); split($0, c, \",\") } \
@@ -42,9 +45,11 @@ unset contour
 set surface
 
 do for [kind in kinds] {
-    eval open(kind, "flow_field", 900, 860 * height / width + 60)
+    eval open(kind, "flow_field", 900, 860 * tall + 60)
     unset grid
-    set size ratio -1
+    if (height > tall * width * 0.999) { set size ratio -1 } else { set size noratio }
+    set ytics step_of(height / 2.5)
+    set cbtics step_of(limit)
     set rmargin at screen 0.82
     set xlabel axis_of("flow_field.tsv", "x", "{/:Italic x}", "{/:Italic x} / {/:Italic λ}")
     set ylabel axis_of("flow_field.tsv", "y", "{/:Italic y}", "{/:Italic y} / {/:Italic λ}")

@@ -23,7 +23,7 @@ do for [kind in kinds] {
     set yrange [0:1.02]
     set xlabel t_axis_of("polar_order.tsv")
     set ylabel "order |⟨{/:Bold n}⟩|"
-    plot "polar_order.tsv" using 1:2 with lines linewidth 1.6 linecolor rgb green
+    plot seen("polar_order.tsv", 2) using 1:2 with lines linewidth 1.6 linecolor rgb green
 
     set tmargin at screen 0.47
     set bmargin at screen 0.10

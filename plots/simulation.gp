@@ -75,23 +75,23 @@ do for [kind in kinds] {
     eval begin_panel(0) . value_range(L_min, H_max)
     eval name_axis(axis_of("thermodynamics.tsv", "temperature", "{/:Italic T}", "{/:Italic T} / {/:Italic T}_0"), label)
     set key on at graph 1, graph 1.22 right top vertical maxrows 1 noautotitle
-    plot for [i = 1:kinetic] "thermodynamics.tsv" using (ps * $2):3 with lines title "kinetic" \
+    plot for [i = 1:kinetic] seen("thermodynamics.tsv", 3) using (ps * $2):3 with lines title "kinetic" \
             linewidth 1.2 linecolor rgb blue, \
-        for [i = 1:configurational] "thermodynamics.tsv" using (ps * $2):6 with points title "configurational" \
+        for [i = 1:configurational] seen("thermodynamics.tsv", 6) using (ps * $2):6 with points title "configurational" \
             pointtype 7 pointsize 0.5 linecolor rgb vermillion
 
     eval begin_panel(1) . value_range(U_min, U_max)
     eval name_axis(in_units("thermodynamics.tsv", "potential_energy[kJ/mol]", \
         "{/:Italic U} / (kJ/mol)", "{/:Italic U} / {/:Italic k}_B{/:Italic T}_0"), label)
     set key off
-    plot "thermodynamics.tsv" using (ps * $2):(kJ * $4) with lines linewidth 1.2 linecolor rgb green
+    plot seen("thermodynamics.tsv", 4) using (ps * $2):(kJ * $4) with lines linewidth 1.2 linecolor rgb green
 
     eval begin_panel(2) . value_range(P_min, P_max)
     eval name_axis(in_units("thermodynamics.tsv", "pressure[bar]", \
         "{/:Italic p} / bar", sprintf("{/:Italic p λ}^%d / {/:Italic k}_B{/:Italic T}_0", dimensions)), label)
     set format x "%h"
     set xlabel t_axis_of("thermodynamics.tsv")
-    plot "thermodynamics.tsv" using (ps * $2):(bar * $5) with lines linewidth 1.2 linecolor rgb purple
+    plot seen("thermodynamics.tsv", 5) using (ps * $2):(bar * $5) with lines linewidth 1.2 linecolor rgb purple
     unset multiplot
     eval close
 }

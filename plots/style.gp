@@ -118,6 +118,22 @@ axis_of(file, name, symbol, reduced) = in_units(file, name . "[]", symbol . " / 
 r_axis_of(file) = in_units(file, "r[nm]", "{/:Italic r} / nm", r_label)
 t_axis_of(file) = in_units(file, "sweeps[1]", "sweeps", in_units(file, "time[ps]", "{/:Italic t} / ps", t_label))
 
+# What a figure shows of a table with a row for each time: all of it, or, of a long one, as many groups
+# of rows as the axis has pixels, each by its first row and those where column n is lowest and highest. A
+# line through them covers the same pixels as one through all rows.
+groups_of_rows = 1000
+rows_of(file) = int(system("grep -vc '^#' " . from(file) . " || true"))
+seen(file, n) = rows_of(file) <= 4 * groups_of_rows ? file : \
+    "< awk -v n=" . n . " -v each=" . (rows_of(file) / groups_of_rows + 1) . " '\
+    function show() { if (count == 0) return; print first; if (!known) return; \
+        if (lowest <= highest) { print low; print high } else { print high; print low } } \
+    /^#/ { next } \
+    count % each == 0 { show(); first = $0; known = 0 } \
+    { count++ } \
+    $n ~ /[0-9]/ { v = $n + 0; if (!known || v < least) { least = v; low = $0; lowest = count } \
+        if (!known || v > most) { most = v; high = $0; highest = count } known = 1 } \
+    END { show() }'" . from(file)
+
 # The unit of column n as a text, "nm^{-1}" for "1/nm", or "" where there is none.
 unit_of(file, n) = system(sprintf("awk -F '\t' '/^#/ && NF > 1 { h = $%d; if (!sub(/^[^[]*\\[/, \"\", h)) h = \"1]\"; sub(/\\].*/, \"\", h); \
     if (h == \"1\") h = \"\"; if (sub(/^1\\//, \"\", h)) h = h \"^{-1}\"; gsub(/angstrom/, \"Å\", h); \

@@ -137,6 +137,23 @@ static void test_simulate_draws_its_figure_when_gnuplot_is_there(void **state) {
         fail_msg("%s", result.err);
 }
 
+/// As many points as the axis has pixels, whatever the run: 12,000 samples would be 1.8 MB.
+static void test_figure_of_a_long_run_is_no_larger_when_gnuplot_is_there(void **state) {
+    static struct run_program_result result;
+    static const char scene[] =
+        "{\"box\": [2.2, 2.2, 2.2], \"particles\": {\"count\": 8}, \"time_step\": 0.02, "
+        "\"conservative\": {\"law\": \"soft-repulsion\", \"a\": 25}, "
+        "\"dissipative\": {\"law\": \"power\"}, "
+        "\"measure\": {\"equilibration\": 0, \"samples\": 12000, \"every\": 1}}";
+    small_inputs_need_gnuplot();
+    temporary_folder_write(*state, "scene.json", scene, strlen(scene));
+    RUN_PROGRAM(&result, "simulate", "scene.json");
+    run_program_assert_code(&result, 0);
+    char *figure = temporary_folder_read("out/figures/simulation.svg");
+    assert_in_range(strlen(figure), 50000, 800000);
+    free(figure);
+}
+
 static void test_simulate_draws_all_g_of_a_mixture_when_gnuplot_is_there(void **state) {
     static struct run_program_result result;
     small_inputs_need_gnuplot();
@@ -366,6 +383,7 @@ int main(void) {
         TEST_WITHOUT_FIGURES(test_simulate_measures_diffusion_when_asked),
         TEST_WITHOUT_FIGURES(test_simulate_leaves_a_table_for_each_pair_type_of_a_mixture),
         TEST_WITHOUT_FIGURES(test_simulate_takes_a_dissipative_law_for_each_pair_type),
+        TEST(test_figure_of_a_long_run_is_no_larger_when_gnuplot_is_there),
         TEST(test_simulate_draws_all_g_of_a_mixture_when_gnuplot_is_there),
         TEST_WITHOUT_FIGURES(test_explain_tells_what_is_on_and_off),
         TEST_WITHOUT_FIGURES(test_unstable_scene_ends_with_step_and_force),
