@@ -227,7 +227,7 @@ static void find_total(const struct thermodynamics *thermodynamics, const struct
         rest += pow(energy[b] - blocks.mean - slope * t, 2);
     }
     point->quantity[BENCH_TOTAL] =
-        (struct bench_number){blocks.mean, mf_statistics_standard_error(&blocks)};
+        (struct bench_number){blocks.mean, mf_statistics_correlated_error(energy, BLOCKS, 1)};
     point->quantity[BENCH_DRIFT] = (struct bench_number){slope, sqrt(rest / (BLOCKS - 2) / spread)};
 }
 

@@ -345,8 +345,8 @@ done:
     return status;
 }
 
-/// speeds.tsv: the middle of a bin, the density of speeds there with the error of independent
-/// counts, Maxwell's mean density in the bin.
+/// speeds.tsv: the middle of a bin, the density of speeds there with the error of as many counts as
+/// are independent, Maxwell's mean density in the bin.
 static enum status write_speeds(const struct collisions *c,
                                 const struct observable_results *results) {
     enum status status = STATUS_OK;
@@ -355,6 +355,8 @@ static enum status write_speeds(const struct collisions *c,
     const int dimensions = results->setup->box.dimensions;
     const double width = speed_maximum / (double)bins;
     const double all = (double)c->series.count * (double)c->particles * width;
+    const struct maxwell_summary tested = mf_maxwell_result(&c->maxwell);
+    const double each = sqrt(tested.numbers / tested.independent);
     double *values = NULL;
     NEW_ARRAY(values, 4 * bins);
     double *speed = values, *density = speed + bins, *error = density + bins,
@@ -363,7 +365,7 @@ static enum status write_speeds(const struct collisions *c,
         const double low = (double)k * width, count = (double)c->speeds[k];
         speed[k] = low + 0.5 * width;
         density[k] = count / all;
-        error[k] = count > 0 ? sqrt(count) / all : NAN;
+        error[k] = count > 0 ? each * sqrt(count) / all : NAN;
         theory[k] =
             (maxwell_share(dimensions, low + width) - maxwell_share(dimensions, low)) / width;
     }

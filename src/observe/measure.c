@@ -70,16 +70,18 @@ struct ratios {
 
 /// A single snapshot's ratio is biased and may be anything: that of the sums counts. If the wanted
 /// temperature T is the true one, squares − T · laplacian is 0 on average: its scatter gives the
-/// error, however wild the ratio.
+/// error, however wild the ratio, with the correlation of one piece's end with the next.
 static struct measure_temperature configurational(const struct ratios *ratios, double wanted) {
-    struct running_mean above = {0}, below = {0}, excess = {0};
+    struct running_mean above = {0}, below = {0};
+    double excess[LAST];
     for (int k = 0; k < LAST; k++) {
         mf_statistics_add(&above, ratios->above[k]);
         mf_statistics_add(&below, ratios->below[k]);
-        mf_statistics_add(&excess, ratios->above[k] - wanted * ratios->below[k]);
+        excess[k] = ratios->above[k] - wanted * ratios->below[k];
     }
     return (struct measure_temperature){above.mean / below.mean,
-                                        mf_statistics_standard_error(&excess) / fabs(below.mean)};
+                                        mf_statistics_correlated_error(excess, LAST, 1) /
+                                            fabs(below.mean)};
 }
 
 static struct measure_temperature kinetic(const struct ratios *ratios) {
