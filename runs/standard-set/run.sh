@@ -119,13 +119,21 @@ row() {
 
 # $1 system: what it said of itself, if it has not converged.
 note() {
-    result=$out/$1/fit/summary.json
+    result=$out/$1/fit
     [ -e "$out/$1/ended" ] || return 0
-    if grep -qs '"status":.*"converged"' "$result"; then
+    if grep -qs '"status":.*"converged"' "$result/summary.json"; then
         return 0
     fi
-    text=$(sed -n 's/^\t"reason":\t"\(.*\)",*$/\1/p' "$result" 2>/dev/null) || true
-    echo "- $1: ${text:-$(grep '^mesofit:' "$out/$1/messages" | head -n 1 | sed "s|$here/||g; s|$out/||g; s/^mesofit: //")}"
+    if [ "$(cat "$out/$1/code")" -gt 128 ]; then
+        text="ended by the limit of $limit s of processor time"
+        [ ! -e "$result/history.tsv" ] || text="$text $(awk '!/^#/ { n++; error = $4; noise = $5 }
+            END { printf "after %d iterations; the error was %.2g, its noise %.2g", n, error, noise }' "$result/history.tsv")"
+    elif [ -e "$result/summary.json" ]; then
+        text=$(sed -n 's/^\t"reason":\t"\(.*\)",*$/\1/p' "$result/summary.json")
+    else
+        text=$(grep '^mesofit:' "$out/$1/messages" | grep -v 'warning:' | head -n 1 | sed "s|$here/||g; s|$out/||g; s/^mesofit: //")
+    fi
+    echo "- $1: $text"
 }
 
 all=
