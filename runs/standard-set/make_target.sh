@@ -68,7 +68,8 @@ for folder; do
                     }
             }' total=-2 "$work/out/snapshots/trajectory.extxyz" >"$work/trajectory.extxyz"
         "$program" measure "$work/trajectory.extxyz" --map map.json --molecules molecules.json --static --temperature 300 -o "$work/target" --quiet
-        cp "$work"/target/target.json "$work"/target/rdf_*.tsv "$work"/target/bond_lengths.tsv "$work"/target/bond_angles.tsv .
+        sed 's|"title":.*|"title":\t"n-Octane at 300 K, four beads a molecule",|' "$work/target/target.json" >target.json
+        cp "$work"/target/rdf_*.tsv "$work"/target/bond_lengths.tsv "$work"/target/bond_angles.tsv .
         ;;
     mixture-solute)
         # By LAMMPS, since a scene has two beads of a type at least.

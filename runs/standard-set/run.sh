@@ -169,6 +169,6 @@ if [ -n "$all" ] && [ -z "$seed" ] && [ -z "${TABLE:-}" ]; then
         function insert(file,    line) { while ((getline line <file) > 0) print line }
         /^<!-- end -->/ { inside = 0 }
         !inside
-        /^<!-- table -->/ { inside = 1; insert(table); print ""; insert(notes) }' "$here/README.md" >"$out/README.md"
+        /^<!-- table -->/ { inside = 1; insert(table); print ""; insert(notes); print "\n![The table as a figure](standard-set.png)" }' "$here/README.md" >"$out/README.md"
     cp "$out/README.md" "$here/README.md"
 fi
