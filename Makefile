@@ -17,6 +17,7 @@
 # make fuzz           damaged files, SECONDS=600 of them: every reader (libFuzzer, needs clang), whole runs
 # make tsan           tests of threads and a threaded simulation under the thread sanitizer
 # make lint           formatting, static analysis, layers, names, licence lines, lengths
+# make standard-set   fits the standard set by defaults: one table, one figure (an hour; runs/standard-set)
 # make bench          speed of the engine on this machine, to tests/bench/results
 # make WERROR=1 …     warnings are errors
 # make VERBOSE=1 …    shows the whole commands
@@ -274,6 +275,10 @@ check-install: all
 
 lint: $(LIBRARY) $(LIVE)
 	tests/tools/lint.sh $(LIBRARY) $(LIVE)
+
+.PHONY: standard-set
+standard-set: $(PROGRAM)
+	PROGRAM=$(abspath $(PROGRAM)) runs/standard-set/run.sh
 
 bench: $(PROGRAM)
 	tests/bench/run.sh $(PROGRAM)
