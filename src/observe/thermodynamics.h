@@ -72,3 +72,16 @@ enum status mf_thermodynamics_judge(const struct thermodynamics_summary *summary
 /// UNSTABLE with the numbers in the message. Tested: test_thermodynamics.
 enum status mf_thermodynamics_judge_fit(const struct thermodynamics_summary *summary,
                                         const struct simulation_setup *setup) MUST_USE;
+
+/// How far off the temperatures of a summary are, relative to the one that they should have: that
+/// of the setup or, where nothing holds it, the kinetic one. Of both the one that is farther off by
+/// its error, or by 1 % where that is larger. `known` is false with fewer than five blocks, and
+/// where nothing is thermal. Tested: test_thermodynamics.
+struct thermodynamics_off {
+    bool known;
+    bool kinetic;        ///< else the configurational one
+    double share, error; ///< (T − T_wanted)/T_wanted, and its standard error: 0 of several times
+                         ///< T_wanted, or none, which are no chance
+};
+struct thermodynamics_off mf_thermodynamics_off(const struct thermodynamics_summary *summary,
+                                                const struct simulation_setup *setup);

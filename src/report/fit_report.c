@@ -4,6 +4,7 @@
 #include "observe/kirkwood_buff_observable.h"
 #include "problem/parametrisation.h"
 #include "report/fit_change.h"
+#include "report/fit_step.h"
 #include "base/number_text.h"
 #include "curves/expression_text.h"
 
@@ -199,6 +200,23 @@ static void say_thermodynamics(struct progress *to, const struct units *units,
                         kelvin, pressure);
 }
 
+/// With which time step a state was verified, and that a fit by simulations had another one.
+static void say_step(struct progress *to, const struct fit_file *fit,
+                     const struct verification *v) {
+    const struct units *units = &fit->scene.units;
+    char text[FIT_STEP_TEXT_SIZE], unit[UNITS_NAME_SIZE];
+    mf_fit_step_text(v, units, text);
+    if (text[0])
+        mf_progress_say(to, "%s", text);
+    if (fit->method->kind == INVERSE_MATCHING && mf_fit_step_was_shortened(v))
+        mf_progress_say(to,
+                        "mesofit: warning: the fit simulated its candidates with the longer time "
+                        "step, whose error is part of what it found: \"time_step\": %.3g%s in "
+                        "the scene, and fit again",
+                        mf_units_factor(units, "tau") * v->step.used,
+                        mf_units_suffix(units, "tau", unit));
+}
+
 /// What was found of a state, or of the only one.
 /// @param[in] open  as say_thermodynamics
 static void say_state(struct progress *to, const struct fit_file *fit, const struct verification *v,
@@ -211,6 +229,7 @@ static void say_state(struct progress *to, const struct fit_file *fit, const str
         say_diffusion(to, units, v);
     say_integrals(to, fit, v);
     say_thermodynamics(to, units, &v->thermodynamics, open);
+    say_step(to, fit, v);
 }
 
 void mf_fit_report_say(struct progress *to, const struct fit_file *fit,
