@@ -226,6 +226,8 @@ static enum status summarise(struct measurement *replicas, size_t count,
         verification->engine_steps += replicas[k].simulation.step;
     }
     verification->thermodynamics = mf_thermodynamics_result(thermodynamics, count);
+    verification->shift = mf_thermodynamics_shift(
+        thermodynamics, count, &verification->thermodynamics, &replicas->simulation.setup);
     if (mf_thermodynamics_judge_fit(&verification->thermodynamics, &replicas->simulation.setup) !=
         STATUS_OK)
         snprintf(verification->warning, sizeof verification->warning, "%s", mf_status_message());

@@ -23,6 +23,7 @@ struct verification {
     double distance_error[TARGETS]; ///< standard error of each distance, by leaving out replicas;
                                     ///< that of g(r) by leaving out blocks. NaN with one replica
     struct thermodynamics_summary thermodynamics;
+    struct thermodynamics_shift shift;
     double diffusion_begin, diffusion_end; ///< times between which D is the MSD's slope [τ]; or 0
     char warning[512]; ///< why its temperatures are not to be trusted; "" if they are
     struct verify_step step;

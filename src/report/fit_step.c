@@ -42,6 +42,13 @@ bool mf_fit_step_was_shortened(const struct verification *verification) {
     return verification->step.halvings > 0;
 }
 
+bool mf_fit_step_shifts_pressure(const struct verification *verification) {
+    static const double errors = 2;
+    const struct thermodynamics_shift *shift = &verification->shift;
+    return fabs(shift->pressure) >
+           fmax(errors * shift->error, verification->thermodynamics.pressure_error);
+}
+
 void mf_fit_step_cause(const struct verification *verification, const struct units *units,
                        char text[FIT_STEP_TEXT_SIZE]) {
     const struct verify_step *step = &verification->step;

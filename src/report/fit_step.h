@@ -16,5 +16,8 @@ void mf_fit_step_text(const struct verification *verification, const struct unit
 void mf_fit_step_cause(const struct verification *verification, const struct units *units,
                        char text[FIT_STEP_TEXT_SIZE]);
 
+/// Whether the time step shifts the verification's pressure by more than the errors of both.
+bool mf_fit_step_shifts_pressure(const struct verification *verification);
+
 /// Whether simulations of a fit that took the first step were too coarse for its result.
 bool mf_fit_step_was_shortened(const struct verification *verification);

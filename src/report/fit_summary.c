@@ -322,6 +322,8 @@ static void put_verification(struct json_writer *writer, const struct fit_file *
     mf_json_put_quantity(writer, "pressure", "k_B T_0/lambda^d", t->pressure);
     mf_json_put_quantity(writer, "pressure_error", "k_B T_0/lambda^d",
                          known_error(t->pressure_error));
+    put_quantity(writer, "pressure_of_time_step", "k_B T_0/lambda^d", v->shift.pressure);
+    put_quantity(writer, "pressure_of_time_step_error", "k_B T_0/lambda^d", v->shift.error);
     mf_json_put_number(writer, "verification_steps", (double)v->engine_steps);
     put_step(writer, &fit->scene.units, v);
     mf_units_put(&fit->scene.units, writer, t->potential_energy, t->pressure);

@@ -113,11 +113,17 @@ bool mf_fit_verdict_contradicts(const struct verification *verification,
     const struct thermodynamics_summary *found = &verification->thermodynamics;
     const struct target_distance *pressure = &verification->distance[TARGET_PRESSURE];
     if (targets_ask(fitted, TARGET_PRESSURE) && pressure->rms > noise_margin * pressure->noise) {
-        snprintf(
-            reason, INVERSE_REASON_SIZE,
-            "the verification's pressure, %.4g%.16s, is off by %.2g (%.2g by statistics): its time "
-            "step may be too long",
-            bar * found->pressure, unit, bar * pressure->rms, bar * pressure->noise);
+        char cause[FIT_STEP_TEXT_SIZE];
+        if (mf_fit_step_shifts_pressure(verification))
+            snprintf(cause, sizeof cause,
+                     "its time step shifts it by about %.2g, as the configurational temperature "
+                     "tells: set a shorter \"verification.time_step\"",
+                     bar * verification->shift.pressure);
+        else
+            find_cause(verification, temperature, units, cause);
+        snprintf(reason, INVERSE_REASON_SIZE,
+                 "the verification's pressure, %.4g%.16s, is off by %.2g (%.2g by statistics): %s",
+                 bar * found->pressure, unit, bar * pressure->rms, bar * pressure->noise, cause);
         return true;
     }
     if (targets_ask(fitted, mf_kirkwood_buff_kind()) &&

@@ -86,6 +86,9 @@ static void test_step_that_the_file_gives_is_kept_and_what_would_hold_is_told(vo
     assert_contains(result.err, "time step, 0.018 tau, is too long for the potential that was "
                                 "found; about 0.0");
     assert_true(results_number("out/summary.json", "verification_time_step") == 0.018);
+    // The wall is 7 % too cold by the positions, and its pressure too low: the sign is known.
+    assert_contains(result.err, "(at this time step; about +0.0");
+    assert_true(results_number("out/summary.json", "pressure_of_time_step") < 0);
 }
 
 #define TEST_WITHOUT_FIGURES(name)                                                                 \

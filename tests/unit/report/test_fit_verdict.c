@@ -114,6 +114,9 @@ static void test_fit_verdict_names_the_pressure_when_it_was_fitted_and_is_off(vo
     assert_false(mf_fit_verdict_contradicts(&found, &only_rdf, 1.5, 3, NULL, reason));
     assert_true(mf_fit_verdict_contradicts(&found, &with_pressure, 1.5, 3, NULL, reason));
     assert_contains(reason, "pressure, 1.9, is off by 0.4 (0.1 by statistics)");
+    found.shift = (struct thermodynamics_shift){-0.35, 0.05};
+    assert_true(mf_fit_verdict_contradicts(&found, &with_pressure, 1.5, 3, NULL, reason));
+    assert_contains(reason, "its time step shifts it by about -0.35");
     found.distance[TARGET_PRESSURE].rms = 0.29;
     assert_false(mf_fit_verdict_contradicts(&found, &with_pressure, 1.5, 3, NULL, reason));
 }
