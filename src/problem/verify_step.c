@@ -78,9 +78,9 @@ struct verify_step mf_verify_step_begin(const struct inverse_problem *problem,
 /// of an error of the step a quarter would be left, or less.
 static bool is_blameless(const struct thermodynamics_off *before,
                          const struct thermodynamics_off *now) {
-    static const double deviations = 2;
+    static const double deviations = 2, small = 0.3; // where an error is as a power of the step
     const double chance = hypot(now->error, 0.5 * before->error);
-    return before->known && before->kinetic == now->kinetic &&
+    return before->known && before->kinetic == now->kinetic && fabs(before->share) < small &&
            fabs(now->share) - 0.5 * fabs(before->share) > deviations * chance;
 }
 

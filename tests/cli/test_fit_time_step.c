@@ -91,6 +91,24 @@ static void test_step_that_the_file_gives_is_kept_and_what_would_hold_is_told(vo
     assert_true(results_number("out/summary.json", "pressure_of_time_step") < 0);
 }
 
+/// A friction weight is found by simulations of candidates, all with the step of the target.
+static void test_fit_by_simulations_says_that_its_own_step_was_too_long(void **state) {
+    static struct run_program_result result;
+    write_inputs(*state, "\"conservative\": {\"law\": \"table\", \"file\": \"wall.tsv\"}");
+    small_inputs_change(*state, "run.json",
+                        "\"potential\": {\"start\": {\"law\": \"table\", \"file\": \"wall.tsv\"}}",
+                        "\"omega\": {\"coefficients\": 3, \"maximum\": 4, \"cutoff\": 2}");
+    small_inputs_change(*state, "run.json",
+                        "\n\"dissipative\": {\"law\": \"power\", \"sigma\": 3, \"cutoff\": 2}",
+                        "");
+    small_inputs_change(*state, "run.json", "\"name\": \"imc\", \"replicas\": 2,",
+                        "\"name\": \"genetic\", \"population\": 4, \"temperature_tolerance\": 1,");
+    small_inputs_change(*state, "run.json", "\"iterations\": 1", "\"generations\": 1");
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "out", "--threads", "1");
+    print_message("%s", result.err);
+    assert_contains(result.err, "the fit simulated its candidates with the longer time step");
+}
+
 #define TEST_WITHOUT_FIGURES(name)                                                                 \
     cmocka_unit_test_setup_teardown(name, small_inputs_enter_without_gnuplot, small_inputs_leave)
 
@@ -98,6 +116,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         TEST_WITHOUT_FIGURES(test_step_that_was_left_to_the_program_is_shortened_until_it_holds),
         TEST_WITHOUT_FIGURES(test_step_that_the_file_gives_is_kept_and_what_would_hold_is_told),
+        TEST_WITHOUT_FIGURES(test_fit_by_simulations_says_that_its_own_step_was_too_long),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -115,13 +115,17 @@ static void test_verify_step_is_blamed_for_what_a_shorter_one_changes(void **sta
     (void)state;
     struct verify_step step = begin(true);
     const struct thermodynamics_off before = off(-0.08, 0.002), same = off(-0.079, 0.002),
-                                    quarter = off(-0.02, 0.002);
+                                    quarter = off(-0.02, 0.002), wild = off(48, 0);
     assert_true(mf_verify_step_again(&step, &before, false));
     assert_true(mf_verify_step_again(&step, &quarter, false));
     step = begin(true);
     assert_true(mf_verify_step_again(&step, &before, false));
     assert_false(mf_verify_step_again(&step, &same, false));
     assert_int_equal(step.verdict, VERIFY_STEP_BLAMELESS);
+    // Steps that are much too long are wrong in any way.
+    step = begin(true);
+    assert_true(mf_verify_step_again(&step, &wild, false));
+    assert_true(mf_verify_step_again(&step, &wild, false));
 }
 
 static void test_verify_step_ends_at_a_sixteenth(void **state) {

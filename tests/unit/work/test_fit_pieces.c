@@ -119,13 +119,13 @@ static void test_verification_with_shorter_and_shorter_steps_comes_to_the_same(v
                        "\"verification\": {\"replicas\": 4, \"shorten_time_step\": \"yes\",");
     small_inputs_change(*state, "run.json", "\"equilibration\": 1, \"samples\": 2, ",
                         "\"equilibration\": 20, \"samples\": 40, ");
-    small_inputs_change(*state, "run.json", "\"time_step\": 0.02,\n", "\"time_step\": 3,\n");
+    small_inputs_change(*state, "run.json", "\"time_step\": 0.02,\n", "\"time_step\": 1,\n");
     small_inputs_change(*state, "run.json", "\"dissipative\": {\"law\": \"power\", \"sigma\": 2}",
                         "\"dynamics\": {\"integrator\": \"brownian\", \"friction\": 1}");
     run_in_pieces("steps", 1);
     const double step = results_number("whole-steps/summary.json", "verification_time_step");
     print_message("time step %g\n", step);
-    assert_true(step < 3);
+    assert_true(step < 1);
 }
 
 int main(void) {
