@@ -70,7 +70,7 @@ void mf_fit_step_cause(const struct verification *verification, const struct uni
                  off, used, part_text(step->halvings));
     else if (step->verdict == VERIFY_STEP_LONG)
         snprintf(text, FIT_STEP_TEXT_SIZE,
-                 "%s: the time step, %s, is too long for the potential that was found; about %s "
+                 "%s: the time step, %s, is too long for this potential; about %s "
                  "would hold",
                  off, used, time_text(units, round_down(step->would_hold), holds));
 }

@@ -16,6 +16,7 @@ static const double hot = 0.05;
 static void find_cause(const struct verification *verification, double temperature,
                        const struct units *units, char cause[FIT_STEP_TEXT_SIZE]) {
     const struct thermodynamics_summary *found = &verification->thermodynamics;
+    const bool holds = verification->step.verdict == VERIFY_STEP_HOLDS;
     const char *known = NULL;
     mf_fit_step_cause(verification, units, cause);
     if (found->temperature / temperature < 1 - hot)
@@ -33,14 +34,14 @@ static void find_cause(const struct verification *verification, double temperatu
         snprintf(cause, FIT_STEP_TEXT_SIZE, "%s", known);
     else if (verification->sampled > 0 && verification->sampled != verification->particles)
         snprintf(cause, FIT_STEP_TEXT_SIZE,
-                 "the temperatures are right, but the samples have %zu particles and the "
-                 "verification %zu: \"particles\": %zu of the method tells whether the size is the "
-                 "cause, else longer \"equilibration\" of either may",
-                 verification->sampled, verification->particles, verification->particles);
+                 "%sthe samples have %zu particles and the verification %zu: \"particles\": %zu of "
+                 "the method tells whether the size is the cause, else longer \"equilibration\" of "
+                 "either may",
+                 holds ? "the temperatures are right, but " : "", verification->sampled,
+                 verification->particles, verification->particles);
     else
-        snprintf(cause, FIT_STEP_TEXT_SIZE,
-                 "the temperatures are right and the samples as large: longer \"equilibration\" of "
-                 "either may tell why");
+        snprintf(cause, FIT_STEP_TEXT_SIZE, "%slonger \"equilibration\" of either may tell why",
+                 holds ? "the temperatures are right, and the samples as large: " : "");
 }
 
 /// An integral of Kirkwood and Buff is off.

@@ -83,8 +83,7 @@ static void test_step_that_the_file_gives_is_kept_and_what_would_hold_is_told(vo
     RUN_PROGRAM(&result, "fit", "run.json", "-o", "out", "--threads", "1");
     print_message("%s", result.err);
     run_program_assert_code(&result, 1);
-    assert_contains(result.err, "time step, 0.018 tau, is too long for the potential that was "
-                                "found; about 0.0");
+    assert_contains(result.err, "time step, 0.018 tau, is too long for this potential; about 0.0");
     assert_true(results_number("out/summary.json", "verification_time_step") == 0.018);
     // The wall is 7 % too cold by the positions, and its pressure too low: the sign is known.
     assert_contains(result.err, "(at this time step; about +0.0");
@@ -99,8 +98,7 @@ static void test_fit_by_simulations_says_that_its_own_step_was_too_long(void **s
                         "\"potential\": {\"start\": {\"law\": \"table\", \"file\": \"wall.tsv\"}}",
                         "\"omega\": {\"coefficients\": 3, \"maximum\": 4, \"cutoff\": 2}");
     small_inputs_change(*state, "run.json",
-                        "\n\"dissipative\": {\"law\": \"power\", \"sigma\": 3, \"cutoff\": 2}",
-                        "");
+                        "\n\"dissipative\": {\"law\": \"power\", \"sigma\": 3, \"cutoff\": 2}", "");
     small_inputs_change(*state, "run.json", "\"name\": \"imc\", \"replicas\": 2,",
                         "\"name\": \"genetic\", \"population\": 4, \"temperature_tolerance\": 1,");
     small_inputs_change(*state, "run.json", "\"iterations\": 1", "\"generations\": 1");

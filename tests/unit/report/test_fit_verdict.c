@@ -60,7 +60,7 @@ static void test_fit_verdict_names_the_cause_when_g_is_off(void **state) {
                                        .off = {true, false, -0.0133, 0.002},
                                        .verdict = VERIFY_STEP_LONG};
     assert_says(&coarse, "the configurational temperature is 1.3 % too low: the time step, 0.02 "
-                         "tau, is too long for the potential that was found; about 0.015 tau");
+                         "tau, is too long for this potential; about 0.015 tau");
     rough.step = (struct verify_step){.used = 0.001,
                                       .shortens = true,
                                       .halvings = 4,
