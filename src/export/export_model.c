@@ -121,6 +121,7 @@ static const struct field summary_fields[] = {
     NUMBER("temperature_configurational", configurational, "T_0"),
     NUMBER("pressure", pressure.value, "k_B T_0/lambda^d"),
     NUMBER("pressure_error", pressure.error, "k_B T_0/lambda^d"),
+    NUMBER("verification_time_step", verified_step, "tau"),
     FIELD_END,
 };
 
@@ -156,6 +157,8 @@ static enum status read_summary(struct reading *reading) {
                  "%.160s: the fit is %.40s; what is exported is its best so far", model->folder,
                  status);
     mf_json_fields(&root, summary_fields, model);
+    if (model->verified_step > 0) // what the verification chose, if that was left to it
+        model->setup.time_step = model->verified_step;
     read_numbers(reading, &root);
     return mf_json_close(document, STATUS_OK);
 }

@@ -39,6 +39,7 @@ struct export_model {
     double rdf_range;  ///< where they end [λ]
     struct export_number temperature, pressure; ///< of the result
     double configurational;                     ///< its configurational temperature; or NAN
+    double verified_step;                       ///< time step of the verification; or NAN [τ]
     char warning[256]; ///< what a person should know of the result; "" if nothing
 };
 

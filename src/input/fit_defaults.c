@@ -20,6 +20,18 @@ static bool lacks_verification(const struct json_object *root) {
     return lacks;
 }
 
+/// Before a fit a time step can be chosen for its target alone: the verification takes it as a
+/// first one.
+static enum status choose_shorter_steps(struct fit_choice *c) {
+    static const char *const path = "verification", *const key = "shorten_time_step";
+    const bool given = !mf_fit_choice_lacks(c->root, "scene", "time_step") ||
+                       !mf_fit_choice_lacks(c->root, path, "time_step") ||
+                       !mf_fit_choice_lacks(c->root, path, key);
+    return given || !mf_verify_step_can_shorten(&c->read->scene.setup)
+               ? STATUS_OK
+               : mf_fit_choice_give_text(c->root, path, key, "yes");
+}
+
 /// Whether nothing would hold the temperature.
 static bool lacks_friction(const struct json_object *root) {
     return mf_fit_choice_lacks(root, "scene", "dissipative") &&
@@ -339,6 +351,7 @@ enum status mf_fit_defaults_choose(const struct fit_file *read, const struct fit
                            .rdf = &rdf,
                            .dimensions = setup->box.dimensions,
                            .count = (double)setup->placement.count};
+    CHECK(choose_shorter_steps(&c));
     CHECK(mf_fit_scales_rdf_init(&rdf, &read->files, &read->scene));
     if (rdf.bins.count == 0) // there is nothing to choose by
         goto done;

@@ -227,3 +227,28 @@ enum status mf_thermodynamics_judge_fit(const struct thermodynamics_summary *sum
         flies ? "kinetic" : "configurational", found, ceil(1e3 * error),
         100 * (found - wanted) / wanted);
 }
+
+struct thermodynamics_off mf_thermodynamics_off(const struct thermodynamics_summary *summary,
+                                                const struct simulation_setup *setup) {
+    static const double little = 0.01, errors = 3;
+    const struct thermodynamics_summary *s = summary;
+    const double wanted = simulation_holds_temperature(setup) ? setup->temperature : s->temperature;
+    const struct thermodynamics_off each[2] = {
+        {true, true, s->temperature / wanted - 1, s->temperature_error / wanted},
+        {true, false, s->temperature_configurational / wanted - 1,
+         s->temperature_configurational_error / wanted}};
+    struct thermodynamics_off off = {.known = false};
+    double farthest = -1;
+    if (s->blocks < LEAST_BLOCKS || !mf_simulation_is_thermal(setup))
+        return off;
+    for (int k = 0; k < (shows_forces(setup) ? 2 : 1); k++) {
+        const double error = is_absurd(each[k].share + 1, 1) ? 0 : each[k].error; // no chance
+        const double far = fabs(each[k].share) / fmax(little, errors * error);
+        if (!(far > farthest)) // it is not known
+            continue;
+        farthest = far;
+        off = each[k];
+        off.error = error;
+    }
+    return off;
+}

@@ -72,3 +72,35 @@ enum status mf_thermodynamics_judge(const struct thermodynamics_summary *summary
 /// UNSTABLE with the numbers in the message. Tested: test_thermodynamics.
 enum status mf_thermodynamics_judge_fit(const struct thermodynamics_summary *summary,
                                         const struct simulation_setup *setup) MUST_USE;
+
+/// How far off the temperatures of a summary are, relative to the one that they should have: that
+/// of the setup or, where nothing holds it, the kinetic one. Of both the one that is farther off by
+/// its error, or by 1 % where that is larger. `known` is false with fewer than five blocks, and
+/// where nothing is thermal. Tested: test_thermodynamics.
+struct thermodynamics_off {
+    bool known;
+    bool kinetic;        ///< else the configurational one
+    double share, error; ///< (T − T_wanted)/T_wanted, and its standard error: 0 of several times
+                         ///< T_wanted, or none, which are no chance
+};
+struct thermodynamics_off mf_thermodynamics_off(const struct thermodynamics_summary *summary,
+                                                const struct simulation_setup *setup);
+
+/// What a time step makes of the pressure, as the configurational temperature tells it.
+///
+/// Where drifts stand about a kick (`aboba`) a short step samples, where the second drift ends, the
+/// potential U + Δt²/(12 m) (F² − k_B T ∇²U/2) at a temperature that is higher by the share
+/// Δt² ⟨∇²U⟩/(6 d N m): the shadow Hamiltonian of position Verlet (H. Yoshida, Phys. Lett. A 150,
+/// 262 (1990)) with the friction where Verlet's steps begin. To first order both temperature and
+/// pressure follow from fluctuations of the samples themselves, with the same Δt²/m, which the
+/// temperature then gives: friction and higher orders change it.
+struct thermodynamics_shift {
+    double pressure, error; ///< of P by the step, and its standard error; NaN: not known
+};
+
+/// NaN of other integrators, of beads of several masses, with inner steps of bonds, and with fewer
+/// than a hundred samples. Tested: test_time_step_shift.
+struct thermodynamics_shift mf_thermodynamics_shift(const struct thermodynamics *replicas,
+                                                    size_t count,
+                                                    const struct thermodynamics_summary *summary,
+                                                    const struct simulation_setup *setup);

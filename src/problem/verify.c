@@ -11,6 +11,8 @@
 
 #include <math.h>
 
+static const char *const no_or_yes[] = {"no", "yes", NULL};
+
 #define MEMBER(name) .offset = offsetof(struct verify_parameters, name)
 const struct field mf_verify_fields[] = {
     {"replicas", FIELD_INTEGER, MEMBER(replicas), .initial = 4, .minimum = 1, .maximum = 1024,
@@ -20,6 +22,11 @@ const struct field mf_verify_fields[] = {
      .help =
          "of the verification, which should be finer than a fit's: a fit makes up for the error "
          "of its own; 0: that of the scene"},
+    {"shorten_time_step", FIELD_CHOICE, MEMBER(shorten), .choices = no_or_yes, .initial = 0,
+     .unit = "",
+     .help = "begin with a step that suits the potential found, and halve it until the kinetic and "
+             "the configurational temperature are within 1 %, down to a sixteenth; equilibration "
+             "and samples take as long a time. Where the file gives no time step it is \"yes\""},
     {"equilibration", FIELD_INTEGER, MEMBER(plan.equilibration), .initial = 1000, .minimum = 0,
      .maximum = 1e12, .unit = "steps", .help = "before the first sample"},
     {"samples", FIELD_INTEGER, MEMBER(plan.samples), .initial = 50, .minimum = 1, .maximum = 1e8,
@@ -33,7 +40,9 @@ const struct field mf_verify_fields[] = {
 struct work {
     const struct inverse_problem *problem;
     const struct table *potential, *omega;
-    const struct verify_parameters *parameters;
+    struct verify_parameters parameters;
+    uint32_t attempt; ///< with another time step
+    bool last;        ///< no shorter step will be tried
     const struct inverse_listener *listener;
     struct measurement *replicas;
     struct inverse_progress progress;
@@ -41,7 +50,7 @@ struct work {
 
 static enum status begin_replica(void *context, size_t number, void *result) {
     const struct work *work = context;
-    const struct verify_parameters *parameters = work->parameters;
+    const struct verify_parameters *parameters = &work->parameters;
     (void)result;
     const struct measurement_setup setup = {
         .targets = &work->problem->compared,
@@ -51,17 +60,34 @@ static enum status begin_replica(void *context, size_t number, void *result) {
         .plan = parameters->plan,
         .thermodynamics = true,
         .threads = 1,
-        .seed = mf_rng_child_seed(work->problem->seed, RNG_VERIFICATION, (uint32_t)number, 0)};
+        .seed = mf_rng_child_seed(work->problem->seed, RNG_VERIFICATION, (uint32_t)number,
+                                  work->attempt)};
     return mf_measurement_init(&work->replicas[number], work->problem, &setup);
+}
+
+/// A simulation that is far too hot is not sampled if a shorter step is to follow: by more than the
+/// chance of one configuration's temperature.
+static enum status check_heat(const struct simulation *simulation, double temperature) {
+    static const double hot = 0.02, deviations = 4;
+    const struct simulation_setup *setup = &simulation->setup;
+    const double degrees = (double)setup->box.dimensions * (double)simulation->particles.count;
+    const double wanted = setup->temperature;
+    if (!simulation_has_velocities(setup) || !simulation_holds_temperature(setup) ||
+        !(temperature > (1 + hot + deviations * sqrt(2 / degrees)) * wanted))
+        return STATUS_OK;
+    return mf_status_fail(STATUS_UNSTABLE, "the temperature is %.3g after equilibration, not %.3g",
+                          temperature, wanted);
 }
 
 static enum status run_replica(void *context, size_t number, void *result) {
     const struct work *work = context;
-    const struct verify_parameters *parameters = work->parameters;
+    const struct verify_parameters *parameters = &work->parameters;
     struct measurement *replica = &work->replicas[number];
     double temperature;
     (void)result;
     TRY(mf_measure_equilibrate(&replica->simulation, &parameters->plan, &temperature, NULL));
+    if (!work->last)
+        TRY(check_heat(&replica->simulation, temperature));
     return mf_measure_sample(&replica->simulation, &parameters->plan, replica->use, NULL);
 }
 
@@ -78,9 +104,13 @@ static size_t list_measured(void *context, size_t number, struct memory_span *sp
 
 /// All replicas in parallel. Every rank begins them all, to have room for what others find.
 static enum status run_replicas(struct work *work) {
-    const size_t count = (size_t)work->parameters->replicas;
-    work->progress =
-        (struct inverse_progress){.total = count, .best = NAN, .least = NAN, .mean = NAN};
+    const size_t count = (size_t)work->parameters.replicas;
+    // With another step there are as many more.
+    work->progress = (struct inverse_progress){.done = work->progress.done,
+                                               .total = work->progress.done + count,
+                                               .best = NAN,
+                                               .least = NAN,
+                                               .mean = NAN};
     TRY(mf_parallel_try(&(struct parallel_tasks){
         .count = count, .threads = work->problem->threads, .run = begin_replica, .context = work}));
     return mf_parallel_try(&(struct parallel_tasks){.count = count,
@@ -196,6 +226,8 @@ static enum status summarise(struct measurement *replicas, size_t count,
         verification->engine_steps += replicas[k].simulation.step;
     }
     verification->thermodynamics = mf_thermodynamics_result(thermodynamics, count);
+    verification->shift = mf_thermodynamics_shift(
+        thermodynamics, count, &verification->thermodynamics, &replicas->simulation.setup);
     if (mf_thermodynamics_judge_fit(&verification->thermodynamics, &replicas->simulation.setup) !=
         STATUS_OK)
         snprintf(verification->warning, sizeof verification->warning, "%s", mf_status_message());
@@ -240,24 +272,63 @@ done:
     return status;
 }
 
-enum status mf_verify(const struct inverse_problem *problem, const struct table *potential,
-                      const struct table *omega, const struct verify_parameters *parameters,
-                      const struct inverse_listener *listener, struct verification *verification) {
+/// With one time step.
+/// @param[out] off  how far the temperatures are
+static enum status verify_once(struct work *work, struct verification *verification,
+                               struct thermodynamics_off *off) {
     enum status status = STATUS_OK;
-    const size_t count = (size_t)parameters->replicas;
+    const size_t count = (size_t)work->parameters.replicas;
     struct measurement *replicas = NULL;
     *verification = (struct verification){0};
+    *off = (struct thermodynamics_off){.known = false};
     NEW_ARRAY(replicas, count);
-    CHECK(run_replicas(
-        &(struct work){problem, potential, omega, parameters, listener, replicas, {0}}));
+    work->replicas = replicas;
+    CHECK(run_replicas(work));
     CHECK(summarise(replicas, count, verification));
-    find_worst(problem, verification);
+    *off = mf_thermodynamics_off(&verification->thermodynamics, &replicas->simulation.setup);
+    find_worst(work->problem, verification);
     CHECK(keep_configuration(&replicas->simulation.particles, verification));
 done:
     for (size_t k = 0; replicas && k < count; k++)
         mf_measurement_clear(&replicas[k]);
     mf_memory_free(replicas);
     return status;
+}
+
+/// As long a time in shorter steps.
+static void shorten(const struct verify_parameters *of, const struct verify_step *step,
+                    struct verify_parameters *parameters) {
+    *parameters = *of;
+    parameters->time_step = step->used;
+    parameters->plan.equilibration <<= step->halvings;
+    parameters->plan.every <<= step->halvings;
+}
+
+enum status mf_verify(const struct inverse_problem *problem, const struct table *potential,
+                      const struct table *omega, const struct verify_parameters *parameters,
+                      const struct inverse_listener *listener, struct verification *verification) {
+    const double first =
+        parameters->time_step > 0 ? parameters->time_step : problem->scene.time_step;
+    struct verify_step step =
+        mf_verify_step_begin(problem, potential, first, parameters->shorten == 1);
+    struct work work = {
+        .problem = problem, .potential = potential, .omega = omega, .listener = listener};
+    *verification = (struct verification){0};
+    for (bool again = true; again;) {
+        struct thermodynamics_off off;
+        mf_verify_clear(verification);
+        shorten(parameters, &step, &work.parameters);
+        work.attempt = (uint32_t)step.halvings;
+        work.last = !step.shortens || step.halvings == VERIFY_STEP_HALVINGS;
+        const enum status status = verify_once(&work, verification, &off);
+        if (status != STATUS_OK && status != STATUS_UNSTABLE)
+            return status;
+        again = mf_verify_step_again(&step, &off, status == STATUS_UNSTABLE);
+        verification->step = step;
+        if (!again)
+            return status;
+    }
+    return STATUS_OK;
 }
 
 void mf_verify_clear(struct verification *verification) {

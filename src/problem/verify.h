@@ -4,11 +4,13 @@
 
 #include "observe/thermodynamics.h"
 #include "problem/measurement.h"
+#include "problem/verify_step.h"
 
 struct verify_parameters {
     int64_t replicas;
-    double time_step; ///< 0: that of the scene [τ]
-    struct measure_plan plan;
+    double time_step;         ///< 0: that of the scene [τ]
+    int shorten;              ///< of the choices "no" and "yes"
+    struct measure_plan plan; ///< of that step: a shorter one takes as many more steps
 };
 
 extern const struct field mf_verify_fields[];
@@ -21,16 +23,21 @@ struct verification {
     double distance_error[TARGETS]; ///< standard error of each distance, by leaving out replicas;
                                     ///< that of g(r) by leaving out blocks. NaN with one replica
     struct thermodynamics_summary thermodynamics;
+    struct thermodynamics_shift shift;
     double diffusion_begin, diffusion_end; ///< times between which D is the MSD's slope [τ]; or 0
     char warning[512]; ///< why its temperatures are not to be trusted; "" if they are
+    struct verify_step step;
     uint64_t engine_steps;
     size_t particles;
+    size_t sampled; ///< particles of the samples that the fit ended with; 0: it has none of its own
     /// Where the first replica ended: positions, then velocities, by id, shape [6, particles];
     /// behind the dimensions of the scene 0 [λ], [λ/τ].
     double *configuration;
 };
 
-/// Simulate the problem's scene with new seeds; replicas in parallel.
+/// Simulate the problem's scene with new seeds; replicas in parallel. With a step that may be
+/// shortened it is done again until that suits the potential (problem/verify_step.h), for as long a
+/// time each.
 /// Fails: as mf_simulation_run.
 enum status mf_verify(const struct inverse_problem *problem, const struct table *potential,
                       const struct table *omega, const struct verify_parameters *parameters,

@@ -4,6 +4,7 @@
 #include "observe/kirkwood_buff_observable.h"
 #include "problem/parametrisation.h"
 #include "report/fit_change.h"
+#include "report/fit_step.h"
 #include "base/number_text.h"
 #include "curves/expression_text.h"
 
@@ -172,13 +173,24 @@ static void say_integrals(struct progress *to, const struct fit_file *fit,
     }
 }
 
+/// " (at this time step; about +0.12(2) without it)".
+static void tell_shift(const struct verification *v, double scale, char *text, size_t size) {
+    char shift[NUMBER_TEXT_SIZE];
+    mf_number_text(scale * fabs(v->shift.pressure), scale * v->shift.error, shift);
+    if (mf_fit_step_shifts_pressure(v))
+        snprintf(text, size, " (at this time step; about %s%s without it)",
+                 v->shift.pressure < 0 ? "+" : "-", shift);
+}
+
 /// @param[in] open  how far off the pressure may be by what g(r) leaves open; 0: by nothing
 static void say_thermodynamics(struct progress *to, const struct units *units,
-                               const struct thermodynamics_summary *t, double open) {
+                               const struct verification *v, double open) {
+    const struct thermodynamics_summary *t = &v->thermodynamics;
     const double factor = mf_units_factor(units, "T_0");
     const double scale = mf_units_factor(units, "k_B T_0/lambda^d");
     char kinetic[NUMBER_TEXT_SIZE], configurational[NUMBER_TEXT_SIZE], found[NUMBER_TEXT_SIZE];
-    char kelvin[UNITS_NAME_SIZE], unit[UNITS_NAME_SIZE], left[64] = "", pressure[192];
+    char kelvin[UNITS_NAME_SIZE], unit[UNITS_NAME_SIZE], left[64] = "", pressure[320],
+                                                         shift[128] = "";
     mf_number_text(factor * t->temperature, factor * t->temperature_error, kinetic);
     mf_number_text(factor * t->temperature_configurational,
                    factor * t->temperature_configurational_error, configurational);
@@ -186,8 +198,9 @@ static void say_thermodynamics(struct progress *to, const struct units *units,
     mf_units_suffix(units, "T_0", kelvin);
     if (open > 0)
         snprintf(left, sizeof left, ", which g(r) leaves open by %.2g", scale * open);
-    snprintf(pressure, sizeof pressure, "pressure %s%s%s", found,
-             mf_units_suffix(units, "k_B T_0/lambda^d", unit), left);
+    tell_shift(v, scale, shift, sizeof shift);
+    snprintf(pressure, sizeof pressure, "pressure %s%s%s%s", found,
+             mf_units_suffix(units, "k_B T_0/lambda^d", unit), shift, left);
     if (isnan(t->temperature) && isnan(t->temperature_configurational)) // no particles
         return;
     if (isnan(t->temperature)) // no velocities
@@ -197,6 +210,23 @@ static void say_thermodynamics(struct progress *to, const struct units *units,
     else
         mf_progress_say(to, "T = %s%s, configurational %s%s, %s", kinetic, kelvin, configurational,
                         kelvin, pressure);
+}
+
+/// With which time step a state was verified, and that a fit by simulations had another one.
+static void say_step(struct progress *to, const struct fit_file *fit,
+                     const struct verification *v) {
+    const struct units *units = &fit->scene.units;
+    char text[FIT_STEP_TEXT_SIZE], unit[UNITS_NAME_SIZE];
+    mf_fit_step_text(v, units, text);
+    if (text[0])
+        mf_progress_say(to, "%s", text);
+    if (fit->method->kind == INVERSE_MATCHING && mf_fit_step_was_shortened(v))
+        mf_progress_say(to,
+                        "mesofit: warning: the fit simulated its candidates with the longer time "
+                        "step, whose error is part of what it found: \"time_step\": %.3g%s in "
+                        "the scene, and fit again",
+                        mf_units_factor(units, "tau") * v->step.used,
+                        mf_units_suffix(units, "tau", unit));
 }
 
 /// What was found of a state, or of the only one.
@@ -210,7 +240,8 @@ static void say_state(struct progress *to, const struct fit_file *fit, const str
     if (targets_ask(&fit->problem.compared, TARGET_DIFFUSION))
         say_diffusion(to, units, v);
     say_integrals(to, fit, v);
-    say_thermodynamics(to, units, &v->thermodynamics, open);
+    say_thermodynamics(to, units, v, open);
+    say_step(to, fit, v);
 }
 
 void mf_fit_report_say(struct progress *to, const struct fit_file *fit,

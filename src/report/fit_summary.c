@@ -6,6 +6,7 @@
 #include "observe/kirkwood_buff_observable.h"
 #include "problem/parametrisation.h"
 #include "report/fit_change.h"
+#include "report/fit_step.h"
 
 #include <math.h>
 
@@ -289,6 +290,16 @@ static void put_compressibility(struct json_writer *writer, const struct fit_fil
     put_known(writer, "compressibility_error", known_error(found.compressibility_error));
 }
 
+/// "verification_time_step", and what there is to be said of it.
+static void put_step(struct json_writer *writer, const struct units *units,
+                     const struct verification *v) {
+    char text[FIT_STEP_TEXT_SIZE];
+    mf_json_put_quantity(writer, "verification_time_step", "tau", v->step.used);
+    mf_fit_step_text(v, units, text);
+    if (text[0])
+        mf_json_put_text(writer, "verification_time_step_note", text);
+}
+
 static void put_verification(struct json_writer *writer, const struct fit_file *fit,
                              const struct verification *v) {
     const struct thermodynamics_summary *t = &v->thermodynamics;
@@ -311,7 +322,10 @@ static void put_verification(struct json_writer *writer, const struct fit_file *
     mf_json_put_quantity(writer, "pressure", "k_B T_0/lambda^d", t->pressure);
     mf_json_put_quantity(writer, "pressure_error", "k_B T_0/lambda^d",
                          known_error(t->pressure_error));
+    put_quantity(writer, "pressure_of_time_step", "k_B T_0/lambda^d", v->shift.pressure);
+    put_quantity(writer, "pressure_of_time_step_error", "k_B T_0/lambda^d", v->shift.error);
     mf_json_put_number(writer, "verification_steps", (double)v->engine_steps);
+    put_step(writer, &fit->scene.units, v);
     mf_units_put(&fit->scene.units, writer, t->potential_energy, t->pressure);
 }
 

@@ -3,30 +3,45 @@
 
 #include "base/number_text.h"
 #include "observe/kirkwood_buff_observable.h"
+#include "report/fit_step.h"
 
 #include <math.h>
 #include <stdio.h>
 
-/// A kinetic temperature farther off than this is the time step's doing, and one by the positions
-/// that is `cold` and three errors off.
-static const double hot = 0.05, cold = 0.005;
+/// A kinetic temperature farther off than this is told whatever the targets say.
+static const double hot = 0.05;
 
-/// What is the likely cause.
-static const char *find_cause(const struct thermodynamics_summary *found, double temperature) {
-    const double off = fabs(found->temperature_configurational - temperature);
+/// Why the verification may differ from the samples of the fit, by what was found: temperatures
+/// and what shorter time steps do to them, tension, the number of particles.
+static void find_cause(const struct verification *verification, double temperature,
+                       const struct units *units, char cause[FIT_STEP_TEXT_SIZE]) {
+    const struct thermodynamics_summary *found = &verification->thermodynamics;
+    const bool holds = verification->step.verdict == VERIFY_STEP_HOLDS;
+    const char *known = NULL;
+    mf_fit_step_cause(verification, units, cause);
     if (found->temperature / temperature < 1 - hot)
-        return "too little friction holds the temperature: more \"dissipative\" friction does, or "
-               "a shorter \"verification.time_step\"";
-    if (found->temperature / temperature > 1 + hot)
-        return "the potential is too rough for this time step: set a shorter "
-               "\"verification.time_step\"";
-    if (found->pressure < 0)
-        return "a liquid under tension tears: g(r) leaves the pressure open, so give it as a "
-               "second target";
-    if (off > fmax(cold * temperature, 3 * found->temperature_configurational_error))
-        return "the configurational temperature is off, too: set a shorter "
-               "\"verification.time_step\"";
-    return "longer \"equilibration\" of either, or more \"particles\", may tell why";
+        known = "too little friction holds the temperature: more \"dissipative\" friction does, or "
+                "a shorter \"verification.time_step\"";
+    else if (cause[0])
+        return;
+    else if (found->temperature / temperature > 1 + hot)
+        known = "the temperature is off, and too few \"samples\" tell whether the time step is the "
+                "cause";
+    else if (found->pressure < 0)
+        known = "a liquid under tension tears: g(r) leaves the pressure open, so give it as a "
+                "second target";
+    if (known)
+        snprintf(cause, FIT_STEP_TEXT_SIZE, "%s", known);
+    else if (verification->sampled > 0 && verification->sampled != verification->particles)
+        snprintf(cause, FIT_STEP_TEXT_SIZE,
+                 "%sthe samples have %zu particles and the verification %zu: \"particles\": %zu of "
+                 "the method tells whether the size is the cause, else longer \"equilibration\" of "
+                 "either may",
+                 holds ? "the temperatures are right, but " : "", verification->sampled,
+                 verification->particles, verification->particles);
+    else
+        snprintf(cause, FIT_STEP_TEXT_SIZE, "%slonger \"equilibration\" of either may tell why",
+                 holds ? "the temperatures are right, and the samples as large: " : "");
 }
 
 /// An integral of Kirkwood and Buff is off.
@@ -60,14 +75,15 @@ static void tell_state(const struct thermodynamics_summary *found, const struct 
 
 /// A structure that the fit's samples have.
 static void tell_structure(const char *name, const struct target_distance *distance,
-                           const struct thermodynamics_summary *found, double temperature,
+                           const struct verification *verification, double temperature,
                            const struct units *units, char reason[INVERSE_REASON_SIZE]) {
-    char state[STATE_SIZE];
-    tell_state(found, units, state);
+    char state[STATE_SIZE], cause[FIT_STEP_TEXT_SIZE];
+    tell_state(&verification->thermodynamics, units, state);
+    find_cause(verification, temperature, units, cause);
     snprintf(reason, INVERSE_REASON_SIZE,
              "the fit's samples agree with %.24s, its verification is off by %.2g (%.2g by "
              "statistics) at %.60s: %s",
-             name, distance->rms, distance->noise, state, find_cause(found, temperature));
+             name, distance->rms, distance->noise, state, cause);
 }
 
 /// Beads that are hotter or colder than the friction holds them have another structure, even if the
@@ -75,13 +91,14 @@ static void tell_structure(const char *name, const struct target_distance *dista
 static bool contradicts_temperature(const struct verification *verification, double temperature,
                                     const struct units *units, char reason[INVERSE_REASON_SIZE]) {
     const struct thermodynamics_summary *found = &verification->thermodynamics;
-    char kelvin[UNITS_NAME_SIZE];
+    char kelvin[UNITS_NAME_SIZE], cause[FIT_STEP_TEXT_SIZE];
     if (!verification->warning[0] || !(fabs(found->temperature / temperature - 1) > hot))
         return false;
     mf_units_suffix(units, "T_0", kelvin);
+    find_cause(verification, temperature, units, cause);
     snprintf(reason, INVERSE_REASON_SIZE, "the verification is at T = %.4g%.8s, not %.4g%.8s: %s",
              mf_units_factor(units, "T_0") * found->temperature, kelvin,
-             mf_units_factor(units, "T_0") * temperature, kelvin, find_cause(found, temperature));
+             mf_units_factor(units, "T_0") * temperature, kelvin, cause);
     return true;
 }
 
@@ -97,11 +114,17 @@ bool mf_fit_verdict_contradicts(const struct verification *verification,
     const struct thermodynamics_summary *found = &verification->thermodynamics;
     const struct target_distance *pressure = &verification->distance[TARGET_PRESSURE];
     if (targets_ask(fitted, TARGET_PRESSURE) && pressure->rms > noise_margin * pressure->noise) {
-        snprintf(
-            reason, INVERSE_REASON_SIZE,
-            "the verification's pressure, %.4g%.16s, is off by %.2g (%.2g by statistics): its time "
-            "step may be too long",
-            bar * found->pressure, unit, bar * pressure->rms, bar * pressure->noise);
+        char cause[FIT_STEP_TEXT_SIZE];
+        if (mf_fit_step_shifts_pressure(verification))
+            snprintf(cause, sizeof cause,
+                     "its time step shifts it by about %.2g, as the configurational temperature "
+                     "tells: set a shorter \"verification.time_step\"",
+                     bar * verification->shift.pressure);
+        else
+            find_cause(verification, temperature, units, cause);
+        snprintf(reason, INVERSE_REASON_SIZE,
+                 "the verification's pressure, %.4g%.16s, is off by %.2g (%.2g by statistics): %s",
+                 bar * found->pressure, unit, bar * pressure->rms, bar * pressure->noise, cause);
         return true;
     }
     if (targets_ask(fitted, mf_kirkwood_buff_kind()) &&
@@ -112,17 +135,23 @@ bool mf_fit_verdict_contradicts(const struct verification *verification,
         const struct target_distance *bonded = &verification->worst[kind];
         if (!(bonded->rms > noise_margin * bonded->noise))
             continue;
-        tell_structure(mf_targets_name(kind), bonded, found, temperature, units, reason);
+        tell_structure(mf_targets_name(kind), bonded, verification, temperature, units, reason);
         return true;
     }
     if (!targets_ask(fitted, TARGET_RDF) || !(rdf->rms > noise_margin * rdf->noise))
         return contradicts_temperature(verification, temperature, units, reason);
-    tell_structure(several ? "g(r) of all pair types" : "g(r)", rdf, found, temperature, units,
-                   reason);
+    tell_structure(several ? "g(r) of all pair types" : "g(r)", rdf, verification, temperature,
+                   units, reason);
     return true;
 }
 
 void mf_fit_verdict_mark(const struct units *units, struct verification *verification) {
+    char cause[FIT_STEP_TEXT_SIZE];
+    mf_fit_step_cause(verification, units, cause);
+    if (verification->warning[0] && cause[0]) {
+        snprintf(verification->warning, sizeof verification->warning, "%s", cause);
+        return;
+    }
     if (verification->warning[0] == '\0' || !mf_units_speaks(units))
         return;
     mf_units_mark(units, mf_status_fail(STATUS_UNSTABLE, "%s", verification->warning));
@@ -156,19 +185,20 @@ bool mf_fit_verdict_is_worse_than_samples(const struct verification *verificatio
                                           double variance, double temperature,
                                           const struct units *units,
                                           char reason[INVERSE_REASON_SIZE]) {
-    const struct thermodynamics_summary *found = &verification->thermodynamics;
     const double verified = mf_targets_error(targets, verification->distance);
     const double own = mf_targets_variance(targets, verification->distance);
     char of_samples[NUMBER_TEXT_SIZE], of_verification[NUMBER_TEXT_SIZE], state[STATE_SIZE];
+    char cause[FIT_STEP_TEXT_SIZE];
     if (!is_larger(verified, own, error, variance))
         return contradicts_temperature(verification, temperature, units, reason);
     mf_number_text(error, sqrt(variance), of_samples);
     mf_number_text(verified, sqrt(own), of_verification);
-    tell_state(found, units, state);
+    tell_state(&verification->thermodynamics, units, state);
+    find_cause(verification, temperature, units, cause);
     snprintf(reason, INVERSE_REASON_SIZE,
              "the fit's samples are off from %s by %.16s%s, its verification by %.16s at %.60s: %s",
              mf_targets_count(targets) > 1 ? "the targets" : "the target", of_samples,
              mf_targets_count(targets) > 1 ? " of their errors (rms)" : "", of_verification, state,
-             find_cause(found, temperature));
+             cause);
     return true;
 }

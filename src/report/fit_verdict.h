@@ -36,5 +36,6 @@ bool mf_fit_verdict_is_worse_than_samples(const struct verification *verificatio
                                           const struct units *units,
                                           char reason[INVERSE_REASON_SIZE]);
 
-/// Simulations warn in reduced units: add the scale to a warning if the file speaks in others.
+/// Simulations warn in reduced units: add the scale to a warning if the file speaks in others. What
+/// other time steps have told of temperatures takes its place.
 void mf_fit_verdict_mark(const struct units *units, struct verification *verification);

@@ -7,6 +7,8 @@
 #include "report/fit_reserve.h"
 #include "report/fit_verdict.h"
 
+#include <string.h>
+
 enum status mf_fit_verify_folders(const struct fit_file *fit, struct run_folder *folder) {
     for (size_t s = 0; s <= fit->others; s++) {
         if (s > 0)
@@ -19,34 +21,57 @@ enum status mf_fit_verify_folders(const struct fit_file *fit, struct run_folder 
     return STATUS_OK;
 }
 
-/// Simulations of a state, told among those of all.
+/// Simulations of a state, told among those of all: more are done with a shorter time step.
 struct sharing {
-    uint64_t before, all;
+    uint64_t before, after; ///< of other states
+    uint64_t here;          ///< of this one, so far
     const struct inverse_listener *listener;
 };
 
 static void tell_of_state(void *context, const struct inverse_progress *own) {
-    const struct sharing *sharing = context;
+    struct sharing *sharing = context;
     struct inverse_progress told = *own;
     told.done += sharing->before;
-    told.total = sharing->all;
+    told.total += sharing->before + sharing->after;
+    sharing->here = own->total;
     sharing->listener->tell(sharing->listener->context, &told);
 }
 
 /// The engine advises a shorter "time_step", which here is the verification's own.
-static enum status advise(const struct fit_file *state, enum status status) {
+static enum status advise(const struct fit_file *state, const struct verify_step *step,
+                          enum status status) {
     const struct units *units = &state->scene.units;
-    const double own = state->verification.time_step;
-    const double time_step = own > 0 ? own : state->scene.setup.time_step;
+    const double time = mf_units_factor(units, "tau");
     char unit[UNITS_NAME_SIZE], message[STATUS_MESSAGE_SIZE];
     if (status != STATUS_UNSTABLE)
         return status;
     snprintf(message, sizeof message, "%s", mf_status_message());
+    mf_units_suffix(units, "tau", unit);
+    if (step->shortens)
+        return mf_status_fail(status,
+                              "%s; the verification had a time step of %.4g%s, a sixteenth of the "
+                              "one chosen, and no shorter one is tried: the potential is too "
+                              "rough; wider bins of g(r) (\"bin_width\") make it smooth",
+                              message, time * step->used, unit);
     return mf_status_fail(status,
                           "%s; the verification had a time step of %.4g%s, and a shorter "
-                          "\"verification.time_step\" may help",
-                          message, mf_units_factor(units, "tau") * time_step,
-                          mf_units_suffix(units, "tau", unit));
+                          "\"verification.time_step\" may help, as %.2g%s by the curvature of the "
+                          "potential that was found",
+                          message, time * step->used, unit, time * step->would_hold, unit);
+}
+
+/// Particles of the samples of an inversion; 0: as many as the scene has, or no samples.
+static size_t sampled_particles(const struct fit_file *fit) {
+    static const char *const names[] = {"particles", "potential_particles"};
+    int64_t count = 0;
+    for (const struct inverse_table *table = fit->method->tables; table->fields; table++)
+        for (const struct field *field = table->fields; field->name; field++)
+            for (int k = 0; k < 2; k++)
+                if (strcmp(field->name, names[k]) == 0)
+                    memcpy(&count,
+                           (const char *)fit->method_parameters + table->offset + field->offset,
+                           sizeof count);
+    return (size_t)count;
 }
 
 static enum status verify_state(const struct fit_file *state, double *const *curve,
@@ -63,7 +88,8 @@ static enum status verify_state(const struct fit_file *state, double *const *cur
     CHECK(mf_unknowns_laws_make(&unknowns, (const double *const *)curve, value, &laws));
     status = mf_verify(&laws.problem, laws.table[UNKNOWN_POTENTIAL], laws.table[UNKNOWN_OMEGA],
                        &state->verification, listener, verification);
-    CHECK(advise(state, status));
+    CHECK(advise(state, &verification->step, status));
+    verification->sampled = sampled_particles(state);
     mf_fit_verdict_mark(&state->scene.units, verification);
 done:
     mf_unknowns_laws_clear(&laws);
@@ -76,14 +102,15 @@ enum status mf_fit_verify_states(struct fit_file *fit, double *const *curve,
                                  const struct inverse_listener *listener,
                                  struct verification *verification) {
     const size_t states = mf_fit_states_count(fit);
-    struct sharing sharing = {0, 0, listener};
+    struct sharing sharing = {.listener = listener};
     const struct inverse_listener of_state = {tell_of_state, &sharing};
     for (size_t s = 0; s < states; s++)
-        sharing.all += (uint64_t)mf_fit_states_at(fit, s)->verification.replicas;
+        sharing.after += (uint64_t)mf_fit_states_at(fit, s)->verification.replicas;
     for (size_t s = 0; s < states; s++) {
         const struct fit_file *state = mf_fit_states_at(fit, s);
+        sharing.after -= (uint64_t)state->verification.replicas;
         TRY(verify_state(state, curve, number, &of_state, &verification[s]));
-        sharing.before += (uint64_t)state->verification.replicas;
+        sharing.before += sharing.here;
     }
     return STATUS_OK;
 }

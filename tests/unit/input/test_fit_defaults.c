@@ -56,6 +56,7 @@ static void test_fit_defaults_choose_all_that_target_density_and_temperature_lea
     assert_in_range(settings->common.particles, 700, 1e5);
     assert_close(settings->common.precision, 0.002, 1e-3);
     assert_in_range(fit.verification.plan.samples, 50, 1e6);
+    assert_int_equal(fit.verification.shorten, 1);
     mf_fit_file_clear(&fit);
 }
 
@@ -98,6 +99,7 @@ static void test_fit_defaults_leave_what_the_file_says(void **state) {
     assert_identical(fit.scene.setup.box.length[0], 9);
     assert_int_equal(fit.scene.setup.placement.count, 219);
     assert_int_equal(fit.verification.plan.samples, 77);
+    assert_int_equal(fit.verification.shorten, 0);
     assert_int_equal(fit.scene.omega.curves, 0);
     assert_close(mf_rdf_bins_range(&fit.problem.targets.bins), 3.5, 0.03);
     mf_fit_file_clear(&fit);
@@ -140,6 +142,7 @@ static void test_fit_defaults_choose_friction_and_time_step_beside_a_method(void
         snprintf(text, sizeof text, scene, moves[k]);
         assert_ok(read_run(state, &fit, "run.json", text));
         assert_int_equal(fit.choices.count, choices[k]);
+        assert_int_equal(fit.verification.shorten, k != 2); // there the file gives a step
         assert_int_equal(fit.scene.omega.curves > 0, k % 2 == 0);
         if (k != 1)
             assert_identical(fit.scene.setup.time_step, k == 2 ? 0.01 : 0.02);

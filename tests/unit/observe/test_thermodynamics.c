@@ -271,6 +271,42 @@ static void test_judge_of_a_fit_sees_a_few_percent(void **state) {
     fluid_clear(&fluid);
 }
 
+static void test_thermodynamics_off_is_of_the_temperature_that_is_farther_off(void **state) {
+    (void)state;
+    struct fluid fluid;
+    fluid_groot_warren(&fluid, 100, 0.01);
+    struct thermodynamics_summary s = {.blocks = 20,
+                                       .temperature = 1.02,
+                                       .temperature_error = 0.004,
+                                       .temperature_configurational = 0.97,
+                                       .temperature_configurational_error = 0.01};
+    struct thermodynamics_off off = mf_thermodynamics_off(&s, &fluid.setup);
+    assert_true(off.known && off.kinetic); // 2 % of 1.2, and 3 % of 3
+    assert_close(off.share, 0.02, 1e-12);
+    s.temperature_configurational_error = 0.002;
+    off = mf_thermodynamics_off(&s, &fluid.setup);
+    assert_false(off.kinetic);
+    assert_close(off.share, -0.03, 1e-12);
+    assert_close(off.error, 0.002, 1e-12);
+    s.temperature = NAN;
+    s.temperature_configurational = 49;
+    s.temperature_configurational_error = 86;
+    off = mf_thermodynamics_off(&s, &fluid.setup);
+    assert_true(off.known && off.share > 40 && off.error < 1e-12);
+    s.temperature_configurational = NAN;
+    assert_false(mf_thermodynamics_off(&s, &fluid.setup).known);
+    // Without friction the kinetic one is taken as it is.
+    fluid.setup.omega = NULL;
+    s.temperature = 1.4;
+    s.temperature_error = 0.01;
+    s.temperature_configurational = 1.47;
+    s.temperature_configurational_error = 0.001;
+    assert_close(mf_thermodynamics_off(&s, &fluid.setup).share, 0.05, 1e-12);
+    s.blocks = 4;
+    assert_false(mf_thermodynamics_off(&s, &fluid.setup).known);
+    fluid_clear(&fluid);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_thermodynamics_sample_is_exact_when_there_are_two_particles),
@@ -284,6 +320,7 @@ int main(void) {
         cmocka_unit_test(test_thermodynamics_errors_grow_when_samples_are_correlated),
         cmocka_unit_test(test_judge_tells_when_a_temperature_is_off),
         cmocka_unit_test(test_judge_of_a_fit_sees_a_few_percent),
+        cmocka_unit_test(test_thermodynamics_off_is_of_the_temperature_that_is_farther_off),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -54,10 +54,27 @@ static void test_fit_verdict_names_the_cause_when_g_is_off(void **state) {
     (void)state;
     const struct verification heated = make(0.0272, 1.69, -0.3), torn = make(0.157, 1.53, -2.19),
                               other = make(0.157, 1.5, 2.2);
-    struct verification coarse = other;
-    coarse.thermodynamics.temperature_configurational = 1.48;
-    assert_says(&coarse, "the configurational temperature is off");
-    assert_says(&heated, "verification.time_step");
+    struct verification coarse = other, smaller = other, rough = heated, blameless = other;
+    coarse.step = (struct verify_step){.used = 0.02,
+                                       .would_hold = 0.0157,
+                                       .off = {true, false, -0.0133, 0.002},
+                                       .verdict = VERIFY_STEP_LONG};
+    assert_says(&coarse, "the configurational temperature is 1.3 % too low: the time step, 0.02 "
+                         "tau, is too long for this potential; about 0.015 tau");
+    rough.step = (struct verify_step){.used = 0.001,
+                                      .shortens = true,
+                                      .halvings = 4,
+                                      .off = {true, true, 0.127, 0.002},
+                                      .verdict = VERIFY_STEP_LONG};
+    assert_says(&rough, "the kinetic temperature is 13 % too high even with 0.001 tau, a "
+                        "sixteenth of the time step chosen");
+    blameless.step =
+        (struct verify_step){.off = {true, false, 0.05, 0.002}, .verdict = VERIFY_STEP_BLAMELESS};
+    assert_says(&blameless, "was so with twice the time step: that is not the cause");
+    smaller.sampled = 700;
+    smaller.particles = 1000;
+    assert_says(&smaller, "the samples have 700 particles and the verification 1000");
+    assert_says(&heated, "too few \"samples\" tell whether the time step is the cause");
     assert_says(&torn, "off by 0.16 (0.002 by statistics) at T = 1.53, pressure -2.19: a liquid "
                        "under tension tears");
     assert_says(&other, "longer \"equilibration\"");
@@ -84,7 +101,7 @@ static void test_fit_verdict_names_the_temperature_when_it_is_off(void **state) 
     assert_false(mf_fit_verdict_contradicts(&hot, &only_rdf, 1.5, 3, NULL, reason)); // held by none
     snprintf(hot.warning, sizeof hot.warning, "the kinetic temperature is off");
     assert_true(mf_fit_verdict_contradicts(&hot, &only_rdf, 1.5, 3, NULL, reason));
-    assert_contains(reason, "the verification is at T = 1.59, not 1.5: the potential is too rough");
+    assert_contains(reason, "the verification is at T = 1.59, not 1.5: the temperature is off");
     hot.thermodynamics.temperature = 1.5 * 1.04;
     assert_false(mf_fit_verdict_contradicts(&hot, &only_rdf, 1.5, 3, NULL, reason));
 }
@@ -97,6 +114,9 @@ static void test_fit_verdict_names_the_pressure_when_it_was_fitted_and_is_off(vo
     assert_false(mf_fit_verdict_contradicts(&found, &only_rdf, 1.5, 3, NULL, reason));
     assert_true(mf_fit_verdict_contradicts(&found, &with_pressure, 1.5, 3, NULL, reason));
     assert_contains(reason, "pressure, 1.9, is off by 0.4 (0.1 by statistics)");
+    found.shift = (struct thermodynamics_shift){-0.35, 0.05};
+    assert_true(mf_fit_verdict_contradicts(&found, &with_pressure, 1.5, 3, NULL, reason));
+    assert_contains(reason, "its time step shifts it by about -0.35");
     found.distance[TARGET_PRESSURE].rms = 0.29;
     assert_false(mf_fit_verdict_contradicts(&found, &with_pressure, 1.5, 3, NULL, reason));
 }

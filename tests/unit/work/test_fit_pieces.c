@@ -76,41 +76,65 @@ static double count_tasks(void) {
     return tasks;
 }
 
+/// run.json in one piece, and in pieces.
+/// @param[in] again  tasks that fail are done once more in each piece: so many
+static void run_in_pieces(const char *name, int again) {
+    char whole[32], pieces[32];
+    snprintf(whole, sizeof whole, "whole-%s", name);
+    snprintf(pieces, sizeof pieces, "pieces-%s", name);
+    const double before = count_tasks();
+    const enum status status = run(whole, false, 0);
+    if (status != STATUS_OK && status != STATUS_UNCONVERGED)
+        fail_msg("%s", mf_status_message());
+    const double all = count_tasks() - before;
+    // Words of what was done before are told, too: patience grows until there is something new.
+    int runs = 1;
+    enum status now = run(pieces, false, 1);
+    for (; now == STATUS_INTERRUPTED; runs++)
+        now = run(pieces, true, runs + 1);
+    assert_int_equal(now, status);
+    const double done = count_tasks() - before - all;
+    print_message("%s: %.0f tasks, in %d pieces %.0f\n", whole, all, runs, done);
+    assert_true(runs > 3);
+    assert_true(done <= all + (1 + again) * runs); // one is begun, and stopped, as the wish comes
+    results_assert_same(whole, pieces, tables);
+}
+
 static void test_no_task_is_done_twice(void **state) {
     for (int k = 0; k < METHODS; k++) {
-        char text[4096], whole[16], pieces[16];
-        snprintf(whole, sizeof whole, "whole%d", k);
-        snprintf(pieces, sizeof pieces, "pieces%d", k);
+        char name[16];
+        snprintf(name, sizeof name, "%d", k);
         small_inputs_write(*state, "target.tsv", small_inputs_target, NULL, NULL);
         small_inputs_write(*state, "run.json", small_inputs_run, METHOD, methods[k]);
-        char *run_file = temporary_folder_read("run.json");
-        snprintf(text, sizeof text, "%s", run_file);
-        free(run_file);
-        small_inputs_write(*state, "run.json", text, VERIFICATION,
-                           "\"verification\": {\"replicas\": 4,");
-        const double before = count_tasks();
-        const enum status status = run(whole, false, 0);
-        if (status != STATUS_OK && status != STATUS_UNCONVERGED)
-            fail_msg("%s", mf_status_message());
-        const double all = count_tasks() - before;
-        // Words of what was done before are told, too: patience grows until there is something new.
-        int runs = 1;
-        enum status now = run(pieces, false, 1);
-        for (; now == STATUS_INTERRUPTED; runs++)
-            now = run(pieces, true, runs + 1);
-        assert_int_equal(now, status);
-        const double done = count_tasks() - before - all;
-        print_message("%s: %.0f tasks, in %d pieces %.0f\n", whole, all, runs, done);
-        assert_true(runs > 3);
-        assert_true(done <= all + runs); // one is begun, and stopped, as the wish comes
-        results_assert_same(whole, pieces, tables);
+        small_inputs_change(*state, "run.json", VERIFICATION,
+                            "\"verification\": {\"replicas\": 4,");
+        run_in_pieces(name, 0);
     }
+}
+
+/// A step that is far too long, of dynamics without velocities, whose curvature tells no step.
+static void test_verification_with_shorter_and_shorter_steps_comes_to_the_same(void **state) {
+    small_inputs_write(*state, "target.tsv", small_inputs_target, NULL, NULL);
+    small_inputs_write(*state, "run.json", small_inputs_run, VERIFICATION,
+                       "\"verification\": {\"replicas\": 4, \"shorten_time_step\": \"yes\",");
+    small_inputs_change(*state, "run.json", "\"equilibration\": 1, \"samples\": 2, ",
+                        "\"equilibration\": 20, \"samples\": 40, ");
+    small_inputs_change(*state, "run.json", "\"time_step\": 0.02,\n", "\"time_step\": 1,\n");
+    small_inputs_change(*state, "run.json", "\"dissipative\": {\"law\": \"power\", \"sigma\": 2}",
+                        "\"dynamics\": {\"integrator\": \"brownian\", \"friction\": 1}");
+    run_in_pieces("steps", 1);
+    const double step = results_number("whole-steps/summary.json", "verification_time_step");
+    print_message("time step %g\n", step);
+    assert_true(step < 1);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(test_no_task_is_done_twice,
                                         small_inputs_enter_without_gnuplot, small_inputs_leave),
+        cmocka_unit_test_setup_teardown(
+            test_verification_with_shorter_and_shorter_steps_comes_to_the_same,
+            small_inputs_enter_without_gnuplot, small_inputs_leave),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
