@@ -3,8 +3,9 @@
 ///   ⟨R_g²⟩ = ⟨Σ_i m_i |r_i − r_cm|²⟩/Σ m,   ⟨R_e²⟩ = ⟨|r_N − r_1|²⟩ of the last and the first
 ///   bead,
 /// and the correlation of the end-to-end vector, ⟨R_e(t) · R_e(0)⟩/⟨R_e²⟩. Molecules are made whole
-/// along their bonds. Errors of the means see the correlation of the samples; those of the
-/// correlation are of blocks of time. Tested: test_molecule_sizes, physics/test_molecules.
+/// along their bonds. Errors of the means see the correlation of the samples, those of the
+/// correlation that of blocks of time; where molecules remember longer than a run, both are of the
+/// scatter of parts of the molecules. Tested: test_bonded_errors, physics/test_molecules.
 #include "base/memory.h"
 #include "base/number_text.h"
 #include "base/statistics.h"
@@ -20,6 +21,9 @@
 /// Means over the molecules of a kind in a sample: ⟨R_g²⟩, ⟨R_e²⟩ [λ²].
 enum { GYRATION, END, NUMBERS };
 
+/// Of a kind's molecules, for errors.
+enum { MOST_PARTS = 20 };
+
 struct settings {
     int64_t lags;
 };
@@ -34,6 +38,9 @@ struct state {
     double *ends;     ///< shape [lags + 1, molecules, 3]: the last end-to-end vectors [λ]
     double *products; ///< shape [blocks, kinds, lags + 1]: sums of R(t)·R(0) [λ²]
     double *origins;  ///< shape [blocks, lags + 1]: samples in them
+    /// Shape [kinds, MOST_PARTS, NUMBERS + lags + 1]: sums of the numbers and of the products over
+    /// samples and every so manieth molecule of a kind.
+    double *of_part;
     struct whole_molecules whole;
 };
 
@@ -88,6 +95,7 @@ static enum status begin(void *state, const void *settings, const struct simulat
     NEW_ARRAY(s->ends, 3 * (s->lags + 1) * (size_t)topology->molecules);
     NEW_ARRAY(s->products, s->blocks.count * kinds * (s->lags + 1));
     NEW_ARRAY(s->origins, s->blocks.count * (s->lags + 1));
+    NEW_ARRAY(s->of_part, kinds * MOST_PARTS * (NUMBERS + s->lags + 1));
     CHECK(mf_whole_molecules_init(&s->whole, topology));
 done:
     return status;
@@ -99,6 +107,7 @@ static void clear(void *state) {
     mf_memory_free(s->ends);
     mf_memory_free(s->products);
     mf_memory_free(s->origins);
+    mf_memory_free(s->of_part);
     mf_whole_molecules_clear(&s->whole);
     mf_sample_blocks_clear(&s->blocks);
     *s = (struct state){0};
@@ -106,6 +115,17 @@ static void clear(void *state) {
 
 static double *vectors_of(const struct state *s, size_t sample) {
     return s->ends + 3 * (sample % (s->lags + 1)) * (size_t)s->molecules->topology.molecules;
+}
+
+/// Parts of a kind's molecules, and the sums of one of them.
+static size_t parts_of(const struct state *s, int k) {
+    const size_t count = (size_t)s->molecules->topology.kind[k].count;
+    return count < MOST_PARTS ? count : MOST_PARTS;
+}
+
+static double *part_of(const struct state *s, int k, size_t molecule) {
+    const size_t part = (size_t)k * MOST_PARTS + molecule % parts_of(s, k);
+    return s->of_part + part * (NUMBERS + s->lags + 1);
 }
 
 /// The block of the next sample.
@@ -128,10 +148,17 @@ static void correlate(struct state *s, size_t sample, size_t block) {
         const double *then = vectors_of(s, sample - lag);
         for (int k = 0; k < topology->kinds; k++) {
             const struct topology_kind *kind = &topology->kind[k];
-            const size_t first = 3 * (size_t)kind->first, last = first + 3 * (size_t)kind->count;
             double sum = 0;
-            for (size_t n = first; n < last; n++)
-                sum += now[n] * then[n];
+            for (size_t m = 0; m < (size_t)kind->count; m++) {
+                const double *a = now + 3 * ((size_t)kind->first + m);
+                const double *b = then + 3 * ((size_t)kind->first + m);
+                double own = 0;
+                for (int d = 0; d < 3; d++) {
+                    sum += a[d] * b[d];
+                    own += a[d] * b[d];
+                }
+                part_of(s, k, m)[NUMBERS + lag] += own;
+            }
             s->products[(block * (size_t)topology->kinds + (size_t)k) * row + lag] +=
                 sum / (double)kind->count;
         }
@@ -150,11 +177,15 @@ static enum status sample(void *state, struct simulation *simulation) {
         double gyration = 0, end = 0;
         for (int64_t m = 0; m < kind->count; m++) {
             double *vector = vectors + 3 * (kind->first + m);
+            double *part = part_of(s, k, (size_t)m);
             mf_whole_molecules_make(&s->whole, &simulation->particles, k, m);
-            gyration += find_gyration(s, &simulation->particles, kind, m);
+            const double own = find_gyration(s, &simulation->particles, kind, m);
+            gyration += own;
+            part[GYRATION] += own;
             for (int d = 0; d < 3; d++) {
                 vector[d] = s->whole.place[kind->beads - 1][d] - s->whole.place[0][d];
                 end += vector[d] * vector[d];
+                part[END] += vector[d] * vector[d];
             }
         }
         numbers[NUMBERS * k + GYRATION] = gyration / (double)kind->count;
@@ -173,6 +204,8 @@ static size_t spans(void *state, struct memory_span *spans) {
     spans[n++] = (struct memory_span){s->ends, vectors * sizeof *s->ends};
     spans[n++] = (struct memory_span){s->products, blocks * kinds * row * sizeof *s->products};
     spans[n++] = (struct memory_span){s->origins, blocks * row * sizeof *s->origins};
+    spans[n++] =
+        (struct memory_span){s->of_part, kinds * MOST_PARTS * (NUMBERS + row) * sizeof *s->of_part};
     return n + mf_sample_blocks_spans(&s->blocks, spans + n);
 }
 
@@ -214,6 +247,22 @@ done:
     return status;
 }
 
+/// Standard error of a mean of a kind's molecules by their parts, which count as independent: of
+/// the sums number n over so many samples, less `factor` times those number 0 of the products.
+static double error_of_parts(const struct state *s, int k, size_t n, double samples,
+                             double factor) {
+    struct running_mean mean = {0};
+    const size_t parts = parts_of(s, k), count = (size_t)s->molecules->topology.kind[k].count;
+    for (size_t part = 0; part < parts; part++) {
+        const double *sums = part_of(s, k, part);
+        const double molecules = (double)((count - part - 1) / parts + 1);
+        mf_statistics_add(&mean,
+                          (sums[n] / samples - factor * sums[NUMBERS] / (double)s->blocks.taken) /
+                              molecules);
+    }
+    return mf_statistics_standard_error(&mean);
+}
+
 /// The mean product of a lag in blocks of time; returns how many are whole and have any.
 static size_t find_products(const struct state *s, int k, size_t lag, double *products) {
     const size_t kinds = (size_t)s->molecules->topology.kinds, row = s->lags + 1;
@@ -232,9 +281,10 @@ static size_t find_products(const struct state *s, int k, size_t lag, double *pr
 static enum status find_correlation(const struct state *s, int k, double *values) {
     enum status status = STATUS_OK;
     const size_t kinds = (size_t)s->molecules->topology.kinds, row = s->lags + 1;
-    double *products = NULL, *squares = NULL, square = NAN;
+    double *products = NULL, *squares = NULL, *of_parts = NULL, square = NAN;
     NEW_ARRAY(products, s->blocks.count);
     NEW_ARRAY(squares, s->blocks.count);
+    NEW_ARRAY(of_parts, row);
     const size_t whole = find_products(s, k, 0, squares);
     for (size_t lag = 0; lag < row; lag++) {
         double sum = 0, origins = 0;
@@ -250,11 +300,15 @@ static enum status find_correlation(const struct state *s, int k, double *values
         for (size_t block = 0; block < blocks; block++)
             products[block] -= values[lag] * squares[whole - blocks + block];
         values[row + lag] = mf_statistics_correlated_error(products, blocks, 1) / square;
+        of_parts[lag] =
+            blocks > 1 ? error_of_parts(s, k, NUMBERS + lag, origins, values[lag]) / square : 0;
     }
+    mf_statistics_take_larger(values + row, of_parts, row);
     mf_statistics_forget_errors(values + row, row);
 done:
     mf_memory_free(products);
     mf_memory_free(squares);
+    mf_memory_free(of_parts);
     return status;
 }
 
@@ -302,7 +356,9 @@ static double mean_of(const struct state *s, int k, int which, double *error) {
     double sum = 0;
     for (size_t n = 0; n < s->blocks.taken; n++)
         sum += own[n];
+    const double of_parts = error_of_parts(s, k, (size_t)which, (double)s->blocks.taken, 0);
     *error = mf_statistics_correlated_error(own, s->blocks.taken, 1);
+    mf_statistics_take_larger(error, &of_parts, 1);
     return sum / (double)s->blocks.taken;
 }
 

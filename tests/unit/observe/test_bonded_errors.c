@@ -12,6 +12,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { MOLECULES = 40, SAMPLES = 100, RUNS = 60 };
 
@@ -46,9 +47,9 @@ static void chains_clear(struct chains *chains) {
     fluid_clear(&chains->fluid);
 }
 
-/// Turn the dihedral of a molecule to 90 or −90 degrees.
+/// Turn the dihedral of a molecule to 90 or −90 degrees, with an R_e² of 0.75 or 0.59.
 static void turn(struct chains *chains, int64_t molecule, bool up) {
-    const double place[4][3] = {{0, 0.5, 0}, {0, 0, 0}, {0.5, 0, 0}, {0.5, 0, up ? 0.5 : -0.5}};
+    const double place[4][3] = {{0, 0.5, 0}, {0, 0, 0}, {0.5, 0, 0}, {0.5, 0, up ? 0.5 : -0.3}};
     struct particles *particles = &chains->simulation.particles;
     for (int bead = 0; bead < 4; bead++) {
         const uint32_t id = topology_id(&chains->molecules.topology.kind[0], molecule, bead);
@@ -63,15 +64,12 @@ static double chance(uint64_t run, int sample, int64_t molecule) {
     return (block.word[0] + 0.5) * 0x1p-32;
 }
 
-/// (p − ½)/error of one side, from jumps with a probability in each sample.
-static double deviation(struct chains *chains, uint64_t run, double jump, bool together) {
-    static const struct bonded_settings settings = {.bins = 2};
-    static const struct measure_plan plan = {.samples = SAMPLES, .every = 1};
-    const struct observable *observable = &mf_bonded_dihedrals;
-    double value[2], error[2];
+extern const struct observable mf_molecule_sizes;
+
+/// Sample molecules that jump with a probability from sample to sample.
+static void sample_jumps(struct chains *chains, const struct observable *observable, void *state,
+                         uint64_t run, double jump, bool together) {
     bool up[MOLECULES];
-    void *state = calloc(1, observable->state_size);
-    assert_ok(observable->begin(state, &settings, &chains->simulation, &plan));
     for (int sample = 0; sample < SAMPLES; sample++) {
         for (int64_t m = 0; m < MOLECULES; m++) {
             const double number = chance(run, sample, together ? 0 : m);
@@ -80,21 +78,58 @@ static double deviation(struct chains *chains, uint64_t run, double jump, bool t
         }
         assert_ok(observable->sample(state, &chains->simulation));
     }
+}
+
+/// (p − ½)/error of one side of the dihedral.
+static double deviation_of_side(const void *state) {
+    double value[2], error[2];
     const struct observable_values values = {.count = 2, .value = value, .error = error};
-    assert_ok(observable->result((const void *const[]){state}, 1, &values));
-    observable->clear(state);
-    free(state);
+    assert_ok(mf_bonded_dihedrals.result((const void *const[]){state}, 1, &values));
     assert_close(value[0] + value[1], 1.0 / 180, 1e-12);
     return (value[0] - 0.5 / 180) / error[0];
 }
 
+/// (⟨R_e²⟩ − 0.67)/error, of a line as "chain: R_e^2 0.671(12), …".
+static double deviation_of_size(const void *state) {
+    static const struct units units;
+    const struct observable_results results = {.units = &units};
+    char line[256];
+    double value, digits;
+    int point, bracket;
+    mf_molecule_sizes.say(state, &results, line, sizeof line);
+    const char *number = strstr(line, "R_e^2 ") + 6;
+    assert_int_equal(sscanf(number, "%lf(%lf)", &value, &digits), 2);
+    point = (int)strcspn(number, ".");
+    bracket = (int)strcspn(number, "(");
+    return (value - 0.67) / (digits * pow(10, point + 1 - bracket));
+}
+
+static const struct {
+    const struct observable *observable;
+    const void *settings;
+    double (*deviation)(const void *state);
+} measured[] = {
+    {&mf_bonded_dihedrals, &(const struct bonded_settings){.bins = 2}, deviation_of_side},
+    {&mf_molecule_sizes, &(const int64_t){10}, deviation_of_size},
+};
+
 static void check(struct chains *chains, double jump, bool together) {
-    double squares = 0;
-    for (uint64_t run = 1; run <= RUNS; run++)
-        squares += pow(deviation(chains, run, jump, together), 2) / RUNS;
-    print_message("%s, jumps with %.3f: rms deviation %.2f errors\n",
-                  together ? "all together" : "each for itself", jump, sqrt(squares));
-    assert_in_range((int)(100 * sqrt(squares)), 70, 140);
+    static const struct measure_plan plan = {.samples = SAMPLES, .every = 1};
+    for (int k = 0; k < 2; k++) {
+        const struct observable *observable = measured[k].observable;
+        double squares = 0;
+        for (uint64_t run = 1; run <= RUNS; run++) {
+            void *state = calloc(1, observable->state_size);
+            assert_ok(observable->begin(state, measured[k].settings, &chains->simulation, &plan));
+            sample_jumps(chains, observable, state, run, jump, together);
+            squares += pow(measured[k].deviation(state), 2) / RUNS;
+            observable->clear(state);
+            free(state);
+        }
+        print_message("%s, %s, jumps with %.3f: rms deviation %.2f errors\n", observable->name,
+                      together ? "all together" : "each for itself", jump, sqrt(squares));
+        assert_in_range((int)(100 * sqrt(squares)), 70, 140);
+    }
 }
 
 static void test_bonded_errors_are_honest_however_slow_the_molecules_are(void **state) {
