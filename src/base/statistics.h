@@ -55,7 +55,7 @@ void mf_statistics_correlated_errors(const double *values, size_t length, size_t
                                      size_t numbers, double *error);
 
 /// Of two estimates of the same errors of one curve take that which is larger on the whole, by the
-/// mean of the squares' ratio: `others`, or those that are there. Tested: test_bonded_errors.
+/// mean of the squares' ratio: `others`, or those that are there. Tested: test_statistics.
 void mf_statistics_take_larger(double *error, const double *others, size_t count);
 
 /// What a person is told of standard errors of one curve: if none is above 0, they are those of a

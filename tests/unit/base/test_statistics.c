@@ -6,6 +6,7 @@
 #include "shared/testing.h"
 
 #include <math.h>
+#include <string.h>
 
 enum { SIZE = 3, SAMPLES = 1000 };
 
@@ -163,6 +164,39 @@ test_statistics_correlated_error_covers_the_truth_when_series_are_correlated(voi
     assert_close(cover(0.5, 4, 15), 0.953, covered_band);
 }
 
+/// Numbers that are correlated alike share their correlation: two of which one is twice the other
+/// have the errors that each has alone; beside one that is not correlated both come out between.
+static void test_statistics_correlated_errors_are_of_one_correlation(void **state) {
+    (void)state;
+    static const double step[8] = {0, 0, 0, 0, 1, 1, 1, 1}, comb[8] = {0, 1, 0, 1, 0, 1, 0, 1};
+    double values[16], error[2];
+    const double slow = mf_statistics_correlated_error(step, 8, 1);
+    const double quick = mf_statistics_correlated_error(comb, 8, 1);
+    for (int k = 0; k < 8; k++) {
+        values[k] = step[k];
+        values[8 + k] = 2 * step[k];
+    }
+    mf_statistics_correlated_errors(values, 8, 1, 2, error);
+    assert_close(error[0], slow, rounding);
+    assert_close(error[1], 2 * slow, rounding);
+    memcpy(values + 8, comb, sizeof comb);
+    mf_statistics_correlated_errors(values, 8, 1, 2, error);
+    assert_true(error[0] < slow && error[1] >= quick);
+    mf_statistics_correlated_errors(values, 1, 1, 2, error);
+    assert_identical(error[0], 0.0);
+}
+
+/// Of two estimates the one that is larger on the whole, and not the larger of each.
+static void test_statistics_take_larger_takes_all_or_none(void **state) {
+    (void)state;
+    double error[3] = {1, 1, 0};
+    mf_statistics_take_larger(error, (const double[]){0.5, 1.2, 7}, 3);
+    assert_identical(error[1], 1.0);
+    mf_statistics_take_larger(error, (const double[]){0.5, 1.5, 7}, 3);
+    assert_identical(error[0], 0.5);
+    assert_identical(error[2], 7.0);
+}
+
 static void test_comoments_equal_two_passes_when_samples_are_added(void **state) {
     (void)state;
     double samples[SAMPLES][SIZE];
@@ -272,6 +306,8 @@ int main(void) {
         cmocka_unit_test(test_statistics_correlated_error_is_zero_when_there_is_no_scatter),
         cmocka_unit_test(
             test_statistics_correlated_error_covers_the_truth_when_series_are_correlated),
+        cmocka_unit_test(test_statistics_correlated_errors_are_of_one_correlation),
+        cmocka_unit_test(test_statistics_take_larger_takes_all_or_none),
         cmocka_unit_test(test_comoments_equal_two_passes_when_samples_are_added),
         cmocka_unit_test(test_comoments_do_not_cancel_when_the_offset_is_large),
         cmocka_unit_test(test_comoments_merge_equals_two_passes_when_parts_come_in_any_order),
