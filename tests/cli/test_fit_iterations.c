@@ -10,6 +10,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 static const char *const tables[] = {"history.tsv", "rdf_now.tsv", "excess_history.tsv",
                                      "potential.tsv", NULL};
@@ -131,6 +132,47 @@ static void test_tables_are_the_same_bits_after_a_restart(void **state) {
     results_assert_same("whole", "parts", tables);
 }
 
+/// A Gaussian core whose g(r) has few counts in its first bins: Φ is −ln g there, and known no
+/// better, however smooth the prior.
+static void test_phi_is_known_no_better_than_the_counts_of_its_target(void **state) {
+    static const char fluid[] =
+        "{\"seed\": 103, \"box\": [4, 4, 4], \"particles\": {\"count\": 64}, "
+        "\"time_step\": 0.02, \"conservative\": {\"law\": \"gaussian\", \"epsilon\": 3, "
+        "\"sigma\": 0.8, \"cutoff\": 1.6}, \"dissipative\": {\"law\": \"power\", "
+        "\"sigma\": 3, \"cutoff\": 1}, \"rdf\": {\"range\": 1.6, \"bins\": 32}, "
+        "\"measure\": {\"equilibration\": 300, \"samples\": 400, \"every\": 20}}";
+    static const char fit[] =
+        "{\"seed\": 3, \"target\": {\"rdf\": {\"file\": \"out/rdf.tsv\", "
+        "\"normalisation\": 1}, \"pressure\": {\"value\": 4.3, \"error\": 0.01}}, "
+        "\"scene\": {\"box\": [4, 4, 4], \"particles\": {\"count\": 64}, \"time_step\": "
+        "0.02, \"dissipative\": {\"law\": \"power\", \"sigma\": 3, \"cutoff\": 1}}, "
+        "\"method\": {\"name\": \"imc\", \"replicas\": 2, \"iterations\": 3}, "
+        "\"verification\": {\"replicas\": 1, \"samples\": 10}}";
+    struct data_table target = {0}, found = {0};
+    int few = 0;
+    temporary_folder_write(*state, "scene.json", fluid, strlen(fluid));
+    temporary_folder_write(*state, "run.json", fit, strlen(fit));
+    RUN_PROGRAM(&result, "simulate", "scene.json");
+    run_program_assert_code(&result, 0);
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "fit");
+    assert_true(result.code == 0 || result.code == 1);
+    assert_ok(mf_data_table_read(&target, "out/rdf.tsv", 3));
+    assert_ok(mf_data_table_read(&found, "fit/potential.tsv", 2));
+    for (size_t k = 0; k < target.rows; k++) {
+        const double *g = target.values + k * target.columns;
+        const double *phi = found.values + k * found.columns;
+        assert_true(fabs(g[0] - phi[0]) < 1e-6);
+        if (!(phi[3] > 0))
+            continue;
+        if (!(phi[3] > 0.95 * g[2] / g[1] && phi[4] > 0.95 * g[2] / g[1]))
+            fail_msg("r = %g: g %g(%g), errors of phi %g and %g", g[0], g[1], g[2], phi[3], phi[4]);
+        few += g[2] > 0.1 * g[1];
+    }
+    assert_true(few >= 3);
+    mf_data_table_clear(&target);
+    mf_data_table_clear(&found);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(
@@ -139,6 +181,8 @@ int main(void) {
         cmocka_unit_test_setup_teardown(test_energy_is_that_of_the_verification,
                                         small_inputs_enter_without_gnuplot, small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_excess_of_each_iteration_has_a_column,
+                                        small_inputs_enter_without_gnuplot, small_inputs_leave),
+        cmocka_unit_test_setup_teardown(test_phi_is_known_no_better_than_the_counts_of_its_target,
                                         small_inputs_enter_without_gnuplot, small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_tables_are_the_same_bits_after_a_restart,
                                         small_inputs_enter_without_gnuplot, small_inputs_leave),
