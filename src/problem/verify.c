@@ -65,10 +65,10 @@ static enum status begin_replica(void *context, size_t number, void *result) {
     return mf_measurement_init(&work->replicas[number], work->problem, &setup);
 }
 
-/// A simulation that is far too hot is not sampled if a shorter step is to follow: by more than the
-/// chance of one configuration's temperature.
+/// A simulation that is far too hot is not sampled if a shorter step is to follow: by a tenth and
+/// more than the chance of one configuration's temperature.
 static enum status check_heat(const struct simulation *simulation, double temperature) {
-    static const double hot = 0.02, deviations = 4;
+    static const double hot = 0.1, deviations = 4;
     const struct simulation_setup *setup = &simulation->setup;
     const double degrees = (double)setup->box.dimensions * (double)simulation->particles.count;
     const double wanted = setup->temperature;
