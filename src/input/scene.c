@@ -215,10 +215,10 @@ static enum status read_dynamics(struct scene *scene, struct json_object *object
 
 double mf_scene_mass_density(const struct scene *scene) {
     const double metres = scene->units.length * 1e-9;
-    const struct attributes_range masses =
-        mf_attributes_span(&scene->setup.attribute[ATTRIBUTES_MASS]);
-    const double mean = masses.maximum > 0 ? 0.5 * (masses.minimum + masses.maximum) : 1;
-    const double kilograms = mean * scene->units.mass * (double)scene->setup.placement.count;
+    const struct simulation_setup *setup = &scene->setup;
+    const double masses = mf_attributes_sum(&setup->attribute[ATTRIBUTES_MASS], 1,
+                                            &setup->composition, setup->placement.count);
+    const double kilograms = masses * scene->units.mass;
     return 1e-3 * kilograms / (mf_box_volume(&scene->setup.box) * pow(metres, 3));
 }
 

@@ -27,6 +27,25 @@ struct attributes_range mf_attributes_span(const struct attributes_source *sourc
     return span;
 }
 
+static double middle_of(const struct attributes_range *range) {
+    return 0.5 * (range->minimum + range->maximum);
+}
+
+double mf_attributes_sum(const struct attributes_source *source, double usual,
+                         const struct composition *composition, int64_t particles) {
+    double sum = 0;
+    if (source->column) {
+        for (int64_t k = 0; k < particles; k++)
+            sum += source->column[k];
+        return sum;
+    }
+    if (source->ranges < 2)
+        return (double)particles * (source->ranges == 1 ? middle_of(&source->range[0]) : usual);
+    for (int type = 0; type < composition->types; type++)
+        sum += (double)composition->count[type] * middle_of(&source->range[type]);
+    return sum;
+}
+
 static double number_of(const struct attributes_source *source, enum attributes_name name,
                         const struct composition *composition, uint32_t id, uint64_t seed) {
     if (source->column)

@@ -37,6 +37,11 @@ extern const struct field mf_attributes_fields[];
 /// Smallest and largest number that an attribute can have, over all types.
 struct attributes_range mf_attributes_span(const struct attributes_source *source);
 
+/// Expected sum of an attribute over all particles, each of which has the `usual` number if the
+/// scene has none. Tested: test_attributes.
+double mf_attributes_sum(const struct attributes_source *source, double usual,
+                         const struct composition *composition, int64_t particles);
+
 /// Whether all numbers of an attribute are `value`, but for rounding, or the scene has none.
 static inline bool attributes_are(const struct attributes_source *source, double value) {
     const double rounding = 1e-12 * fabs(value);

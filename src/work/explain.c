@@ -33,15 +33,12 @@ static const struct {
 
 /// From event to event: as many collisions as there are of particles of the mean radius and mass.
 static void add_events(struct stages *stages, const struct simulation_setup *setup) {
-    const struct attributes_range usual[] = {
-        [ATTRIBUTES_MASS] = {1, 1}, [ATTRIBUTES_RADIUS] = {0.5, 0.5}};
+    static const double usual[] = {[ATTRIBUTES_MASS] = 1, [ATTRIBUTES_RADIUS] = 0.5};
     double mean[2];
-    for (int name = 0; name < 2; name++) {
-        const struct attributes_source *source = &setup->attribute[name];
-        const struct attributes_range range =
-            source->ranges > 0 ? mf_attributes_span(source) : usual[name];
-        mean[name] = 0.5 * (range.minimum + range.maximum);
-    }
+    for (int name = 0; name < 2; name++)
+        mean[name] = mf_attributes_sum(&setup->attribute[name], usual[name], &setup->composition,
+                                       setup->placement.count) /
+                     (double)setup->placement.count;
     const double room = mf_box_volume(&setup->box) / (double)setup->placement.count;
     const double rate = mf_hard_theory(setup->box.dimensions, room, setup->temperature,
                                        &mean[ATTRIBUTES_RADIUS], &mean[ATTRIBUTES_MASS], 1)

@@ -89,6 +89,21 @@ static void test_attributes_are_saved_with_the_particles(void **state) {
     mf_particles_clear(&to);
 }
 
+/// Of a mixture by its composition, not by the types alone.
+static void test_a_sum_is_over_all_particles(void **state) {
+    static const double column[] = {1, 2, 4};
+    const struct composition mixture = {.types = 2, .count = {240, 60}};
+    struct attributes_source masses = {.ranges = 0};
+    (void)state;
+    assert_close(mf_attributes_sum(&masses, 1, &mixture, 300), 300, 1e-12);
+    masses = (struct attributes_source){.ranges = 1, .range = {{2, 4}}};
+    assert_close(mf_attributes_sum(&masses, 1, &mixture, 300), 900, 1e-12);
+    masses = (struct attributes_source){.ranges = 2, .range = {{18, 18}, {30, 34}}};
+    assert_close(mf_attributes_sum(&masses, 1, &mixture, 300), 240 * 18 + 60 * 32, 1e-9);
+    masses = (struct attributes_source){.ranges = 1, .range = {{1, 4}}, .column = column};
+    assert_close(mf_attributes_sum(&masses, 1, &mixture, 3), 7, 1e-12);
+}
+
 static void test_attributes_are_refused_when_there_are_too_many(void **state) {
     (void)state;
     struct particles particles;
@@ -107,6 +122,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_attributes_stay_with_their_particles_when_these_are_sorted),
         cmocka_unit_test(test_attributes_are_saved_with_the_particles),
+        cmocka_unit_test(test_a_sum_is_over_all_particles),
         cmocka_unit_test(test_attributes_are_refused_when_there_are_too_many),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
