@@ -114,7 +114,7 @@ size_t mf_frames_expected(const struct frames *frames) {
     const struct frames_plan *const plan = &frames->plan;
     uint64_t done, total;
     mf_frames_bytes(frames, &done, &total);
-    if (frames->time.count < 2 || total == 0)
+    if (frames->time.count < 2 || total == 0 || plan->in_any_order)
         return 0;
     size_t read = 0;
     for (size_t k = 0; k <= frames->at && k < frames->plan.files; k++)
@@ -158,7 +158,7 @@ static enum status find_order(struct frames *frames, const struct trajectory_fra
                               bool *is_next) {
     const struct series *const seen = &frames->time;
     const double last = seen->count ? seen->value[seen->count - 1] : NAN;
-    *is_next = !(frame->time <= last + time_tolerance(last));
+    *is_next = frames->plan.in_any_order || !(frame->time <= last + time_tolerance(last));
     if (*is_next)
         return mf_series_add(&frames->time, frame->time);
     if (!was_seen(frames, frame->time))

@@ -4,7 +4,7 @@
 /// Frames are fetched one after the other and decoded by all threads; memory holds a batch of them
 /// and their times. A simulation that was restarted writes again what it had written since its last
 /// checkpoint: frames of a time that has been are left out and counted. Other steps back in time
-/// are a fault.
+/// are a fault, unless the frames are independent of each other.
 #pragma once
 
 #include "measure/series.h"
@@ -18,6 +18,7 @@ struct frames_plan {
     double every;         ///< frames are taken this far apart, from the first on [ps]; 0: all
     size_t skip;          ///< of those to be used so many are left out at the beginning
     bool allow_truncated; ///< a file that breaks off is used up to there
+    bool in_any_order;    ///< frames of any times, also of the same: their order says nothing
     int threads;
 };
 

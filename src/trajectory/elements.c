@@ -4,6 +4,7 @@
 #include <ctype.h>
 #include <math.h>
 #include <string.h>
+#include <strings.h>
 
 static const struct element {
     char symbol[4];
@@ -46,18 +47,37 @@ static const struct element *find_letters(const char *name, size_t letters) {
     return find(symbol);
 }
 
-const char *mf_elements_guess(const struct structure_atom *atom) {
+/// Two letters that are an element in whatever molecule they stand. Those that begin with C, H, N,
+/// O, P or S are mostly such an atom and where it stands in its molecule, as CA, HG and NE of amino
+/// acids or PB of ATP.
+static bool are_symbol(const char *letters) {
+    static const char *const others[] = {"CL", "CU", "NI", "PT", "SE", "SI", "SR"};
+    if (strchr("CHNOPS", toupper((unsigned char)letters[0])) == NULL)
+        return true;
+    for (size_t k = 0; k < sizeof others / sizeof *others; k++)
+        if (strncasecmp(letters, others[k], 2) == 0)
+            return true;
+    return false;
+}
+
+/// An atom that is a residue of its own is an ion, or of a gas: its letters are all a symbol. Where
+/// of a protein one atom is left, it is CA.
+static bool is_ion(const struct structure_atom *atom, const char *letters, bool alone) {
+    const size_t of_residue = strcspn(atom->residue_name, "0123456789+-");
+    if (of_residue == 2 && strncasecmp(letters, atom->residue_name, 2) == 0)
+        return true;
+    return alone &&
+           (strncasecmp(letters, "CA", 2) != 0 || strncasecmp(atom->residue_name, "CA", 2) == 0 ||
+            strncasecmp(atom->residue_name, "ION", 3) == 0);
+}
+
+const char *mf_elements_guess(const struct structure_atom *atom, bool alone) {
     const char *const name = atom->name + strspn(atom->name, "0123456789'\"*+-");
     const size_t letters = strcspn(name, "0123456789'\"*+-_");
-    const size_t ion = strcspn(atom->residue_name, "0123456789+-");
     const struct element *element = find(atom->element);
     if (element == NULL)
         element = find(name);
-    if (element == NULL && letters == 2 && ion == 2 && strncmp(name, atom->residue_name, 2) == 0)
-        element = find_letters(name, 2);
-    const bool halogen = strncmp(name, "CL", 2) == 0 || strncmp(name, "BR", 2) == 0 ||
-                         strncmp(name, "Cl", 2) == 0 || strncmp(name, "Br", 2) == 0;
-    if (element == NULL && letters == 2 && halogen)
+    if (element == NULL && letters == 2 && (are_symbol(name) || is_ion(atom, name, alone)))
         element = find_letters(name, 2);
     if (element == NULL && letters > 0)
         element = find_letters(name, 1);

@@ -10,7 +10,8 @@
 double mf_elements_mass(const char *symbol);
 
 /// The element that an atom probably is, from what is known of it: what the file says; the name if
-/// it is a symbol
-/// ("Cl") or that of an ion ("NA" of residue "NA"); chlorine and bromine ("CL1", "BR"); else the
-/// first letter of the name ("HW1", "CA"). NULL if that is no element. Tested: test_structure.
-const char *mf_elements_guess(const struct structure_atom *atom);
+/// it is a symbol ("Cl"), in capitals, too, if that is no usual name of an organic molecule's atom
+/// ("SI", "FE1", "CL", but not "CA"), or if the atom is an ion or a gas ("NA" of residue "NA");
+/// else the first letter of the name ("HW1", "CA"). NULL if that is no element.
+/// @param[in] alone  of its residue there is no other atom. Tested: test_structure.
+const char *mf_elements_guess(const struct structure_atom *atom, bool alone);

@@ -36,6 +36,28 @@ static bool recognise(const unsigned char *begin, size_t size) {
            is_atom(line);
 }
 
+/// Digits behind the last point of a line.
+static size_t count_decimals(const char *line) {
+    const char *const point = strrchr(line, '.');
+    return point ? strspn(point + 1, "0123456789") : 0;
+}
+
+/// The box is the last line of a file, whose end may be missing. The digits of its last number are
+/// then all there if they are as many as those of the first.
+static enum status fetch_box(struct source *source, struct bytes *raw) {
+    const size_t begin = raw->size;
+    bool there;
+    TRY(mf_source_line(source, raw, &there));
+    const char *const line = there ? (const char *)raw->data + begin : "";
+    const char *const first = strchr(line, '.');
+    const size_t decimals = first ? strspn(first + 1, "0123456789") : 0;
+    if (there && (!source->broken_line || source->frame == 0 || count_decimals(line) == decimals))
+        return STATUS_OK;
+    return mf_source_fail_line(source, there ? "the file ends within this line"
+                                             : "the file ends within the frame, the box is "
+                                               "missing");
+}
+
 /// A title, the number of atoms, a line for each, and the box. An empty title may also be an empty
 /// line at the end.
 static enum status fetch(struct trajectory *trajectory, struct trajectory_frame *frame,
@@ -51,7 +73,8 @@ static enum status fetch(struct trajectory *trajectory, struct trajectory_frame 
     }
     TRY(mf_source_lines(source, &frame->raw, 1));
     TRY(mf_trajectory_read_count(trajectory, (const char *)frame->raw.data + title, &atoms));
-    return mf_source_lines(source, &frame->raw, atoms + 1);
+    TRY(mf_source_lines(source, &frame->raw, atoms));
+    return fetch_box(source, &frame->raw);
 }
 
 /// The first atom's line, and how many there are, which fetch has seen to.
@@ -108,12 +131,33 @@ static enum status read_atoms(struct trajectory_frame *frame, const char **line)
     return STATUS_OK;
 }
 
-/// Three numbers, or nine: the diagonal, then a_y a_z b_x b_z c_x c_y.
-static enum status read_box(struct trajectory_frame *frame, const char *line) {
-    const size_t count = mf_words_count(line);
+/// Numbers of `decimals` digits behind their points, which may stand so close that no blank is
+/// left.
+static size_t read_tight(const char *line, size_t decimals, double *values, size_t most) {
+    size_t count = 0;
+    const char *point;
+    for (; count < most && (point = strchr(line, '.')); count++) {
+        const size_t length = (size_t)(point - line) + 1 + decimals;
+        const struct word word = mf_words_columns(line, 0, length);
+        if (!mf_words_number(&word, &values[count]))
+            return 0;
+        line += strnlen(line, length);
+    }
+    return mf_words_count(line) == 0 ? count : 0;
+}
+
+/// Three numbers, or nine: the diagonal, then a_y a_z b_x b_z c_x c_y. They have as many decimals
+/// as positions, but five at least.
+static enum status read_box(struct trajectory_frame *frame, const char *line, size_t width) {
+    enum { FEWEST_DECIMALS = 5 };
+    const size_t decimals =
+        width > NAME_WIDTH + FEWEST_DECIMALS ? width - NAME_WIDTH : FEWEST_DECIMALS;
+    size_t count = mf_words_count(line);
     const char *rest = line;
     double v[9] = {0};
     if ((count != 3 && count != 9) || !mf_words_numbers(&rest, v, count))
+        count = read_tight(line, decimals, v, sizeof v / sizeof *v);
+    if (count != 3 && count != 9)
         return mf_frame_fail_line(frame, line, "here should stand the box, 3 or 9 numbers");
     const double box[3][3] = {{v[0], v[3], v[4]}, {v[5], v[1], v[6]}, {v[7], v[8], v[2]}};
     mf_frame_set_box(frame, box);
@@ -125,10 +169,11 @@ static enum status decode(const struct trajectory *trajectory, struct trajectory
     const char *line = find_atoms(frame, &atoms);
     (void)trajectory;
     mf_frame_read_title(frame, (const char *)frame->raw.data);
-    const struct word speed = mf_words_columns(line, NUMBERS + 3 * find_width(line), LONGEST_ATOM);
+    const size_t width = find_width(line);
+    const struct word speed = mf_words_columns(line, NUMBERS + 3 * width, LONGEST_ATOM);
     TRY(mf_frame_reserve(frame, atoms, speed.length > 0));
     TRY(read_atoms(frame, &line));
-    return read_box(frame, line);
+    return read_box(frame, line, width);
 }
 
 static const char *const extensions[] = {"gro", NULL};

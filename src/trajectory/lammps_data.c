@@ -142,6 +142,19 @@ static bool is_third_whole(const struct lammps_data *data, const struct trajecto
     return true;
 }
 
+/// A comment behind "Atoms" is the style that LAMMPS writes there, or any words of a person.
+static bool is_style(const char *word) {
+    static const char *const all[] = {
+        "amoeba",       "body",   "dielectric", "dipole",    "dpd",   "edpd", "electron",
+        "ellipsoid",    "hybrid", "line",       "mdpd",      "oxdna", "peri", "rheo",
+        "rheo/thermal", "smd",    "sph",        "sphere",    "spin",  "tdpd", "template",
+        "tri",          "apip",   "wavepacket", "bpm/sphere"};
+    for (size_t k = 0; k < sizeof all / sizeof *all; k++)
+        if (strcmp(word, all[k]) == 0)
+            return true;
+    return false;
+}
+
 enum status mf_lammps_data_style(const struct lammps_data *data,
                                  const struct trajectory_frame *frame,
                                  const struct lammps_style **style) {
@@ -154,7 +167,7 @@ enum status mf_lammps_data_style(const struct lammps_data *data,
         *style = &styles[MOLECULAR];
     if (*style)
         return STATUS_OK;
-    if (data->style[0])
+    if (is_style(data->style))
         return mf_frame_fail_line(frame, data->atom,
                                   "the atom style \"%s\" is not read; known: "
                                   "atomic, charge, bond, angle, molecular, full",

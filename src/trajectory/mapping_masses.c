@@ -26,8 +26,17 @@ enum status mf_mapping_note(struct mapping *mapping, const char *format, ...) {
 /// Mass of an atom and who says so.
 enum origin { FROM_PLAN, FROM_FILE, FROM_ELEMENT, FROM_NOBODY };
 
-static enum origin find_mass(const struct mapping_plan *plan, const struct structure_atom *atom,
-                             double *mass) {
+/// What an atom of which the file says no mass seems to be, or NULL.
+static const char *guess(const struct structure *structure, size_t k) {
+    const struct structure_atom *const atom = &structure->atom[k];
+    const bool alone = structure->residues > 0 && (k == 0 || atom[-1].residue != atom->residue) &&
+                       (k + 1 == structure->atoms || atom[1].residue != atom->residue);
+    return mf_elements_guess(atom, alone);
+}
+
+static enum origin find_mass(const struct mapping_plan *plan, const struct structure *structure,
+                             size_t number, double *mass) {
+    const struct structure_atom *const atom = &structure->atom[number];
     for (size_t k = 0; k < plan->masses; k++)
         if (strcmp(plan->mass[k].name, atom->name) == 0) {
             *mass = plan->mass[k].mass;
@@ -36,7 +45,7 @@ static enum origin find_mass(const struct mapping_plan *plan, const struct struc
     *mass = atom->mass;
     if (atom->mass > 0)
         return FROM_FILE;
-    const char *const element = mf_elements_guess(atom);
+    const char *const element = guess(structure, number);
     *mass = element ? mf_elements_mass(element) : NAN;
     return element ? FROM_ELEMENT : FROM_NOBODY;
 }
@@ -60,14 +69,15 @@ static bool was_told(struct told *told, const struct structure_atom *atom) {
 }
 
 static enum status note_guess(struct mapping *mapping, struct told *told,
-                              const struct structure_atom *atom, double mass) {
+                              const struct structure *structure, size_t k, double mass) {
+    const struct structure_atom *const atom = &structure->atom[k];
     if (was_told(told, atom))
         return STATUS_OK;
     if (told->count == MOST_TOLD)
         return mf_mapping_note(mapping, "masses of further names were guessed, too");
     return mf_mapping_note(mapping, "guessed by its name: \"%s\"%s%s%s is %s, %g u", atom->name,
                            atom->residue_name[0] ? " of \"" : "", atom->residue_name,
-                           atom->residue_name[0] ? "\"" : "", mf_elements_guess(atom), mass);
+                           atom->residue_name[0] ? "\"" : "", guess(structure, k), mass);
 }
 
 /// The mass of a bead, and the weights of its atoms if these are not those of geometry. The weight
@@ -80,18 +90,23 @@ static enum status weigh_bead(struct mapping *mapping, const struct mapping_plan
     for (size_t i = 0; i < bead->count; i++) {
         const size_t k = mapping->atom[bead->first + i];
         double mass;
-        const enum origin origin = find_mass(plan, &structure->atom[k], &mass);
+        const enum origin origin = find_mass(plan, structure, k, &mass);
         if (origin == FROM_NOBODY && by_mass && bead->count > 1)
             return mf_status_fail(STATUS_BAD_INPUT,
                                   "%s: nobody knows the mass of atom %zu, \"%s\": tell it in "
-                                  "\"masses\" of the map",
+                                  "\"masses\" of the map, 0 of a site without mass",
                                   plan->file, k + 1, structure->atom[k].name);
         if (origin == FROM_ELEMENT)
-            TRY(note_guess(mapping, told, &structure->atom[k], mass));
+            TRY(note_guess(mapping, told, structure, k, mass));
         bead->mass += mass;
         if (by_mass)
             weight[i] = bead->count > 1 ? mass : 1;
     }
+    if (bead->mass == 0)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: the bead of atom %zu, \"%s\", has no mass: no atom of it has",
+                              plan->file, mapping->atom[bead->first] + 1,
+                              structure->atom[mapping->atom[bead->first]].name);
     for (size_t i = 0; by_mass && bead->count > 1 && i < bead->count; i++)
         weight[i] /= bead->mass;
     return STATUS_OK;

@@ -90,8 +90,8 @@ static void read_masses(struct mapping_plan *plan, struct json_object *root) {
     for (size_t n = 0; masses.item && (name = mf_json_key(&masses, n)); n++) {
         struct mapping_mass *const mass = &plan->mass[plan->masses];
         const struct field fields[] = {{name, FIELD_NUMBER, offsetof(struct mapping_mass, mass),
-                                        .required = true, .minimum = FIELD_ABOVE_ZERO,
-                                        .maximum = DBL_MAX, .unit = "u", .help = ""},
+                                        .required = true, .minimum = 0, .maximum = DBL_MAX,
+                                        .unit = "u", .help = ""},
                                        FIELD_END};
         const struct word word = {name, strlen(name)};
         if (n >= MAPPING_MOST_MASSES) {

@@ -141,6 +141,24 @@ static void test_frames_before_equilibrium_are_left_out(void **state) {
     assert_null(strstr(result.err, "equilibrium"));
 }
 
+#define AT(x)                                                                                      \
+    "at once t= 0.0\n2\n    1AR     AR    1   0.500   0.500   0.500\n    2AR     AR    2   " x     \
+    "   0.500   0.500\n   2.00000   2.00000   2.00000\n"
+
+/// Configurations that are independent have no order in time; those of a run that was begun anew
+/// have.
+static void test_frames_of_one_time_are_used_when_they_are_independent(void **state) {
+    small_inputs_write(*state, "one.gro", AT("0.900") AT("0.950"), NULL, NULL);
+    small_inputs_write(*state, "two.gro", AT("0.800"), NULL, NULL);
+    RUN_PROGRAM(&result, "measure", "one.gro", "two.gro", "--static", "-o", "out");
+    run_program_assert_code(&result, 0);
+    assert_true(results_number("out/summary.json", "frames") == 3);
+    RUN_PROGRAM(&result, "measure", "one.gro", "two.gro", "-o", "in-time");
+    run_program_assert_code(&result, 0);
+    assert_true(results_number("in-time/summary.json", "frames") == 1);
+    assert_contains(result.err, "one.gro: 1 frames of times that had been were left out");
+}
+
 #define TEST(name)                                                                                 \
     cmocka_unit_test_setup_teardown(name, small_inputs_enter_without_gnuplot, small_inputs_leave)
 
@@ -150,6 +168,7 @@ int main(void) {
         TEST(test_lines_of_old_macs_are_refused),
         TEST(test_tables_without_a_number_are_not_written),
         TEST(test_frames_before_equilibrium_are_left_out),
+        TEST(test_frames_of_one_time_are_used_when_they_are_independent),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

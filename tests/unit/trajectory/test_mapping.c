@@ -182,6 +182,13 @@ static void test_map_is_refused_when_it_does_not_fit_the_atoms(void **state) {
                    "residue 2 \"MET\" (atom 4) has 2 atoms, the first of its name has 3");
     snprintf(structure.atom[6].name, STRUCTURE_NAME, "QQ");
     assert_refused(state, "{\"beads\": {\"A\": {}}}", "nobody knows the mass of atom 7, \"QQ\"");
+    assert_ok(try_map(state, "{\"beads\": {\"A\": {}}, \"masses\": {\"QQ\": 0}}"));
+    assert_true(fabs(mapping.bead[3].mass - 2 * 1.008) < 1e-12); // of a water with such a site
+    mf_mapping_clear(&mapping);
+    assert_refused(state,
+                   "{\"beads\": {\"A\": {\"first\": 7, \"last\": 7}}, \"rest\": \"ignore\", "
+                   "\"masses\": {\"QQ\": 0}}",
+                   "the bead of atom 7, \"QQ\", has no mass");
     structure.atom[6].mass = 5;
     assert_ok(try_map(state, "{\"beads\": {\"A\": {}}}"));
     clear();

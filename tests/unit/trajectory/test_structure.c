@@ -66,13 +66,18 @@ static void test_structures_of_other_atoms_are_not_the_same(void **state) {
     mf_structure_clear(&c);
 }
 
-static const char *guess(const char *name, const char *residue, const char *element) {
+static const char *guess_of(const char *name, const char *residue, const char *element,
+                            bool alone) {
     static struct structure_atom atom;
     snprintf(atom.name, STRUCTURE_NAME, "%s", name);
     snprintf(atom.residue_name, STRUCTURE_NAME, "%s", residue);
     snprintf(atom.element, STRUCTURE_NAME, "%s", element);
-    const char *const symbol = mf_elements_guess(&atom);
+    const char *const symbol = mf_elements_guess(&atom, alone);
     return symbol ? symbol : "none";
+}
+
+static const char *guess(const char *name, const char *residue, const char *element) {
+    return guess_of(name, residue, element, false);
 }
 
 static void test_elements_are_guessed_by_names(void **state) {
@@ -94,12 +99,33 @@ static void test_elements_are_guessed_by_names(void **state) {
     assert_true(fabs(mf_elements_mass("O") - 15.999) < 1e-12 && isnan(mf_elements_mass("Xx")));
 }
 
+/// What proteins, nucleotides and lipids call their atoms stays as it is.
+static void test_elements_in_capitals_are_guessed_where_they_are_no_other_names(void **state) {
+    static const char *const capitals[][2] = {{"SI", "Si"},  {"SE", "Se"}, {"FE", "Fe"},
+                                              {"CU1", "Cu"}, {"ZN", "Zn"}, {"AU12", "Au"},
+                                              {"AL", "Al"},  {"NI", "Ni"}, {"TI", "Ti"}};
+    static const char *const organic[][2] = {
+        {"CA", "C"}, {"CB", "C"}, {"CD", "C"}, {"CE", "C"},  {"NA", "N"}, {"ND", "N"},
+        {"NE", "N"}, {"HG", "H"}, {"HE", "H"}, {"HO", "H"},  {"PB", "P"}, {"SG", "S"},
+        {"OS", "O"}, {"CS", "C"}, {"CO", "C"}, {"CR1", "C"}, {"NB", "N"}, {"SD", "S"}};
+    (void)state;
+    for (size_t k = 0; k < sizeof capitals / sizeof *capitals; k++)
+        assert_string_equal(guess(capitals[k][0], "LIG", ""), capitals[k][1]);
+    for (size_t k = 0; k < sizeof organic / sizeof *organic; k++)
+        assert_string_equal(guess(organic[k][0], "LIG", ""), organic[k][1]);
+    assert_string_equal(guess_of("NA", "ION", "", true), "Na");
+    assert_string_equal(guess_of("CS", "Ion", "", true), "Cs");
+    assert_string_equal(guess_of("CA", "ALA", "", true), "C");
+    assert_string_equal(guess_of("CA", "ION", "", true), "Ca");
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_residues_are_runs_and_molecules_are_not),
         cmocka_unit_test(test_atoms_are_found_by_ids_with_gaps),
         cmocka_unit_test(test_structures_of_other_atoms_are_not_the_same),
         cmocka_unit_test(test_elements_are_guessed_by_names),
+        cmocka_unit_test(test_elements_in_capitals_are_guessed_where_they_are_no_other_names),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

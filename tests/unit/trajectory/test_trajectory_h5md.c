@@ -601,6 +601,8 @@ static void test_h5md_units_are_products_when_written_as_such(void **state) {
         assert_ok(mf_h5md_unit_find(known[k].unit, known[k].kind, &factor));
         assert_close(factor / known[k].factor, 1, 1e-8);
     }
+    assert_ok(mf_h5md_unit_find("AKMA", H5MD_TIME, &factor));
+    assert_close(1 / factor, 20.455, 1e-3); // CHARMM's units in a picosecond, by its manual
     assert_fails(mf_h5md_unit_find("furlong", H5MD_LENGTH, &factor), STATUS_BAD_INPUT, "not known");
     assert_fails(mf_h5md_unit_find("nm ps", H5MD_SPEED, &factor), STATUS_BAD_INPUT, "of a speed");
     assert_fails(mf_h5md_unit_find("nm/ps", H5MD_SPEED, &factor), STATUS_BAD_INPUT, "not known");

@@ -192,6 +192,7 @@ static void test_data_file_has_any_of_four_styles(void **state) {
     check_style(state, "Atoms", "3 0.5 7 8 9", "2 -0.5 1 2 3", false);
     check_style(state, "Atoms", "1 3 7 8 9 0 0 0", "5 2 1 2 3 0 0 0", true);
     check_style(state, "Atoms", "1 3 0.5 7 8 -1 0 0 1", "5 2 0.5 1 2 3", true);
+    check_style(state, "Atoms # I like comments", "1 3 7 8 9", "5 2 1 2 3", true);
 }
 
 static const char dump[] =

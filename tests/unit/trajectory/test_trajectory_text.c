@@ -70,6 +70,37 @@ static void test_gro_has_any_precision_and_many_frames(void **state) {
     close_all();
 }
 
+#define ARGON "1\n    1AR     AR    1   0.500   0.600   0.700\n"
+#define BOX "   2.00000   3.00000   4.00000"
+
+/// The end of the last line may be missing where all digits are there.
+static void test_gro_ends_with_its_box(void **state) {
+    open_text(state, "a.gro", "a t= 0\n" ARGON BOX "\nb t= 1\n" ARGON BOX, NULL);
+    next(true);
+    next(true);
+    assert_true(frame.time == 1);
+    assert_vector(frame.box[2], 0, 0, 4);
+    next(false);
+    close_all();
+}
+
+static void test_gro_has_a_box_without_blanks(void **state) {
+    open_text(state, "a.gro", "huge\n" ARGON "40000.0000030000.0000020000.00000\n", NULL);
+    next(true);
+    assert_vector(frame.box[0], 40000, 0, 0);
+    assert_vector(frame.box[1], 0, 30000, 0);
+    assert_vector(frame.box[2], 0, 0, 20000);
+    close_all();
+    open_text(state, "a.gro",
+              "skewed\n" ARGON "40000.0000030000.0000020000.00000   0.00000   0.00000-5000.00000"
+              "   0.00000  10.00000  20.00000\n",
+              NULL);
+    next(true);
+    assert_vector(frame.box[1], -5000, 30000, 0);
+    assert_vector(frame.box[2], 10, 20, 20000);
+    close_all();
+}
+
 static void test_xyz_is_in_angstrom_when_nothing_is_told(void **state) {
     open_text(state, "a.dat",
               "2\nwater, i = 3, E = -17\nO 1.0 2.0 3.0\nH 4 5 6 anything else\n"
@@ -210,10 +241,18 @@ static void test_text_is_refused_with_its_line(void **state) {
     assert_refused(state, "a.gro", "t\n2\n    1ABC      C    1   0.1", "a.gro:3: frame 0: ");
     assert_refused(state, "a.gro", "t\nmany\n", "a.gro:2: frame 0: here should stand the number");
     assert_refused(state, "a.gro", "t\n99999999999\n    1ABC      C    1   0.100   0.200   0.300\n",
-                   "99999999999 lines are missing");
+                   "99999999998 lines are missing");
     assert_refused(state, "a.gro", "t\n1\n    1ABC      C    1   0.100   0.2x0   0.300\n 1 1 1\n",
                    "a.gro:3: frame 0: here should stand the position");
     assert_refused(state, "a.gro", "t\n1\n    1ABC      C    1   0.100   0.200   0.300\n 1 1\n",
+                   "a.gro:4: frame 0: here should stand the box");
+    assert_refused(state, "a.gro", "a\n" ARGON BOX "\nb\n" ARGON "   2.00000   3.00000   4.000",
+                   "a.gro:8: frame 1: the file ends within this line");
+    assert_refused(state, "a.gro", "a\n" ARGON BOX "\nb\n" ARGON "   2.00000   3.00000",
+                   "a.gro:8: frame 1: here should stand the box");
+    assert_refused(state, "a.gro", "a\n" ARGON BOX "\nb\n" ARGON,
+                   "a.gro:7: frame 1: the file ends within the frame, the box is missing");
+    assert_refused(state, "a.gro", "a\n" ARGON "40000.0000030000.00000\n",
                    "a.gro:4: frame 0: here should stand the box");
     assert_refused(state, "a.xyz", "1\n\nO 1 2 3\n2\n\nO 1 2 3\nO 1 2 3\n",
                    "a.xyz:4: frame 1: it has 2 atoms, the first frame 1");
@@ -240,6 +279,8 @@ static void test_text_is_refused_with_its_line(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(test_gro_has_any_precision_and_many_frames),
+        TEST(test_gro_ends_with_its_box),
+        TEST(test_gro_has_a_box_without_blanks),
         TEST(test_xyz_is_in_angstrom_when_nothing_is_told),
         TEST(test_extended_xyz_has_box_velocities_and_columns),
         TEST(test_pdb_has_models_and_a_box_that_changes),
