@@ -236,12 +236,27 @@ struct reading {
     size_t state;
     const struct fit_file *leader; ///< the first state, in whose units and range the others are
     size_t states;                 ///< found; 0: the file has no states
+    bool wants_choices;            ///< found: it leaves something to the program
+    bool names_groups;             ///< found: it says itself which groups are to be found
 };
 
-/// Read the file, with choices for what it leaves out if there is a `plain` reading of it; else
-/// made readable if it needs choices, and `wanted` says so.
+/// Laws for the groups that are constraints, then choices for what the file leaves out, both by an
+/// earlier reading of it.
+static enum status complete(struct fit_file *fit, const struct reading *reading,
+                            const struct fit_file *earlier, bool choose, struct json_object *root) {
+    if (earlier) {
+        TRY(mf_fit_constraints_put(&fit->constraints, earlier, root));
+        mf_fit_constraints_say(&fit->constraints, earlier, &fit->choices);
+    }
+    if (choose)
+        return mf_fit_defaults_choose(earlier, reading->leader, root, &fit->choices);
+    return reading->wants_choices ? mf_fit_defaults_make_readable(root) : STATUS_OK;
+}
+
+/// @param[in] earlier  reading of the same file, or NULL
+/// @param[in] choose   what the file leaves out; else it is made readable without
 static enum status read_document(struct fit_file *fit, struct reading *reading,
-                                 const struct fit_file *plain, bool *wanted) {
+                                 const struct fit_file *earlier, bool choose) {
     struct json_document *document;
     TRY(mf_json_open(&document, reading->file));
     enum status status =
@@ -249,10 +264,10 @@ static enum status read_document(struct fit_file *fit, struct reading *reading,
     struct json_object root = mf_json_root(document);
     if (status == STATUS_OK)
         status = mf_heading_check_run(&root, reading->file);
-    *wanted = mf_fit_defaults_wanted(&root);
-    if (status == STATUS_OK && *wanted)
-        status = plain ? mf_fit_defaults_choose(plain, reading->leader, &root, &fit->choices)
-                       : mf_fit_defaults_make_readable(&root);
+    reading->wants_choices = mf_fit_defaults_wanted(&root);
+    reading->names_groups = mf_fit_unknowns_name_groups(&root);
+    if (status == STATUS_OK)
+        status = complete(fit, reading, earlier, choose, &root);
     if (status == STATUS_OK)
         status = mf_json_collect_files(document, &fit->inputs);
     if (status == STATUS_OK)
@@ -260,20 +275,28 @@ static enum status read_document(struct fit_file *fit, struct reading *reading,
     return mf_json_close(document, status);
 }
 
-static enum status parse_state(struct fit_file *fit, struct reading *reading) {
-    bool wanted;
-    *fit = (struct fit_file){0};
-    TRY(read_document(fit, reading, NULL, &wanted));
+/// Read the file anew, in the place of an earlier reading.
+static enum status read_again(struct fit_file *fit, struct reading *reading, bool choose) {
+    struct fit_file earlier = *fit;
+    *fit = (struct fit_file){.constraints = earlier.constraints};
+    const enum status status = read_document(fit, reading, &earlier, choose);
+    mf_fit_file_clear(&earlier);
+    TRY(status);
     state_problem(fit, reading->options);
-    if (wanted) {
-        struct fit_file plain = *fit;
-        *fit = (struct fit_file){0};
-        const enum status status = read_document(fit, reading, &plain, &wanted);
-        mf_fit_file_clear(&plain);
-        TRY(status);
-        state_problem(fit, reading->options);
-    }
     return STATUS_OK;
+}
+
+static enum status parse_state(struct fit_file *fit, struct reading *reading) {
+    *fit = (struct fit_file){0};
+    TRY(read_document(fit, reading, NULL, false));
+    state_problem(fit, reading->options);
+    if (reading->leader)
+        fit->constraints = reading->leader->constraints; // laws are of all states
+    else if (!reading->names_groups)
+        mf_fit_constraints_find(fit, &fit->constraints);
+    if (fit->constraints.count > 0)
+        TRY(read_again(fit, reading, false));
+    return reading->wants_choices ? read_again(fit, reading, true) : STATUS_OK;
 }
 
 /// The states behind the first. What they read is read by the run.
@@ -284,7 +307,7 @@ static enum status parse_others(struct fit_file *fit, const struct reading *firs
     NEW_ARRAY(fit->other, first->states - 1);
     while (fit->others < first->states - 1) {
         struct fit_file *other = &fit->other[fit->others++];
-        struct reading reading = {first->file, first->options, fit->others, fit, 0};
+        struct reading reading = {first->file, first->options, fit->others, fit, 0, false, false};
         CHECK(mf_fit_states_mark(other, parse_state(other, &reading)));
         for (size_t k = 0; k < other->inputs.count; k++)
             CHECK(mf_input_files_add(&fit->inputs, other->inputs.file[k].name));
@@ -295,7 +318,7 @@ done:
 
 enum status mf_fit_file_parse(struct fit_file *fit, const char *file,
                               const struct run_options *options) {
-    struct reading reading = {file, options, 0, NULL, 0};
+    struct reading reading = {file, options, 0, NULL, 0, false, false};
     TRY(mf_fit_states_mark(fit, parse_state(fit, &reading)));
     TRY(parse_others(fit, &reading));
     TRY(mf_fit_states_widen(fit, file));

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "problem/verify.h"
+#include "input/fit_constraints.h"
 #include "input/fit_numbers.h"
 #include "input/heading.h"
 #include "input/run_options.h"
@@ -26,7 +27,7 @@ struct fit_unknown {
 };
 
 /// What the program chose because the file did not say it, a line each with its reason.
-enum { FIT_MOST_CHOICES = 12, FIT_CHOICE_SIZE = 256 };
+enum { FIT_MOST_CHOICES = 20, FIT_CHOICE_SIZE = 256 };
 struct fit_choices {
     size_t count;
     char line[FIT_MOST_CHOICES][FIT_CHOICE_SIZE];
@@ -42,6 +43,7 @@ struct fit_file {
     const struct inverse_problem *problems[INVERSE_MOST_STATES]; ///< of all states
     struct heading heading;
     struct fit_choices choices;
+    struct fit_constraints constraints; ///< that the laws of the scene have come from
     struct target_files files;
     struct scene scene;
     struct fit_unknown unknown[UNKNOWNS];

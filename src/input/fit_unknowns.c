@@ -49,18 +49,20 @@ static void enter_group(struct scene_fitted *fitted, enum topology_order order, 
     strcpy(fitted->name[order][fitted->count[order]++], name);
 }
 
-/// Whether "unknowns" names groups; else they are those of the targets.
-static bool tells_groups(struct json_object *root) {
-    struct json_object unknowns = mf_json_child(root, "unknowns", false);
+bool mf_fit_unknowns_name_groups(const struct json_object *root) {
+    struct json_object own = *root; // looks, and asks for nothing
+    if (!mf_json_is_object(root, "unknowns"))
+        return false;
+    const struct json_object unknowns = mf_json_child(&own, "unknowns", false);
     for (int order = 0; order < TOPOLOGY_ORDERS; order++)
-        if (mf_json_has(&unknowns, mf_scene_group_keys[order]))
+        if (mf_json_is_member(&unknowns, mf_scene_group_keys[order]))
             return true;
     return false;
 }
 
 void mf_fit_unknowns_groups(struct json_object *root, struct json_object *scene,
                             struct scene_fitted *fitted) {
-    const bool told = tells_groups(root);
+    const bool told = mf_fit_unknowns_name_groups(root);
     struct json_object parent = mf_json_child(root, told ? "unknowns" : "target", false);
     *fitted = (struct scene_fitted){.told = told};
     for (enum topology_order order = 0; order < TOPOLOGY_ORDERS; order++) {

@@ -11,6 +11,9 @@
 /// scene_unknown.
 int mf_fit_unknowns_left_out(struct json_object *root);
 
+/// Whether "unknowns" names groups of bonds, angles or dihedrals; else they are those of targets.
+bool mf_fit_unknowns_name_groups(const struct json_object *root);
+
 /// The groups of bonds, angles and dihedrals that are looked for: those of "unknowns", or without
 /// that those with a target and without a law in the scene. A fault if the scene has one of both.
 void mf_fit_unknowns_groups(struct json_object *root, struct json_object *scene,

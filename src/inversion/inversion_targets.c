@@ -59,7 +59,7 @@ static void count_group(struct inversion *inversion, const struct potential_grou
         inversion->ideal[bin] = unit * mean;
         inversion->target_counts[bin] = unit * group->own.target[k];
         inversion->target_error[bin] = unit * error[k];
-        inversion->least[bin] = mf_bonded_grid_seen * peak / mean;
+        inversion->least[bin] = mf_bonded_distribution_seen * peak / mean;
     }
 }
 

@@ -24,15 +24,15 @@ static struct box cube_of(double volume) {
 
 static enum status find_composition(const struct mapping *mapping,
                                     struct composition *composition) {
-    *composition = mf_composition_of_one((int64_t)mapping->beads);
-    if (mapping->types < 2)
-        return STATUS_OK;
+    const bool mixed = mapping->types > 1;
     if (mapping->types > COMPOSITION_MOST_TYPES)
         return mf_status_fail(STATUS_BAD_INPUT, "the map has %zu types of beads; there may be %d",
                               mapping->types, COMPOSITION_MOST_TYPES);
     *composition = (struct composition){.types = (int)mapping->types};
     for (size_t type = 0; type < mapping->types; type++) {
         const char *name = mapping->type_name[type];
+        if (!mixed && !mf_composition_is_name(name))
+            continue; // of what is all alike nobody need speak
         if (!mf_composition_is_name(name))
             return mf_status_fail(STATUS_BAD_INPUT,
                                   "the type of beads \"%s\": a type is called by up to %d letters, "

@@ -143,7 +143,7 @@ enum status mf_measured_molecules_add(struct measured_molecules *measured,
 
 /// Lengths of a group in a frame.
 struct lengths {
-    double count, sum, squares;
+    double count, sum;
 };
 
 static void add_lengths(const struct measured_molecules *measured,
@@ -162,7 +162,6 @@ static void add_lengths(const struct measured_molecules *measured,
                         (int32_t)measured->match.bead[topology_id(kind, m, term->bead[bead])];
                 mf_bonded_measure(TOPOLOGY_BOND, 1, place, &measured->shell->particles, &length);
                 group->sum += length;
-                group->squares += length * length;
                 group->count++;
             }
         }
@@ -178,25 +177,13 @@ static void rest_at(const struct bonded_curve *curve, double mean) {
         memcpy((char *)curve->parameters + field->offset, &mean, sizeof mean);
 }
 
-/// Find where bonds rest, and how many bins of lengths the narrowest group needs: two in its
-/// standard deviation. A bond of fixed length, or of whose length few are known, asks for none.
-static int64_t find_lengths(struct measured_molecules *measured) {
-    static const double fixed = 0.01, few = 8, in_deviation = 2, least = 100, most = 2000;
+static void find_rest(struct measured_molecules *measured) {
     const struct molecules *molecules = measured->molecules;
     struct lengths found[MOLECULES_MOST_GROUPS] = {{0}};
-    double longest = 0, narrowest = INFINITY;
     add_lengths(measured, found);
-    for (int g = 0; g < molecules->groups[TOPOLOGY_BOND]; g++) {
-        if (found[g].count == 0)
-            continue;
-        const double mean = found[g].sum / found[g].count;
-        const double deviation = sqrt(fmax(0, found[g].squares / found[g].count - mean * mean));
-        longest = fmax(longest, mean);
-        if (found[g].count >= few && deviation > fixed * mean)
-            narrowest = fmin(narrowest, deviation);
-        rest_at(&molecules->group[TOPOLOGY_BOND][g].curve, mean);
-    }
-    return (int64_t)fmin(most, fmax(least, ceil(2 * longest * in_deviation / narrowest)));
+    for (int g = 0; g < molecules->groups[TOPOLOGY_BOND]; g++)
+        if (found[g].count > 0)
+            rest_at(&molecules->group[TOPOLOGY_BOND][g].curve, found[g].sum / found[g].count);
 }
 
 static const struct observable *find_observable(const char *name) {
@@ -206,9 +193,9 @@ static const struct observable *find_observable(const char *name) {
     return mf_observables[k];
 }
 
-/// @param[in] bins  of lengths
+/// @param[in] order  of what is distributed, or TOPOLOGY_ORDERS
 static enum status add_observable(struct measured_molecules *measured,
-                                  const struct observable *observable, int64_t bins,
+                                  const struct observable *observable, int order,
                                   struct observable_use *use) {
     enum status status = STATUS_OK;
     const struct measure_plan plan = {.equilibration = -1, .samples = 0, .every = 1};
@@ -217,8 +204,9 @@ static enum status add_observable(struct measured_molecules *measured,
     use->settings = mf_memory_zeroed(1, observable->settings_size);
     CHECK(use->state && use->settings ? STATUS_OK : STATUS_NO_MEMORY);
     mf_fields_set_defaults(observable->fields, use->settings);
-    if (observable == &mf_bonded_lengths)
-        ((struct bonded_settings *)use->settings)->bins = bins;
+    if (order < TOPOLOGY_ORDERS)
+        ((struct bonded_settings *)use->settings)->bins =
+            mf_bonded_distribution_fine((enum topology_order)order);
     CHECK(observable->begin(use->state, use->settings, measured->shell, &plan));
 done:
     return status;
@@ -231,10 +219,38 @@ enum status mf_measured_molecules_start(struct measured_molecules *measured,
         return STATUS_OK;
     TRY(make_shell(measured, interval));
     place_beads(measured, beads);
-    const int64_t bins = find_lengths(measured);
+    find_rest(measured);
     for (int n = 0; n < MEASURED_MOLECULES_MOST; n++)
         if (n >= TOPOLOGY_ORDERS || measured->molecules->groups[n] > 0)
-            TRY(add_observable(measured, find_observable(names[n]), bins, use++));
+            TRY(add_observable(measured, find_observable(names[n]), n, use++));
+    return STATUS_OK;
+}
+
+static const struct observable_use *find_use(const struct measured_molecules *measured,
+                                             enum topology_order order) {
+    const struct observable_use *use = measured->use;
+    while (use->observable && use->observable != mf_bonded_distribution_of(order))
+        use++;
+    return use->observable ? use : NULL;
+}
+
+void mf_measured_molecules_end(struct measured_molecules *measured) {
+    for (enum topology_order order = 0; order < TOPOLOGY_ORDERS; order++) {
+        const struct observable_use *use = find_use(measured, order);
+        if (use)
+            mf_bonded_distribution_join(use->state);
+    }
+}
+
+enum status mf_measured_molecules_moments(const struct measured_molecules *measured,
+                                          enum topology_order order, int group,
+                                          struct bonded_moments *moments) {
+    struct bonded_bins bins;
+    double *p = mf_bonded_distribution_values(find_use(measured, order)->state, group, &bins);
+    if (p == NULL)
+        return STATUS_NO_MEMORY;
+    *moments = mf_bonded_distribution_moments(&bins, p);
+    mf_memory_free(p);
     return STATUS_OK;
 }
 

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "measure/molecule_match.h"
+#include "observe/bonded_distribution.h"
 #include "observe/measure.h"
 
 /// Molecules that a trajectory may have, as a file tells of them. Borrowed.
@@ -45,4 +46,13 @@ enum status mf_measured_molecules_start(struct measured_molecules *measured,
 /// Add a frame of beads. Fails: NO_MEMORY. Tested: cli/test_measure_molecules.
 enum status mf_measured_molecules_add(struct measured_molecules *measured,
                                       const struct trajectory_frame *beads) MUST_USE;
+
+/// When all frames have been added: bins as wide as the distributions ask for.
+void mf_measured_molecules_end(struct measured_molecules *measured);
+
+/// How wide the distribution of a group is, of an order of which there are groups.
+/// Fails: NO_MEMORY.
+enum status mf_measured_molecules_moments(const struct measured_molecules *measured,
+                                          enum topology_order order, int group,
+                                          struct bonded_moments *moments) MUST_USE;
 void mf_measured_molecules_clear(struct measured_molecules *measured);

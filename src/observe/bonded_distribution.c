@@ -227,6 +227,112 @@ static size_t spans(void *state, struct memory_span *spans) {
     return 2 + mf_sample_blocks_spans(&s->blocks, spans + 2);
 }
 
+// Widths ------------------------------------------------------------------------------------------
+
+const double mf_bonded_distribution_seen = 1e-3;
+
+struct bonded_moments mf_bonded_distribution_moments(const struct bonded_bins *bins,
+                                                     const double *p) {
+    struct bonded_moments moments = {0};
+    double sum = 0, mean = 0, square = 0, peak = 0;
+    size_t first = bins->count, last = 0;
+    for (size_t k = 0; k < bins->count; k++) {
+        const double q = bonded_bins_centre(bins, k);
+        sum += p[k];
+        mean += p[k] * q;
+        peak = fmax(peak, p[k]);
+    }
+    mean /= sum;
+    for (size_t k = 0; k < bins->count; k++) {
+        square += p[k] * pow(bonded_bins_centre(bins, k) - mean, 2) / sum;
+        if (p[k] <= mf_bonded_distribution_seen * peak)
+            continue;
+        first = first == bins->count ? k : first;
+        last = k;
+    }
+    moments.mean = mean;
+    moments.deviation = sqrt(fmax(0, square - bins->width * bins->width / 12));
+    moments.seen = first < bins->count ? last + 1 - first : 0;
+    return moments;
+}
+
+double mf_bonded_distribution_narrow(enum topology_order order, double mean) {
+    static const double of_length = 0.01, of_angle = 1;
+    return order == TOPOLOGY_BOND ? of_length * mean : order == TOPOLOGY_ANGLE ? of_angle : 0;
+}
+
+bool mf_bonded_distribution_is_constrained(enum topology_order order,
+                                           const struct bonded_moments *moments) {
+    return moments->deviation < mf_bonded_distribution_narrow(order, moments->mean);
+}
+
+/// Numbers with many divisors.
+int64_t mf_bonded_distribution_fine(enum topology_order order) {
+    static const int64_t fine[TOPOLOGY_ORDERS] = {10000, 9000, 3600};
+    return fine[order];
+}
+
+static double count_all(const struct state *s, int group, size_t bin) {
+    const size_t all = s->first[s->molecules->groups[s->order]];
+    double count = 0;
+    for (size_t block = 0; block < s->blocks.count; block++)
+        count += s->counts[block * all + s->first[group] + bin];
+    return count;
+}
+
+/// How wide the bins of a group may be. Of several peaks the deviation is the sum of theirs: that
+/// of the normal distribution with the same ∫ p² dq, which is known, however narrow it is, by how
+/// many pairs of counts fall into the same bin, if they do.
+static double wanted_width(const struct state *s, int group) {
+    static const double fewest = 2, most = 5, scott = 3.49, enough = 40;
+    const struct bonded_bins *bins = &s->bins[group];
+    double all = 0, pairs = 0, mean = 0, square = 0;
+    for (size_t bin = 0; bin < bins->count; bin++) {
+        const double count = count_all(s, group, bin), q = bonded_bins_centre(bins, bin);
+        all += count;
+        pairs += count * (count - 1);
+        mean += count * q;
+        square += count * q * q;
+    }
+    if (all == 0)
+        return INFINITY;
+    mean /= all;
+    double deviation = sqrt(fmax(0, square / all - mean * mean));
+    if (pairs > enough)
+        deviation = fmin(deviation, all * (all - 1) * bins->width / (2 * sqrt(M_PI) * pairs));
+    return fmax(deviation, mf_bonded_distribution_narrow(s->order, mean)) /
+           fmin(most, fmax(fewest, cbrt(all) / scott));
+}
+
+/// The largest number of fine bins that make a whole number of bins and are not wider than wanted.
+static size_t bins_to_join(const struct state *s) {
+    enum { LEAST = 100 };
+    double width = INFINITY;
+    for (int g = 0; g < s->molecules->groups[s->order]; g++)
+        width = fmin(width, wanted_width(s, g));
+    size_t of = s->bins[0].count / LEAST;
+    while (of > 1 && (s->bins[0].count % of != 0 || (double)of * s->bins[0].width > width))
+        of--;
+    return of;
+}
+
+void mf_bonded_distribution_join(void *state) {
+    struct state *s = state;
+    const int groups = s->molecules->groups[s->order];
+    const size_t of = bins_to_join(s), all = s->blocks.count * s->first[groups] / of;
+    for (size_t k = 0; k < all; k++) { // all groups have a whole number of bins
+        double sum = 0;
+        for (size_t n = 0; n < of; n++)
+            sum += s->counts[k * of + n];
+        s->counts[k] = sum;
+    }
+    for (int g = 0; g < groups; g++) {
+        s->bins[g].count /= of;
+        s->bins[g].width *= (double)of;
+        s->first[g + 1] = s->first[g] + s->bins[g].count;
+    }
+}
+
 // Results -----------------------------------------------------------------------------------------
 
 /// Blocks that all states have.
@@ -332,6 +438,18 @@ static enum status find_columns(const struct state *s, int group, double *values
         values[2 * own->count + bin] /= largest;
     mf_statistics_forget_errors(values + own->count, own->count);
     return STATUS_OK;
+}
+
+double *mf_bonded_distribution_values(const void *state, int group, struct bonded_bins *bins) {
+    const struct state *s = state;
+    double *values = mf_memory_zeroed(s->bins[group].count, sizeof *values);
+    *bins = s->bins[group];
+    for (size_t bin = 0; values && bin < bins->count; bin++) {
+        struct running_mean mean = {0};
+        add_blocks(s, group, bin, &mean);
+        values[bin] = mean.mean;
+    }
+    return values;
 }
 
 /// p of the groups that are measured, one behind the other.

@@ -49,4 +49,38 @@ void mf_bonded_distribution_count(const struct molecules *molecules, enum topolo
 double mf_bonded_distribution_jacobian(enum topology_order order, int dimensions,
                                        const struct bonded_bins *bins, size_t bin);
 
+/// What p of a group says of its width.
+struct bonded_moments {
+    double mean, deviation; ///< [λ] or [degrees]; of the deviation that of the bins is taken off
+    size_t seen;            ///< bins from the first to the last with p above a part of the peak
+};
+
+/// The part of the peak below which the ends of a distribution are not known.
+extern const double mf_bonded_distribution_seen;
+
+/// @param[in] p  shape [bins->count]; its integral need not be 1
+struct bonded_moments mf_bonded_distribution_moments(const struct bonded_bins *bins,
+                                                     const double *p);
+
+/// The deviation below which a group is as good as constrained: a hundredth of a bond's mean
+/// length, a degree of an angle, none of a dihedral. An oscillation as narrow asks for time steps
+/// of a thousandth of the length at the thermal velocity, a twentieth of what pairs ask for, and no
+/// g(r) sees that a bond is narrower.
+double mf_bonded_distribution_narrow(enum topology_order order, double mean);
+
+/// Whether that is so, by what is measured.
+bool mf_bonded_distribution_is_constrained(enum topology_order order,
+                                           const struct bonded_moments *moments);
+
+/// Of what is measured without knowing how wide it is: bins that are to be joined when all has been
+/// counted, by `mf_bonded_distribution_join`. They become as wide as the narrowest group and its
+/// counts ask for: its deviation has two where there are few counts and up to five where there are
+/// many, as many as D. W. Scott, Biometrika 66, 605 (1979), reckons, and the whole range has 100 at
+/// least. A group narrower than a constraint counts as that. Tested: test_measure_own_targets.
+int64_t mf_bonded_distribution_fine(enum topology_order order);
+void mf_bonded_distribution_join(void *state);
+
+/// p of a group in its bins, shape [bins->count], which is the caller's to free; NULL: no memory.
+double *mf_bonded_distribution_values(const void *state, int group, struct bonded_bins *bins);
+
 extern const struct observable mf_bonded_lengths, mf_bonded_angles, mf_bonded_dihedrals;

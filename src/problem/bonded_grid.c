@@ -9,9 +9,7 @@
 #include <gsl/gsl_spline.h>
 #include <math.h>
 
-const double mf_bonded_grid_seen = 1e-3;
-
-enum { FEWEST_BINS = 5 };
+enum { FEWEST_BINS = BONDED_GRID_FEWEST_BINS };
 
 /// The slope at an end is that of the chord to where U is this much lower [k_B T], that noise may
 /// not turn it, and at least so much over the known range.
@@ -39,7 +37,7 @@ static bool is_possible(const struct bonded_grid *grid, double q) {
 static void find_seen(const struct bonded_grid *grid, const double *target, size_t *first,
                       size_t *end) {
     const struct bonded_bins *bins = &grid->unknown->bins;
-    const double seen = mf_bonded_grid_seen * largest_of(grid, target);
+    const double seen = mf_bonded_distribution_seen * largest_of(grid, target);
     *first = 0;
     *end = bins->count;
     if (is_periodic(grid))
@@ -117,8 +115,8 @@ enum status mf_bonded_grid_init(struct bonded_grid *grid, const struct inverse_p
     if (grid->known < FEWEST_BINS)
         return mf_status_fail(STATUS_BAD_INPUT,
                               "the target of the %s \"%s\" has only %zu bins with a p above %g of "
-                              "its peak: narrower bins are needed",
-                              kind, name, grid->known, mf_bonded_grid_seen);
+                              "its peak: narrower bins are needed, or a law in \"scene.%ss\"",
+                              kind, name, grid->known, mf_bonded_distribution_seen, kind);
     return STATUS_OK;
 }
 
@@ -209,7 +207,7 @@ void mf_bonded_grid_level(const struct bonded_grid *grid, double *energy) {
 void mf_bonded_grid_start(const struct bonded_grid *grid, double *energy) {
     const struct bonded_unknown *unknown = grid->unknown;
     // What was not seen is as high as what is hardly seen.
-    const double seen = mf_bonded_grid_seen * largest_of(grid, grid->target);
+    const double seen = mf_bonded_distribution_seen * largest_of(grid, grid->target);
     const struct bonded_grid own = seen_by_itself(grid);
     double *known = energy + own.below;
     for (size_t k = 0; k < own.known; k++) {

@@ -11,6 +11,9 @@
 
 #include "problem/inverse.h"
 
+/// In fewer bins no potential is seen.
+enum { BONDED_GRID_FEWEST_BINS = 5 };
+
 struct bonded_grid {
     const struct bonded_unknown *unknown; ///< borrowed
     const double *target;                 ///< p of its bins, shape [unknown->bins.count]; borrowed
@@ -22,9 +25,6 @@ struct bonded_grid {
     size_t below;                         ///< points before the first known one
     size_t points;                        ///< of all
 };
-
-/// The part of the largest p of a target below which its ends are not known.
-extern const double mf_bonded_grid_seen;
 
 /// @param[in] unknown  one of the problem's
 /// Fails: BAD_INPUT, naming the group, if hardly any bin is seen, or a dihedral's do not go round.

@@ -57,7 +57,7 @@ static void find_variances(const struct bonded_grid *grid, const double *target_
     for (size_t k = 0; k < grid->known; k++)
         peak = fmax(peak, grid->target[grid->first + k]);
     for (size_t k = 0; k < grid->known; k++) {
-        const double p = fmax(grid->target[grid->first + k], mf_bonded_grid_seen * peak);
+        const double p = fmax(grid->target[grid->first + k], mf_bonded_distribution_seen * peak);
         const double error = target_error[grid->first + k];
         variance[k] = fmax(least, pow(grid->temperature * (isfinite(error) ? error : 0) / p, 2));
     }

@@ -282,6 +282,26 @@ static void say_molecules(struct run *run, const struct measure_result *result) 
     }
 }
 
+/// Bonds and angles that a fit takes a law for.
+static enum status say_constraints(struct run *run) {
+    const struct molecules *const molecules = run->measured.molecules.molecules;
+    for (enum topology_order order = 0; molecules && order < TOPOLOGY_DIHEDRAL; order++)
+        for (int g = 0; g < molecules->groups[order]; g++) {
+            struct bonded_moments found;
+            TRY(mf_measured_molecules_moments(&run->measured.molecules, order, g, &found));
+            if (!mf_bonded_distribution_is_constrained(order, &found))
+                continue;
+            const char *const unit = order == TOPOLOGY_BOND ? "nm" : "degrees";
+            mf_progress_say(&run->progress,
+                            "%s \"%s\": a constraint, of a standard deviation of %.2g for a mean "
+                            "of %.4g %s: fit takes a harmonic law for it, of %.2g %s",
+                            mf_topology_order_names[order], molecules->group[order][g].name,
+                            found.deviation, found.mean, unit,
+                            mf_bonded_distribution_narrow(order, found.mean), unit);
+        }
+    return STATUS_OK;
+}
+
 /// What a person is to know.
 static void say_results(struct run *run, const struct measure_result *result) {
     const struct measured *const measured = &run->measured;
@@ -313,6 +333,7 @@ static void say_results(struct run *run, const struct measure_result *result) {
 
 static enum status write_results(struct run *run, bool interrupted) {
     mf_measured_motion_end(&run->measured.motion);
+    mf_measured_molecules_end(&run->measured.molecules);
     const struct measure_result result = {.request = run->request,
                                           .frames = &run->frames,
                                           .mapping = &run->mapping,
@@ -328,6 +349,7 @@ static enum status write_results(struct run *run, bool interrupted) {
     mf_run_folder_draw(&run->folder);
     say_lines(&run->progress, &run->frames.notes);
     say_results(run, &result);
+    TRY(say_constraints(run));
     mf_progress_say(&run->progress, "%zu frames of %zu beads in %.3g s; results in %s",
                     run->measured.frames, run->mapping.beads, result.seconds, run->folder.path);
     return STATUS_OK;
