@@ -30,3 +30,14 @@ const struct gromacs_function mf_gromacs_functions[] = {
     {BONDED_DIHEDRAL, 3, &mf_dihedral_ryckaert_bellemans, COSINES},
     {.law = NULL},
 };
+
+#define OF_TABLE                                                                                   \
+    {"table", "k"}, {                                                                              \
+        GROMACS_PURE, GROMACS_PURE                                                                 \
+    }
+
+const struct gromacs_function mf_gromacs_tables[BONDED_KINDS] = {
+    {BONDED_BOND, 8, &mf_bonded_table_bond, OF_TABLE},
+    {BONDED_ANGLE, 8, &mf_bonded_table_angle, OF_TABLE},
+    {BONDED_DIHEDRAL, 8, &mf_bonded_table_dihedral, OF_TABLE},
+};

@@ -19,6 +19,10 @@ struct gromacs_function {
 /// All that are laws of ours, ended by one without a law. Of a law the first is what is written.
 extern const struct gromacs_function mf_gromacs_functions[];
 
+/// The function of a table of an order of terms: the law "table", without points. Its numbers are
+/// the table's and a factor.
+extern const struct gromacs_function mf_gromacs_tables[BONDED_KINDS];
+
 /// What a number of a unit in nm and kJ/mol is to be divided by to be one in λ and k_B T_0, given
 /// these [nm], [kJ/mol].
 static inline double gromacs_unit(enum gromacs_unit unit, double length, double energy) {

@@ -2,6 +2,7 @@
 #include "input/gromacs_terms.h"
 
 #include "base/memory.h"
+#include "curves/bonded_table.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -41,7 +42,7 @@ static const struct gromacs_function *find_function(int order, int64_t number) {
     for (const struct gromacs_function *f = mf_gromacs_functions; f->law; f++)
         if ((int)f->kind == order && f->number == number)
             return f;
-    return NULL;
+    return number == mf_gromacs_tables[order].number ? &mf_gromacs_tables[order] : NULL;
 }
 
 static int parameters_of(const struct gromacs_function *function) {
@@ -53,8 +54,9 @@ static int parameters_of(const struct gromacs_function *function) {
 
 static enum status read_function(const struct gromacs_line *line, int order, const char *word,
                                  const struct gromacs_function **function) {
-    static const char *const known[] = {"1 (harmonic) and 7 (FENE)", "1 (harmonic) and 2 (G96)",
-                                        "1, 4, 9 (periodic) and 3 (Ryckaert-Bellemans)"};
+    static const char *const known[] = {
+        "1 (harmonic), 7 (FENE) and 8 (a table)", "1 (harmonic), 2 (G96) and 8 (a table)",
+        "1, 4, 9 (periodic), 3 (Ryckaert-Bellemans) and 8 (a table)"};
     int64_t number;
     *function = mf_gromacs_is_integer(word, 1, 100, &number) ? find_function(order, number) : NULL;
     if (*function)
@@ -180,6 +182,26 @@ static void name_group(const struct gromacs_reading *reading, int order,
         }
 }
 
+/// The law of a function with these numbers. Tables are told apart by their numbers alone.
+static enum status make_law(const struct gromacs_reading *reading, const struct gromacs_line *line,
+                            const struct gromacs_function *function, const double *values,
+                            struct bonded_curve *curve) {
+    enum status status = STATUS_OK;
+    TRY(mf_bonded_create(curve, function->law));
+    if (bonded_is_table(function->law)) {
+        struct bonded_table *table = curve->parameters;
+        snprintf(table->file, sizeof table->file, "table %g times %g", values[0], values[1]);
+        return STATUS_OK;
+    }
+    for (int n = 0; n < parameters_of(function) && status == STATUS_OK; n++)
+        status = set_number(line, curve, function->parameter[n],
+                            values[n] /
+                                gromacs_unit(function->unit[n], reading->length, reading->energy));
+    if (status != STATUS_OK)
+        mf_bonded_clear(curve);
+    return status;
+}
+
 /// The group of these parameters, which is new or was there.
 static enum status find_group(struct gromacs_reading *reading, const struct gromacs_line *line,
                               const struct gromacs_function *function, const double *values,
@@ -188,11 +210,7 @@ static enum status find_group(struct gromacs_reading *reading, const struct grom
     struct molecules *molecules = reading->molecules;
     struct bonded_curve curve;
     enum status status = STATUS_OK;
-    TRY(mf_bonded_create(&curve, function->law));
-    for (int n = 0; n < parameters_of(function) && status == STATUS_OK; n++)
-        status = set_number(line, &curve, function->parameter[n],
-                            values[n] /
-                                gromacs_unit(function->unit[n], reading->length, reading->energy));
+    TRY(make_law(reading, line, function, values, &curve));
     for (term->group = 0; status == STATUS_OK && term->group < molecules->groups[order];
          term->group++) {
         const struct bonded_curve *known = &molecules->group[order][term->group].curve;

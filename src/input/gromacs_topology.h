@@ -17,7 +17,8 @@ struct gromacs_note {
 
 /// Read the molecules of a file. A group is the terms of the same parameters, and is called by the
 /// types of its first term: "A-B", and "A-B_2" if there is another. Beads are of the types of
-/// [ atoms ], "nrexcl" is `exclude`.
+/// [ atoms ], "nrexcl" is `exclude`. A group of a table has a law "table" without points, as one
+/// that a fit looks for (mf_scene_groups_are_fitted).
 /// @param[in,out] molecules  no kinds and groups yet; the topology is not completed
 /// @param[in,out] composition  types and counts, to which those of the molecules are added
 /// @param[in] units  λ and k_B T_0; if not known 1 nm and 1 kJ/mol

@@ -31,8 +31,10 @@ static enum status read_topology(struct scene_molecules *molecules, struct compo
                                  const char *file) {
     static const struct units nanometres = {0};
     struct gromacs_note note;
-    const enum status status =
+    enum status status =
         mf_gromacs_topology_read(&molecules->molecules, types, file, &nanometres, &note);
+    if (status == STATUS_OK)
+        status = mf_scene_groups_forget_tables(&molecules->molecules);
     if (status != STATUS_OK)
         mf_scene_molecules_clear(molecules);
     return status;

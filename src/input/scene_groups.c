@@ -6,6 +6,7 @@
 #include "base/own_words.h"
 #include "curves/bonded_table.h"
 #include "input/scene_molecules.h"
+#include "observe/bonded_distribution.h"
 
 #include <string.h>
 
@@ -182,6 +183,82 @@ enum status mf_scene_groups_check_fitted(const struct scene_fitted *fitted,
 done:
     mf_molecules_clear(&named);
     return status;
+}
+
+enum status mf_scene_groups_forget_tables(struct molecules *molecules) {
+    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+        for (int g = 0; g < molecules->groups[order]; g++) {
+            struct molecules_group *group = &molecules->group[order][g];
+            if (!mf_scene_groups_are_fitted(group))
+                continue;
+            mf_bonded_clear(&group->curve);
+            TRY(mf_bonded_create(&group->curve, mf_bonded_laws[order][0]));
+        }
+    return STATUS_OK;
+}
+
+static struct molecules_group *find_named(struct molecules *molecules, int order,
+                                          const char *name) {
+    for (int g = 0; g < molecules->groups[order]; g++)
+        if (strcmp(molecules->group[order][g].name, name) == 0)
+            return &molecules->group[order][g];
+    return NULL;
+}
+
+/// Whether a group of a topology takes the law that is told; else a fault if it must not be told.
+static bool takes(const struct molecules_group *group, const struct molecules_group *told,
+                  const struct scene_fitted *fitted, int order, struct json_object *scene) {
+    const bool looked_for = mf_scene_groups_are_fitted(told);
+    if (mf_scene_groups_are_fitted(group) || (looked_for && fitted->told))
+        return true;
+    if (!looked_for) {
+        struct json_object laws = mf_json_child(scene, mf_scene_group_keys[order], false);
+        mf_json_fault(&laws, told->name, "the topology of \"molecules\" has its law; leave it out");
+    }
+    return false;
+}
+
+/// A law of the scene for a group that there is not.
+static void fault_unused(const struct molecules_group *told, int order,
+                         const struct molecules *molecules, struct json_object *scene) {
+    struct json_object laws = mf_json_child(scene, mf_scene_group_keys[order], false);
+    const char *known[MOLECULES_MOST_GROUPS];
+    char hint[1024];
+    for (int g = 0; g < molecules->groups[order]; g++)
+        known[g] = molecules->group[order][g].name;
+    mf_nearest_hint(told->name, known, (size_t)molecules->groups[order], hint, sizeof hint);
+    mf_json_fault(&laws, told->name, "no molecule has such %s %s%s%s",
+                  order == TOPOLOGY_ANGLE ? "an" : "a", mf_topology_order_names[order],
+                  molecules->groups[order] ? "; " : "", molecules->groups[order] ? hint : "");
+}
+
+void mf_scene_groups_join(struct molecules *molecules, struct molecules *told,
+                          const struct scene_fitted *fitted, struct json_object *scene) {
+    for (int order = 0; order < TOPOLOGY_ORDERS; order++) {
+        bool known[MOLECULES_MOST_GROUPS] = {false};
+        for (int n = 0; n < told->groups[order]; n++) {
+            struct molecules_group *own = &told->group[order][n];
+            struct molecules_group *group = find_named(molecules, order, own->name);
+            if (group == NULL && !mf_scene_groups_are_fitted(own))
+                fault_unused(own, order, molecules, scene);
+            if (group == NULL || !takes(group, own, fitted, order, scene))
+                continue;
+            const struct bonded_curve curve = group->curve;
+            group->curve = own->curve;
+            own->curve = curve;
+            known[group - molecules->group[order]] = true;
+        }
+        if (fitted)
+            fault_unnamed(fitted, order, molecules);
+        for (int g = 0; g < molecules->groups[order]; g++)
+            if (mf_scene_groups_are_fitted(&molecules->group[order][g]) && !known[g])
+                mf_json_fault(scene, "molecules",
+                              "the %s \"%s\" is a table in the topology, which is not read: "
+                              "\"scene.%s\" or, of a fit, \"target.%s\" tells it by that name",
+                              mf_topology_order_names[order], molecules->group[order][g].name,
+                              mf_scene_group_keys[order],
+                              mf_bonded_distribution_of((enum topology_order)order)->name);
+    }
 }
 
 void mf_scene_groups_write(const struct molecules *molecules, int order,

@@ -335,24 +335,13 @@ static void find_used(struct reading *reading) {
                 reading->used[order][topology->kind[k].term[order][n].group] = true;
 }
 
-/// A topology of GROMACS has the laws of all its groups; a data file of LAMMPS, which leaves an
-/// order of its atoms, may have types whose laws the scene says.
-static void check_laws_told_twice(const struct scene_molecules *own, struct json_object *scene) {
-    for (int order = 0; order < TOPOLOGY_ORDERS && own->order == NULL; order++)
-        if (mf_json_has(scene, mf_scene_group_keys[order]))
-            mf_json_fault(scene, mf_scene_group_keys[order],
-                          "the topology of \"molecules\" has them; leave them out");
-}
-
 /// "molecules": {"file": "topol.top"}: kinds and groups of a topology.
 static enum status read_file(struct reading *reading, struct json_object *object,
                              struct json_object *scene, const struct units *units) {
     const size_t faults = mf_json_fault_count(object->document);
     struct scene_molecules *own = reading->molecules;
     struct topology *topology = &own->molecules.topology;
-    TRY(mf_scene_topology_read(own, object, reading->composition, units));
-    if (mf_json_fault_count(object->document) == faults)
-        check_laws_told_twice(own, scene);
+    TRY(mf_scene_topology_read(own, object, scene, reading->fitted, reading->composition, units));
     if (mf_json_fault_count(object->document) > faults)
         return STATUS_OK;
     for (int k = 0; k < topology->kinds; k++) {

@@ -111,5 +111,16 @@ enum status mf_scene_groups_check_fitted(const struct scene_fitted *fitted,
 /// Whether a group has no law, since a fit looks for it.
 bool mf_scene_groups_are_fitted(const struct molecules_group *group);
 
+/// Let groups of tables without points have a law of strength 0. Fails: NO_MEMORY.
+enum status mf_scene_groups_forget_tables(struct molecules *molecules) MUST_USE;
+
+/// Give the groups of a topology the laws that the scene or a fit has for them, which are taken out
+/// of `told`: for a table a law of the scene, or none where a fit looks for it; the law of a
+/// topology stays, unless "unknowns" names the group. Faults, of groups that are not in the
+/// topology, whose law is told twice, and of tables that nobody knows, go to the document.
+/// Tested: cli/test_topologies.
+void mf_scene_groups_join(struct molecules *molecules, struct molecules *told,
+                          const struct scene_fitted *fitted, struct json_object *scene);
+
 void mf_scene_groups_write(const struct molecules *molecules, int order,
                            struct json_writer *writer);

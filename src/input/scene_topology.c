@@ -30,8 +30,10 @@ const struct field mf_scene_file_fields[] = {
 /// A topology of GROMACS.
 static enum status read_top(struct scene_molecules *own, struct json_object *object,
                             struct composition *composition, const struct told_file *told,
-                            const struct units *units) {
+                            const struct units *units, struct molecules *groups) {
     struct gromacs_note note;
+    *groups = own->molecules;
+    own->molecules = (struct molecules){0};
     for (const char *const *key = (const char *const[]){"exclude", "units", NULL}; *key; key++)
         if (mf_json_has(object, *key))
             mf_json_fault(object, *key, "a topology of GROMACS says it itself");
@@ -51,16 +53,22 @@ static enum status read_data(struct scene_molecules *own, struct composition *co
 }
 
 enum status mf_scene_topology_read(struct scene_molecules *molecules, struct json_object *object,
+                                   struct json_object *scene, const struct scene_fitted *fitted,
                                    struct composition *composition, const struct units *units) {
     const size_t faults = mf_json_fault_count(object->document);
     enum status status = STATUS_OK;
     struct told_file told;
+    struct molecules groups = {0};
     mf_json_fields(object, mf_scene_file_fields, &told);
     if (mf_json_fault_count(object->document) == faults)
         status = mf_lammps_topology_is(told.file)
                      ? read_data(molecules, composition, &told, units)
-                     : read_top(molecules, object, composition, &told, units);
+                     : read_top(molecules, object, composition, &told, units, &groups);
     mf_json_finish(object);
+    if (status == STATUS_OK && molecules->order == NULL &&
+        mf_json_fault_count(object->document) == faults)
+        mf_scene_groups_join(&molecules->molecules, &groups, fitted, scene);
+    mf_molecules_clear(&groups);
     if (status == STATUS_NO_MEMORY)
         return status;
     if (status != STATUS_OK)

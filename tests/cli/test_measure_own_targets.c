@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // What `mesofit measure` writes, `mesofit fit --target` takes: of one type of beads, of bonds of
-// fixed length.
+// fixed length, of molecules of a topology.
 #include "shared/is_close.h"
 #include "shared/run_program.h"
 #include "shared/small_inputs.h"
@@ -84,9 +84,9 @@ static void write_gas(const char *name, const struct trimer *trimer) {
     fclose(file);
 }
 
-static void measure(const char *trajectory) {
-    RUN_PROGRAM(&result, "measure", trajectory, "--molecules", "kinds.json", "--bins", "36",
-                "--range", "1.8", "--static", "--temperature", "300", "-o", "target", "--force");
+static void measure(const char *trajectory, const char *molecules) {
+    RUN_PROGRAM(&result, "measure", trajectory, "--molecules", molecules, "--bins", "36", "--range",
+                "1.8", "--static", "--temperature", "300", "-o", "target", "--force");
     run_program_assert_code(&result, 0);
 }
 
@@ -102,7 +102,7 @@ static void test_one_type_keeps_its_name(void **state) {
         "{\"molecules\": {\"trimer\": {\"chain\": {\"beads\": [\"A\", \"A\", \"A\"], "
         "\"bond\": \"AA\", \"angle\": \"AAA\"}}}}\n",
         NULL, NULL);
-    measure("gas.xyz");
+    measure("gas.xyz", "kinds.json");
     explain();
     assert_contains(result.out, "chosen: method \"auto\"");
     assert_null(strstr(result.out, "constraint"));
@@ -110,7 +110,7 @@ static void test_one_type_keeps_its_name(void **state) {
                        "{\"molecules\": {\"trimer\": {\"chain\": {\"type\": \"A\", \"length\": 3, "
                        "\"bond\": \"AA\", \"angle\": \"AAA\"}}}}\n",
                        NULL, NULL);
-    measure("gas.xyz");
+    measure("gas.xyz", "kinds.json");
     explain();
 }
 
@@ -130,7 +130,7 @@ static void test_constrained_bonds_are_a_known_law(void **state) {
         "{\"molecules\": {\"trimer\": {\"chain\": {\"beads\": [\"A\", \"B\", \"A\"], "
         "\"bond\": \"AB\", \"angle\": \"ABA\"}}}}\n",
         NULL, NULL);
-    measure("gas.xyz");
+    measure("gas.xyz", "kinds.json");
     assert_contains(result.err, "bond \"AB\": a constraint, of a standard deviation of 0.0003 for");
     explain();
     assert_contains(result.out, "chosen: bond \"AB\": a constraint");
@@ -140,6 +140,51 @@ static void test_constrained_bonds_are_a_known_law(void **state) {
     assert_contains(result.out, "target bond_angles.ABA");
 }
 
+static const char topology[] =
+    "[ defaults ]\n1 1 no 1.0 1.0\n[ atomtypes ]\nA 15.0 0.0 A 0.0 1.0\nB 15.0 0.0 A 0.0 1.0\n"
+    "[ moleculetype ]\ntrimer 2\n[ atoms ]\n1 A 1 T A1 1 0 15.0\n2 B 1 T B1 2 0 15.0\n"
+    "3 A 1 T A2 3 0 15.0\n[ bonds ]\n1 2 8 1 1.0\n2 3 8 1 1.0\n[ angles ]\n1 2 3 8 1 1.0\n"
+    "[ system ]\ntrimers\n[ molecules ]\ntrimer 100\n";
+
+static const char run_of_topology[] =
+    "{\"units\": \"nm-ps\", \"target\": {\"rdf\": {\"A-A\": {\"file\": \"target/rdf_A-A.tsv\"},\n"
+    "  \"A-B\": {\"file\": \"target/rdf_A-B.tsv\"}, \"B-B\": {\"file\": \"target/rdf_B-B.tsv\"}},\n"
+    "  \"bond_lengths\": {\"A-B\": {\"file\": \"target/bond_lengths.tsv\"}},\n"
+    "  \"bond_angles\": {\"A-B-A\": {\"file\": \"target/bond_angles.tsv\"}}},\n"
+    "\"scene\": {\"box\": [4, 4, 4], \"temperature\": 300, \"molecules\": {\"file\": "
+    "\"topol.top\"}}}\n";
+
+/// Tables, as all models of VOTCA with bonds that were fitted have: their laws come from the
+/// targets. With laws of its own the topology knows them, and the targets are compared with them,
+/// unless "unknowns" asks for them.
+static void test_groups_of_a_topology_have_one_name(void **state) {
+    write_gas("gas.xyz", &(struct trimer){{"A", "B", "A"}, 0.3, 0.02, 120, 8});
+    small_inputs_write(*state, "topol.top", topology, NULL, NULL);
+    measure("gas.xyz", "topol.top");
+    explain();
+    assert_contains(result.out, "target bond_lengths.A-B: ");
+    assert_contains(result.out, "target bond_angles.A-B-A: ");
+    small_inputs_write(*state, "run.json", run_of_topology, NULL, NULL);
+    RUN_PROGRAM(&result, "fit", "run.json", "--explain");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.out, "target bond_lengths.A-B: ");
+    small_inputs_write(*state, "topol.top", topology, "1 2 8 1 1.0\n2 3 8 1 1.0",
+                       "1 2 1 0.3 3000\n2 3 1 0.3 3000");
+    RUN_PROGRAM(&result, "fit", "run.json", "--explain");
+    run_program_assert_code(&result, 0);
+    small_inputs_write(*state, "run.json", run_of_topology, "\"scene\"",
+                       "\"unknowns\": {\"potential\": {}, \"bonds\": {\"A-B\": {}}, \"angles\": "
+                       "{\"A-B-A\": {}}}, \"scene\"");
+    RUN_PROGRAM(&result, "fit", "run.json", "--explain");
+    run_program_assert_code(&result, 0);
+    small_inputs_write(*state, "run.json", run_of_topology, "\"A-B\": {\"file\": \"target/bond",
+                       "\"A-B_2\": {\"file\": \"target/bond");
+    RUN_PROGRAM(&result, "fit", "run.json", "--explain");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err, "target.bond_lengths.A-B_2: no molecule has such a bond; known: "
+                                "A-B");
+}
+
 #define TEST(name)                                                                                 \
     cmocka_unit_test_setup_teardown(name, small_inputs_enter_without_gnuplot, small_inputs_leave)
 
@@ -147,6 +192,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(test_one_type_keeps_its_name),
         TEST(test_constrained_bonds_are_a_known_law),
+        TEST(test_groups_of_a_topology_have_one_name),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -185,14 +185,34 @@ static void test_laws_beside_a_topology_are_refused(void **state) {
     static const char *const laws[] = {
         "\"bonds\": {\"C1-C2\": {\"law\": \"harmonic\", \"k\": 9, \"length\": 0.8}}, \"molecules\"",
         "\"angles\": {\"bend\": {\"law\": \"harmonic\", \"k\": 9, \"angle\": 120}}, \"molecules\""};
-    static const char *const keys[] = {"scene.json: bonds: the topology of \"molecules\" has them",
-                                       "scene.json: angles: the topology of \"molecules\" has"};
+    static const char *const keys[] = {
+        "scene.json: bonds.C1-C2: the topology of \"molecules\" has its law",
+        "scene.json: angles.bend: no molecule has such an angle"};
     write_inputs(*state, NULL, NULL);
     for (int k = 0; k < 2; k++) {
         small_inputs_write(*state, "scene.json", scene, "\"molecules\"", laws[k]);
         RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
         run_program_assert_refused(&result, ".", laws[k], 1, (const char *const[]){keys[k], NULL});
     }
+}
+
+/// A table's law is told by the scene, under the name of its types.
+static void test_a_table_of_a_topology_has_a_law_of_the_scene(void **state) {
+    static struct run_program_result result;
+    static const char law[] =
+        "\"bonds\": {\"C1-C1\": {\"law\": \"harmonic\", \"k\": 9, \"length\": 0.8}}, \"molecules\"";
+    write_inputs(*state, "3 4 7 0.8 500", "3 4 8 1 1.0");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    run_program_assert_refused(
+        &result, ".", "a table", 1,
+        (const char *const[]){"the bond \"C1-C1\" is a table in the topology, which is not read: "
+                              "\"scene.bonds\"",
+                              NULL});
+    small_inputs_write(*state, "scene.json", scene, "\"molecules\"", law);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    run_program_assert_code(&result, 0);
+    results_assert_text("out/used.json", "bonds.C1-C1.law", "harmonic");
+    assert_close(results_number("out/used.json", "bonds.C1-C1.k"), 9, 1e-12);
 }
 
 /// Nothing is allocated for 10^11 pairs: it is told in less time than that would take.
@@ -290,6 +310,7 @@ int main(void) {
         TEST(test_an_angle_without_its_bonds_is_warned_of),
         TEST(test_our_own_export_is_read_again),
         TEST(test_laws_beside_a_topology_are_refused),
+        TEST(test_a_table_of_a_topology_has_a_law_of_the_scene),
         TEST(test_coordinates_come_with_a_topology),
         TEST(test_what_has_no_room_in_memory_is_refused),
         TEST(test_topologies_that_cannot_be_are_refused),
