@@ -157,6 +157,24 @@ static enum status check_bins(const struct fit_file *fit, const char *file) {
         file, INVERSION_MOST_BINS, bins);
 }
 
+/// What moves the curves of all pairs would move that of pairs that there are not.
+static enum status check_single_beads(const struct fit_file *fit, const char *file) {
+    const struct composition *composition = &fit->scene.setup.composition;
+    const bool moves = fit->unknown[UNKNOWN_POTENTIAL].wanted &&
+                       fit->method->kind != INVERSE_INVERSION && fit->method != &mf_successive;
+    for (int pair = 0; moves && pair < mf_composition_pairs(composition); pair++) {
+        char name[COMPOSITION_PAIR_NAME_SIZE];
+        mf_composition_pair_name(composition, pair, name);
+        if (!mf_composition_has_pairs(composition, pair))
+            return mf_status_fail(
+                STATUS_BAD_INPUT,
+                "%s: method.name: a single bead has no pair %s, for which \"%s\" "
+                "would look for a potential; \"imc\", \"ibi\" and \"auto\" do not",
+                file, name, fit->method->name);
+    }
+    return STATUS_OK;
+}
+
 /// An inversion samples pairs and molecules alone.
 static enum status check_interactions(const struct fit_file *fit, const char *file) {
     const int others = fit->scene.setup.interactions - scene_has_molecules(&fit->scene.molecules);
@@ -277,6 +295,7 @@ enum status mf_fit_check(const struct fit_file *fit, const char *file) {
     if (mf_targets_count(&fit->problem.targets) == 0)
         return mf_status_fail(STATUS_BAD_INPUT, "%s: target: nothing is to be fitted", file);
     TRY(check_bins(fit, file));
+    TRY(check_single_beads(fit, file));
     TRY(check_interactions(fit, file));
     TRY(check_velocities(fit, file));
     TRY(check_steps(fit, file));

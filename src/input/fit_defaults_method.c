@@ -163,7 +163,7 @@ static double noise_of_sample(const struct fit_choice *c) {
             const double ideal = larger * mf_rdf_ideal_pairs_of(bins, k, box, composition, pair);
             const double g = c->rdf->g[(size_t)pair * bins->count + k];
             squares += ideal > 0 ? g / ideal : 0;
-            count++;
+            count += ideal > 0;
         }
     return sqrt(squares / count);
 }

@@ -127,7 +127,7 @@ static double find_noise(const struct fit_scales_rdf *rdf) {
     const size_t values = pairs_of(rdf) * rdf->bins.count;
     double squares = 0, count = 0;
     for (size_t k = 0; k < values; k++) {
-        squares += rdf->error[k] * rdf->error[k];
+        squares += isnan(rdf->error[k]) ? 0 : rdf->error[k] * rdf->error[k];
         count += rdf->g[k] > 0;
     }
     return count > 0 ? sqrt(squares / count) : 0;
@@ -142,6 +142,8 @@ struct fit_scales mf_fit_scales_find(const struct fit_scales_rdf *rdf, double te
                                 .range = mf_rdf_bins_range(&rdf->bins)};
     const double spacing = pow(rdf->density, -1.0 / rdf->dimensions);
     for (size_t pair = 0; pair < pairs_of(rdf); pair++) {
+        if (!mf_composition_has_pairs(rdf->composition, (int)pair))
+            continue;
         const struct view view = view_of(rdf, pair);
         const double neighbour = find_neighbour(&view, spacing);
         double curvature = 0, at = 0;
@@ -168,6 +170,8 @@ double mf_fit_scales_friction(const struct fit_scales_rdf *rdf, double cutoff) {
     double sum = 0;
     for (size_t pair = 0; pair < pairs_of(rdf); pair++) {
         int type[2];
+        if (!mf_composition_has_pairs(composition, (int)pair))
+            continue;
         mf_composition_pair_types(composition, (int)pair, type);
         const double share = (type[0] == type[1] ? 1 : 2) * (double)composition->count[type[0]] *
                              (double)composition->count[type[1]] / (count * count);

@@ -306,7 +306,7 @@ static enum status read_kind(struct reading *reading, struct json_object *molecu
     return status == STATUS_OK ? entered : status;
 }
 
-/// Groups that no molecule has, and types of one bead: a pair of it there is not.
+/// Groups that no molecule has.
 static void check_use(const struct reading *reading, struct json_object *scene) {
     const struct molecules *molecules = &reading->molecules->molecules;
     for (int order = 0; order < TOPOLOGY_ORDERS; order++) {
@@ -317,13 +317,6 @@ static void check_use(const struct reading *reading, struct json_object *scene) 
                               "no molecule has such %s %s", order == TOPOLOGY_ANGLE ? "an" : "a",
                               mf_topology_order_names[order]);
     }
-    const struct composition *composition = reading->composition;
-    for (int type = 0; type < composition->types && molecules->topology.kinds > 0; type++)
-        if (composition->count[type] < 2)
-            mf_json_fault(scene, "molecules",
-                          "a type has at least 2 beads in all molecules and alone, and \"%s\" has "
-                          "%lld",
-                          composition->name[type], (long long)composition->count[type]);
 }
 
 /// Groups of a scene that a file's terms have, beside those that the file brings along.

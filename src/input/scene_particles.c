@@ -121,15 +121,13 @@ static void read_count(struct scene *scene, struct json_object *particles) {
     scene->setup.composition = mf_composition_of_one(scene->setup.placement.count);
 }
 
-/// One type of a mixture and how many beads there are of it, `least` or more, after those that were
-/// read before.
-static void read_type(struct scene *scene, struct json_object *types, const char *name,
-                      double least) {
+/// One type of a mixture and how many beads there are of it, after those that were read before.
+static void read_type(struct scene *scene, struct json_object *types, const char *name) {
     struct composition *composition = &scene->setup.composition;
     struct field fields[] = {mf_placement_count_fields[0], FIELD_END};
     int64_t *count = &composition->count[composition->types];
     fields[0].name = name;
-    fields[0].minimum = least;
+    fields[0].minimum = 1;
     fields[0].offset = 0;
     mf_json_fields(types, fields, count);
     scene->setup.placement.count += *count;
@@ -152,7 +150,7 @@ static void read_types(struct scene *scene, struct json_object *particles, bool 
                       "stands beside \"types\", which are numbers, too: write one of them");
     for (const char *name; (name = mf_json_key(&types, n)); n++)
         if (n < COMPOSITION_MOST_TYPES)
-            read_type(scene, &types, name, (double)fewest);
+            read_type(scene, &types, name);
     if (types.item && !counted && (n < fewest || n > COMPOSITION_MOST_TYPES))
         mf_json_fault(particles, "types",
                       "a mixture has %zu to %d types, not %zu; \"count\" is for one", fewest,

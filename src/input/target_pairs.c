@@ -22,6 +22,17 @@ static void cut_to_shortest(struct target_pairs *target) {
     }
 }
 
+/// Pair types of which there is no pair have the bins of the others, and no g.
+static void fill_bins(struct target_pairs *target, const struct composition *composition) {
+    struct rdf_bins bins = {.count = 0};
+    for (size_t pair = 0; pair < target->pairs && bins.count == 0; pair++)
+        if (mf_composition_has_pairs(composition, (int)pair))
+            bins = target->member[pair].bins;
+    for (size_t pair = 0; pair < target->pairs; pair++)
+        if (!mf_composition_has_pairs(composition, (int)pair))
+            target->member[pair].bins = bins;
+}
+
 /// All pair types must have the bins of the first.
 static void check_bins(const struct target_pairs *target, const struct composition *composition,
                        struct json_object *object) {
@@ -51,8 +62,12 @@ static enum status collect(struct target_pairs *target, const struct finite_size
     NEW_ARRAY(target->error, target->pairs * bins);
     NEW_ARRAY(target->given, target->pairs * bins);
     for (size_t pair = 0; pair < target->pairs; pair++)
-        mf_target_rdf_convert(&target->member[pair], fluid, (int)pair, target->g + pair * bins,
-                              target->error + pair * bins);
+        if (mf_composition_has_pairs(fluid->composition, (int)pair))
+            mf_target_rdf_convert(&target->member[pair], fluid, (int)pair, target->g + pair * bins,
+                                  target->error + pair * bins);
+        else
+            for (size_t k = pair * bins; k < (pair + 1) * bins; k++)
+                target->g[k] = target->error[k] = NAN;
     memcpy(target->given, target->g, target->pairs * bins * sizeof(double));
 done:
     return status;
@@ -77,6 +92,13 @@ enum status mf_target_pairs_read(struct target_pairs *target, struct json_object
     const bool known = mf_pair_names_find(object, composition, key);
     for (size_t pair = 0; pair < target->pairs; pair++) {
         mf_composition_pair_name(composition, (int)pair, name[pair]);
+        if (!mf_composition_has_pairs(composition, (int)pair)) {
+            if (key[pair] && mf_json_has(object, key[pair]))
+                mf_json_fault(object, key[pair],
+                              "a single bead is of that type, and there is no such pair; leave it "
+                              "out");
+            continue;
+        }
         // What is missing may be what a wrong name was to be.
         struct json_object child = mf_json_child(object, key[pair] ? key[pair] : name[pair], known);
         if (child.item)
@@ -84,6 +106,7 @@ enum status mf_target_pairs_read(struct target_pairs *target, struct json_object
     }
     mf_json_finish(object);
     cut_to_shortest(target);
+    fill_bins(target, composition);
     check_bins(target, composition, object);
     return collect(target, fluid);
 }
@@ -105,6 +128,8 @@ void mf_target_pairs_write(const struct target_pairs *target, const struct compo
     }
     for (size_t pair = 0; pair < target->pairs; pair++) {
         char name[COMPOSITION_PAIR_NAME_SIZE];
+        if (!mf_composition_has_pairs(composition, (int)pair))
+            continue;
         mf_composition_pair_name(composition, (int)pair, name);
         mf_json_begin(writer, name);
         mf_json_put_fields(writer, mf_target_rdf_fields, &target->member[pair].parameters);

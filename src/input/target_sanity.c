@@ -249,6 +249,12 @@ static size_t views(const struct target_files *files) {
     return files->rdf.pairs + files->apart.pairs;
 }
 
+/// Of a single bead there are none.
+static bool has_pairs(const struct target_files *files, const struct scene *scene, size_t number) {
+    const size_t pair = number < files->rdf.pairs ? number : number - files->rdf.pairs;
+    return mf_composition_has_pairs(&scene->setup.composition, (int)pair);
+}
+
 static struct view view_at(const struct target_files *files, const struct scene *scene,
                            size_t number) {
     return number < files->rdf.pairs ? view_of(&files->rdf, TARGET_RDF, scene, number)
@@ -259,6 +265,8 @@ static struct view view_at(const struct target_files *files, const struct scene 
 enum status mf_target_sanity_check(const struct target_files *files, const struct scene *scene,
                                    const char *file) {
     for (size_t n = 0; n < views(files); n++) {
+        if (!has_pairs(files, scene, n))
+            continue;
         const struct view view = view_at(files, scene, n);
         TRY(check_nonzero(&view, file));
         TRY(check_tail(&view, file));
@@ -427,6 +435,8 @@ static void tell_normalisation(const struct normalisation *n,
 enum status mf_target_sanity_tell(const struct target_files *files, const struct scene *scene,
                                   const struct target_sanity_listener *listener) {
     for (size_t n = 0; n < views(files); n++) {
+        if (!has_pairs(files, scene, n))
+            continue;
         const struct view view = view_at(files, scene, n);
         tell_view(&view, listener);
         tell_origin(&view, listener);

@@ -97,7 +97,8 @@ static int find_odd_pair(const struct target_files *files, const struct topology
         (size_t)topology->kind[0].count * (size_t)topology->kind[0].beads == topology->particles;
     int odd = -1, count = 0;
     for (size_t pair = 0; pair < files->rdf.pairs; pair++)
-        if (ends_beside_1(tail_of(files, pair), allowed)) {
+        if (mf_composition_has_pairs(&files->composition, (int)pair) &&
+            ends_beside_1(tail_of(files, pair), allowed)) {
             odd = (int)pair;
             count++;
         }

@@ -77,6 +77,8 @@ static void fill_equations(struct workspace *w, const struct imc_system *s) {
 /// Row k of D is (x_{k−1} − 2 x_k + x_{k+1}) (ℓ/h)². In the last the neighbour is the cutoff, half
 /// a spacing away, where the curve is 0: the second difference of unequal steps, h and h/2.
 static void fill_differences(gsl_matrix *rows, size_t begin, size_t end, double scale) {
+    if (begin == end)
+        return; // of pairs that there are not
     for (size_t k = begin + 1; k + 1 < end; k++) {
         gsl_matrix_set(rows, k - 1, k - 1, scale);
         gsl_matrix_set(rows, k - 1, k, -2 * scale);

@@ -56,6 +56,8 @@ enum status mf_inversion_basis_init(struct inversion_basis *basis,
     NEW_ARRAY(basis->change, all);
     for (size_t block = 0, first = 0, column = 0; block < grid->blocks; block++) {
         const size_t known = grid->known_of[block], count = count_of(grid, block, parameters);
+        if (known == 0)
+            continue;
         mf_memory_free(own);
         own = NULL;
         NEW_ARRAY(own, known * count);

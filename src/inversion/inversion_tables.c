@@ -64,6 +64,8 @@ static enum status write_pairs(const struct inversion *inversion,
     for (size_t k = 0; k < bins; k++)
         column[0][k] = mf_rdf_bins_centre(&inversion->problem->targets.bins, k);
     for (size_t pair = 0; pair < inversion->grid.pairs; pair++) {
+        if (!mf_composition_has_pairs(&inversion->composition, (int)pair))
+            continue;
         fill(inversion, pair * bins, bins, column);
         find_path(inversion, pair, "rdf_now", ".tsv", folder, path);
         TRY(mf_data_table_write_in(path, folder->units, NULL, columns, COLUMNS, bins));
@@ -140,6 +142,8 @@ static enum status write_excess(const struct inversion *inversion,
     const size_t bins = inversion->grid.bins;
     char path[OUTPUT_PATH_SIZE];
     for (size_t pair = 0; pair < inversion->grid.pairs; pair++) {
+        if (!mf_composition_has_pairs(&inversion->composition, (int)pair))
+            continue;
         const struct data_column r = {
             "r[lambda]", inversion->grid.r + mf_potential_grid_block(&inversion->grid, pair), NULL};
         find_path(inversion, pair, "excess", "_history.tsv", folder, path);

@@ -27,10 +27,12 @@ static void count_pairs(struct inversion *inversion) {
             const size_t bin = first + k;
             const double ideal =
                 mf_rdf_ideal_pairs_of(bins, k, &inversion->box, &inversion->composition, pair);
-            inversion->ideal[bin] = inversion->unit[bin] = ideal;
+            inversion->least[bin] = problem->core_threshold;
+            inversion->ideal[bin] = inversion->unit[bin] = ideal > 0 ? ideal : 1;
+            if (!(ideal > 0))
+                continue; // no pairs are counted, and none are wanted
             inversion->target_counts[bin] = ideal * target->value[bin] * factor;
             inversion->target_error[bin] = ideal * target->error[bin];
-            inversion->least[bin] = problem->core_threshold;
         }
     }
 }

@@ -72,7 +72,7 @@ static double total(const struct rdf_bins *bins, const struct composition *compo
     double sum = 0, pairs = 0;
     for (int pair = 0; pair < mf_composition_pairs(composition); pair++) {
         const double possible = mf_composition_possible_pairs(composition, pair);
-        sum += possible * values[(size_t)pair * bins->count + bin];
+        sum += possible > 0 ? possible * values[(size_t)pair * bins->count + bin] : 0;
         pairs += possible;
     }
     return sum / pairs;

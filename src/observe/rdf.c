@@ -287,7 +287,7 @@ static enum status find_series(const struct rdf *replicas, size_t count, size_t 
     for (size_t k = 0; k < all; k++) {
         const double ideal = ideal_at(replicas, k);
         for (size_t r = 0; r < count; r++)
-            for (size_t b = 0; b < blocks; b++)
+            for (size_t b = 0; b < blocks && ideal > 0; b++)
                 (*series)[(k * count + r) * blocks + b] =
                     replicas[r].histogram[b * all + k] / replicas[r].block_samples[b] / ideal;
     }
@@ -324,10 +324,13 @@ enum status mf_rdf_result(const struct rdf *replicas, size_t count, double *g, d
 }
 
 double mf_rdf_rmse(const double *g, const double *target, size_t count) {
-    double sum = 0;
-    for (size_t k = 0; k < count; k++)
-        sum += (g[k] - target[k]) * (g[k] - target[k]);
-    return sqrt(sum / (double)count);
+    double sum = 0, known = 0;
+    for (size_t k = 0; k < count; k++) {
+        const double difference = g[k] - target[k];
+        sum += isnan(difference) ? 0 : difference * difference;
+        known += !isnan(difference);
+    }
+    return sqrt(sum / known);
 }
 
 /// Standard error of the rms if blocks were independent: by leaving out each in turn.

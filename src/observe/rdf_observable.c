@@ -147,10 +147,6 @@ void mf_rdf_observable_file(const char *folder, const char *name,
              kind);
 }
 
-bool mf_rdf_observable_has(const struct composition *composition, int pair) {
-    return mf_composition_possible_pairs(composition, pair) > 0;
-}
-
 /// rdf.tsv, or in a mixture rdf_A-A.tsv, rdf_A-B.tsv and so on: r, g as the estimator tells it, g
 /// as counted, each with its standard error.
 static enum status write(const void *state, const struct observable_results *results) {
@@ -179,7 +175,7 @@ static enum status write(const void *state, const struct observable_results *res
     for (size_t pair = 0; pair < rdf->pairs; pair++) {
         const size_t first = pair * bins->count;
         size_t count = force ? 5 : 3;
-        if (!mf_rdf_observable_has(&rdf->composition, (int)pair))
+        if (!mf_composition_has_pairs(&rdf->composition, (int)pair))
             continue;
         mf_statistics_forget_errors(counted_error + first, bins->count);
         mf_statistics_forget_errors(error, force ? bins->count : 0);
@@ -212,7 +208,7 @@ static enum status judge(const void *state, const struct simulation_setup *setup
     (void)setup;
     for (int pair = 0; pair < (int)rdf->pairs; pair++) {
         mf_composition_pair_name(&rdf->composition, pair, name);
-        if (!mf_rdf_observable_has(&rdf->composition, pair))
+        if (!mf_composition_has_pairs(&rdf->composition, pair))
             return mf_status_fail(STATUS_UNCONVERGED,
                                   "there is no pair %s, and so no g(r) of it: a single bead is of "
                                   "that type",

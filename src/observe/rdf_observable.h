@@ -27,9 +27,6 @@ extern const struct observable mf_rdf_intermolecular;
 /// all pairs.
 int mf_rdf_intermolecular_kind(void);
 
-/// Whether there are pairs of a type, and so a table of it.
-bool mf_rdf_observable_has(const struct composition *composition, int pair);
-
 /// Path of the table of a pair type, rdf.tsv or in a mixture rdf_A-B.tsv, into OUTPUT_PATH_SIZE
 /// bytes.
 /// @param[in] name  "rdf" or "intermolecular_rdf"

@@ -6,6 +6,7 @@
 #include "curves/sampled.h"
 
 #include <math.h>
+#include <string.h>
 
 /// g of a bin, of several states the largest: what one of them tells is known.
 static double most_pairs(const struct inverse_problem *problem, size_t bin) {
@@ -45,6 +46,10 @@ static enum status find_core(struct potential_grid *grid, const struct inverse_p
                              size_t pair) {
     const size_t first = pair * grid->bins;
     size_t *core = &grid->core[pair];
+    if (!mf_composition_has_pairs(&problem->scene.composition, (int)pair)) {
+        *core = grid->empty[pair] = grid->bins; // nothing is to be found
+        return STATUS_OK;
+    }
     while (*core < grid->bins &&
            (most_pairs(problem, first + *core) <= well || !one_knows_pairs(problem, first + *core)))
         (*core)++;
@@ -204,6 +209,10 @@ void mf_potential_grid_complete_pairs(const struct potential_grid *grid, double 
         const size_t first = grid->core[pair], empty = grid->empty[pair];
         const double *r = grid->r + begin;
         double *block = phi + begin;
+        if (first == grid->bins) { // no potential of pairs that there are not
+            memset(block, 0, (grid->bins + 1) * sizeof *block);
+            continue;
+        }
         const double slope = find_slope(grid, pair, r, block);
         mf_core_fill(r + empty, block + empty, first - empty, slope, 0);
         mf_core_fill(r, block, empty, slope, grid->stiffness);

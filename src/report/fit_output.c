@@ -383,9 +383,12 @@ enum status mf_fit_output_observables(const struct fit_file *fit,
     const struct target_files *files = &fit->files;
     const struct observed *observed = &verification->observed;
     for (size_t pair = 0; pair < files->rdf.pairs; pair++)
-        TRY(write_rdf(fit, &files->rdf, TARGET_RDF, observed, pair, folder));
+        if (mf_composition_has_pairs(&files->composition, (int)pair))
+            TRY(write_rdf(fit, &files->rdf, TARGET_RDF, observed, pair, folder));
     for (size_t pair = 0; pair < files->apart.pairs; pair++)
-        TRY(write_rdf(fit, &files->apart, mf_rdf_intermolecular_kind(), observed, pair, folder));
+        if (mf_composition_has_pairs(&files->composition, (int)pair))
+            TRY(write_rdf(fit, &files->apart, mf_rdf_intermolecular_kind(), observed, pair,
+                          folder));
     if (files->given[TARGET_ETD])
         TRY(write_etd(fit, observed, folder));
     for (int order = 0; order < TOPOLOGY_ORDERS; order++)

@@ -24,7 +24,8 @@ struct composition mf_composition_scaled(const struct composition *composition, 
     struct composition scaled = *composition;
     for (int type = 0; type < scaled.types; type++) {
         const double count = (double)composition->count[type];
-        scaled.count[type] = (int64_t)fmax(fmin(2, count), round(share * count));
+        scaled.count[type] =
+            count < 2 ? composition->count[type] : (int64_t)fmax(2, round(share * count));
     }
     return scaled;
 }
@@ -34,7 +35,7 @@ double mf_composition_distortion(const struct composition *from, const struct co
         (double)mf_composition_particles(from) / (double)mf_composition_particles(to);
     double largest = 0;
     for (int type = 0; type < from->types; type++)
-        if (from->count[type] > 0)
+        if (from->count[type] > 1)
             largest = fmax(largest,
                            fabs(scale * (double)to->count[type] / (double)from->count[type] - 1));
     return largest;
@@ -85,6 +86,10 @@ double mf_composition_possible_pairs(const struct composition *composition, int 
     mf_composition_pair_types(composition, pair, type);
     const double a = (double)composition->count[type[0]], b = (double)composition->count[type[1]];
     return type[0] == type[1] ? 0.5 * a * (a - 1) : a * b;
+}
+
+bool mf_composition_has_pairs(const struct composition *composition, int pair) {
+    return composition->types == 0 || mf_composition_possible_pairs(composition, pair) > 0;
 }
 
 void mf_composition_pair_name(const struct composition *composition, int pair,

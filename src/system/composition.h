@@ -30,10 +30,11 @@ struct composition mf_composition_of_one(int64_t count);
 int64_t mf_composition_particles(const struct composition *composition);
 
 /// The same mixture of about `particles` beads; a type keeps two if it has them, so that there are
-/// pairs of it.
+/// pairs of it, and one if it has no more, so that there are none.
 struct composition mf_composition_scaled(const struct composition *composition, int64_t particles);
 
-/// Largest relative change of a type's share of all beads from one mixture to another.
+/// Largest relative change of a type's share of all beads from one mixture to another. That of a
+/// single bead changes with any other number.
 double mf_composition_distortion(const struct composition *from, const struct composition *to);
 
 /// The smallest number of beads from `particles` on for which mf_composition_scaled changes no
@@ -62,6 +63,10 @@ void mf_composition_pair_types(const struct composition *composition, int pair, 
 
 /// How many pairs of a pair type there are: N_a (N_a − 1)/2 of one type, N_a N_b of two.
 double mf_composition_possible_pairs(const struct composition *composition, int pair);
+
+/// Whether there is any pair of a pair type: of a single bead there is none. Of beads that nobody
+/// has counted there are.
+bool mf_composition_has_pairs(const struct composition *composition, int pair);
 
 /// Print the name of a pair type, "A-B", or nothing for beads without names.
 void mf_composition_pair_name(const struct composition *composition, int pair,

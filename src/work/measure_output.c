@@ -236,7 +236,7 @@ static void put_rdf(const struct measure_result *result, struct json_writer *wri
     for (int pair = 0;
          composition_is_mixed(composition) && pair < mf_composition_pairs(composition); pair++) {
         char name[COMPOSITION_PAIR_NAME_SIZE], file[COMPOSITION_PAIR_NAME_SIZE + 16];
-        if (!mf_rdf_observable_has(composition, pair))
+        if (!mf_composition_has_pairs(composition, pair))
             continue;
         mf_composition_pair_name(composition, pair, name);
         snprintf(file, sizeof file, "rdf_%s.tsv", name);

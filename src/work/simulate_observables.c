@@ -120,7 +120,7 @@ static enum status reserve_pairs(const char *file, const struct composition *com
         char of[COMPOSITION_PAIR_NAME_SIZE], name[COMPOSITION_PAIR_NAME_SIZE + 128];
         mf_composition_pair_name(composition, pair, of);
         snprintf(name, sizeof name, "%.*s%s%.60s", (int)(stars - file), file, of, stars + 3);
-        if (mf_rdf_observable_has(composition, pair))
+        if (mf_composition_has_pairs(composition, pair))
             TRY(mf_run_folder_reserve(folder, name));
     }
     return STATUS_OK;

@@ -252,7 +252,7 @@ static void test_fit_of_a_mixture_is_refused_in_a_line_when_a_pair_is_wrong(void
            (const char *[]){"run.json: unknowns.potential.truth.A-C: there is no such", NULL});
     // A fault of the types is told alone: those of their pairs would mislead.
     refuse(*state, "\"A\": 40", "\"A\": 1", 1,
-           (const char *[]){"run.json: scene.particles.types.A: 1 is out of range", NULL});
+           (const char *[]){"run.json: target.rdf.A-A: a single bead is of that type", NULL});
 }
 
 /// It counted them by a histogram without a word.

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // What `mesofit measure` writes, `mesofit fit --target` takes: of one type of beads, of bonds of
-// fixed length, of molecules of a topology.
+// fixed length, of molecules of a topology, of a type with one bead.
 #include "shared/is_close.h"
+#include "shared/results.h"
 #include "shared/run_program.h"
 #include "shared/small_inputs.h"
 #include "shared/testing.h"
@@ -185,6 +186,68 @@ static void test_groups_of_a_topology_have_one_name(void **state) {
                                 "A-B");
 }
 
+/// One solute in a gas, whose beads are 0.2 nm apart at least.
+static void write_solution(const char *name) {
+    enum { BEADS = 150, SNAPSHOTS = 30 };
+    static const double apart = 0.2, box = 2;
+    double place[BEADS][3];
+    FILE *file = fopen(name, "w");
+    srand(6);
+    for (int t = 0; t < SNAPSHOTS; t++) {
+        fprintf(file,
+                "%d\nLattice=\"%g 0 0 0 %g 0 0 0 %g\" Properties=species:S:1:pos:R:3 Time=%d\n",
+                BEADS, 10 * box, 10 * box, 10 * box, t);
+        for (int k = 0; k < BEADS;) {
+            int other = 0;
+            for (int d = 0; d < 3; d++)
+                place[k][d] = box * uniform();
+            for (; other < k; other++) {
+                double square = 0;
+                for (int d = 0; d < 3; d++)
+                    square += pow(remainder(place[k][d] - place[other][d], box), 2);
+                if (square < apart * apart)
+                    break;
+            }
+            if (other < k)
+                continue;
+            fprintf(file, "%s %.9f %.9f %.9f\n", k ? "W" : "P", 10 * place[k][0], 10 * place[k][1],
+                    10 * place[k][2]);
+            k++;
+        }
+    }
+    fclose(file);
+}
+
+/// There are no pairs of it: no g, no potential, nothing of it in the distance from the targets.
+static void test_a_single_bead_of_a_type_is_fitted(void **state) {
+    write_solution("solution.xyz");
+    small_inputs_write(*state, "kinds.json",
+                       "{\"molecules\": {\"solute\": {\"beads\": [\"P\"]}, \"water\": {\"beads\": "
+                       "[\"W\"]}}}\n",
+                       NULL, NULL);
+    RUN_PROGRAM(&result, "measure", "solution.xyz", "--molecules", "kinds.json", "--bins", "18",
+                "--range", "0.9", "--static", "--temperature", "300", "-o", "target");
+    run_program_assert_code(&result, 0);
+    explain();
+    assert_null(strstr(result.out, "target rdf.P-P"));
+    char *run = temporary_folder_read("target/target.json");
+    char *brace = strrchr(run, '}');
+    static char text[4096];
+    snprintf(text, sizeof text,
+             "%.*s, \"method\": {\"name\": \"ibi\", \"iterations\": 2, \"samples\": 20}, "
+             "\"verification\": {\"replicas\": 2, \"equilibration\": 20, \"samples\": 4, "
+             "\"every\": 5}}\n",
+             (int)(brace - run), run);
+    free(run);
+    small_inputs_write(*state, "target/run.json", text, NULL, NULL);
+    RUN_PROGRAM(&result, "fit", "target/run.json", "-o", "out");
+    assert_true(result.code == 0 || result.code == 1);
+    assert_true(results_number("out/summary.json", "rdf_rmse") > 0);
+    assert_true(temporary_folder_exists("out/rdf_W-P.tsv") ||
+                temporary_folder_exists("out/rdf_P-W.tsv"));
+    assert_false(temporary_folder_exists("out/rdf_P-P.tsv"));
+}
+
 #define TEST(name)                                                                                 \
     cmocka_unit_test_setup_teardown(name, small_inputs_enter_without_gnuplot, small_inputs_leave)
 
@@ -193,6 +256,7 @@ int main(void) {
         TEST(test_one_type_keeps_its_name),
         TEST(test_constrained_bonds_are_a_known_law),
         TEST(test_groups_of_a_topology_have_one_name),
+        TEST(test_a_single_bead_of_a_type_is_fitted),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

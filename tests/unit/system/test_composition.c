@@ -83,7 +83,10 @@ static void test_composition_is_name_refuses_what_no_file_could_be_called(void *
 
 static void test_composition_scaled_keeps_the_shares(void **state) {
     (void)state;
-    const struct composition large = mf_composition_scaled(&three, 800);
+    struct composition several = three;
+    for (int type = 0; type < 3; type++)
+        several.count[type] *= 2;
+    const struct composition large = mf_composition_scaled(&several, 800);
     assert_int_equal(large.types, 3);
     assert_int_equal(large.count[0], 400);
     assert_int_equal(large.count[1], 100);
@@ -105,6 +108,13 @@ static void test_composition_scaled_leaves_each_type_a_pair(void **state) {
     assert_int_equal(small.count[0], 2);
     assert_int_equal(small.count[1], 50);
     assert_int_equal(mf_composition_scaled(&single, 50).count[0], 1);
+    // Two of it would have a pair, of whose potential nothing is known.
+    const struct composition larger = mf_composition_scaled(&single, 4000);
+    assert_int_equal(larger.count[0], 1);
+    assert_true(mf_composition_distortion(&single, &larger) < 2e-3);
+    assert_true(mf_composition_least_particles(&single, 4000, 0.05) == 4000);
+    assert_false(mf_composition_has_pairs(&single, 0));
+    assert_true(mf_composition_has_pairs(&single, 1) && mf_composition_has_pairs(&rare, 0));
 }
 
 static void test_composition_distortion_is_of_the_share_that_changes_most(void **state) {
