@@ -3,6 +3,7 @@
 
 #include "trajectory/elements.h"
 
+#include <ctype.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -55,6 +56,8 @@ enum { MOST_TOLD = 64 };
 struct told {
     const struct structure_atom *atom[MOST_TOLD];
     size_t count;
+    bool hydrogen;                       ///< there is some
+    const struct structure_atom *carbon; ///< that is called by more than its element, or NULL
 };
 
 static bool was_told(struct told *told, const struct structure_atom *atom) {
@@ -80,6 +83,14 @@ static enum status note_guess(struct mapping *mapping, struct told *told,
                            atom->residue_name[0] ? "\"" : "", guess(structure, k), mass);
 }
 
+/// Carbon that is called CH3 or CA where there is no hydrogen has its hydrogen in it.
+static void look_for_united(struct told *told, const struct structure *structure, size_t k) {
+    const char *const element = guess(structure, k), *const name = structure->atom[k].name;
+    told->hydrogen = told->hydrogen || strcmp(element, "H") == 0;
+    if (strcmp(element, "C") == 0 && isalpha((unsigned char)name[1]))
+        told->carbon = &structure->atom[k];
+}
+
 /// The mass of a bead, and the weights of its atoms if these are not those of geometry. The weight
 /// of an atom alone is 1, whatever its mass.
 static enum status weigh_bead(struct mapping *mapping, const struct mapping_plan *plan,
@@ -96,6 +107,8 @@ static enum status weigh_bead(struct mapping *mapping, const struct mapping_plan
                                   "%s: nobody knows the mass of atom %zu, \"%s\": tell it in "
                                   "\"masses\" of the map, 0 of a site without mass",
                                   plan->file, k + 1, structure->atom[k].name);
+        if (origin == FROM_ELEMENT)
+            look_for_united(told, structure, k);
         if (origin == FROM_ELEMENT)
             TRY(note_guess(mapping, told, structure, k, mass));
         bead->mass += mass;
@@ -117,6 +130,11 @@ enum status mf_mapping_build_masses(struct mapping *mapping, const struct mappin
     struct told told = {.count = 0};
     for (size_t k = 0; k < mapping->beads; k++)
         TRY(weigh_bead(mapping, plan, structure, &mapping->bead[k], &told));
+    if (told.carbon && !told.hydrogen)
+        return mf_mapping_note(mapping,
+                               "mesofit: warning: \"%s\" weighs as carbon, and there is no "
+                               "hydrogen: are these united atoms? \"masses\" of a map tells theirs",
+                               told.carbon->name);
     return STATUS_OK;
 }
 

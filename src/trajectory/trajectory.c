@@ -23,8 +23,19 @@ static bool has_extension(const struct trajectory_format *format, const char *fi
     return false;
 }
 
-/// What a packed file or another format begins with, and what is to be done about it.
-static const char *find_hint(const unsigned char *begin, size_t size) {
+static bool ends_with(const char *file, const char *extension) {
+    const char *const point = strrchr(file, '.');
+    return point && strcasecmp(point, extension) == 0;
+}
+
+/// What a packed file or another format begins with or is called, and what is to be done about it.
+static const char *find_hint(const char *file, const unsigned char *begin, size_t size) {
+    if (ends_with(file, ".tpr"))
+        return "GROMACS's .tpr is not read: a .gro of the same atoms tells their names and "
+               "residues, a map their masses";
+    if (ends_with(file, ".top") || ends_with(file, ".itp"))
+        return "a topology has no coordinates: a .gro of the same atoms tells their names and "
+               "residues, a map their masses, and --molecules takes a topology of the beads";
     if (size >= 2 && memcmp(begin, "\x1F\x8B", 2) == 0)
         return "it is packed: unpack it with gunzip";
     if (size >= 4 && memcmp(begin, "\x28\xB5\x2F\xFD", 4) == 0)
@@ -48,7 +59,7 @@ static enum status find_format(struct trajectory *trajectory) {
     if (trajectory->format)
         return STATUS_OK;
     return mf_status_fail(STATUS_BAD_INPUT, "%s: is no trajectory: %s", trajectory->file,
-                          find_hint(begin, size));
+                          find_hint(trajectory->file, begin, size));
 }
 
 /// What is told, unless the format has units of its own; else Å, fs and u, unless only the file can

@@ -191,6 +191,25 @@ static void test_map_is_refused_when_it_does_not_fit_the_atoms(void **state) {
                    "the bead of atom 7, \"QQ\", has no mass");
     structure.atom[6].mass = 5;
     assert_ok(try_map(state, "{\"beads\": {\"A\": {}}}"));
+    assert_null(strstr((const char *)mapping.notes.data, "united"));
+    clear();
+}
+
+/// Atoms of methyl and no hydrogen; a carbon that is called C is one.
+static void test_united_atoms_are_warned_of(void **state) {
+    make_structure();
+    for (int k = 0; k < ATOMS; k++)
+        snprintf(structure.atom[k].name, STRUCTURE_NAME, "%s", k % 3 ? "O" : "C");
+    assert_ok(try_map(state, "{\"beads\": {\"A\": {}}}"));
+    assert_null(strstr((const char *)mapping.notes.data, "united"));
+    mf_mapping_clear(&mapping);
+    snprintf(structure.atom[0].name, STRUCTURE_NAME, "CH3");
+    assert_ok(try_map(state, "{\"beads\": {\"A\": {}}}"));
+    assert_contains((const char *)mapping.notes.data,
+                    "warning: \"CH3\" weighs as carbon, and there is no hydrogen");
+    mf_mapping_clear(&mapping);
+    assert_ok(try_map(state, "{\"beads\": {\"A\": {}}, \"masses\": {\"CH3\": 15.035}}"));
+    assert_null(strstr((const char *)mapping.notes.data, "united"));
     clear();
 }
 
@@ -233,6 +252,7 @@ int main(void) {
         TEST(test_map_has_several_beads_a_residue),
         TEST(test_molecules_are_made_whole_in_tilted_boxes),
         TEST(test_map_is_refused_when_it_does_not_fit_the_atoms),
+        TEST(test_united_atoms_are_warned_of),
         TEST(test_map_file_is_refused_when_its_keys_are_wrong),
         cmocka_unit_test(test_atoms_are_beads_when_there_are_no_residues),
     };
