@@ -293,7 +293,10 @@ enum status mf_fit_check(const struct fit_file *fit, const char *file) {
     if (files->given[TARGET_ETD])
         TRY(check_range(fit, file, "etd", files->etd.grid.r_maximum));
     if (mf_targets_count(&fit->problem.targets) == 0)
-        return mf_status_fail(STATUS_BAD_INPUT, "%s: target: nothing is to be fitted", file);
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: target: nothing is to be fitted%s", file,
+                              fit->constraints.count > 0
+                                  ? ": what has a target is a constraint, whose law is known"
+                                  : "");
     TRY(check_bins(fit, file));
     TRY(check_single_beads(fit, file));
     TRY(check_interactions(fit, file));

@@ -331,6 +331,30 @@ static enum status choose_simulation(struct fit_choice *c) {
     return joined ? mf_fit_defaults_verification(c) : STATUS_OK;
 }
 
+/// Molecules without pairs do not see each other: nothing but their bonds, angles and dihedrals is
+/// to be found, and what holds their temperature is Monte Carlo.
+static enum status choose_without_pairs(struct fit_choice *c) {
+    enum { EQUILIBRATION = 2000, SAMPLES = 200, EVERY = 20 };
+    static const char *const path = "verification";
+    mf_fit_choice_say(
+        c,
+        "method \"%s\": it finds the potentials of bonds, angles and dihedrals from "
+        "their distributions; without \"target.rdf\" and \"scene.conservative\" beads "
+        "do not act as pairs",
+        mf_automatic.name);
+    TRY(mf_fit_choice_give_text(c->root, "method", "name", mf_automatic.name));
+    if (lacks_friction(c->root)) {
+        mf_fit_choice_say(c,
+                          "dynamics \"%s\" of the verification: nothing else holds the "
+                          "temperature of molecules alone",
+                          mf_monte_carlo.name);
+        TRY(mf_fit_choice_give_text(c->root, "scene.dynamics", "integrator", mf_monte_carlo.name));
+    }
+    TRY(mf_fit_choice_give(c, path, mf_verify_fields, "equilibration", EQUILIBRATION));
+    TRY(mf_fit_choice_give(c, path, mf_verify_fields, "samples", SAMPLES));
+    return mf_fit_choice_give(c, path, mf_verify_fields, "every", EVERY);
+}
+
 static double find_crossing(const struct fit_choice *c, const struct simulation_setup *setup) {
     const double way = c->scales.neighbour;
     return setup->integrator->mobility
@@ -353,8 +377,12 @@ enum status mf_fit_defaults_choose(const struct fit_file *read, const struct fit
                            .count = (double)setup->placement.count};
     CHECK(choose_shorter_steps(&c));
     CHECK(mf_fit_scales_rdf_init(&rdf, &read->files, &read->scene));
-    if (rdf.bins.count == 0) // there is nothing to choose by
+    if (rdf.bins.count == 0) { // there are no pairs to choose by
+        status = lacks_method(root) && read->problem.bonded + read->constraints.count > 0
+                     ? choose_without_pairs(&c)
+                     : status;
         goto done;
+    }
     c.density = rdf.density;
     c.scales = mf_fit_scales_find(&rdf, setup->temperature,
                                   scene_has_molecules(&read->scene.molecules) ? little_of_molecules

@@ -7,10 +7,22 @@
 #include <math.h>
 #include <string.h>
 
+/// Whether the scene knows the laws of molecules, and no target is left of which anything is found.
+static bool knows_all(const struct json_object *root, const struct json_object *target) {
+    struct json_object own = *root; // looks, and asks for nothing
+    bool known = false;
+    if (!mf_json_is_object(root, "scene") || mf_json_key(target, 0))
+        return false;
+    const struct json_object scene = mf_json_child(&own, "scene", false);
+    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+        known = known || mf_json_is_object(&scene, mf_scene_group_keys[order]);
+    return known;
+}
+
 /// Without "unknowns": what has a target is unknown, and g(r) always if nothing else is.
 static bool has_potential(struct json_object *root) {
     const struct json_object target = mf_json_child(root, "target", false);
-    bool groups = false;
+    bool groups = knows_all(root, &target);
     for (enum topology_order order = 0; order < TOPOLOGY_ORDERS; order++)
         groups = groups || mf_json_is_object(&target, mf_bonded_distribution_of(order)->name);
     return !groups || mf_json_is_member(&target, mf_targets_name(TARGET_RDF));

@@ -136,6 +136,9 @@ static enum status check_tail(const struct view *view, const char *file) {
         view->name, votca ? "file" : "g_column", p->file, tail->mean,
         tail->grows ? "it grows from row to row, as a number of neighbours does"
         : away > 1  ? "counts of pairs, or another column than g?"
+        : tail->mean < far_from_1 && scene_has_molecules(&view->scene->molecules)
+            ? "a potential, another column than g, or g of a single molecule, which ends with it? "
+              "Its bonds, angles and dihedrals are found without \"rdf\""
         : tail->mean < far_from_1
             ? "a potential, or another column than g?"
             : "not normalised by the density of the whole system, or another column than g?",

@@ -125,12 +125,21 @@ static void plan_waves(struct measured *measured, const struct frame_box *box) {
                                                   .most = (size_t)plan->waves};
 }
 
+static bool is_without_box(const struct trajectory_frame *frame) {
+    bool periodic = false;
+    for (int i = 0; i < 3; i++)
+        periodic = periodic || frame->periodic[i];
+    return !frame->has_box || !periodic;
+}
+
 enum status mf_measured_begin(struct measured *measured, const struct measured_plan *plan,
                               const struct mapping *mapping, const struct trajectory_frame *first) {
     enum status status = STATUS_OK;
     struct frame_box box;
     *measured = (struct measured){.plan = *plan, .mapping = mapping};
-    CHECK(mf_frame_box_find(&box, first));
+    measured->in_vacuum = plan->molecules.molecules && is_without_box(first);
+    if (!measured->in_vacuum)
+        CHECK(mf_frame_box_find(&box, first));
     if (mapping->beads < 2)
         CHECK(mf_status_fail(STATUS_BAD_INPUT,
                              "%s: there is a single bead, and a measurement is of pairs of them",
@@ -138,6 +147,8 @@ enum status mf_measured_begin(struct measured *measured, const struct measured_p
     CHECK(find_composition(mapping, &measured->pairs.composition));
     CHECK(find_molecules(measured));
     CHECK(take_molecules(measured));
+    if (measured->in_vacuum)
+        goto done;
     CHECK(find_shares(measured));
     CHECK(find_bins(measured, &box, first));
     plan_waves(measured, &box);
@@ -236,6 +247,8 @@ static enum status look_at(void *context, size_t task, void *result) {
     struct measured_slot *const slot = &measured->slot[task];
     (void)result;
     TRY(mf_mapping_apply(measured->mapping, &batch->frame[task], &slot->beads));
+    if (measured->in_vacuum)
+        return STATUS_OK;
     TRY(mf_frame_box_find(&slot->box, &slot->beads));
     TRY(mf_frame_box_check_range(&slot->box, &slot->beads, measured->pairs.range,
                                  "the range of g(r)"));
@@ -257,6 +270,10 @@ static void add_pairs(struct measured *measured, const struct measured_slot *slo
 }
 
 static enum status add_one(struct measured *measured, const struct measured_slot *slot) {
+    if (measured->in_vacuum) {
+        measured->frames++;
+        return mf_measured_molecules_add(&measured->molecules, &slot->beads);
+    }
     add_pairs(measured, slot);
     if (slot->waves.numbers)
         mf_structure_factor_add(&measured->factor, slot->waves.numbers);
@@ -291,7 +308,7 @@ enum status mf_measured_add(struct measured *measured, const struct trajectory_f
     const struct parallel_tasks tasks = {
         .count = count, .threads = measured->plan.threads, .run = look_at, .context = &batch};
     TRY(make_slots(measured, count));
-    if (measured->frames == 0 && count > 1)
+    if (measured->frames == 0 && count > 1 && !measured->in_vacuum)
         TRY(begin_motion(measured, frames));
     if (measured->frames == 0 && measured->molecules.molecules)
         TRY(begin_molecules(measured, frames, count));

@@ -26,6 +26,7 @@ struct measured_plan {
 
 struct measured {
     struct measured_plan plan;
+    bool in_vacuum;                ///< there is no box: nothing but molecules is measured
     const struct mapping *mapping; ///< borrowed
     struct frame_pairs_plan pairs;
     double share[COMPOSITION_MOST_PAIRS]; ///< of a type's pairs that are not of one molecule
@@ -51,7 +52,8 @@ struct measured {
 };
 
 /// Prepare for the frames of a mapping, whose types must be names of types of beads. `first` is a
-/// frame with the box that says what range there may be. Fails: BAD_INPUT, NO_MEMORY.
+/// frame with the box that says what range there may be; with molecules it need have none. Fails:
+/// BAD_INPUT, NO_MEMORY.
 enum status mf_measured_begin(struct measured *measured, const struct measured_plan *plan,
                               const struct mapping *mapping,
                               const struct trajectory_frame *first) MUST_USE;

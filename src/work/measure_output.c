@@ -8,6 +8,7 @@
 #include "mesofit.h"
 #include "observe/kirkwood_buff.h"
 #include "observe/rdf_observable.h"
+#include "work/measure_scene.h"
 #include "work/measure_tables.h"
 
 #include <math.h>
@@ -48,19 +49,19 @@ static enum status write_json(const struct measure_result *result, const char *n
 }
 
 /// Number density of all beads [1/nm³].
-static double find_density(const struct measure_result *result) {
+double mf_measure_output_density(const struct measure_result *result) {
     const struct box box = mf_measured_box(result->measured);
     return (double)result->mapping->beads / mf_box_volume(&box);
 }
 
 /// [K]: as told, or the kinetic one; NAN if neither is known.
-static double find_temperature(const struct measure_result *result) {
+double mf_measure_output_temperature(const struct measure_result *result) {
     const double told = result->request->temperature;
     return isnan(told) ? mf_series_mean(&result->measured->motion.temperature) : told;
 }
 
 /// Mean mass of a type's beads [u]; NAN if it is not known.
-static double find_mass(const struct measure_result *result, int type) {
+double mf_measure_output_mass(const struct measure_result *result, int type) {
     const struct mapping *const mapping = result->mapping;
     struct running_mean mean = {0};
     for (size_t k = 0; k < mapping->beads; k++)
@@ -73,15 +74,25 @@ bool mf_measure_output_masses_differ(const struct measure_result *result) {
     const int types = result->measured->pairs.composition.types;
     bool differ = false;
     for (int type = 1; type < types; type++)
-        differ = differ || fabs(find_mass(result, type) / find_mass(result, 0) - 1) > 1e-9;
+        differ = differ ||
+                 fabs(mf_measure_output_mass(result, type) / mf_measure_output_mass(result, 0) -
+                      1) > 1e-9;
     return differ;
+}
+
+bool mf_measure_output_is_alone(const struct measure_result *result) {
+    const struct topology *const topology =
+        result->kinds ? &result->kinds->molecules.topology : NULL;
+    return result->measured->in_vacuum ||
+           (topology && topology->molecules == 1 && topology->kind[0].count == 1 &&
+            (size_t)topology->kind[0].beads == result->mapping->beads);
 }
 
 // summary.json ------------------------------------------------------------------------------------
 
 static void put_density(const struct measure_result *result, struct json_writer *writer) {
     const struct series *const volume = &result->measured->volume;
-    const double density = find_density(result), mean = mf_series_mean(volume);
+    const double density = mf_measure_output_density(result), mean = mf_series_mean(volume);
     const double error = density * mf_series_error(volume) / mean;
     mf_json_put_quantity(writer, "density", "1/lambda^3", density);
     mf_json_put_quantity(writer, "density_error", "1/lambda^3", error);
@@ -173,18 +184,19 @@ static void put_motion(const struct measure_result *result, struct json_writer *
     put_diffusion(result, writer);
 }
 
-static void put_masses(const struct measure_result *result, struct json_writer *writer) {
+void mf_measure_output_put_masses(const struct measure_result *result, struct json_writer *writer) {
     const struct composition *const composition = &result->measured->pairs.composition;
     const bool mixed = composition_is_mixed(composition);
-    if (isnan(find_mass(result, 0)))
+    if (isnan(mf_measure_output_mass(result, 0)))
         return;
     if (!mixed) {
-        mf_json_put_quantity(writer, "mass", "mu", find_mass(result, 0));
+        mf_json_put_quantity(writer, "mass", "mu", mf_measure_output_mass(result, 0));
         return;
     }
     mf_json_begin(writer, "mass");
     for (int type = 0; type < composition->types; type++)
-        mf_json_put_quantity(writer, composition->name[type], "mu", find_mass(result, type));
+        mf_json_put_quantity(writer, composition->name[type], "mu",
+                             mf_measure_output_mass(result, type));
     mf_json_end(writer);
 }
 
@@ -206,11 +218,13 @@ static enum status write_summary(const struct measure_result *result) {
     mf_json_put_integer(writer, "frames", (int64_t)result->measured->frames);
     mf_json_put_integer(writer, "frames_left_out", (int64_t)result->frames->skipped);
     mf_json_put_integer(writer, "particles", (int64_t)result->mapping->beads);
-    put_masses(result, writer);
-    put_density(result, writer);
+    mf_measure_output_put_masses(result, writer);
+    if (!result->measured->in_vacuum)
+        put_density(result, writer);
     put_motion(result, writer);
     put_molecules(result, writer);
-    const enum status status = put_kirkwood_buff(result, writer);
+    const enum status status =
+        result->measured->in_vacuum ? STATUS_OK : put_kirkwood_buff(result, writer);
     if (status != STATUS_OK) {
         mf_json_writer_free(writer);
         return status;
@@ -299,89 +313,25 @@ static void put_groups(const struct measure_result *result, struct json_writer *
     }
 }
 
-static void put_targets(const struct measure_result *result, struct json_writer *writer) {
-    mf_json_begin(writer, "target");
-    put_rdf(result, writer);
-    if (result->kinds)
-        put_groups(result, writer);
+static void put_motion_targets(const struct measure_result *result, struct json_writer *writer) {
     if (mf_measure_tables_have_etd(result))
         put_etd(result, writer);
-    if (mf_measure_tables_have_motion(result)) {
-        if (result->measured->motion.has_vacf)
-            put_curve(result, writer, "vacf", "vacf.tsv");
-        put_curve(result, writer, "msd", "msd.tsv");
-        put_diffusion_target(result, writer);
-    }
-    mf_json_end(writer);
-}
-
-/// Beads that a fit simulates well.
-enum { MOST_BEADS = 4000 };
-
-/// Beads that are in no molecule.
-static struct composition find_single(const struct measure_result *result) {
-    struct composition single = result->measured->pairs.composition;
-    const struct topology *const topology = &result->kinds->molecules.topology;
-    for (int k = 0; k < topology->kinds; k++)
-        for (int bead = 0; bead < topology->kind[k].beads; bead++)
-            single.count[topology->kind[k].type[bead]] -= topology->kind[k].count;
-    return single;
-}
-
-static void put_types(const struct composition *composition, double share,
-                      struct json_writer *writer) {
-    mf_json_begin(writer, "types");
-    for (int type = 0; type < composition->types; type++)
-        if (composition->count[type] > 0)
-            mf_json_put_integer(writer, composition->name[type],
-                                (int64_t)ceil(share * (double)composition->count[type]));
-    mf_json_end(writer);
-}
-
-/// The part of all that a fit simulates well; all, if there are so few of anything that the
-/// composition would be another one.
-static double find_share(const struct measure_result *result, const struct composition *single) {
-    static const double most_change = 0.02;
-    const struct topology *const topology = &result->kinds->molecules.topology;
-    const double beads = (double)mf_composition_particles(&result->measured->pairs.composition);
-    const double share = fmin(1, MOST_BEADS / beads), fewest = 1 / (share * most_change);
-    for (int k = 0; k < topology->kinds; k++)
-        if (topology->kind[k].count > 0 && (double)topology->kind[k].count < fewest)
-            return 1;
-    for (int type = 0; type < single->types; type++)
-        if (single->count[type] > 0 && (double)single->count[type] < fewest)
-            return 1;
-    return share;
-}
-
-/// Molecules, and the single beads beside them.
-static void put_molecules_of_scene(const struct measure_result *result,
-                                   struct json_writer *writer) {
-    const struct composition *const all = &result->measured->pairs.composition;
-    const struct composition single = find_single(result);
-    const double share = find_share(result, &single);
-    mf_scene_kinds_write(result->kinds, all, share, writer);
-    if (mf_composition_particles(&single) == 0 && isnan(find_mass(result, 0)))
+    if (!mf_measure_tables_have_motion(result))
         return;
-    mf_json_begin(writer, "particles");
-    if (mf_composition_particles(&single) > 0)
-        put_types(&single, share, writer);
-    put_masses(result, writer);
-    mf_json_end(writer);
+    if (result->measured->motion.has_vacf)
+        put_curve(result, writer, "vacf", "vacf.tsv");
+    put_curve(result, writer, "msd", "msd.tsv");
+    put_diffusion_target(result, writer);
 }
 
-/// A mixture is told by the numbers of its beads, of no more of them than a fit simulates well.
-static void put_particles(const struct measure_result *result, struct json_writer *writer) {
-    const struct composition *const all = &result->measured->pairs.composition;
-    const int64_t beads = mf_composition_particles(all);
-    const struct composition some =
-        mf_composition_scaled(all, beads < MOST_BEADS ? beads : MOST_BEADS);
-    if (!composition_is_mixed(all) && isnan(find_mass(result, 0)))
-        return;
-    mf_json_begin(writer, "particles");
-    if (composition_is_mixed(all))
-        put_types(&some, 1, writer);
-    put_masses(result, writer);
+static void put_targets(const struct measure_result *result, struct json_writer *writer) {
+    mf_json_begin(writer, "target");
+    if (!mf_measure_output_is_alone(result))
+        put_rdf(result, writer);
+    if (result->kinds)
+        put_groups(result, writer);
+    if (!mf_measure_output_is_alone(result))
+        put_motion_targets(result, writer);
     mf_json_end(writer);
 }
 
@@ -391,16 +341,11 @@ static enum status write_target(const struct measure_result *result) {
     mf_json_put_text(writer, "units", mf_units_systems[result->units.system]);
     mf_json_writer_speak(writer, &result->units);
     put_targets(result, writer);
-    mf_json_begin(writer, "scene");
-    mf_json_put_quantity(writer, "density", "1/lambda^3", find_density(result));
-    if (result->kinds)
-        put_molecules_of_scene(result, writer);
-    else
-        put_particles(result, writer);
-    if (!isnan(find_temperature(result)))
-        mf_json_put_number(writer, "temperature", find_temperature(result));
-    mf_json_end(writer);
-    return write_json(result, "target.json", writer);
+    const enum status status = mf_measure_scene_put(result, writer);
+    if (status == STATUS_OK)
+        return write_json(result, "target.json", writer);
+    mf_json_writer_free(writer);
+    return status;
 }
 
 static enum status write_used(const struct measure_result *result) {

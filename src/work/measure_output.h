@@ -3,6 +3,7 @@
 #pragma once
 
 #include "input/scene_molecules.h"
+#include "io/json_write.h"
 #include "work/measure_run.h"
 
 /// A measurement that is over.
@@ -20,6 +21,19 @@ struct measure_result {
 
 /// Whether types of beads have different masses.
 bool mf_measure_output_masses_differ(const struct measure_result *result);
+
+/// Whether there is nothing but molecules that do not see each other, of which there is no g(r): in
+/// no box, or a single one.
+bool mf_measure_output_is_alone(const struct measure_result *result);
+
+/// Number density of all beads [1/nm³]; temperature [K], as told or the kinetic one, NAN if neither
+/// is known; mean mass of a type's beads [u], NAN if it is not known.
+double mf_measure_output_density(const struct measure_result *result);
+double mf_measure_output_temperature(const struct measure_result *result);
+double mf_measure_output_mass(const struct measure_result *result, int type);
+
+/// "mass", of a mixture that of each type, if it is known.
+void mf_measure_output_put_masses(const struct measure_result *result, struct json_writer *writer);
 
 /// Write the tables, target.json, summary.json and used.json. Fails: IO, NO_MEMORY.
 enum status mf_measure_output_write(const struct measure_result *result) MUST_USE;

@@ -302,8 +302,7 @@ static enum status say_constraints(struct run *run) {
     return STATUS_OK;
 }
 
-/// What a person is to know.
-static void say_results(struct run *run, const struct measure_result *result) {
+static void say_pairs(struct run *run) {
     const struct measured *const measured = &run->measured;
     mf_progress_say(&run->progress, "g(r) to %.4g nm in %lld bins%s", measured->plan.range,
                     (long long)measured->plan.bins,
@@ -315,12 +314,26 @@ static void say_results(struct run *run, const struct measure_result *result) {
     if (measured->plan.q_maximum > 0)
         mf_progress_say(&run->progress, "S(q) to %.4g 1/nm, of at most %lld waves in a bin",
                         measured->plan.q_maximum, (long long)measured->plan.waves);
+}
+
+/// What a person is to know.
+static void say_results(struct run *run, const struct measure_result *result) {
+    const struct measured *const measured = &run->measured;
+    if (mf_measure_output_is_alone(result))
+        mf_progress_say(&run->progress,
+                        measured->in_vacuum
+                            ? "there is no box: molecules alone are measured, no g(r), no motion"
+                            : "a single molecule: g(r) is that of its own beads, and no target; "
+                              "bonds, angles and dihedrals are");
+    if (!measured->in_vacuum)
+        say_pairs(run);
     if (measured->pairs.molecule && result->kinds == NULL)
         mf_progress_say(&run->progress,
                         "mesofit: warning: molecules have several beads: a fit knows no bonds "
                         "without --molecules, its beads go where they like");
     say_molecules(run, result);
-    say_motion(run, &result->units);
+    if (!measured->in_vacuum)
+        say_motion(run, &result->units);
     if (measured->motion.begun && mf_measure_output_masses_differ(result))
         mf_progress_say(&run->progress, "masses of beads differ: target.json has motion compared "
                                         "with and not fitted, since friction is for one mass");

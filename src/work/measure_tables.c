@@ -67,7 +67,8 @@ static enum status write_molecules(const struct measure_result *result,
     const struct measured *const measured = result->measured;
     if (measured->molecules.molecules == NULL)
         return STATUS_OK;
-    TRY(mf_rdf_observable.write(&measured->apart, results));
+    if (!measured->in_vacuum)
+        TRY(mf_rdf_observable.write(&measured->apart, results));
     for (const struct observable_use *use = measured->molecules.use; use->observable; use++)
         TRY(use->observable->write(use->state, results));
     return STATUS_OK;
@@ -77,9 +78,10 @@ enum status mf_measure_tables_write(const struct measure_result *result) {
     const struct simulation_setup setup = mf_measure_tables_setup(result);
     const struct measure_plan plan = {.samples = (int64_t)result->measured->frames};
     const struct observable_results results = {&setup, &plan, &result->units, result->folder, NULL};
-    TRY(mf_rdf_observable.write(&result->measured->rdf, &results));
+    if (!result->measured->in_vacuum)
+        TRY(mf_rdf_observable.write(&result->measured->rdf, &results));
     TRY(write_molecules(result, &results));
-    if (mf_structure_factor_blocks(&result->measured->factor) > 0)
+    if (!result->measured->in_vacuum && mf_structure_factor_blocks(&result->measured->factor) > 0)
         TRY(mf_structure_factor_write(&result->measured->factor, &results));
     if (mf_measure_tables_have_motion(result))
         TRY(write_motion(result));

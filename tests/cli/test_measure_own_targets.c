@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // What `mesofit measure` writes, `mesofit fit --target` takes: of one type of beads, of bonds of
-// fixed length, of molecules of a topology, of a type with one bead.
+// fixed length, of molecules of a topology, of a type with one bead,
+// of a molecule in vacuum.
 #include "shared/is_close.h"
 #include "shared/results.h"
 #include "shared/run_program.h"
@@ -248,6 +249,55 @@ static void test_a_single_bead_of_a_type_is_fitted(void **state) {
     assert_false(temporary_folder_exists("out/rdf_P-P.tsv"));
 }
 
+/// One trimer, in a box or without, of which there is no g(r).
+static void write_alone(const char *name, bool box) {
+    enum { SNAPSHOTS = 400 };
+    const struct trimer trimer = {{"A", "A", "A"}, 0.3, 0.02, 120, 8};
+    FILE *file = fopen(name, "w");
+    srand(7);
+    for (int t = 0; t < SNAPSHOTS; t++) {
+        fprintf(file, "3\n%sProperties=species:S:1:pos:R:3 Time=%d\n",
+                box ? "Lattice=\"40 0 0 0 40 0 0 0 40\" " : "", 1000 * t);
+        write_trimer(file, &trimer);
+    }
+    fclose(file);
+}
+
+/// Nothing is between beads that are not bonded, so that the potentials are −k_B T ln(p/J), and the
+/// first samples agree.
+static void test_a_molecule_in_vacuum_is_fitted_by_its_bonds(void **state) {
+    small_inputs_write(*state, "kinds.json",
+                       "{\"molecules\": {\"trimer\": {\"chain\": {\"type\": \"A\", \"length\": 3, "
+                       "\"bond\": \"AA\", \"angle\": \"AAA\"}}}}\n",
+                       NULL, NULL);
+    for (int box = 1; box >= 0; box--) {
+        write_alone("alone.xyz", box);
+        RUN_PROGRAM(&result, "measure", "alone.xyz", "--molecules", "kinds.json", "--temperature",
+                    "300", "-o", "target", "--force");
+        run_program_assert_code(&result, 0);
+        assert_contains(result.err, box ? "a single molecule" : "there is no box");
+        assert_true(temporary_folder_exists("target/rdf.tsv") == box);
+        explain();
+        assert_contains(result.out, "chosen: method \"auto\"");
+        assert_contains(result.out, "dynamics \"monte-carlo\"");
+    }
+    RUN_PROGRAM(&result, "measure", "alone.xyz", "-o", "other");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err, "frame 0 has no box: g(r) needs the volume and its images; with "
+                                "--molecules bonds and angles are measured without");
+    write_gas("gas.xyz", &(struct trimer){{"A", "A", "A"}, 0.3, 0.0003, 120, 0.01});
+    RUN_PROGRAM(&result, "measure", "gas.xyz", "--molecules", "kinds.json", "--temperature", "300",
+                "--static", "-o", "target", "--force");
+    char *target = temporary_folder_read("target/target.json");
+    char *rdf = strstr(target, "\"rdf\""), *rest = strstr(target, "\"bond_lengths\"");
+    memmove(rdf, rest, strlen(rest) + 1);
+    small_inputs_write(*state, "target/run.json", target, NULL, NULL);
+    free(target);
+    RUN_PROGRAM(&result, "fit", "target/run.json", "--explain");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err, "nothing is to be fitted: what has a target is a constraint");
+}
+
 #define TEST(name)                                                                                 \
     cmocka_unit_test_setup_teardown(name, small_inputs_enter_without_gnuplot, small_inputs_leave)
 
@@ -257,6 +307,7 @@ int main(void) {
         TEST(test_constrained_bonds_are_a_known_law),
         TEST(test_groups_of_a_topology_have_one_name),
         TEST(test_a_single_bead_of_a_type_is_fitted),
+        TEST(test_a_molecule_in_vacuum_is_fitted_by_its_bonds),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
