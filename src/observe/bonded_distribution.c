@@ -229,49 +229,6 @@ static size_t spans(void *state, struct memory_span *spans) {
 
 // Widths ------------------------------------------------------------------------------------------
 
-const double mf_bonded_distribution_seen = 1e-3;
-
-struct bonded_moments mf_bonded_distribution_moments(const struct bonded_bins *bins,
-                                                     const double *p) {
-    struct bonded_moments moments = {0};
-    double sum = 0, mean = 0, square = 0, peak = 0;
-    size_t first = bins->count, last = 0;
-    for (size_t k = 0; k < bins->count; k++) {
-        const double q = bonded_bins_centre(bins, k);
-        sum += p[k];
-        mean += p[k] * q;
-        peak = fmax(peak, p[k]);
-    }
-    mean /= sum;
-    for (size_t k = 0; k < bins->count; k++) {
-        square += p[k] * pow(bonded_bins_centre(bins, k) - mean, 2) / sum;
-        if (p[k] <= mf_bonded_distribution_seen * peak)
-            continue;
-        first = first == bins->count ? k : first;
-        last = k;
-    }
-    moments.mean = mean;
-    moments.deviation = sqrt(fmax(0, square - bins->width * bins->width / 12));
-    moments.seen = first < bins->count ? last + 1 - first : 0;
-    return moments;
-}
-
-double mf_bonded_distribution_narrow(enum topology_order order, double mean) {
-    static const double of_length = 0.01, of_angle = 1;
-    return order == TOPOLOGY_BOND ? of_length * mean : order == TOPOLOGY_ANGLE ? of_angle : 0;
-}
-
-bool mf_bonded_distribution_is_constrained(enum topology_order order,
-                                           const struct bonded_moments *moments) {
-    return moments->deviation < mf_bonded_distribution_narrow(order, moments->mean);
-}
-
-/// Numbers with many divisors.
-int64_t mf_bonded_distribution_fine(enum topology_order order) {
-    static const int64_t fine[TOPOLOGY_ORDERS] = {10000, 9000, 3600};
-    return fine[order];
-}
-
 static double count_all(const struct state *s, int group, size_t bin) {
     const size_t all = s->first[s->molecules->groups[s->order]];
     double count = 0;
