@@ -163,6 +163,10 @@ static enum status read_again(struct run *run, size_t skip) {
     plan.skip = skip;
     mf_measured_clear(&run->measured);
     mf_frames_close(&run->frames);
+    if (run->request->molecules) { // whose types have become those of the beads
+        mf_scene_molecules_clear(&run->molecules);
+        TRY(mf_molecules_file_read(&run->molecules, &run->types, run->request->molecules));
+    }
     TRY(mf_frames_open(&run->frames, &plan, &run->structure.structure, structure_file(run)));
     return read_frames(run);
 }

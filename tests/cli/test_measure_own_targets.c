@@ -298,6 +298,53 @@ static void test_a_molecule_in_vacuum_is_fitted_by_its_bonds(void **state) {
     assert_contains(result.err, "nothing is to be fitted: what has a target is a constraint");
 }
 
+/// Trimers A-B-A, all A before all B, which in the first frames are in an eighth of the box.
+static void write_compressed(const char *name) {
+    enum { MOLECULES = 30, SNAPSHOTS = 80, COMPRESSED = 10 };
+    FILE *file = fopen(name, "w");
+    srand(8);
+    for (int t = 0; t < SNAPSHOTS; t++) {
+        double middle[MOLECULES][3];
+        fprintf(file,
+                "%d\nLattice=\"%g 0 0 0 %g 0 0 0 %g\" Properties=species:S:1:pos:R:3:mol:I:1 "
+                "Time=%d\n",
+                3 * MOLECULES, 10 * edge, 10 * edge, 10 * edge, 1000 * t);
+        for (int m = 0; m < MOLECULES; m++)
+            for (int d = 0; d < 3; d++)
+                middle[m][d] = (t < COMPRESSED ? 5 : 10) * edge * uniform();
+        for (int k = 0; k < 3 * MOLECULES; k++) {
+            const double *x = middle[k % MOLECULES];
+            const double shift = k < MOLECULES ? 3 : k < 2 * MOLECULES ? -3 : 0;
+            fprintf(file, "%s %.9f %.9f %.9f %d\n", shift == 0 ? "B" : "A", x[0] + shift, x[1],
+                    x[2] + 0.1 * shift * normal(), k % MOLECULES + 1);
+        }
+    }
+    fclose(file);
+}
+
+/// They are left out in a second reading, in which the types of the molecules' file have become
+/// those of the map, whose order is another.
+static void test_molecules_are_found_again_behind_frames_that_are_left_out(void **state) {
+    write_compressed("gas.xyz");
+    small_inputs_write(
+        *state, "kinds.json",
+        "{\"molecules\": {\"trimer\": {\"chain\": {\"beads\": [\"A\", \"B\", \"A\"], "
+        "\"bond\": \"AB\", \"angle\": \"ABA\"}}}}\n",
+        NULL, NULL);
+    small_inputs_write(*state, "map.json",
+                       "{\"beads\": {\"B\": {\"first\": 61, \"last\": 90, \"size\": 1}, \"A\": "
+                       "{\"first\": 1, \"last\": 60, \"size\": 1}}, \"masses\": {\"A\": 1, \"B\": "
+                       "1}}\n",
+                       NULL, NULL);
+    RUN_PROGRAM(&result, "measure", "gas.xyz", "--molecules", "kinds.json", "--map", "map.json",
+                "--bins", "36", "--range", "1.8", "--static", "--temperature", "300", "-o",
+                "target");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.err, "frames are not in equilibrium");
+    explain();
+    assert_contains(result.out, "target bond_angles.ABA");
+}
+
 #define TEST(name)                                                                                 \
     cmocka_unit_test_setup_teardown(name, small_inputs_enter_without_gnuplot, small_inputs_leave)
 
@@ -308,6 +355,7 @@ int main(void) {
         TEST(test_groups_of_a_topology_have_one_name),
         TEST(test_a_single_bead_of_a_type_is_fitted),
         TEST(test_a_molecule_in_vacuum_is_fitted_by_its_bonds),
+        TEST(test_molecules_are_found_again_behind_frames_that_are_left_out),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
