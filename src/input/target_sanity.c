@@ -8,7 +8,6 @@
 #include "observe/rdf_observable.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 
 /// Measured: the tails of targets/ and of soft fluids, gases and Lennard-Jones near its critical
@@ -279,15 +278,6 @@ enum status mf_target_sanity_check(const struct target_files *files, const struc
         TRY(check_compressibility(&view, file));
     }
     return STATUS_OK;
-}
-
-void mf_target_sanity_say(const struct target_sanity_listener *listener, const char *format, ...) {
-    char line[512];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(line, sizeof line, format, arguments);
-    va_end(arguments);
-    listener->say(listener->context, line);
 }
 
 static size_t highest_bin(const struct view *view) {

@@ -4,7 +4,17 @@
 #include "input/target_sanity.h"
 
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
+
+void mf_target_sanity_say(const struct target_sanity_listener *listener, const char *format, ...) {
+    char line[512];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(line, sizeof line, format, arguments);
+    va_end(arguments);
+    listener->say(listener->context, line);
+}
 
 /// What lengths are told in.
 const char *mf_target_sanity_length(const struct scene *scene, double *length) {

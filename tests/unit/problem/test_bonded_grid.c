@@ -312,7 +312,8 @@ static void test_bins_of_two_states_are_those_of_both(void **state) {
         if (place > -0.5 && place < (double)grid.points - 0.5)
             assert_close(values[lround(place)], alone[k], 1e-9);
     }
-    assert_true(mf_bonded_grid_is_above(&grid, &cold.problem, grid.first, mf_bonded_distribution_seen));
+    assert_true(
+        mf_bonded_grid_is_above(&grid, &cold.problem, grid.first, mf_bonded_distribution_seen));
     clear_twin(&hot);
     clear_twin(&cold);
 }
