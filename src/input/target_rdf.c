@@ -89,9 +89,10 @@ enum status mf_target_rdf_error_column(int64_t asked, int64_t first, int64_t sec
     return STATUS_OK;
 }
 
-/// Errors are small beside g, and they do not add up.
+/// Errors are small beside g, and they do not add up; those of a column that is called so may be of
+/// a short measurement.
 static enum status check_errors(const struct target_rdf_parameters *p,
-                                const struct target_rows *rows, int64_t column) {
+                                const struct target_rows *rows, int64_t column, bool named) {
     static const double structure = 0.1, largest_share = 0.5;
     size_t large = 0, seen = 0;
     bool grows = rows->error[rows->count - 1] > 1;
@@ -104,7 +105,7 @@ static enum status check_errors(const struct target_rdf_parameters *p,
         seen += rows->g[k] > structure;
         large += rows->g[k] > structure && rows->error[k] > largest_share * rows->g[k];
     }
-    if (grows || 2 * large > seen)
+    if (!named && (grows || 2 * large > seen))
         return mf_status_fail(STATUS_BAD_INPUT,
                               "%s: column %lld cannot be the standard error of g: it %s; "
                               "\"error_column\" names another, or 0 for none",
@@ -134,7 +135,8 @@ static enum status read_columns(const struct target_rdf_parameters *p, const str
     }
     *has_errors = error_column > 0;
     if (*has_errors)
-        status = check_errors(p, rows, error_column);
+        status = check_errors(p, rows, error_column,
+                              error_column == (int64_t)mf_data_table_find(&table, "g_error"));
 done:
     mf_data_table_clear(&table);
     return status;

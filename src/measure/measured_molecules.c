@@ -246,11 +246,11 @@ enum status mf_measured_molecules_moments(const struct measured_molecules *measu
                                           enum topology_order order, int group,
                                           struct bonded_moments *moments) {
     struct bonded_bins bins;
-    double *p = mf_bonded_distribution_values(find_use(measured, order)->state, group, &bins);
-    if (p == NULL)
+    double *counts = mf_bonded_distribution_counts(find_use(measured, order)->state, group, &bins);
+    if (counts == NULL)
         return STATUS_NO_MEMORY;
-    *moments = mf_bonded_distribution_moments(&bins, p);
-    mf_memory_free(p);
+    *moments = mf_bonded_distribution_moments(&bins, counts);
+    mf_memory_free(counts);
     return STATUS_OK;
 }
 

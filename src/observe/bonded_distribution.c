@@ -9,24 +9,12 @@
 #include "base/statistics.h"
 #include "forces/bonded.h"
 #include "io/data_table.h"
+#include "observe/bonded_state.h"
 #include "observe/measure.h"
-#include "observe/sample_blocks.h"
 
 #include <math.h>
 
 enum { COLUMNS = 3, MOST_PARTS = 20 };
-
-struct state {
-    const struct molecules *molecules;
-    enum topology_order order;
-    int dimensions;
-    struct sample_blocks blocks;
-    struct bonded_bins bins[MOLECULES_MOST_GROUPS]; ///< of each group
-    size_t first[MOLECULES_MOST_GROUPS + 1];        ///< bin of each group among those of all
-    double *counts;                                 ///< shape [blocks, bins of all groups]
-    size_t parts;                                   ///< of the molecules
-    double *of_part;                                ///< shape [parts, bins of all groups]
-};
 
 static const struct field fields[] = {
     {"bins", FIELD_INTEGER, .offset = offsetof(struct bonded_settings, bins), .initial = 100,
@@ -104,7 +92,7 @@ static struct bonded_bins choose_bins(const struct molecules *molecules, enum to
     return (struct bonded_bins){low, (high - low) / (double)count, (size_t)count};
 }
 
-static enum status begin(struct state *s, enum topology_order order,
+static enum status begin(struct bonded_state *s, enum topology_order order,
                          const struct bonded_settings *settings,
                          const struct simulation *simulation, const struct measure_plan *plan) {
     enum status status = STATUS_OK;
@@ -114,8 +102,8 @@ static enum status begin(struct state *s, enum topology_order order,
         return mf_status_fail(STATUS_BAD_INPUT, "%s: the scene has no %ss",
                               mf_bonded_distribution_of(order)->name,
                               mf_topology_order_names[order]);
-    *s =
-        (struct state){.molecules = molecules, .order = order, .dimensions = setup->box.dimensions};
+    *s = (struct bonded_state){
+        .molecules = molecules, .order = order, .dimensions = setup->box.dimensions};
     CHECK(mf_sample_blocks_init(&s->blocks, (size_t)plan->samples));
     for (int g = 0; g < molecules->groups[order]; g++) {
         s->bins[g] = settings->bins > 0
@@ -132,11 +120,11 @@ done:
 }
 
 static void clear(void *state) {
-    struct state *s = state;
+    struct bonded_state *s = state;
     mf_memory_free(s->counts);
     mf_memory_free(s->of_part);
     mf_sample_blocks_clear(&s->blocks);
-    *s = (struct state){0};
+    *s = (struct bonded_state){0};
 }
 
 /// The bin of q, or −1. The end of the circle may be rounded up.
@@ -204,7 +192,7 @@ void mf_bonded_distribution_count(const struct molecules *molecules, enum topolo
 }
 
 static enum status sample(void *state, struct simulation *simulation) {
-    struct state *s = state;
+    struct bonded_state *s = state;
     const int groups = s->molecules->groups[s->order];
     if (mf_sample_blocks_are_full(&s->blocks)) {
         mf_sample_blocks_join(&s->blocks, s->counts, s->first[groups]);
@@ -220,80 +208,17 @@ static enum status sample(void *state, struct simulation *simulation) {
 }
 
 static size_t spans(void *state, struct memory_span *spans) {
-    struct state *s = state;
+    struct bonded_state *s = state;
     const size_t row = s->first[s->molecules->groups[s->order]] * sizeof *s->counts;
     spans[0] = (struct memory_span){s->counts, s->blocks.count * row};
     spans[1] = (struct memory_span){s->of_part, s->parts * row};
     return 2 + mf_sample_blocks_spans(&s->blocks, spans + 2);
 }
 
-// Widths ------------------------------------------------------------------------------------------
-
-static double count_all(const struct state *s, int group, size_t bin) {
-    const size_t all = s->first[s->molecules->groups[s->order]];
-    double count = 0;
-    for (size_t block = 0; block < s->blocks.count; block++)
-        count += s->counts[block * all + s->first[group] + bin];
-    return count;
-}
-
-/// How wide the bins of a group may be. Of several peaks the deviation is the sum of theirs: that
-/// of the normal distribution with the same ∫ p² dq, which is known, however narrow it is, by how
-/// many pairs of counts fall into the same bin, if they do.
-static double wanted_width(const struct state *s, int group) {
-    static const double fewest = 2, most = 5, scott = 3.49, enough = 40;
-    const struct bonded_bins *bins = &s->bins[group];
-    double all = 0, pairs = 0, mean = 0, square = 0;
-    for (size_t bin = 0; bin < bins->count; bin++) {
-        const double count = count_all(s, group, bin), q = bonded_bins_centre(bins, bin);
-        all += count;
-        pairs += count * (count - 1);
-        mean += count * q;
-        square += count * q * q;
-    }
-    if (all == 0)
-        return INFINITY;
-    mean /= all;
-    double deviation = sqrt(fmax(0, square / all - mean * mean));
-    if (pairs > enough)
-        deviation = fmin(deviation, all * (all - 1) * bins->width / (2 * sqrt(M_PI) * pairs));
-    return fmax(deviation, mf_bonded_distribution_narrow(s->order, mean)) /
-           fmin(most, fmax(fewest, cbrt(all) / scott));
-}
-
-/// The largest number of fine bins that make a whole number of bins and are not wider than wanted.
-static size_t bins_to_join(const struct state *s) {
-    enum { LEAST = 100 };
-    double width = INFINITY;
-    for (int g = 0; g < s->molecules->groups[s->order]; g++)
-        width = fmin(width, wanted_width(s, g));
-    size_t of = s->bins[0].count / LEAST;
-    while (of > 1 && (s->bins[0].count % of != 0 || (double)of * s->bins[0].width > width))
-        of--;
-    return of;
-}
-
-void mf_bonded_distribution_join(void *state) {
-    struct state *s = state;
-    const int groups = s->molecules->groups[s->order];
-    const size_t of = bins_to_join(s), all = s->blocks.count * s->first[groups] / of;
-    for (size_t k = 0; k < all; k++) { // all groups have a whole number of bins
-        double sum = 0;
-        for (size_t n = 0; n < of; n++)
-            sum += s->counts[k * of + n];
-        s->counts[k] = sum;
-    }
-    for (int g = 0; g < groups; g++) {
-        s->bins[g].count /= of;
-        s->bins[g].width *= (double)of;
-        s->first[g + 1] = s->first[g] + s->bins[g].count;
-    }
-}
-
 // Results -----------------------------------------------------------------------------------------
 
 /// Blocks that all states have.
-static size_t whole_blocks(const struct state *const *states, size_t count) {
+static size_t whole_blocks(const struct bonded_state *const *states, size_t count) {
     size_t least = SIZE_MAX;
     for (size_t k = 0; k < count; k++) {
         const size_t blocks = mf_sample_blocks_whole(&states[k]->blocks);
@@ -303,14 +228,14 @@ static size_t whole_blocks(const struct state *const *states, size_t count) {
 }
 
 /// p of a group's bins in blocks of time and independent states, shape [bins, count, blocks].
-static void find_series(const struct state *const *states, size_t count, int group, size_t blocks,
-                        double *series) {
-    const struct state *s = states[0];
+static void find_series(const struct bonded_state *const *states, size_t count, int group,
+                        size_t blocks, double *series) {
+    const struct bonded_state *s = states[0];
     const double terms = (double)mf_bonded_distribution_terms(s->molecules, s->order, group);
     const size_t all = s->first[s->molecules->groups[s->order]], bins = s->bins[group].count;
     for (size_t bin = 0; bin < bins; bin++)
         for (size_t n = 0; n < count * blocks; n++) {
-            const struct state *of = states[n / blocks];
+            const struct bonded_state *of = states[n / blocks];
             const size_t block = n % blocks;
             series[bin * count * blocks + n] =
                 of->counts[block * all + s->first[group] + bin] /
@@ -319,7 +244,7 @@ static void find_series(const struct state *const *states, size_t count, int gro
 }
 
 /// Terms of a group in a part of the molecules.
-static double terms_of_part(const struct state *s, int group, size_t part) {
+static double terms_of_part(const struct bonded_state *s, int group, size_t part) {
     double terms = 0;
     for (int k = 0; k < s->molecules->topology.kinds; k++) {
         const struct topology_kind *kind = &s->molecules->topology.kind[k];
@@ -333,9 +258,9 @@ static double terms_of_part(const struct state *s, int group, size_t part) {
 }
 
 /// Standard errors by parts of the molecules, which count as independent; 0 of fewer than two.
-static void find_errors_of_parts(const struct state *const *states, size_t count, int group,
+static void find_errors_of_parts(const struct bonded_state *const *states, size_t count, int group,
                                  double *error) {
-    const struct state *s = states[0];
+    const struct bonded_state *s = states[0];
     const size_t all = s->first[s->molecules->groups[s->order]], bins = s->bins[group].count;
     double terms[MOST_PARTS];
     for (size_t part = 0; part < s->parts; part++)
@@ -343,7 +268,7 @@ static void find_errors_of_parts(const struct state *const *states, size_t count
     for (size_t bin = 0; bin < bins; bin++) {
         struct running_mean mean = {0};
         for (size_t n = 0; n < count * s->parts; n++) {
-            const struct state *of = states[n / s->parts];
+            const struct bonded_state *of = states[n / s->parts];
             const size_t part = n % s->parts;
             if (terms[part] > 0)
                 mf_statistics_add(
@@ -356,7 +281,7 @@ static void find_errors_of_parts(const struct state *const *states, size_t count
 
 /// p of a group's bins and their errors: by blocks of time or by parts of the molecules, which of
 /// them scatters more.
-static enum status average(const struct state *const *states, size_t count, int group,
+static enum status average(const struct bonded_state *const *states, size_t count, int group,
                            double *value, double *error) {
     enum status status = STATUS_OK;
     const size_t bins = states[0]->bins[group].count, blocks = whole_blocks(states, count);
@@ -382,7 +307,7 @@ done:
 }
 
 /// p, its error and p over the Jacobian with a largest value of 1; shape [COLUMNS, bins].
-static enum status find_columns(const struct state *s, int group, double *values) {
+static enum status find_columns(const struct bonded_state *s, int group, double *values) {
     const struct bonded_bins *own = &s->bins[group];
     double largest = 0;
     TRY(average(&s, 1, group, values, values + own->count));
@@ -397,23 +322,11 @@ static enum status find_columns(const struct state *s, int group, double *values
     return STATUS_OK;
 }
 
-double *mf_bonded_distribution_values(const void *state, int group, struct bonded_bins *bins) {
-    const struct state *s = state;
-    double *values = mf_memory_zeroed(s->bins[group].count, sizeof *values);
-    *bins = s->bins[group];
-    for (size_t bin = 0; values && bin < bins->count; bin++) {
-        struct running_mean mean = {0};
-        add_blocks(s, group, bin, &mean);
-        values[bin] = mean.mean;
-    }
-    return values;
-}
-
 /// p of the groups that are measured, one behind the other.
 static enum status result(const void *const *states, size_t count,
                           const struct observable_values *values) {
-    const struct state *const *all = (const struct state *const *)states;
-    const struct state *first = all[0];
+    const struct bonded_state *const *all = (const struct bonded_state *const *)states;
+    const struct bonded_state *first = all[0];
     for (int g = 0; g < first->molecules->groups[first->order]; g++)
         TRY(average(all, count, g, values->value + first->first[g],
                     values->error + first->first[g]));
@@ -421,7 +334,7 @@ static enum status result(const void *const *states, size_t count,
 }
 
 /// q, then p, error and p over the Jacobian of each group under its name. All have the same bins.
-static enum status write_table(const struct state *s, const char *file,
+static enum status write_table(const struct bonded_state *s, const char *file,
                                const struct observable_results *results) {
     enum { MOST = 1 + COLUMNS * MOLECULES_MOST_GROUPS };
     static const char *const endings[COLUMNS] = {"", "_error", "_boltzmann"};
@@ -503,7 +416,7 @@ static void explain(const struct simulation_setup *setup, enum topology_order or
         .summary = "distribution of the " what " of each group",                                   \
         .fields = fields,                                                                          \
         .settings_size = sizeof(struct bonded_settings),                                           \
-        .state_size = sizeof(struct state),                                                        \
+        .state_size = sizeof(struct bonded_state),                                                 \
         .begin = record##_begin,                                                                   \
         .clear = clear,                                                                            \
         .sample = sample,                                                                          \

@@ -80,7 +80,7 @@ bool mf_bonded_distribution_is_constrained(enum topology_order order,
 int64_t mf_bonded_distribution_fine(enum topology_order order);
 void mf_bonded_distribution_join(void *state);
 
-/// p of a group in its bins, shape [bins->count], which is the caller's to free; NULL: no memory.
-double *mf_bonded_distribution_values(const void *state, int group, struct bonded_bins *bins);
+/// Counts of a group in its bins, shape [bins->count], the caller's to free; NULL: no memory.
+double *mf_bonded_distribution_counts(const void *state, int group, struct bonded_bins *bins);
 
 extern const struct observable mf_bonded_lengths, mf_bonded_angles, mf_bonded_dihedrals;

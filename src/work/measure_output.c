@@ -128,7 +128,7 @@ static enum status put_kirkwood_buff(const struct measure_result *result,
         &rdf->bins, g, error, &box, rdf->particle_count, possible ? inside : 0);
     if (!possible) { // their g is higher as a whole, and its tail that of G without them
         found.integral += inside;
-        found.compressibility += find_density(result) * inside;
+        found.compressibility += mf_measure_output_density(result) * inside;
     }
     mf_statistics_forget_errors(&found.integral_error, 1);
     mf_statistics_forget_errors(&found.compressibility_error, 1);

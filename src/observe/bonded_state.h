@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file What an observable of bonds, angles or dihedrals has counted.
+#pragma once
+
+#include "observe/bonded_distribution.h"
+#include "observe/sample_blocks.h"
+
+struct bonded_state {
+    const struct molecules *molecules;
+    enum topology_order order;
+    int dimensions;
+    struct sample_blocks blocks;
+    struct bonded_bins bins[MOLECULES_MOST_GROUPS]; ///< of each group
+    size_t first[MOLECULES_MOST_GROUPS + 1];        ///< bin of each group among those of all
+    double *counts;                                 ///< shape [blocks, bins of all groups]
+    size_t parts;                                   ///< of the molecules
+    double *of_part;                                ///< shape [parts, bins of all groups]
+};
