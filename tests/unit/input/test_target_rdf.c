@@ -132,6 +132,12 @@ static void test_target_read_refuses_errors_that_are_none(void **state) {
     // Three columns as gmx rdf -cn, pasted, has them: neighbours up to r.
     assert_refused(state, "0.1 0 0\n0.2 0.5 0.1\n0.3 1.5 0.9\n0.4 1 1.8\n", "",
                    "column 3 cannot be the standard error of g: it grows");
+    // Those of a short measurement, which say what they are.
+    struct target_rdf target;
+    assert_ok(
+        read(state, "# r g g_error\n0.1 0 0\n0.2 0.5 1.1\n0.3 1.5 0.9\n0.4 1 0.98\n", "", &target));
+    assert_close(target.error[2], 0.9, 0);
+    mf_target_rdf_clear(&target);
     // The g of other pairs.
     assert_refused(
         state, "0.1 0 0\n0.2 0.5 1.1\n0.3 1.5 0.9\n0.4 1 0.98\n", "",
