@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "input/target_resample.h"
+
+#include "base/memory.h"
+
+#include <math.h>
+
+/// Points that a cubic goes through, and the next one.
+enum { CUBIC = 4, NEXT = CUBIC + 1 };
+
+static double mean_step(const struct target_rows *rows) {
+    return (rows->r[rows->count - 1] - rows->r[0]) / (double)(rows->count - 1);
+}
+
+bool mf_target_resample_is_needed(const struct target_rows *rows) {
+    static const double rounding = 0.01;
+    bool needed = false;
+    for (size_t k = 1; k < rows->count; k++)
+        needed = needed || fabs((rows->r[k] - rows->r[k - 1]) / mean_step(rows) - 1) > rounding;
+    return needed && rows->count >= NEXT;
+}
+
+/// Lagrange's weights of points in the polynomial through them at x.
+static void find_weights(const struct target_rows *rows, const size_t *point, size_t count,
+                         double x, double *weight) {
+    for (size_t i = 0; i < count; i++) {
+        weight[i] = 1;
+        for (size_t j = 0; j < count; j++)
+            if (j != i)
+                weight[i] *= (x - rows->r[point[j]]) / (rows->r[point[i]] - rows->r[point[j]]);
+    }
+}
+
+static double sum_of(const struct target_rows *rows, const size_t *point, const double *weight,
+                     size_t count) {
+    double sum = 0;
+    for (size_t i = 0; i < count; i++)
+        sum += weight[i] * rows->g[point[i]];
+    return sum;
+}
+
+/// How far each point is from the cubic through its four neighbours, squared and over the variance
+/// of that if each has 1, where g is not in its core; returns how many there are.
+static size_t find_scatter(const struct target_rows *rows, double *square) {
+    static const double least_g = 0.2;
+    size_t count = 0;
+    for (size_t k = 2; k + 2 < rows->count; k++) {
+        const size_t point[CUBIC] = {k - 2, k - 1, k + 1, k + 2};
+        double weight[CUBIC], variance = 1;
+        find_weights(rows, point, CUBIC, rows->r[k], weight);
+        for (size_t i = 0; i < CUBIC; i++)
+            variance += weight[i] * weight[i];
+        if (rows->g[k - 2] > least_g && rows->g[k] > least_g)
+            square[count++] = pow(rows->g[k] - sum_of(rows, point, weight, CUBIC), 2) / variance;
+    }
+    return count;
+}
+
+/// The error of a point that the scatter tells; NaN if it tells none.
+static enum status find_error(const struct target_rows *rows, double *error) {
+    enum { LEAST = 12 };
+    enum status status = STATUS_OK;
+    double *square = NULL;
+    NEW_ARRAY(square, rows->count);
+    const size_t count = find_scatter(rows, square);
+    const double variance = count < LEAST ? 0 : mf_target_rows_robust_mean(square, count);
+    *error = variance > 0 ? sqrt(variance) : NAN;
+done:
+    mf_memory_free(square);
+    return status;
+}
+
+/// The last point at or before x, but for the last of all.
+static size_t find_point(const struct target_rows *rows, double x) {
+    size_t k = 0;
+    while (k + 2 < rows->count && rows->r[k + 1] <= x)
+        k++;
+    return k;
+}
+
+/// Points about x in the order in which polynomials take them: the two beside it, then one more to
+/// each side in turn, the nearer side first.
+static void choose_points(const struct target_rows *rows, double x, size_t point[NEXT]) {
+    size_t low = find_point(rows, x), high = low + 1, found = 0;
+    bool left = x - rows->r[low] < rows->r[high] - x;
+    point[found++] = low;
+    point[found++] = high;
+    while (found < NEXT) {
+        if (left && low > 0)
+            point[found++] = --low;
+        else if (!left && high + 1 < rows->count)
+            point[found++] = ++high;
+        left = !left;
+    }
+}
+
+/// g at x, its error by that of the points, and what the interpolation adds.
+struct reading {
+    double g, error, interpolation;
+};
+
+static struct reading read_at(const struct target_rows *rows, double x, double width) {
+    size_t point[NEXT];
+    double cubic[CUBIC], next[NEXT];
+    choose_points(rows, x, point);
+    find_weights(rows, point, CUBIC, x, cubic);
+    find_weights(rows, point, NEXT, x, next);
+    const size_t low = point[0], high = point[1];
+    const double gap = rows->r[high] - rows->r[low];
+    const double share = fmin(1, fmax(0, (x - rows->r[low]) / gap));
+    struct reading reading = {.g = sum_of(rows, point, cubic, CUBIC)};
+    reading.error =
+        ((1 - share) * rows->error[low] + share * rows->error[high]) * sqrt(fmax(1, gap / width));
+    reading.interpolation = fabs(sum_of(rows, point, next, NEXT) - reading.g);
+    // In the core, and where a cubic swings below 0.
+    if (reading.g <= 0 || (rows->g[low] == 0 && rows->g[high] == 0))
+        reading = (struct reading){0};
+    return reading;
+}
+
+/// Make one point of those that nearly coincide, between which a cubic would be steep by chance.
+static void merge_close(struct target_rows *rows) {
+    static const double close = 0.3;
+    const double apart = close * mean_step(rows);
+    size_t merged = 0;
+    for (size_t k = 0, next; k < rows->count; k = next) {
+        double r = 0, g = 0, squares = 0;
+        for (next = k; next < rows->count && rows->r[next] - rows->r[k] <= apart; next++) {
+            r += rows->r[next];
+            g += rows->g[next];
+            squares += rows->error[next] * rows->error[next];
+        }
+        const double points = (double)(next - k);
+        rows->r[merged] = r / points;
+        rows->g[merged] = g / points;
+        rows->error[merged] = sqrt(squares) / points;
+        rows->line[merged++] = rows->line[k];
+    }
+    rows->count = merged;
+}
+
+/// Where points are farther apart than this many mean steps, and not both in the core, g between
+/// them is not known.
+static enum status check_gaps(const struct target_rows *rows, const char *file) {
+    static const double widest = 4;
+    for (size_t k = 1; k < rows->count; k++) {
+        const double steps = (rows->r[k] - rows->r[k - 1]) / mean_step(rows);
+        if (steps > widest && rows->g[k] + rows->g[k - 1] > 0)
+            return mf_status_fail(STATUS_BAD_INPUT,
+                                  "%s:%zu: a gap in r of %.2g mean steps: add rows in it, or end "
+                                  "the target before it by \"cutoff\"",
+                                  file, rows->line[k], steps);
+    }
+    return STATUS_OK;
+}
+
+/// Where equally spaced rows lie: as near to the points as they can on the whole, and within their
+/// range; the first bin does not begin below 0.
+static struct target_grid {
+    double first, width;
+    size_t count;
+} find_grid(const struct target_rows *rows) {
+    static const double beyond = 0.1, rounding = 0.01;
+    const double width = mean_step(rows), begin = rows->r[0] - beyond * width,
+                 end = rows->r[rows->count - 1] + beyond * width;
+    double offset = 0;
+    for (size_t k = 0; k < rows->count; k++)
+        offset += (rows->r[k] - (double)k * width) / (double)rows->count;
+    double first = offset - width * floor((offset - begin) / width);
+    first += first < (0.5 - rounding) * width ? width : 0;
+    return (struct target_grid){first, width, 1 + (size_t)floor((end - first) / width)};
+}
+
+static void describe(const struct target_rows *rows, struct target_resampling *done) {
+    done->points = rows->count;
+    done->shortest = INFINITY;
+    for (size_t k = 1; k < rows->count; k++) {
+        done->shortest = fmin(done->shortest, rows->r[k] - rows->r[k - 1]);
+        done->longest = fmax(done->longest, rows->r[k] - rows->r[k - 1]);
+    }
+}
+
+enum status mf_target_resample(struct target_rows *rows, const char *file, bool has_errors,
+                               struct target_resampling *done) {
+    enum status status = STATUS_OK;
+    struct target_rows equal = {.dimensions = rows->dimensions};
+    *done = (struct target_resampling){0};
+    describe(rows, done);
+    merge_close(rows);
+    if (rows->count < NEXT) {
+        status = mf_status_fail(STATUS_BAD_INPUT, "%s: only %zu points at different r", file,
+                                rows->count);
+        goto done;
+    }
+    CHECK(check_gaps(rows, file));
+    if (!has_errors) {
+        CHECK(find_error(rows, &done->error));
+        for (size_t k = 0; k < rows->count; k++)
+            rows->error[k] = isnan(done->error) ? 0 : done->error;
+    }
+    const struct target_grid grid = find_grid(rows);
+    CHECK(mf_target_rows_allocate(&equal, grid.count));
+    for (size_t k = 0; k < grid.count; k++) {
+        const double r = grid.first + (double)k * grid.width;
+        const struct reading at = read_at(rows, r, grid.width);
+        equal.r[k] = r;
+        equal.g[k] = at.g;
+        equal.error[k] = isnan(done->error) ? 0 : hypot(at.error, at.interpolation);
+        equal.line[k] = rows->line[find_point(rows, r)];
+        if (at.interpolation > done->interpolation) {
+            done->interpolation = at.interpolation;
+            done->interpolation_at = r;
+        }
+    }
+    mf_target_rows_clear(rows);
+    *rows = equal;
+    equal = (struct target_rows){0};
+done:
+    mf_target_rows_clear(&equal);
+    return status;
+}
