@@ -40,8 +40,9 @@ const struct field mf_target_rdf_fields[] = {
     {"bin_width", FIELD_NUMBER, MEMBER(bin_width), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
      .unit = "lambda",
      .help =
-         "rows are joined to bins of about this width; 0: those of the file, or the least whole "
-         "number of them that makes no more than 400 bins"},
+         "rows are joined to bins of about this width; 0: without a \"method\" chosen by noise and "
+         "structure of g, else those of the file, or the least whole number of them that makes no "
+         "more than 400 bins"},
     {"particles", FIELD_INTEGER, MEMBER(particles), .initial = 0, .minimum = 0, .maximum = 1e9,
      .unit = "",
      .help = "of all types in the system where it was measured, to correct for another number in "
