@@ -10,6 +10,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 static const struct run_options options = {.threads = 1};
 
@@ -246,6 +247,26 @@ static void test_fit_defaults_join_fine_rows_and_end_g_with_its_structure(void *
     }
 }
 
+/// Water's third layer, 1.03 high at 0.68 nm, has forces; the fourth, 1.01 at 0.9 nm, is made by
+/// it.
+static void test_fit_defaults_end_g_of_water_behind_its_third_layer(void **state) {
+    struct fit_file fit;
+    char folder[512], run[1024];
+    assert_non_null(getcwd(folder, sizeof folder));
+    snprintf(run, sizeof run,
+             "{\"target\": {\"rdf\": {\"file\": \"%s/targets/spce-votca/CG-CG.dist.tgt\", "
+             "\"format\": \"votca\"}}, \"scene\": {\"box\": [4.031, 4.031, 4.031], \"particles\": "
+             "{\"count\": 2180}, \"units\": {\"length\": 1, \"temperature\": 300, \"mass\": "
+             "2.992e-26}}}",
+             folder);
+    assert_ok(read_run(state, &fit, "run.json", run));
+    const struct rdf_bins *bins = &fit.problem.targets.bins;
+    print_message("%zu bins of %g to %g\n", bins->count, bins->width, mf_rdf_bins_range(bins));
+    assert_true(mf_rdf_bins_range(bins) > 0.68 && mf_rdf_bins_range(bins) < 0.8);
+    assert_close(bins->width, 0.01, 1e-6); // its peak has four rows and no row to spare
+    mf_fit_file_clear(&fit);
+}
+
 /// Escape times ask for ω, too, and for a time step that divides their interval; bins come from the
 /// names of the columns.
 static void test_fit_defaults_find_omega_where_targets_move(void **state) {
@@ -303,6 +324,7 @@ int main(void) {
         IN_FOLDER(test_fit_defaults_choose_no_friction_where_that_across_pairs_is_found),
         IN_FOLDER(test_fit_defaults_cut_g_at_half_of_a_box_that_is_given),
         IN_FOLDER(test_fit_defaults_join_fine_rows_and_end_g_with_its_structure),
+        IN_FOLDER(test_fit_defaults_end_g_of_water_behind_its_third_layer),
         IN_FOLDER(test_fit_defaults_find_omega_where_targets_move),
         IN_FOLDER(test_fit_defaults_tell_faults_once_and_only_what_is_missing),
     };

@@ -134,9 +134,9 @@ static void test_fit_scales_joined_bins_are_as_wide_as_a_peak_can_bear(void **st
 static void test_fit_scales_joined_is_not_held_up_by_noise(void **state) {
     struct known known;
     (void)state;
-    fill(&known, flat, 0.01);
+    fill(&known, flat, 0.03);
     for (size_t k = 0; k < BINS; k++)
-        known.g[k] += 0.01 * M_SQRT2 * sin((double)(7 * k * k));
+        known.g[k] += 0.03 * M_SQRT2 * sin((double)(7 * k * k));
     assert_in_range(mf_fit_scales_joined(&known.rdf, 0.001, 0.004), 4, 5);
 }
 
