@@ -233,8 +233,9 @@ static enum status check_values(struct target_rdf *target, struct target_rows *r
 static enum status resample(struct target_rdf *target, struct target_rows *rows, bool *has_errors) {
     if (!mf_target_resample_is_needed(rows))
         return STATUS_OK;
-    TRY(mf_target_resample(rows, target->parameters.file, *has_errors, &target->resampling));
-    *has_errors = *has_errors || !isnan(target->resampling.error);
+    TRY(mf_target_resample(rows, target->parameters.file, *has_errors, assumed_error,
+                           &target->resampling));
+    *has_errors = true;
     return STATUS_OK;
 }
 

@@ -64,7 +64,7 @@ static enum status find_error(const struct target_rows *rows, double *error) {
     NEW_ARRAY(square, rows->count);
     const size_t count = find_scatter(rows, square);
     const double variance = count < LEAST ? 0 : mf_target_rows_robust_mean(square, count);
-    *error = variance > 0 ? sqrt(variance) : NAN;
+    *error = sqrt(variance) > target_rows_least_scatter ? sqrt(variance) : NAN;
 done:
     mf_memory_free(square);
     return status;
@@ -181,7 +181,7 @@ static void describe(const struct target_rows *rows, struct target_resampling *d
 }
 
 enum status mf_target_resample(struct target_rows *rows, const char *file, bool has_errors,
-                               struct target_resampling *done) {
+                               double assumed, struct target_resampling *done) {
     enum status status = STATUS_OK;
     struct target_rows equal = {.dimensions = rows->dimensions};
     *done = (struct target_resampling){0};
@@ -195,8 +195,10 @@ enum status mf_target_resample(struct target_rows *rows, const char *file, bool 
     CHECK(check_gaps(rows, file));
     if (!has_errors) {
         CHECK(find_error(rows, &done->error));
+        done->assumed = isnan(done->error);
+        done->error = done->assumed ? assumed : done->error;
         for (size_t k = 0; k < rows->count; k++)
-            rows->error[k] = isnan(done->error) ? 0 : done->error;
+            rows->error[k] = done->error;
     }
     const struct target_grid grid = find_grid(rows);
     CHECK(mf_target_rows_allocate(&equal, grid.count));
@@ -205,7 +207,7 @@ enum status mf_target_resample(struct target_rows *rows, const char *file, bool 
         const struct reading at = read_at(rows, r, grid.width);
         equal.r[k] = r;
         equal.g[k] = at.g;
-        equal.error[k] = isnan(done->error) ? 0 : hypot(at.error, at.interpolation);
+        equal.error[k] = hypot(at.error, at.interpolation);
         equal.line[k] = rows->line[find_point(rows, r)];
         if (at.interpolation > done->interpolation) {
             done->interpolation = at.interpolation;

@@ -308,28 +308,6 @@ static void tell_view(const struct view *view, const struct target_sanity_listen
         density, compressibility[0] ? ", " : "", compressibility);
 }
 
-/// What was made of a table that has no equal bins, or a g below 0.
-static void tell_reading(const struct view *view, const struct target_sanity_listener *listener) {
-    const struct target_rdf *target = view->target;
-    const struct target_resampling *r = &target->resampling;
-    double length;
-    char error[64] = "";
-    const char *unit = unit_of(view, &length);
-    if (target->negative > 0)
-        mf_target_sanity_say(listener,
-                             "target %s: g is below 0 in %zu rows, by %.2g at most: taken as 0",
-                             view->name, target->negative, -target->least);
-    if (r->points == 0)
-        return;
-    if (r->error > 0)
-        snprintf(error, sizeof error, ", each with the error %.2g by their scatter,", r->error);
-    mf_target_sanity_say(listener,
-                         "target %s: r is not equally spaced (steps of %.3g to %.3g %s): its %zu "
-                         "points%s are read at equal bins of %.4g %s by cubic interpolation",
-                         view->name, r->shortest * length, r->longest * length, unit, r->points,
-                         error, view->bins->width * length / (double)target->joined, unit);
-}
-
 static void tell_origin(const struct view *view, const struct target_sanity_listener *listener) {
     const struct target_rdf *target = view->target;
     double length;
@@ -341,7 +319,7 @@ static void tell_origin(const struct view *view, const struct target_sanity_list
             "all g(r) of a mixture end together",
             view->name, view->ends * length, unit,
             mf_rdf_bins_edge(view->bins, view->bins->count) * length, unit);
-    tell_reading(view, listener);
+    mf_target_sanity_tell_reading(target, view->name, view->scene, listener);
     if (target->joined > 1)
         mf_target_sanity_say(listener, "target %s: %zu rows of the file make a bin of %.4g %s",
                              view->name, target->joined, view->bins->width * length, unit);

@@ -59,7 +59,7 @@ static void test_target_resample_gives_the_curve_back(void **state) {
     struct target_resampling done;
     fill(&rows, 0, 1);
     const size_t points = rows.count;
-    assert_ok(mf_target_resample(&rows, "g.csv", false, &done));
+    assert_ok(mf_target_resample(&rows, "g.csv", false, 0.002, &done));
     assert_int_equal(done.points, points);
     assert_true(done.shortest < 0.7 * step && done.longest > 1.3 * step);
     assert_in_range(rows.count, points - 2, points + 1);
@@ -82,7 +82,7 @@ static void test_target_resample_knows_how_noisy_it_is(void **state) {
         struct target_rows rows;
         struct target_resampling done;
         fill(&rows, noise, draw);
-        assert_ok(mf_target_resample(&rows, "g.csv", false, &done));
+        assert_ok(mf_target_resample(&rows, "g.csv", false, 0.002, &done));
         found += done.error / noise / DRAWS;
         for (size_t k = 0; k < rows.count; k++)
             if (rows.g[k] > 0.3) {
@@ -113,7 +113,7 @@ static void test_target_resample_makes_no_information(void **state) {
     size_t points = 0;
     for (size_t k = 0; k < kept; k++)
         points += rows.r[k] > 3.2;
-    assert_ok(mf_target_resample(&rows, "g.csv", false, &done));
+    assert_ok(mf_target_resample(&rows, "g.csv", false, 0.002, &done));
     double information = 0, bins = 0;
     for (size_t k = 0; k < rows.count; k++)
         if (rows.r[k] > 3.2) {
@@ -133,7 +133,7 @@ static void test_target_resample_keeps_errors_that_are_given(void **state) {
     fill(&rows, 0, 4);
     for (size_t k = 0; k < rows.count; k++)
         rows.error[k] = 0.05;
-    assert_ok(mf_target_resample(&rows, "g.csv", true, &done));
+    assert_ok(mf_target_resample(&rows, "g.csv", true, 0.002, &done));
     assert_close(done.error, 0, 0);
     for (size_t k = 0; k < rows.count; k++)
         if (rows.g[k] > 0.3)
@@ -152,7 +152,7 @@ static void test_target_resample_names_the_line_behind_a_gap(void **state) {
         rows.g[k] = rows.g[k + 8];
     }
     rows.count -= 8;
-    assert_fails(mf_target_resample(&rows, "g.csv", false, &done), STATUS_BAD_INPUT,
+    assert_fails(mf_target_resample(&rows, "g.csv", false, 0.002, &done), STATUS_BAD_INPUT,
                  "g.csv:60: a gap in r of ");
     assert_contains(mf_status_message(), "or end the target before it by \"cutoff\"");
     mf_target_rows_clear(&rows);
@@ -168,7 +168,7 @@ static void test_target_resample_takes_points_that_nearly_coincide(void **state)
         rows.r[k] = rows.r[40] + 1e-7 * (double)(k - 40);
         rows.g[k] = rows.g[40] + 0.01 * ((double)(k - 40) - 1.5);
     }
-    assert_ok(mf_target_resample(&rows, "g.csv", false, &done));
+    assert_ok(mf_target_resample(&rows, "g.csv", false, 0.002, &done));
     for (size_t k = 0; k < rows.count; k++)
         assert_close(rows.g[k], liquid(rows.r[k]), 0.03);
     mf_target_rows_clear(&rows);
@@ -176,7 +176,7 @@ static void test_target_resample_takes_points_that_nearly_coincide(void **state)
     rows.count = 6;
     for (size_t k = 0; k < 6; k++)
         rows.r[k] = k < 5 ? 1 + 1e-9 * (double)k : 2;
-    assert_fails(mf_target_resample(&rows, "g.csv", false, &done), STATUS_BAD_INPUT,
+    assert_fails(mf_target_resample(&rows, "g.csv", false, 0.002, &done), STATUS_BAD_INPUT,
                  "g.csv: only 2 points at different r");
     mf_target_rows_clear(&rows);
 }
