@@ -4,9 +4,10 @@
 #include "base/memory.h"
 
 #include <math.h>
+#include <stdlib.h>
 
-/// Points that a cubic goes through, and the next one.
-enum { CUBIC = 4, NEXT = CUBIC + 1 };
+/// Points that a cubic goes through, and with the next one; neighbours that tell the scatter.
+enum { CUBIC = 4, NEXT = CUBIC + 1, AROUND = 6 };
 
 static double mean_step(const struct target_rows *rows) {
     return (rows->r[rows->count - 1] - rows->r[0]) / (double)(rows->count - 1);
@@ -39,34 +40,92 @@ static double sum_of(const struct target_rows *rows, const size_t *point, const 
     return sum;
 }
 
-/// How far each point is from the cubic through its four neighbours, squared and over the variance
-/// of that if each has 1, where g is not in its core; returns how many there are.
-static size_t find_scatter(const struct target_rows *rows, double *square) {
+/// How far a point is from the quintic through its six neighbours, which a curve at such steps is
+/// nearer to than noise is, squared and over the variance of
+/// that if each has 1; and how steep g is there.
+struct difference {
+    double square, slope;
+};
+
+static double slope_of(const struct target_rows *rows, size_t k) {
+    const size_t low = k > 0 ? k - 1 : 0, high = k + 1 < rows->count ? k + 1 : k;
+    return (rows->g[high] - rows->g[low]) / (rows->r[high] - rows->r[low]);
+}
+
+/// Of all points where g is not in its core; returns how many there are.
+static size_t find_differences(const struct target_rows *rows, struct difference *difference) {
     static const double least_g = 0.2;
     size_t count = 0;
-    for (size_t k = 2; k + 2 < rows->count; k++) {
-        const size_t point[CUBIC] = {k - 2, k - 1, k + 1, k + 2};
-        double weight[CUBIC], variance = 1;
-        find_weights(rows, point, CUBIC, rows->r[k], weight);
-        for (size_t i = 0; i < CUBIC; i++)
+    for (size_t k = 3; k + 3 < rows->count; k++) {
+        const size_t point[AROUND] = {k - 3, k - 2, k - 1, k + 1, k + 2, k + 3};
+        double weight[AROUND], variance = 1;
+        find_weights(rows, point, AROUND, rows->r[k], weight);
+        for (size_t i = 0; i < AROUND; i++)
             variance += weight[i] * weight[i];
-        if (rows->g[k - 2] > least_g && rows->g[k] > least_g)
-            square[count++] = pow(rows->g[k] - sum_of(rows, point, weight, CUBIC), 2) / variance;
+        if (rows->g[k - 3] > least_g && rows->g[k] > least_g)
+            difference[count++] = (struct difference){
+                pow(rows->g[k] - sum_of(rows, point, weight, AROUND), 2) / variance,
+                slope_of(rows, k)};
     }
     return count;
 }
 
-/// The error of a point that the scatter tells; NaN if it tells none.
-static enum status find_error(const struct target_rows *rows, double *error) {
-    enum { LEAST = 12 };
+static int compare_slopes(const void *a, const void *b) {
+    const double x = fabs(((const struct difference *)a)->slope),
+                 y = fabs(((const struct difference *)b)->slope);
+    return (x > y) - (x < y);
+}
+
+/// The errors of points in g and in r, by those where g is flat and those where it is steep: σ² =
+/// σ_g² + (σ_r g')². Sorts the differences.
+static enum status find_errors(struct difference *difference, size_t count,
+                               struct target_resampling *done) {
     enum status status = STATUS_OK;
     double *square = NULL;
-    NEW_ARRAY(square, rows->count);
-    const size_t count = find_scatter(rows, square);
-    const double variance = count < LEAST ? 0 : mf_target_rows_robust_mean(square, count);
-    *error = sqrt(variance) > target_rows_least_scatter ? sqrt(variance) : NAN;
+    const size_t flat = (count + 1) / 2;
+    qsort(difference, count, sizeof *difference, compare_slopes);
+    NEW_ARRAY(square, count);
+    for (size_t k = 0; k < flat; k++)
+        square[k] = difference[k].square;
+    const double variance = mf_target_rows_robust_mean(square, flat);
+    for (size_t k = flat; k < count; k++)
+        square[k - flat] = difference[k].square / (variance + pow(difference[k].slope, 2));
+    // With s_r² g'² + s_g² for the variance, s_g known: the excess over s_g² in units of g'².
+    double excess = 0, weights = 0;
+    const double clipped = 9 * mf_target_rows_robust_mean(square, count - flat);
+    for (size_t k = flat; k < count; k++) {
+        const double unit = variance + pow(difference[k].slope, 2);
+        if (difference[k].square > clipped * unit)
+            continue;
+        excess += (difference[k].square - variance) / unit;
+        weights += pow(difference[k].slope, 2) / unit;
+    }
+    done->error = sqrt(variance);
+    done->error_in_r = weights > 0 ? sqrt(fmax(0, excess / weights)) : 0;
 done:
     mf_memory_free(square);
+    return status;
+}
+
+/// The errors of points by their scatter, or `assumed` if there is none.
+static enum status set_errors(struct target_rows *rows, double assumed,
+                              struct target_resampling *done) {
+    enum { LEAST = 24 };
+    enum status status = STATUS_OK;
+    struct difference *difference = NULL;
+    NEW_ARRAY(difference, rows->count);
+    const size_t count = find_differences(rows, difference);
+    if (count >= LEAST)
+        CHECK(find_errors(difference, count, done));
+    done->assumed = !(done->error > target_rows_least_scatter);
+    if (done->assumed) {
+        done->error = assumed;
+        done->error_in_r = 0;
+    }
+    for (size_t k = 0; k < rows->count; k++)
+        rows->error[k] = hypot(done->error, done->error_in_r * slope_of(rows, k));
+done:
+    mf_memory_free(difference);
     return status;
 }
 
@@ -193,13 +252,8 @@ enum status mf_target_resample(struct target_rows *rows, const char *file, bool 
         goto done;
     }
     CHECK(check_gaps(rows, file));
-    if (!has_errors) {
-        CHECK(find_error(rows, &done->error));
-        done->assumed = isnan(done->error);
-        done->error = done->assumed ? assumed : done->error;
-        for (size_t k = 0; k < rows->count; k++)
-            rows->error[k] = done->error;
-    }
+    if (!has_errors)
+        CHECK(set_errors(rows, assumed, done));
     const struct target_grid grid = find_grid(rows);
     CHECK(mf_target_rows_allocate(&equal, grid.count));
     for (size_t k = 0; k < grid.count; k++) {

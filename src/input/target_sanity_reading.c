@@ -10,7 +10,7 @@ void mf_target_sanity_tell_reading(const struct target_rdf *target, const char *
                                    const struct target_sanity_listener *listener) {
     const struct target_resampling *r = &target->resampling;
     double length;
-    char error[64] = "";
+    char error[96] = "";
     const char *unit = mf_target_sanity_length(scene, &length);
     if (target->negative > 0)
         mf_target_sanity_say(listener,
@@ -18,9 +18,11 @@ void mf_target_sanity_tell_reading(const struct target_rdf *target, const char *
                              name, target->negative, -target->least);
     if (r->points == 0)
         return;
-    if (r->error > 0)
-        snprintf(error, sizeof error, ", each with the error %.2g %s,", r->error,
-                 r->assumed ? "that is assumed" : "by their scatter");
+    if (r->assumed)
+        snprintf(error, sizeof error, ", each with the error %.2g that is assumed,", r->error);
+    else if (r->error > 0)
+        snprintf(error, sizeof error, ", which scatter by %.2g in g and %.2g %s in r,", r->error,
+                 r->error_in_r * length, unit);
     mf_target_sanity_say(listener,
                          "target %s: r is not equally spaced (steps of %.3g to %.3g %s): its %zu "
                          "points%s are read at equal bins of %.4g %s by cubic interpolation",
