@@ -216,36 +216,39 @@ static void join_bins(const struct fit_scales_rdf *rdf, size_t pair, size_t k, s
     *variance /= whole * whole;
 }
 
-/// What cubics through bins of a pair type that are joined are off by, beyond noise, at most; adds
-/// up the variances of those that have pairs.
+/// What cubics through bins of a pair type that are joined are off by, beyond noise, over what they
+/// may be: the noise of a bin, from `finest` to `coarsest` times sqrt(g), as that of pairs is.
 static double find_interpolation(const struct fit_scales_rdf *rdf, size_t pair, size_t of,
-                                 double *variances, double *seen) {
-    enum { TAPS = 5 };
+                                 double finest, double coarsest) {
+    enum { TAPS = 5, MIDDLE = TAPS / 2 };
     static const double taps[TAPS] = {1, -4, 6, -4, 1}, share = 3.0 / 128, standard_errors = 3;
-    double last[TAPS] = {0}, variance[TAPS] = {0}, most = 0;
+    static const double rare = 0.02;
+    double g[TAPS] = {0}, variance[TAPS] = {0}, most = 0;
     for (size_t k = 0; (k + 1) * of <= rdf->bins.count; k++) {
-        join_bins(rdf, pair, k * of, of, &last[k % TAPS], &variance[k % TAPS]);
-        *variances += variance[k % TAPS];
-        *seen += last[k % TAPS] > 0;
+        join_bins(rdf, pair, k * of, of, &g[k % TAPS], &variance[k % TAPS]);
+        if (k + 1 < TAPS)
+            continue;
         double difference = 0, noise = 0;
-        for (size_t j = 0; k + 1 >= TAPS && j < TAPS; j++) {
-            difference += taps[j] * last[(k + 1 + j) % TAPS];
+        for (size_t j = 0; j < TAPS; j++) {
+            difference += taps[j] * g[(k + 1 + j) % TAPS];
             noise += taps[j] * taps[j] * variance[(k + 1 + j) % TAPS];
         }
-        most = fmax(most, share * (fabs(difference) - standard_errors * sqrt(noise)));
+        const size_t middle = (k + 1 + MIDDLE) % TAPS;
+        const double level = sqrt(fmin(1, fmax(rare, g[middle])));
+        const double may = fmin(coarsest * level, fmax(finest * level, sqrt(variance[middle])));
+        most = fmax(most, share * (fabs(difference) - standard_errors * sqrt(noise)) / may);
     }
     return most;
 }
 
 size_t mf_fit_scales_joined(const struct fit_scales_rdf *rdf, double finest, double coarsest) {
-    enum { FEWEST = 20 };
+    enum { FEWEST = 40 }; // so few take no time, and of fewer no rms is known well
     size_t joined = 1;
     for (size_t of = 2; of * FEWEST <= rdf->bins.count; of++) {
-        double off = 0, variances = 0, seen = 0;
+        double off = 0;
         for (size_t pair = 0; pair < pairs_of(rdf); pair++)
-            off = fmax(off, find_interpolation(rdf, pair, of, &variances, &seen));
-        const double noise = seen > 0 ? sqrt(variances / seen) : 0;
-        if (off > fmin(coarsest, fmax(finest, noise)))
+            off = fmax(off, find_interpolation(rdf, pair, of, finest, coarsest));
+        if (off > 1)
             break;
         joined = of;
     }

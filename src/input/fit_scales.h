@@ -37,10 +37,10 @@ void mf_fit_scales_rdf_clear(struct fit_scales_rdf *rdf);
 /// by cubics through them, is as good as g itself, for any fewer, too.
 ///
 /// The cubic through four points is off by (3/128) δ⁴g in their middle, δ⁴ the fourth difference.
-/// What of it is more than three standard errors must be within the noise of the wider bins or what
-/// a fit resolves, `finest`, but not more than `coarsest`. Where g is steep wide bins would tell
-/// nothing of it; bins narrower than that make Φ rough, since nothing but noise tells them apart.
-/// Tested: test_fit_scales.
+/// What of it is more than three standard errors must everywhere be within the noise of the wider
+/// bin, or what a fit resolves, `finest`, but not more than `coarsest`, both times sqrt(g) where g
+/// is below 1. Where g is steep wide bins would tell nothing of it; bins narrower than that make Φ
+/// rough, since nothing but noise tells them apart. Tested: test_fit_scales.
 size_t mf_fit_scales_joined(const struct fit_scales_rdf *rdf, double finest, double coarsest);
 
 /// Join so many bins of g to one. Fails: NO_MEMORY.

@@ -83,6 +83,14 @@ static void say_verdict(struct progress *to, const struct fit_file *fit,
                         result->settled ? "worked" : "ended", farthest, name);
 }
 
+/// "1350 +- 180": rounded to two digits of the error.
+static void print_open(double value, double error, char text[NUMBER_TEXT_SIZE]) {
+    const int exponent = (int)floor(log10(error)) - 1, decimals = exponent < 0 ? -exponent : 0;
+    const double unit = pow(10, exponent);
+    snprintf(text, NUMBER_TEXT_SIZE, "%.*f +- %.*f", decimals, unit * round(value / unit), decimals,
+             unit * round(error / unit));
+}
+
 /// The pressure, if g(r) does not fix it.
 static void say_pressure(struct progress *to, const struct fit_file *fit,
                          const struct fit_result *result) {
@@ -90,16 +98,16 @@ static void say_pressure(struct progress *to, const struct fit_file *fit,
     const struct thermodynamics_summary *found = &result->verification->thermodynamics;
     const double open = result->ramp.pressure_open,
                  bar = mf_units_factor(units, "k_B T_0/lambda^d");
-    char unit[UNITS_NAME_SIZE];
+    char unit[UNITS_NAME_SIZE], range[NUMBER_TEXT_SIZE];
     // Of several states that of the first is known, and together they leave less open.
     if (fit->others > 0 || !(result->ramp.error > 0) || !(open > found->pressure_error) ||
         targets_ask(&fit->problem.compared, TARGET_PRESSURE))
         return;
+    print_open(bar * found->pressure, bar * hypot(open, found->pressure_error), range);
     mf_progress_say(to,
-                    "not known: g alone does not fix the pressure: %.4g +- %.2g%s; give "
-                    "\"pressure\" as a second target to fix it",
-                    bar * found->pressure, bar * hypot(open, found->pressure_error),
-                    mf_units_suffix(units, "k_B T_0/lambda^d", unit));
+                    "not known: g alone does not fix the pressure: %s%s; give \"pressure\" as a "
+                    "second target to fix it",
+                    range, mf_units_suffix(units, "k_B T_0/lambda^d", unit));
 }
 
 static void say_friction(struct progress *to, const struct fit_file *fit,

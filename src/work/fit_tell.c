@@ -132,9 +132,9 @@ void mf_fit_tell_iteration(const struct inverse_progress *now, const struct unit
     if (isfinite(now->best))
         snprintf(error, sizeof error, "  error %.4f so far", now->best);
     if (isfinite(now->least))
-        snprintf(least, sizeof least, "  now least %.4f", now->least);
+        snprintf(least, sizeof least, "  this round: best %.4f", now->least);
     if (isfinite(now->mean))
-        snprintf(mean, sizeof mean, "  mean %.4f  failed %llu", now->mean,
+        snprintf(mean, sizeof mean, ", mean %.4f, %llu failed", now->mean,
                  (unsigned long long)now->failures);
     snprintf(text, FIT_TELL_SIZE, "iteration %u%s%s%s", now->iteration, error, least, mean);
 }
