@@ -41,10 +41,10 @@ static double sum_of(const struct target_rows *rows, const size_t *point, const 
 }
 
 /// How far a point is from the quintic through its six neighbours, which a curve at such steps is
-/// nearer to than noise is, squared and over the variance of
-/// that if each has 1; and how steep g is there.
+/// nearer to than noise is, squared and over the variance of that if each has 1; and the square of
+/// how steep g is there, the mean over these points by the same variances.
 struct difference {
-    double square, slope;
+    double square, steepness;
 };
 
 static double slope_of(const struct target_rows *rows, size_t k) {
@@ -58,50 +58,62 @@ static size_t find_differences(const struct target_rows *rows, struct difference
     size_t count = 0;
     for (size_t k = 3; k + 3 < rows->count; k++) {
         const size_t point[AROUND] = {k - 3, k - 2, k - 1, k + 1, k + 2, k + 3};
-        double weight[AROUND], variance = 1;
+        double weight[AROUND], variance = 1, steep = pow(slope_of(rows, k), 2);
         find_weights(rows, point, AROUND, rows->r[k], weight);
-        for (size_t i = 0; i < AROUND; i++)
+        for (size_t i = 0; i < AROUND; i++) {
             variance += weight[i] * weight[i];
+            steep += pow(weight[i] * slope_of(rows, point[i]), 2);
+        }
         if (rows->g[k - 3] > least_g && rows->g[k] > least_g)
             difference[count++] = (struct difference){
                 pow(rows->g[k] - sum_of(rows, point, weight, AROUND), 2) / variance,
-                slope_of(rows, k)};
+                steep / variance};
     }
     return count;
 }
 
-static int compare_slopes(const void *a, const void *b) {
-    const double x = fabs(((const struct difference *)a)->slope),
-                 y = fabs(((const struct difference *)b)->slope);
+static int compare_steepness(const void *a, const void *b) {
+    const double x = ((const struct difference *)a)->steepness,
+                 y = ((const struct difference *)b)->steepness;
     return (x > y) - (x < y);
 }
 
-/// The errors of points in g and in r, by those where g is flat and those where it is steep: σ² =
-/// σ_g² + (σ_r g')². Sorts the differences.
+/// σ_r² of squares whose mean is σ_g² + σ_r² g'², by weighted least squares: each scatters as much
+/// as it is. Squares beyond three standard deviations are left out.
+static double find_variance_in_r(const struct difference *difference, size_t count,
+                                 double variance) {
+    enum { ROUNDS = 10 };
+    static const double clip = 9, clipped_mean = 0.9733;
+    double in_r = INFINITY; // at first all are weighted as if nothing else were
+    for (int round = 0; round < ROUNDS; round++) {
+        double excess = 0, weights = 0;
+        for (size_t k = 0; k < count; k++) {
+            const double steep = difference[k].steepness;
+            const double expected = isinf(in_r) ? 1 : variance + in_r * steep;
+            if (!isinf(in_r) && difference[k].square > clip * expected)
+                continue;
+            excess += steep * (difference[k].square / (isinf(in_r) ? 1 : clipped_mean) - variance) /
+                      (expected * expected);
+            weights += pow(steep / expected, 2);
+        }
+        in_r = weights > 0 ? fmax(0, excess / weights) : 0;
+    }
+    return in_r;
+}
+
+/// The errors of points in g and in r: the first by those where g is flat. Sorts the differences.
 static enum status find_errors(struct difference *difference, size_t count,
                                struct target_resampling *done) {
     enum status status = STATUS_OK;
     double *square = NULL;
     const size_t flat = (count + 1) / 2;
-    qsort(difference, count, sizeof *difference, compare_slopes);
-    NEW_ARRAY(square, count);
+    qsort(difference, count, sizeof *difference, compare_steepness);
+    NEW_ARRAY(square, flat);
     for (size_t k = 0; k < flat; k++)
         square[k] = difference[k].square;
     const double variance = mf_target_rows_robust_mean(square, flat);
-    for (size_t k = flat; k < count; k++)
-        square[k - flat] = difference[k].square / (variance + pow(difference[k].slope, 2));
-    // With s_r² g'² + s_g² for the variance, s_g known: the excess over s_g² in units of g'².
-    double excess = 0, weights = 0;
-    const double clipped = 9 * mf_target_rows_robust_mean(square, count - flat);
-    for (size_t k = flat; k < count; k++) {
-        const double unit = variance + pow(difference[k].slope, 2);
-        if (difference[k].square > clipped * unit)
-            continue;
-        excess += (difference[k].square - variance) / unit;
-        weights += pow(difference[k].slope, 2) / unit;
-    }
     done->error = sqrt(variance);
-    done->error_in_r = weights > 0 ? sqrt(fmax(0, excess / weights)) : 0;
+    done->error_in_r = sqrt(find_variance_in_r(difference, count, variance));
 done:
     mf_memory_free(square);
     return status;

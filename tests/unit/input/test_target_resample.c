@@ -96,6 +96,34 @@ static void test_target_resample_knows_how_noisy_it_is(void **state) {
     assert_true(square / count > 0.5 && square / count < 1.1);
 }
 
+/// A hand that is off in r, too, makes more noise where g is steep.
+static void test_target_resample_knows_noise_in_r(void **state) {
+    (void)state;
+    enum { DRAWS = 20 };
+    static const double noise = 0.005, noise_in_r = 0.004;
+    double found = 0, found_in_r = 0, square = 0, count = 0;
+    for (uint32_t draw = 0; draw < DRAWS; draw++) {
+        struct target_rows rows;
+        struct target_resampling done;
+        fill(&rows, noise, draw);
+        for (size_t k = 0; k < rows.count; k++)
+            rows.r[k] += noise_in_r * normal(100 + draw, k);
+        assert_ok(mf_target_resample(&rows, "g.csv", false, 0.002, &done));
+        found += done.error / noise / DRAWS;
+        found_in_r += done.error_in_r / noise_in_r / DRAWS;
+        for (size_t k = 0; k < rows.count; k++)
+            if (rows.g[k] > 0.3) {
+                square += pow((rows.g[k] - liquid(rows.r[k])) / rows.error[k], 2);
+                count++;
+            }
+        mf_target_rows_clear(&rows);
+    }
+    print_message("errors %.3f and %.3f of the noise, mean square %.3f\n", found, found_in_r,
+                  square / count);
+    assert_close(found_in_r, 1, 0.3);
+    assert_true(square / count > 0.4 && square / count < 1.2);
+}
+
 /// What lies between points is no new information: where they are four times farther apart, rows
 /// know four times less, and no fit gains by interpolation.
 static void test_target_resample_makes_no_information(void **state) {
@@ -186,6 +214,7 @@ int main(void) {
         cmocka_unit_test(test_target_resample_is_needed_when_steps_differ),
         cmocka_unit_test(test_target_resample_gives_the_curve_back),
         cmocka_unit_test(test_target_resample_knows_how_noisy_it_is),
+        cmocka_unit_test(test_target_resample_knows_noise_in_r),
         cmocka_unit_test(test_target_resample_makes_no_information),
         cmocka_unit_test(test_target_resample_keeps_errors_that_are_given),
         cmocka_unit_test(test_target_resample_names_the_line_behind_a_gap),
