@@ -46,10 +46,11 @@ bool mf_fit_closing_is_noise(const struct unknowns *unknowns, const double *cons
     return false;
 }
 
-/// The fitted target that is farthest off, in its statistical errors; its name.
+/// The fitted target that is farthest off, in its statistical errors, and its name; NaN if the
+/// errors of none are known.
 static double find_farthest(const struct fit_file *fit, const struct fit_result *result,
                             const char **name) {
-    double farthest = 0;
+    double farthest = NAN;
     for (size_t s = 0; s <= fit->others; s++)
         for (int kind = 0; kind < TARGETS; kind++) {
             const struct fit_file *state = s == 0 ? fit : &fit->other[s - 1];
@@ -57,7 +58,7 @@ static double find_farthest(const struct fit_file *fit, const struct fit_result 
             if (distance->count == 0)
                 distance = &result->verification[s].distance[kind];
             if (!targets_ask(&state->problem.targets, kind) || !(distance->noise > 0) ||
-                !(distance->rms / distance->noise > farthest))
+                distance->rms / distance->noise <= farthest)
                 continue;
             farthest = distance->rms / distance->noise;
             *name = mf_targets_name(kind);
@@ -73,6 +74,8 @@ static void say_verdict(struct progress *to, const struct fit_file *fit,
     const double farthest = find_farthest(fit, result, &name);
     if (result->status != STATUS_OK)
         mf_progress_say(to, "so: it has not worked as it is: the reason follows");
+    else if (isnan(farthest))
+        mf_progress_say(to, "so: whether it worked is not known: the verification has no errors");
     else if (farthest <= within)
         mf_progress_say(to, "so: it worked: independent simulations meet the targets as exactly as "
                             "these are known");
