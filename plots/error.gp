@@ -5,9 +5,15 @@
 
 load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
 
+# Where a method begins another part of the fit, as `successive` tells by its column finds_omega, its
+# error begins anew, and no line leads there.
+part = column_of("history.tsv", "finds_omega")
+parts = sprintf("awk -v part=%d '/^#/ { next } n++ && part && $part != last { print \"\" } { last = $part; print }' history.tsv", part)
+history = "< " . parts
+
 # seconds, evaluations, error, noise of the iterations that both tables have
-joined = "< awk '/^#/ { next } FILENAME == \"timing.tsv\" { seconds[$1] = $2; next } \
-    $1 in seconds { print seconds[$1], $2, $4, $5 }' timing.tsv history.tsv"
+joined = "< " . parts . " | awk '/^#/ { next } FILENAME == \"timing.tsv\" { seconds[$1] = $2; next } \
+    NF == 0 { print; next } $1 in seconds { print seconds[$1], $2, $4, $5 }' timing.tsv -"
 
 stats "history.tsv" using 2 name "N" nooutput
 stats "timing.tsv" using 2 name "S" nooutput
@@ -30,7 +36,7 @@ do for [kind in kinds] {
     set xtics step_of(N_max / 3)
     set xlabel "simulations"
     eval name_axis(error_label, 0.018)
-    plot "history.tsv" using 2:5 with lines title "statistical noise" \
+    plot history using 2:5 with lines title "statistical noise" \
             linewidth 1.4 dashtype 2 linecolor rgb faint, \
         "" using 2:4 with linespoints title "error" \
             linewidth 2.2 pointtype 7 pointsize dots linecolor rgb blue

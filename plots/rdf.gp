@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Radial distribution function of the result on that of the target, and their difference.
-# Reads rdf.tsv: r, target, target_error, result, result_error, and perhaps r[nm].
+# Reads rdf.tsv: r, target, target_error, result, result_error, and perhaps r[nm], given[1].
 
 load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
 
 combined(a, b) = sqrt(known(a)**2 + known(b)**2)
 
 nm = factor_of(table, "r[nm]", 1)
+divided = factor_of(table, "given[1]", 2)
+target = abs(divided - 1) < 5e-5 ? "target" : sprintf("target / %.4f", divided)
 stats table using ($1 * nm) name "R" nooutput
 stats table using (high($2, $4)) name "G" nooutput
 stats table using (high(abs($4 - $2), combined(3, 5))) name "D" nooutput
@@ -28,7 +30,7 @@ do for [kind in kinds] {
     set key at screen 0.97, screen 0.985 right top vertical maxrows 1
     plot table using ($1 * nm):($4 - $5):($4 + $5) with filledcurves @band linecolor rgb blue, \
         table using ($1 * nm):4 with lines title "result" linewidth 2.6 linecolor rgb blue, \
-        table using ($1 * nm):2 with points title "target" pointtype 7 pointsize 0.38 linecolor rgb ink
+        table using ($1 * nm):2 with points title target pointtype 7 pointsize 0.38 linecolor rgb ink
 
     set tmargin at screen 0.34
     set bmargin at screen 0.125

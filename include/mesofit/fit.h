@@ -33,7 +33,8 @@ struct mesofit_fit_options {
     const char *method;         /**< as `mesofit describe` lists them: "imc", "gauss-newton", ... */
     const char *settings; /**< of the method, a JSON object such as {"replicas": 8}; or NULL */
 
-    /** The measured g(r), in equal bins from 0 on or from where it begins; errors may be NULL. */
+    /** The measured g(r), best in equal bins from 0 on or from where it begins; at any other
+        growing r it is read at equal ones. Errors may be NULL. */
     struct {
         size_t count;
         const double *r, *g, *error; /**< shape [count]; r in the middle of the bins [lambda] */

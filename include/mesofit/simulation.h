@@ -34,7 +34,7 @@ struct mesofit_scene {
     double time_step;                /**< [tau] */
     struct mesofit_law conservative; /**< Phi(r) */
     struct mesofit_law dissipative;  /**< omega(r); friction omega^2, noise sqrt(2 k_B T) omega */
-    const char *integrator; /**< name, as `mesofit describe integrators` lists them; or NULL */
+    const char *integrator; /**< name, as `mesofit describe dynamics` lists them; or NULL */
     uint64_t seed;          /**< below 2^53 */
     int threads;            /**< of one step; the results do not depend on it */
 };

@@ -345,12 +345,20 @@ static void print_topic(const struct topic *topic) {
 /// The topics of that name, and all of a group of that name; false if there is none.
 static bool print_named(const struct topic *topics, size_t count, const char *name) {
     bool found = false;
+    char target[64];
     for (size_t k = 0; k < count; k++)
         if (strcmp(topics[k].group, name) == 0 || strcmp(topics[k].name, name) == 0) {
             printf("%s", found ? "\n" : "");
             print_topic(&topics[k]);
             found = true;
         }
+    // What is measured in a simulation may be a target, too, of which a run file says other things.
+    snprintf(target, sizeof target, "%s-target", name);
+    for (size_t k = 0; found && k < count; k++)
+        if (strcmp(topics[k].name, target) == 0)
+            printf("\nIn \"target\" of a run file \"%s\" is another object, see `mesofit describe "
+                   "%s`.\n",
+                   name, target);
     return found;
 }
 

@@ -24,7 +24,8 @@ static const struct command_option options[] = {
     [RANKS] = {"--ranks", "N", "with --explain: how much faster N processes of an MPI job will be"},
     [TARGET] = {"--target", "DIR", "fit DIR/target.json, or with the next two DIR/rdf.tsv alone"},
     [DENSITY] = {"--density", "NUMBER", "beads in a unit of volume, which target.json lacks"},
-    [TEMPERATURE] = {"--temperature", "NUMBER", "likewise; without target.json 1"},
+    [TEMPERATURE] = {"--temperature", "NUMBER",
+                     "of the target, which target.json lacks; 1 without target.json"},
     [LIVE] = CMD_LIVE_OPTION,
     {NULL, NULL, NULL},
 };

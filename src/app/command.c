@@ -23,7 +23,7 @@ const struct command_option mf_command_common[] = {
     {"--resume", NULL, "go on with an interrupted run in its folder"},
     {"--force", NULL, "replace what the folder holds: a fit, an unfinished run, changed files"},
     {"--quiet", NULL, "no progress"},
-    {"--help", NULL, "print a summary of all commands and options"},
+    {"--help", NULL, "print a summary of all commands and options, behind a command of that one"},
     {"--version", NULL, "print the version"},
     {NULL, NULL, NULL},
 };
@@ -60,5 +60,17 @@ void mf_command_print_help(void) {
             printf("\noptions of %s:\n", (*command)->name);
         print_options((*command)->options);
     }
+    printf("\nexit code: %s\n", mf_command_exit_codes);
+}
+
+void mf_command_print_own_help(const struct command *command) {
+    printf("mesofit %s %s: %s\n\n", command->name, command->usage, command->summary);
+    if (command->options) {
+        printf("options of %s:\n", command->name);
+        print_options(command->options);
+        printf("\n");
+    }
+    printf("options of all commands:\n");
+    print_options(mf_command_common);
     printf("\nexit code: %s\n", mf_command_exit_codes);
 }

@@ -59,3 +59,6 @@ extern const struct command_option mf_command_common[];
 extern const char mf_command_purpose[], mf_command_exit_codes[];
 
 void mf_command_print_help(void);
+
+/// What a single subcommand takes.
+void mf_command_print_own_help(const struct command *command);

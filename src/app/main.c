@@ -216,11 +216,20 @@ static enum status finish_output(enum status status) {
                           error ? strerror(error) : "not all of it has arrived");
 }
 
+/// That of a command if the first word is one, else that of all.
+static enum status print_help(const char *word) {
+    for (size_t k = 0; mf_command_list[k]; k++)
+        if (strcmp(word, mf_command_list[k]->name) == 0) {
+            mf_command_print_own_help(mf_command_list[k]);
+            return STATUS_OK;
+        }
+    mf_command_print_help();
+    return STATUS_OK;
+}
+
 static enum status act(int count, char **words) {
-    if (asks_for(count, words, "--help")) {
-        mf_command_print_help();
-        return STATUS_OK;
-    }
+    if (asks_for(count, words, "--help"))
+        return print_help(words[1]);
     if (asks_for(count, words, "--version")) {
         printf("mesofit " MESOFIT_VERSION "\n");
         return STATUS_OK;

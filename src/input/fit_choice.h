@@ -21,6 +21,7 @@ struct fit_choice {
     double crossing;      ///< time in which a bead flies, or diffuses, as far as its neighbours
                           ///< are [τ]
     double range;         ///< of g(r) as it will be used [λ]
+    size_t joined;        ///< bins of `read` that make one of `rdf`
     double count;         ///< beads of a simulation
     double time_step;     ///< [τ]
     double precision;     ///< of the method, of g

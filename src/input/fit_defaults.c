@@ -63,60 +63,103 @@ enum status mf_fit_defaults_make_readable(struct json_object *root) {
 
 // The choices -------------------------------------------------------------------------------------
 
-/// What is left of g − 1 beyond the cutoff. Molecules are many beads, and forces between all that
-/// are a long way apart are most of the work: hexane with a cutoff of 1.3 nm, beyond which g
-/// differs from 1 by 0.03 at most, has g from there to 2 nm within 0.003
-/// (docs/results/molecules.md).
-static const double little = 0.002, little_of_molecules = 0.03;
-
-/// Centre of the last bin that is used: where g is seen to differ from 1, and all of the bin within
-/// half of a box that is given and not much too small.
-static double find_cutoff(const struct fit_choice *c, const char **why) {
-    static const double least_of_box = 0.8;
-    const bool joined = scene_has_molecules(&c->read->scene.molecules);
-    const double beyond = joined ? 1 : 1.1, whole = c->scales.range - 0.5 * c->rdf->bins.width;
-    double cutoff = fmin(whole, fmax(beyond * c->scales.seen, 2 * c->scales.neighbour));
-    *why = joined ? "beyond it g differs from 1 by less than 0.03, as it may without forces there"
-                  : "beyond, g - 1 is within its noise";
-    if (c->leader) {
-        const struct rdf_bins *bins = target_pairs_bins(&c->leader->files.rdf);
-        *why = "as the first state has it";
-        return mf_rdf_bins_centre(bins, bins->count - 1);
-    }
-    if (mf_fit_choice_lacks(c->root, "scene", "box"))
-        return cutoff;
-    const double half = 0.5 * mf_box_shortest(&c->read->scene.setup.box),
-                 last = floor((half - c->rdf->bins.low) / c->rdf->bins.width + 1e-9),
-                 within = c->rdf->bins.low + (last - 0.5) * c->rdf->bins.width;
-    if (within >= cutoff || within < least_of_box * cutoff)
-        return cutoff;
-    *why = "half of the box";
-    return within;
-}
-
-/// For g(r), of a mixture for that of each pair type.
-static enum status choose_cutoff(struct fit_choice *c) {
-    static const double worth = 0.9;
+/// Give a key of the target g(r), of a mixture those of each pair type that do not say it.
+static enum status give_to_pairs(struct fit_choice *c, const char *name, double value,
+                                 bool *given) {
     const struct composition *composition = c->rdf->composition;
-    const char *why, *key;
-    char text[FIT_CHOICE_TEXT_SIZE];
-    const double cutoff = find_cutoff(c, &why);
-    const bool forced = c->leader || strcmp(why, "half of the box") == 0;
+    const char *key;
     struct json_object rdf = mf_fit_choice_object(c->root, "target.rdf");
-    if (!c->finds[UNKNOWN_POTENTIAL] || (cutoff > worth * c->range && !forced))
-        return STATUS_OK;
+    *given = false;
     for (size_t n = 0; (key = mf_json_key(&rdf, n)); n++) {
         char path[JSON_PATH_SIZE] = "target.rdf";
         if (composition_is_mixed(composition) && mf_composition_find_pair(composition, key) < 0)
             continue;
         if (composition_is_mixed(composition))
             snprintf(path, sizeof path, "target.rdf.%.64s", key);
-        if (!mf_fit_choice_lacks(c->root, path, "cutoff"))
+        if (!mf_fit_choice_lacks(c->root, path, name))
             continue;
-        TRY(mf_fit_choice_give(c, path, mf_target_rdf_fields, "cutoff", cutoff));
-        c->range = cutoff + 0.5 * c->rdf->bins.width;
+        TRY(mf_fit_choice_give(c, path, mf_target_rdf_fields, name, value));
+        *given = true;
         rdf = mf_fit_choice_object(c->root, "target.rdf");
     }
+    return STATUS_OK;
+}
+
+/// Whether the file says how wide the bins of any pair type are.
+static bool says_bins(const struct fit_choice *c) {
+    bool says = false;
+    for (size_t pair = 0; pair < c->read->files.rdf.pairs; pair++)
+        says = says || c->read->files.rdf.member[pair].parameters.bin_width > 0;
+    return says;
+}
+
+/// Rows finer than what g tells apart are joined: to those of the first state, if there are more.
+static enum status choose_bins(struct fit_choice *c, struct fit_scales_rdf *rdf) {
+    static const double finest = 0.001, coarsest = 0.004;
+    const struct target_files *files = &c->read->files;
+    char text[FIT_CHOICE_TEXT_SIZE];
+    bool given;
+    if (!files->given[TARGET_RDF] || !c->read->unknown[UNKNOWN_POTENTIAL].wanted || says_bins(c))
+        return STATUS_OK;
+    size_t of = mf_fit_scales_joined(rdf, finest, coarsest);
+    if (c->leader)
+        of = (size_t)fmax(1,
+                          round(target_pairs_bins(&c->leader->files.rdf)->width / rdf->bins.width));
+    if (of < 2)
+        return STATUS_OK;
+    TRY(mf_fit_scales_rdf_join(rdf, of));
+    c->joined = of;
+    TRY(give_to_pairs(c, "bin_width", rdf->bins.width, &given));
+    mf_fit_choice_say(c, "bins of %s: %s", mf_fit_choice_text(c, "lambda", rdf->bins.width, text),
+                      c->leader ? "as the first state has them"
+                                : "as wide as they can be with g between them within its noise");
+    return STATUS_OK;
+}
+
+/// Centre of the last row of a bin of so many rows: where a cutoff leaves all of the bin.
+static double last_row(const struct rdf_bins *bins, size_t bin, size_t rows) {
+    return mf_rdf_bins_centre(bins, bin) + 0.5 * bins->width * (1 - 1 / (double)rows);
+}
+
+/// Centre of the last row that is used: where g is seen to differ from 1, and all of the bin within
+/// half of a box that is given and not much too small.
+static double find_cutoff(const struct fit_choice *c, const char **why) {
+    static const double least_of_box = 0.8;
+    const double whole = c->scales.range - 0.5 * c->rdf->bins.width;
+    double cutoff = fmin(whole, fmax(c->scales.seen, 2 * c->scales.neighbour));
+    *why = "beyond, g differs from 1 by less than 0.03 or its noise, as it may without forces "
+           "there";
+    if (c->leader) {
+        const struct rdf_bins *bins = target_pairs_bins(&c->leader->files.rdf);
+        *why = "as the first state has it";
+        return last_row(bins, bins->count - 1, c->leader->files.rdf.member[0].joined);
+    }
+    if (mf_fit_choice_lacks(c->root, "scene", "box"))
+        return cutoff;
+    const double half = 0.5 * mf_box_shortest(&c->read->scene.setup.box),
+                 last = floor((half - c->rdf->bins.low) / c->rdf->bins.width + 1e-9);
+    if (last < 1)
+        return cutoff;
+    const double within =
+        last_row(&c->rdf->bins, (size_t)last - 1, c->joined * c->read->files.rdf.member[0].joined);
+    if (within >= cutoff || within < least_of_box * cutoff)
+        return cutoff;
+    *why = "half of the box";
+    return within;
+}
+
+static enum status choose_cutoff(struct fit_choice *c) {
+    static const double worth = 0.9;
+    const char *why;
+    char text[FIT_CHOICE_TEXT_SIZE];
+    bool given;
+    const double cutoff = find_cutoff(c, &why);
+    const bool forced = c->leader || strcmp(why, "half of the box") == 0;
+    if (!c->finds[UNKNOWN_POTENTIAL] || (cutoff > worth * c->range && !forced))
+        return STATUS_OK;
+    TRY(give_to_pairs(c, "cutoff", cutoff, &given));
+    if (given)
+        c->range = cutoff + 0.5 * c->rdf->bins.width;
     if (c->range < c->scales.range)
         mf_fit_choice_say(c, "cutoff %s: %s", mf_fit_choice_text(c, "lambda", cutoff, text), why);
     return STATUS_OK;
@@ -373,6 +416,7 @@ enum status mf_fit_defaults_choose(const struct fit_file *read, const struct fit
                            .root = root,
                            .said = choices,
                            .rdf = &rdf,
+                           .joined = 1,
                            .dimensions = setup->box.dimensions,
                            .count = (double)setup->placement.count};
     CHECK(choose_shorter_steps(&c));
@@ -384,9 +428,9 @@ enum status mf_fit_defaults_choose(const struct fit_file *read, const struct fit
         goto done;
     }
     c.density = rdf.density;
-    c.scales = mf_fit_scales_find(&rdf, setup->temperature,
-                                  scene_has_molecules(&read->scene.molecules) ? little_of_molecules
-                                                                              : little);
+    if (lacks_method(root))
+        CHECK(choose_bins(&c, &rdf));
+    c.scales = mf_fit_scales_find(&rdf, setup->temperature, fit_scales_little);
     c.mass = masses.maximum > 0 ? masses.minimum : 1;
     c.crossing = find_crossing(&c, setup);
     c.range = c.scales.range;

@@ -151,29 +151,14 @@ enum status mf_fit_defaults_method(struct fit_choice *c) {
     return choose_rounds(c, fields_with(method, "equilibration"));
 }
 
-/// rms of the errors of g that one sample leaves, if pairs are independent.
-static double noise_of_sample(const struct fit_choice *c) {
-    const struct rdf_bins *bins = &c->rdf->bins;
-    const struct composition *composition = c->rdf->composition;
-    const struct box *box = &c->read->scene.setup.box;
-    const double larger = c->count / (double)mf_composition_particles(composition);
-    double squares = 0, count = 0;
-    for (int pair = 0; pair < mf_composition_pairs(composition); pair++)
-        for (size_t k = 0; k < bins->count && mf_rdf_bins_edge(bins, k) < c->range; k++) {
-            const double ideal = larger * mf_rdf_ideal_pairs_of(bins, k, box, composition, pair);
-            const double g = c->rdf->g[(size_t)pair * bins->count + k];
-            squares += ideal > 0 ? g / ideal : 0;
-            count += ideal > 0;
-        }
-    return sqrt(squares / count);
-}
-
 /// How many samples of each replica make the noise of g so small that the rms of g − g* is known
 /// within a tenth: half of what the errors of target and method make.
 static double samples_for_rdf(const struct fit_choice *c, double replicas) {
     static const double part = 0.5, inefficiency = 2;
     const double wanted = part * hypot(c->scales.noise, c->precision);
-    return inefficiency * pow(noise_of_sample(c) / wanted, 2) / replicas;
+    const double noise =
+        mf_fit_scales_noise_of_sample(c->rdf, &c->read->scene.setup.box, c->count, c->range);
+    return inefficiency * pow(noise / wanted, 2) / replicas;
 }
 
 /// What the file says of the verification, or what is chosen.

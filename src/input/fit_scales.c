@@ -184,6 +184,101 @@ double mf_fit_scales_friction(const struct fit_scales_rdf *rdf, double cutoff) {
     return rdf->density * sum / rdf->dimensions;
 }
 
+double mf_fit_scales_noise_of_sample(const struct fit_scales_rdf *rdf, const struct box *box,
+                                     double count, double range) {
+    const struct rdf_bins *bins = &rdf->bins;
+    const double larger = count / (double)mf_composition_particles(rdf->composition);
+    double squares = 0, seen = 0;
+    for (int pair = 0; pair < mf_composition_pairs(rdf->composition); pair++)
+        for (size_t k = 0; k < bins->count && mf_rdf_bins_edge(bins, k) < range; k++) {
+            const double ideal =
+                larger * mf_rdf_ideal_pairs_of(bins, k, box, rdf->composition, pair);
+            const double g = rdf->g[(size_t)pair * bins->count + k];
+            squares += ideal > 0 ? g / ideal : 0;
+            seen += ideal > 0;
+        }
+    return sqrt(squares / seen);
+}
+
+// Bins --------------------------------------------------------------------------------------------
+
+/// `of` bins from bin k on as one: g and its variance.
+static void join_bins(const struct fit_scales_rdf *rdf, size_t pair, size_t k, size_t of, double *g,
+                      double *variance) {
+    const struct rdf_bins *bins = &rdf->bins;
+    const struct box space = {.dimensions = rdf->dimensions};
+    double whole = 0;
+    *g = *variance = 0;
+    for (size_t j = k; j < k + of; j++) {
+        const double part =
+            mf_box_shell_volume(&space, mf_rdf_bins_edge(bins, j), mf_rdf_bins_edge(bins, j + 1));
+        whole += part;
+        *g += part * rdf->g[pair * bins->count + j];
+        *variance += pow(part * rdf->error[pair * bins->count + j], 2);
+    }
+    *g /= whole;
+    *variance /= whole * whole;
+}
+
+/// What cubics through bins of a pair type that are joined are off by, beyond noise, over what they
+/// may be: the noise of a bin, from `finest` to `coarsest` times sqrt(g), as that of pairs is.
+static double find_interpolation(const struct fit_scales_rdf *rdf, size_t pair, size_t of,
+                                 double finest, double coarsest) {
+    enum { TAPS = 5, MIDDLE = TAPS / 2 };
+    static const double taps[TAPS] = {1, -4, 6, -4, 1}, share = 3.0 / 128, standard_errors = 3;
+    static const double rare = 0.02;
+    double g[TAPS] = {0}, variance[TAPS] = {0}, most = 0;
+    for (size_t k = 0; (k + 1) * of <= rdf->bins.count; k++) {
+        join_bins(rdf, pair, k * of, of, &g[k % TAPS], &variance[k % TAPS]);
+        if (k + 1 < TAPS)
+            continue;
+        double difference = 0, noise = 0;
+        for (size_t j = 0; j < TAPS; j++) {
+            difference += taps[j] * g[(k + 1 + j) % TAPS];
+            noise += taps[j] * taps[j] * variance[(k + 1 + j) % TAPS];
+        }
+        const size_t middle = (k + 1 + MIDDLE) % TAPS;
+        const double level = sqrt(fmin(1, fmax(rare, g[middle])));
+        const double may = fmin(coarsest * level, fmax(finest * level, sqrt(variance[middle])));
+        most = fmax(most, share * (fabs(difference) - standard_errors * sqrt(noise)) / may);
+    }
+    return most;
+}
+
+size_t mf_fit_scales_joined(const struct fit_scales_rdf *rdf, double finest, double coarsest) {
+    enum { FEWEST = 40 }; // so few take no time, and of fewer no rms is known well
+    size_t joined = 1;
+    for (size_t of = 2; of * FEWEST <= rdf->bins.count; of++) {
+        double off = 0;
+        for (size_t pair = 0; pair < pairs_of(rdf); pair++)
+            off = fmax(off, find_interpolation(rdf, pair, of, finest, coarsest));
+        if (off > 1)
+            break;
+        joined = of;
+    }
+    return joined;
+}
+
+enum status mf_fit_scales_rdf_join(struct fit_scales_rdf *rdf, size_t of) {
+    enum status status = STATUS_OK;
+    const size_t count = rdf->bins.count / of, values = pairs_of(rdf) * count;
+    double *own = NULL;
+    NEW_ARRAY(own, 2 * values);
+    for (size_t n = 0; n < values; n++) {
+        double variance;
+        join_bins(rdf, n / count, n % count * of, of, &own[n], &variance);
+        own[values + n] = sqrt(variance);
+    }
+    mf_memory_free(rdf->own);
+    rdf->own = own;
+    rdf->g = own;
+    rdf->error = own + values;
+    rdf->bins.count = count;
+    rdf->bins.width *= (double)of;
+done:
+    return status;
+}
+
 // g(r) --------------------------------------------------------------------------------------------
 
 /// That of a gas.

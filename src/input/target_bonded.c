@@ -156,8 +156,9 @@ static enum status check_rows(const struct rows *rows, const char *file) {
         if (!(fabs(step / width - 1) < 0.05))
             return mf_status_fail(
                 STATUS_BAD_INPUT,
-                "%s:%zu: the bins are not equally spaced: a step of %g where the mean is %g", file,
-                rows->line[k], step, width);
+                "%s:%zu: the bins are not equally spaced: this step is %.3g times the mean one; "
+                "count them anew in equal bins",
+                file, rows->line[k], step / width);
         if (!(rows->p[k] >= 0 && rows->error[k] >= 0 && isfinite(rows->p[k] + rows->error[k])))
             return mf_status_fail(STATUS_BAD_INPUT,
                                   "%s:%zu: p = %g with an error of %g is no distribution", file,

@@ -87,8 +87,9 @@ static enum status check_times(const struct target_curve *curve, const struct da
         if (fabs(cell(table, k, p->x_column) - (double)k * curve->interval) >
             0.01 * curve->interval)
             return mf_status_fail(STATUS_BAD_INPUT,
-                                  "%s:%zu: the times are not equally spaced from 0", p->file,
-                                  table->line[k]);
+                                  "%s:%zu: the times are not equally spaced from 0: keep rows at "
+                                  "0, h, 2 h and so on",
+                                  p->file, table->line[k]);
     return STATUS_OK;
 }
 

@@ -68,11 +68,11 @@ static enum status find_interval(const struct data_table *table, const char *fil
     for (size_t row = 1; row < table->rows; row++) {
         const double step = time_of(table, p, row) - time_of(table, p, row - 1);
         if (fabs(step / *interval - 1) > time_tolerance)
-            return mf_status_fail(
-                STATUS_BAD_INPUT,
-                "%s:%zu: the times are not equally spaced: a step of %g where the "
-                "mean is %g",
-                file, table->line[row], step, *interval);
+            return mf_status_fail(STATUS_BAD_INPUT,
+                                  "%s:%zu: the times are not equally spaced: this step is %.3g "
+                                  "times the mean one; keep "
+                                  "rows at 0, h, 2 h and so on",
+                                  file, table->line[row], step / *interval);
     }
     return STATUS_OK;
 }

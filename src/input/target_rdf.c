@@ -4,7 +4,6 @@
 #include "base/memory.h"
 #include "io/data_table.h"
 #include "io/votca.h"
-#include "input/target_rows.h"
 
 #include <math.h>
 #include <string.h>
@@ -22,7 +21,8 @@ static const char *const formats[] = {"columns", "votca", NULL};
 #define COLUMN .maximum = 1000, .unit = ""
 const struct field mf_target_rdf_fields[] = {
     {"file", FIELD_FILE, MEMBER(file), .required = true, .unit = "",
-     .help = "g(r) at equally spaced bin centres, in units of the scene"},
+     .help = "g(r) at the centres of equal bins, or at any growing r as a digitised figure has it, "
+             "in units of the scene"},
     {"format", FIELD_CHOICE, MEMBER(format), .choices = formats, .initial = TARGET_RDF_COLUMNS,
      .unit = "",
      .help = "votca: a .dist.tgt in nm, by the scene's \"units\"; its columns are known"},
@@ -40,8 +40,9 @@ const struct field mf_target_rdf_fields[] = {
     {"bin_width", FIELD_NUMBER, MEMBER(bin_width), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
      .unit = "lambda",
      .help =
-         "rows are joined to bins of about this width; 0: those of the file, or the least whole "
-         "number of them that makes no more than 400 bins"},
+         "rows are joined to bins of about this width; 0: without a \"method\" chosen by noise and "
+         "structure of g, else those of the file, or the least whole number of them that makes no "
+         "more than 400 bins"},
     {"particles", FIELD_INTEGER, MEMBER(particles), .initial = 0, .minimum = 0, .maximum = 1e9,
      .unit = "",
      .help = "of all types in the system where it was measured, to correct for another number in "
@@ -186,59 +187,57 @@ static void leave_out_half_bin(struct target_rows *rows) {
     memmove(rows->line, rows->line + 1, rows->count * sizeof *rows->line);
 }
 
-/// The row whose step from the one before is farthest from `width`, the mean step: with a gap, the
-/// row behind it.
-static size_t oddest_row(const struct target_rows *rows, double width, double *step) {
-    size_t oddest = 1;
-    *step = width;
-    for (size_t k = 1; k < rows->count; k++) {
-        const double here = rows->r[k] - rows->r[k - 1];
-        if (fabs(here - width) > fabs(*step - width)) {
-            oddest = k;
-            *step = here;
-        }
-    }
-    return oddest;
-}
-
-/// Bins from their centres, which must be equally spaced to the digits of the file.
+/// Bins from their centres, which are equally spaced.
 static enum status find_bins(const struct target_rows *rows, const char *file,
                              struct rdf_bins *bins) {
     if (rows->count < 4)
         return mf_status_fail(STATUS_BAD_INPUT, "%s: only %zu bins", file, rows->count);
     const double first = rows->r[0];
     const double width = (rows->r[rows->count - 1] - first) / (double)(rows->count - 1);
-    double step;
-    const size_t oddest = oddest_row(rows, width, &step);
-    if (fabs(step / width - 1) > 0.01)
-        return mf_status_fail(
-            STATUS_BAD_INPUT,
-            "%s:%zu: the bins are not equally spaced: a step of %g where the mean "
-            "is %g (a gap in the target?)",
-            file, rows->line[oddest], step, width);
     // First edges come out as 0 but for the file's rounding.
     const double low = first - 0.5 * width;
     if (low < -0.01 * width)
         return mf_status_fail(
-            STATUS_BAD_INPUT, "%s:%zu: r = %g is not the centre of a bin of width %g%s", file,
-            rows->line[0], first, width,
-            first == 0 ? ": half a bin that is not empty; leave the row out" : "");
+            STATUS_BAD_INPUT, "%s:%zu: %s is not the centre of a bin%s; leave the row out", file,
+            rows->line[0], first == 0 ? "r = 0" : "the first r",
+            first == 0 ? ": half a bin that is not empty" : ", which would begin below 0");
     *bins = (struct rdf_bins){
         .low = fabs(low) < 0.01 * width ? 0 : low, .width = width, .count = rows->count};
     return STATUS_OK;
 }
 
-static enum status check_values(const struct target_rows *rows, const char *file) {
+/// Read what is slightly below 0, as a digitised g is in its core, as 0.
+static enum status check_values(struct target_rdf *target, struct target_rows *rows) {
+    static const double slightly = 0.02, standard_errors = 3; // of the peak
+    const char *file = target->parameters.file;
+    double peak = 0;
+    for (size_t k = 0; k < rows->count; k++)
+        peak = fmax(peak, rows->g[k]);
     for (size_t k = 0; k < rows->count; k++) {
-        if (rows->g[k] < 0)
+        if (rows->error[k] < 0)
+            return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: a negative error of g, %g", file,
+                                  rows->line[k], rows->error[k]);
+        if (rows->g[k] >= 0)
+            continue;
+        if (-rows->g[k] > fmax(slightly * peak, standard_errors * rows->error[k]))
             return mf_status_fail(
                 STATUS_BAD_INPUT,
                 "%s:%zu: a negative g, %g: a potential, or another column than g?", file,
                 rows->line[k], rows->g[k]);
-        if (rows->error[k] < 0)
-            return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: a negative error of g, %g", file,
-                                  rows->line[k], rows->error[k]);
+        target->negative++;
+        target->least = fmin(target->least, rows->g[k]);
+        rows->g[k] = 0;
     }
+    return STATUS_OK;
+}
+
+/// Rows that are not equally spaced, read at r that are.
+static enum status resample(struct target_rdf *target, struct target_rows *rows, bool *has_errors) {
+    if (!mf_target_resample_is_needed(rows))
+        return STATUS_OK;
+    TRY(mf_target_resample(rows, target->parameters.file, *has_errors, assumed_error,
+                           &target->resampling));
+    *has_errors = true;
     return STATUS_OK;
 }
 
@@ -279,8 +278,9 @@ static enum status load(struct target_rdf *target, const struct units *units, in
     leave_out_half_bin(&rows);
     target->tail = mf_target_rows_tail(&rows);
     cut(p, &rows);
+    CHECK(check_values(target, &rows));
+    CHECK(resample(target, &rows, &has_errors));
     CHECK(find_bins(&rows, p->file, &bins));
-    CHECK(check_values(&rows, p->file));
     target->joined = rows_of_a_bin(p, &bins);
     CHECK(join(target, &rows, has_errors));
     CHECK(find_bins(&rows, p->file, &target->bins));

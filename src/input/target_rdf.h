@@ -5,7 +5,7 @@
 #include "io/data_table.h"
 #include "io/json.h"
 #include "observe/finite_size.h"
-#include "input/target_rows.h"
+#include "input/target_resample.h"
 #include "io/units.h"
 
 /// Of the file: columns in units of the scene, or a .dist.tgt of VOTCA.
@@ -32,10 +32,14 @@ struct target_rdf {
     double estimated_error;  ///< of g = 1 in the last bin if the file has no errors, else 0
     bool assumed;            ///< and not even the scatter of the rows tells it
     struct target_tail tail; ///< of the whole file, whatever the cutoff
+    struct target_resampling resampling;
+    size_t negative; ///< rows with a g slightly below 0, which is taken as 0
+    double least;    ///< of these [1]
 };
 
 /// Read the members of {"file": …}. Faults (gaps, negative values, …) go to the document and leave
-/// the target empty. `units` convert VOTCA's nm; `dimensions` are those of space. Errors that the
+/// the target empty. Rows that are not equally spaced are read at r that are, and g slightly below
+/// 0 is 0. `units` convert VOTCA's nm; `dimensions` are those of space. Errors that the
 /// file does not give are estimated from the scatter of its rows, which are then joined to bins.
 /// Fails: NO_MEMORY. Tested: test_target_rdf.
 enum status mf_target_rdf_read(struct target_rdf *target, struct json_object *object,

@@ -109,8 +109,9 @@ enum status mf_target_rows_scatter(const struct target_rows *rows, double *error
     if (count < LEAST_DIFFERENCES)
         goto done;
     const double variance = mf_target_rows_robust_mean(square, count);
-    if (variance > 0)
-        *error = sqrt(variance / volume(rows, rows->count - 1, width_of(rows)));
+    const double scatter = sqrt(variance / volume(rows, rows->count - 1, width_of(rows)));
+    if (scatter > target_rows_least_scatter)
+        *error = scatter;
 done:
     mf_memory_free(square);
     return status;

@@ -37,8 +37,10 @@ struct target_tail mf_target_rows_tail(const struct target_rows *rows);
 /// bins with g above 0.2, without those beyond three standard deviations, where g is too steep.
 /// What neighbours have in common, such as a temperature that drifts, is not seen: of the tables in
 /// targets/, whose errors are known from blocks of time, 0.79 to 1.23 of it is found. NaN if there
-/// are fewer than 12 differences or most are 0. Needs bins of the same width. Fails: NO_MEMORY.
-/// Tested: test_target_rows.
+/// are fewer than 12 differences, or if g scatters by less than 1e-5 as the digits of an exact
+/// table do, which no counted pairs have. Needs bins of the same width. Fails: NO_MEMORY. Tested:
+/// test_target_rows.
+static const double target_rows_least_scatter = 1e-5;
 enum status mf_target_rows_scatter(const struct target_rows *rows, double *error) MUST_USE;
 
 /// The mean of `count` squares of normal numbers, some of which do not belong: without those beyond

@@ -320,6 +320,7 @@ static void tell_origin(const struct view *view, const struct target_sanity_list
             "all g(r) of a mixture end together",
             view->name, view->ends * length, unit,
             mf_rdf_bins_edge(view->bins, view->bins->count) * length, unit);
+    mf_target_sanity_tell_reading(target, view->name, view->scene, listener);
     if (target->joined > 1)
         mf_target_sanity_say(listener, "target %s: %zu rows of the file make a bin of %.4g %s",
                              view->name, target->joined, view->bins->width * length, unit);

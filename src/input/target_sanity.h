@@ -50,6 +50,11 @@ enum status mf_target_sanity_tell(const struct target_files *files, const struct
 void mf_target_sanity_tell_groups(const struct target_files *files, const struct scene *scene,
                                   const struct target_sanity_listener *listener);
 
+/// Tell what was made of a table of g(r) without equal bins, or with a g slightly below 0.
+void mf_target_sanity_tell_reading(const struct target_rdf *target, const char *name,
+                                   const struct scene *scene,
+                                   const struct target_sanity_listener *listener);
+
 /// Say a line.
 void mf_target_sanity_say(const struct target_sanity_listener *listener, const char *format, ...)
     __attribute__((format(printf, 2, 3)));

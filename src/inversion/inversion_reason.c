@@ -78,9 +78,10 @@ static void tell_what_is_missing(const struct inversion *inversion,
             p->best_own_noise);
     else if (p->best_precise)
         snprintf(reason, INVERSE_REASON_SIZE,
-                 "g agrees, but it still asks for another ramp A (1 - r/cutoff), by %.2g k_B T_0 "
-                 "with an error of %.2g, and a pressure by %.2g with one of %.2g: more "
-                 "\"iterations\" are needed, or a \"pressure\"",
+                 "g agrees, but what it hardly sees has not settled, a ramp A (1 - r/cutoff) of "
+                 "the potential and with it the pressure: they went on by %.2g k_B T_0, known "
+                 "within %.2g, and by %.2g, known within %.2g; give \"pressure\" as a second "
+                 "target, or more \"iterations\"",
                  inversion->band.ramp.way, inversion->band.ramp.error, inversion->band.farthest.way,
                  inversion->band.farthest.open);
     else

@@ -2,175 +2,131 @@
 #include "io/data_table.h"
 
 #include "base/memory.h"
+#include "io/data_heading.h"
 #include "io/output.h"
 #include "io/text_file.h"
 
 #include <math.h>
 #include <stdbool.h>
-#include <stdlib.h>
 #include <string.h>
-
-static const char blanks[] = " \t\r\f\v";
-
-/// One line of the text, without its line end.
-struct line {
-    const char *begin, *end;
-    size_t number; ///< from 1
-};
-
-static struct line first_line(const char *text) {
-    return (struct line){text, text + strcspn(text, "\n"), 1};
-}
-
-/// Step to the next line; false at the end of the text.
-static bool next_line(struct line *line) {
-    if (*line->end == '\0')
-        return false;
-    const char *begin = line->end + 1;
-    *line = (struct line){begin, begin + strcspn(begin, "\n"), line->number + 1};
-    return true;
-}
-
-static const char *first_word(const struct line *line) {
-    return line->begin + strspn(line->begin, blanks);
-}
-
-static bool is_comment(const struct line *line) {
-    const char *word = first_word(line);
-    return word < line->end && strchr("#@%", *word) != NULL;
-}
-
-static bool is_data(const struct line *line) {
-    return first_word(line) < line->end && !is_comment(line);
-}
-
-/// What is between two words: a comma, a semicolon, or blanks alone (' '). Where blanks part words
-/// that no comma parts, the commas are those of decimals, which read_number refuses.
-static char separator_of(const struct line *line) {
-    const size_t length = (size_t)(line->end - line->begin);
-    if (memchr(line->begin, ';', length))
-        return ';';
-    if (memchr(line->begin, ',', length) == NULL)
-        return ' ';
-    for (const char *at = first_word(line); at < line->end; at++) {
-        const char *after = at + strspn(at, blanks);
-        if (after > at && after < line->end && at[-1] != ',' && *after != ',')
-            return ' ';
-    }
-    return ',';
-}
-
-/// A word of a line, without blanks around it.
-struct word {
-    const char *begin;
-    size_t length;
-    char separator; ///< of the line
-};
-
-static struct word take_word(const struct line *line, char separator, const char *begin) {
-    const char stop[] = {separator, '\n', '\0'};
-    size_t length = strcspn(begin, separator == ' ' ? " \t\r\f\v\n" : stop);
-    if (begin + length > line->end)
-        length = (size_t)(line->end - begin);
-    while (length > 0 && strchr(blanks, begin[length - 1]))
-        length--;
-    return (struct word){begin, length, separator};
-}
-
-static struct word line_word(const struct line *line, char separator) {
-    return take_word(line, separator, first_word(line));
-}
-
-/// Step to the next word; false behind the last. A separator at the end begins no further word.
-static bool next_word(const struct line *line, struct word *word) {
-    const char *at = word->begin + word->length;
-    at += strspn(at, blanks);
-    if (word->separator != ' ' && *at == word->separator)
-        at += 1 + strspn(at + 1, blanks);
-    *word = take_word(line, word->separator, at);
-    return at < line->end;
-}
-
-static size_t count_words(const struct line *line, char separator) {
-    struct word word = line_word(line, separator);
-    size_t count = 1;
-    while (next_word(line, &word))
-        count++;
-    return count;
-}
-
-/// Whether the word is a finite number and nothing else. strtod alone would take inf and 0x10.
-static bool is_number(const struct word *word, double *value) {
-    char *end;
-    *value = strtod(word->begin, &end);
-    return word->length > 0 && end == word->begin + word->length && isfinite(*value) &&
-           strspn(word->begin, "0123456789+-.eE") >= word->length;
-}
-
-/// Whether these are names of columns that no comment mark begins: no word is "nan" or begins as a
-/// number does.
-static bool is_names(const struct line *line) {
-    const char separator = separator_of(line);
-    struct word word = line_word(line, separator);
-    do {
-        char *end;
-        strtod(word.begin, &end);
-        if (word.length == 0 || strspn(word.begin, "0123456789+-.,") > 0 ||
-            end == word.begin + word.length)
-            return false;
-    } while (next_word(line, &word));
-    return true;
-}
+#include <strings.h>
 
 /// What is asked of a file, and what its text turns out to be.
 struct demand {
-    size_t columns;    ///< at least, and strictly numbers
-    bool flagged;      ///< a letter ends each row
-    char separator;    ///< of the first row
-    const char *names; ///< the line of names before it, or NULL
+    size_t columns;   ///< at least, and strictly numbers
+    bool flagged;     ///< a letter ends each row
+    char separator;   ///< of the first row
+    bool commas;      ///< may be those of decimals
+    char decimal;     ///< how decimals begin: '.', ',', or 0 until one is seen
+    uint64_t label;   ///< columns of text beside the numbers, a bit each
+    size_t labels;    ///< how many
+    const char *rows; ///< where the first begins: before are names and comments
 };
 
-static bool is_row(const struct demand *demand, const struct line *line) {
-    return is_data(line) && line->begin != demand->names;
+static bool is_label(const struct demand *demand, size_t column) {
+    return column < DATA_HEADING_MOST && (demand->label >> column & 1);
 }
 
-/// Find the names of columns and the separator, and end the text where its first set of data ends,
-/// by a line "&" as xmgrace has it.
-static void recognise(struct demand *demand, char *text) {
-    struct line line = first_line(text);
-    bool first = true;
+static bool is_row(const struct demand *demand, const struct data_line *line) {
+    return line->begin >= demand->rows && mf_data_line_is_data(line);
+}
+
+/// Text, but none of the flags of VOTCA's tables, which say what is no measurement.
+static bool is_text(const struct data_word *word) {
+    return word->length > 0 && !mf_data_word_is_numeric(word) &&
+           !(word->length == 1 && strchr("iou", *word->begin));
+}
+
+/// The columns of a line that have text, and how many have none.
+static uint64_t find_text(const struct data_line *line, char separator, size_t *numbers) {
+    struct data_word word = mf_data_word_first(line, separator);
+    uint64_t text = 0;
+    size_t column = 0;
+    *numbers = 0;
     do {
-        if (!is_data(&line))
+        if (column < DATA_HEADING_MOST && is_text(&word))
+            text |= (uint64_t)1 << column;
+        else
+            ++*numbers;
+        column++;
+    } while (mf_data_word_next(line, separator, &word));
+    return text;
+}
+
+/// Columns of labels are text in the last two lines.
+static void find_labels(struct demand *demand, const struct data_line last[2]) {
+    size_t numbers, before;
+    if (demand->flagged || last[1].begin == NULL)
+        return;
+    const char separator = mf_data_line_separator(&last[0]);
+    const uint64_t text =
+        find_text(&last[0], separator, &numbers) & find_text(&last[1], separator, &before);
+    if (numbers < demand->columns || before < demand->columns)
+        return;
+    demand->label = text;
+    for (size_t column = 0; column < DATA_HEADING_MOST; column++)
+        demand->labels += is_label(demand, column);
+}
+
+/// Whether a line before the rows is text: it does not begin as a row does.
+static bool is_heading(const struct demand *demand, const struct data_line *line) {
+    const char separator = mf_data_line_separator(line);
+    struct data_word word = mf_data_word_first(line, separator);
+    size_t column = 0;
+    while (is_label(demand, column) && mf_data_word_next(line, separator, &word))
+        column++;
+    return is_label(demand, column) || !mf_data_word_is_numeric(&word);
+}
+
+/// End the text where its first set of data ends, by a line "&" as xmgrace has it, and find its
+/// last two lines.
+static void end_set(char *text, struct data_line last[2]) {
+    struct data_line line = mf_data_line_first(text);
+    do {
+        if (!mf_data_line_is_data(&line))
             continue;
-        if (*first_word(&line) == '&' && !first) {
+        if (*mf_data_line_start(&line) == '&' && last[0].begin) {
             text[line.begin - text] = '\0';
             return;
         }
-        if (first && demand->names == NULL && is_names(&line)) {
-            demand->names = line.begin;
-        } else if (first) {
-            demand->separator = separator_of(&line);
-            first = false;
-        }
-    } while (next_line(&line));
+        last[1] = last[0];
+        last[0] = line;
+    } while (mf_data_line_next(&line));
+}
+
+/// Find where the rows begin, their separator, and columns of labels.
+static void recognise(struct demand *demand, char *text) {
+    struct data_line last[2] = {0};
+    end_set(text, last);
+    find_labels(demand, last);
+    struct data_line line = mf_data_line_first(text);
+    demand->rows = text + strlen(text);
+    do {
+        if (!mf_data_line_is_data(&line) || is_heading(demand, &line))
+            continue;
+        demand->rows = line.begin;
+        demand->separator = mf_data_line_separator(&line);
+        demand->commas = mf_data_line_may_have_commas(&line, demand->separator);
+        return;
+    } while (mf_data_line_next(&line));
 }
 
 /// Count the rows and take the number of columns from the first one.
 static enum status measure(struct data_table *table, const char *file, const char *text,
                            const struct demand *demand) {
     const size_t least = demand->columns + demand->flagged;
-    struct line line = first_line(text);
+    struct data_line line = mf_data_line_first(text);
     do {
         if (!is_row(demand, &line))
             continue;
         if (table->rows++ == 0)
-            table->columns = count_words(&line, demand->separator);
+            table->columns = mf_data_word_count(&line, demand->separator) - demand->labels;
         if (table->columns < least)
             return mf_status_fail(STATUS_BAD_INPUT,
                                   "%s:%zu: %zu columns, at least %zu are needed (blanks, commas or "
                                   "semicolons separate columns)",
                                   file, line.number, table->columns, least);
-    } while (next_line(&line));
+    } while (mf_data_line_next(&line));
     if (table->rows == 0)
         return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: the file ends without a row of numbers",
                               file, line.number);
@@ -178,22 +134,35 @@ static enum status measure(struct data_table *table, const char *file, const cha
     return STATUS_OK;
 }
 
-/// Read the number that is exactly `word`; "nan" where it is allowed.
-static enum status read_number(const char *file, size_t line, size_t column, size_t strict,
-                               const struct word *word, double *value) {
-    if (is_number(word, value) || (column >= strict && word->length == 3 && isnan(*value)))
-        return STATUS_OK;
+/// What a person can do about a word that is no number.
+static const char *find_remedy(const struct data_word *word, const struct demand *demand) {
     const bool comma = word->length > 0 && memchr(word->begin, ',', word->length) &&
                        strspn(word->begin, "0123456789+-.,eE") >= word->length;
+    if (comma && demand->decimal == '.')
+        return ": a decimal comma? other decimals of the file begin with a point";
+    if (comma)
+        return ": a decimal comma? part columns by semicolons or tabs, or write decimals with a "
+               "point";
+    if (demand->decimal == ',' && word->length > 0 && memchr(word->begin, '.', word->length))
+        return ": other decimals of the file begin with a comma";
+    return is_text(word) ? ": begin lines of text with #" : "";
+}
+
+/// Read the number that is exactly `word`; "nan" where it is allowed.
+static enum status read_number(const char *file, size_t line, size_t column,
+                               const struct data_word *word, struct demand *demand, size_t number,
+                               double *value) {
+    if (mf_data_word_is_number(word, demand->commas, &demand->decimal, value) ||
+        (number >= demand->columns && word->length == 3 && strncasecmp(word->begin, "nan", 3) == 0))
+        return STATUS_OK;
     return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: column %zu: \"%.*s\" is not a finite number%s",
                           file, line, column + 1, word->length > 40 ? 40 : (int)word->length,
-                          word->begin,
-                          comma ? ": a decimal comma? decimals begin with a point here" : "");
+                          word->begin, find_remedy(word, demand));
 }
 
 /// The letter that is exactly `word`.
-static enum status read_flag(const char *file, const struct line *line, const struct word *of,
-                             char *flag) {
+static enum status read_flag(const char *file, const struct data_line *line,
+                             const struct data_word *of, char *flag) {
     const char *word = of->begin;
     *flag = *word;
     if (of->length == 1 && ((*word >= 'a' && *word <= 'z') || (*word >= 'A' && *word <= 'Z')))
@@ -204,18 +173,35 @@ static enum status read_flag(const char *file, const struct line *line, const st
         line->number);
 }
 
-static enum status read_row(const struct data_table *table, const char *file,
-                            const struct demand *demand, const struct line *line, size_t row) {
-    const size_t words = count_words(line, demand->separator);
-    const size_t wanted = table->columns + demand->flagged;
-    struct word word = line_word(line, demand->separator);
+/// A column of text must not have numbers, too, which would be lost.
+static enum status check_label(const char *file, const struct data_line *line, size_t column,
+                               const struct data_word *word, const struct demand *demand) {
+    double value;
+    char decimal = demand->decimal;
+    if (!mf_data_word_is_number(word, demand->commas, &decimal, &value))
+        return STATUS_OK;
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "%s:%zu: column %zu: %g is a number, and the last rows have text there",
+                          file, line->number, column + 1, value);
+}
+
+static enum status read_row(const struct data_table *table, const char *file, struct demand *demand,
+                            const struct data_line *line, size_t row) {
+    const size_t words = mf_data_word_count(line, demand->separator);
+    const size_t wanted = table->columns + demand->flagged + demand->labels;
+    struct data_word word = mf_data_word_first(line, demand->separator);
+    size_t number = 0;
     for (size_t column = 0; column < words && column < wanted; column++) {
-        if (column < table->columns)
-            TRY(read_number(file, line->number, column, demand->columns, &word,
-                            &table->values[row * table->columns + column]));
-        else
+        if (is_label(demand, column)) {
+            TRY(check_label(file, line, column, &word, demand));
+        } else if (number < table->columns) {
+            TRY(read_number(file, line->number, column, &word, demand, number,
+                            &table->values[row * table->columns + number]));
+            number++;
+        } else {
             TRY(read_flag(file, line, &word, &table->flags[row]));
-        next_word(line, &word);
+        }
+        mf_data_word_next(line, demand->separator, &word);
     }
     if (words != wanted)
         return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: %zu columns, the first row has %zu", file,
@@ -223,9 +209,9 @@ static enum status read_row(const struct data_table *table, const char *file,
     return STATUS_OK;
 }
 
-static enum status read_rows(struct data_table *table, const char *file,
-                             const struct demand *demand, const char *text) {
-    struct line line = first_line(text);
+static enum status read_rows(struct data_table *table, const char *file, struct demand *demand,
+                             const char *text) {
+    struct data_line line = mf_data_line_first(text);
     size_t row = 0;
     do {
         if (!is_row(demand, &line))
@@ -233,37 +219,26 @@ static enum status read_rows(struct data_table *table, const char *file,
         table->line[row] = line.number;
         TRY(read_row(table, file, demand, &line, row));
         row++;
-    } while (next_line(&line));
+    } while (mf_data_line_next(&line));
     return STATUS_OK;
 }
 
-/// Copy `line` from `begin` on, without blanks at its end, to `text`; returns its length.
-static size_t copy_line(char *text, const struct line *line, const char *begin) {
-    size_t length = (size_t)(line->end - begin);
-    while (length > 0 && strchr(blanks, begin[length - 1]))
-        length--;
-    memcpy(text, begin, length);
-    text[length] = '\0';
-    return length;
-}
-
+/// Keep the comments before the rows, and of all lines there the last one as the names of columns.
 static void read_comments(struct data_table *table, const struct demand *demand, const char *text) {
-    struct line line = first_line(text);
+    struct data_line line = mf_data_line_first(text), last = {0}, before = {0};
     char *end = table->comments;
-    do {
-        if (is_row(demand, &line))
-            return;
-        if (line.begin == demand->names) {
-            copy_line(table->header, &line, first_word(&line));
+    for (bool more = true; more && !is_row(demand, &line); more = mf_data_line_next(&line)) {
+        if (mf_data_line_start(&line) == line.end)
             continue;
-        }
-        if (!is_comment(&line))
+        before = last;
+        last = line;
+        if (!mf_data_line_is_comment(&line))
             continue;
-        const char *after_mark = first_word(&line) + 1;
-        copy_line(table->header, &line, after_mark + strspn(after_mark, blanks));
-        end += copy_line(end, &line, line.begin);
+        end += mf_data_line_copy(&line, line.begin, end);
         *end++ = '\n';
-    } while (next_line(&line));
+    }
+    mf_data_heading_make(&before, &last, demand->separator, demand->label,
+                         table->columns + demand->labels, table->header);
 }
 
 static enum status read_table(struct data_table *table, const char *file, struct demand *demand) {
@@ -278,7 +253,7 @@ static enum status read_table(struct data_table *table, const char *file, struct
     NEW_ARRAY(table->line, table->rows);
     if (demand->flagged)
         NEW_ARRAY(table->flags, table->rows);
-    NEW_ARRAY(table->header, length + 1);
+    NEW_ARRAY(table->header, 2 * length + 2);
     NEW_ARRAY(table->comments, length + 2);
     CHECK(read_rows(table, file, demand, text));
     read_comments(table, demand, text);
@@ -342,10 +317,10 @@ enum status mf_data_table_check_increasing(const struct data_table *table, const
 }
 
 static void write_comment(FILE *stream, const char *comment) {
-    struct line line = first_line(comment);
+    struct data_line line = mf_data_line_first(comment);
     do
         fprintf(stream, "# %.*s\n", (int)(line.end - line.begin), line.begin);
-    while (next_line(&line) && *line.begin);
+    while (mf_data_line_next(&line) && *line.begin);
 }
 
 static void write_header(FILE *stream, const struct data_column *columns, size_t count) {

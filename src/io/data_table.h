@@ -3,11 +3,12 @@
 ///
 /// Written: tab-separated, one `#` header line with column names and units, %.17g or fewer digits
 /// where asked; numpy.loadtxt and gnuplot read them as they are.
-/// Read: columns separated by blanks and tabs, by commas or by semicolons, as the first row has
-/// them;
-/// `#`, `@` and `%` start comment lines; empty lines pass, and so does a line of names before the
-/// rows, without a number in it. A line `&` ends the first set of data, and what follows is
-/// another. Decimals begin with a point: a decimal comma is a fault.
+/// Read: columns parted by blanks and tabs, by commas or by semicolons, as the first row has them;
+/// `#`, `@` and `%` start comment lines; empty lines pass, and so do lines of text before the rows,
+/// which do not begin with a number. Words may stand in quotes. Columns of text are left out and
+/// not counted. A line `&` ends the first set of data, and what follows is another. Decimals begin
+/// with a point or, where columns are parted by semicolons or tabs or stand in quotes, all of them
+/// with a comma.
 #pragma once
 
 #include "base/status.h"
@@ -20,7 +21,7 @@ struct data_table {
     double *values; ///< shape [rows, columns], row-major
     size_t *line;   ///< shape [rows]: line number in the file, for messages
     char *flags;    ///< shape [rows]: the letter that ends each row; NULL unless asked for
-    char *header;   ///< the line of names before the data, or the last comment without `#`; ""
+    char *header;   ///< names of columns: the last line before the rows, as mf_data_heading_make
     char *comments; ///< all comment lines before the data, as they stand in the file
 };
 

@@ -42,7 +42,9 @@ static const struct {
     {"nm", {1e-9, {[UNITS_METRE] = 1}}},
     {"angstrom", {1e-10, {[UNITS_METRE] = 1}}},
     {"A", {1e-10, {[UNITS_METRE] = 1}}},
-    {"\xc3\x85", {1e-10, {[UNITS_METRE] = 1}}}, // the letter with the ring
+    {"Angstrom", {1e-10, {[UNITS_METRE] = 1}}},
+    {"\xc3\x85", {1e-10, {[UNITS_METRE] = 1}}},     // the letter with the ring
+    {"\xe2\x84\xab", {1e-10, {[UNITS_METRE] = 1}}}, // the sign
     {"s", {1, {[UNITS_SECOND] = 1}}},
     {"ns", {1e-9, {[UNITS_SECOND] = 1}}},
     {"ps", {1e-12, {[UNITS_SECOND] = 1}}},

@@ -324,6 +324,9 @@ static enum status iterate(void *memory, struct inverse_step *step,
     if (inner.finished && stage == UNKNOWN_POTENTIAL) {
         progress->stage = UNKNOWN_OMEGA;
         progress->begun = progress->iteration;
+        step->begins =
+            "the potential is found; omega is next, and \"error\" is from here on that of "
+            "its targets, too: it begins anew";
     }
     return STATUS_OK;
 }

@@ -218,6 +218,7 @@ struct inverse_step {
     struct inverse_parameter
         parameter[INVERSE_PARAMETERS]; ///< of a friction weight that is a formula
     struct inverse_parameter number[INVERSE_MOST_NUMBERS]; ///< of the problem, the best so far
+    const char *begins; ///< another part of the fit that begins behind this step, in words; or NULL
     bool finished;
     bool converged; ///< it has settled: by its own measure it can do no better
     bool used_up;   ///< it finished since all was used that it was to use, as populations do, or at

@@ -204,17 +204,20 @@ static enum status write_rdf(const struct fit_file *fit, const struct target_pai
         r[k] = mf_rdf_bins_centre(bins, k);
     nanometres = mf_units_column(r, bins->count, units->length);
     CHECK(nanometres ? STATUS_OK : STATUS_NO_MEMORY);
-    const struct data_column columns[] = {
-        {"r[lambda]", r, NULL},
-        {"target[1]", target->g + first, "%.8g"},
-        {"target_error[1]", target->error + first, "%.3g"},
-        {"result[1]", observed->value[kind] + first, "%.8g"},
-        {"result_error[1]", observed->error[kind] + first, "%.3g"},
-        {"r[nm]", nanometres, NULL}};
+    struct data_column columns[7] = {{"r[lambda]", r, NULL},
+                                     {"target[1]", target->g + first, "%.8g"},
+                                     {"target_error[1]", target->error + first, "%.3g"},
+                                     {"result[1]", observed->value[kind] + first, "%.8g"},
+                                     {"result_error[1]", observed->error[kind] + first, "%.3g"}};
+    size_t count = 5;
+    if (mf_units_beside(units))
+        columns[count++] = (struct data_column){"r[nm]", nanometres, NULL};
+    // What the target was before it was divided by its normalisation.
+    if (memcmp(target->given + first, target->g + first, bins->count * sizeof(double)) != 0)
+        columns[count++] = (struct data_column){"given[1]", target->given + first, "%.8g"};
     mf_rdf_observable_file(folder->path, mf_targets_name(kind), &fit->files.composition, (int)pair,
                            path);
-    CHECK(mf_data_table_write_in(path, &fit->scene.units, NULL, columns,
-                                 mf_units_beside(units) ? 6 : 5, bins->count));
+    CHECK(mf_data_table_write_in(path, &fit->scene.units, NULL, columns, count, bins->count));
 done:
     mf_memory_free(r);
     mf_memory_free(nanometres);

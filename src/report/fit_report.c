@@ -3,6 +3,7 @@
 
 #include "observe/kirkwood_buff_observable.h"
 #include "problem/parametrisation.h"
+#include "report/fit_closing.h"
 #include "report/fit_change.h"
 #include "report/fit_step.h"
 #include "base/number_text.h"
@@ -99,9 +100,17 @@ static void say_changes(struct progress *to, const struct units *units,
                          energy * change.well, mf_units_name(units, "k_B T_0", energies),
                          length * change.well_at, mf_units_name(units, "lambda", lengths),
                          energy * change.first_well, length * change.first_well_at);
-            mf_progress_say(to, "%s:%s changed by %.2g%s rms", name, well,
-                            change.rms * mf_units_factor(units, mf_unknowns_unit(kind)),
-                            mf_units_suffix(units, mf_unknowns_unit(kind), unit));
+            const double factor = mf_units_factor(units, mf_unknowns_unit(kind));
+            mf_units_suffix(units, mf_unknowns_unit(kind), unit);
+            if (unknown_is_omega(kind)) {
+                const struct fit_knowledge known = mf_fit_closing_knowledge(
+                    unknowns, kind, result->curve[kind], result->curve_error[kind]);
+                if (isfinite(known.seen))
+                    snprintf(well, sizeof well, " %.2g%.16s rms, known within %.2g,",
+                             factor * known.rms, unit, factor * known.error);
+            }
+            mf_progress_say(to, "%s:%s changed by %.2g%s rms", name, well, factor * change.rms,
+                            unit);
         }
 }
 
@@ -130,6 +139,7 @@ static void say_distances(struct progress *to, const struct fit_file *fit,
             mf_units_suffix(&fit->scene.units, unit, name);
         mf_number_text(factor * v->distance[kind].rms, factor * v->distance_error[kind], rms);
         const double noises = v->distance[kind].rms / v->distance[kind].noise;
+        const bool fitted = targets_ask(&fit->problem.targets, kind);
         const size_t known = values_of(&fit->problem.compared.target[kind]);
         char of[96] = "";
         if (v->distance[kind].count < known)
@@ -137,7 +147,9 @@ static void say_distances(struct progress *to, const struct fit_file *fit,
                      v->distance[kind].count, known);
         mf_progress_say(to, "verified: rms of %s - target = %s%s, statistics alone %.2g%s%s",
                         mf_targets_name(kind), rms, name, factor * v->distance[kind].noise, of,
-                        noises > missed ? ": not met, though nothing better was found" : "");
+                        !(noises > missed) ? ""
+                        : fitted           ? ": not met: nothing better was found"
+                                           : ": not fitted, only compared");
     }
 }
 
@@ -182,25 +194,21 @@ static void tell_shift(const struct verification *v, double scale, char *text, s
                  v->shift.pressure < 0 ? "+" : "-", shift);
 }
 
-/// @param[in] open  how far off the pressure may be by what g(r) leaves open; 0: by nothing
 static void say_thermodynamics(struct progress *to, const struct units *units,
-                               const struct verification *v, double open) {
+                               const struct verification *v) {
     const struct thermodynamics_summary *t = &v->thermodynamics;
     const double factor = mf_units_factor(units, "T_0");
     const double scale = mf_units_factor(units, "k_B T_0/lambda^d");
     char kinetic[NUMBER_TEXT_SIZE], configurational[NUMBER_TEXT_SIZE], found[NUMBER_TEXT_SIZE];
-    char kelvin[UNITS_NAME_SIZE], unit[UNITS_NAME_SIZE], left[64] = "", pressure[320],
-                                                         shift[128] = "";
+    char kelvin[UNITS_NAME_SIZE], unit[UNITS_NAME_SIZE], pressure[320], shift[128] = "";
     mf_number_text(factor * t->temperature, factor * t->temperature_error, kinetic);
     mf_number_text(factor * t->temperature_configurational,
                    factor * t->temperature_configurational_error, configurational);
     mf_number_text(scale * t->pressure, scale * t->pressure_error, found);
     mf_units_suffix(units, "T_0", kelvin);
-    if (open > 0)
-        snprintf(left, sizeof left, ", which g(r) leaves open by %.2g", scale * open);
     tell_shift(v, scale, shift, sizeof shift);
-    snprintf(pressure, sizeof pressure, "pressure %s%s%s%s", found,
-             mf_units_suffix(units, "k_B T_0/lambda^d", unit), shift, left);
+    snprintf(pressure, sizeof pressure, "pressure %s%s%s", found,
+             mf_units_suffix(units, "k_B T_0/lambda^d", unit), shift);
     if (isnan(t->temperature) && isnan(t->temperature_configurational)) // no particles
         return;
     if (isnan(t->temperature)) // no velocities
@@ -230,9 +238,8 @@ static void say_step(struct progress *to, const struct fit_file *fit,
 }
 
 /// What was found of a state, or of the only one.
-/// @param[in] open  as say_thermodynamics
-static void say_state(struct progress *to, const struct fit_file *fit, const struct verification *v,
-                      double open) {
+static void say_state(struct progress *to, const struct fit_file *fit,
+                      const struct verification *v) {
     const struct units *units = &fit->scene.units;
     if (fit->name[0])
         mf_progress_say(to, "state \"%s\":", fit->name);
@@ -240,22 +247,30 @@ static void say_state(struct progress *to, const struct fit_file *fit, const str
     if (targets_ask(&fit->problem.compared, TARGET_DIFFUSION))
         say_diffusion(to, units, v);
     say_integrals(to, fit, v);
-    say_thermodynamics(to, units, v, open);
+    say_thermodynamics(to, units, v);
     say_step(to, fit, v);
+}
+
+/// "converged after 8 iterations, 111 s".
+static void say_end(struct progress *to, const struct fit_result *result) {
+    const bool used_up = result->status == STATUS_OK && !result->settled;
+    mf_progress_say(to, "%s after %llu iterations, %.1f s%s%s",
+                    used_up                       ? "finished"
+                    : result->status == STATUS_OK ? "converged"
+                                                  : "not converged",
+                    (unsigned long long)result->iterations, result->seconds, used_up ? ": " : "",
+                    used_up ? result->reason : "");
 }
 
 void mf_fit_report_say(struct progress *to, const struct fit_file *fit,
                        const struct unknowns *unknowns, const struct fit_result *result) {
     const struct units *units = &fit->scene.units;
+    say_end(to, result);
     say_changes(to, units, unknowns, result);
     if (result->formula[0])
         mf_progress_say(to, "formula: %s", result->formula);
     say_parameters(to, fit, result->parameter);
     say_numbers(to, fit, result->number);
-    // Of several states that of the first is known, and together they leave less open.
-    const bool is_open = fit->others == 0 && result->ramp.error > 0 &&
-                         !targets_ask(&fit->problem.compared, TARGET_PRESSURE);
     for (size_t s = 0; s <= fit->others; s++)
-        say_state(to, s == 0 ? fit : &fit->other[s - 1], &result->verification[s],
-                  is_open ? result->ramp.pressure_open : 0);
+        say_state(to, s == 0 ? fit : &fit->other[s - 1], &result->verification[s]);
 }

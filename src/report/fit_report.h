@@ -5,8 +5,8 @@
 #include "report/fit_output.h"
 #include "report/progress.h"
 
-/// How far the fit came from its first iteration, the parameters of a formula, and what the
-/// verification found.
+/// How it ended, how far the fit came from its first iteration, the parameters of a formula, and
+/// what the verification found.
 void mf_fit_report_say(struct progress *to, const struct fit_file *fit,
                        const struct unknowns *unknowns, const struct fit_result *result);
 

@@ -49,6 +49,16 @@ static void add_events(struct stages *stages, const struct simulation_setup *set
                   setup->integrator->name, rate * setup->time_step);
 }
 
+/// Nanoseconds of a move of a bead among so many, `around` of which are near.
+static double move_of(double around) {
+    return cost.propose + cost.judge + cost.meet * around;
+}
+
+double mf_explain_sweep(const struct simulation_setup *setup, double particles, double range) {
+    const double reach = range + mf_metropolis_skin(&setup->box, particles);
+    return 1e-9 * particles * move_of(2 * mf_stages_pairs_within(setup, reach));
+}
+
 /// Sweeps, and what is computed for a sample besides.
 static void add_sweeps(struct stages *stages, const struct simulation_setup *setup, double every) {
     const struct molecules *molecules = mf_molecules_find(setup->interaction, setup->interactions);

@@ -15,3 +15,7 @@ void mf_explain_scale(FILE *out, const struct units *units);
 /// @param[in] every  steps between samples
 void mf_explain_scene(FILE *out, const struct simulation_setup *setup, const struct units *units,
                       const struct observable_use *uses, int64_t every);
+
+/// Seconds of a sweep of Monte Carlo of so many beads with a potential of that range [λ], by one
+/// thread of a processor of 2024.
+double mf_explain_sweep(const struct simulation_setup *setup, double particles, double range);

@@ -7,6 +7,7 @@
 #include "base/visible.h"
 #include "input/fit_states.h"
 #include "io/checkpoint_pace.h"
+#include "report/fit_closing.h"
 #include "report/fit_output.h"
 #include "report/fit_report.h"
 #include "report/fit_reserve.h"
@@ -269,6 +270,8 @@ static enum status record(struct run *run, const struct inverse_step *step) {
     mf_progress_say(&run->progress, "iteration %u  error %.4f  noise %.4f  %.1f s", step->iteration,
                     mf_visible_number(step->error), mf_visible_number(step->noise),
                     run->standing.seconds);
+    if (step->begins)
+        mf_progress_say(&run->progress, "%s", step->begins);
     TRY(mf_fit_checkpoint_begin(&run->checkpoint));
     return save(run);
 }
@@ -328,19 +331,6 @@ static enum status write_unstable(struct run *run) {
     return mf_status_fail(STATUS_UNSTABLE, "%s", reason);
 }
 
-static void say_verified(struct run *run, const struct fit_result *result) {
-    struct progress *to = &run->progress;
-    const struct standing *standing = &run->standing;
-    mf_progress_say(to, "%s after %llu iterations, %.1f s%s%s",
-                    standing->converged ? "converged"
-                    : standing->used_up ? "finished"
-                                        : "not converged",
-                    (unsigned long long)standing->iterations, standing->seconds,
-                    standing->used_up ? ": " : "", standing->used_up ? standing->reason : "");
-    mf_fit_report_say(to, &run->fit, &run->unknowns, result);
-    mf_progress_say(to, "results in %s", run->folder.path);
-}
-
 /// The verification has the last word.
 static void doubt(struct run *run, const struct verification *verification) {
     struct standing *standing = &run->standing;
@@ -350,6 +340,13 @@ static void doubt(struct run *run, const struct verification *verification) {
                                              standing->variance, standing->reason);
     if (run->doubted)
         standing->converged = standing->used_up = false;
+    else if (standing->converged &&
+             mf_fit_closing_is_noise(&run->unknowns, (const double *const *)run->curve,
+                                     (const double *const *)run->curve_error, &run->fit.scene.units,
+                                     standing->reason)) {
+        standing->converged = false;
+        standing->used_up = true;
+    }
 }
 
 /// The independent verification of the result, and everything that rests on it.
@@ -378,12 +375,13 @@ static enum status verify_and_write(struct run *run) {
         CHECK(mf_fit_verify_write(&run->fit, s, &verification[s], &run->folder));
     CHECK(mf_fit_output_summary(&run->fit, &run->unknowns, &result, &run->folder));
     mf_run_folder_draw(&run->folder);
-    say_verified(run, &result);
+    mf_fit_report_say(&run->progress, &run->fit, &run->unknowns, &result);
     for (size_t s = 0; s < states; s++)
         if (verification[s].warning[0])
             mf_progress_say(&run->progress, "mesofit: warning: %s%s%s",
                             mf_fit_states_at(&run->fit, s)->name, run->fit.name[0] ? ": " : "",
                             verification[s].warning);
+    mf_fit_closing_say(&run->progress, &run->fit, &run->unknowns, &result, run->folder.path);
     status = result.status;
     if (status == STATUS_UNCONVERGED)
         tell_unconverged(run);

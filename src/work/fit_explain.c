@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/memory.h"
+#include "input/fit_scales.h"
+#include "inversion/inversion.h"
+#include "observe/stages.h"
 #include "problem/unknowns.h"
 #include "work/explain.h"
 #include "work/fit.h"
@@ -7,7 +10,10 @@
 #include "work/fit_tasks.h"
 #include "work/fit_tell.h"
 
+#include <math.h>
 #include <string.h>
+
+enum { TIME_SIZE = 32 };
 
 static enum status print_simulation(const struct measurement_setup *measured,
                                     const struct simulation_setup *setup,
@@ -43,11 +49,49 @@ static enum status print_state(const struct fit_file *fit, const struct unknowns
     return print_simulation(&replica, &setup, &fit->scene.units);
 }
 
+/// "40 s", "3 min", "1.5 h".
+static void print_time(double seconds, char text[TIME_SIZE]) {
+    if (seconds < 90)
+        snprintf(text, TIME_SIZE, "%.2g s", seconds);
+    else if (seconds < 5400)
+        snprintf(text, TIME_SIZE, "%.2g min", seconds / 60);
+    else
+        snprintf(text, TIME_SIZE, "%.2g h", seconds / 3600);
+}
+
+/// What an inversion looks at, and about how long: an iteration whose samples are as exact as is
+/// asked for. The first ones are shorter.
+static enum status print_sampling(const struct fit_file *fit) {
+    static const double inefficiency = 2;
+    const struct inversion_parameters *p =
+        &((const struct inversion_settings *)fit->method_parameters)->common;
+    const struct simulation_setup *setup = &fit->scene.setup;
+    const double count = (double)(p->particles > 0 ? p->particles : setup->placement.count);
+    const double replicas = (double)p->replicas,
+                 range = mf_rdf_bins_range(&fit->problem.targets.bins);
+    struct fit_scales_rdf rdf;
+    char time[TIME_SIZE];
+    printf("The method \"%s\" samples by a Monte Carlo of its own, not by the dynamics of the "
+           "scene: %.0f particles, %.0f others within the range of g(r) of each.\n",
+           fit->method->name, count, 2 * mf_stages_pairs_within(setup, range));
+    if (scene_has_molecules(&fit->scene.molecules))
+        return STATUS_OK;
+    TRY(mf_fit_scales_rdf_init(&rdf, &fit->files, &fit->scene));
+    const double noise = mf_fit_scales_noise_of_sample(&rdf, &setup->box, count, range);
+    const double samples =
+        fmax(replicas * (double)p->samples, inefficiency * pow(noise / p->precision, 2));
+    const double sweeps = replicas * (double)p->equilibration + samples * (double)p->every;
+    mf_fit_scales_rdf_clear(&rdf);
+    print_time(sweeps * mf_explain_sweep(setup, count, range) / fit->problem.threads, time);
+    printf("An iteration of about %.2g sweeps, whose g is known within %.2g, takes about %s with "
+           "%d thread%s of a processor of 2024; a fit has some ten, the first ones shorter.\n",
+           sweeps, p->precision, time, fit->problem.threads, fit->problem.threads == 1 ? "" : "s");
+    return STATUS_OK;
+}
+
 static enum status print_simulations(struct fit_file *fit) {
     if (fit->method->kind == INVERSE_INVERSION)
-        printf("The method \"%s\" samples by a Monte Carlo of its own, not by the dynamics of the "
-               "scene.\n",
-               fit->method->name);
+        TRY(print_sampling(fit));
     for (size_t s = 0; s < mf_fit_states_count(fit); s++) {
         const struct fit_file *state = mf_fit_states_at(fit, s);
         struct unknowns unknowns = {0};

@@ -3,6 +3,8 @@
 
 #include "dynamics/hybrid_step.h"
 #include "dynamics/respa.h"
+#include "input/fit_scales.h"
+#include "observe/stages.h"
 #include "system/attributes.h"
 
 #include <math.h>
@@ -58,9 +60,37 @@ static void warn_of_step(const struct fit_file *fit,
     }
 }
 
+/// A range far beyond the structure of g makes a fit slow, and tells it nothing.
+static enum status warn_of_range(const struct fit_file *fit,
+                                 const struct target_sanity_listener *listener) {
+    static const double many = 150, more = 2;
+    const struct simulation_setup *setup = &fit->scene.setup;
+    struct fit_scales_rdf rdf;
+    double length;
+    if (!fit->files.given[TARGET_RDF] || !fit->unknown[UNKNOWN_POTENTIAL].wanted)
+        return STATUS_OK;
+    TRY(mf_fit_scales_rdf_init(&rdf, &fit->files, &fit->scene));
+    const struct fit_scales scales =
+        mf_fit_scales_find(&rdf, setup->temperature, fit_scales_little);
+    mf_fit_scales_rdf_clear(&rdf);
+    const double enough = fmax(scales.seen, 2 * scales.neighbour);
+    const double others = 2 * mf_stages_pairs_within(setup, scales.range),
+                 near = 2 * mf_stages_pairs_within(setup, enough);
+    const char *unit = mf_target_sanity_length(&fit->scene, &length);
+    if (others > many && others > more * near)
+        mf_target_sanity_say(listener,
+                             "mesofit: warning: target.rdf: %.0f others are within its range of "
+                             "each bead, which makes the fit slow; within %.4g %s, beyond which g "
+                             "differs from 1 by less than %g or its noise, there are %.0f: end it "
+                             "there by \"cutoff\"",
+                             others, enough * length, unit, fit_scales_little, near);
+    return STATUS_OK;
+}
+
 enum status mf_fit_tell_state(const struct fit_file *fit,
                               const struct target_sanity_listener *listener) {
     warn_of_step(fit, listener);
+    TRY(warn_of_range(fit, listener));
     return mf_target_sanity_tell(&fit->files, &fit->scene, listener);
 }
 
@@ -102,9 +132,9 @@ void mf_fit_tell_iteration(const struct inverse_progress *now, const struct unit
     if (isfinite(now->best))
         snprintf(error, sizeof error, "  error %.4f so far", now->best);
     if (isfinite(now->least))
-        snprintf(least, sizeof least, "  now least %.4f", now->least);
+        snprintf(least, sizeof least, "  this round: best %.4f", now->least);
     if (isfinite(now->mean))
-        snprintf(mean, sizeof mean, "  mean %.4f  failed %llu", now->mean,
+        snprintf(mean, sizeof mean, ", mean %.4f, %llu failed", now->mean,
                  (unsigned long long)now->failures);
     snprintf(text, FIT_TELL_SIZE, "iteration %u%s%s%s", now->iteration, error, least, mean);
 }

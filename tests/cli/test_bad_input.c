@@ -231,7 +231,8 @@ static const struct fault run_faults[] = {
           "unknowns.potential.spacing: no longer a key: coefficients are spread evenly; leave it "
           "out"),
     FAULT("no target", "target.tsv", "no.tsv", "target.rdf.file", "no.tsv: No such file"),
-    TARGET("a gap", ROWS("0.7 1 0.1\n"), "target.rdf.file", "target.tsv:5", "gap"),
+    TARGET("a wide gap", ROWS("0.7 1 0.1\n0.9 1 0.1\n") "4.1 1 0.1\n", "target.rdf.file",
+           "target.tsv:8", "a gap in r of"),
     TARGET("unsorted", ROWS("0.9 1 0.1\n0.7 1 0.1\n"), "target.tsv:5", "column 1"),
     TARGET("negative r", "-0.1 0 0\n0.1 0.3 0\n0.3 0.6 0\n0.5 1 0\n", "target.tsv:1",
            "-0.1 is below 0"),
@@ -240,7 +241,7 @@ static const struct fault run_faults[] = {
            "\"one\" is not a finite number"),
     TARGET("nan", ROWS("0.7 nan 0.1\n0.9 1 0.1\n"), "target.tsv:4", "\"nan\""),
     TARGET("too few columns", "0.1\n0.3\n0.5\n0.7\n", "target.tsv:1", "1 columns, at least 2"),
-    TARGET("decimal commas", "0,1;1;0,1\n0,3;1;0,1\n", "target.tsv:1", "a decimal comma?"),
+    TARGET("decimal commas", "0,1 1 0,1\n0,3 1 0,1\n", "target.tsv:1", "a decimal comma?"),
     TARGET("a short row", ROWS("0.7 1\n0.9 1 0.1\n"), "target.tsv:4", "2 columns"),
     TARGET("nothing above 0", "0.1 0 0\n0.3 0 0\n0.5 0 0\n0.7 0 0\n",
            "input.json: target.rdf.file: ", "target.tsv: g is 0 in all rows: is it in column 2?"),

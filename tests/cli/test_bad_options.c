@@ -66,8 +66,15 @@ static void test_help_is_on_stdout_when_asked_for(void **state) {
     (void)state;
     RUN_PROGRAM(&result, "fit", "--help");
     run_program_assert_code(&result, 0);
+    assert_contains(result.out, "mesofit fit RUN.json: ");
     assert_contains(result.out, "--resume");
+    assert_contains(result.out, "--explain");
+    assert_null(strstr(result.out, "mesofit measure"));
     assert_string_equal(result.err, "");
+    RUN_PROGRAM(&result, "--help");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.out, "mesofit measure");
+    assert_contains(result.out, "--explain");
     RUN_PROGRAM(&result, "--version");
     run_program_assert_code(&result, 0);
     assert_int_equal(run_program_lines(result.out), 1);

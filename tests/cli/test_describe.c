@@ -113,6 +113,14 @@ static void assert_default(void *state, const char *text, const char *integrator
     "{\"box\": [4, 4, 4], \"particles\": {\"count\": 64}, "                                        \
     "\"measure\": {\"equilibration\": 1, \"samples\": 2, \"every\": 1}" more "}"
 
+/// A run file calls a target as a simulation calls what it measures, and says other things of it.
+static void test_describe_of_an_observable_names_the_target_of_that_name(void **state) {
+    (void)state;
+    RUN_PROGRAM(&result, "describe", "rdf");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.out, "see `mesofit describe rdf-target`");
+}
+
 static void test_describe_says_which_integrator_is_the_default(void **state) {
     assert_default(*state, SCENE_WITH(", \"dissipative\": {\"law\": \"power\", \"sigma\": 3}"),
                    "aboba", "with");
@@ -128,6 +136,7 @@ int main(void) {
         TEST(test_describe_tells_of_every_key_that_a_reader_knows),
         TEST(test_describe_knows_every_topic_that_it_names),
         TEST(test_describe_of_a_group_is_all_that_it_holds),
+        TEST(test_describe_of_an_observable_names_the_target_of_that_name),
         TEST(test_describe_says_which_integrator_is_the_default),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -9,6 +9,8 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
 
 static const struct run_options options = {.threads = 1};
 
@@ -211,6 +213,60 @@ static void test_fit_defaults_cut_g_at_half_of_a_box_that_is_given(void **state)
     mf_fit_file_clear(&fit);
 }
 
+/// Rows that are ten times finer than the gas asks for are joined, and its g ends where it is 1.
+static void test_fit_defaults_join_fine_rows_and_end_g_with_its_structure(void **state) {
+    enum { ROWS = 1200, SIZE = 40 * ROWS };
+    static const char none[] = "\"method\": {\"name\": \"ibi\"}, ";
+    struct fit_file fit;
+    char *text = malloc(SIZE), run[1024];
+    size_t length = 0;
+    for (int k = 0; k < ROWS; k++) {
+        const double r = (k + 0.5) * 0.005;
+        length += (size_t)snprintf(text + length, SIZE - length, "%.4f %.6f 0.004\n", r,
+                                   exp(-10 * exp(-r * r / 0.25)));
+    }
+    temporary_folder_write(*state, "fine.tsv", text, length);
+    free(text);
+    for (int given = 0; given < 2; given++) {
+        snprintf(
+            run, sizeof run,
+            "{%s\"target\": {\"rdf\": {\"file\": \"fine.tsv\"}}, \"scene\": {\"density\": 0.3%s}}",
+            given ? none : "", given ? ", \"particles\": {\"count\": 1000}" : "");
+        assert_ok(read_run(state, &fit, "run.json", run));
+        const struct rdf_bins *bins = &fit.problem.targets.bins;
+        print_message("%zu bins of %g\n", bins->count, bins->width);
+        if (given) { // a file with a method: no more than 400
+            assert_int_equal(bins->count, 400);
+        } else {
+            // Cubics through bins of 0.1 are off by 3/128 · 0.1⁴ times 1200 at most, 0.003.
+            assert_true(bins->width > 0.04 && bins->width < 0.15);
+            // 10 exp(−4 r²) = 0.03 at r = 1.2; two spacings are 3.
+            assert_close(mf_rdf_bins_range(bins), 2 * pow(0.3, -1.0 / 3), 0.15);
+        }
+        mf_fit_file_clear(&fit);
+    }
+}
+
+/// Water's third layer, 1.03 high at 0.68 nm, has forces; the fourth, 1.01 at 0.9 nm, is made by
+/// it.
+static void test_fit_defaults_end_g_of_water_behind_its_third_layer(void **state) {
+    struct fit_file fit;
+    char folder[512], run[1024];
+    assert_non_null(getcwd(folder, sizeof folder));
+    snprintf(run, sizeof run,
+             "{\"target\": {\"rdf\": {\"file\": \"%s/targets/spce-votca/CG-CG.dist.tgt\", "
+             "\"format\": \"votca\"}}, \"scene\": {\"box\": [4.031, 4.031, 4.031], \"particles\": "
+             "{\"count\": 2180}, \"units\": {\"length\": 1, \"temperature\": 300, \"mass\": "
+             "2.992e-26}}}",
+             folder);
+    assert_ok(read_run(state, &fit, "run.json", run));
+    const struct rdf_bins *bins = &fit.problem.targets.bins;
+    print_message("%zu bins of %g to %g\n", bins->count, bins->width, mf_rdf_bins_range(bins));
+    assert_true(mf_rdf_bins_range(bins) > 0.68 && mf_rdf_bins_range(bins) < 0.8);
+    assert_close(bins->width, 0.01, 1e-6); // its peak has four rows and no row to spare
+    mf_fit_file_clear(&fit);
+}
+
 /// Escape times ask for ω, too, and for a time step that divides their interval; bins come from the
 /// names of the columns.
 static void test_fit_defaults_find_omega_where_targets_move(void **state) {
@@ -267,6 +323,8 @@ int main(void) {
         IN_FOLDER(test_fit_defaults_choose_time_steps_by_the_friction_without_velocities),
         IN_FOLDER(test_fit_defaults_choose_no_friction_where_that_across_pairs_is_found),
         IN_FOLDER(test_fit_defaults_cut_g_at_half_of_a_box_that_is_given),
+        IN_FOLDER(test_fit_defaults_join_fine_rows_and_end_g_with_its_structure),
+        IN_FOLDER(test_fit_defaults_end_g_of_water_behind_its_third_layer),
         IN_FOLDER(test_fit_defaults_find_omega_where_targets_move),
         IN_FOLDER(test_fit_defaults_tell_faults_once_and_only_what_is_missing),
     };

@@ -77,28 +77,53 @@ static void test_target_read_takes_the_columns_it_is_told(void **state) {
     assert_refused(state, table, ", \"r_column\": 0", "rdf.r_column: 0 is out of range");
 }
 
-/// The line behind the gap is named, wherever it is and although it shifts the mean step.
+/// A row that is missing is read by its neighbours; of a wider gap the line behind it is named.
 static void test_target_read_names_the_line_behind_a_gap(void **state) {
-    enum { BINS = 10 };
-    for (int gap = 1; gap < BINS - 1; gap++) {
-        char table[512] = "# r g error\n", where[128];
-        for (int k = 0; k < BINS; k++)
-            if (k != gap)
-                snprintf(table + strlen(table), sizeof table - strlen(table), "%g 1 0\n",
-                         0.1 * k + 0.05);
-        snprintf(where, sizeof where, "g.tsv:%d: the bins are not equally spaced: a step of 0.2",
-                 gap + 2);
-        assert_refused(state, table, "", where);
-    }
+    enum { BINS = 20, WIDE = 6 };
+    for (int gap = 1; gap < BINS - WIDE; gap++)
+        for (int wide = 1; wide <= WIDE; wide += WIDE - 1) {
+            char table[1024] = "# r g error\n", where[128];
+            struct target_rdf target;
+            for (int k = 0; k < BINS; k++)
+                if (k < gap || k >= gap + wide)
+                    snprintf(table + strlen(table), sizeof table - strlen(table), "%g 1 0\n",
+                             0.1 * k + 0.05);
+            snprintf(where, sizeof where, "g.tsv:%d: a gap in r of ", gap + 2);
+            if (wide > 1) {
+                assert_refused(state, table, "", where);
+                continue;
+            }
+            assert_ok(read(state, table, "", &target));
+            assert_int_equal(target.resampling.points, BINS - 1);
+            assert_close(target.g[gap], 1, 1e-12);
+            mf_target_rdf_clear(&target);
+        }
+}
+
+/// A digitised core scatters about 0; a potential is below it.
+static void test_target_read_takes_a_g_slightly_below_0_as_0(void **state) {
+    struct target_rdf target;
+    assert_ok(read(state, "0.05 -0.004\n0.15 0.002\n0.25 -0.02\n0.35 1.5\n0.45 1\n", "", &target));
+    assert_int_equal(target.negative, 2);
+    assert_close(target.least, -0.02, 0);
+    assert_close(target.g[0] + target.g[2], 0, 0);
+    mf_target_rdf_clear(&target);
+    assert_refused(state, "0.05 0\n0.15 0\n0.25 -0.04\n0.35 1.5\n0.45 1\n", "",
+                   "g.tsv:3: a negative g, -0.04: a potential, or another column than g?");
+    // Within three of its own errors.
+    assert_ok(read(state, "0.05 0 0\n0.15 0 0\n0.25 -0.04 0.02\n0.35 1.5 0.1\n0.45 1 0.1\n", "",
+                   &target));
+    assert_int_equal(target.negative, 1);
+    mf_target_rdf_clear(&target);
 }
 
 static void test_target_read_refuses_what_is_no_g_of_r(void **state) {
     assert_refused(state, "0.1 1 0\n0.3 1 0\n0.2 1 0\n0.4 1 0\n", "", "g.tsv:3: column 1");
     assert_refused(state, "0.1 1 0\n0.1 1 0\n0.2 1 0\n0.4 1 0\n", "", "g.tsv:2: column 1");
     assert_refused(state, "-0.1 1 0\n0 1 0\n0.1 1 0\n0.2 1 0\n", "", "-0.1 is below 0");
-    assert_refused(
-        state, "0 1 0\n0.1 1 0\n0.2 1 0\n0.3 1 0\n", "",
-        "g.tsv:1: r = 0 is not the centre of a bin of width 0.1: half a bin that is not");
+    assert_refused(state, "0 1 0\n0.1 1 0\n0.2 1 0\n0.3 1 0\n", "",
+                   "g.tsv:1: r = 0 is not the centre of a bin: half a bin that is not empty; leave "
+                   "the row out");
     assert_refused(state, "0.1 1 0\n0.2 1 0\n0.3 1 0\n", "", "only 3 bins");
     assert_refused(state, "0.1 1 0\n0.2 -1 0\n0.3 1 0\n0.4 1 0\n", "", "g.tsv:2: a negative");
     assert_refused(state, "0.1 1 0\n0.2 1 -1\n0.3 1 0\n0.4 1 0\n", "", "g.tsv:2: a negative");
@@ -257,6 +282,7 @@ int main(void) {
         TEST(test_target_read_forgives_the_rounding_of_the_file),
         TEST(test_target_read_takes_the_columns_it_is_told),
         TEST(test_target_read_names_the_line_behind_a_gap),
+        TEST(test_target_read_takes_a_g_slightly_below_0_as_0),
         TEST(test_target_read_refuses_what_is_no_g_of_r),
         TEST(test_target_read_leaves_the_empty_half_bin_out),
         TEST(test_target_read_takes_comma_separated_columns_with_names),

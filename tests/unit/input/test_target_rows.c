@@ -145,6 +145,21 @@ static void test_target_rows_scatter_is_unknown_when_there_is_none(void **state)
     mf_target_rows_clear(&rows);
 }
 
+/// The digits of a formula are no noise: eight of them scatter by 4e-9.
+static void test_target_rows_scatter_of_an_exact_table_is_unknown(void **state) {
+    (void)state;
+    struct target_rows rows = {.dimensions = 3};
+    double error;
+    assert_ok(mf_target_rows_allocate(&rows, 100));
+    for (size_t k = 0; k < rows.count; k++) {
+        rows.r[k] = 0.05 * (double)k + 0.025;
+        rows.g[k] = 1e-8 * round(1e8 * (1 + 0.5 * sin(rows.r[k])));
+    }
+    assert_ok(mf_target_rows_scatter(&rows, &error));
+    assert_true(isnan(error));
+    mf_target_rows_clear(&rows);
+}
+
 static void test_target_rows_tail_tells_oscillations_from_what_grows(void **state) {
     (void)state;
     struct target_rows rows = {.dimensions = 3};
@@ -168,6 +183,7 @@ int main(void) {
         cmocka_unit_test(test_target_rows_scatter_finds_noise_that_is_known),
         cmocka_unit_test(test_target_rows_set_errors_have_the_shape_of_those_from_blocks),
         cmocka_unit_test(test_target_rows_scatter_is_unknown_when_there_is_none),
+        cmocka_unit_test(test_target_rows_scatter_of_an_exact_table_is_unknown),
         cmocka_unit_test(test_target_rows_tail_tells_oscillations_from_what_grows),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

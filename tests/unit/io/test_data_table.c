@@ -105,9 +105,11 @@ static void test_data_table_read_skips_names_of_columns_and_percent_comments(voi
     assert_same_rows(state, "r,g,err\n0.5,1.5,0.1\n1,2,0.2\n", 2);
     assert_same_rows(state, "\"r\";\"g\";\"err\"\n0.5;1.5;0.1\n1;2;0.2\n", 2);
     assert_same_rows(state, "% made by hand\nr g err\n0.5 1.5 0.1\n% more\n1 2 0.2\n", 3);
-    assert_refused(state, "r g\nr g\n1 2\n", ":2: column 1: \"r\"");
-    assert_refused(state, "1 2\nr g\n", ":2: column 1: \"r\"");
-    assert_refused(state, "r 2\n1 2\n", ":1: column 1: \"r\"");
+    assert_refused(state, "1 2\nr g\n",
+                   ":2: column 1: \"r\" is not a finite number: begin lines of text with #");
+    assert_refused(state, "1 2\nr g\n1 2\n", ":2: column 1: \"r\"");
+    assert_refused(state, "2 columns\n1 2\n",
+                   ":1: column 2: \"columns\" is not a finite number: begin lines of text with #");
     assert_refused(state, "nan nan\n1 2\n", ":1: column 1: \"nan\"");
     assert_refused(state, "r g\n", ":2: the file ends without a row of numbers");
 }
@@ -118,12 +120,44 @@ static void test_data_table_read_takes_the_first_set_when_a_line_ends_it(void **
 }
 
 static void test_data_table_read_says_so_when_decimals_have_a_comma(void **state) {
-    assert_refused(state, "0,5;1,5\n",
-                   ":1: column 1: \"0,5\" is not a finite number: a decimal comma");
     assert_refused(state, "0.5;1.5\n1;1,25\n",
-                   ":2: column 2: \"1,25\" is not a finite number: a dec");
+                   ":2: column 2: \"1,25\" is not a finite number: a decimal comma? other");
+    assert_refused(state, "0,5;1,5\n1;1.25\n",
+                   ":2: column 2: \"1.25\" is not a finite number: other decimals of the file");
     assert_refused(state, "0,5 1,5\n",
-                   ":1: column 1: \"0,5\" is not a finite number: a decimal comma");
+                   ":1: column 1: \"0,5\" is not a finite number: a decimal comma? part columns "
+                   "by semicolons or tabs, or write decimals with a point");
+    assert_refused(state, "1.000,5;2\n", ":1: column 1: \"1.000,5\"");
+}
+
+static void test_data_table_read_takes_decimal_commas_that_part_no_columns(void **state) {
+    assert_same_rows(state, "0,5;1,5;0,1\n1;2;0,2\n", 1);
+    assert_same_rows(state, "0,5\t1,5\t1e-1\n1\t2\t0,2\n", 1);
+    assert_same_rows(state, "\"0,5\",\"1,5\",\"0,1\"\n\"1\",\"2\",\"0,2\"\n", 1);
+}
+
+/// As spreadsheets and people write them.
+static void test_data_table_read_takes_lines_of_text_and_words_in_quotes(void **state) {
+    assert_same_rows(state,
+                     "Digitised from Fig. 2, argon at 85 K;\n\"r; first\";\"g\";\"err\"\n"
+                     "0.5;1.5;0.1\n1;2;0.2\n",
+                     3);
+    assert_same_rows(state, "\"r (nm)\",\"g, all\",\"err\"\n\"0.5\",\"1.5\",0.1\n1,2,\"0.2\"\n", 2);
+    assert_same_rows(state, "the g of argon\nr g err\nnm - -\n0.5 1.5 0.1\n1 2 0.2\n", 4);
+}
+
+/// Columns of text are not counted; the flags of VOTCA are no text, for they say what is measured.
+static void test_data_table_read_leaves_columns_of_text_out(void **state) {
+    struct data_table table;
+    assert_same_rows(state, "Ar-Ar 0.5 1.5 0.1\nAr-Kr 1 2 0.2\n", 1);
+    assert_same_rows(state, "pair,r,g,err,by\nA,0.5,1.5,0.1,me\nB,1,2,0.2,you\n", 2);
+    assert_refused(state, "1 A 2\n3 4 5\n6 C 7\n8 D 9\n",
+                   ":2: column 2: 4 is a number, and the last rows have text there");
+    assert_refused(state, "1 2 i\n3 4 o\n5 6 u\n", ":1: column 3: \"i\"");
+    assert_ok(
+        mf_data_table_read(&table, write_text(state, "pair;r (nm);g of r\nA;1;2\nB;3;4\n"), 2));
+    assert_string_equal(table.header, "r[nm]\tg_of_r");
+    mf_data_table_clear(&table);
 }
 
 static void test_data_table_read_takes_nan_when_it_stands_beyond_the_wanted_columns(void **state) {
@@ -262,6 +296,9 @@ int main(void) {
         IN_FOLDER(test_data_table_read_skips_names_of_columns_and_percent_comments),
         IN_FOLDER(test_data_table_read_takes_the_first_set_when_a_line_ends_it),
         IN_FOLDER(test_data_table_read_says_so_when_decimals_have_a_comma),
+        IN_FOLDER(test_data_table_read_takes_decimal_commas_that_part_no_columns),
+        IN_FOLDER(test_data_table_read_takes_lines_of_text_and_words_in_quotes),
+        IN_FOLDER(test_data_table_read_leaves_columns_of_text_out),
         IN_FOLDER(test_data_table_read_names_the_line_when_a_word_is_not_a_finite_number),
         IN_FOLDER(test_data_table_read_names_the_line_when_a_row_has_another_length),
         IN_FOLDER(test_data_table_read_says_so_when_there_is_nothing_to_read),

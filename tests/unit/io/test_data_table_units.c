@@ -30,7 +30,13 @@ static void test_data_table_convert_reads_the_units_of_headings(void **state) {
         "r[A];phi[kcal/mol]\n3.4;0.23846451\n",
         "# made by hand\n0.34 0.997735512\n",
         "# r phi[J/mol]\n0.34 997.735512\n",
-        "# columns: r[A] phi[kcal/mol] pairs[of all frames]\n3.4 0.23846451 7\n"};
+        "# columns: r[A] phi[kcal/mol] pairs[of all frames]\n3.4 0.23846451 7\n",
+        "# r (nm)  phi (kJ/mol)\n0.34 0.997735512\n",
+        "r (\xc3\x85),phi of r (kcal/mol)\n3.4,0.23846451\n",
+        "\"r (A)\";\"U(A-A), mean [kcal/mol]\"\n3,4;0,23846451\n",
+        "of my figure\nr\tphi\nA\tkcal/mol\n3,4\t0,23846451\n",
+        "# r phi\n# (A) (kcal/mol)\n3.4 0.23846451\n",
+        "r;phi\n[nm];\n0.34;0.997735512\n"};
     double value[2];
     for (size_t k = 0; k < sizeof same / sizeof *same; k++) {
         assert_ok(convert(state, same[k], &argon, value));

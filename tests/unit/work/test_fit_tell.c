@@ -33,7 +33,7 @@ static void test_iteration_tells_the_errors_that_it_knows(void **state) {
     assert_says(&now, &units, "iteration 3  error 0.0123 so far");
     now.least = 0.02, now.mean = 0.5, now.failures = 2;
     assert_says(&now, &units,
-                "iteration 3  error 0.0123 so far  now least 0.0200  mean 0.5000  failed 2");
+                "iteration 3  error 0.0123 so far  this round: best 0.0200, mean 0.5000, 2 failed");
 }
 
 /// Integrals have a unit, in which the files speak: here 2 nm is the unit of length.

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "report/fit_closing.h"
+
+#include "base/number_text.h"
+
+#include <math.h>
+#include <stdio.h>
+
+struct fit_knowledge mf_fit_closing_knowledge(const struct unknowns *unknowns,
+                                              enum unknown_kind kind, const double *curve,
+                                              const double *error) {
+    static const double standard_errors = 2;
+    double squares = 0, errors = 0, seen = 0, points = 0;
+    for (size_t k = 0; k < mf_unknowns_points(unknowns, kind); k++) {
+        if (!mf_unknowns_fits(unknowns, kind, k) || !isfinite(error[k]) || !(error[k] > 0))
+            continue;
+        points++;
+        squares += curve[k] * curve[k];
+        errors += error[k] * error[k];
+        seen += curve[k] > standard_errors * error[k];
+    }
+    return (struct fit_knowledge){sqrt(squares / points), sqrt(errors / points), seen / points};
+}
+
+bool mf_fit_closing_is_noise(const struct unknowns *unknowns, const double *const curve[UNKNOWNS],
+                             const double *const error[UNKNOWNS], const struct units *units,
+                             char reason[INVERSE_REASON_SIZE]) {
+    char unit[UNITS_NAME_SIZE], name[UNKNOWNS_NAME_SIZE];
+    for (int kind = 0; kind < UNKNOWNS; kind++) {
+        if (!unknown_is_omega(kind) || curve[kind] == NULL)
+            continue;
+        const struct fit_knowledge known =
+            mf_fit_closing_knowledge(unknowns, kind, curve[kind], error[kind]);
+        if (!(known.seen < 0.5))
+            continue;
+        const double factor = mf_units_factor(units, mf_unknowns_unit(kind));
+        mf_unknowns_kind_name(unknowns, kind, name);
+        snprintf(reason, INVERSE_REASON_SIZE,
+                 "%.24s is mostly noise: only %.0f %% of it is above two of its standard errors, "
+                 "%.2g%.16s rms of %.2g; more exact targets of motion, or fewer \"coefficients\", "
+                 "would tell it",
+                 name, 100 * known.seen, factor * known.error,
+                 mf_units_suffix(units, mf_unknowns_unit(kind), unit), factor * known.rms);
+        return true;
+    }
+    return false;
+}
+
+/// The fitted target that is farthest off, in its statistical errors, and its name; NaN if the
+/// errors of none are known.
+static double find_farthest(const struct fit_file *fit, const struct fit_result *result,
+                            const char **name) {
+    double farthest = NAN;
+    for (size_t s = 0; s <= fit->others; s++)
+        for (int kind = 0; kind < TARGETS; kind++) {
+            const struct fit_file *state = s == 0 ? fit : &fit->other[s - 1];
+            const struct target_distance *distance = &result->verification[s].worst[kind];
+            if (distance->count == 0)
+                distance = &result->verification[s].distance[kind];
+            if (!targets_ask(&state->problem.targets, kind) || !(distance->noise > 0) ||
+                distance->rms / distance->noise <= farthest)
+                continue;
+            farthest = distance->rms / distance->noise;
+            *name = mf_targets_name(kind);
+        }
+    return farthest;
+}
+
+/// Whether it worked.
+static void say_verdict(struct progress *to, const struct fit_file *fit,
+                        const struct fit_result *result) {
+    static const double within = 1.7; // as inversions end
+    const char *name = "";
+    const double farthest = find_farthest(fit, result, &name);
+    if (result->status != STATUS_OK)
+        mf_progress_say(to, "so: it has not worked as it is: the reason follows");
+    else if (isnan(farthest))
+        mf_progress_say(to, "so: whether it worked is not known: the verification has no errors");
+    else if (farthest <= within)
+        mf_progress_say(to, "so: it worked: independent simulations meet the targets as exactly as "
+                            "these are known");
+    else
+        mf_progress_say(to,
+                        "so: it %s: independent simulations meet the targets within %.2g times "
+                        "what statistics alone explain (%s)",
+                        result->settled ? "worked" : "ended", farthest, name);
+}
+
+/// "1350 +- 180": rounded to two digits of the error.
+static void print_open(double value, double error, char text[NUMBER_TEXT_SIZE]) {
+    const int exponent = (int)floor(log10(error)) - 1, decimals = exponent < 0 ? -exponent : 0;
+    const double unit = pow(10, exponent);
+    snprintf(text, NUMBER_TEXT_SIZE, "%.*f +- %.*f", decimals, unit * round(value / unit), decimals,
+             unit * round(error / unit));
+}
+
+/// The pressure, if g(r) does not fix it.
+static void say_pressure(struct progress *to, const struct fit_file *fit,
+                         const struct fit_result *result) {
+    const struct units *units = &fit->scene.units;
+    const struct thermodynamics_summary *found = &result->verification->thermodynamics;
+    const double open = result->ramp.pressure_open,
+                 bar = mf_units_factor(units, "k_B T_0/lambda^d");
+    char unit[UNITS_NAME_SIZE], range[NUMBER_TEXT_SIZE];
+    // Of several states that of the first is known, and together they leave less open.
+    if (fit->others > 0 || !(result->ramp.error > 0) || !(open > found->pressure_error) ||
+        targets_ask(&fit->problem.compared, TARGET_PRESSURE))
+        return;
+    print_open(bar * found->pressure, bar * hypot(open, found->pressure_error), range);
+    mf_progress_say(to,
+                    "not known: g alone does not fix the pressure: %s%s; give \"pressure\" as a "
+                    "second target to fix it",
+                    range, mf_units_suffix(units, "k_B T_0/lambda^d", unit));
+}
+
+static void say_friction(struct progress *to, const struct fit_file *fit,
+                         const struct unknowns *unknowns, const struct fit_result *result) {
+    static const double well = 0.1;
+    const struct units *units = &fit->scene.units;
+    char unit[UNITS_NAME_SIZE], name[UNKNOWNS_NAME_SIZE];
+    for (int kind = 0; kind < UNKNOWNS; kind++) {
+        if (!unknown_is_omega(kind) || result->curve[kind] == NULL)
+            continue;
+        const struct fit_knowledge known = mf_fit_closing_knowledge(
+            unknowns, kind, result->curve[kind], result->curve_error[kind]);
+        const double factor = mf_units_factor(units, mf_unknowns_unit(kind));
+        mf_unknowns_kind_name(unknowns, kind, name);
+        if (isfinite(known.seen) && known.error > well * known.rms)
+            mf_progress_say(to, "not known: %s better than within %.2g%s rms, %.0f %% of it", name,
+                            factor * known.error,
+                            mf_units_suffix(units, mf_unknowns_unit(kind), unit),
+                            100 * known.error / known.rms);
+    }
+}
+
+void mf_fit_closing_say(struct progress *to, const struct fit_file *fit,
+                        const struct unknowns *unknowns, const struct fit_result *result,
+                        const char *folder) {
+    say_verdict(to, fit, result);
+    say_pressure(to, fit, result);
+    say_friction(to, fit, unknowns, result);
+    if (result->status == STATUS_OK)
+        mf_progress_say(to,
+                        "next: figures and summary.json are in %s; mesofit export %s writes "
+                        "the model for another engine",
+                        folder, folder);
+    else
+        mf_progress_say(to,
+                        "next: figures and summary.json are in %s; docs/converged.md says what "
+                        "to do about each reason",
+                        folder);
+}

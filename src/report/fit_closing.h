@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file The last lines of a fit, for a reader who knows nothing of the method: whether it worked,
+/// what the result does not know, what can be done next.
+#pragma once
+
+#include "report/fit_output.h"
+#include "report/progress.h"
+
+/// How well a curve is known over the points that are fitted.
+struct fit_knowledge {
+    double rms, error; ///< of the curve and of its standard error
+    double seen;       ///< share of the points that are two standard errors above 0; NaN: no errors
+};
+
+/// Of a friction weight. Tested: test_fit_closing.
+struct fit_knowledge mf_fit_closing_knowledge(const struct unknowns *unknowns,
+                                              enum unknown_kind kind, const double *curve,
+                                              const double *error);
+
+/// Whether more than half of a friction weight is noise: such a fit has not converged to it,
+/// however well its targets are met. Why, into `reason`. Tested: test_fit_closing.
+bool mf_fit_closing_is_noise(const struct unknowns *unknowns, const double *const curve[UNKNOWNS],
+                             const double *const error[UNKNOWNS], const struct units *units,
+                             char reason[INVERSE_REASON_SIZE]);
+
+/// Say them.
+void mf_fit_closing_say(struct progress *to, const struct fit_file *fit,
+                        const struct unknowns *unknowns, const struct fit_result *result,
+                        const char *folder);

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "report/fit_closing.h"
+#include "shared/is_close.h"
+#include "shared/testing.h"
+
+#include <math.h>
+
+static void begin(struct unknowns *unknowns, struct inverse_problem *problem) {
+    *problem = (struct inverse_problem){
+        .unknown[UNKNOWN_OMEGA] = {true, {INVERSE_CURVE_BSPLINE, 10, 0, 5, 0.1, 1.5, {0}}, {NULL}},
+        .scene = {.temperature = 1}};
+    assert_ok(mf_unknowns_init(unknowns, problem));
+}
+
+/// An ω of 2 that is known within `error` up to a share of its range, and within 3 beyond.
+static void fill(const struct unknowns *unknowns, double share, double *omega, double *error) {
+    const double *r = mf_unknowns_r(unknowns, UNKNOWN_OMEGA);
+    for (size_t k = 0; k < OMEGA_POINTS; k++) {
+        const bool fits = mf_unknowns_fits(unknowns, UNKNOWN_OMEGA, k);
+        omega[k] = fits ? 2 : 0;
+        error[k] = !fits ? NAN : r[k] < 0.1 + share * 1.4 ? 0.5 : 3;
+    }
+}
+
+static void test_closing_tells_how_well_a_friction_weight_is_known(void **state) {
+    (void)state;
+    struct unknowns unknowns;
+    struct inverse_problem problem;
+    double omega[OMEGA_POINTS], error[OMEGA_POINTS];
+    begin(&unknowns, &problem);
+    fill(&unknowns, 0.25, omega, error);
+    const struct fit_knowledge known =
+        mf_fit_closing_knowledge(&unknowns, UNKNOWN_OMEGA, omega, error);
+    assert_close(known.rms, 2, 1e-12);
+    assert_close(known.seen, 0.25, 0.03);
+    assert_close(known.error, sqrt(0.25 * 0.25 + 0.75 * 9), 0.1);
+    mf_unknowns_clear(&unknowns);
+}
+
+static void test_closing_says_so_where_most_of_a_friction_weight_is_noise(void **state) {
+    (void)state;
+    struct unknowns unknowns;
+    struct inverse_problem problem;
+    char reason[INVERSE_REASON_SIZE];
+    double omega[OMEGA_POINTS], error[OMEGA_POINTS];
+    const double *const curve[UNKNOWNS] = {[UNKNOWN_OMEGA] = omega};
+    const double *const errors[UNKNOWNS] = {[UNKNOWN_OMEGA] = error};
+    begin(&unknowns, &problem);
+    fill(&unknowns, 0.38, omega, error);
+    assert_true(mf_fit_closing_is_noise(&unknowns, curve, errors, NULL, reason));
+    assert_contains(reason, "omega is mostly noise: only 3");
+    fill(&unknowns, 0.6, omega, error);
+    assert_false(mf_fit_closing_is_noise(&unknowns, curve, errors, NULL, reason));
+    for (size_t k = 0; k < OMEGA_POINTS; k++)
+        error[k] = NAN; // a method that knows none
+    assert_false(mf_fit_closing_is_noise(&unknowns, curve, errors, NULL, reason));
+    mf_unknowns_clear(&unknowns);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_closing_tells_how_well_a_friction_weight_is_known),
+        cmocka_unit_test(test_closing_says_so_where_most_of_a_friction_weight_is_noise),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
