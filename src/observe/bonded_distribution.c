@@ -262,7 +262,7 @@ static void find_errors_of_parts(const struct bonded_state *const *states, size_
                                  double *error) {
     const struct bonded_state *s = states[0];
     const size_t all = s->first[s->molecules->groups[s->order]], bins = s->bins[group].count;
-    double terms[MOST_PARTS];
+    double terms[MOST_PARTS] = {0};
     for (size_t part = 0; part < s->parts; part++)
         terms[part] = terms_of_part(s, group, part);
     for (size_t bin = 0; bin < bins; bin++) {

@@ -69,7 +69,7 @@ extern const struct observable mf_molecule_sizes;
 /// Sample molecules that jump with a probability from sample to sample.
 static void sample_jumps(struct chains *chains, const struct observable *observable, void *state,
                          uint64_t run, double jump, bool together) {
-    bool up[MOLECULES];
+    bool up[MOLECULES] = {false};
     for (int sample = 0; sample < SAMPLES; sample++) {
         for (int64_t m = 0; m < MOLECULES; m++) {
             const double number = chance(run, sample, together ? 0 : m);
