@@ -234,21 +234,24 @@ struct thermodynamics_off mf_thermodynamics_off(const struct thermodynamics_summ
     const struct thermodynamics_summary *s = summary;
     const double wanted = simulation_holds_temperature(setup) ? setup->temperature : s->temperature;
     const struct thermodynamics_off each[2] = {
-        {true, true, s->temperature / wanted - 1, s->temperature_error / wanted},
+        {true, true, s->temperature / wanted - 1, s->temperature_error / wanted, 0},
         {true, false, s->temperature_configurational / wanted - 1,
-         s->temperature_configurational_error / wanted}};
+         s->temperature_configurational_error / wanted, 0}};
     struct thermodynamics_off off = {.known = false};
-    double farthest = -1;
+    double farthest = -1, within = 0;
     if (s->blocks < LEAST_BLOCKS || !mf_simulation_is_thermal(setup))
         return off;
     for (int k = 0; k < (shows_forces(setup) ? 2 : 1); k++) {
         const double error = is_absurd(each[k].share + 1, 1) ? 0 : each[k].error; // no chance
-        const double far = fabs(each[k].share) / fmax(little, errors * error);
+        const double allowed = fmax(little, errors * error);
+        const double far = fabs(each[k].share) / allowed;
+        within = isfinite(far) ? fmax(within, allowed) : within;
         if (!(far > farthest)) // it is not known
             continue;
         farthest = far;
         off = each[k];
         off.error = error;
     }
+    off.within = within;
     return off;
 }

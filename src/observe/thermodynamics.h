@@ -82,6 +82,7 @@ struct thermodynamics_off {
     bool kinetic;        ///< else the configurational one
     double share, error; ///< (T − T_wanted)/T_wanted, and its standard error: 0 of several times
                          ///< T_wanted, or none, which are no chance
+    double within;       ///< the larger of both allowances: three errors, or 1 %
 };
 struct thermodynamics_off mf_thermodynamics_off(const struct thermodynamics_summary *summary,
                                                 const struct simulation_setup *setup);

@@ -90,7 +90,7 @@ void mf_fit_step_text(const struct verification *verification, const struct unit
         snprintf(bound, sizeof bound, "too few samples to tell whether it holds");
     else
         snprintf(bound, sizeof bound, "both temperatures are right within %.2g %%",
-                 100 * fmax(0.01, 3 * step->off.error));
+                 100 * step->off.within);
     time_text(units, step->used, used);
     if (step->halvings == 0) {
         snprintf(text, FIT_STEP_TEXT_SIZE, "time step of the verification: %s; %s", used, bound);

@@ -283,6 +283,7 @@ static void test_thermodynamics_off_is_of_the_temperature_that_is_farther_off(vo
     struct thermodynamics_off off = mf_thermodynamics_off(&s, &fluid.setup);
     assert_true(off.known && off.kinetic); // 2 % of 1.2, and 3 % of 3
     assert_close(off.share, 0.02, 1e-12);
+    assert_close(off.within, 0.03, 1e-12); // by the error of the other
     s.temperature_configurational_error = 0.002;
     off = mf_thermodynamics_off(&s, &fluid.setup);
     assert_false(off.kinetic);

@@ -72,7 +72,7 @@ static void test_verify_step_begins_near_what_the_potential_bears(void **state) 
 }
 
 static struct thermodynamics_off off(double share, double error) {
-    return (struct thermodynamics_off){true, false, share, error};
+    return (struct thermodynamics_off){true, false, share, error, 0};
 }
 
 static struct verify_step begin(bool shortens) {

@@ -57,19 +57,19 @@ static void test_fit_verdict_names_the_cause_when_g_is_off(void **state) {
     struct verification coarse = other, smaller = other, rough = heated, blameless = other;
     coarse.step = (struct verify_step){.used = 0.02,
                                        .would_hold = 0.0157,
-                                       .off = {true, false, -0.0133, 0.002},
+                                       .off = {true, false, -0.0133, 0.002, 0},
                                        .verdict = VERIFY_STEP_LONG};
     assert_says(&coarse, "the configurational temperature is 1.3 % too low: the time step, 0.02 "
                          "tau, is too long for this potential; about 0.015 tau");
     rough.step = (struct verify_step){.used = 0.001,
                                       .shortens = true,
                                       .halvings = 4,
-                                      .off = {true, true, 0.127, 0.002},
+                                      .off = {true, true, 0.127, 0.002, 0},
                                       .verdict = VERIFY_STEP_LONG};
     assert_says(&rough, "the kinetic temperature is 13 % too high even with 0.001 tau, a "
                         "sixteenth of the time step chosen");
-    blameless.step =
-        (struct verify_step){.off = {true, false, 0.05, 0.002}, .verdict = VERIFY_STEP_BLAMELESS};
+    blameless.step = (struct verify_step){.off = {true, false, 0.05, 0.002, 0},
+                                          .verdict = VERIFY_STEP_BLAMELESS};
     assert_says(&blameless, "was so with twice the time step: that is not the cause");
     smaller.sampled = 700;
     smaller.particles = 1000;
