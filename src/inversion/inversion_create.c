@@ -265,6 +265,7 @@ enum status mf_inversion_create(void *memory, const struct inverse_method *metho
                                  .q_maximum = inversion->kirkwood_buff.q_maximum,
                                  .seed = problem->seed}));
     inversion->progress = (struct inversion_progress){.anew = true,
+                                                      .stretch = 1,
                                                       .damping = 1,
                                                       .best[TARGET_RDF].rms = INFINITY,
                                                       .least_decrement = INFINITY,
