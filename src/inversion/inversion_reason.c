@@ -15,16 +15,13 @@ static int find_missed(const struct inversion *inversion) {
 /// Why no samples could be made use of.
 static void tell_unsettled(const struct inversion_unsettled *unsettled,
                            char reason[INVERSE_REASON_SIZE]) {
-    const struct stationary *is = &unsettled->is;
-    const bool drifts = is->drift < is->memory;
+    char what[INVERSE_REASON_SIZE / 2];
+    mf_stationary_tell(unsettled->quantity, &unsettled->is, what, sizeof what);
     snprintf(reason, INVERSE_REASON_SIZE,
-             "the samples are not in equilibrium after %llu sweeps of each replica: %s %s, %.2g "
-             "times as much as their noise explains. The liquid freezes, tears or condenses, or "
-             "it needs a longer \"equilibration\"; long molecules may settle sooner with the "
-             "\"sampler\" \"monte-carlo\"",
-             (unsigned long long)unsettled->sweeps, unsettled->quantity,
-             drifts ? "still changes" : "differs between replicas",
-             sqrt(drifts ? is->drift_ratio : is->memory_ratio));
+             "the samples are not in equilibrium after %llu sweeps of each replica: %.100s. The "
+             "liquid freezes, tears or condenses, or needs a longer \"equilibration\"; long "
+             "molecules may settle sooner with the \"sampler\" \"monte-carlo\"",
+             (unsigned long long)unsettled->sweeps, what);
 }
 
 /// Groups alone have no ramp and no g.

@@ -77,7 +77,7 @@ enum status mf_inversion_settled_judge(const struct inversion *inversion,
     for (size_t k = 0; k < count; k++) {
         struct stationary is;
         TRY(test(inversion, &quantity[k], &is));
-        const double chance = fmin(is.drift, is.memory);
+        const double chance = stationary_chance(&is);
         unsettled->drifts = unsettled->drifts || is.drift < limit;
         if (!(chance < least))
             continue;

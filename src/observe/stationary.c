@@ -5,6 +5,7 @@
 
 #include <gsl/gsl_cdf.h>
 #include <math.h>
+#include <stdio.h>
 
 /// The mean over the parts, the slope along them, and what is left: orthogonal polynomials.
 enum { MEAN, SLOPE, CONTRASTS = STATIONARY_PARTS };
@@ -116,4 +117,11 @@ done:
     mf_memory_free(all.own);
     mf_memory_free(all.common);
     return status;
+}
+
+void mf_stationary_tell(const char *name, const struct stationary *is, char *text, size_t size) {
+    const bool drifts = is->drift < is->memory;
+    snprintf(text, size, "%s %s, %.2g times as much as its noise explains", name,
+             drifts ? "still changes" : "differs between replicas",
+             sqrt(drifts ? is->drift_ratio : is->memory_ratio));
 }

@@ -46,3 +46,12 @@ struct stationary {
 /// Fails: NO_MEMORY. Tested: test_stationary.
 enum status mf_stationary_test(const struct stationary_numbers *numbers,
                                struct stationary *result) MUST_USE;
+
+/// The smaller of both chances.
+static inline double stationary_chance(const struct stationary *is) {
+    return is->drift < is->memory ? is->drift : is->memory;
+}
+
+/// "g(r) still changes, 5.2 times as much as its noise explains".
+/// @param[in] name  "g(r)"
+void mf_stationary_tell(const char *name, const struct stationary *is, char *text, size_t size);
