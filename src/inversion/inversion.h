@@ -4,9 +4,10 @@
 /// Each iteration samples the present potential and asks the method for a step towards the targets
 /// (inversion_rule.update): g(r) and, if it is asked for, the pressure. The best potential so far
 /// is kept; a worse one than chance allows makes the next step half as long, from the best, or the
-/// method's other step if it has one. Several targets count in units of their noise. Samples double
-/// until their noise is small against the error, or as small as was asked for: then the fit has
-/// converged when all errors are within their noise.
+/// method's other step if it has one. Several targets count in units of their noise. Samples count
+/// once they are those of equilibrium (inversion/inversion_settled.h), and double until their noise
+/// is small against the error, or as small as was asked for: then the fit has converged when χ² of
+/// each target is that of noise.
 ///
 /// It starts from the hypernetted-chain inversion (mf_hnc_closure): for water the error of g is
 /// then a quarter of that of −k_B T ln g. Where that is far off and puts the liquid under tension,
@@ -314,11 +315,10 @@ bool mf_inversion_is_near(const struct inversion *inversion);
 /// groups that must settle two iterations running say so. The way is short from one side, since
 /// each step goes a part of it, and an iteration that finds it over by chance would end there, and
 /// take the same chance into the last step: the pressures of 16 twins were 0.6 errors too low.
-/// Targets that cannot be met so well, since their errors are too small, must only agree for long,
-/// four times. A fit that meets its targets six times running and does not settle ends, too:
-/// hexane's g(r) of two types of beads was met for 17 iterations, in which the pressure fell by 900
-/// bar; the way since the first of the six counts as an error (`walked`). Iterations that are not
-/// kept do not count. Tested: test_inversion_converged.
+/// A fit that meets its targets six times running and does not settle ends, too: hexane's g(r) of
+/// two types of beads was met for 17 iterations, in which the pressure fell by 900 bar; the way
+/// since the first of the six counts as an error (`walked`). Iterations that are not kept, or whose
+/// samples have not settled, do not count. Tested: test_inversion_converged.
 bool mf_inversion_has_converged(struct inversion *inversion, bool kept);
 
 /// Whether the ramp of the potential grows without end; never with a pressure, which holds it.
