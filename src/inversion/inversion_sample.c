@@ -85,17 +85,20 @@ struct sampling {
     double off;      ///< how far the samples before were from their targets, in noises
 };
 
-/// Whether samples that have not settled are to be left: they have cost enough, or are too far off
-/// to be kept and get farther. What tears a liquid, or freezes it, takes for ever to do so.
+/// Whether samples that have not settled are to be left: they have cost enough, are those of a
+/// start that is left anyway, or are too far off to be kept and get farther. What tears a liquid,
+/// or freezes it, takes for ever to do so.
 static bool is_hopeless(struct inversion *inversion, struct sampling *sampling) {
     const struct replicas_plan least = plan(inversion, 1);
     const uint64_t first = replicas_plan_sweeps(&least) + (uint64_t)least.equilibration;
     const double off = mf_inversion_count_noises(inversion, inversion->distance);
     const bool worse = inversion->basis.count == 0 && !mf_inversion_is_near_enough(inversion) &&
                        off > sampling->off;
+    mf_inversion_pressure_measure(inversion);
+    const bool poor = mf_inversion_start_is_poor(inversion, true);
     inversion->progress.unsettled.for_long = sampling->sweeps > MOST_TIMES * first;
     sampling->off = off;
-    return inversion->progress.unsettled.for_long || worse;
+    return inversion->progress.unsettled.for_long || worse || poor;
 }
 
 /// Take samples by the plan, all of them or as many again.

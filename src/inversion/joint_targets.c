@@ -110,10 +110,12 @@ void mf_joint_targets_join(const struct joint *joint) {
     for (size_t s = 0; s < joint->states; s++) {
         disagreement = fmax(disagreement, joint->state[s].disagreement);
         misfit += joint->state[s].misfit / (double)joint->states;
-        if (!leader->unsettled && joint->state[s].unsettled) {
-            leader->unsettled = true;
-            leader->progress.unsettled = joint->state[s].progress.unsettled;
-        }
+        if (joint->state[s].stretch > leader->stretch)
+            leader->stretch = joint->state[s].stretch;
+        if (leader->unsettled || !joint->state[s].unsettled)
+            continue;
+        leader->unsettled = true;
+        leader->progress.unsettled = joint->state[s].progress.unsettled;
     }
     leader->disagreement = disagreement;
     leader->misfit = misfit;
