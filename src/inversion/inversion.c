@@ -130,7 +130,7 @@ static enum status judge(struct inversion *inversion, bool *kept) {
     *kept = !inversion->unsettled && mf_inversion_keeps(inversion);
     progress->anew = !*kept;
     progress->lost = start && !*kept && !mf_inversion_start_is_poor(inversion, false);
-    if (progress->lost)
+    if (start && !*kept)
         return keep(inversion); // to have something to show
     if (start)
         progress->first_error = progress->second_error = error;
