@@ -7,19 +7,6 @@
 
 const double mf_inversion_least_damping = 1.0 / 64;
 
-/// Samples are doubled until their noise is this share of the error, or as small as was asked for.
-static const double noise_share = 1.0 / 3;
-
-/// A gradient below this many times its noise is hardly more than that: what g is still off is out
-/// of reach of the coefficients.
-static const double gradient_of_noise = 2;
-
-/// Samples of an iteration double at most so often.
-enum { MOST_DOUBLINGS = 7 };
-
-/// Replicas that are placed anew are equilibrated so many times as long.
-enum { ANEW_EQUILIBRATION = 5 };
-
 /// C of the present samples, and near the target of all since it was reached. The noise of C leads
 /// from every direction into those that g sees best, so that little seen ones seem better known
 /// than they are and each step goes a part of their way: a third for soft beads with 1400 samples
@@ -96,82 +83,8 @@ static enum status keep(struct inversion *inversion) {
     memcpy(progress->best, inversion->distance, sizeof progress->best);
     progress->best_own_noise = inversion->own_noise;
     progress->best_precise = is_precise(inversion);
-    progress->best_disagreement = inversion->disagreement;
+    progress->best_worst = *mf_inversion_worst(inversion);
     return mf_inversion_band_find(inversion);
-}
-
-/// The sweeps and least samples of this iteration.
-static struct replicas_plan plan(const struct inversion *inversion) {
-    const struct inversion_parameters *p = &inversion->settings.common;
-    const bool anew = inversion->progress.anew;
-    return (struct replicas_plan){.scatter = anew,
-                                  .equilibration =
-                                      p->equilibration * (anew ? ANEW_EQUILIBRATION : 1),
-                                  .block_samples = (p->samples - 1) / REPLICAS_BLOCKS + 1,
-                                  .every = p->every};
-}
-
-/// The error that is farthest from what the samples are to make it: as small as was asked for, or a
-/// small part of what is off.
-static struct inverse_doubling find_noisiest(const struct inversion *inversion) {
-    // What is out of reach is no error that hides the noise.
-    const double share = inversion->progress.miss < gradient_of_noise ? 0 : noise_share;
-    struct inverse_doubling noisiest = mf_inversion_kirkwood_buff_noise(inversion);
-    for (int k = 0; k < inversion->sections; k++) {
-        const struct inversion_section *section = &inversion->section[k];
-        const double wanted = fmax(section->precision, share * section->rms);
-        if (section->own_noise * noisiest.wanted > noisiest.noise * wanted)
-            noisiest = (struct inverse_doubling){
-                .noise = section->own_noise, .wanted = wanted, .unit = ""};
-    }
-    return noisiest;
-}
-
-/// Whether more samples help. Replicas that are stuck would never be told apart from noise.
-static bool needs_samples(const struct inversion *inversion, struct inverse_doubling *doubling) {
-    const int before = doubling->number;
-    *doubling = find_noisiest(inversion);
-    doubling->number = before + 1;
-    doubling->most = MOST_DOUBLINGS;
-    return doubling->noise > doubling->wanted && before < MOST_DOUBLINGS;
-}
-
-/// Sample the present potential until the noise is small against its error.
-static enum status sample(struct inversion *inversion, const struct inverse_listener *listener) {
-    struct replicas_plan now = plan(inversion);
-    struct inversion_progress *state = &inversion->progress;
-    const int threads = inversion->problem->threads;
-    const uint64_t replicas = (uint64_t)inversion->settings.common.replicas;
-    struct inverse_progress progress = {
-        .iteration = state->iteration,
-        .iterations = (uint32_t)inversion->settings.common.iterations,
-        .best = mf_targets_error(&inversion->problem->targets, state->best),
-        .least = NAN,
-        .mean = NAN,
-    };
-    TRY(mf_inversion_tabulate(inversion));
-    state->evaluations += replicas;
-    TRY(mf_replicas_run(&inversion->replicas, &now, threads, &progress, listener));
-    mf_inversion_assess(inversion);
-    progress.done = progress.total = replicas;
-    while (needs_samples(inversion, &progress.doubling)) {
-        listener->tell(listener->context, &progress); // it takes as long as all before
-        TRY(mf_replicas_double(&inversion->replicas, &now, threads, &progress, listener));
-        mf_inversion_assess(inversion);
-    }
-    state->sweeps +=
-        replicas * (uint64_t)(REPLICAS_BLOCKS * now.block_samples * now.every + now.equilibration);
-    return STATUS_OK;
-}
-
-/// Distances from all targets together, each in units of the noise of the present samples.
-static double count_noises(const struct inversion *inversion,
-                           const struct target_distance distance[TARGETS]) {
-    double sum = 0;
-    for (int kind = 0; kind < TARGETS; kind++)
-        if (targets_ask(&inversion->problem->targets, kind) && inversion->distance[kind].noise > 0)
-            sum += pow(distance[kind].rms / inversion->distance[kind].noise, 2);
-    return sqrt(sum);
 }
 
 /// Go back to the best, for its other step if it has one, or for half of its step.
@@ -200,12 +113,12 @@ bool mf_inversion_keeps(struct inversion *inversion) {
     struct inversion_progress *progress = &inversion->progress;
     if (goes_by_gradient(inversion))
         return keeps_by_gradient(inversion);
-    const double now = count_noises(inversion, inversion->distance);
-    const double least =
-        isinf(progress->best[TARGET_RDF].rms) ? INFINITY : count_noises(inversion, progress->least);
-    if (now < least)
+    const bool kept = mf_inversion_is_near_enough(inversion);
+    if (isinf(progress->best[TARGET_RDF].rms) ||
+        mf_inversion_count_noises(inversion, inversion->distance) <
+            mf_inversion_count_noises(inversion, progress->least))
         memcpy(progress->least, inversion->distance, sizeof progress->least);
-    return now <= least + 2;
+    return kept;
 }
 
 /// Keep the present potential, or go back if it is worse than the nearest by more than chance.
@@ -214,8 +127,11 @@ static enum status judge(struct inversion *inversion, bool *kept) {
     struct inversion_progress *progress = &inversion->progress;
     const double error = inversion->distance[TARGET_RDF].rms;
     const bool start = isinf(progress->best[TARGET_RDF].rms);
-    *kept = mf_inversion_keeps(inversion);
+    *kept = !inversion->unsettled && mf_inversion_keeps(inversion);
     progress->anew = !*kept;
+    progress->lost = start && !*kept && !mf_inversion_start_is_poor(inversion, false);
+    if (start && !*kept)
+        return keep(inversion); // to have something to show
     if (start)
         progress->first_error = progress->second_error = error;
     else if (progress->second_error == progress->first_error)
@@ -226,6 +142,7 @@ static enum status judge(struct inversion *inversion, bool *kept) {
     }
     if (!start)
         progress->damping = fmin(1, 1.5 * progress->damping);
+    progress->stretch = inversion->stretch > 1 ? inversion->stretch / 2 : 1;
     return keep(inversion);
 }
 
@@ -301,7 +218,7 @@ static void describe(const struct inversion *inversion, const double *own, bool 
         .ramp = inversion->band.ramp,
         .response = {inversion->covariance, inversion->ideal},
         .converged = converged,
-        .finished = converged || stuck || mf_inversion_runs_away(inversion) ||
+        .finished = converged || stuck || progress->lost || mf_inversion_runs_away(inversion) ||
                     progress->iteration + 1 >= p->iterations,
     };
     show_groups(inversion, step);
@@ -313,9 +230,12 @@ static void describe(const struct inversion *inversion, const double *own, bool 
 enum status mf_inversion_observe(struct inversion *inversion,
                                  const struct inverse_listener *listener) {
     inversion->joint = NULL;
-    TRY(sample(inversion, listener));
+    TRY(mf_inversion_sample(inversion, listener));
     TRY(assess_response(inversion));
-    mf_inversion_pool(inversion);
+    if (inversion->unsettled)
+        inversion->progress.responses = inversion->progress.pool = 0;
+    else
+        mf_inversion_pool(inversion);
     return STATUS_OK;
 }
 

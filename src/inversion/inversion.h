@@ -4,9 +4,10 @@
 /// Each iteration samples the present potential and asks the method for a step towards the targets
 /// (inversion_rule.update): g(r) and, if it is asked for, the pressure. The best potential so far
 /// is kept; a worse one than chance allows makes the next step half as long, from the best, or the
-/// method's other step if it has one. Several targets count in units of their noise. Samples double
-/// until their noise is small against the error, or as small as was asked for: then the fit has
-/// converged when all errors are within their noise.
+/// method's other step if it has one. Several targets count in units of their noise. Samples count
+/// once they are those of equilibrium (inversion/inversion_settled.h), and double until their noise
+/// is small against the error, or as small as was asked for: then the fit has converged when χ² of
+/// each target is that of noise.
 ///
 /// It starts from the hypernetted-chain inversion (mf_hnc_closure): for water the error of g is
 /// then a quarter of that of −k_B T ln g. Where that is far off and puts the liquid under tension,
@@ -23,6 +24,7 @@
 #include "inversion/inversion_pressure.h"
 #include "inversion/inversion_response.h"
 #include "inversion/inversion_rows.h"
+#include "inversion/inversion_settled.h"
 #include "inversion/inversion_smooth.h"
 #include "inversion/inversion_trail.h"
 #include "problem/potential_grid.h"
@@ -72,9 +74,16 @@ struct inversion_section {
     double inefficiency;       ///< samples that count as one independent
     double rms, noise;         ///< of the samples and their targets, in peaks
     double own_noise;          ///< of the samples alone
+    double misfit;             ///< χ² by bin of the samples, with the noise that they expect
+    double probable;           ///< the same at most, of what agrees but for noise
     double precision;          ///< at which that is small enough
 };
 enum { INVERSION_MOST_SECTIONS = 1 + INVERSE_MOST_BONDED };
+
+/// Whether the samples meet its targets but for noise.
+static inline bool inversion_section_agrees(const struct inversion_section *section) {
+    return section->misfit <= section->probable;
+}
 
 /// What several states say together, for the step of the first of them (inversion/joint.h); or one
 /// state, with integrals of Kirkwood and Buff.
@@ -118,6 +127,8 @@ struct inversion {
         *joint;          ///< of the first of several states, or with integrals; or NULL
     double behind;       ///< samples behind C
     double misfit;       ///< χ² of the excess by bin
+    int64_t stretch;     ///< of their equilibration and spacing
+    bool unsettled;      ///< the samples are not those of equilibrium, and there are to be no more
     double inefficiency; ///< the largest of all sections
     double disagreement; ///< of the replicas, mf_replicas_disagreement
     struct target_distance distance[TARGETS]; ///< of the samples from what is asked for
@@ -148,13 +159,18 @@ struct inversion {
         struct target_distance best[TARGETS];  ///< rms of g infinite: there is none yet
         struct target_distance least[TARGETS]; ///< nearest so far, of all that was kept
         struct inversion_drift drift;          ///< of the potentials sampled since the start
-        double best_own_noise, best_disagreement;
-        double responses;                 ///< samples behind C, of all iterations near the noise
-        double pool;                      ///< samples that the pooled excess is worth, 0 far off
-        double least_decrement;           ///< of what was kept, by the gradient
-        double miss;                      ///< of the last gradient, in its noise
-        uint32_t agreed;                  ///< iterations running that agreed with all targets
-        uint32_t met;                     ///< the same but for what has not settled
+        double best_own_noise;
+        struct inversion_section
+            best_worst; ///< section with the largest χ² by bin over the probable
+        struct inversion_unsettled unsettled; ///< the last that were found
+        bool lost;                            ///< none of the starts settled
+        int64_t stretch;        ///< of equilibration and spacing, by which the next samples begin
+        double responses;       ///< samples behind C, of all iterations near the noise
+        double pool;            ///< samples that the pooled excess is worth, 0 far off
+        double least_decrement; ///< of what was kept, by the gradient
+        double miss;            ///< of the last gradient, in its noise
+        uint32_t agreed;        ///< iterations running that agreed with all targets
+        uint32_t met;           ///< the same but for what has not settled
         double first_error, second_error; ///< of g, in the first two iterations from a start
     } progress;
 };
@@ -202,6 +218,22 @@ enum status mf_inversion_tabulate(struct inversion *inversion) MUST_USE;
 enum status mf_inversion_observe(struct inversion *inversion,
                                  const struct inverse_listener *listener) MUST_USE;
 enum status mf_inversion_advance(struct inversion *inversion, struct inverse_step *step) MUST_USE;
+
+/// Sample the present potential until the samples have settled and their noise is small against
+/// their error, and assess them. Samples that have cost 200 times as much as the first ones and
+/// have not settled, or that have not, are too far off to be kept and get worse, are left
+/// `unsettled`. Fails: NO_MEMORY, INTERRUPTED. Tested: test_inversion_doubling,
+/// test_inversion_settled.
+enum status mf_inversion_sample(struct inversion *inversion,
+                                const struct inverse_listener *listener) MUST_USE;
+
+/// Distances from all targets together, each in units of the noise of the present samples.
+double mf_inversion_count_noises(const struct inversion *inversion,
+                                 const struct target_distance distance[TARGETS]);
+
+/// Whether the samples are near enough to the targets to be kept, if these are what they are judged
+/// by.
+bool mf_inversion_is_near_enough(const struct inversion *inversion);
 
 /// The linear equations of the present samples, without the pressure; with it those of all states
 /// where there are several, and those with the integrals of Kirkwood and Buff.
@@ -271,6 +303,9 @@ void mf_inversion_assess(struct inversion *inversion);
 /// tell. Tested: test_inversion_keeps.
 void mf_inversion_pool(struct inversion *inversion);
 
+/// The section that is farthest off, by its χ².
+const struct inversion_section *mf_inversion_worst(const struct inversion *inversion);
+
 /// Whether g, and p of all groups, are so near to their targets, by their noise, that C hardly
 /// changes any more; or the gradient of coefficients to 0, by its own.
 bool mf_inversion_is_near(const struct inversion *inversion);
@@ -280,11 +315,10 @@ bool mf_inversion_is_near(const struct inversion *inversion);
 /// groups that must settle two iterations running say so. The way is short from one side, since
 /// each step goes a part of it, and an iteration that finds it over by chance would end there, and
 /// take the same chance into the last step: the pressures of 16 twins were 0.6 errors too low.
-/// Targets that cannot be met so well, since their errors are too small, must only agree for long,
-/// four times. A fit that meets its targets six times running and does not settle ends, too:
-/// hexane's g(r) of two types of beads was met for 17 iterations, in which the pressure fell by 900
-/// bar; the way since the first of the six counts as an error (`walked`). Iterations that are not
-/// kept do not count. Tested: test_inversion_converged.
+/// A fit that meets its targets six times running and does not settle ends, too: hexane's g(r) of
+/// two types of beads was met for 17 iterations, in which the pressure fell by 900 bar; the way
+/// since the first of the six counts as an error (`walked`). Iterations that are not kept, or whose
+/// samples have not settled, do not count. Tested: test_inversion_converged.
 bool mf_inversion_has_converged(struct inversion *inversion, bool kept);
 
 /// Whether the ramp of the potential grows without end; never with a pressure, which holds it.

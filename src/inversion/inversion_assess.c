@@ -3,13 +3,15 @@
 // What the samples of an inversion say beside its targets.
 #include "inversion/inversion.h"
 
+#include <gsl/gsl_cdf.h>
 #include <math.h>
 #include <string.h>
 
 /// Share of the present samples in what all iterations near the target tell, at least.
 static const double least_share = 1.0 / 3;
 
-/// The error of what is near to its target, in units of its noise, and of what stays near.
+/// The error of what is near to its target, in units of its noise (the root of χ² by bin), and of
+/// what stays near.
 static const double near_noises = 2, still_near_noises = 3;
 
 /// The gradient of coefficients, in its noise, below which C hardly changes any more.
@@ -34,17 +36,42 @@ static void add_distance(struct target_distance *distance, double sum, double bo
     distance->count += bins;
 }
 
-/// Variance of S* of a known bin. Where the target of a group has few counts, they are as often
-/// fewer than expected as more, and would have too small an error then: it is that of the counts
-/// that the samples expect, if these are more.
+/// Variance of S* of a known bin, as it would be if the potential were right: where the target has
+/// few counts, they are as often fewer than expected as more, and would have too small an error
+/// then. It is that of the counts that the samples expect, if these are more.
 static double find_target_variance(const struct inversion *inversion, size_t a) {
-    const struct potential_grid *grid = &inversion->grid;
-    const size_t bin = grid->known_bin[a];
+    const size_t bin = inversion->grid.known_bin[a];
     const double error = inversion->target_error[bin];
-    if (a < grid->pairs_known || grid->well_known[a] || !(error > 0))
+    if (!(error > 0))
         return error * error;
     const double counts = fmax(inversion->target_counts[bin], error);
     return error * error * fmax(1, inversion->replicas.counts.mean[bin] / counts);
+}
+
+/// χ² by bin that noise alone exceeds in one of a thousand fits. Bins beside each other are off
+/// together: all count as (Σ ρ_aa)²/Σ ρ_ab² independent ones, by the correlations ρ of the samples.
+static double find_probable(const struct inversion *inversion,
+                            const struct inversion_section *section) {
+    static const double chance = 1e-3;
+    const struct comoments *counts = &inversion->replicas.counts;
+    const size_t end = section->known + section->known_count;
+    double bins = 0, squares = 0;
+    for (size_t a = section->known; a < end; a++) {
+        const size_t i = inversion->grid.known_bin[a];
+        const double own = mf_comoments_covariance(counts, i, i);
+        if (!inversion->grid.seen[a])
+            continue;
+        bins++;
+        squares++;
+        for (size_t b = section->known; b < a && own > 0; b++) {
+            const size_t j = inversion->grid.known_bin[b];
+            const double other = mf_comoments_covariance(counts, j, j);
+            if (inversion->grid.seen[b] && other > 0)
+                squares += 2 * pow(mf_comoments_covariance(counts, i, j), 2) / (own * other);
+        }
+    }
+    const double independent = bins * bins / fmax(squares, 1);
+    return bins > 0 ? gsl_cdf_chisq_Qinv(chance, independent) / independent : INFINITY;
 }
 
 /// Of one section; returns its χ².
@@ -55,7 +82,7 @@ static double assess(struct inversion *inversion, struct inversion_section *sect
         &inversion->replicas, inversion->ideal, known_bin + section->known, section->known_count);
     const double independent = counts->count / section->inefficiency;
     const double bins = (double)section->bins;
-    double sum = 0, own = 0, both = 0, misfit = 0;
+    double sum = 0, own = 0, both = 0, misfit = 0, seen = 0;
     for (size_t n = section->bin; n < section->bin + section->bins; n++)
         sum += pow((counts->mean[n] - inversion->target_counts[n]) / inversion->unit[n], 2);
     for (size_t a = section->known; a < section->known + section->known_count; a++) {
@@ -69,12 +96,15 @@ static double assess(struct inversion *inversion, struct inversion_section *sect
         if (!inversion->grid.seen[a])
             continue;
         misfit += inversion->excess[a] * inversion->excess[a] / inversion->variance[a];
+        seen++;
         own += sampled / unit;
         both += inversion->variance[a] / unit;
     }
     add_distance(&inversion->distance[section->kind], sum, both, own, section->bins);
     section->rms = sqrt(sum / bins) / section->peak;
     section->noise = sqrt(both / bins) / section->peak;
+    section->misfit = seen > 0 ? misfit / seen : 0;
+    section->probable = find_probable(inversion, section);
     section->own_noise = sqrt(own / bins) / section->peak;
     // p of a group need not be known better than that of its target, which has as many bins.
     section->precision = inversion->settings.common.precision;
@@ -121,12 +151,23 @@ void mf_inversion_assess(struct inversion *inversion) {
     mf_inversion_kirkwood_buff_measure(inversion);
 }
 
+const struct inversion_section *mf_inversion_worst(const struct inversion *inversion) {
+    const struct inversion_section *worst = &inversion->section[0];
+    for (int k = 1; k < inversion->sections; k++) {
+        const struct inversion_section *section = &inversion->section[k];
+        if (section->misfit * worst->probable > worst->misfit * section->probable)
+            worst = section;
+    }
+    return worst;
+}
+
 bool mf_inversion_is_near(const struct inversion *inversion) {
     const double noises = inversion->progress.pool > 0 ? still_near_noises : near_noises;
     if (inversion->basis.count > 0)
         return inversion->progress.miss < near_gradient;
     for (int k = 0; k < inversion->sections; k++)
-        if (!(inversion->section[k].rms < noises * inversion->section[k].noise))
+        if (!(inversion->section[k].misfit < noises * noises) &&
+            !inversion_section_agrees(&inversion->section[k]))
             return false;
     return true;
 }

@@ -168,7 +168,7 @@ static double block_gradient(const struct inversion_basis *basis, const struct i
         for (size_t a = 0; a < grid->known; a++)
             sum += basis->value[a * basis->count + coefficient] *
                    inversion->replicas.member[member]
-                       .block[b * inversion->replicas.bins + grid->known_bin[a]];
+                       .block[b * inversion->replicas.numbers + grid->known_bin[a]];
     return sum / (double)(end - begin);
 }
 

@@ -10,12 +10,9 @@
 /// settled.
 static const double settled_way = 0.5;
 
-/// χ² by bin of what agrees but for noise.
-static const double probable_misfit = 2;
-
-/// Iterations running, of those that are kept, that must agree: where some bins hide others, and
-/// where C is that of few samples, so that a step goes a part of its way.
-enum { LONG_AGREEMENT = 4, AGREEMENT_WITH_GROUPS = 2 };
+/// Iterations running, of those that are kept, that must agree where C is that of few samples, so
+/// that a step goes a part of its way.
+enum { AGREEMENT_WITH_GROUPS = 2 };
 
 /// As many that meet the targets of a fit which does not settle: of several pair types,
 /// combinations of Φ that g hardly sees may go on for ever. Twins that do settle take five at most.
@@ -42,29 +39,17 @@ bool mf_inversion_ends_with_mean(const struct inversion *inversion) {
     return mean < now;
 }
 
-/// χ² by bin of the mean of the potentials near the target.
-static double find_mean_misfit(const struct inversion *inversion) {
+/// Whether that mean meets the targets of a section.
+static bool mean_meets_section(const struct inversion *inversion,
+                               const struct inversion_section *section) {
     double misfit = 0, bins = 0;
-    for (size_t a = 0; a < inversion->grid.known; a++) {
+    for (size_t a = section->known; a < section->known + section->known_count; a++) {
         if (!inversion->grid.seen[a])
             continue;
         misfit += pow(inversion->pooled[a], 2) / inversion->variance[a];
         bins++;
     }
-    return misfit / bins;
-}
-
-/// Whether that mean meets the targets of a section.
-static bool mean_meets_section(const struct inversion *inversion,
-                               const struct inversion_section *section) {
-    double sum = 0, noise = 0;
-    for (size_t a = section->known; a < section->known + section->known_count; a++) {
-        const double unit = inversion->unit[inversion->grid.known_bin[a]];
-        sum += pow(inversion->pooled[a] / unit, 2);
-        if (inversion->grid.seen[a])
-            noise += inversion->variance[a] / (unit * unit);
-    }
-    return sum <= pow(mf_inverse_noise_margin, 2) * noise;
+    return misfit <= section->probable * bins;
 }
 
 /// Whether that mean meets the targets of all sections.
@@ -75,16 +60,23 @@ static bool mean_meets(const struct inversion *inversion) {
     return true;
 }
 
-/// Whether the present potential meets all targets as far as their noise lets see.
+/// Whether a kind of targets is that of sections.
+static bool has_sections(const struct inversion *inversion, int kind) {
+    bool has = false;
+    for (int k = 0; k < inversion->sections; k++)
+        has = has || inversion->section[k].kind == kind;
+    return has;
+}
+
+/// Whether the present potential meets all targets as far as their noise lets see: each section by
+/// its χ², and the numbers beside them.
 static bool present_meets(const struct inversion *inversion) {
+    if (!inversion_section_agrees(mf_inversion_worst(inversion)))
+        return false;
     for (int kind = 0; kind < TARGETS; kind++)
-        if (targets_ask(&inversion->problem->targets, kind) &&
+        if (targets_ask(&inversion->problem->targets, kind) && !has_sections(inversion, kind) &&
             inversion->distance[kind].rms >
                 mf_inverse_noise_margin * inversion->distance[kind].noise)
-            return false;
-    // Each group, too: of several, a stiff one would hide what a soft one misses.
-    for (int k = 0; k < inversion->sections; k++)
-        if (inversion->section[k].rms > mf_inverse_noise_margin * inversion->section[k].noise)
             return false;
     return true;
 }
@@ -111,20 +103,10 @@ static bool has_settled(const struct inversion *inversion) {
            fabs(band->farthest.way) <= settled_way * band->farthest.open;
 }
 
-/// With groups the rms over all bins is that of the noisiest, behind which others hide: propane's g
-/// agreed within 1.6 times its noise when χ² by bin was still 3.3, and was off by 1.8 times the
-/// noise in the verification; the next steps took χ² to 1.2.
-static bool hides(const struct inversion *inversion) {
-    if (inversion->grid.groups == 0 || inversion->basis.count > 0)
-        return false;
-    return (mf_inversion_ends_with_mean(inversion) ? find_mean_misfit(inversion)
-                                                   : inversion->misfit) > probable_misfit;
-}
-
 /// Count the iterations running that meet the targets, settled or not.
 static void count_met(struct inversion *inversion, bool meets) {
     uint32_t *met = &inversion->progress.met;
-    *met = meets && !hides(inversion) ? *met + 1 : 0;
+    *met = meets ? *met + 1 : 0;
     if (*met == 1)
         memcpy(inversion->met_phi, inversion->phi, inversion->grid.points * sizeof(double));
 }
@@ -138,9 +120,7 @@ bool mf_inversion_has_converged(struct inversion *inversion, bool kept) {
     const bool agrees = meets && (!must_settle(inversion) || has_settled(inversion));
     count_met(inversion, meets);
     *agreed = agrees ? *agreed + 1 : 0;
-    const bool settled = *agreed >= (hides(inversion) ? LONG_AGREEMENT
-                                     : with_groups    ? AGREEMENT_WITH_GROUPS
-                                                      : 1);
+    const bool settled = *agreed >= (with_groups ? AGREEMENT_WITH_GROUPS : 1);
     inversion->walked = !settled && with_groups && inversion->progress.met >= LONG_WALK;
     return settled || inversion->walked;
 }

@@ -21,13 +21,14 @@ const struct field mf_inversion_fields[] = {
      .maximum = REPLICAS_MOST, .unit = "", .help = "independent samplers"},
     {"equilibration", FIELD_INTEGER, MEMBER(equilibration), .initial = 200, .minimum = 0,
      .maximum = 8e8, .unit = "sweeps",
-     .help = "before each iteration's samples; five times as many where replicas begin anew"},
+     .help = "before each iteration's samples, at least; five times as many where replicas begin "
+             "anew, and more until the samples have settled"},
     {"samples", FIELD_INTEGER, MEMBER(samples), .initial = 200, .minimum = 2 * REPLICAS_BLOCKS,
      .maximum = 1e9, .unit = "",
      .help = "of each replica, at least; doubled until the noise is a third of the error, or as "
              "small as \"precision\""},
     {"every", FIELD_INTEGER, MEMBER(every), .initial = 2, .minimum = 1, .maximum = 1e6,
-     .unit = "sweeps", .help = "between samples"},
+     .unit = "sweeps", .help = "between samples, at least"},
     {"iterations", FIELD_INTEGER, MEMBER(iterations), .initial = 30, .minimum = 1, .maximum = 10000,
      .unit = "", .help = "at most"},
     {"precision", FIELD_NUMBER, MEMBER(precision), .initial = 0.004, .minimum = FIELD_ABOVE_ZERO,
@@ -265,6 +266,7 @@ enum status mf_inversion_create(void *memory, const struct inverse_method *metho
                                  .q_maximum = inversion->kirkwood_buff.q_maximum,
                                  .seed = problem->seed}));
     inversion->progress = (struct inversion_progress){.anew = true,
+                                                      .stretch = 1,
                                                       .damping = 1,
                                                       .best[TARGET_RDF].rms = INFINITY,
                                                       .least_decrement = INFINITY,

@@ -6,42 +6,30 @@
 #include <math.h>
 #include <stdio.h>
 
-/// Replicas that disagree more than this are frozen. Measured: 0.8 to 3.3 where an inversion led
-/// on, of liquids up to density 0.95; 3 to 9 with potentials that froze them.
-static const double frozen = 4;
-
 /// The kind of a distribution of groups that is off, or −1.
 static int find_missed(const struct inversion *inversion) {
-    for (int k = 0; k < inversion->sections; k++) {
-        const int kind = inversion->section[k].kind;
-        const struct target_distance *distance = &inversion->progress.best[kind];
-        if (kind != TARGET_RDF && distance->rms > mf_inverse_noise_margin * distance->noise)
-            return kind;
-    }
-    return -1;
+    const struct inversion_section *worst = &inversion->progress.best_worst;
+    return worst->kind == TARGET_RDF || inversion_section_agrees(worst) ? -1 : worst->kind;
 }
 
-/// Of the group that is farthest off: how far, in its noise.
-static double find_worst(const struct inversion *inversion) {
-    double worst = 0;
-    for (int k = 0; k < inversion->sections; k++)
-        worst = fmax(worst, inversion->section[k].rms / inversion->section[k].noise);
-    return worst;
+/// Why no samples could be made use of.
+static void tell_unsettled(const struct inversion_unsettled *unsettled,
+                           char reason[INVERSE_REASON_SIZE]) {
+    char what[INVERSE_REASON_SIZE / 2];
+    mf_stationary_tell(unsettled->quantity, &unsettled->is, what, sizeof what);
+    snprintf(reason, INVERSE_REASON_SIZE,
+             "the samples are not in equilibrium after %llu sweeps of each replica: %.100s. The "
+             "liquid freezes, tears or condenses, or needs a longer \"equilibration\"; long "
+             "molecules may settle sooner with the \"sampler\" \"monte-carlo\"",
+             (unsigned long long)unsettled->sweeps, what);
 }
 
-/// Groups alone, which agree all together, have no ramp and no g.
+/// Groups alone have no ramp and no g.
 static void tell_of_groups(const struct inversion *inversion, char reason[INVERSE_REASON_SIZE]) {
-    const struct inversion_progress *p = &inversion->progress;
-    if (p->best_precise)
-        snprintf(reason, INVERSE_REASON_SIZE,
-                 "the distributions agree on the whole, but one of them is off by %.2g times its "
-                 "noise, and chi^2 by bin is %.2g: more \"iterations\" are needed",
-                 find_worst(inversion), inversion->misfit);
-    else
-        snprintf(reason, INVERSE_REASON_SIZE,
-                 "the distributions agree within a statistical error of %.2g of their peaks, but "
-                 "\"precision\" asks for %.2g: more \"samples\" or \"iterations\" are needed",
-                 p->best_own_noise, inversion->settings.common.precision);
+    snprintf(reason, INVERSE_REASON_SIZE,
+             "the distributions agree within a statistical error of %.2g of their peaks, but "
+             "\"precision\" asks for %.2g: more \"samples\" or \"iterations\" are needed",
+             inversion->progress.best_own_noise, inversion->settings.common.precision);
 }
 
 /// Why a fit whose g agrees has not converged.
@@ -54,9 +42,10 @@ static void tell_what_is_missing(const struct inversion *inversion,
     const int missed = find_missed(inversion);
     if (missed >= 0)
         snprintf(reason, INVERSE_REASON_SIZE,
-                 "the error of %s is %.2g, its statistical error %.2g: more \"iterations\" or "
-                 "\"samples\" may help",
-                 mf_targets_name(missed), p->best[missed].rms, p->best[missed].noise);
+                 "the error of %s is %.2g, its statistical error %.2g, and chi^2 by bin is %.2g "
+                 "where noise makes %.2g at most: more \"iterations\" or \"samples\" may help",
+                 mf_targets_name(missed), p->best[missed].rms, p->best[missed].noise,
+                 p->best_worst.misfit, p->best_worst.probable);
     else if (targets_ask(&inversion->problem->targets, TARGET_PRESSURE) &&
              pressure->rms > mf_inverse_noise_margin * pressure->noise)
         snprintf(reason, INVERSE_REASON_SIZE,
@@ -107,6 +96,10 @@ static void tell_gradient(const struct inversion *inversion, char reason[INVERSE
 /// The first reason that applies.
 void mf_inversion_reason_tell(const struct inversion *inversion, char reason[INVERSE_REASON_SIZE]) {
     const struct inversion_progress *p = &inversion->progress;
+    if (p->unsettled.found && p->unsettled.for_long) {
+        tell_unsettled(&p->unsettled, reason);
+        return;
+    }
     if (inversion->basis.count > 0) {
         tell_gradient(inversion, reason);
         return;
@@ -114,7 +107,8 @@ void mf_inversion_reason_tell(const struct inversion *inversion, char reason[INV
     const struct inversion_parameters *settings = &inversion->settings.common;
     const struct target_distance *rdf = &p->best[TARGET_RDF];
     const bool stuck = p->damping < mf_inversion_least_damping;
-    const bool agrees = rdf->rms <= mf_inverse_noise_margin * rdf->noise;
+    const struct inversion_section *worst = &p->best_worst;
+    const bool agrees = worst->kind != TARGET_RDF || inversion_section_agrees(worst);
     const double improved = rdf->rms / p->first_error;
     if (!agrees && mf_inversion_runs_away(inversion))
         snprintf(
@@ -123,12 +117,6 @@ void mf_inversion_reason_tell(const struct inversion *inversion, char reason[INV
             "iterations, and the error of g stays at %.2g: no potential makes this target; its "
             "\"normalisation\", density or cutoff is wrong",
             mf_inversion_drift_way(&p->drift), rdf->rms);
-    else if (!agrees && p->best_disagreement > frozen)
-        snprintf(reason, INVERSE_REASON_SIZE,
-                 "the error of g is %.2g, and the replicas do not agree on it: their means scatter "
-                 "%.1f times as much as the samples within them explain. They are frozen, or need "
-                 "more \"equilibration\"",
-                 rdf->rms, sqrt(p->best_disagreement));
     else if (improved > 0.9 && p->second_error > p->first_error + 2 * rdf->noise && !agrees)
         snprintf(reason, INVERSE_REASON_SIZE,
                  "the error of g rose from %.2g to %.2g with the first step, and no shorter one "
@@ -150,6 +138,7 @@ void mf_inversion_reason_tell(const struct inversion *inversion, char reason[INV
         snprintf(
             reason, INVERSE_REASON_SIZE,
             "after %lld iterations the error of g is %.2g, from %.2g at first, its statistical "
-            "error %.2g",
-            (long long)settings->iterations, rdf->rms, p->first_error, rdf->noise);
+            "error %.2g, and chi^2 by bin is %.2g where noise makes %.2g at most",
+            (long long)settings->iterations, rdf->rms, p->first_error, rdf->noise, worst->misfit,
+            worst->probable);
 }

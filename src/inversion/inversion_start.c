@@ -136,7 +136,7 @@ bool mf_inversion_start_is_poor(const struct inversion *inversion, bool kept) {
     const uint32_t iteration = inversion->progress.iteration;
     if (!is_from_hnc(inversion) || iteration > 1)
         return false;
-    if (iteration == 1)
+    if (iteration == 1 || inversion->unsettled)
         return !kept;
     return inversion->distance[TARGET_RDF].rms > poor * find_structure(inversion) &&
            inversion->pressure.value < 0;

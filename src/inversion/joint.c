@@ -44,6 +44,7 @@ static void follow(struct joint *joint) {
         memcpy(state->phi, leader->phi, leader->grid.points * sizeof *leader->phi);
         state->progress.iteration = leader->progress.iteration;
         state->progress.anew = leader->progress.anew;
+        state->progress.stretch = leader->progress.stretch;
     }
 }
 

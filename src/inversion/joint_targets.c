@@ -67,6 +67,13 @@ static struct inversion_section join_section(const struct joint *joint, int k) {
             all.precision = own->precision;
         }
     }
+    for (size_t s = 1; s < joint->states; s++) {
+        const struct inversion_section *own = &joint->state[s].section[k];
+        if (own->misfit * all.probable > all.misfit * own->probable) {
+            all.misfit = own->misfit;
+            all.probable = own->probable;
+        }
+    }
     all.rms = joint->state[worst].section[k].rms;
     all.noise = joint->state[worst].section[k].noise;
     return all;
@@ -103,6 +110,12 @@ void mf_joint_targets_join(const struct joint *joint) {
     for (size_t s = 0; s < joint->states; s++) {
         disagreement = fmax(disagreement, joint->state[s].disagreement);
         misfit += joint->state[s].misfit / (double)joint->states;
+        if (joint->state[s].stretch > leader->stretch)
+            leader->stretch = joint->state[s].stretch;
+        if (leader->unsettled || !joint->state[s].unsettled)
+            continue;
+        leader->unsettled = true;
+        leader->progress.unsettled = joint->state[s].progress.unsettled;
     }
     leader->disagreement = disagreement;
     leader->misfit = misfit;

@@ -13,12 +13,12 @@ enum status mf_replicas_init(struct replicas *replicas, size_t count, enum sampl
     enum status status = STATUS_OK;
     const size_t bins = mf_sampler_bins(system), numbers = mf_sampler_numbers(system);
     struct sampler_system own = *system;
-    *replicas = (struct replicas){.bins = bins, .count = count};
+    *replicas = (struct replicas){.bins = bins, .numbers = numbers, .count = count};
     CHECK(mf_comoments_init(&replicas->counts, numbers));
     for (size_t k = 0; k < count; k++) {
         struct replica *replica = &replicas->member[k];
         NEW_ARRAY(replica->sample, numbers);
-        NEW_ARRAY(replica->block, REPLICAS_BLOCKS * bins);
+        NEW_ARRAY(replica->block, REPLICAS_BLOCKS * numbers);
         CHECK(mf_comoments_init(&replica->counts, numbers));
         own.seed = mf_rng_child_seed(system->seed, RNG_EVALUATION, (uint32_t)k, 0);
         CHECK(mf_sampler_init(&replica->sampler, kind, &own));
@@ -40,16 +40,16 @@ void mf_replicas_clear(struct replicas *replicas) {
 }
 
 /// Take the samples of block first … last − 1.
-static enum status fill_blocks(struct replica *replica, size_t bins, size_t first, size_t last,
+static enum status fill_blocks(struct replica *replica, size_t numbers, size_t first, size_t last,
                                const struct replicas_plan *plan) {
     const double each = (double)plan->block_samples;
     for (size_t block = first; block < last; block++) {
-        double *mean = replica->block + block * bins;
-        memset(mean, 0, bins * sizeof *mean);
+        double *mean = replica->block + block * numbers;
+        memset(mean, 0, numbers * sizeof *mean);
         for (int64_t sample = 0; sample < plan->block_samples; sample++) {
             TRY(mf_sampler_sample(&replica->sampler, (uint64_t)plan->every, replica->sample));
             mf_comoments_add(&replica->counts, replica->sample);
-            for (size_t a = 0; a < bins; a++)
+            for (size_t a = 0; a < numbers; a++)
                 mean[a] += replica->sample[a] / each;
         }
     }
@@ -57,27 +57,29 @@ static enum status fill_blocks(struct replica *replica, size_t bins, size_t firs
 }
 
 /// Equilibrate one sampler, then take its samples.
-static enum status run_one(struct replica *replica, size_t bins, const struct replicas_plan *plan) {
+static enum status run_one(struct replica *replica, size_t numbers,
+                           const struct replicas_plan *plan) {
     mf_comoments_reset(&replica->counts);
     if (plan->scatter)
         TRY(mf_sampler_scatter(&replica->sampler));
     TRY(mf_sampler_begin(&replica->sampler));
     TRY(mf_sampler_equilibrate(&replica->sampler, (uint64_t)plan->equilibration));
-    return fill_blocks(replica, bins, 0, REPLICAS_BLOCKS, plan);
+    return fill_blocks(replica, numbers, 0, REPLICAS_BLOCKS, plan);
 }
 
 /// Two blocks become one, half as many; then as many samples again. The sampler begins as after a
 /// restart, since another rank may have taken the samples before.
-static enum status double_one(struct replica *replica, size_t bins,
+static enum status double_one(struct replica *replica, size_t numbers,
                               const struct replicas_plan *plan) {
     enum { HALF = REPLICAS_BLOCKS / 2 };
     double *block = replica->block;
     TRY(mf_sampler_begin(&replica->sampler));
     TRY(mf_sampler_equilibrate(&replica->sampler, 0));
     for (size_t b = 0; b < HALF; b++)
-        for (size_t a = 0; a < bins; a++)
-            block[b * bins + a] = 0.5 * (block[2 * b * bins + a] + block[(2 * b + 1) * bins + a]);
-    return fill_blocks(replica, bins, HALF, REPLICAS_BLOCKS, plan);
+        for (size_t a = 0; a < numbers; a++)
+            block[b * numbers + a] =
+                0.5 * (block[2 * b * numbers + a] + block[(2 * b + 1) * numbers + a]);
+    return fill_blocks(replica, numbers, HALF, REPLICAS_BLOCKS, plan);
 }
 
 /// Replicas at work.
@@ -93,7 +95,7 @@ static enum status run_member(void *context, size_t k, void *result) {
     const struct work *work = context;
     (void)result;
     struct replica *replica = &work->replicas->member[k];
-    TRY(work->one(replica, work->replicas->bins, work->plan));
+    TRY(work->one(replica, work->replicas->numbers, work->plan));
     replica->acceptance = mf_sampler_acceptance(&replica->sampler);
     return STATUS_OK;
 }
@@ -102,7 +104,7 @@ static enum status run_member(void *context, size_t k, void *result) {
 static size_t list_sampled(void *context, size_t k, struct memory_span *span) {
     const struct work *work = context;
     struct replica *replica = &work->replicas->member[k];
-    const size_t block = REPLICAS_BLOCKS * work->replicas->bins * sizeof *replica->block;
+    const size_t block = REPLICAS_BLOCKS * work->replicas->numbers * sizeof *replica->block;
     size_t n = 0;
     span[n++] = (struct memory_span){replica->block, block};
     span[n++] = (struct memory_span){&replica->acceptance, sizeof replica->acceptance};
@@ -152,14 +154,14 @@ enum status mf_replicas_double(struct replicas *replicas, struct replicas_plan *
 
 double mf_replicas_inefficiency(const struct replicas *replicas, const double *ideal,
                                 const size_t *seen, size_t count) {
-    const size_t bins = replicas->bins;
+    const size_t numbers = replicas->numbers;
     double scatter = 0, variance = 0;
     for (size_t n = 0; n < count; n++) {
         const size_t a = seen[n];
         struct running_mean blocks = {0};
         for (size_t k = 0; k < replicas->count; k++)
             for (size_t b = 0; b < REPLICAS_BLOCKS; b++)
-                mf_statistics_add(&blocks, replicas->member[k].block[b * bins + a]);
+                mf_statistics_add(&blocks, replicas->member[k].block[b * numbers + a]);
         // Weighted by 1/S²: bins with many pairs would drown the others.
         const double weight = 1 / (ideal[a] * ideal[a]);
         scatter += weight * blocks.squares / (blocks.count - 1);
@@ -180,7 +182,7 @@ double mf_replicas_disagreement(const struct replicas *replicas, const double *i
         for (size_t k = 0; k < replicas->count; k++) {
             struct running_mean blocks = {0};
             for (size_t b = 0; b < REPLICAS_BLOCKS; b++)
-                mf_statistics_add(&blocks, replicas->member[k].block[b * replicas->bins + a]);
+                mf_statistics_add(&blocks, replicas->member[k].block[b * replicas->numbers + a]);
             mf_statistics_add(&means, blocks.mean);
             within += weight * blocks.squares / (blocks.count - 1) / (double)replicas->count;
         }

@@ -13,12 +13,12 @@ enum { REPLICAS_MOST = 64 };
 enum { REPLICAS_BLOCKS = 4 }; // even, so that they can be joined in pairs
 
 struct replicas {
-    size_t bins, count;
+    size_t bins, numbers, count; ///< numbers of a sample: bins, and what stands behind them
     struct replica {
         struct sampler sampler;
         struct comoments counts; ///< of the samples
         double *sample;          ///< of mf_sampler_sample
-        double *block;           ///< shape [REPLICAS_BLOCKS, bins]: mean S of each block
+        double *block;           ///< shape [REPLICAS_BLOCKS, numbers]: means of each block
         double acceptance;       ///< part of the moves that were taken, since the last begin
     } member[REPLICAS_MOST];
     struct comoments counts; ///< of all, as a sample has them
@@ -49,6 +49,11 @@ enum status mf_replicas_run(struct replicas *replicas, const struct replicas_pla
 enum status mf_replicas_double(struct replicas *replicas, struct replicas_plan *plan, int threads,
                                const struct inverse_progress *progress,
                                const struct inverse_listener *listener) MUST_USE;
+
+/// Sweeps of a plan, of each replica.
+static inline uint64_t replicas_plan_sweeps(const struct replicas_plan *plan) {
+    return (uint64_t)(REPLICAS_BLOCKS * plan->block_samples * plan->every);
+}
 
 struct replicas_mean {
     double mean, error;

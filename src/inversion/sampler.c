@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "inversion/sampler.h"
 
+#include "base/statistics.h"
+
+#include <math.h>
 #include <string.h>
 
 const char *const mf_sampler_kinds[] = {"monte-carlo", "dynamics", "auto", NULL};
@@ -43,6 +46,8 @@ enum status mf_sampler_init(struct sampler *sampler, enum sampler_kind kind,
                                        .bins = system->bins,
                                        .pairs = (size_t)mf_composition_pairs(system->composition)}};
     CHECK(begin_waves(sampler, system));
+    if (system->molecules)
+        CHECK(mf_whole_molecules_init(&sampler->whole, &system->molecules->topology));
     if (sampler->kind == SAMPLER_DYNAMICS) {
         CHECK(mf_hybrid_init(&sampler->hybrid, system->box, system->composition, system->potential,
                              system->molecules, &sampler->histogram, system->temperature,
@@ -65,6 +70,7 @@ void mf_sampler_clear(struct sampler *sampler) {
     mf_metropolis_clear(&sampler->chain);
     mf_hybrid_clear(&sampler->hybrid);
     mf_kirkwood_buff_waves_clear(&sampler->kirkwood_buff);
+    mf_whole_molecules_clear(&sampler->whole);
     mf_memory_free(sampler->histogram.counts);
     *sampler = (struct sampler){0};
 }
@@ -104,6 +110,31 @@ static double *count_groups(const struct sampler *sampler, double *sample) {
     return sample;
 }
 
+/// Add R_g² and R_e² of a molecule that was made whole.
+static void add_size(const struct whole_molecules *whole, int beads, double *sums) {
+    const double(*place)[3] = (const double(*)[3])whole->place;
+    for (int d = 0; d < 3; d++) {
+        struct running_mean mean = {0};
+        for (int bead = 0; bead < beads; bead++)
+            mf_statistics_add(&mean, place[bead][d]);
+        sums[SAMPLER_GYRATION] += mean.squares / mean.count;
+        sums[SAMPLER_ENDS] += pow(place[beads - 1][d] - place[0][d], 2);
+    }
+}
+
+/// Sizes of all molecules.
+static void sum_sizes(struct sampler *sampler, double *sums) {
+    sums[SAMPLER_GYRATION] = sums[SAMPLER_ENDS] = 0;
+    if (sampler->molecules == NULL)
+        return;
+    const struct topology *topology = &sampler->molecules->topology;
+    for (int k = 0; k < topology->kinds; k++)
+        for (int64_t m = 0; m < topology->kind[k].count; m++) {
+            mf_whole_molecules_make(&sampler->whole, particles_of(sampler), k, m);
+            add_size(&sampler->whole, topology->kind[k].beads, sums);
+        }
+}
+
 enum status mf_sampler_sample(struct sampler *sampler, uint64_t sweeps, double *sample) {
     const size_t bins = pair_histogram_size(&sampler->histogram) - 1;
     const uint32_t *counts = sampler->histogram.counts;
@@ -122,6 +153,7 @@ enum status mf_sampler_sample(struct sampler *sampler, uint64_t sweeps, double *
     double *behind = count_groups(sampler, sample + bins);
     behind[SAMPLER_VIRIAL] = sums.virial;
     behind[SAMPLER_ENERGY] = sums.energy;
+    sum_sizes(sampler, behind);
     if (sampler->waves)
         mf_kirkwood_buff_waves_take(&sampler->kirkwood_buff, particles_of(sampler), 1,
                                     behind + SAMPLER_SUMS);

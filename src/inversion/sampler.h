@@ -10,6 +10,7 @@
 #include "dynamics/metropolis.h"
 #include "observe/bonded_distribution.h"
 #include "observe/kirkwood_buff_waves.h"
+#include "system/whole_molecules.h"
 
 enum sampler_kind {
     SAMPLER_MONTE_CARLO,
@@ -37,6 +38,7 @@ struct sampler {
     struct pair_histogram histogram; ///< of the chain's configuration
     bool waves;                      ///< the integrals are asked for
     struct kirkwood_buff_waves kirkwood_buff;
+    struct whole_molecules whole; ///< of molecules, for their sizes
 };
 
 /// What is to be sampled. Borrowed: the potential, which may be exchanged before mf_sampler_begin,
@@ -83,8 +85,10 @@ enum status mf_sampler_equilibrate(struct sampler *sampler, uint64_t sweeps) MUS
 
 /// What stands behind the bins of a sample.
 enum sampler_sum {
-    SAMPLER_VIRIAL, ///< Σ r·F [k_B T_0]
-    SAMPLER_ENERGY, ///< Σ Φ, and U of molecules [k_B T_0]
+    SAMPLER_VIRIAL,   ///< Σ r·F [k_B T_0]
+    SAMPLER_ENERGY,   ///< Σ Φ, and U of molecules [k_B T_0]
+    SAMPLER_GYRATION, ///< Σ R_g² of the molecules, each bead with the same weight [λ²]
+    SAMPLER_ENDS,     ///< Σ R_e² of the molecules, from the first bead to the last [λ²]
     SAMPLER_SUMS,
 };
 

@@ -220,11 +220,9 @@ static enum status summarise(struct measurement *replicas, size_t count,
     const struct targets *targets = replicas->targets;
     struct thermodynamics *thermodynamics = NULL;
     NEW_ARRAY(thermodynamics, count);
-    for (size_t k = 0; k < count; k++) {
+    for (size_t k = 0; k < count; k++)
         thermodynamics[k] = *(const struct thermodynamics *)mf_measurement_state(
             &replicas[k], &mf_thermodynamics_observable);
-        verification->engine_steps += replicas[k].simulation.step;
-    }
     verification->thermodynamics = mf_thermodynamics_result(thermodynamics, count);
     verification->shift = mf_thermodynamics_shift(
         thermodynamics, count, &verification->thermodynamics, &replicas->simulation.setup);
@@ -272,6 +270,31 @@ done:
     return status;
 }
 
+static void clear_replicas(struct measurement *replicas, size_t count) {
+    for (size_t k = 0; replicas && k < count; k++) {
+        mf_measurement_clear(&replicas[k]);
+        replicas[k] = (struct measurement){0};
+    }
+}
+
+/// Run them until they have settled, or twice again.
+static enum status run_until_settled(struct work *work, struct verification *verification) {
+    enum { MOST_ATTEMPTS = 3 };
+    struct measure_plan *plan = &work->parameters.plan;
+    const size_t count = (size_t)work->parameters.replicas;
+    for (int attempt = 1;; attempt++) {
+        TRY(run_replicas(work));
+        TRY(mf_verify_settled(work->replicas, count, verification->unsettled));
+        for (size_t k = 0; k < count; k++)
+            verification->engine_steps += work->replicas[k].simulation.step;
+        if (verification->unsettled[0] == '\0' || attempt == MOST_ATTEMPTS)
+            return STATUS_OK;
+        plan->equilibration = (int64_t)mf_measure_steps(plan);
+        plan->every *= 2;
+        clear_replicas(work->replicas, count);
+    }
+}
+
 /// With one time step.
 /// @param[out] off  how far the temperatures are
 static enum status verify_once(struct work *work, struct verification *verification,
@@ -283,14 +306,13 @@ static enum status verify_once(struct work *work, struct verification *verificat
     *off = (struct thermodynamics_off){.known = false};
     NEW_ARRAY(replicas, count);
     work->replicas = replicas;
-    CHECK(run_replicas(work));
+    CHECK(run_until_settled(work, verification));
     CHECK(summarise(replicas, count, verification));
     *off = mf_thermodynamics_off(&verification->thermodynamics, &replicas->simulation.setup);
     find_worst(work->problem, verification);
     CHECK(keep_configuration(&replicas->simulation.particles, verification));
 done:
-    for (size_t k = 0; replicas && k < count; k++)
-        mf_measurement_clear(&replicas[k]);
+    clear_replicas(replicas, count);
     mf_memory_free(replicas);
     return status;
 }

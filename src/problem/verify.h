@@ -3,7 +3,7 @@
 #pragma once
 
 #include "observe/thermodynamics.h"
-#include "problem/measurement.h"
+#include "problem/verify_settled.h"
 #include "problem/verify_step.h"
 
 struct verify_parameters {
@@ -27,7 +27,8 @@ struct verification {
     double diffusion_begin, diffusion_end; ///< times between which D is the MSD's slope [τ]; or 0
     char warning[512]; ///< why its temperatures are not to be trusted; "" if they are
     struct verify_step step;
-    uint64_t engine_steps;
+    char unsettled[VERIFY_UNSETTLED_SIZE]; ///< what is not in equilibrium; "" if all is
+    uint64_t engine_steps;                 ///< of those that had not settled, too
     size_t particles;
     size_t sampled; ///< particles of the samples that the fit ended with; 0: it has none of its own
     /// Where the first replica ended: positions, then velocities, by id, shape [6, particles];
@@ -37,7 +38,8 @@ struct verification {
 
 /// Simulate the problem's scene with new seeds; replicas in parallel. With a step that may be
 /// shortened it is done again until that suits the potential (problem/verify_step.h), for as long a
-/// time each.
+/// time each. What has not settled is simulated again, after an equilibration as long as all that
+/// and with twice as many steps between samples, up to two times.
 /// Fails: as mf_simulation_run.
 enum status mf_verify(const struct inverse_problem *problem, const struct table *potential,
                       const struct table *omega, const struct verify_parameters *parameters,

@@ -30,6 +30,8 @@ static void find_cause(const struct verification *verification, double temperatu
     else if (found->pressure < 0)
         known = "a liquid under tension tears: g(r) leaves the pressure open, so give it as a "
                 "second target";
+    else if (verification->unsettled[0])
+        known = "it had not settled: set a longer \"verification.equilibration\"";
     if (known)
         snprintf(cause, FIT_STEP_TEXT_SIZE, "%s", known);
     else if (verification->sampled > 0 && verification->sampled != verification->particles)
@@ -150,6 +152,13 @@ void mf_fit_verdict_mark(const struct units *units, struct verification *verific
     mf_fit_step_cause(verification, units, cause);
     if (verification->warning[0] && cause[0]) {
         snprintf(verification->warning, sizeof verification->warning, "%s", cause);
+        return;
+    }
+    if (verification->warning[0] == '\0' && verification->unsettled[0]) {
+        snprintf(verification->warning, sizeof verification->warning,
+                 "the verification has not settled: %s; a longer \"verification.equilibration\" or "
+                 "\"every\" may help",
+                 verification->unsettled);
         return;
     }
     if (verification->warning[0] == '\0' || !mf_units_speaks(units))

@@ -11,8 +11,7 @@ static struct inversion make_end(const struct inverse_problem *problem, size_t g
         .problem = problem,
         .grid = {.pairs = 1, .groups = groups},
         .sections = 1,
-        .section[0] = {.rms = 1.5, .noise = 1},
-        .misfit = 1.5,
+        .section[0] = {.misfit = 1.5, .probable = 2},
         .settling = true,
         .band = {.ramp = {.way = -0.04, .error = 0.1}, .farthest = {.way = 0.4, .open = 1}},
         .progress.best_precise = true};
@@ -22,9 +21,9 @@ static void test_fit_of_pairs_ends_when_it_agrees_once(void **state) {
     (void)state;
     const struct inverse_problem problem = {0};
     struct inversion inversion = make_end(&problem, 0);
-    inversion.section[0].rms = 1.8;
+    inversion.section[0].misfit = 2.1;
     assert_false(mf_inversion_has_converged(&inversion, true));
-    inversion.section[0].rms = 1.5;
+    inversion.section[0].misfit = 1.5;
     assert_false(mf_inversion_has_converged(&inversion, false));
     inversion.band.ramp.way = -0.06;
     assert_false(mf_inversion_has_converged(&inversion, true));
@@ -63,14 +62,15 @@ static void test_fit_with_groups_ends_at_once_where_nothing_must_settle(void **s
     assert_true(mf_inversion_has_converged(&inversion, true));
 }
 
-/// χ² by bin above 2: some bins are off, and the noise of the others hides them.
-static void test_fit_with_groups_ends_after_four_agreements_where_noise_hides_bins(void **state) {
+/// Each section must agree: a stiff bond with many counts hides nothing of a soft one.
+static void test_fit_ends_when_all_sections_agree(void **state) {
     (void)state;
     const struct inverse_problem problem = {0};
-    struct inversion inversion = make_end(&problem, 1);
-    inversion.misfit = 2.1;
-    for (int n = 0; n < 3; n++)
-        assert_false(mf_inversion_has_converged(&inversion, true));
+    struct inversion inversion = make_end(&problem, 0);
+    inversion.sections = 2;
+    inversion.section[1] = (struct inversion_section){.misfit = 2.5, .probable = 2.4};
+    assert_false(mf_inversion_has_converged(&inversion, true));
+    inversion.section[1].misfit = 2.3;
     assert_true(mf_inversion_has_converged(&inversion, true));
 }
 
@@ -86,9 +86,9 @@ static void test_fit_with_groups_ends_though_it_walks_on(void **state) {
     inversion.band.ramp.way = -0.06;
     for (int n = 0; n < 4; n++, phi[0] += 1)
         assert_false(mf_inversion_has_converged(&inversion, true));
-    inversion.section[0].rms = 1.8;
+    inversion.section[0].misfit = 2.1;
     assert_false(mf_inversion_has_converged(&inversion, true));
-    inversion.section[0].rms = 1.5;
+    inversion.section[0].misfit = 1.5;
     for (int n = 0; n < 5; n++, phi[0] += 1)
         assert_false(mf_inversion_has_converged(&inversion, true));
     assert_true(mf_inversion_has_converged(&inversion, true));
@@ -110,16 +110,15 @@ static void test_fit_that_forgets_ends_when_its_mean_or_its_last_potential_agree
     const struct inverse_problem problem = {0};
     size_t known_bin[] = {0};
     bool seen[] = {true};
-    double unit[] = {2}, mean[] = {15}, target[] = {10}, pooled[] = {3.2}, variance[] = {4};
+    double mean[] = {15}, target[] = {10}, pooled[] = {2.8}, variance[] = {4};
     struct inversion inversion = make_end(&problem, 0);
     inversion.method = &method;
     inversion.settling = false;
     inversion.section[0] =
-        (struct inversion_section){.rms = 2.5, .noise = 1, .known_count = 1, .bins = 1};
+        (struct inversion_section){.misfit = 2.5, .probable = 2, .known_count = 1, .bins = 1};
     inversion.grid.known = 1;
     inversion.grid.known_bin = known_bin;
     inversion.grid.seen = seen;
-    inversion.unit = unit;
     inversion.target_counts = target;
     inversion.replicas.counts = (struct comoments){.count = 30, .mean = mean};
     inversion.pooled = pooled;
@@ -128,18 +127,11 @@ static void test_fit_that_forgets_ends_when_its_mean_or_its_last_potential_agree
     assert_false(mf_inversion_has_converged(&inversion, true)); // of two: the present one
     inversion.progress.pool = 90;
     assert_true(mf_inversion_has_converged(&inversion, true));
-    pooled[0] = 3.6; // 1.8 times its noise
+    pooled[0] = 2.9; // χ² of 2.1
     assert_false(mf_inversion_has_converged(&inversion, true));
     // The mean follows a slow fit at a distance: ibi of soft beads met its target for eight
     // iterations, and its mean, which has less noise, did not.
-    inversion.section[0].rms = 1.5;
-    assert_true(mf_inversion_has_converged(&inversion, true));
-    inversion.section[0].rms = 2.5;
-    // With a group χ² by bin must be probable, too, and is 2.56 here.
-    inversion.grid.groups = 1;
-    pooled[0] = 3.2;
-    assert_false(mf_inversion_has_converged(&inversion, true));
-    pooled[0] = 2.8; // 1.96
+    inversion.section[0].misfit = 1.5;
     assert_true(mf_inversion_has_converged(&inversion, true));
 }
 
@@ -148,7 +140,7 @@ int main(void) {
         cmocka_unit_test(test_fit_of_pairs_ends_when_it_agrees_once),
         cmocka_unit_test(test_fit_with_groups_ends_when_it_has_settled_twice_running),
         cmocka_unit_test(test_fit_with_groups_ends_at_once_where_nothing_must_settle),
-        cmocka_unit_test(test_fit_with_groups_ends_after_four_agreements_where_noise_hides_bins),
+        cmocka_unit_test(test_fit_ends_when_all_sections_agree),
         cmocka_unit_test(test_fit_with_groups_ends_though_it_walks_on),
         cmocka_unit_test(test_fit_that_forgets_ends_when_its_mean_or_its_last_potential_agrees),
     };

@@ -91,7 +91,7 @@ static void make_one_bin(struct one_bin *one, double response) {
                                                  .known_bin = &one->bin,
                                                  .known_point = &one->point},
                                         .sections = 1,
-                                        .section[0] = {.rms = 1, .noise = 1},
+                                        .section[0] = {.misfit = 1, .probable = 2},
                                         .target_error = &one->target_error,
                                         .covariance = &one->covariance,
                                         .excess = &one->excess,
@@ -151,7 +151,7 @@ static void test_inversion_pool_steps_with_a_fifth_of_the_noise(void **state) {
     assert_close(one.variance, 0.2, 1e-6);
     assert_close(worth, 5, 1e-6);
     // What is far off begins anew.
-    inversion->section[0].rms = 3.1;
+    inversion->section[0].misfit = 9.1;
     mf_inversion_pool(inversion);
     assert_true(inversion->progress.pool == 0);
     gsl_rng_free(rng);
@@ -162,7 +162,7 @@ static void test_inversion_pool_of_coefficients_goes_by_their_gradient(void **st
     (void)state;
     struct one_bin one;
     make_one_bin(&one, 4);
-    one.inversion.section[0].rms = 30;
+    one.inversion.section[0].misfit = 900;
     mf_inversion_pool(&one.inversion);
     assert_true(one.inversion.progress.pool == 0);
     one.inversion.basis.count = 1;

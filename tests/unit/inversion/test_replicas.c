@@ -15,7 +15,7 @@ static void ignore(void *context, const struct inverse_progress *progress) {
 
 /// Blocks of normal numbers with a shift of each replica's own.
 static void make(struct replicas *replicas, double *block, double shift) {
-    *replicas = (struct replicas){.bins = BINS, .count = COUNT};
+    *replicas = (struct replicas){.bins = BINS, .numbers = BINS, .count = COUNT};
     for (size_t k = 0; k < COUNT; k++) {
         replicas->member[k].block = block + k * REPLICAS_BLOCKS * BINS;
         for (size_t n = 0; n < REPLICAS_BLOCKS * BINS; n++) {

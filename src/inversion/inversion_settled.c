@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "inversion/inversion_settled.h"
+
+#include "inversion/inversion.h"
+
+#include <math.h>
+#include <stdio.h>
+
+/// Chance with which one of all tests of one look complains of samples in equilibrium.
+static const double false_alarm = 1e-3;
+
+/// Room for what is told apart: sections, and what stands behind the bins.
+enum { TESTS = 2, MOST_QUANTITIES = INVERSION_MOST_SECTIONS + SAMPLER_SUMS };
+
+static const char *const sums[SAMPLER_SUMS] = {[SAMPLER_VIRIAL] = "the pressure",
+                                               [SAMPLER_ENERGY] = "the energy",
+                                               [SAMPLER_GYRATION] = "R_g^2 of the molecules",
+                                               [SAMPLER_ENDS] = "R_e^2 of the molecules"};
+
+/// Numbers of a sample that are judged together.
+struct quantity {
+    size_t count, first;  ///< in a row of numbers, if there is no list of them
+    const size_t *number; ///< or NULL
+    const char *name;
+};
+
+static size_t list(const struct inversion *inversion, struct quantity quantity[MOST_QUANTITIES]) {
+    size_t n = 0;
+    for (size_t k = 0; k < SAMPLER_SUMS; k++)
+        if (mf_comoments_covariance(&inversion->replicas.counts, inversion->bins + k,
+                                    inversion->bins + k) > 0)
+            quantity[n++] = (struct quantity){1, inversion->bins + k, NULL, sums[k]};
+    for (int k = 0; k < inversion->sections; k++) {
+        const struct inversion_section *section = &inversion->section[k];
+        quantity[n++] = (struct quantity){
+            section->known_count, 0, inversion->grid.known_bin + section->known,
+            section->kind == TARGET_RDF ? "g(r)" : mf_targets_name(section->kind)};
+    }
+    return n;
+}
+
+static enum status test(const struct inversion *inversion, const struct quantity *quantity,
+                        struct stationary *result) {
+    enum status status = STATUS_OK;
+    const struct replicas *replicas = &inversion->replicas;
+    const double *chain[REPLICAS_MOST];
+    double *weight = NULL;
+    NEW_ARRAY(weight, quantity->count);
+    for (size_t k = 0; k < replicas->count; k++)
+        chain[k] = replicas->member[k].block;
+    for (size_t n = 0; n < quantity->count; n++) {
+        const size_t number = quantity->number ? quantity->number[n] : quantity->first;
+        const double variance = mf_comoments_covariance(&replicas->counts, number, number);
+        weight[n] = variance > 0 ? 1 / variance : 0;
+    }
+    CHECK(mf_stationary_test(&(struct stationary_numbers){.chains = replicas->count,
+                                                          .chain = chain,
+                                                          .row = replicas->numbers,
+                                                          .count = quantity->count,
+                                                          .number = quantity->number
+                                                                        ? quantity->number
+                                                                        : &quantity->first,
+                                                          .weight = weight},
+                             result));
+done:
+    mf_memory_free(weight);
+    return status;
+}
+
+enum status mf_inversion_settled_judge(const struct inversion *inversion,
+                                       struct inversion_unsettled *unsettled) {
+    struct quantity quantity[MOST_QUANTITIES];
+    const size_t count = list(inversion, quantity);
+    double least = false_alarm / (double)(TESTS * count);
+    const double limit = least;
+    unsettled->found = unsettled->drifts = false;
+    for (size_t k = 0; k < count; k++) {
+        struct stationary is;
+        TRY(test(inversion, &quantity[k], &is));
+        const double chance = stationary_chance(&is);
+        unsettled->drifts = unsettled->drifts || is.drift < limit;
+        if (!(chance < least))
+            continue;
+        least = chance;
+        unsettled->found = true;
+        unsettled->is = is;
+        snprintf(unsettled->quantity, sizeof unsettled->quantity, "%s", quantity[k].name);
+    }
+    return STATUS_OK;
+}

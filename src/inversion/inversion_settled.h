@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file Whether the samples of an inversion are those of equilibrium.
+///
+/// The energy, the virial, the counts of each section, R_g² and R_e² of molecules are looked at in
+/// the quarters of all replicas' samples (observe/stationary.h). Where one of them drifts or
+/// remembers where it began, the samples are equilibration, and as many are taken again; where they
+/// remember, or drift still, with twice as many sweeps between them. What the samples of one
+/// potential have cost so is where those of the next begin, which may need half of it.
+#pragma once
+
+#include "observe/stationary.h"
+
+#include <stdint.h>
+
+struct inversion;
+
+enum { INVERSION_QUANTITY_SIZE = 32 };
+
+/// What had not settled, with the least chance to be so in equilibrium.
+struct inversion_unsettled {
+    bool found;
+    bool drifts;                            ///< something does, and not only remembers
+    char quantity[INVERSION_QUANTITY_SIZE]; ///< in words
+    struct stationary is;
+    uint64_t sweeps; ///< of each replica since the potential was changed
+    bool for_long;   ///< they are as many as one potential may cost
+};
+
+/// Judge the present samples. Of samples in equilibrium a thousandth is found not to be. Fails:
+/// NO_MEMORY. Tested: test_inversion_settled.
+enum status mf_inversion_settled_judge(const struct inversion *inversion,
+                                       struct inversion_unsettled *unsettled) MUST_USE;

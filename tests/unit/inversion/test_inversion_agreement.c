@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// When g(r) agrees with its target but for noise: of counts that are made up.
+#include "inversion/inversion.h"
+#include "shared/testing.h"
+
+#include <gsl/gsl_randist.h>
+#include <math.h>
+
+enum { BINS = 40, SAMPLES = 400 };
+
+/// Pairs per sample in each bin, and what is made of them: a target of `frames` frames with errors
+/// by its own counts, and the samples of a potential.
+struct made {
+    struct inverse_problem problem;
+    struct inversion inversion;
+    size_t known_bin[BINS];
+    bool seen[BINS];
+    double expected[BINS], sampled[BINS]; ///< by the truth, and by the potential
+    double mean[BINS], comoment[BINS * BINS], unit[BINS], target[BINS], error[BINS];
+    double excess[BINS], variance[BINS];
+};
+
+/// Bins from r = 0 on, so that the first ones have few pairs; those of a wrong potential are off by
+/// a part of them.
+static void make(struct made *made, gsl_rng *rng, double frames, double wrong) {
+    *made = (struct made){0};
+    struct inversion *inversion = &made->inversion;
+    *inversion = (struct inversion){
+        .problem = &made->problem,
+        .bins = BINS,
+        .grid = {.known = BINS,
+                 .pairs_known = BINS,
+                 .known_bin = made->known_bin,
+                 .seen = made->seen},
+        .sections = 1,
+        .section[0] = {.kind = TARGET_RDF, .bins = BINS, .known_count = BINS, .peak = 1},
+        .ideal = made->unit,
+        .unit = made->unit,
+        .target_counts = made->target,
+        .target_error = made->error,
+        .excess = made->excess,
+        .variance = made->variance};
+    for (size_t k = 0; k < BINS; k++) {
+        made->known_bin[k] = k;
+        made->seen[k] = true;
+        made->unit[k] = 0.08 * (double)(1 + 3 * k * k);
+        made->expected[k] = 0.3 * made->unit[k];
+        made->sampled[k] = made->expected[k] * (1 + wrong * sin(0.3 * (double)k));
+        const double counts = gsl_ran_poisson(rng, frames * made->expected[k]);
+        made->target[k] = counts / frames;
+        made->error[k] = sqrt(fmax(counts, 1)) / frames;
+        made->mean[k] = gsl_ran_poisson(rng, SAMPLES * made->sampled[k]) / (double)SAMPLES;
+        made->comoment[k * (BINS + 1)] = SAMPLES * made->sampled[k];
+    }
+    inversion->replicas = (struct replicas){
+        .bins = BINS,
+        .numbers = BINS,
+        .counts = {.size = BINS, .count = SAMPLES, .mean = made->mean, .comoment = made->comoment}};
+    mf_inversion_assess(inversion);
+}
+
+/// Of the first bin 2.4 counts are expected, of all others 10 to 10,000: the share of targets that
+/// the truth agrees with.
+static double count_agreements(int trials, double wrong) {
+    gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
+    static struct made made;
+    double agree = 0;
+    for (int k = 0; k < trials; k++) {
+        make(&made, rng, 100, wrong);
+        agree += inversion_section_agrees(mf_inversion_worst(&made.inversion)) / (double)trials;
+    }
+    gsl_rng_free(rng);
+    return agree;
+}
+
+static void test_truth_agrees_with_its_target_whatever_the_counts_of_one_bin(void **state) {
+    (void)state;
+    const double agree = count_agreements(2000, 0);
+    print_message("the truth: %.4f\n", agree);
+    assert_true(agree > 0.995);
+}
+
+/// A wave of 5 % is 5 standard errors of the largest bins, and hardly any of the first ones, which
+/// make most of the rms.
+static void
+test_wrong_potential_does_not_agree_though_the_noise_of_rare_pairs_is_larger(void **state) {
+    (void)state;
+    static struct made made;
+    gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
+    make(&made, rng, 100, 0.05);
+    const struct inversion_section *section = &made.inversion.section[0];
+    print_message("rms %.3f of a noise of %.3f, chi^2 by bin %.2f of %.2f\n", section->rms,
+                  section->noise, section->misfit, section->probable);
+    assert_true(section->rms < 1.7 * section->noise);
+    assert_true(section->misfit > section->probable);
+    gsl_rng_free(rng);
+    const double agree = count_agreements(500, 0.05);
+    print_message("5 %% off: %.4f\n", agree);
+    assert_true(agree < 0.01);
+}
+
+/// Poisson counts: an error of 2 counts where 5 are expected is that of 5.
+static void test_noise_of_a_bin_is_that_of_the_counts_that_are_expected(void **state) {
+    (void)state;
+    static struct made made;
+    gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
+    make(&made, rng, 100, 0);
+    made.target[0] = 0.02;
+    made.error[0] = sqrt(2) / 100;
+    made.mean[0] = 0.05;
+    mf_inversion_assess(&made.inversion);
+    const double sampled = made.comoment[0] / SAMPLES / (SAMPLES / made.inversion.inefficiency);
+    assert_true(fabs(made.variance[0] - sampled - 5e-4) < 1e-9);
+    gsl_rng_free(rng);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_truth_agrees_with_its_target_whatever_the_counts_of_one_bin),
+        cmocka_unit_test(
+            test_wrong_potential_does_not_agree_though_the_noise_of_rare_pairs_is_larger),
+        cmocka_unit_test(test_noise_of_a_bin_is_that_of_the_counts_that_are_expected),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What has not settled of samples that are made up.
+#include "inversion/inversion.h"
+#include "shared/fluids.h"
+#include "shared/testing.h"
+
+#include <gsl/gsl_randist.h>
+#include <math.h>
+#include <stdlib.h>
+
+enum { REPLICAS = 8, BINS = 12, NUMBERS = BINS + SAMPLER_SUMS };
+
+struct made {
+    struct inversion inversion;
+    struct inversion_unsettled found;
+    size_t known_bin[BINS];
+    double block[REPLICAS][REPLICAS_BLOCKS * NUMBERS];
+    double mean[NUMBERS], comoment[NUMBERS * NUMBERS];
+};
+
+/// Blocks of unit variance; one number changes along them, by so much in all.
+static void make(struct made *made, gsl_rng *rng, size_t number, double change) {
+    *made = (struct made){
+        .inversion = {
+            .bins = BINS, .grid.known = BINS, .sections = 1, .section[0] = {.known_count = BINS}}};
+    struct replicas *replicas = &made->inversion.replicas;
+    *replicas = (struct replicas){
+        .bins = BINS,
+        .numbers = NUMBERS,
+        .count = REPLICAS,
+        .counts = {.size = NUMBERS, .count = 10, .mean = made->mean, .comoment = made->comoment}};
+    made->inversion.grid.known_bin = made->known_bin;
+    for (size_t n = 0; n < NUMBERS; n++)
+        made->comoment[n * NUMBERS + n] = 10;
+    for (size_t n = 0; n < BINS; n++)
+        made->known_bin[n] = n;
+    for (size_t k = 0; k < REPLICAS; k++) {
+        replicas->member[k].block = made->block[k];
+        for (size_t n = 0; n < REPLICAS_BLOCKS * NUMBERS; n++)
+            made->block[k][n] =
+                gsl_ran_gaussian(rng, 1) +
+                (n % NUMBERS == number ? change * (double)(n / NUMBERS) / REPLICAS_BLOCKS : 0);
+    }
+}
+
+static void test_settled_samples_are_hardly_ever_found_not_to_be(void **state) {
+    (void)state;
+    enum { TRIALS = 2000 };
+    static struct made made;
+    gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
+    int found = 0;
+    for (int k = 0; k < TRIALS; k++) {
+        make(&made, rng, 0, 0);
+        assert_ok(mf_inversion_settled_judge(&made.inversion, &made.found));
+        found += made.found.found;
+    }
+    print_message("%d of %d\n", found, TRIALS);
+    assert_in_range(found, 0, 8); // of 2 expected; more than 8 in 4000 seeds
+    gsl_rng_free(rng);
+}
+
+static void test_what_has_not_settled_is_named(void **state) {
+    (void)state;
+    static struct made made;
+    static const struct {
+        size_t number;
+        const char *name;
+    } kind[] = {{BINS + SAMPLER_VIRIAL, "the pressure"},
+                {BINS + SAMPLER_ENERGY, "the energy"},
+                {BINS + SAMPLER_GYRATION, "R_g^2 of the molecules"},
+                {BINS + SAMPLER_ENDS, "R_e^2 of the molecules"},
+                {3, "g(r)"}};
+    gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
+    for (size_t k = 0; k < sizeof kind / sizeof *kind; k++) {
+        make(&made, rng, kind[k].number, 12);
+        assert_ok(mf_inversion_settled_judge(&made.inversion, &made.found));
+        assert_true(made.found.found && made.found.drifts);
+        assert_string_equal(made.found.quantity, kind[k].name);
+    }
+    make(&made, rng, 0, 0);
+    for (size_t b = 0; b < REPLICAS_BLOCKS; b++)
+        made.block[5][b * NUMBERS + BINS + SAMPLER_ENERGY] += 12;
+    assert_ok(mf_inversion_settled_judge(&made.inversion, &made.found));
+    assert_true(made.found.found && !made.found.drifts);
+    assert_string_equal(made.found.quantity, "the energy");
+    gsl_rng_free(rng);
+}
+
+// Samples of an iteration -------------------------------------------------------------------------
+
+enum { POINTS = 12, SOFT_REPLICAS = 8, FIRST = 8, MOST = 200 * FIRST };
+
+static void ignore(void *context, const struct inverse_progress *progress) {
+    (void)context, (void)progress;
+}
+
+/// Soft beads from disorder: sweeps of a replica until the samples had settled. Returns the energy
+/// of a bead.
+static double observe(double repulsion, int64_t equilibration, double *sweeps) {
+    double g[POINTS], error[POINTS];
+    struct fluid fluid;
+    struct inversion *inversion = calloc(1, sizeof *inversion);
+    assert_non_null(inversion);
+    fluid_ideal_gas(&fluid, 3, 150, 0.01);
+    for (int k = 0; k < POINTS; k++) {
+        const double r = 0.1 * (k + 0.5);
+        g[k] = exp(-repulsion * exp(-r * r / 0.25));
+        error[k] = 0.1; // nothing is to be doubled
+    }
+    const struct inverse_problem problem = {
+        .targets = {.bins = {0, 0.1, POINTS},
+                    .target[TARGET_RDF] = {.count = POINTS, .value = g, .error = error}},
+        .unknown[UNKNOWN_POTENTIAL] = {.wanted = true},
+        .scene = fluid.setup,
+        .core_threshold = 1e-3,
+        .core_stiffness = 2000,
+        .seed = 5,
+        .threads = 1};
+    const struct inversion_settings settings = {.common = {.replicas = SOFT_REPLICAS,
+                                                           .equilibration = equilibration,
+                                                           .samples = FIRST,
+                                                           .every = 1,
+                                                           .iterations = 2,
+                                                           .precision = 1,
+                                                           .start = INVERSION_FROM_MEAN_FORCE}};
+    assert_ok(mf_inversion_create(inversion, &mf_imc, &problem, &settings));
+    assert_ok(mf_inversion_observe(inversion, &(struct inverse_listener){ignore, NULL}));
+    assert_false(inversion->unsettled);
+    *sweeps = (double)inversion->progress.sweeps / SOFT_REPLICAS;
+    const double energy = mf_replicas_mean(&inversion->replicas, SAMPLER_ENERGY, 1).mean / 150;
+    mf_inversion_destroy(inversion);
+    free(inversion);
+    fluid_clear(&fluid);
+    return energy;
+}
+
+static void test_samples_are_equilibration_until_they_have_settled(void **state) {
+    (void)state;
+    double soon, late;
+    const double at_once = observe(6, 0, &soon), equilibrated = observe(6, 100, &late);
+    print_message("%g sweeps, energy %.3f; after 500 more: %g, %.3f\n", soon, at_once, late - 500,
+                  equilibrated);
+    assert_true(soon >= 5 * FIRST && soon < MOST);
+    assert_true(late - 500 < soon);
+    assert_true(fabs(at_once / equilibrated - 1) < 0.03);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_settled_samples_are_hardly_ever_found_not_to_be),
+        cmocka_unit_test(test_what_has_not_settled_is_named),
+        cmocka_unit_test(test_samples_are_equilibration_until_they_have_settled),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
