@@ -79,8 +79,9 @@ fit() {
     fi
     echo "$1" >&2
     code=0
+    used=$(awk '{ used += $2 + $3 } END { printf "%d", used }' "$folder/seconds" 2>/dev/null) || used=0
     (
-        ulimit -c 0 && ulimit -S -t "$limit"
+        ulimit -c 0 && ulimit -S -t $((limit > used ? limit - used : 1))
         exec /usr/bin/time -a -o "$folder/seconds" -f '%e %U %S' "$program" fit "$file" -o "$folder/fit" \
             --threads "$threads" --quiet ${seed:+--seed "$seed"} $resume >>"$folder/messages" 2>&1
     ) || code=$?
