@@ -100,7 +100,10 @@ row() {
     fi
     truths=
     file=$(run_file "$1")
-    if [ -e "$result/summary.json" ] && [ -n "$(find "$(dirname "$file")" -name 'truth*')" ]; then
+    # What an unfinished fit left is no result.
+    summary=$result/summary.json
+    [ "$(cat "$folder/code")" -le 1 ] || summary=/dev/null
+    if [ -s "$summary" ] && [ -n "$(find "$(dirname "$file")" -name 'truth*')" ]; then
         # shellcheck disable=SC2046
         truths=$(awk -v member="$1" -f "$here/truth.awk" $(find "$result" -maxdepth 1 -name '*.tsv' |
             grep -E '/(potential|bonds|angles|dihedrals)[^/]*\.tsv$' | grep -vE '_(flat|history)\.tsv$' | sort))
@@ -113,8 +116,7 @@ row() {
         echo "$truths"
         [ ! -e "$result/history.tsv" ] || grep -vc '^#' "$result/history.tsv" | sed 's/^/passed /'
         # The keys of the first level alone.
-        [ ! -e "$result/summary.json" ] || sed -n 's/^\t"\([a-z_]*\)":\t"*\([^"]*[^",]\)"*,*$/\1 \2/p' \
-            "$result/summary.json"
+        sed -n 's/^\t"\([a-z_]*\)":\t"*\([^"]*[^",]\)"*,*$/\1 \2/p' "$summary"
     } | awk -v name="$1" -f "$here/row.awk"
 }
 
