@@ -114,8 +114,9 @@ void mf_inversion_reason_tell(const struct inversion *inversion, char reason[INV
         snprintf(
             reason, INVERSE_REASON_SIZE,
             "the ramp A (1 - r/cutoff) of the potential goes on and on, by %.2g k_B T_0 in four "
-            "iterations, and the error of g stays at %.2g: no potential makes this target; its "
-            "\"normalisation\", density or cutoff is wrong",
+            "iterations, and the error of g stays at %.2g: g is off as a whole, if only by "
+            "tenths of a percent; look at its \"normalisation\", density and cutoff, or give "
+            "\"pressure\" as a second target, which fixes the ramp",
             mf_inversion_drift_way(&p->drift), rdf->rms);
     else if (improved > 0.9 && p->second_error > p->first_error + 2 * rdf->noise && !agrees)
         snprintf(reason, INVERSE_REASON_SIZE,
