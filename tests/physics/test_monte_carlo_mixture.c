@@ -42,7 +42,7 @@ static void measure_sampler(const struct fluid *fluid, enum sampler_kind kind, u
     assert_ok(mf_sampler_begin(&sampler));
     assert_ok(mf_sampler_equilibrate(&sampler, 500));
     for (int block = 0; block < blocks_count(); block++) {
-        double mean[SIZE] = {0}, sample[SIZE];
+        double mean[SIZE] = {0}, sample[PAIRS * BINS + SAMPLER_SUMS];
         for (int n = 0; n < SAMPLES; n++) {
             // The first of a block comes after a gap, in which the mixture mixes: with a quarter of
             // it p was below 0.011 with two seeds of eight, with this above 0.035 with all of six.
