@@ -354,7 +354,9 @@ static void test_fit_has_nothing_against_soft_fluids_and_gases(void **state) {
         small_inputs_write(*state, "run.json", text, NULL, NULL);
         RUN_PROGRAM(&result, "fit", "run.json", "--explain");
         run_program_assert_code(&result, 0);
-        assert_null(strstr(result.out, "warning"));
+        // A range that costs time is no fault of the fluid.
+        const char *warning = strstr(result.out, "warning");
+        assert_true(warning == NULL || strstr(warning, "which makes the fit slow"));
     }
 }
 

@@ -231,6 +231,12 @@ static void test_inversion_band_looks_at_the_pressures_of_all_states(void **stat
             mf_potential_grid_ramp(&inversion->grid, inversion->grid.known_point[a]);
         other[a] = a == known / 2;
     }
+    for (int n = 0; n < 2; n++) {
+        states[n].target_error = inversion->target_error;
+        states[n].target_counts = inversion->target_counts;
+        states[n].variance = inversion->variance;
+        states[n].replicas.counts.mean = inversion->replicas.counts.mean;
+    }
     joint.system = mf_inversion_system(inversion);
     double *slope[2] = {inversion->pressure.slope, other};
     for (int first = 0; first < 2; first++) {
