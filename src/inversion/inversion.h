@@ -280,6 +280,9 @@ enum status mf_inversion_start(struct inversion *inversion) MUST_USE;
 enum status mf_inversion_start_curve(const struct inverse_problem *problem, double *curve,
                                      double *pressure) MUST_USE;
 
+/// Whether there is another start to be tried: the first was the hypernetted chain's, a moment ago.
+bool mf_inversion_start_has_other(const struct inversion *inversion);
+
 /// Whether the start was the hypernetted chain's and leads nowhere, after an iteration whose
 /// potential was kept or not.
 bool mf_inversion_start_is_poor(const struct inversion *inversion, bool kept);

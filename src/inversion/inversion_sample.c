@@ -19,8 +19,9 @@ enum { MOST_DOUBLINGS = 7 };
 enum { ANEW_EQUILIBRATION = 5 };
 
 /// Sweeps of one potential, over those of its first samples, after which it is given up if it has
-/// not settled.
-enum { MOST_TIMES = 200 };
+/// not settled; and a start beside which there is another. Lennard-Jones at 1.5 ε condenses under
+/// the hypernetted chain's start, and had taken 270 times the first samples to do so.
+enum { MOST_TIMES = 200, MOST_TIMES_OF_START = 10 };
 
 /// The sweeps and least samples of an iteration, with so many times the least equilibration and
 /// spacing.
@@ -96,7 +97,9 @@ static bool is_hopeless(struct inversion *inversion, struct sampling *sampling) 
                        off > sampling->off;
     mf_inversion_pressure_measure(inversion);
     const bool poor = mf_inversion_start_is_poor(inversion, true);
-    inversion->progress.unsettled.for_long = sampling->sweeps > MOST_TIMES * first;
+    const uint64_t most =
+        first * (mf_inversion_start_has_other(inversion) ? MOST_TIMES_OF_START : MOST_TIMES);
+    inversion->progress.unsettled.for_long = sampling->sweeps > most;
     sampling->off = off;
     return inversion->progress.unsettled.for_long || worse || poor;
 }

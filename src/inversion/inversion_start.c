@@ -132,11 +132,14 @@ static double find_structure(const struct inversion *inversion) {
     return sqrt(sum / (double)inversion->bins);
 }
 
+bool mf_inversion_start_has_other(const struct inversion *inversion) {
+    return is_from_hnc(inversion) && inversion->progress.iteration <= 1;
+}
+
 bool mf_inversion_start_is_poor(const struct inversion *inversion, bool kept) {
-    const uint32_t iteration = inversion->progress.iteration;
-    if (!is_from_hnc(inversion) || iteration > 1)
+    if (!mf_inversion_start_has_other(inversion))
         return false;
-    if (iteration == 1 || inversion->unsettled)
+    if (inversion->progress.iteration == 1 || inversion->unsettled)
         return !kept;
     return inversion->distance[TARGET_RDF].rms > poor * find_structure(inversion) &&
            inversion->pressure.value < 0;
