@@ -125,7 +125,7 @@ static void test_excess_of_each_iteration_has_a_column(void **state) {
 /// Stopped after some iterations and gone on with, by other threads.
 static void test_tables_are_the_same_bits_after_a_restart(void **state) {
     const char *method = "\"method\": {\"name\": \"imc\", \"replicas\": 4, "
-                         "\"iterations\": 6, \"precision\": 0.0001, \"samples\": 300}";
+                         "\"iterations\": 6, \"precision\": 0.005, \"samples\": 300}";
     run_fit(*state, method, (const char *[]){"whole", "--threads", "1"});
     run_program_in_pieces(result.code, (const char *const[]){"fit", "run.json", "-o", "parts",
                                                              "--threads", "2", NULL});

@@ -20,7 +20,7 @@ static const struct {
 } shorter[] = {
     {"\"precision\": 0.005",
      "\"precision\": 0.01, \"replicas\": 4, \"equilibration\": 60, \"samples\": 100"},
-    {"\"equilibration\": 500, \"samples\": 30}", "\"equilibration\": 200, \"samples\": 10}"},
+    {"\"equilibration\": 500, \"samples\": 30}", "\"equilibration\": 500, \"samples\": 10}"},
     {"\"samples\": 30, \"every\": 20", "\"samples\": 10, \"every\": 20"}};
 
 /// The page as page.md, in the working folder.
