@@ -16,6 +16,9 @@ static const double as_good = 1.1;
 /// beginnings; and of events.
 static const double false_alarms = 1e-7, chance = 1e-4;
 
+/// Relative differences that digits of files make.
+static const double rounding = 1e-6;
+
 /// A series from a sample on.
 struct tail {
     size_t start;
@@ -48,8 +51,9 @@ static bool differs(const double *series, size_t count, const struct tail *tail)
     const double freedom = independent(tail) - 1;
     const double alone = fmax(1, head.count / tail->inefficiency);
     const double error = sqrt(variance_of_mean(tail) * (1 + independent(tail) / alone));
-    return freedom > 1 && fabs(head.mean - tail->mean.mean) >
-                              error * gsl_cdf_tdist_Qinv(0.5 * false_alarms, freedom);
+    const double off = fabs(head.mean - tail->mean.mean);
+    return freedom > 1 && off > rounding * fabs(tail->mean.mean) &&
+           off > error * gsl_cdf_tdist_Qinv(0.5 * false_alarms, freedom);
 }
 
 /// What decays is seen best in its first part, whose length is not known.

@@ -59,6 +59,12 @@ static void test_settled_start_of_short_and_constant_beginnings(void **state) {
     (void)state;
     double x[SAMPLES] = {0};
     assert_int_equal(mf_settled_start(x, SAMPLES), 0);
+    // A box that is written with other digits in the first frame.
+    for (int t = 0; t < SAMPLES; t++)
+        x[t] = t == 0 ? 27.000003 : 27;
+    assert_int_equal(mf_settled_start(x, SAMPLES), 0);
+    x[0] = 27.3;
+    assert_int_equal(mf_settled_start(x, SAMPLES), 1);
     make_series(x, 0, 1);
     x[0] = 50;
     assert_in_range(mf_settled_start(x, SAMPLES), 1, 3);
