@@ -149,7 +149,8 @@ static double width_of(const struct rows *rows) {
 
 static enum status check_rows(const struct rows *rows, const char *file) {
     if (rows->count < FEWEST_ROWS)
-        return mf_status_fail(STATUS_BAD_INPUT, "%s: only %zu bins", file, rows->count);
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: only %zu bins; at least %d are needed", file,
+                              rows->count, FEWEST_ROWS);
     const double width = width_of(rows);
     for (size_t k = 0; k < rows->count; k++) {
         const double step = k > 0 ? rows->q[k] - rows->q[k - 1] : width;

@@ -190,8 +190,10 @@ static void leave_out_half_bin(struct target_rows *rows) {
 /// Bins from their centres, which are equally spaced.
 static enum status find_bins(const struct target_rows *rows, const char *file,
                              struct rdf_bins *bins) {
-    if (rows->count < 4)
-        return mf_status_fail(STATUS_BAD_INPUT, "%s: only %zu bins", file, rows->count);
+    enum { FEWEST_ROWS = 4 };
+    if (rows->count < FEWEST_ROWS)
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: only %zu bins; a g(r) needs at least %d", file,
+                              rows->count, FEWEST_ROWS);
     const double first = rows->r[0];
     const double width = (rows->r[rows->count - 1] - first) / (double)(rows->count - 1);
     // First edges come out as 0 but for the file's rounding.
