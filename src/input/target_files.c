@@ -265,6 +265,23 @@ static void set_motion(const struct target_files *files, struct targets *targets
     }
 }
 
+/// What is not known of the factor of a pair type: nothing where the file says it, or of how many
+/// particles g is, by whose pairs it is normalised then; the error of one that was found; else that
+/// of one particle more or less, as by N for N − 1.
+static double find_factor_error(const struct target_files *files, int pair) {
+    const struct target_rdf_parameters *p = &files->rdf.member[pair].parameters;
+    int type[2];
+    if (p->normalisation > 0 || p->particles > 0 ||
+        !mf_composition_has_pairs(&files->composition, pair))
+        return 0;
+    if (files->normalisation.found)
+        return files->normalisation.error;
+    mf_composition_pair_types(&files->composition, pair, type);
+    return 1 / (double)(files->composition.count[type[0]] > files->composition.count[type[1]]
+                            ? files->composition.count[type[0]]
+                            : files->composition.count[type[1]]);
+}
+
 enum status mf_target_files_normalise(struct target_files *files, const struct box *box,
                                       bool joined) {
     struct target_pairs *rdf = &files->rdf;
@@ -272,21 +289,26 @@ enum status mf_target_files_normalise(struct target_files *files, const struct b
     files->normalisation = (struct normalisation){.factor = 1};
     mf_target_pairs_normalise(&files->apart);
     const size_t given = mf_target_pairs_normalise(rdf);
-    // What all together say tells nothing of a part of them.
-    if (!files->given[TARGET_RDF] || given > 0 || joined)
+    if (!files->given[TARGET_RDF])
         return STATUS_OK;
     for (size_t pair = 0; pair < rdf->pairs; pair++)
         width = fmax(width, rdf->member[pair].parameters.normalisation_error);
-    TRY(mf_normalisation_find(target_pairs_bins(rdf), box, &files->composition, rdf->g, rdf->error,
-                              width, &files->normalisation));
-    for (size_t pair = 0; pair < rdf->pairs; pair++)
+    // What all together say tells nothing of a part of them.
+    if (given == 0 && !joined)
+        TRY(mf_normalisation_find(target_pairs_bins(rdf), box, &files->composition, rdf->g,
+                                  rdf->error, width, &files->normalisation));
+    for (size_t pair = 0; pair < rdf->pairs; pair++) {
         mf_target_pairs_divide(rdf, pair, files->normalisation.factor);
+        rdf->factor_error[pair] = find_factor_error(files, (int)pair);
+    }
     return STATUS_OK;
 }
 
 static struct target target_of_pairs(const struct target_pairs *pairs) {
-    return (struct target){
-        .count = target_pairs_values(pairs), .value = pairs->g, .error = pairs->error};
+    return (struct target){.count = target_pairs_values(pairs),
+                           .value = pairs->g,
+                           .error = pairs->error,
+                           .factor_error = pairs->factor_error};
 }
 
 static struct target target_of(const struct target_files *files, int kind) {

@@ -53,7 +53,8 @@ enum status mf_target_files_widen(struct target_files *files, enum topology_orde
 /// Divide g(r) by its normalisation: what the file says, else what mf_normalisation_find makes of
 /// the target in this box, and 1 of beads that are `joined` to molecules, of which it knows
 /// nothing. If the file says some of a mixture's, the others are 1. That of different molecules is
-/// divided by what the file says alone. Fails: NO_MEMORY.
+/// divided by what the file says alone. Also what is not known of it, for the fit. Fails:
+/// NO_MEMORY.
 enum status mf_target_files_normalise(struct target_files *files, const struct box *box,
                                       bool joined) MUST_USE;
 

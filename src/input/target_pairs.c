@@ -61,6 +61,7 @@ static enum status collect(struct target_pairs *target, const struct finite_size
     NEW_ARRAY(target->g, target->pairs * bins);
     NEW_ARRAY(target->error, target->pairs * bins);
     NEW_ARRAY(target->given, target->pairs * bins);
+    NEW_ARRAY(target->factor_error, target->pairs);
     for (size_t pair = 0; pair < target->pairs; pair++)
         if (mf_composition_has_pairs(fluid->composition, (int)pair))
             mf_target_rdf_convert(&target->member[pair], fluid, (int)pair, target->g + pair * bins,
@@ -117,6 +118,7 @@ void mf_target_pairs_clear(struct target_pairs *target) {
     mf_memory_free(target->g);
     mf_memory_free(target->error);
     mf_memory_free(target->given);
+    mf_memory_free(target->factor_error);
     *target = (struct target_pairs){0};
 }
 

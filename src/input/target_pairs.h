@@ -14,6 +14,7 @@ struct target_pairs {
     double *g, *error;
     double ends[COMPOSITION_MOST_PAIRS]; ///< where the file of each would end [λ]
     double *given;                       ///< g before it was divided by its normalisation
+    double *factor_error;                ///< of that, shape [pairs]
 };
 
 static inline const struct rdf_bins *target_pairs_bins(const struct target_pairs *target) {

@@ -24,8 +24,8 @@ static const double noise_share = 0.5;
 struct workspace {
     const struct imc_system *system;
     size_t size;
-    gsl_matrix *rows;    ///< B = W^½ C / k_B T, then D and sqrt(ρ): shape [3 size − 1, size]
-    gsl_vector *rhs;     ///< b = W^½ excess, then zeros
+    gsl_matrix *rows;    ///< B = V^−½ C / k_B T, then D and sqrt(ρ): shape [3 size − 1, size]
+    gsl_vector *rhs;     ///< b = V^−½ excess, then zeros
     gsl_matrix *factor;  ///< QR of `rows` at one strength
     gsl_vector *reflect; ///< of the Householder vectors
     gsl_vector *x, *residual;
@@ -58,20 +58,47 @@ static enum status workspace_allocate(struct workspace *w, const struct imc_syst
     return mf_status_fail(STATUS_NO_MEMORY, "no memory for %zu linear equations", n);
 }
 
-void mf_imc_solve_response(const struct imc_system *s, gsl_matrix *response) {
-    for (size_t a = 0; a < s->size; a++) {
-        const double weight = 1 / sqrt(s->variance[a]);
-        for (size_t b = 0; b < s->size; b++)
-            gsl_matrix_set(response, a, b,
-                           weight * s->covariance[a * s->size + b] / s->temperature);
+/// V^−½ = (1 + u uᵀ)^−½ W^½ of a block, u = W^½ common:
+///   (1 + u uᵀ)^−½ = 1 − (1 − 1/sqrt(1 + |u|²)) u uᵀ/|u|².
+static void whiten_block(const struct imc_system *s, size_t begin, size_t end, double *v,
+                         size_t stride) {
+    double along = 0, squares = 0;
+    for (size_t a = begin; a < end; a++)
+        v[a * stride] /= sqrt(s->variance[a]);
+    if (s->common == NULL)
+        return;
+    for (size_t a = begin; a < end; a++) {
+        const double u = s->common[a] / sqrt(s->variance[a]);
+        along += u * v[a * stride];
+        squares += u * u;
+    }
+    if (!(squares > 0))
+        return;
+    const double share = along / squares * (1 - 1 / sqrt(1 + squares));
+    for (size_t a = begin; a < end; a++)
+        v[a * stride] -= share * s->common[a] / sqrt(s->variance[a]);
+}
+
+/// v ← V^−½ v.
+static void whiten(const struct imc_system *s, double *v, size_t stride) {
+    const size_t blocks = s->blocks > 0 ? s->blocks : 1;
+    for (size_t b = 0, begin = 0; b < blocks; b++) {
+        const size_t end = begin + (s->blocks > 0 ? s->block[b] : s->size);
+        whiten_block(s, begin, end, v, stride);
+        begin = end;
     }
 }
 
-static void fill_equations(struct workspace *w, const struct imc_system *s) {
-    gsl_matrix_view response = gsl_matrix_submatrix(w->rows, 0, 0, s->size, s->size);
-    mf_imc_solve_response(s, &response.matrix);
+void mf_imc_solve_rows(const struct imc_system *s, gsl_matrix *response, gsl_vector *excess) {
     for (size_t a = 0; a < s->size; a++)
-        gsl_vector_set(w->rhs, a, 1 / sqrt(s->variance[a]) * s->excess[a]);
+        for (size_t b = 0; b < s->size; b++)
+            gsl_matrix_set(response, a, b, s->covariance[a * s->size + b] / s->temperature);
+    for (size_t b = 0; b < s->size; b++)
+        whiten(s, gsl_matrix_ptr(response, 0, b), response->tda);
+    for (size_t a = 0; excess && a < s->size; a++)
+        gsl_vector_set(excess, a, s->excess[a]);
+    if (excess)
+        whiten(s, excess->data, excess->stride);
 }
 
 /// Row k of D is (x_{k−1} − 2 x_k + x_{k+1}) (ℓ/h)². In the last the neighbour is the cutoff, half
@@ -127,15 +154,15 @@ static double square_rows(const gsl_matrix *rows, size_t begin, size_t end) {
 }
 
 /// χ² by bin of what x leaves.
-static double misfit(const struct imc_system *s, const double *x) {
+static double misfit(const struct workspace *w, const double *x) {
     double sum = 0;
-    for (size_t a = 0; a < s->size; a++) {
-        double left = s->excess[a];
-        for (size_t b = 0; b < s->size; b++)
-            left -= s->covariance[a * s->size + b] * x[b] / s->temperature;
-        sum += left * left / s->variance[a];
+    for (size_t a = 0; a < w->size; a++) {
+        double left = gsl_vector_get(w->rhs, a);
+        for (size_t b = 0; b < w->size; b++)
+            left -= gsl_matrix_get(w->rows, a, b) * x[b];
+        sum += left * left;
     }
-    return sum / (double)s->size;
+    return sum / (double)w->size;
 }
 
 /// Meet the constraint: x ← x + u (wanted − p·x)/(p·u), which is the constrained minimum if x is
@@ -181,7 +208,7 @@ static double solve_at(struct workspace *w, double strength) {
         find_meet(w);
         meet(w->system, w->meet->data, w->x->data);
     }
-    return misfit(w->system, w->x->data);
+    return misfit(w, w->x->data);
 }
 
 /// Largest strength whose misfit is within the noise, by bisection of its logarithm.
@@ -221,7 +248,9 @@ enum status mf_imc_solve(const struct imc_system *system, double strength, doubl
     struct workspace w = {0};
     const size_t n = system->size;
     CHECK(workspace_allocate(&w, system));
-    fill_equations(&w, system);
+    gsl_matrix_view response = gsl_matrix_submatrix(w.rows, 0, 0, n, n);
+    gsl_vector_view excess = gsl_vector_subvector(w.rhs, 0, n);
+    mf_imc_solve_rows(system, &response.matrix, &excess.vector);
     gsl_matrix_view prior = gsl_matrix_submatrix(w.rows, n, 0, 2 * n - 1, n);
     mf_imc_solve_prior(system, &prior.matrix);
     solution->strength = strength > 0 ? strength : find_strength(&w);

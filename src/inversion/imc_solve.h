@@ -26,6 +26,8 @@ struct imc_system {
     const double *covariance;      ///< C, shape [size, size], row-major
     const double *excess;          ///< ⟨S⟩ − S*, shape [size]
     const double *variance;        ///< of the excess by statistics alone, shape [size], > 0
+    const double *common;          ///< error that the bins of a block have in common, as by a
+                                   ///< factor of its target, shape [size]; NULL: none
     double temperature;            ///< [k_B T_0]
     double spacing;                ///< of the bins [λ]
     const double *constraint;      ///< p, shape [size]: x is to meet p·x = wanted exactly; or NULL
@@ -39,8 +41,9 @@ struct imc_solution {
 };
 
 /// Change of the potential that removes the excess as far as it is more than noise:
-///   minimise  Σ_a (excess_a − Σ_b C_ab x_b / k_B T)² / variance_a + α (|Dx|² + ρ|x|²)
-/// (Tikhonov) with D and ρ of mf_imc_solve_prior, subject to the constraint if there is one. The
+///   minimise  |V^−½ (excess − C x/k_B T)|² + α (|Dx|² + ρ|x|²)
+/// (Tikhonov) with the covariance V of the excess, the variances and the square of what is common
+/// to a block, with D and ρ of mf_imc_solve_prior, subject to the constraint if there is one. The
 /// strength α is the largest whose predicted excess is within the noise, χ² = size (discrepancy
 /// principle: V. A. Morozov, Soviet Math. Dokl. 7, 414 (1966)), unless `strength` > 0 gives it.
 /// Excess that no x removes, as where C is singular, is left: then χ² is what remains at the
@@ -52,8 +55,9 @@ struct imc_solution {
 enum status mf_imc_solve(const struct imc_system *system, double strength, double *x,
                          struct imc_solution *solution) MUST_USE;
 
-/// The whitened response B_ab = C_ab/(k_B T σ_a), shape [size, size].
-void mf_imc_solve_response(const struct imc_system *system, gsl_matrix *response);
+/// The whitened equations: B = V^−½ C/k_B T, shape [size, size], and V^−½ excess, shape [size],
+/// or NULL.
+void mf_imc_solve_rows(const struct imc_system *system, gsl_matrix *response, gsl_vector *excess);
 
 /// Rows of the smoothness prior in `rows`, shape [2 size − 1, size]: D, the second difference over
 /// a tenth of λ, or over the bins of a shape, and sqrt(ρ). A curve of pairs ends at 0 half a

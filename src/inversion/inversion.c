@@ -41,6 +41,7 @@ struct imc_system mf_inversion_system(const struct inversion *inversion) {
                                .covariance = mf_inversion_response_values(inversion),
                                .excess = inversion->excess,
                                .variance = inversion->variance,
+                               .common = inversion->common,
                                .temperature = inversion->problem->scene.temperature,
                                .spacing = inversion->problem->targets.bins.width};
 }
@@ -84,6 +85,7 @@ static enum status keep(struct inversion *inversion) {
     progress->best_own_noise = inversion->own_noise;
     progress->best_precise = is_precise(inversion);
     progress->best_worst = *mf_inversion_worst(inversion);
+    mf_inversion_find_factor(inversion, &progress->best_factor);
     return mf_inversion_band_find(inversion);
 }
 
@@ -154,30 +156,9 @@ static enum status go_on(struct inversion *inversion, bool kept) {
         return STATUS_OK;
     }
     progress->best[TARGET_RDF].rms = progress->least_decrement = INFINITY;
-    progress->drift.count = 0;
     progress->damping = 1;
     progress->anew = true;
     return mf_inversion_start_again(inversion);
-}
-
-bool mf_inversion_runs_away(const struct inversion *inversion) {
-    return !targets_ask(&inversion->problem->targets, TARGET_PRESSURE) &&
-           mf_inversion_drifts(&inversion->progress.drift, inversion->problem->scene.temperature);
-}
-
-/// Amplitude A of the present potential's ramp over the well-known bins.
-static double find_ramp(const struct inversion *inversion) {
-    const struct potential_grid *grid = &inversion->grid;
-    double product = 0, squares = 0;
-    for (size_t a = 0; a < grid->known; a++) {
-        const size_t point = grid->known_point[a];
-        const double ramp = mf_potential_grid_ramp(grid, point);
-        if (!grid->well_known[a])
-            continue;
-        product += ramp * inversion->phi[point];
-        squares += ramp * ramp;
-    }
-    return squares > 0 ? product / squares : 0;
 }
 
 /// The curves of groups stand behind those of pairs, of which there may be none.
@@ -218,8 +199,8 @@ static void describe(const struct inversion *inversion, const double *own, bool 
         .ramp = inversion->band.ramp,
         .response = {inversion->covariance, inversion->ideal},
         .converged = converged,
-        .finished = converged || stuck || progress->lost || mf_inversion_runs_away(inversion) ||
-                    progress->iteration + 1 >= p->iterations,
+        .finished =
+            converged || stuck || progress->lost || progress->iteration + 1 >= p->iterations,
     };
     show_groups(inversion, step);
     memcpy(step->extra + INVERSION_SHARED_COLUMNS, own, INVERSION_OWN_COLUMNS * sizeof *own);
@@ -264,8 +245,6 @@ enum status mf_inversion_advance(struct inversion *inversion, struct inverse_ste
     TRY(rule->update(inversion, own));
     mf_inversion_trail_add(&inversion->trail, inversion->replicas.counts.mean,
                            inversion->target_counts);
-    mf_inversion_drift_add(&progress->drift, find_ramp(inversion),
-                           inversion->distance[TARGET_RDF].rms);
     TRY(judge(inversion, &kept));
     converged = mf_inversion_has_converged(inversion, kept);
     if (inversion->walked)

@@ -19,7 +19,6 @@
 
 #include "inversion/inversion_band.h"
 #include "inversion/inversion_basis.h"
-#include "inversion/inversion_drift.h"
 #include "inversion/inversion_kirkwood_buff.h"
 #include "inversion/inversion_pressure.h"
 #include "inversion/inversion_response.h"
@@ -78,6 +77,12 @@ struct inversion_section {
     double probable;           ///< the same at most, of what agrees but for noise
     double precision;          ///< at which that is small enough
 };
+/// By how much of itself g of the samples is larger than that of a target as a whole, and the
+/// standard deviation that was expected of it.
+struct inversion_factor {
+    double missing, prior;
+};
+
 enum { INVERSION_MOST_SECTIONS = 1 + INVERSE_MOST_BONDED };
 
 /// Whether the samples meet its targets but for noise.
@@ -114,7 +119,8 @@ struct inversion {
     /// Shape [bins]: S if g were 1, or p its mean over the known bins; S for a value of 1 of the
     /// target; S of the target and its error; S/ideal that counts as none.
     double *ideal, *unit, *target_counts, *target_error, *least;
-    double *excess, *variance;                     ///< of S in the known bins, shape [known]
+    double *excess, *variance; ///< of S in the known bins, shape [known]
+    double *common;            ///< error of S* by the factor of its pair type, shape [known]
     double *pooled, *pooled_variance, *pooled_phi; ///< of iterations near the target, see
                                                    ///< mf_inversion_pool
     double
@@ -158,10 +164,10 @@ struct inversion {
         double damping;
         struct target_distance best[TARGETS];  ///< rms of g infinite: there is none yet
         struct target_distance least[TARGETS]; ///< nearest so far, of all that was kept
-        struct inversion_drift drift;          ///< of the potentials sampled since the start
         double best_own_noise;
         struct inversion_section
             best_worst; ///< section with the largest χ² by bin over the probable
+        struct inversion_factor best_factor;  ///< of the best
         struct inversion_unsettled unsettled; ///< the last that were found
         bool lost;                            ///< none of the starts settled
         int64_t stretch;        ///< of equilibration and spacing, by which the next samples begin
@@ -297,6 +303,15 @@ void mf_inversion_reason_tell(const struct inversion *inversion, char reason[INV
 /// their noise, from the present samples.
 void mf_inversion_assess(struct inversion *inversion);
 
+/// χ² of an excess in the known bins begin … end − 1, with the variances of the present samples and
+/// the factors of pair types, which are known within an error each.
+/// @param[in] excess  shape [known]
+double mf_inversion_chi_squared(const struct inversion *inversion, const double *excess,
+                                size_t begin, size_t end);
+
+/// Fill in the factor of a pair type that is farthest from what was known of it.
+void mf_inversion_find_factor(const struct inversion *inversion, struct inversion_factor *factor);
+
 /// Near the target, replace the excess and its variance by those of all iterations since it was
 /// reached: what the earlier ones saw, moved to the present potential by the newest response, which
 /// is the best known: each moved by that of its time took for gone what a noisy C had promised. A
@@ -323,9 +338,6 @@ bool mf_inversion_is_near(const struct inversion *inversion);
 /// since the first of the six counts as an error (`walked`). Iterations that are not kept, or whose
 /// samples have not settled, do not count. Tested: test_inversion_converged.
 bool mf_inversion_has_converged(struct inversion *inversion, bool kept);
-
-/// Whether the ramp of the potential grows without end; never with a pressure, which holds it.
-bool mf_inversion_runs_away(const struct inversion *inversion);
 
 /// Damping below this: the step leads nowhere, and the fit ends.
 extern const double mf_inversion_least_damping;

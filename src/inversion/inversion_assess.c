@@ -74,6 +74,64 @@ static double find_probable(const struct inversion *inversion,
     return bins > 0 ? gsl_cdf_chisq_Qinv(chance, independent) / independent : INFINITY;
 }
 
+/// What a block's bins have in common with the error of its factor: u·x and |u|², with u that error
+/// and x the excess in units of their noise.
+static void find_common(const struct inversion *inversion, const double *excess, size_t begin,
+                        size_t end, double *along, double *squares) {
+    *along = *squares = 0;
+    for (size_t a = begin; a < end; a++) {
+        const double u = inversion->common[a] / sqrt(inversion->variance[a]);
+        if (!inversion->grid.seen[a])
+            continue;
+        *along += u * excess[a] / sqrt(inversion->variance[a]);
+        *squares += u * u;
+    }
+}
+
+/// By how much the factors of pair types make the χ² of a section smaller: Σ (u·x)²/(1 + |u|²).
+static double find_explained(const struct inversion *inversion, const double *excess, size_t begin,
+                             size_t end) {
+    const struct potential_grid *grid = &inversion->grid;
+    double sum = 0;
+    for (size_t block = 0, first = 0; inversion->common && block < grid->blocks; block++) {
+        const size_t last = first + grid->known_of[block];
+        double along, squares;
+        if (first >= begin && last <= end) {
+            find_common(inversion, excess, first, last, &along, &squares);
+            sum += along * along / (1 + squares);
+        }
+        first = last;
+    }
+    return sum;
+}
+
+double mf_inversion_chi_squared(const struct inversion *inversion, const double *excess,
+                                size_t begin, size_t end) {
+    double sum = 0;
+    for (size_t a = begin; a < end; a++)
+        sum += inversion->grid.seen[a] ? excess[a] * excess[a] / inversion->variance[a] : 0;
+    return sum - find_explained(inversion, excess, begin, end);
+}
+
+void mf_inversion_find_factor(const struct inversion *inversion, struct inversion_factor *factor) {
+    const struct potential_grid *grid = &inversion->grid;
+    const struct targets *targets = &inversion->problem->targets;
+    *factor = (struct inversion_factor){0};
+    for (size_t pair = 0, first = 0; inversion->common && pair < grid->pairs; pair++) {
+        const size_t last = first + grid->known_of[pair];
+        double along, squares;
+        find_common(inversion, inversion->excess, first, last, &along, &squares);
+        first = last;
+        if (!(squares > 0))
+            continue;
+        const double prior = targets->target[TARGET_RDF].factor_error[pair];
+        const struct inversion_factor own = {.missing = prior * along / (1 + squares),
+                                             .prior = prior};
+        if (fabs(own.missing) * factor->prior >= fabs(factor->missing) * own.prior)
+            *factor = own;
+    }
+}
+
 /// Of one section; returns its χ².
 static double assess(struct inversion *inversion, struct inversion_section *section) {
     const struct comoments *counts = &inversion->replicas.counts;
@@ -82,7 +140,7 @@ static double assess(struct inversion *inversion, struct inversion_section *sect
         &inversion->replicas, inversion->ideal, known_bin + section->known, section->known_count);
     const double independent = counts->count / section->inefficiency;
     const double bins = (double)section->bins;
-    double sum = 0, own = 0, both = 0, misfit = 0, seen = 0;
+    double sum = 0, own = 0, both = 0, seen = 0;
     for (size_t n = section->bin; n < section->bin + section->bins; n++)
         sum += pow((counts->mean[n] - inversion->target_counts[n]) / inversion->unit[n], 2);
     for (size_t a = section->known; a < section->known + section->known_count; a++) {
@@ -91,15 +149,17 @@ static double assess(struct inversion *inversion, struct inversion_section *sect
         // An empty bin still has the uncertainty of one count.
         const double sampled =
             fmax(mf_comoments_covariance(counts, bin, bin), 1 / counts->count) / independent;
+        const double common = inversion->common ? inversion->common[a] : 0;
         inversion->excess[a] = counts->mean[bin] - inversion->target_counts[bin];
         inversion->variance[a] = sampled + find_target_variance(inversion, a);
         if (!inversion->grid.seen[a])
             continue;
-        misfit += inversion->excess[a] * inversion->excess[a] / inversion->variance[a];
         seen++;
         own += sampled / unit;
-        both += inversion->variance[a] / unit;
+        both += (inversion->variance[a] + common * common) / unit;
     }
+    const double misfit = mf_inversion_chi_squared(inversion, inversion->excess, section->known,
+                                                   section->known + section->known_count);
     add_distance(&inversion->distance[section->kind], sum, both, own, section->bins);
     section->rms = sqrt(sum / bins) / section->peak;
     section->noise = sqrt(both / bins) / section->peak;

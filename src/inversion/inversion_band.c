@@ -45,7 +45,7 @@ enum status mf_inversion_band_covariance(const struct imc_system *system, double
     gsl_matrix *response = gsl_matrix_alloc(size, size), *known = gsl_matrix_calloc(size, size);
     gsl_matrix_view to = gsl_matrix_view_array(covariance, size, size);
     CHECK(prior && response && known ? STATUS_OK : STATUS_NO_MEMORY);
-    mf_imc_solve_response(system, response);
+    mf_imc_solve_rows(system, response, NULL);
     mf_imc_solve_prior(system, prior);
     gsl_blas_dsyrk(CblasLower, CblasTrans, 1, response, 0, known);
     gsl_matrix_memcpy(&to.matrix, known);
@@ -123,24 +123,28 @@ static void add_square(struct inversion *inversion, double factor, const double 
             inversion->band.covariance[a * n + b] += factor * u[a] * u[b];
 }
 
-/// The step from here: the most probable one, x = Σ Bᵀ W^½ excess, or that of the coefficients.
+/// The step from here: the most probable one, x = Σ Bᵀ V^−½ excess, or that of the coefficients.
 static enum status find_step(const struct inversion *inversion, const struct imc_system *system,
                              double *step) {
     enum status status = STATUS_OK;
     const size_t n = inversion->grid.known;
-    double *asked = NULL;
+    gsl_matrix *response = NULL;
+    gsl_vector *excess = NULL, *asked = NULL;
     for (size_t a = 0; a < n; a++)
         step[a] = inversion->step[inversion->grid.known_point[a]];
     if (inversion->basis.count > 0 || (inversion->coarse.count > 0 && inversion->settling))
         return STATUS_OK;
-    NEW_ARRAY(asked, n);
-    for (size_t a = 0; a < n; a++)
-        for (size_t b = 0; b < n; b++)
-            asked[a] += system->covariance[b * n + a] * system->excess[b] /
-                        (system->temperature * system->variance[b]);
-    spread(inversion, asked, step);
+    response = gsl_matrix_alloc(n, n);
+    excess = gsl_vector_alloc(n);
+    asked = gsl_vector_alloc(n);
+    CHECK(response && excess && asked ? STATUS_OK : STATUS_NO_MEMORY);
+    mf_imc_solve_rows(system, response, excess);
+    gsl_blas_dgemv(CblasTrans, 1, response, excess, 0, asked);
+    spread(inversion, asked->data, step);
 done:
-    mf_memory_free(asked);
+    gsl_matrix_free(response);
+    gsl_vector_free(excess);
+    gsl_vector_free(asked);
     return status;
 }
 

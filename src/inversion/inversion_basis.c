@@ -258,8 +258,24 @@ static void find_change(struct inversion_basis *basis, double temperature) {
     }
 }
 
+/// The noise that the factors of pair types make.
+static void add_common(struct inversion_basis *basis, const struct inversion *inversion) {
+    const struct potential_grid *grid = &inversion->grid;
+    const size_t count = basis->count;
+    double *along = basis->inverse; // for the time being
+    for (size_t block = 0, a = 0; inversion->common && block < grid->blocks; block++) {
+        memset(along, 0, count * sizeof *along);
+        for (const size_t last = a + grid->known_of[block]; a < last; a++)
+            for (size_t k = 0; k < count; k++)
+                along[k] += basis->value[a * count + k] * inversion->common[a];
+        for (size_t k = 0; k < count * count; k++)
+            basis->noise[k] += along[k / count] * along[k % count];
+    }
+}
+
 void mf_inversion_basis_respond(struct inversion_basis *basis, const struct inversion *inversion) {
     fill_matrices(basis, inversion);
+    add_common(basis, inversion);
     const double now = inversion->replicas.counts.count;
     basis->independent = count_independent(basis, inversion);
     basis->pooled = basis->independent * fmax(1, inversion->progress.pool / now);

@@ -42,14 +42,12 @@ bool mf_inversion_ends_with_mean(const struct inversion *inversion) {
 /// Whether that mean meets the targets of a section.
 static bool mean_meets_section(const struct inversion *inversion,
                                const struct inversion_section *section) {
-    double misfit = 0, bins = 0;
-    for (size_t a = section->known; a < section->known + section->known_count; a++) {
-        if (!inversion->grid.seen[a])
-            continue;
-        misfit += pow(inversion->pooled[a], 2) / inversion->variance[a];
-        bins++;
-    }
-    return misfit <= section->probable * bins;
+    const size_t end = section->known + section->known_count;
+    double bins = 0;
+    for (size_t a = section->known; a < end; a++)
+        bins += inversion->grid.seen[a];
+    return mf_inversion_chi_squared(inversion, inversion->pooled, section->known, end) <=
+           section->probable * bins;
 }
 
 /// Whether that mean meets the targets of all sections.

@@ -60,13 +60,14 @@ void mf_inversion_destroy(void *memory) {
     mf_memory_free(inversion->smoothness);
     mf_memory_free(inversion->groups);
     mf_memory_free(inversion->doubt);
-    double *arrays[] = {inversion->ideal,        inversion->unit,       inversion->target_counts,
-                        inversion->target_error, inversion->least,      inversion->excess,
-                        inversion->variance,     inversion->covariance, inversion->pressure.slope,
-                        inversion->phi,          inversion->step,       inversion->other_step,
-                        inversion->best,         inversion->best_step,  inversion->best_other,
-                        inversion->best_counts,  inversion->pooled,     inversion->pooled_variance,
-                        inversion->pooled_phi,   inversion->met_phi};
+    double *arrays[] = {
+        inversion->ideal,           inversion->unit,        inversion->target_counts,
+        inversion->target_error,    inversion->least,       inversion->excess,
+        inversion->variance,        inversion->common,      inversion->covariance,
+        inversion->pressure.slope,  inversion->phi,         inversion->step,
+        inversion->other_step,      inversion->best,        inversion->best_step,
+        inversion->best_other,      inversion->best_counts, inversion->pooled,
+        inversion->pooled_variance, inversion->pooled_phi,  inversion->met_phi};
     for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
         mf_memory_free(arrays[k]);
 }
@@ -84,6 +85,7 @@ static enum status allocate(struct inversion *inversion) {
     NEW_ARRAY(inversion->least, bins);
     NEW_ARRAY(inversion->excess, known);
     NEW_ARRAY(inversion->variance, known);
+    NEW_ARRAY(inversion->common, known);
     NEW_ARRAY(inversion->covariance, known * known);
     NEW_ARRAY(inversion->pooled, known);
     NEW_ARRAY(inversion->pooled_variance, known);

@@ -109,15 +109,15 @@ void mf_inversion_reason_tell(const struct inversion *inversion, char reason[INV
     const bool stuck = p->damping < mf_inversion_least_damping;
     const struct inversion_section *worst = &p->best_worst;
     const bool agrees = worst->kind != TARGET_RDF || inversion_section_agrees(worst);
+    static const double most = 3; // standard deviations of what was known of a factor
     const double improved = rdf->rms / p->first_error;
-    if (!agrees && mf_inversion_runs_away(inversion))
-        snprintf(
-            reason, INVERSE_REASON_SIZE,
-            "the ramp A (1 - r/cutoff) of the potential goes on and on, by %.2g k_B T_0 in four "
-            "iterations, and the error of g stays at %.2g: g is off as a whole, if only by "
-            "tenths of a percent; look at its \"normalisation\", density and cutoff, or give "
-            "\"pressure\" as a second target, which fixes the ramp",
-            mf_inversion_drift_way(&p->drift), rdf->rms);
+    if (!agrees && fabs(p->best_factor.missing) > most * p->best_factor.prior)
+        snprintf(reason, INVERSE_REASON_SIZE,
+                 "g of the target is too %s as a whole by %.2g %%, which no short-ranged potential "
+                 "makes, and which its \"particles\" or \"normalisation\" allow by %.2g %%; look "
+                 "at these, its density and its cutoff, or give \"pressure\" as a second target",
+                 p->best_factor.missing > 0 ? "small" : "large", 100 * fabs(p->best_factor.missing),
+                 100 * p->best_factor.prior);
     else if (improved > 0.9 && p->second_error > p->first_error + 2 * rdf->noise && !agrees)
         snprintf(reason, INVERSE_REASON_SIZE,
                  "the error of g rose from %.2g to %.2g with the first step, and no shorter one "

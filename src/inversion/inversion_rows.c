@@ -16,6 +16,7 @@ enum status mf_inversion_rows_init(struct inversion_rows *rows, const struct inv
     rows->system.covariance = rows->covariance;
     rows->system.excess = rows->excess;
     rows->system.variance = rows->variance;
+    rows->system.common = NULL; // the rows have it in them
 done:
     return status;
 }
@@ -33,7 +34,8 @@ struct filling {
     gsl_vector *rhs;
     size_t row;
     gsl_matrix *response; ///< scratch, of one state
-    double birge;         ///< by which the variances of all rows will be larger
+    gsl_vector *excess;
+    double birge; ///< by which the variances of all rows will be larger
 };
 
 /// slope·x = missing within the error.
@@ -52,13 +54,13 @@ static void fill_bins(struct inversion *state, bool doubted, struct filling *to)
         mf_imc_doubt(state, state->step);
         own.variance = state->doubt;
     }
-    mf_imc_solve_response(&own, to->response);
+    mf_imc_solve_rows(&own, to->response, to->excess);
     for (size_t a = 0; a < own.size; a++, to->row++) {
         if (!state->grid.seen[a])
             continue;
         for (size_t b = 0; b < own.size; b++)
             gsl_matrix_set(to->rows, to->row, b, gsl_matrix_get(to->response, a, b));
-        gsl_vector_set(to->rhs, to->row, own.excess[a] / sqrt(own.variance[a]));
+        gsl_vector_set(to->rhs, to->row, gsl_vector_get(to->excess, a));
     }
 }
 
@@ -104,10 +106,14 @@ enum status mf_inversion_rows_reduce(struct inversion_rows *rows, struct inversi
                                      size_t states, bool doubted) {
     enum status status = STATUS_OK;
     const size_t known = state->grid.known, count = count_rows(state, states);
-    struct filling all = {gsl_matrix_calloc(count, known), gsl_vector_calloc(count), 0,
-                          gsl_matrix_alloc(known, known), mf_inversion_band_birge(state)};
+    struct filling all = {.rows = gsl_matrix_calloc(count, known),
+                          .rhs = gsl_vector_calloc(count),
+                          .response = gsl_matrix_alloc(known, known),
+                          .excess = gsl_vector_alloc(known),
+                          .birge = mf_inversion_band_birge(state)};
     gsl_vector *reflect = gsl_vector_alloc(known);
-    CHECK(all.rows && all.rhs && all.response && reflect ? STATUS_OK : STATUS_NO_MEMORY);
+    CHECK(all.rows && all.rhs && all.response && all.excess && reflect ? STATUS_OK
+                                                                       : STATUS_NO_MEMORY);
     for (size_t s = 0; s < states; s++) {
         fill_bins(&state[s], doubted, &all);
         fill_others(&state[s], &all);
@@ -119,6 +125,7 @@ done:
     gsl_matrix_free(all.rows);
     gsl_vector_free(all.rhs);
     gsl_matrix_free(all.response);
+    gsl_vector_free(all.excess);
     gsl_vector_free(reflect);
     return status;
 }

@@ -68,6 +68,7 @@ static enum status smooth(struct inversion *inversion) {
     system.covariance = inversion->covariance;
     system.excess = phi;
     system.variance = variance;
+    system.common = NULL;
     CHECK(mf_imc_solve(&system, 0, x, &solution));
     for (size_t a = 0; a < known; a++)
         inversion->phi[grid->known_point[a]] = x[a];

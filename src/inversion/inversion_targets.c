@@ -37,6 +37,19 @@ static void count_pairs(struct inversion *inversion) {
     }
 }
 
+/// What the error of a pair type's factor makes of its target.
+static void count_common(struct inversion *inversion) {
+    const struct potential_grid *grid = &inversion->grid;
+    const struct targets *targets = &inversion->problem->targets;
+    const double *factor_error = targets->target[TARGET_RDF].factor_error;
+    for (size_t a = 0; factor_error && a < grid->pairs_known; a++) {
+        const size_t bin = grid->known_bin[a];
+        if (grid->seen[a])
+            inversion->common[a] =
+                inversion->target_counts[bin] * factor_error[bin / targets->bins.count];
+    }
+}
+
 static double peak_of(const struct bonded_grid *group) {
     double peak = 0;
     for (size_t k = 0; k < group->unknown->bins.count; k++)
@@ -104,6 +117,7 @@ void mf_inversion_count_targets(struct inversion *inversion) {
         section->peak = 1;
     }
     count_pairs(inversion);
+    count_common(inversion);
     for (size_t g = 0; g < grid->groups; g++) {
         count_group(inversion, &grid->group[g]);
         enter_group(inversion, g);

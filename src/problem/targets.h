@@ -24,11 +24,13 @@ const char *mf_targets_name(int kind);
 
 /// Measured values of one observable. Borrowed.
 struct target {
-    size_t count;        ///< 0: not asked for
-    const double *value; ///< shape [count]; NaN: not known, left out
-    const double *error; ///< standard errors, shape [count]; NaN: not known, left out
-    double weight;       ///< of its error in the sum; 0: one over the rms of its errors
-    size_t columns;      ///< of a matrix, else 0
+    size_t count;               ///< 0: not asked for
+    const double *value;        ///< shape [count]; NaN: not known, left out
+    const double *error;        ///< standard errors, shape [count]; NaN: not known, left out
+    double weight;              ///< of its error in the sum; 0: one over the rms of its errors
+    size_t columns;             ///< of a matrix, else 0
+    const double *factor_error; ///< of g(r): relative error that all values of a pair type have in
+                                ///< common, shape [pair types]; NULL: none
     const double *x;     ///< shape [count]: of a curve that is told at its own points, else NULL
     const size_t *block; ///< of distributions: first values of the blocks that are its features,
                          ///< shape [blocks + 1]; NULL: none

@@ -115,11 +115,44 @@ static void test_noise_of_a_bin_is_that_of_the_counts_that_are_expected(void **s
     gsl_rng_free(rng);
 }
 
+/// 3 % more of all pairs are 3 standard errors in the mean of the bins, unless the target's factor
+/// may be off by as much; then the factor is found by what it makes, and by nothing else.
+static void test_target_that_is_off_as_a_whole_agrees_where_its_factor_may_be(void **state) {
+    (void)state;
+    static struct made made;
+    double common[BINS];
+    const double prior = 0.03, moved = 1.03;
+    const size_t known_of[] = {BINS};
+    struct inversion_factor factor;
+    gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
+    make(&made, rng, 100, 0);
+    made.problem.targets.target[TARGET_RDF].factor_error = &prior;
+    made.inversion.grid.pairs = made.inversion.grid.blocks = 1;
+    made.inversion.grid.known_of = (size_t *)known_of;
+    for (size_t k = 0; k < BINS; k++) {
+        made.target[k] *= moved;
+        made.error[k] *= moved;
+        common[k] = prior * made.target[k];
+    }
+    mf_inversion_assess(&made.inversion);
+    print_message("without: %.2f\n", made.inversion.section[0].misfit);
+    assert_false(inversion_section_agrees(&made.inversion.section[0]));
+    made.inversion.common = common;
+    mf_inversion_assess(&made.inversion);
+    mf_inversion_find_factor(&made.inversion, &factor);
+    print_message("with: %.2f of %.2f; factor %.4f\n", made.inversion.section[0].misfit,
+                  made.inversion.section[0].probable, factor.missing);
+    assert_true(inversion_section_agrees(&made.inversion.section[0]));
+    assert_true(fabs(factor.missing - (1 / moved - 1)) < 0.003);
+    gsl_rng_free(rng);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_truth_agrees_with_its_target_whatever_the_counts_of_one_bin),
         cmocka_unit_test(
             test_wrong_potential_does_not_agree_though_the_noise_of_rare_pairs_is_larger),
+        cmocka_unit_test(test_target_that_is_off_as_a_whole_agrees_where_its_factor_may_be),
         cmocka_unit_test(test_noise_of_a_bin_is_that_of_the_counts_that_are_expected),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
