@@ -247,8 +247,6 @@ enum status mf_inversion_advance(struct inversion *inversion, struct inverse_ste
                            inversion->target_counts);
     TRY(judge(inversion, &kept));
     converged = mf_inversion_has_converged(inversion, kept);
-    if (inversion->walked)
-        TRY(mf_inversion_band_find(inversion));
     if (converged)
         TRY(mf_inversion_take_last_step(inversion));
     describe(inversion, own, converged, step);

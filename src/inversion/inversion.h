@@ -123,9 +123,6 @@ struct inversion {
     double *common;            ///< error of S* by the factor of its pair type, shape [known]
     double *pooled, *pooled_variance, *pooled_phi; ///< of iterations near the target, see
                                                    ///< mf_inversion_pool
-    double
-        *met_phi; ///< potential of the first iteration running that met the targets, shape [points]
-    bool walked;  ///< the fit ends though it walks on: the way from there is an error
     double *covariance;                 ///< C of S in the known bins, shape [known, known]
     struct inversion_response response; ///< of S to the potential, by C
     double *doubt;                      ///< variances with those of C, of fits with groups
@@ -176,7 +173,6 @@ struct inversion {
         double least_decrement; ///< of what was kept, by the gradient
         double miss;            ///< of the last gradient, in its noise
         uint32_t agreed;        ///< iterations running that agreed with all targets
-        uint32_t met;           ///< the same but for what has not settled
         double first_error, second_error; ///< of g, in the first two iterations from a start
     } progress;
 };
@@ -333,10 +329,8 @@ bool mf_inversion_is_near(const struct inversion *inversion);
 /// groups that must settle two iterations running say so. The way is short from one side, since
 /// each step goes a part of it, and an iteration that finds it over by chance would end there, and
 /// take the same chance into the last step: the pressures of 16 twins were 0.6 errors too low.
-/// A fit that meets its targets six times running and does not settle ends, too: hexane's g(r) of
-/// two types of beads was met for 17 iterations, in which the pressure fell by 900 bar; the way
-/// since the first of the six counts as an error (`walked`). Iterations that are not kept, or whose
-/// samples have not settled, do not count. Tested: test_inversion_converged.
+/// Iterations that are not kept, or whose samples have not settled, do not count. Tested:
+/// test_inversion_converged.
 bool mf_inversion_has_converged(struct inversion *inversion, bool kept);
 
 /// Damping below this: the step leads nowhere, and the fit ends.

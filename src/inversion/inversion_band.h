@@ -19,9 +19,6 @@
 /// C of groups is that of inversion_response. Off over stated, U of bonds and angles: 0.98(4) and
 /// 1.04(3) over 32 twins (docs/results/molecules.md).
 ///
-/// A fit that ends though it would walk on (mf_inversion_has_converged) has an error more, the way
-/// it has walked: Σ + w wᵀ.
-///
 /// Errors of bins count as independent. Those by sampling are correlated as S is, and with that
 /// F = n C/(k_B T)² (n independent configurations; the canonical ensemble is an exponential family)
 /// would determine water's ramp within 0.008 k_B T; but then every systematic error of the target

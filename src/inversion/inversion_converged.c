@@ -4,7 +4,6 @@
 #include "inversion/inversion.h"
 
 #include <math.h>
-#include <string.h>
 
 /// The way that is left of the ramp, and of the pressure, in their errors, at which both have
 /// settled.
@@ -13,10 +12,6 @@ static const double settled_way = 0.5;
 /// Iterations running, of those that are kept, that must agree where C is that of few samples, so
 /// that a step goes a part of its way.
 enum { AGREEMENT_WITH_GROUPS = 2 };
-
-/// As many that meet the targets of a fit which does not settle: of several pair types,
-/// combinations of Φ that g hardly sees may go on for ever. Twins that do settle take five at most.
-enum { LONG_WALK = 6 };
 
 /// Iterations near the target whose mean is worth more than the last: of fewer the first ones lie
 /// on the side that the fit came from. As many samples, less what rounding may take.
@@ -101,24 +96,13 @@ static bool has_settled(const struct inversion *inversion) {
            fabs(band->farthest.way) <= settled_way * band->farthest.open;
 }
 
-/// Count the iterations running that meet the targets, settled or not.
-static void count_met(struct inversion *inversion, bool meets) {
-    uint32_t *met = &inversion->progress.met;
-    *met = meets ? *met + 1 : 0;
-    if (*met == 1)
-        memcpy(inversion->met_phi, inversion->phi, inversion->grid.points * sizeof(double));
-}
-
 bool mf_inversion_has_converged(struct inversion *inversion, bool kept) {
     uint32_t *agreed = &inversion->progress.agreed;
     const bool with_groups = must_settle(inversion) && inversion->grid.groups > 0;
     if (!kept) // it goes back to the one before
         return false;
-    const bool meets = inversion->progress.best_precise && meets_targets(inversion);
-    const bool agrees = meets && (!must_settle(inversion) || has_settled(inversion));
-    count_met(inversion, meets);
+    const bool agrees = inversion->progress.best_precise && meets_targets(inversion) &&
+                        (!must_settle(inversion) || has_settled(inversion));
     *agreed = agrees ? *agreed + 1 : 0;
-    const bool settled = *agreed >= (with_groups ? AGREEMENT_WITH_GROUPS : 1);
-    inversion->walked = !settled && with_groups && inversion->progress.met >= LONG_WALK;
-    return settled || inversion->walked;
+    return *agreed >= (with_groups ? AGREEMENT_WITH_GROUPS : 1);
 }

@@ -67,7 +67,7 @@ void mf_inversion_destroy(void *memory) {
         inversion->pressure.slope,  inversion->phi,         inversion->step,
         inversion->other_step,      inversion->best,        inversion->best_step,
         inversion->best_other,      inversion->best_counts, inversion->pooled,
-        inversion->pooled_variance, inversion->pooled_phi,  inversion->met_phi};
+        inversion->pooled_variance, inversion->pooled_phi};
     for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
         mf_memory_free(arrays[k]);
 }
@@ -90,7 +90,6 @@ static enum status allocate(struct inversion *inversion) {
     NEW_ARRAY(inversion->pooled, known);
     NEW_ARRAY(inversion->pooled_variance, known);
     NEW_ARRAY(inversion->pooled_phi, points);
-    NEW_ARRAY(inversion->met_phi, points);
     if (inversion->grid.groups > 0)
         NEW_ARRAY(inversion->doubt, known);
     NEW_ARRAY(inversion->pressure.slope, known);
@@ -281,8 +280,8 @@ size_t mf_inversion_spans(void *memory, struct memory_span *span) {
     const size_t bytes = inversion->grid.points * sizeof(double);
     size_t n = 0;
     span[n++] = (struct memory_span){&inversion->progress, sizeof inversion->progress};
-    double *arrays[] = {inversion->phi,        inversion->best,       inversion->best_step,
-                        inversion->best_other, inversion->pooled_phi, inversion->met_phi};
+    double *arrays[] = {inversion->phi, inversion->best, inversion->best_step,
+                        inversion->best_other, inversion->pooled_phi};
     for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
         span[n++] = (struct memory_span){arrays[k], bytes};
     span[n++] = (struct memory_span){inversion->best_counts, inversion->bins * sizeof(double)};

@@ -74,34 +74,6 @@ static void test_fit_ends_when_all_sections_agree(void **state) {
     assert_true(mf_inversion_has_converged(&inversion, true));
 }
 
-/// Six iterations running that meet the targets are enough, and the way since then is an error.
-static void test_fit_with_groups_ends_though_it_walks_on(void **state) {
-    (void)state;
-    const struct inverse_problem problem = {0};
-    double phi[2] = {0, 0}, met[2] = {0, 0};
-    struct inversion inversion = make_end(&problem, 1);
-    inversion.grid.points = 2;
-    inversion.phi = phi;
-    inversion.met_phi = met;
-    inversion.band.ramp.way = -0.06;
-    for (int n = 0; n < 4; n++, phi[0] += 1)
-        assert_false(mf_inversion_has_converged(&inversion, true));
-    inversion.section[0].misfit = 2.1;
-    assert_false(mf_inversion_has_converged(&inversion, true));
-    inversion.section[0].misfit = 1.5;
-    for (int n = 0; n < 5; n++, phi[0] += 1)
-        assert_false(mf_inversion_has_converged(&inversion, true));
-    assert_true(mf_inversion_has_converged(&inversion, true));
-    assert_true(inversion.walked);
-    assert_true(met[0] == 4);
-    inversion.band.ramp.way = -0.04;
-    assert_false(mf_inversion_has_converged(&inversion, false));
-    inversion.progress.met = 0;
-    assert_false(mf_inversion_has_converged(&inversion, true));
-    assert_true(mf_inversion_has_converged(&inversion, true));
-    assert_false(inversion.walked);
-}
-
 /// Present samples are off by chance where the mean of three potentials near the target is not.
 static void test_fit_that_forgets_ends_when_its_mean_or_its_last_potential_agrees(void **state) {
     (void)state;
@@ -141,7 +113,6 @@ int main(void) {
         cmocka_unit_test(test_fit_with_groups_ends_when_it_has_settled_twice_running),
         cmocka_unit_test(test_fit_with_groups_ends_at_once_where_nothing_must_settle),
         cmocka_unit_test(test_fit_ends_when_all_sections_agree),
-        cmocka_unit_test(test_fit_with_groups_ends_though_it_walks_on),
         cmocka_unit_test(test_fit_that_forgets_ends_when_its_mean_or_its_last_potential_agrees),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
