@@ -45,8 +45,9 @@ const struct field mf_target_rdf_fields[] = {
          "more than 400 bins"},
     {"particles", FIELD_INTEGER, MEMBER(particles), .initial = 0, .minimum = 0, .maximum = 1e9,
      .unit = "",
-     .help = "of all types in the system where it was measured, to correct for another number in "
-             "the scene; 0 means the same"},
+     .help = "of all types in the system where it was measured, by whose pairs g is normalised, to "
+             "correct for another number in the scene; 0: as many as the scene has, and g may be "
+             "off as a whole by one particle in so many"},
     {"normalisation", FIELD_NUMBER, MEMBER(normalisation), .initial = 0, .minimum = 0,
      .maximum = 100, .unit = "",
      .help = "factor by which g of the file is too large as a whole, as by N - 1 for N or by a "
