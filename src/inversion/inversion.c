@@ -129,7 +129,7 @@ static enum status judge(struct inversion *inversion, bool *kept) {
     struct inversion_progress *progress = &inversion->progress;
     const double error = inversion->distance[TARGET_RDF].rms;
     const bool start = isinf(progress->best[TARGET_RDF].rms);
-    *kept = !inversion->unsettled && mf_inversion_keeps(inversion);
+    *kept = !inversion->useless && mf_inversion_keeps(inversion);
     progress->anew = !*kept;
     progress->lost = start && !*kept && !mf_inversion_start_is_poor(inversion, false);
     if (start && !*kept)
@@ -158,6 +158,7 @@ static enum status go_on(struct inversion *inversion, bool kept) {
     progress->best[TARGET_RDF].rms = progress->least_decrement = INFINITY;
     progress->damping = 1;
     progress->anew = true;
+    progress->again = true;
     return mf_inversion_start_again(inversion);
 }
 
@@ -246,7 +247,7 @@ enum status mf_inversion_advance(struct inversion *inversion, struct inverse_ste
     mf_inversion_trail_add(&inversion->trail, inversion->replicas.counts.mean,
                            inversion->target_counts);
     TRY(judge(inversion, &kept));
-    converged = mf_inversion_has_converged(inversion, kept);
+    converged = mf_inversion_has_converged(inversion, kept && !inversion->unsettled);
     if (converged)
         TRY(mf_inversion_take_last_step(inversion));
     describe(inversion, own, converged, step);

@@ -4,10 +4,10 @@
 /// Each iteration samples the present potential and asks the method for a step towards the targets
 /// (inversion_rule.update): g(r) and, if it is asked for, the pressure. The best potential so far
 /// is kept; a worse one than chance allows makes the next step half as long, from the best, or the
-/// method's other step if it has one. Several targets count in units of their noise. Samples count
-/// once they are those of equilibrium (inversion/inversion_settled.h), and double until their noise
-/// is small against the error, or as small as was asked for: then the fit has converged when χ² of
-/// each target is that of noise.
+/// method's other step if it has one. Several targets count in units of their noise. Samples double
+/// until their noise is small against the error, or as small as was asked for, and until they are
+/// those of equilibrium (inversion/inversion_settled.h), or what is not is small against the error:
+/// for a step, and for no more. The fit has converged when χ² of each target is that of noise.
 ///
 /// It starts from the hypernetted-chain inversion (mf_hnc_closure): for water the error of g is
 /// then a quarter of that of −k_B T ln g. Where that is far off and puts the liquid under tension,
@@ -132,6 +132,7 @@ struct inversion {
     double misfit;       ///< χ² of the excess by bin
     int64_t stretch;     ///< of their equilibration and spacing
     bool unsettled;      ///< the samples are not those of equilibrium, and there are to be no more
+    bool useless;        ///< what has not settled of them might change a step
     double inefficiency; ///< the largest of all sections
     double disagreement; ///< of the replicas, mf_replicas_disagreement
     struct target_distance distance[TARGETS]; ///< of the samples from what is asked for
@@ -166,6 +167,7 @@ struct inversion {
             best_worst; ///< section with the largest χ² by bin over the probable
         struct inversion_factor best_factor;  ///< of the best
         struct inversion_unsettled unsettled; ///< the last that were found
+        bool again;                           ///< the start is −k_B T ln g after another
         bool lost;                            ///< none of the starts settled
         int64_t stretch;        ///< of equilibration and spacing, by which the next samples begin
         double responses;       ///< samples behind C, of all iterations near the noise
@@ -221,13 +223,19 @@ enum status mf_inversion_observe(struct inversion *inversion,
                                  const struct inverse_listener *listener) MUST_USE;
 enum status mf_inversion_advance(struct inversion *inversion, struct inverse_step *step) MUST_USE;
 
-/// Sample the present potential until the samples have settled and their noise is small against
-/// their error, and assess them. Samples that have cost 200 times as much as the first ones and
-/// have not settled, or that have not, are too far off to be kept and get worse, are left
-/// `unsettled`. Fails: NO_MEMORY, INTERRUPTED. Tested: test_inversion_doubling,
-/// test_inversion_settled.
+/// Sample the present potential until their noise, and what of them has not settled, is small
+/// against their error, and assess them. Samples in equilibrium count for all; those that are far
+/// from their targets and not from equilibrium, for a step. They are left `useless` where they have
+/// cost 200 times as much as the first ones, or get farther and cannot be kept. Fails: NO_MEMORY,
+/// INTERRUPTED. Tested: test_inversion_doubling, test_inversion_settled.
 enum status mf_inversion_sample(struct inversion *inversion,
                                 const struct inverse_listener *listener) MUST_USE;
+
+/// Whether samples that have not settled do for a step: all that is asked for is so far off that
+/// what has not settled is a third of it at most. A potential that is far off may freeze a liquid
+/// or tear it, which takes for ever and tells no more of the way to the target. Tested:
+/// test_inversion_settled.
+bool mf_inversion_tells_way(const struct inversion *inversion);
 
 /// Distances from all targets together, each in units of the noise of the present samples.
 double mf_inversion_count_noises(const struct inversion *inversion,

@@ -21,6 +21,11 @@ void mf_inversion_pressure_measure(struct inversion *inversion) {
     inversion->pressure.error = virial.error / unit;
 }
 
+double mf_inversion_pressure_shift(const struct inversion *inversion) {
+    return mf_inversion_settled_shift(&inversion->replicas, inversion->bins + SAMPLER_VIRIAL) /
+           virial_unit(inversion);
+}
+
 /// Σ_a S_a ∂(−r_a U'(r_a))/∂U_b of bond lengths, U' being a central difference: what the value of
 /// a bin does to the virial of the bins beside it.
 static double bond_virial(const struct inversion *inversion, size_t b) {

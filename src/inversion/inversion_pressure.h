@@ -15,6 +15,9 @@ struct inversion_pressure {
 /// makes of as many independent ones as g(r) sees, if that is more: few chains may agree by chance.
 void mf_inversion_pressure_measure(struct inversion *inversion);
 
+/// How far from that of equilibrium the pressure may be, see mf_inversion_settled_shift.
+double mf_inversion_pressure_shift(const struct inversion *inversion);
+
 /// Slopes, from how the virial W = −Σ r Φ'(r) over all pairs depends on the potential itself, and
 /// on the pairs that it makes:
 ///   ∂P/∂Φ_b = [⟨∂W/∂Φ_b⟩ − cov(W, S_b)/k_B T]/(dV).

@@ -4,6 +4,7 @@
 #include "inversion/inversion.h"
 
 #include <math.h>
+#include <string.h>
 
 /// Samples are doubled until their noise is this share of the error, or as small as was asked for.
 static const double noise_share = 1.0 / 3;
@@ -19,9 +20,8 @@ enum { MOST_DOUBLINGS = 7 };
 enum { ANEW_EQUILIBRATION = 5 };
 
 /// Sweeps of one potential, over those of its first samples, after which it is given up if it has
-/// not settled; and a start beside which there is another. Lennard-Jones at 1.5 ε condenses under
-/// the hypernetted chain's start, and had taken 270 times the first samples to do so.
-enum { MOST_TIMES = 200, MOST_TIMES_OF_START = 10 };
+/// not settled.
+enum { MOST_TIMES = 200 };
 
 /// The sweeps and least samples of an iteration, with so many times the least equilibration and
 /// spacing.
@@ -35,16 +35,22 @@ static struct replicas_plan plan(const struct inversion *inversion, int64_t stre
                                   .every = p->every * stretch};
 }
 
+/// What of a section is off is known well enough for a step if this part of it is uncertain.
+/// What is out of reach, or noise itself, is no error that hides the noise.
+static double find_share(const struct inversion *inversion,
+                         const struct inversion_section *section) {
+    const bool reached = inversion->progress.miss < gradient_of_noise;
+    return reached || inversion_section_agrees(section) ? 0 : noise_share;
+}
+
 /// The error that is farthest from what the samples are to make it: as small as was asked for, or a
 /// small part of what is off.
 static struct inverse_doubling find_noisiest(const struct inversion *inversion) {
-    // What is out of reach, or noise itself, is no error that hides the noise.
-    const bool reached = inversion->progress.miss < gradient_of_noise;
     struct inverse_doubling noisiest = mf_inversion_kirkwood_buff_noise(inversion);
     for (int k = 0; k < inversion->sections; k++) {
         const struct inversion_section *section = &inversion->section[k];
-        const double share = reached || inversion_section_agrees(section) ? 0 : noise_share;
-        const double wanted = fmax(section->precision, share * section->rms);
+        const double wanted =
+            fmax(section->precision, find_share(inversion, section) * section->rms);
         if (section->own_noise * noisiest.wanted > noisiest.noise * wanted)
             noisiest = (struct inverse_doubling){
                 .noise = section->own_noise, .wanted = wanted, .unit = ""};
@@ -81,26 +87,50 @@ bool mf_inversion_is_near_enough(const struct inversion *inversion) {
 struct sampling {
     struct replicas_plan plan;
     struct inverse_progress progress;
-    uint64_t sweeps; ///< of each replica
-    int failures;    ///< times that something drifted
-    double off;      ///< how far the samples before were from their targets, in noises
+    uint64_t sweeps;                        ///< of each replica
+    int failures;                           ///< times that something drifted
+    struct target_distance before[TARGETS]; ///< of the samples before, if there were any
 };
 
+/// Whether the section is so far from its targets that what has not settled hardly changes the way
+/// to them.
+static bool tells_way(const struct inversion *inversion, const struct inversion_section *section) {
+    double squares = 0;
+    for (size_t a = section->known; a < section->known + section->known_count; a++) {
+        const size_t bin = inversion->grid.known_bin[a];
+        squares +=
+            pow(mf_inversion_settled_shift(&inversion->replicas, bin) / inversion->unit[bin], 2);
+    }
+    return sqrt(squares / (double)section->bins) <=
+           section->peak * section->rms * find_share(inversion, section);
+}
+
+bool mf_inversion_tells_way(const struct inversion *inversion) {
+    const struct targets *targets = &inversion->problem->targets;
+    for (int k = 0; k < inversion->sections; k++)
+        if (!tells_way(inversion, &inversion->section[k]))
+            return false;
+    return !targets_ask(targets, TARGET_PRESSURE) ||
+           mf_inversion_pressure_shift(inversion) <=
+               noise_share *
+                   fabs(inversion->pressure.value - *targets->target[TARGET_PRESSURE].value);
+}
+
 /// Whether samples that have not settled are to be left: they have cost enough, are those of a
-/// start that is left anyway, or are too far off to be kept and get farther. What tears a liquid,
-/// or freezes it, takes for ever to do so.
+/// start that is left anyway, or get farther from the targets though they are too far off to be
+/// kept, or those of a start beside which there is another.
 static bool is_hopeless(struct inversion *inversion, struct sampling *sampling) {
     const struct replicas_plan least = plan(inversion, 1);
     const uint64_t first = replicas_plan_sweeps(&least) + (uint64_t)least.equilibration;
-    const double off = mf_inversion_count_noises(inversion, inversion->distance);
-    const bool worse = inversion->basis.count == 0 && !mf_inversion_is_near_enough(inversion) &&
-                       off > sampling->off;
-    mf_inversion_pressure_measure(inversion);
+    const bool farther = sampling->before[TARGET_RDF].count > 0 &&
+                         mf_inversion_count_noises(inversion, inversion->distance) >
+                             mf_inversion_count_noises(inversion, sampling->before);
+    const bool worse =
+        inversion->basis.count == 0 && farther &&
+        (mf_inversion_start_has_other(inversion) || !mf_inversion_is_near_enough(inversion));
     const bool poor = mf_inversion_start_is_poor(inversion, true);
-    const uint64_t most =
-        first * (mf_inversion_start_has_other(inversion) ? MOST_TIMES_OF_START : MOST_TIMES);
-    inversion->progress.unsettled.for_long = sampling->sweeps > most;
-    sampling->off = off;
+    inversion->progress.unsettled.for_long = sampling->sweeps > MOST_TIMES * first;
+    memcpy(sampling->before, inversion->distance, sizeof sampling->before);
     return inversion->progress.unsettled.for_long || worse || poor;
 }
 
@@ -118,6 +148,7 @@ static enum status take(struct inversion *inversion, struct sampling *sampling, 
         sampling->sweeps += replicas_plan_sweeps(now) + (uint64_t)now->equilibration;
     }
     mf_inversion_assess(inversion);
+    mf_inversion_pressure_measure(inversion);
     return mf_inversion_settled_judge(inversion, &inversion->progress.unsettled);
 }
 
@@ -144,21 +175,22 @@ enum status mf_inversion_sample(struct inversion *inversion,
     const uint64_t replicas = (uint64_t)inversion->settings.common.replicas;
     struct sampling sampling = {
         .plan = plan(inversion, state->stretch),
-        .off = INFINITY,
         .progress = {.iteration = state->iteration,
                      .iterations = (uint32_t)inversion->settings.common.iterations,
                      .best = mf_targets_error(&inversion->problem->targets, state->best),
                      .least = NAN,
                      .mean = NAN}};
     inversion->stretch = state->stretch;
+    unsettled->for_long = false;
     TRY(mf_inversion_tabulate(inversion));
     state->evaluations += replicas;
     TRY(take(inversion, &sampling, false, listener));
     sampling.progress.done = sampling.progress.total = replicas;
     for (;;) {
-        if (unsettled->found && is_hopeless(inversion, &sampling))
+        const bool waits = unsettled->found && !mf_inversion_tells_way(inversion);
+        if (waits && is_hopeless(inversion, &sampling))
             break;
-        if (unsettled->found)
+        if (waits)
             TRY(settle(inversion, &sampling, listener));
         else if (needs_samples(inversion, &sampling.progress.doubling))
             TRY(take(inversion, &sampling, true, listener));
@@ -167,6 +199,7 @@ enum status mf_inversion_sample(struct inversion *inversion,
     }
     unsettled->sweeps = sampling.sweeps;
     inversion->unsettled = unsettled->found;
+    inversion->useless = unsettled->found && !mf_inversion_tells_way(inversion);
     state->sweeps += replicas * sampling.sweeps;
     return STATUS_OK;
 }

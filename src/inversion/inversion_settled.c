@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "inversion/inversion_settled.h"
 
+#include "base/statistics.h"
 #include "inversion/inversion.h"
 
 #include <math.h>
@@ -65,6 +66,23 @@ static enum status test(const struct inversion *inversion, const struct quantity
 done:
     mf_memory_free(weight);
     return status;
+}
+
+double mf_inversion_settled_shift(const struct replicas *replicas, size_t number) {
+    struct running_mean chains = {0};
+    double along = 0, squares = 0;
+    for (size_t k = 0; k < replicas->count; k++) {
+        double sum = 0;
+        for (size_t b = 0; b < REPLICAS_BLOCKS; b++) {
+            const double value = replicas->member[k].block[b * replicas->numbers + number];
+            const double time = ((double)b + 0.5) / REPLICAS_BLOCKS - 0.5;
+            along += time * value;
+            squares += time * time;
+            sum += value;
+        }
+        mf_statistics_add(&chains, sum / REPLICAS_BLOCKS);
+    }
+    return hypot(along / squares, mf_statistics_standard_error(&chains));
 }
 
 enum status mf_inversion_settled_judge(const struct inversion *inversion,

@@ -13,6 +13,7 @@
 #include <stdint.h>
 
 struct inversion;
+struct replicas;
 
 enum { INVERSION_QUANTITY_SIZE = 32 };
 
@@ -25,6 +26,11 @@ struct inversion_unsettled {
     uint64_t sweeps; ///< of each replica since the potential was changed
     bool for_long;   ///< they are as many as one potential may cost
 };
+
+/// How far from that of equilibrium the mean of a number of the samples may be: the root of the
+/// squares of its way along them, which it may go once more, and of its error by the scatter of the
+/// replicas, each of which may remember its begin. Tested: test_inversion_settled.
+double mf_inversion_settled_shift(const struct replicas *replicas, size_t number);
 
 /// Judge the present samples. Of samples in equilibrium a thousandth is found not to be. Fails:
 /// NO_MEMORY. Tested: test_inversion_settled.

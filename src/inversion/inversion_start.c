@@ -134,13 +134,14 @@ static double find_structure(const struct inversion *inversion) {
 }
 
 bool mf_inversion_start_has_other(const struct inversion *inversion) {
-    return is_from_hnc(inversion) && inversion->progress.iteration <= 1;
+    const struct inversion_progress *progress = &inversion->progress;
+    return is_from_hnc(inversion) && !progress->again && progress->iteration <= 1;
 }
 
 bool mf_inversion_start_is_poor(const struct inversion *inversion, bool kept) {
     if (!mf_inversion_start_has_other(inversion))
         return false;
-    if (inversion->progress.iteration == 1 || inversion->unsettled)
+    if (inversion->progress.iteration == 1 || inversion->useless)
         return !kept;
     return inversion->distance[TARGET_RDF].rms > poor * find_structure(inversion) &&
            inversion->pressure.value < 0;

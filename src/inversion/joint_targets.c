@@ -112,9 +112,10 @@ void mf_joint_targets_join(const struct joint *joint) {
         misfit += joint->state[s].misfit / (double)joint->states;
         if (joint->state[s].stretch > leader->stretch)
             leader->stretch = joint->state[s].stretch;
-        if (leader->unsettled || !joint->state[s].unsettled)
+        leader->unsettled = leader->unsettled || joint->state[s].unsettled;
+        if (leader->useless || !joint->state[s].useless)
             continue;
-        leader->unsettled = true;
+        leader->useless = true;
         leader->progress.unsettled = joint->state[s].progress.unsettled;
     }
     leader->disagreement = disagreement;

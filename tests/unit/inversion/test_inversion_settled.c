@@ -87,6 +87,63 @@ static void test_what_has_not_settled_is_named(void **state) {
     gsl_rng_free(rng);
 }
 
+/// A change of a number along the samples is how far it may be off, and so is the standard error of
+/// its mean by replicas of which one is elsewhere, 12/8; the noise of both is 0.6 and 0.2.
+static void test_shift_is_the_way_along_the_samples_and_the_scatter_of_replicas(void **state) {
+    (void)state;
+    static struct made made;
+    gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
+    make(&made, rng, 3, 12);
+    assert_true(fabs(mf_inversion_settled_shift(&made.inversion.replicas, 3) - 12) < 2);
+    assert_true(mf_inversion_settled_shift(&made.inversion.replicas, 4) < 3);
+    for (size_t b = 0; b < REPLICAS_BLOCKS; b++)
+        made.block[5][b * NUMBERS + 4] += 12;
+    const double apart = mf_inversion_settled_shift(&made.inversion.replicas, 4);
+    assert_true(apart > 1 && apart < 3);
+    gsl_rng_free(rng);
+}
+
+/// One of twelve bins changes by 12 along the samples: rms 3.5, and 0.6 by noise.
+static void
+test_samples_tell_the_way_to_a_target_that_is_far_from_what_has_not_settled(void **state) {
+    (void)state;
+    static struct made made;
+    double unit[BINS], wanted = 0;
+    struct inverse_problem problem = {.targets.target[TARGET_RDF].count = BINS};
+    gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
+    make(&made, rng, 3, 12);
+    struct inversion *inversion = &made.inversion;
+    struct inversion_section *section = &inversion->section[0];
+    inversion->problem = &problem;
+    inversion->unit = unit;
+    inversion->progress.miss = INFINITY;
+    inversion->box = (struct box){3, {1, 1, 1}};
+    for (size_t n = 0; n < BINS; n++)
+        unit[n] = 1;
+    section->bins = BINS;
+    section->peak = 1;
+    section->misfit = 2;
+    section->probable = 1;
+    section->rms = 8;
+    assert_false(mf_inversion_tells_way(inversion));
+    section->rms = 14;
+    assert_true(mf_inversion_tells_way(inversion));
+    section->misfit = 1; // agreement of what may be elsewhere tells nothing
+    assert_false(mf_inversion_tells_way(inversion));
+    section->misfit = 2;
+    // The pressure changes by 12/(3 V).
+    for (size_t k = 0; k < REPLICAS; k++)
+        for (size_t b = 0; b < REPLICAS_BLOCKS; b++)
+            made.block[k][b * NUMBERS + BINS + SAMPLER_VIRIAL] +=
+                12.0 * (double)b / REPLICAS_BLOCKS;
+    problem.targets.target[TARGET_PRESSURE] = (struct target){.count = 1, .value = &wanted};
+    inversion->pressure.value = -8;
+    assert_false(mf_inversion_tells_way(inversion));
+    inversion->pressure.value = -16;
+    assert_true(mf_inversion_tells_way(inversion));
+    gsl_rng_free(rng);
+}
+
 // Samples of an iteration -------------------------------------------------------------------------
 
 enum { POINTS = 12, SOFT_REPLICAS = 8, FIRST = 8, MOST = 200 * FIRST };
@@ -150,6 +207,9 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_settled_samples_are_hardly_ever_found_not_to_be),
         cmocka_unit_test(test_what_has_not_settled_is_named),
+        cmocka_unit_test(test_shift_is_the_way_along_the_samples_and_the_scatter_of_replicas),
+        cmocka_unit_test(
+            test_samples_tell_the_way_to_a_target_that_is_far_from_what_has_not_settled),
         cmocka_unit_test(test_samples_are_equilibration_until_they_have_settled),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -117,6 +117,9 @@ static void test_inversion_start_is_poor_when_g_is_far_off_under_tension(void **
     made.inversion.progress.iteration = 1;
     assert_false(mf_inversion_start_is_poor(&made.inversion, true));
     assert_true(mf_inversion_start_is_poor(&made.inversion, false));
+    made.inversion.progress.again = true; // it is the other one
+    assert_false(mf_inversion_start_is_poor(&made.inversion, false));
+    made.inversion.progress.again = false;
     made.inversion.progress.iteration = 2;
     assert_false(mf_inversion_start_is_poor(&made.inversion, false));
     made.inversion.progress.iteration = 0;
