@@ -143,7 +143,7 @@ static enum status judge(struct inversion *inversion, bool *kept) {
         return STATUS_OK;
     }
     if (!start)
-        progress->damping = fmin(1, 1.5 * progress->damping);
+        mf_inversion_relax(inversion);
     progress->stretch = inversion->stretch > 1 ? inversion->stretch / 2 : 1;
     return keep(inversion);
 }

@@ -14,6 +14,25 @@ static const double largest_change = 1;
 /// 26,000 there.
 static const double largest_unknown_change = 3;
 
+void mf_inversion_relax(struct inversion *inversion) {
+    const struct potential_grid *grid = &inversion->grid;
+    double *damping = &inversion->progress.damping;
+    double way = 0, squares = 0, left = 0;
+    for (size_t a = 0; a < grid->known; a++) {
+        const size_t point = grid->known_point[a];
+        const double last = inversion->best_step[point];
+        if (!grid->well_known[a])
+            continue;
+        way += last * (inversion->phi[point] - inversion->best[point]);
+        left += last * inversion->step[point];
+        squares += last * last;
+    }
+    *damping = fmin(1, 1.5 * *damping);
+    if (left < 0 && !mf_inversion_is_near(inversion) &&
+        inversion->has_other == inversion->progress.best_other)
+        *damping = fmin(*damping, way / (squares - left));
+}
+
 void mf_inversion_take_step(struct inversion *inversion) {
     const struct potential_grid *grid = &inversion->grid;
     const bool whole = inversion->basis.count > 0;

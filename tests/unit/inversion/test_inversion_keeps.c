@@ -74,6 +74,34 @@ static void test_inversion_keeps_by_all_targets_since_its_start(void **state) {
     assert_false(keeps(&inversion, 0.6, 0.01));
 }
 
+/// Steps −2.2 Φ towards 0 swing about it and grow; the share that leads there is 1/2.2. Steps of
+/// 0.4 of the way need no shorter ones.
+static void test_inversion_shortens_steps_that_go_too_far(void **state) {
+    (void)state;
+    static const double slopes[] = {2.2, 0.4};
+    for (int k = 0; k < 2; k++) {
+        size_t point = 0;
+        bool well_known = true;
+        const double slope = slopes[k];
+        double best = 0.2, best_step = -slope * best, phi = best + best_step, step = -slope * phi;
+        struct inversion inversion = {
+            .grid = {.known = 1, .known_point = &point, .well_known = &well_known},
+            .sections = 1,
+            .section[0] = {.misfit = 100, .probable = 2},
+            .phi = &phi,
+            .step = &step,
+            .best = &best,
+            .best_step = &best_step,
+            .progress = {.damping = 1}};
+        mf_inversion_relax(&inversion);
+        assert_close(inversion.progress.damping, k == 0 ? 1 / slope : 1, 1e-12);
+        inversion.section[0].misfit = 1; // noise points anywhere
+        inversion.progress.damping = 0.5;
+        mf_inversion_relax(&inversion);
+        assert_close(inversion.progress.damping, 0.75, 1e-12);
+    }
+}
+
 /// An inversion of one bin near its target, with 50 samples.
 struct one_bin {
     size_t bin, point;
@@ -233,6 +261,7 @@ int main(void) {
         cmocka_unit_test(test_inversion_pool_is_moved_by_the_newest_response),
         cmocka_unit_test(test_inversion_pool_of_coefficients_goes_by_their_gradient),
         cmocka_unit_test(test_inversion_ends_with_the_step_that_is_left_or_the_mean),
+        cmocka_unit_test(test_inversion_shortens_steps_that_go_too_far),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
