@@ -22,8 +22,9 @@ void mf_inversion_pressure_measure(struct inversion *inversion) {
 }
 
 double mf_inversion_pressure_shift(const struct inversion *inversion) {
-    return mf_inversion_settled_shift(&inversion->replicas, inversion->bins + SAMPLER_VIRIAL) /
-           virial_unit(inversion);
+    const double square =
+        mf_inversion_settled_shift(&inversion->replicas, inversion->bins + SAMPLER_VIRIAL);
+    return sqrt(fmax(square, 0)) / virial_unit(inversion);
 }
 
 /// Σ_a S_a ∂(−r_a U'(r_a))/∂U_b of bond lengths, U' being a central difference: what the value of

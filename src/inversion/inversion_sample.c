@@ -98,10 +98,10 @@ static bool tells_way(const struct inversion *inversion, const struct inversion_
     double squares = 0;
     for (size_t a = section->known; a < section->known + section->known_count; a++) {
         const size_t bin = inversion->grid.known_bin[a];
-        squares +=
-            pow(mf_inversion_settled_shift(&inversion->replicas, bin) / inversion->unit[bin], 2);
+        squares += mf_inversion_settled_shift(&inversion->replicas, bin) /
+                   (inversion->unit[bin] * inversion->unit[bin]);
     }
-    return sqrt(squares / (double)section->bins) <=
+    return sqrt(fmax(squares, 0) / (double)section->bins) <
            section->peak * section->rms * find_share(inversion, section);
 }
 
@@ -111,7 +111,7 @@ bool mf_inversion_tells_way(const struct inversion *inversion) {
         if (!tells_way(inversion, &inversion->section[k]))
             return false;
     return !targets_ask(targets, TARGET_PRESSURE) ||
-           mf_inversion_pressure_shift(inversion) <=
+           mf_inversion_pressure_shift(inversion) <
                noise_share *
                    fabs(inversion->pressure.value - *targets->target[TARGET_PRESSURE].value);
 }

@@ -13,6 +13,14 @@ static const double false_alarm = 1e-3;
 /// Room for what is told apart: sections, and what stands behind the bins.
 enum { TESTS = 2, MOST_QUANTITIES = INVERSION_MOST_SECTIONS + SAMPLER_SUMS };
 
+/// Σ t² of the middles of the blocks, in parts of the samples from their middle.
+static const double times_squared =
+    (REPLICAS_BLOCKS * REPLICAS_BLOCKS - 1) / (12.0 * REPLICAS_BLOCKS);
+
+static double time_of(int block) {
+    return (block + 0.5) / REPLICAS_BLOCKS - 0.5;
+}
+
 static const char *const sums[SAMPLER_SUMS] = {[SAMPLER_VIRIAL] = "the pressure",
                                                [SAMPLER_ENERGY] = "the energy",
                                                [SAMPLER_GYRATION] = "R_g^2 of the molecules",
@@ -68,21 +76,32 @@ done:
     return status;
 }
 
+/// The line through the blocks of a replica: returns the squares of what they are off it.
+static double fit_line(const double *block, size_t numbers, double *mean, double *slope) {
+    double squares = 0;
+    *mean = *slope = 0;
+    for (int b = 0; b < REPLICAS_BLOCKS; b++) {
+        *mean += block[b * (ptrdiff_t)numbers] / REPLICAS_BLOCKS;
+        *slope += block[b * (ptrdiff_t)numbers] * time_of(b) / times_squared;
+    }
+    for (int b = 0; b < REPLICAS_BLOCKS; b++)
+        squares += pow(block[b * (ptrdiff_t)numbers] - *mean - *slope * time_of(b), 2);
+    return squares;
+}
+
 double mf_inversion_settled_shift(const struct replicas *replicas, size_t number) {
     struct running_mean chains = {0};
-    double along = 0, squares = 0;
+    const double count = (double)replicas->count;
+    double way = 0, squares = 0;
     for (size_t k = 0; k < replicas->count; k++) {
-        double sum = 0;
-        for (size_t b = 0; b < REPLICAS_BLOCKS; b++) {
-            const double value = replicas->member[k].block[b * replicas->numbers + number];
-            const double time = ((double)b + 0.5) / REPLICAS_BLOCKS - 0.5;
-            along += time * value;
-            squares += time * time;
-            sum += value;
-        }
-        mf_statistics_add(&chains, sum / REPLICAS_BLOCKS);
+        double mean, slope;
+        squares += fit_line(replicas->member[k].block + number, replicas->numbers, &mean, &slope);
+        mf_statistics_add(&chains, mean);
+        way += slope / count;
     }
-    return hypot(along / squares, mf_statistics_standard_error(&chains));
+    const double noise = squares / (count * (REPLICAS_BLOCKS - 2));
+    return way * way + pow(mf_statistics_standard_error(&chains), 2) -
+           noise / count * (1 / times_squared + 1.0 / REPLICAS_BLOCKS);
 }
 
 enum status mf_inversion_settled_judge(const struct inversion *inversion,

@@ -27,9 +27,10 @@ struct inversion_unsettled {
     bool for_long;   ///< they are as many as one potential may cost
 };
 
-/// How far from that of equilibrium the mean of a number of the samples may be: the root of the
-/// squares of its way along them, which it may go once more, and of its error by the scatter of the
-/// replicas, each of which may remember its begin. Tested: test_inversion_settled.
+/// Square of how far from that of equilibrium the mean of a number of the samples may be: of its
+/// way along them, which it may go once more, and of its error by the scatter of the replicas, each
+/// of which may remember its begin, less what the noise of the blocks makes of both: 0 on average
+/// in equilibrium. Tested: test_inversion_settled.
 double mf_inversion_settled_shift(const struct replicas *replicas, size_t number);
 
 /// Judge the present samples. Of samples in equilibrium a thousandth is found not to be. Fails:
