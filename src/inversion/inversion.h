@@ -253,10 +253,11 @@ struct imc_system mf_inversion_system(const struct inversion *inversion);
 /// NO_MEMORY.
 enum status mf_inversion_restrict(struct inversion *inversion) MUST_USE;
 
-/// Lengthen the steps after one that is kept, by half, or shorten them if it went too far: if it
-/// was a share s of the step f, and f' from there is opposite, so much that both lead to one place,
-/// s |f|²/(|f|² − f·f'). B. M. Irons and R. C. Tuck, Int. J. Numer. Methods Eng. 1, 275 (1969).
-/// Near the target, where f' is noise, it is not asked. Tested: test_inversion_keeps.
+/// Lengthen the steps after one that is kept, by half, or shorten them if it went much too far: if
+/// it was a share s of the step f, and f' from there leads back half of f or more, so much that
+/// both lead to one place, s |f|²/(|f|² − f·f'). B. M. Irons and R. C. Tuck, Int. J. Numer. Methods
+/// Eng. 1, 275 (1969). Near the target, where f' is noise, it is not asked. Tested:
+/// test_inversion_keeps.
 void mf_inversion_relax(struct inversion *inversion);
 
 /// phi = best + damping · best_step, bounded as a whole where the target is well known, and bin by

@@ -14,6 +14,9 @@ static const double largest_change = 1;
 /// 26,000 there.
 static const double largest_unknown_change = 3;
 
+/// Part of the last step, back, that still swings in by itself: each step halves what is left.
+static const double most_left = 0.5;
+
 void mf_inversion_relax(struct inversion *inversion) {
     const struct potential_grid *grid = &inversion->grid;
     double *damping = &inversion->progress.damping;
@@ -28,7 +31,7 @@ void mf_inversion_relax(struct inversion *inversion) {
         squares += last * last;
     }
     *damping = fmin(1, 1.5 * *damping);
-    if (left < 0 && !mf_inversion_is_near(inversion) &&
+    if (left < -most_left * squares && !mf_inversion_is_near(inversion) &&
         inversion->has_other == inversion->progress.best_other)
         *damping = fmin(*damping, way / (squares - left));
 }

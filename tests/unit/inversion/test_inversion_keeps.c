@@ -75,11 +75,11 @@ static void test_inversion_keeps_by_all_targets_since_its_start(void **state) {
 }
 
 /// Steps −2.2 Φ towards 0 swing about it and grow; the share that leads there is 1/2.2. Steps of
-/// 0.4 of the way need no shorter ones.
+/// 0.4 of the way need no shorter ones, nor do those of 1.4, which leave two fifths.
 static void test_inversion_shortens_steps_that_go_too_far(void **state) {
     (void)state;
-    static const double slopes[] = {2.2, 0.4};
-    for (int k = 0; k < 2; k++) {
+    static const double slopes[] = {2.2, 0.4, 1.4};
+    for (int k = 0; k < 3; k++) {
         size_t point = 0;
         bool well_known = true;
         const double slope = slopes[k];
