@@ -46,11 +46,8 @@ static bool newton_helped(const struct inversion *inversion) {
 }
 
 /// Inside the basin of inverse Monte Carlo: near the noise, where its response holds, or where its
-/// steps converge. Of groups C tells no more than the careful step until the targets are near, and
-/// of samples that have not settled it is not that of equilibrium.
+/// steps converge. Of groups C tells no more than the careful step until the targets are near.
 static bool in_basin(const struct inversion *inversion) {
-    if (inversion->unsettled)
-        return false;
     const bool first = isinf(inversion->progress.best[TARGET_RDF].rms);
     return mf_inversion_is_near(inversion) || (!first && inversion->coarse.count == 0 &&
                                                (newton_helped(inversion) || predicts(inversion)));

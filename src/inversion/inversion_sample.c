@@ -107,6 +107,8 @@ static bool tells_way(const struct inversion *inversion, const struct inversion_
 
 bool mf_inversion_tells_way(const struct inversion *inversion) {
     const struct targets *targets = &inversion->problem->targets;
+    if (inversion->basis.count > 0) // what is off may be out of reach of the gradient
+        return false;
     for (int k = 0; k < inversion->sections; k++)
         if (!tells_way(inversion, &inversion->section[k]))
             return false;

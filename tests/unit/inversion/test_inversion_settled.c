@@ -138,6 +138,9 @@ test_samples_tell_the_way_to_a_target_that_is_far_from_what_has_not_settled(void
     assert_false(mf_inversion_tells_way(inversion));
     section->rms = 14;
     assert_true(mf_inversion_tells_way(inversion));
+    inversion->basis.count = 1; // g may be off for want of coefficients
+    assert_false(mf_inversion_tells_way(inversion));
+    inversion->basis.count = 0;
     section->misfit = 1; // agreement of what may be elsewhere tells nothing
     assert_false(mf_inversion_tells_way(inversion));
     section->misfit = 2;
