@@ -83,6 +83,13 @@ struct inversion_factor {
     double missing, prior;
 };
 
+/// What iterations running that met all targets still asked for, of the ramp and of the pressure.
+enum { INVERSION_MOST_WAYS = 8 };
+struct inversion_ways {
+    uint32_t met; ///< such iterations; the last of them are kept
+    double ramp[INVERSION_MOST_WAYS], pressure[INVERSION_MOST_WAYS];
+};
+
 enum { INVERSION_MOST_SECTIONS = 1 + INVERSE_MOST_BONDED };
 
 /// Whether the samples meet its targets but for noise.
@@ -174,7 +181,7 @@ struct inversion {
         double pool;            ///< samples that the pooled excess is worth, 0 far off
         double least_decrement; ///< of what was kept, by the gradient
         double miss;            ///< of the last gradient, in its noise
-        uint32_t agreed;        ///< iterations running that agreed with all targets
+        struct inversion_ways ways;
         double first_error, second_error; ///< of g, in the first two iterations from a start
     } progress;
 };
@@ -340,11 +347,12 @@ const struct inversion_section *mf_inversion_worst(const struct inversion *inver
 bool mf_inversion_is_near(const struct inversion *inversion);
 
 /// Whether this iteration, whose potential was kept or not, ends the fit: its samples are as exact
-/// as was asked for, agree with all targets, and leave no way that g hardly sees. In fits with
-/// groups that must settle two iterations running say so. The way is short from one side, since
-/// each step goes a part of it, and an iteration that finds it over by chance would end there, and
-/// take the same chance into the last step: the pressures of 16 twins were 0.6 errors too low.
-/// Iterations that are not kept, or whose samples have not settled, do not count. Tested:
+/// as was asked for, agree with all targets, and leave no way that g hardly sees. The way has the
+/// noise of the samples: the mean of those of the last iterations that met the targets may be half
+/// of its error. In fits with groups it is that of two or more, since each step goes a part of its
+/// way, from one side, and an iteration that finds it over by chance would end there and take the
+/// same chance into the last step: the pressures of 16 twins were 0.6 errors too low. Iterations
+/// that are not kept, or whose samples have not settled, do not count. Tested:
 /// test_inversion_converged.
 bool mf_inversion_has_converged(struct inversion *inversion, bool kept);
 

@@ -9,9 +9,9 @@
 /// settled.
 static const double settled_way = 0.5;
 
-/// Iterations running, of those that are kept, that must agree where C is that of few samples, so
-/// that a step goes a part of its way.
-enum { AGREEMENT_WITH_GROUPS = 2 };
+/// Iterations running, of those that are kept, that must meet the targets where C is that of few
+/// samples, so that a step goes a part of its way.
+enum { LEAST_MET_WITH_GROUPS = 2 };
 
 /// Iterations near the target whose mean is worth more than the last: of fewer the first ones lie
 /// on the side that the fit came from. As many samples, less what rounding may take.
@@ -90,19 +90,35 @@ static bool must_settle(const struct inversion *inversion) {
            !targets_ask(&inversion->problem->targets, TARGET_PRESSURE);
 }
 
-static bool has_settled(const struct inversion *inversion) {
+/// Whether the ways of the last iterations that met the targets, `least` of them or more, cancel
+/// but for a part of their errors: each one has the noise of its samples, and what goes on goes on
+/// in one direction.
+static bool has_settled(const struct inversion *inversion, uint32_t least) {
     const struct inversion_band *band = &inversion->band;
-    return fabs(band->ramp.way) <= settled_way * band->ramp.error &&
-           fabs(band->farthest.way) <= settled_way * band->farthest.open;
+    const struct inversion_ways *ways = &inversion->progress.ways;
+    double ramp = 0, pressure = 0;
+    for (uint32_t k = 1; k <= ways->met && k <= INVERSION_MOST_WAYS; k++) {
+        const uint32_t place = (ways->met - k) % INVERSION_MOST_WAYS;
+        ramp += ways->ramp[place];
+        pressure += ways->pressure[place];
+        if (k >= least && fabs(ramp) <= k * settled_way * band->ramp.error &&
+            fabs(pressure) <= k * settled_way * band->farthest.open)
+            return true;
+    }
+    return false;
 }
 
 bool mf_inversion_has_converged(struct inversion *inversion, bool kept) {
-    uint32_t *agreed = &inversion->progress.agreed;
-    const bool with_groups = must_settle(inversion) && inversion->grid.groups > 0;
+    struct inversion_ways *ways = &inversion->progress.ways;
     if (!kept) // it goes back to the one before
         return false;
-    const bool agrees = inversion->progress.best_precise && meets_targets(inversion) &&
-                        (!must_settle(inversion) || has_settled(inversion));
-    *agreed = agrees ? *agreed + 1 : 0;
-    return *agreed >= (with_groups ? AGREEMENT_WITH_GROUPS : 1);
+    if (!inversion->progress.best_precise || !meets_targets(inversion)) {
+        ways->met = 0;
+        return false;
+    }
+    ways->ramp[ways->met % INVERSION_MOST_WAYS] = inversion->band.ramp.way;
+    ways->pressure[ways->met % INVERSION_MOST_WAYS] = inversion->band.farthest.way;
+    ways->met++;
+    return !must_settle(inversion) ||
+           has_settled(inversion, inversion->grid.groups > 0 ? LEAST_MET_WITH_GROUPS : 1);
 }
