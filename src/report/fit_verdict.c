@@ -30,9 +30,13 @@ static void find_cause(const struct verification *verification, double temperatu
     else if (found->pressure < 0)
         known = "a liquid under tension tears: g(r) leaves the pressure open, so give it as a "
                 "second target";
-    else if (verification->unsettled[0])
-        known = "it had not settled: set a longer \"verification.equilibration\"";
-    if (known)
+    if (known == NULL && verification->unsettled[0])
+        snprintf(cause, FIT_STEP_TEXT_SIZE,
+                 "it has not settled, %.150s: the liquid freezes, tears or condenses under this "
+                 "potential, of which another temperature, density or target is the way out, or it "
+                 "needs a longer \"verification.equilibration\"",
+                 verification->unsettled);
+    else if (known)
         snprintf(cause, FIT_STEP_TEXT_SIZE, "%s", known);
     else if (verification->sampled > 0 && verification->sampled != verification->particles)
         snprintf(cause, FIT_STEP_TEXT_SIZE,

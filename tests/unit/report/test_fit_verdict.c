@@ -93,7 +93,9 @@ static void test_fit_verdict_names_the_cause_when_g_is_off(void **state) {
     assert_says(&other, "longer \"equilibration\" of either");
     struct verification early = other;
     snprintf(early.unsettled, sizeof early.unsettled, "g(r) still changes");
-    assert_says(&early, "had not settled: set a longer \"verification.equilibration\"");
+    assert_says(&early,
+                "it has not settled, g(r) still changes: the liquid freezes, tears or condenses");
+    assert_says(&early, "or it needs a longer \"verification.equilibration\"");
 }
 
 /// Beads that lose their energy to rounding are cold, and friction would hold them.
