@@ -100,6 +100,12 @@ static double known_or_0(double error) {
     return isfinite(error) ? error : 0;
 }
 
+/// The error that value k has in common with the others of its pair type: that of their factor.
+static double common_error(const struct targets *targets, const struct target *target, size_t k) {
+    return target->factor_error ? target->factor_error[k / targets->bins.count] * target->value[k]
+                                : 0;
+}
+
 /// How many times the variance of the verification is that of the fit's samples: with it the noise
 /// of all targets is the fit's.
 static double find_share(const struct targets *targets, const struct observed *observed,
@@ -108,7 +114,9 @@ static double find_share(const struct targets *targets, const struct observed *o
     for (int kind = 0; kind < TARGETS; kind++) {
         const struct target *const target = &targets->target[kind];
         for (size_t k = 0; k < target->count; k++) {
-            theirs[kind].noise += pow(known_or_0(target->error[k]), 2) / (double)target->count;
+            const double error =
+                hypot(known_or_0(target->error[k]), common_error(targets, target, k));
+            theirs[kind].noise += error * error / (double)target->count;
             own[kind].noise += pow(known_or_0(observed->error[kind][k]), 2) / (double)target->count;
         }
         theirs[kind].noise = sqrt(theirs[kind].noise);
@@ -137,6 +145,8 @@ static double target_variance(const struct target *target, size_t k, double valu
     return error > 0 ? error * error * fmax(1, value / counts) : 0;
 }
 
+/// χ² with the covariance σ_a² δ_ab + c_a c_b, of which c is the error that bins have in common:
+/// Σ x²/σ² − (Σ c x/σ²)²/(1 + Σ c²/σ²).
 static struct verify_agreement judge(const struct targets *targets,
                                      const struct verify_section *section,
                                      const struct observed *observed, double share) {
@@ -150,17 +160,20 @@ static struct verify_agreement judge(const struct targets *targets,
     struct verify_agreement agreement = {
         .distance = mf_targets_distance(&part, value + section->first, error + section->first),
         .probable = find_probable(&section->known)};
-    double sum = 0, bins = 0;
+    double sum = 0, bins = 0, along = 0, common = 0;
     for (size_t k = section->first; k < section->first + section->count; k++) {
         const double variance =
             target_variance(target, k, value[k]) + (1 + share) * pow(known_or_0(error[k]), 2);
         const double difference = value[k] - target->value[k];
         if (!isfinite(difference) || !(variance > 0))
             continue;
+        const double factor = common_error(targets, target, k);
         sum += difference * difference / variance;
+        along += factor * difference / variance;
+        common += factor * factor / variance;
         bins++;
     }
-    agreement.misfit = bins > 0 ? sum / bins : 0;
+    agreement.misfit = bins > 0 ? (sum - along * along / (1 + common)) / bins : 0;
     return agreement;
 }
 

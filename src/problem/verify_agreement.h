@@ -8,7 +8,8 @@
 /// The noise is that of the target, of the verification, and of the fit's own samples: the
 /// potential was found where *their* g is the target's, so that its own g misses it by their noise,
 /// however exactly that is simulated later. Both are configurations of one fluid, and so their
-/// noises are taken to be alike but for one factor.
+/// noises are taken to be alike but for one factor. The error of a target's factor, which its bins
+/// have in common, counts as such.
 #pragma once
 
 #include "base/statistics.h"

@@ -110,6 +110,34 @@ static void test_agreement_takes_the_error_of_the_counts_that_are_expected(void 
     assert_close(agreement[TARGET_RDF].misfit, pow(18 / sqrt(20), 2) / BINS, 1e-12);
 }
 
+/// A g that is too large by 1 % as a whole, of a factor that is known within 1 %: one deviation of
+/// one number, and by its bins alone 50 deviations. A wave as large is no factor.
+static void test_agreement_knows_that_the_factor_of_a_target_is_uncertain(void **state) {
+    static const double one_percent = 0.01;
+    struct case_of of;
+    struct verify_agreement agreement[TARGETS];
+    (void)state;
+    make(&of, 0.002, 0, 50);
+    of.targets.bins.count = BINS;
+    for (int k = 0; k < BINS; k++)
+        of.value[k] = 0.99;
+    assert_false(holds(&of, 0));
+    of.targets.target[TARGET_RDF].factor_error = &one_percent;
+    assert_true(holds(&of, 0));
+    mf_verify_agree(&of.targets, &of.sections, &of.observed, 0, agreement);
+    assert_close(agreement[TARGET_RDF].misfit * BINS, 1, 1e-3);
+    for (int k = 0; k < BINS; k += 2)
+        of.value[k] = 1.01;
+    assert_false(holds(&of, 0));
+    // The noise of a fit has that error, too, and nothing of it is its samples'.
+    make(&of, 1e-6, 1e-6, 50);
+    of.targets.bins.count = BINS;
+    of.targets.target[TARGET_RDF].factor_error = &one_percent;
+    for (int k = 0; k < BINS; k++)
+        of.value[k] += k % 2 ? 1e-5 : -1e-5;
+    assert_false(holds(&of, 0.01));
+}
+
 /// The farthest section is the one that is told, by its own measure.
 static void test_agreement_is_of_the_least_probable_section(void **state) {
     struct case_of of;
@@ -135,6 +163,7 @@ int main(void) {
         cmocka_unit_test(test_agreement_knows_the_noise_of_the_fit),
         cmocka_unit_test(test_agreement_is_wrong_in_one_of_a_thousand),
         cmocka_unit_test(test_agreement_takes_the_error_of_the_counts_that_are_expected),
+        cmocka_unit_test(test_agreement_knows_that_the_factor_of_a_target_is_uncertain),
         cmocka_unit_test(test_agreement_is_of_the_least_probable_section),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
