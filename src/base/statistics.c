@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/statistics.h"
 
+#include "base/memory.h"
+
 #include <math.h>
 #include <stdbool.h>
 
@@ -120,4 +122,51 @@ void mf_statistics_forget_errors(double *error, size_t count) {
         known = known || error[k] > 0;
     for (size_t k = 0; k < count && !known; k++)
         error[k] = NAN;
+}
+
+/// Of every number, about its mean and over its deviation; those that do not scatter are left out.
+/// Returns how many there are.
+static size_t standardise(const double *values, size_t n, size_t numbers, double *scaled) {
+    size_t found = 0;
+    for (size_t k = 0; k < numbers; k++) {
+        struct running_mean mean = {0};
+        for (size_t m = 0; m < n; m++)
+            mf_statistics_add(&mean, values[k * n + m]);
+        if (!(mean.squares > 0))
+            continue;
+        for (size_t m = 0; m < n; m++)
+            scaled[found * n + m] = (values[k * n + m] - mean.mean) / sqrt(mean.squares);
+        found++;
+    }
+    return found;
+}
+
+enum status mf_statistics_independence(const double *values, size_t length, size_t chains,
+                                       size_t numbers, struct statistics_independence *found) {
+    enum status status = STATUS_OK;
+    const size_t n = length * chains;
+    double *scaled = NULL;
+    *found = (struct statistics_independence){1, 0};
+    NEW_ARRAY(scaled, numbers * n + 1);
+    const size_t seen = standardise(values, n, numbers, scaled);
+    const double independent =
+        (double)n / mf_statistics_inefficiency(values, length, chains, numbers);
+    if (seen == 0 || n < 3)
+        goto done;
+    found->freedom = fmax(independent - 1, 0);
+    if (!(independent > 2))
+        goto done;
+    double squares = 0;
+    for (size_t a = 0; a < seen; a++)
+        for (size_t b = 0; b < a; b++) {
+            double r = 0;
+            for (size_t m = 0; m < n; m++)
+                r += scaled[a * n + m] * scaled[b * n + m];
+            squares += 2 * (1 - (1 - r * r) * (independent - 1) / (independent - 2));
+        }
+    const double all = (double)seen;
+    found->numbers = all * all / (all + fmax(squares, 0));
+done:
+    mf_memory_free(scaled);
+    return status;
 }

@@ -2,6 +2,8 @@
 /// @file Means with standard errors, updated without cancellation.
 #pragma once
 
+#include "base/status.h"
+
 #include <stddef.h>
 
 /// Running mean and sum of squared deviations of one number.
@@ -61,3 +63,19 @@ void mf_statistics_take_larger(double *error, const double *others, size_t count
 /// What a person is told of standard errors of one curve: if none is above 0, they are those of a
 /// single value, and all become NaN, not known. Tested: test_statistics.
 void mf_statistics_forget_errors(double *error, size_t count);
+
+/// How many independent numbers several of them count as that are measured together, and how well
+/// their errors are known.
+struct statistics_independence {
+    double numbers; ///< n²/Σ ρ_ab², with the correlations ρ of the n numbers that scatter
+    double freedom; ///< degrees of freedom of the errors: independent values, less one
+};
+
+/// By the scatter of their values. Few values are correlated by chance, and m of them have
+/// r² = 1/(m − 1) in the mean where ρ is 0: ρ² is taken as 1 − (1 − r²) (m − 1)/(m − 2), of which a
+/// sum over many pairs is right. Of fewer than three values all numbers count as one.
+/// @param[in] values  shape [numbers, chains, length]
+/// Fails: NO_MEMORY. Tested: test_statistics.
+enum status mf_statistics_independence(const double *values, size_t length, size_t chains,
+                                       size_t numbers,
+                                       struct statistics_independence *found) MUST_USE;

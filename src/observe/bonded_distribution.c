@@ -217,32 +217,6 @@ static size_t spans(void *state, struct memory_span *spans) {
 
 // Results -----------------------------------------------------------------------------------------
 
-/// Blocks that all states have.
-static size_t whole_blocks(const struct bonded_state *const *states, size_t count) {
-    size_t least = SIZE_MAX;
-    for (size_t k = 0; k < count; k++) {
-        const size_t blocks = mf_sample_blocks_whole(&states[k]->blocks);
-        least = blocks < least ? blocks : least;
-    }
-    return least;
-}
-
-/// p of a group's bins in blocks of time and independent states, shape [bins, count, blocks].
-static void find_series(const struct bonded_state *const *states, size_t count, int group,
-                        size_t blocks, double *series) {
-    const struct bonded_state *s = states[0];
-    const double terms = (double)mf_bonded_distribution_terms(s->molecules, s->order, group);
-    const size_t all = s->first[s->molecules->groups[s->order]], bins = s->bins[group].count;
-    for (size_t bin = 0; bin < bins; bin++)
-        for (size_t n = 0; n < count * blocks; n++) {
-            const struct bonded_state *of = states[n / blocks];
-            const size_t block = n % blocks;
-            series[bin * count * blocks + n] =
-                of->counts[block * all + s->first[group] + bin] /
-                (of->blocks.samples[block] * terms * s->bins[group].width);
-        }
-}
-
 /// Terms of a group in a part of the molecules.
 static double terms_of_part(const struct bonded_state *s, int group, size_t part) {
     double terms = 0;
@@ -284,12 +258,13 @@ static void find_errors_of_parts(const struct bonded_state *const *states, size_
 static enum status average(const struct bonded_state *const *states, size_t count, int group,
                            double *value, double *error) {
     enum status status = STATUS_OK;
-    const size_t bins = states[0]->bins[group].count, blocks = whole_blocks(states, count);
+    const size_t bins = states[0]->bins[group].count,
+                 blocks = mf_bonded_series_blocks(states, count);
     const size_t values = count * blocks;
     double *series = NULL, *of_parts = NULL;
     NEW_ARRAY(series, bins * values + 1);
     NEW_ARRAY(of_parts, bins + 1);
-    find_series(states, count, group, blocks, series);
+    mf_bonded_series_find(states, count, group, blocks, series);
     for (size_t bin = 0; bin < bins; bin++) {
         struct running_mean mean = {0};
         for (size_t n = 0; n < values; n++)

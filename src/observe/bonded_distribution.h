@@ -6,6 +6,7 @@
 /// over the bins.
 #pragma once
 
+#include "base/statistics.h"
 #include "forces/molecules.h"
 #include "observe/observable.h"
 
@@ -84,3 +85,10 @@ void mf_bonded_distribution_join(void *state);
 double *mf_bonded_distribution_counts(const void *state, int group, struct bonded_bins *bins);
 
 extern const struct observable mf_bonded_lengths, mf_bonded_angles, mf_bonded_dihedrals;
+
+/// How many independent ones `bins` bins of a group from `first` on count as, by the scatter of the
+/// blocks of all states. Fails: NO_MEMORY.
+/// @param[in] states  of the observable, shape [count]
+enum status mf_bonded_distribution_independence(const void *const *states, size_t count, int group,
+                                                size_t first, size_t bins,
+                                                struct statistics_independence *found) MUST_USE;

@@ -16,3 +16,10 @@ struct bonded_state {
     size_t parts;                                   ///< of the molecules
     double *of_part;                                ///< shape [parts, bins of all groups]
 };
+
+/// Blocks that all states have.
+size_t mf_bonded_series_blocks(const struct bonded_state *const *states, size_t count);
+
+/// p of a group's bins in blocks of time and independent states, shape [bins, count, blocks].
+void mf_bonded_series_find(const struct bonded_state *const *states, size_t count, int group,
+                           size_t blocks, double *series);

@@ -323,6 +323,18 @@ enum status mf_rdf_result(const struct rdf *replicas, size_t count, double *g, d
     return error ? find_errors(replicas, count, error) : STATUS_OK;
 }
 
+enum status mf_rdf_independence(const struct rdf *replicas, size_t count, size_t first, size_t bins,
+                                struct statistics_independence *found) {
+    enum status status = STATUS_OK;
+    const size_t blocks = filled_blocks(replicas, count);
+    double *series = NULL;
+    CHECK(find_series(replicas, count, blocks, &series));
+    CHECK(mf_statistics_independence(series + first * count * blocks, blocks, count, bins, found));
+done:
+    mf_memory_free(series);
+    return status;
+}
+
 double mf_rdf_rmse(const double *g, const double *target, size_t count) {
     double sum = 0, known = 0;
     for (size_t k = 0; k < count; k++) {

@@ -10,6 +10,7 @@
 #pragma once
 
 #include "base/memory.h"
+#include "base/statistics.h"
 #include "forces/pair.h"
 
 #include <stddef.h>
@@ -114,6 +115,11 @@ enum status mf_rdf_result(const struct rdf *replicas, size_t count, double *g,
 /// Fails: NO_MEMORY.
 enum status mf_rdf_distance(const struct rdf *replicas, size_t count, const double *target,
                             double *rmse, double *error) MUST_USE;
+
+/// How many independent ones `bins` bins from `first` on, of one pair type, count as, by the
+/// scatter of the blocks. Fails: NO_MEMORY.
+enum status mf_rdf_independence(const struct rdf *replicas, size_t count, size_t first, size_t bins,
+                                struct statistics_independence *found) MUST_USE;
 
 /// sqrt(mean of (g − g*)²) over `count` bins.
 double mf_rdf_rmse(const double *g, const double *target, size_t count);

@@ -310,6 +310,7 @@ static enum status verify_once(struct work *work, struct verification *verificat
     CHECK(summarise(replicas, count, verification));
     *off = mf_thermodynamics_off(&verification->thermodynamics, &replicas->simulation.setup);
     find_worst(work->problem, verification);
+    CHECK(mf_verify_sections_find(work->problem, replicas, count, &verification->sections));
     CHECK(keep_configuration(&replicas->simulation.particles, verification));
 done:
     clear_replicas(replicas, count);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "observe/thermodynamics.h"
+#include "problem/verify_agreement.h"
 #include "problem/verify_settled.h"
 #include "problem/verify_step.h"
 
@@ -20,6 +21,7 @@ struct verification {
     struct target_distance distance[TARGETS];
     struct target_distance worst[TARGETS]; ///< of the pair type, the group, or the integral of
                                            ///< Kirkwood and Buff, that is farthest off by its noise
+    struct verify_sections sections;       ///< of what is to be found
     double distance_error[TARGETS]; ///< standard error of each distance, by leaving out replicas;
                                     ///< that of g(r) by leaving out blocks. NaN with one replica
     struct thermodynamics_summary thermodynamics;

@@ -30,9 +30,13 @@ static void find_cause(const struct verification *verification, double temperatu
     else if (found->pressure < 0)
         known = "a liquid under tension tears: g(r) leaves the pressure open, so give it as a "
                 "second target";
-    else if (verification->unsettled[0])
-        known = "it had not settled: set a longer \"verification.equilibration\"";
-    if (known)
+    if (known == NULL && verification->unsettled[0])
+        snprintf(cause, FIT_STEP_TEXT_SIZE,
+                 "it has not settled, %.150s: the liquid freezes, tears or condenses under this "
+                 "potential, of which another temperature, density or target is the way out, or it "
+                 "needs a longer \"verification.equilibration\"",
+                 verification->unsettled);
+    else if (known)
         snprintf(cause, FIT_STEP_TEXT_SIZE, "%s", known);
     else if (verification->sampled > 0 && verification->sampled != verification->particles)
         snprintf(cause, FIT_STEP_TEXT_SIZE,
@@ -105,13 +109,14 @@ static bool contradicts_temperature(const struct verification *verification, dou
 }
 
 bool mf_fit_verdict_contradicts(const struct verification *verification,
+                                const struct verify_agreement *agreement,
                                 const struct targets *fitted, double temperature,
                                 double noise_margin, const struct units *units,
                                 char reason[INVERSE_REASON_SIZE]) {
     const double bar = mf_units_factor(units, "k_B T_0/lambda^d");
     char unit[UNITS_NAME_SIZE];
     mf_units_suffix(units, "k_B T_0/lambda^d", unit);
-    const struct target_distance *rdf = &verification->worst[TARGET_RDF];
+    const struct target_distance *rdf = &agreement[TARGET_RDF].distance;
     const bool several = rdf->count < verification->distance[TARGET_RDF].count;
     const struct thermodynamics_summary *found = &verification->thermodynamics;
     const struct target_distance *pressure = &verification->distance[TARGET_PRESSURE];
@@ -134,13 +139,13 @@ bool mf_fit_verdict_contradicts(const struct verification *verification,
         return true;
     for (enum topology_order order = 0; order < TOPOLOGY_ORDERS; order++) {
         const int kind = mf_bonded_distribution_kind(order);
-        const struct target_distance *bonded = &verification->worst[kind];
-        if (!(bonded->rms > noise_margin * bonded->noise))
+        if (verify_agreement_holds(&agreement[kind]))
             continue;
-        tell_structure(mf_targets_name(kind), bonded, verification, temperature, units, reason);
+        tell_structure(mf_targets_name(kind), &agreement[kind].distance, verification, temperature,
+                       units, reason);
         return true;
     }
-    if (!targets_ask(fitted, TARGET_RDF) || !(rdf->rms > noise_margin * rdf->noise))
+    if (!targets_ask(fitted, TARGET_RDF) || verify_agreement_holds(&agreement[TARGET_RDF]))
         return contradicts_temperature(verification, temperature, units, reason);
     tell_structure(several ? "g(r) of all pair types" : "g(r)", rdf, verification, temperature,
                    units, reason);

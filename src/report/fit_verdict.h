@@ -10,10 +10,13 @@
 
 /// Why the verified g(r), or the pressure or an integral of Kirkwood and Buff if it was fitted, is
 /// not what the fit says it is, or the temperature more than 5 % off, into `reason`.
+/// @param[in] agreement     of distributions, shape [TARGETS]
 /// @param[in] fitted        the targets that were fitted
-/// @param[in] noise_margin  each may be off by this many times its statistical error
+/// @param[in] noise_margin  a pressure or an integral may be off by this many times its
+///                          statistical error
 /// Returns whether there is something to say. Tested: test_fit_verdict.
 bool mf_fit_verdict_contradicts(const struct verification *verification,
+                                const struct verify_agreement *agreement,
                                 const struct targets *fitted, double temperature,
                                 double noise_margin, const struct units *units,
                                 char reason[INVERSE_REASON_SIZE]);

@@ -44,7 +44,8 @@ struct run {
     struct standing {
         bool finished, converged, used_up; ///< as in struct inverse_step
         uint64_t iterations, evaluations, engine_steps;
-        double error, variance, seconds;
+        struct fit_accuracy accuracy;
+        double seconds;
         struct inverse_ramp ramp;
         struct inverse_parameter parameter[INVERSE_PARAMETERS], number[INVERSE_MOST_NUMBERS];
         char reason[INVERSE_REASON_SIZE];
@@ -203,7 +204,7 @@ static struct fit_result result_so_far(const struct run *run, enum status status
                                 .settled = s->converged,
                                 .parameter = s->parameter,
                                 .number = s->number,
-                                .error = s->error,
+                                .error = s->accuracy.error,
                                 .first_error = mf_history_first_error(&run->history),
                                 .formula = s->formula,
                                 .reason = s->reason};
@@ -248,8 +249,7 @@ static enum status record(struct run *run, const struct inverse_step *step) {
                                       .iterations = step->iteration + 1,
                                       .evaluations = step->evaluations,
                                       .engine_steps = step->engine_steps,
-                                      .error = step->error,
-                                      .variance = step->variance,
+                                      .accuracy = {step->error, step->noise, step->variance},
                                       .seconds = seconds(run),
                                       .ramp = step->ramp};
     memcpy(run->standing.parameter, step->parameter, sizeof run->standing.parameter);
@@ -297,7 +297,7 @@ static enum status iterate(struct run *run) {
 /// A method without an error and without a reason has not measured anything.
 static void tell_unconverged(const struct run *run) {
     const char *folder = run->folder.path, *reason = run->standing.reason;
-    if (isfinite(run->standing.error))
+    if (isfinite(run->standing.accuracy.error))
         mf_status_fail(STATUS_UNCONVERGED,
                        "the fit has not converged%s%s; its best curves are in %s",
                        reason[0] ? ": " : "", reason, folder);
@@ -319,7 +319,7 @@ static void tell_unconverged(const struct run *run) {
 static enum status write_unstable(struct run *run) {
     struct fit_result result = result_so_far(run, STATUS_UNSTABLE);
     char reason[1024];
-    if (isfinite(run->standing.error))
+    if (isfinite(run->standing.accuracy.error))
         mf_status_prefix(STATUS_UNSTABLE, "the verification of what was fitted");
     else
         mf_status_prefix(STATUS_UNSTABLE, "the verification of what was fitted (no result%s%s)",
@@ -336,8 +336,8 @@ static void doubt(struct run *run, const struct verification *verification) {
     struct standing *standing = &run->standing;
     if (!standing->converged && !standing->used_up)
         return;
-    run->doubted = mf_fit_verify_contradicts(&run->fit, verification, standing->error,
-                                             standing->variance, standing->reason);
+    run->doubted =
+        mf_fit_verify_contradicts(&run->fit, verification, &standing->accuracy, standing->reason);
     if (run->doubted)
         standing->converged = standing->used_up = false;
     else if (standing->converged &&

@@ -20,15 +20,18 @@ enum status mf_fit_verify_states(struct fit_file *fit, double *const *curve,
                                  const struct inverse_listener *listener,
                                  struct verification *verification) MUST_USE;
 
+/// How far a fit is from its targets, by itself.
+struct fit_accuracy {
+    double error, noise, variance; ///< as in struct inverse_step
+};
+
 /// Whether the verification of any state contradicts the fit, and why. An inversion has converged
-/// only if the result agrees with the target; measured, inversions of water, Lennard-Jones and the
-/// Gaussian core are verified within 0.8 to 2.3 times the statistical error. Other methods, and
-/// inversions by few coefficients, do not say that they agree, but how far they are off: that is
-/// what must be borne out.
-/// @param[in] verification     shape [states]
-/// @param[in] error, variance  of the fit, by itself
+/// only if the result agrees with the target, by the same measure as its samples did
+/// (problem/verify_agreement.h). Other methods, and inversions by few coefficients, do not say that
+/// they agree, but how far they are off: that is what must be borne out.
+/// @param[in] verification  shape [states]
 bool mf_fit_verify_contradicts(const struct fit_file *fit, const struct verification *verification,
-                               double error, double variance, char reason[INVERSE_REASON_SIZE]);
+                               const struct fit_accuracy *of_fit, char reason[INVERSE_REASON_SIZE]);
 
 /// Tables of state number s: the first has those of the run's folder, the others have folders and
 /// figures of their own. Fails: IO, NO_MEMORY.

@@ -334,7 +334,8 @@ static void say_results(struct run *run, const struct measure_result *result) {
     if (measured->pairs.molecule && result->kinds == NULL)
         mf_progress_say(&run->progress,
                         "mesofit: warning: molecules have several beads: a fit knows no bonds "
-                        "without --molecules, its beads go where they like");
+                        "without --molecules, its beads go where they like; g(r) is of different "
+                        "molecules alone, no target of a fit that has them");
     say_molecules(run, result);
     if (!measured->in_vacuum)
         say_motion(run, &result->units);

@@ -103,7 +103,7 @@ static void test_viscosity_with_memory_is_the_same_by_both_ways(void **state) {
 /// 3.24(4) by M. Ferrario et al., Phys. Rev. A 44, 6936 (1991).
 static void test_viscosity_of_a_lennard_jones_liquid_is_the_published_one(void **state) {
     (void)state;
-    const struct measure_plan plan = {.equilibration = 1000, .samples = 5000, .every = 10};
+    const struct measure_plan plan = {.equilibration = 1000, .samples = 8000, .every = 10};
     struct fluid fluid;
     struct simulation warm, simulation;
     fluid_lennard_jones(&fluid, 864, 0.005);

@@ -296,8 +296,38 @@ static void test_comoments_reset_forgets_all_when_used_again(void **state) {
     mf_comoments_clear(&moments);
 }
 
+/// Sums of three neighbours out of white noise: ρ is 2/3, 1/3 and 0, so that Σ ρ² of 60 of them is
+/// 60 + 2 (59 · 4/9 + 58 · 1/9). Chance correlations of 80 values would add 3600/79.
+static void test_statistics_independence_is_that_of_known_correlations(void **state) {
+    enum { NUMBERS = 60, BLOCKS = 20, CHAINS = 4, VALUES = BLOCKS * CHAINS };
+    static double values[NUMBERS][VALUES];
+    struct statistics_independence found;
+    (void)state;
+    for (uint32_t m = 0; m < VALUES; m++) {
+        double white[NUMBERS + 2];
+        for (uint32_t k = 0; k < NUMBERS + 2; k++) {
+            double normal[4];
+            mf_rng_normal4(mf_rng_philox(12, RNG_INITIAL, m, k, 0), normal);
+            white[k] = normal[0];
+        }
+        for (uint32_t k = 0; k < NUMBERS; k++)
+            values[k][m] = white[k] + white[k + 1] + white[k + 2];
+    }
+    assert_ok(mf_statistics_independence(*values, BLOCKS, CHAINS, NUMBERS, &found));
+    assert_close(found.numbers, 3600 / (60 + 2 * (59 * 4 + 58) / 9.0), 2.9);
+    assert_close(found.freedom, VALUES - 1, 16);
+    // What does not scatter is no number, and one value knows nothing.
+    memset(values[NUMBERS - 1], 0, sizeof values[NUMBERS - 1]);
+    assert_ok(mf_statistics_independence(values[NUMBERS - 2], BLOCKS, CHAINS, 2, &found));
+    assert_close(found.numbers, 1, rounding);
+    assert_ok(mf_statistics_independence(*values, 1, 1, NUMBERS, &found));
+    assert_close(found.numbers, 1, 0);
+    assert_close(found.freedom, 0, 0);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_statistics_independence_is_that_of_known_correlations),
         cmocka_unit_test(test_statistics_add_equals_two_passes_when_numbers_are_of_order_one),
         cmocka_unit_test(test_statistics_add_keeps_the_variance_when_the_mean_is_large),
         cmocka_unit_test(test_statistics_standard_error_is_zero_when_there_are_fewer_than_two),

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "problem/verify_agreement.h"
+
+#include "base/memory.h"
+#include "observe/rdf_observable.h"
+#include "problem/potential_grid.h"
+
+#include <gsl/gsl_cdf.h>
+#include <math.h>
+
+// Sections ----------------------------------------------------------------------------------------
+
+/// The bins first … that a target tells of, those of all blocks from `known` to `end`.
+static struct verify_section *add(struct verify_sections *sections,
+                                  const struct potential_grid *grid, size_t known, size_t end,
+                                  int kind) {
+    struct verify_section *const section = &sections->section[sections->count];
+    while (known < end && !grid->seen[known])
+        known++;
+    while (end > known && !grid->seen[end - 1])
+        end--;
+    if (end == known)
+        return NULL;
+    *section = (struct verify_section){
+        .kind = kind, .first = grid->known_bin[known], .count = end - known};
+    sections->count++;
+    return section;
+}
+
+static enum status add_pairs(const struct potential_grid *grid, const struct measurement *replicas,
+                             size_t count, struct verify_sections *sections) {
+    enum status status = STATUS_OK;
+    struct rdf *rdf = NULL;
+    size_t known = 0;
+    NEW_ARRAY(rdf, count);
+    for (size_t k = 0; k < count && grid->pairs > 0; k++) {
+        const struct rdf_observed *observed =
+            mf_measurement_state(&replicas[k], &mf_rdf_observable);
+        rdf[k] = observed->counted;
+    }
+    for (size_t pair = 0; pair < grid->pairs; pair++) {
+        const size_t end = known + grid->known_of[pair];
+        struct verify_section *const section = add(sections, grid, known, end, TARGET_RDF);
+        known = end;
+        if (section)
+            CHECK(mf_rdf_independence(rdf, count, section->first, section->count, &section->known));
+    }
+done:
+    mf_memory_free(rdf);
+    return status;
+}
+
+static enum status add_groups(const struct potential_grid *grid, const struct measurement *replicas,
+                              size_t count, struct verify_sections *sections) {
+    enum status status = STATUS_OK;
+    const void **states = NULL;
+    size_t known = grid->pairs_known;
+    NEW_ARRAY(states, count);
+    for (size_t g = 0; g < grid->groups; g++) {
+        const struct bonded_unknown *const unknown = grid->group[g].own.unknown;
+        const size_t end = known + grid->group[g].own.known;
+        struct verify_section *const section =
+            add(sections, grid, known, end, mf_bonded_distribution_kind(unknown->order));
+        known = end;
+        if (section == NULL)
+            continue;
+        for (size_t k = 0; k < count; k++)
+            states[k] =
+                mf_measurement_state(&replicas[k], mf_bonded_distribution_of(unknown->order));
+        section->first -= grid->group[g].bin;
+        CHECK(mf_bonded_distribution_independence(states, count, unknown->group, section->first,
+                                                  section->count, &section->known));
+        section->first += unknown->first;
+    }
+done:
+    mf_memory_free(states);
+    return status;
+}
+
+enum status mf_verify_sections_find(const struct inverse_problem *problem,
+                                    const struct measurement *replicas, size_t count,
+                                    struct verify_sections *sections) {
+    enum status status = STATUS_OK;
+    struct potential_grid grid = {0};
+    const bool pairs = problem->unknown[UNKNOWN_POTENTIAL].wanted;
+    *sections = (struct verify_sections){0};
+    if (pairs ? !targets_ask(&problem->targets, TARGET_RDF) : problem->bonded == 0)
+        return STATUS_OK;
+    CHECK(mf_potential_grid_init(&grid, problem));
+    CHECK(add_pairs(&grid, replicas, count, sections));
+    CHECK(add_groups(&grid, replicas, count, sections));
+done:
+    mf_potential_grid_clear(&grid);
+    return status;
+}
+
+// Judging -----------------------------------------------------------------------------------------
+
+static double known_or_0(double error) {
+    return isfinite(error) ? error : 0;
+}
+
+/// The error that value k has in common with the others of its pair type: that of their factor.
+static double common_error(const struct targets *targets, const struct target *target, size_t k) {
+    return target->factor_error ? target->factor_error[k / targets->bins.count] * target->value[k]
+                                : 0;
+}
+
+/// How many times the variance of the verification is that of the fit's samples: with it the noise
+/// of all targets is the fit's.
+static double find_share(const struct targets *targets, const struct observed *observed,
+                         double noise) {
+    struct target_distance theirs[TARGETS] = {0}, own[TARGETS] = {0};
+    for (int kind = 0; kind < TARGETS; kind++) {
+        const struct target *const target = &targets->target[kind];
+        for (size_t k = 0; k < target->count; k++) {
+            const double error =
+                hypot(known_or_0(target->error[k]), common_error(targets, target, k));
+            theirs[kind].noise += error * error / (double)target->count;
+            own[kind].noise += pow(known_or_0(observed->error[kind][k]), 2) / (double)target->count;
+        }
+        theirs[kind].noise = sqrt(theirs[kind].noise);
+        own[kind].noise = sqrt(own[kind].noise);
+    }
+    const double of_targets = mf_targets_noise(targets, theirs);
+    const double of_verification = mf_targets_noise(targets, own);
+    if (!(of_verification > 0) || !(noise > of_targets))
+        return 0;
+    return (noise * noise - of_targets * of_targets) / (of_verification * of_verification);
+}
+
+/// χ² by bin that noise alone exceeds in one of a thousand fits. Errors that are known by few
+/// values are as often too small: F instead of χ².
+static double find_probable(const struct statistics_independence *known) {
+    static const double chance = 1e-3;
+    return known->freedom > 0 ? gsl_cdf_fdist_Qinv(chance, known->numbers, known->freedom)
+                              : INFINITY;
+}
+
+/// A target with few counts has too small an error where they are fewer than expected: it is that
+/// of the counts that the result expects, if these are more.
+static double target_variance(const struct target *target, size_t k, double value) {
+    const double error = known_or_0(target->error[k]);
+    const double counts = fmax(target->value[k], error);
+    return error > 0 ? error * error * fmax(1, value / counts) : 0;
+}
+
+/// χ² with the covariance σ_a² δ_ab + c_a c_b, of which c is the error that bins have in common:
+/// Σ x²/σ² − (Σ c x/σ²)²/(1 + Σ c²/σ²).
+static struct verify_agreement judge(const struct targets *targets,
+                                     const struct verify_section *section,
+                                     const struct observed *observed, double share) {
+    const struct target *const target = &targets->target[section->kind];
+    const double *const value = observed->value[section->kind], *const error =
+                                                                    observed->error[section->kind];
+    struct target part = *target;
+    part.count = section->count;
+    part.value += section->first;
+    part.error += section->first;
+    struct verify_agreement agreement = {
+        .distance = mf_targets_distance(&part, value + section->first, error + section->first),
+        .probable = find_probable(&section->known)};
+    double sum = 0, bins = 0, along = 0, common = 0;
+    for (size_t k = section->first; k < section->first + section->count; k++) {
+        const double variance =
+            target_variance(target, k, value[k]) + (1 + share) * pow(known_or_0(error[k]), 2);
+        const double difference = value[k] - target->value[k];
+        if (!isfinite(difference) || !(variance > 0))
+            continue;
+        const double factor = common_error(targets, target, k);
+        sum += difference * difference / variance;
+        along += factor * difference / variance;
+        common += factor * factor / variance;
+        bins++;
+    }
+    agreement.misfit = bins > 0 ? (sum - along * along / (1 + common)) / bins : 0;
+    return agreement;
+}
+
+void mf_verify_agree(const struct targets *targets, const struct verify_sections *sections,
+                     const struct observed *observed, double noise,
+                     struct verify_agreement *agreement) {
+    const double share = find_share(targets, observed, noise);
+    for (int kind = 0; kind < TARGETS; kind++)
+        agreement[kind] = (struct verify_agreement){0};
+    for (size_t s = 0; s < sections->count; s++) {
+        struct verify_agreement *const worst = &agreement[sections->section[s].kind];
+        const struct verify_agreement own = judge(targets, &sections->section[s], observed, share);
+        if (worst->probable == 0 || own.misfit * worst->probable > worst->misfit * own.probable)
+            *worst = own;
+    }
+}

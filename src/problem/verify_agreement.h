@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file Whether distributions of a verification are those of their targets, but for noise.
+///
+/// As an inversion judges its samples (inversion/inversion_assess): each section, g(r) of a pair
+/// type or p of a group, by its χ² by bin, and by how many independent bins it has, as bins next to
+/// each other are off together.
+///
+/// The noise is that of the target, of the verification, and of the fit's own samples: the
+/// potential was found where *their* g is the target's, so that its own g misses it by their noise,
+/// however exactly that is simulated later. Both are configurations of one fluid, and so their
+/// noises are taken to be alike but for one factor. The error of a target's factor, which its bins
+/// have in common, counts as such.
+#pragma once
+
+#include "base/statistics.h"
+#include "problem/measurement.h"
+
+/// Consecutive values of a target.
+struct verify_section {
+    int kind;
+    size_t first, count; ///< of the target's values: those that tell of the potential
+    struct statistics_independence known;
+};
+
+enum { VERIFY_MOST_SECTIONS = COMPOSITION_MOST_PAIRS + INVERSE_MOST_BONDED };
+
+struct verify_sections {
+    size_t count;
+    struct verify_section section[VERIFY_MOST_SECTIONS];
+};
+
+/// Of the section of a kind of targets that is least probable.
+struct verify_agreement {
+    struct target_distance distance;
+    double misfit;   ///< χ² by bin
+    double probable; ///< what noise alone exceeds in one of a thousand; 0: nothing was judged
+};
+
+static inline bool verify_agreement_holds(const struct verify_agreement *agreement) {
+    return !(agreement->misfit > agreement->probable);
+}
+
+/// Find the sections of what is to be found of a problem. Fails: NO_MEMORY.
+/// @param[in] replicas  shape [count], with all samples
+enum status mf_verify_sections_find(const struct inverse_problem *problem,
+                                    const struct measurement *replicas, size_t count,
+                                    struct verify_sections *sections) MUST_USE;
+
+/// @param[in]  noise      mf_targets_noise of the fit's last samples; 0: it has none
+/// @param[out] agreement  shape [TARGETS]
+/// Tested: test_verify_agreement.
+void mf_verify_agree(const struct targets *targets, const struct verify_sections *sections,
+                     const struct observed *observed, double noise,
+                     struct verify_agreement *agreement);

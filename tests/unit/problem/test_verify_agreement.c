@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "problem/verify_agreement.h"
+
+#include "base/rng.h"
+#include "shared/is_close.h"
+#include "shared/testing.h"
+
+#include <math.h>
+
+enum { BINS = 100 };
+
+/// One section of a g that is 1 by its target.
+struct case_of {
+    double wanted[BINS], target_error[BINS], value[BINS], error[BINS];
+    struct targets targets;
+    struct observed observed;
+    struct verify_sections sections;
+};
+
+static void make(struct case_of *of, double target_error, double error, double independent) {
+    *of = (struct case_of){0};
+    for (int k = 0; k < BINS; k++) {
+        of->wanted[k] = of->value[k] = 1;
+        of->target_error[k] = target_error;
+        of->error[k] = error;
+    }
+    of->targets.target[TARGET_RDF] =
+        (struct target){.count = BINS, .value = of->wanted, .error = of->target_error};
+    of->observed.value[TARGET_RDF] = of->value;
+    of->observed.error[TARGET_RDF] = of->error;
+    of->sections.count = 1;
+    of->sections.section[0] = (struct verify_section){
+        .kind = TARGET_RDF, .count = BINS, .known = {.numbers = independent, .freedom = 76}};
+}
+
+static bool holds(const struct case_of *of, double noise) {
+    struct verify_agreement agreement[TARGETS];
+    mf_verify_agree(&of->targets, &of->sections, &of->observed, noise, agreement);
+    assert_true(agreement[TARGET_RDF].probable > 1);
+    return verify_agreement_holds(&agreement[TARGET_RDF]);
+}
+
+/// All bins off by two of their noises: no chance if 50 of them are independent, and one in 15 if
+/// they are off together.
+static void test_agreement_depends_on_how_many_bins_are_independent(void **state) {
+    struct case_of of;
+    (void)state;
+    make(&of, 0.003, 0.004, 50);
+    for (int k = 0; k < BINS; k++)
+        of.value[k] += k % 2 ? 0.01 : -0.01;
+    assert_false(holds(&of, 0));
+    of.sections.section[0].known.numbers = 1;
+    assert_true(holds(&of, 0));
+    // Errors that two values tell are no errors to judge by, and of one there are none.
+    of.sections.section[0].known = (struct statistics_independence){50, 1};
+    assert_true(holds(&of, 0));
+    of.sections.section[0].known.freedom = 0;
+    assert_true(holds(&of, 0));
+}
+
+static double normal_of(uint32_t trial, uint32_t bin) {
+    double normal[4];
+    mf_rng_normal4(mf_rng_philox(13, RNG_INITIAL, trial, bin, 0), normal);
+    return normal[0];
+}
+
+/// A verification a thousand times as exact as the fit's samples sees what their noise made of the
+/// potential, and nothing else.
+static void test_agreement_knows_the_noise_of_the_fit(void **state) {
+    struct case_of of;
+    (void)state;
+    make(&of, 1e-6, 3e-6, 50);
+    for (uint32_t k = 0; k < BINS; k++)
+        of.value[k] += 0.003 * normal_of(0, k);
+    assert_false(holds(&of, 0));
+    assert_false(holds(&of, 0.001));
+    assert_true(holds(&of, 0.003));
+}
+
+/// Bins that are sums of three neighbours out of white noise: 2 of 2000 such curves are told, while
+/// 25 would be if all bins were independent.
+static void test_agreement_is_wrong_in_one_of_a_thousand(void **state) {
+    enum { TRIALS = 2000 };
+    int wrong = 0;
+    struct case_of of;
+    (void)state;
+    make(&of, 0.004, 0.003, 100.0 * 100 / (100 + 2 * (99 * 4 + 98) / 9.0));
+    of.sections.section[0].known.freedom = 1e6;
+    for (uint32_t trial = 0; trial < TRIALS; trial++) {
+        double white[BINS + 2];
+        for (uint32_t k = 0; k < BINS + 2; k++)
+            white[k] = normal_of(trial, k) / sqrt(3);
+        for (int k = 0; k < BINS; k++)
+            of.value[k] = 1 + 0.005 * (white[k] + white[k + 1] + white[k + 2]);
+        wrong += !holds(&of, 0);
+    }
+    assert_true(wrong >= 1 && wrong <= 9);
+}
+
+/// Two counts where twenty are expected: their error is that of twenty.
+static void test_agreement_takes_the_error_of_the_counts_that_are_expected(void **state) {
+    struct case_of of;
+    struct verify_agreement agreement[TARGETS];
+    (void)state;
+    make(&of, 0.01, 0, 50);
+    of.wanted[0] = 0.002;
+    of.target_error[0] = 0.002 / sqrt(2);
+    of.value[0] = 0.02;
+    mf_verify_agree(&of.targets, &of.sections, &of.observed, 0, agreement);
+    assert_close(agreement[TARGET_RDF].misfit, pow(18 / sqrt(20), 2) / BINS, 1e-12);
+}
+
+/// A g that is too large by 1 % as a whole, of a factor that is known within 1 %: one deviation of
+/// one number, and by its bins alone 50 deviations. A wave as large is no factor.
+static void test_agreement_knows_that_the_factor_of_a_target_is_uncertain(void **state) {
+    static const double one_percent = 0.01;
+    struct case_of of;
+    struct verify_agreement agreement[TARGETS];
+    (void)state;
+    make(&of, 0.002, 0, 50);
+    of.targets.bins.count = BINS;
+    for (int k = 0; k < BINS; k++)
+        of.value[k] = 0.99;
+    assert_false(holds(&of, 0));
+    of.targets.target[TARGET_RDF].factor_error = &one_percent;
+    assert_true(holds(&of, 0));
+    mf_verify_agree(&of.targets, &of.sections, &of.observed, 0, agreement);
+    assert_close(agreement[TARGET_RDF].misfit * BINS, 1, 1e-3);
+    for (int k = 0; k < BINS; k += 2)
+        of.value[k] = 1.01;
+    assert_false(holds(&of, 0));
+    // The noise of a fit has that error, too, and nothing of it is its samples'.
+    make(&of, 1e-6, 1e-6, 50);
+    of.targets.bins.count = BINS;
+    of.targets.target[TARGET_RDF].factor_error = &one_percent;
+    for (int k = 0; k < BINS; k++)
+        of.value[k] += k % 2 ? 1e-5 : -1e-5;
+    assert_false(holds(&of, 0.01));
+}
+
+/// The farthest section is the one that is told, by its own measure.
+static void test_agreement_is_of_the_least_probable_section(void **state) {
+    struct case_of of;
+    struct verify_agreement agreement[TARGETS];
+    (void)state;
+    make(&of, 0.01, 0, 50);
+    of.sections.count = 2;
+    of.sections.section[1] = of.sections.section[0];
+    of.sections.section[0].count = of.sections.section[1].first = 90;
+    of.sections.section[1].count = 10;
+    for (int k = 90; k < BINS; k++)
+        of.value[k] -= 0.03;
+    mf_verify_agree(&of.targets, &of.sections, &of.observed, 0, agreement);
+    assert_close(agreement[TARGET_RDF].misfit, 9, 1e-12);
+    assert_close(agreement[TARGET_RDF].distance.rms, 0.03, 1e-12);
+    assert_int_equal(agreement[TARGET_RDF].distance.count, 10);
+    assert_true(verify_agreement_holds(&agreement[TARGET_PRESSURE]));
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_agreement_depends_on_how_many_bins_are_independent),
+        cmocka_unit_test(test_agreement_knows_the_noise_of_the_fit),
+        cmocka_unit_test(test_agreement_is_wrong_in_one_of_a_thousand),
+        cmocka_unit_test(test_agreement_takes_the_error_of_the_counts_that_are_expected),
+        cmocka_unit_test(test_agreement_knows_that_the_factor_of_a_target_is_uncertain),
+        cmocka_unit_test(test_agreement_is_of_the_least_probable_section),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
