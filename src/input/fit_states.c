@@ -81,7 +81,7 @@ struct fit_file *mf_fit_states_at(struct fit_file *fit, size_t s) {
 
 /// "precision" among the parameters of an inversion, which all have first.
 static double *precision_of(const struct fit_file *state) {
-    return &((struct inversion_settings *)state->method_parameters)->common.precision;
+    return &((struct inversion_parameters *)state->method_parameters)->precision;
 }
 
 /// The samples of all states are as exact as the most exact target asks for.

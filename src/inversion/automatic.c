@@ -7,10 +7,10 @@
 // Deuflhard, Newton Methods for Nonlinear Problems (2004), section 2.1, which tests it as here, by
 // what the last step did against what was predicted).
 #include "inversion/inversion_coarse.h"
-#include "inversion/joint.h"
+#include "inversion/inversion.h"
+#include "inversion/method_steps.h"
 
 #include <math.h>
-#include <string.h>
 
 /// The response holds if it tells what the last step did within this part.
 static const double trust = 0.3;
@@ -20,53 +20,56 @@ static const char *const columns[] = {INVERSION_COLUMNS, "newton", "misfit[1]", 
 /// Whether −C ΔΦ/k_B T is the change of S from the best potential to this one, in the norm of their
 /// noise, but for the noise of both.
 static bool predicts(const struct inversion *inversion) {
-    const struct potential_grid *grid = &inversion->grid;
-    const double *response = mf_inversion_response_values(inversion);
+    const struct inversion_state *first = inversion->state;
+    const struct inversion_course *course = &inversion->course;
+    const struct potential_grid *grid = &first->grid;
+    const double *response = mf_inversion_response_values(first);
     double miss = 0, change = 0;
     for (size_t a = 0; a < grid->known; a++) {
         const size_t bin = grid->known_bin[a];
-        const double actual = inversion->replicas.counts.mean[bin] - inversion->best_counts[bin];
+        const double actual = first->replicas.counts.mean[bin] - course->best.counts[bin];
         double predicted = 0;
         for (size_t b = 0; b < grid->known; b++) {
             const size_t point = grid->known_point[b];
             predicted -= response[a * grid->known + b] *
-                         (inversion->phi[point] - inversion->best[point]) /
-                         inversion->problem->scene.temperature;
+                         (course->phi[point] - course->best.phi[point]) /
+                         first->problem->scene.temperature;
         }
-        miss += (actual - predicted) * (actual - predicted) / inversion->variance[a];
-        change += actual * actual / inversion->variance[a];
+        miss += (actual - predicted) * (actual - predicted) / first->variance[a];
+        change += actual * actual / first->variance[a];
     }
     return miss <= trust * trust * change + 2 * (double)grid->known;
 }
 
 /// Whether the last step was Newton's, which keeps the other in reserve, and halved the error.
 static bool newton_helped(const struct inversion *inversion) {
-    return inversion->progress.best_other &&
-           inversion->distance[TARGET_RDF].rms < 0.5 * inversion->progress.best[TARGET_RDF].rms;
+    const struct inversion_progress *progress = &inversion->course.progress;
+    return progress->has_other && inversion->verdict.distance[TARGET_RDF].rms <
+                                      0.5 * progress->best.distance[TARGET_RDF].rms;
 }
 
 /// Inside the basin of inverse Monte Carlo: near the noise, where its response holds, or where its
 /// steps converge. Of groups C tells no more than the careful step until the targets are near.
 static bool in_basin(const struct inversion *inversion) {
-    const bool first = isinf(inversion->progress.best[TARGET_RDF].rms);
-    return mf_inversion_is_near(inversion) || (!first && inversion->coarse.count == 0 &&
+    const bool first = isinf(inversion->course.progress.best.distance[TARGET_RDF].rms);
+    return mf_inversion_is_near(inversion) || (!first && inversion->state->coarse.count == 0 &&
                                                (newton_helped(inversion) || predicts(inversion)));
 }
 
-static enum status careful_step(struct inversion *inversion, double *step) {
-    const struct simulation_setup *scene = &inversion->problem->scene;
-    if (inversion->box.dimensions == 3 &&
+static enum status careful_step(struct inversion_state *state, double *step) {
+    const struct simulation_setup *scene = &state->problem->scene;
+    if (state->box.dimensions == 3 &&
         mf_molecules_find(scene->interaction, scene->interactions) == NULL)
-        return mf_hnc_step(inversion, step);
-    if (inversion->coarse.count > 0)
-        return mf_inversion_coarse_step(inversion, step);
-    mf_ibi_step(inversion, step);
+        return mf_hnc_step(state, step);
+    if (state->coarse.count > 0)
+        return mf_inversion_coarse_step(state, step);
+    mf_ibi_step(state, step);
     return STATUS_OK;
 }
 
 static enum status newton_step(struct inversion *inversion, double *extra) {
     double newton[3] = {0};
-    TRY(mf_imc_step(inversion, inversion->step, newton));
+    TRY(mf_imc_step(inversion, inversion->course.step, newton));
     extra[0] = !mf_inversion_is_coarse(inversion);
     extra[1] = newton[1];
     extra[2] = newton[2];
@@ -76,12 +79,13 @@ static enum status newton_step(struct inversion *inversion, double *extra) {
 /// The Newton step with the careful one in reserve, or that alone. A careful step is of one state:
 /// what several say together are the equations of the other.
 static enum status update(struct inversion *inversion, double *extra) {
-    if (inversion->joint && inversion->joint->states > 1)
+    struct inversion_course *course = &inversion->course;
+    if (inversion->states > 1)
         return newton_step(inversion, extra);
     if (!in_basin(inversion))
-        return careful_step(inversion, inversion->step);
-    TRY(careful_step(inversion, inversion->other_step));
-    inversion->has_other = true;
+        return careful_step(inversion->state, course->step);
+    TRY(careful_step(inversion->state, course->other_step));
+    course->has_other = true;
     return newton_step(inversion, extra);
 }
 
@@ -92,9 +96,11 @@ const struct inverse_method mf_automatic = {
                "until the targets are near, then inverse Monte Carlo (Lyubartsev and Laaksonen "
                "1995)",
     .own = &(const struct inversion_rule){.update = update},
-    .tables = (const struct inverse_table[]){INVERSION_TABLE, {NULL, 0}},
     .knows_molecules = true,
     .meets_integrals = true,
+    .knows_states = true,
     .columns = columns,
-    JOINT_RECORD,
+    .create = mf_inversion_create,
+    INVERSION_PARAMETERS,
+    INVERSION_RECORD,
 };

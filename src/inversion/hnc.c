@@ -9,30 +9,31 @@
 // 451 (1985)) was tried: for water the noise of S at small q made every step but the first useless.
 #include "inversion/hnc_closure.h"
 #include "inversion/inversion.h"
+#include "inversion/method_steps.h"
 
 /// Structure factors below this are not trusted.
 static const double ridge = 0.35;
 
 static const char *const columns[] = {INVERSION_COLUMNS, NULL};
 
-enum status mf_hnc_step(const struct inversion *inversion, double *step) {
+enum status mf_hnc_step(const struct inversion_state *state, double *step) {
     enum status status = STATUS_OK;
-    const struct potential_grid *grid = &inversion->grid;
+    const struct potential_grid *grid = &state->grid;
     double *target = NULL, *difference = NULL, *indirect = NULL;
-    NEW_ARRAY(target, inversion->bins);
-    NEW_ARRAY(difference, inversion->bins);
-    NEW_ARRAY(indirect, inversion->bins);
-    for (size_t k = 0; k < inversion->bins; k++) {
-        target[k] = mf_inversion_target_g(inversion, k);
-        difference[k] = mf_inversion_g(inversion, k) - target[k];
+    NEW_ARRAY(target, state->bins);
+    NEW_ARRAY(difference, state->bins);
+    NEW_ARRAY(indirect, state->bins);
+    for (size_t k = 0; k < state->bins; k++) {
+        target[k] = mf_inversion_target_g(state, k);
+        difference[k] = mf_inversion_g(state, k) - target[k];
     }
-    CHECK(mf_hnc_closure_slope(&inversion->problem->targets.bins, &inversion->box,
-                               &inversion->composition, target, difference, ridge, indirect));
-    mf_ibi_logarithms(inversion, step);
+    CHECK(mf_hnc_closure_slope(&state->problem->targets.bins, &state->box, &state->composition,
+                               target, difference, ridge, indirect));
+    mf_ibi_logarithms(state, step);
     for (size_t n = 0; n < grid->known; n++)
         step[grid->known_point[n]] -=
-            inversion->problem->scene.temperature * indirect[grid->known_bin[n]];
-    mf_inversion_pressure_add_ramp(inversion, step);
+            state->problem->scene.temperature * indirect[grid->known_bin[n]];
+    mf_inversion_pressure_add_ramp(state, step);
 done:
     mf_memory_free(target);
     mf_memory_free(difference);
@@ -42,7 +43,7 @@ done:
 
 static enum status update(struct inversion *inversion, double *extra) {
     (void)extra;
-    return mf_hnc_step(inversion, inversion->step);
+    return mf_hnc_step(inversion->state, inversion->course.step);
 }
 
 static enum status create(void *inversion, const struct inverse_method *method,
@@ -57,8 +58,8 @@ const struct inverse_method mf_hnc = {
     .summary = "Newton steps by the hypernetted chain; F. Delbary, M. Hanke and D. Ivanizki, J. "
                "Inverse Ill-Posed Probl. 28 (2020)",
     .own = &(const struct inversion_rule){.update = update, .forgets = true},
-    .tables = (const struct inverse_table[]){INVERSION_TABLE, {NULL, 0}},
     .columns = columns,
     .create = create,
+    INVERSION_PARAMETERS,
     INVERSION_RECORD,
 };

@@ -3,10 +3,10 @@
 // Inverse Monte Carlo. A. P. Lyubartsev and A. Laaksonen, Phys. Rev. E 52, 3730 (1995).
 #include "inversion/imc_solve.h"
 #include "inversion/inversion_coarse.h"
-#include "inversion/joint.h"
+#include "inversion/inversion.h"
+#include "inversion/method_steps.h"
 
 #include <math.h>
-#include <string.h>
 
 static const char *const columns[] = {INVERSION_COLUMNS, "regularisation[1]", "misfit[1]",
                                       "directions", NULL};
@@ -16,69 +16,60 @@ static const char *const columns[] = {INVERSION_COLUMNS, "regularisation[1]", "m
 static double choose_strength(struct inversion *inversion) {
     if (!mf_inversion_is_near(inversion))
         return 0; // by the noise
-    inversion->settling = true;
+    inversion->course.most_probable = true;
     return mf_inversion_band_prior(inversion);
 }
 
-void mf_imc_doubt(struct inversion *inversion, double *logarithms) {
-    const size_t known = inversion->grid.known;
-    const double *covariance = inversion->covariance;
-    const double temperature = inversion->problem->scene.temperature;
-    const double independent = inversion->behind / inversion->inefficiency;
-    double squares = 0;
-    mf_ibi_logarithms(inversion, logarithms);
+enum status mf_imc_response_variance(const struct inversion_state *state, double *variance) {
+    enum status status = STATUS_OK;
+    const size_t known = state->grid.known;
+    const double *covariance = state->response.covariance;
+    const double temperature = state->problem->scene.temperature;
+    const double independent = state->response.samples / state->inefficiency;
+    double squares = 0, *logarithms = NULL;
+    NEW_ARRAY(logarithms, state->grid.points);
+    mf_ibi_logarithms(state, logarithms);
     for (size_t a = 0; a < known; a++)
         squares += covariance[a * known + a] *
-                   pow(logarithms[inversion->grid.known_point[a]] / temperature, 2);
+                   pow(logarithms[state->grid.known_point[a]] / temperature, 2);
     for (size_t a = 0; a < known; a++)
-        inversion->doubt[a] =
-            inversion->variance[a] +
-            (covariance[a * known + a] * squares + inversion->excess[a] * inversion->excess[a]) /
-                independent;
+        variance[a] = state->variance[a] +
+                      (covariance[a * known + a] * squares + state->excess[a] * state->excess[a]) /
+                          independent;
+done:
+    mf_memory_free(logarithms);
+    return status;
 }
 
-/// The same equations with the variances of what C predicts, in fits with groups.
-static void doubt_response(struct inversion *inversion, double *scratch,
-                           struct imc_system *system) {
-    if (inversion->doubt == NULL)
-        return;
-    if (inversion->joint) {
-        *system = inversion->joint->doubted;
-        return;
-    }
-    mf_imc_doubt(inversion, scratch);
-    system->variance = inversion->doubt;
-}
-
-/// The step far from the targets of groups, which several states have taken together.
+/// The step far from the targets of groups.
 static enum status step_coarsely(struct inversion *inversion, double *step) {
-    if (inversion->joint && inversion->joint->coarse) {
-        memcpy(step, inversion->joint->coarse, inversion->grid.points * sizeof *step);
-        return STATUS_OK;
-    }
-    TRY(mf_inversion_coarse_step(inversion, step));
-    mf_inversion_pressure_add_ramp(inversion, step);
+    struct inversion_state *first = inversion->state;
+    if (inversion->states > 1)
+        return mf_inversion_states_coarse_step(first, inversion->states, step);
+    TRY(mf_inversion_coarse_step(first, step));
+    mf_inversion_pressure_add_ramp(first, step);
     return STATUS_OK;
 }
 
 enum status mf_imc_step(struct inversion *inversion, double *step, double extra[3]) {
-    const struct inverse_problem *problem = inversion->problem;
-    const struct potential_grid *grid = &inversion->grid;
     enum status status = STATUS_OK;
+    const struct inversion_state *first = inversion->state;
+    const struct targets *targets = &inversion->problem->targets;
+    const struct inversion_equations *equations = &inversion->equations;
+    const size_t *point = first->grid.known_point;
+    struct imc_system system = first->coarse.count > 0 ? equations->of_response : equations->system;
     struct imc_solution solution;
     double *x = NULL;
-    struct imc_system system = mf_inversion_system(inversion);
     if (mf_inversion_is_coarse(inversion))
         return step_coarsely(inversion, step);
-    if (targets_ask(&problem->targets, TARGET_PRESSURE) && inversion->joint == NULL) {
-        system.constraint = inversion->pressure.slope;
-        system.wanted = *problem->targets.target[TARGET_PRESSURE].value - inversion->pressure.value;
+    if (targets_ask(targets, TARGET_PRESSURE) && !equations->reduced) {
+        system.constraint = first->pressure.slope;
+        system.wanted = *targets->target[TARGET_PRESSURE].value - first->pressure.value;
     }
-    NEW_ARRAY(x, grid->known);
-    doubt_response(inversion, step, &system);
+    NEW_ARRAY(x, system.size);
     CHECK(mf_imc_solve(&system, choose_strength(inversion), x, &solution));
-    for (size_t a = 0; a < grid->known; a++)
-        step[grid->known_point[a]] = x[a];
+    for (size_t a = 0; a < system.size; a++)
+        step[point[a]] = x[a];
     extra[0] = solution.strength;
     extra[1] = solution.misfit;
     extra[2] = solution.directions;
@@ -88,7 +79,7 @@ done:
 }
 
 static enum status update(struct inversion *inversion, double *extra) {
-    return mf_imc_step(inversion, inversion->step, extra);
+    return mf_imc_step(inversion, inversion->course.step, extra);
 }
 
 const struct inverse_method mf_imc = {
@@ -96,9 +87,11 @@ const struct inverse_method mf_imc = {
     .summary = "inverse Monte Carlo; A. P. Lyubartsev and A. Laaksonen, Phys. Rev. E 52, 3730 "
                "(1995)",
     .own = &(const struct inversion_rule){.update = update},
-    .tables = (const struct inverse_table[]){INVERSION_TABLE, {NULL, 0}},
     .knows_molecules = true,
     .meets_integrals = true,
+    .knows_states = true,
     .columns = columns,
-    JOINT_RECORD,
+    .create = mf_inversion_create,
+    INVERSION_PARAMETERS,
+    INVERSION_RECORD,
 };

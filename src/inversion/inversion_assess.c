@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What the samples of an inversion say beside its targets.
-#include "inversion/inversion.h"
+// What the samples of a state say beside its targets.
+#include "inversion/inversion_state.h"
 
 #include <gsl/gsl_cdf.h>
 #include <math.h>
@@ -14,19 +14,15 @@ static const double worth_knowing = 0.5, worth_knowing_of_groups = 1;
 /// Share of the present samples in what all iterations near the target tell, at least.
 static const double least_share = 1.0 / 3;
 
-/// The error of what is near to its target, in units of its noise (the root of χ² by bin), and of
-/// what stays near.
-static const double near_noises = 2, still_near_noises = 3;
-
 /// The gradient of coefficients, in its noise, below which C hardly changes any more.
 static const double near_gradient = 3;
 
-double mf_inversion_g(const struct inversion *inversion, size_t bin) {
-    return inversion->replicas.counts.mean[bin] / inversion->ideal[bin];
+double mf_inversion_g(const struct inversion_state *state, size_t bin) {
+    return state->replicas.counts.mean[bin] / state->target.ideal[bin];
 }
 
-double mf_inversion_target_g(const struct inversion *inversion, size_t bin) {
-    return inversion->target_counts[bin] / inversion->ideal[bin];
+double mf_inversion_target_g(const struct inversion_state *state, size_t bin) {
+    return state->target.counts[bin] / state->target.ideal[bin];
 }
 
 /// Add a section to the distance of its kind, over the bins of all of them, with the mean variance
@@ -43,34 +39,34 @@ static void add_distance(struct target_distance *distance, double sum, double bo
 /// Variance of S* of a known bin, as it would be if the potential were right: where the target has
 /// few counts, they are as often fewer than expected as more, and would have too small an error
 /// then. It is that of the counts that the samples expect, if these are more.
-static double find_target_variance(const struct inversion *inversion, size_t a) {
-    const size_t bin = inversion->grid.known_bin[a];
-    const double error = inversion->target_error[bin];
+static double find_target_variance(const struct inversion_state *state, size_t a) {
+    const size_t bin = state->grid.known_bin[a];
+    const double error = state->target.error[bin];
     if (!(error > 0))
         return error * error;
-    const double counts = fmax(inversion->target_counts[bin], error);
-    return error * error * fmax(1, inversion->replicas.counts.mean[bin] / counts);
+    const double counts = fmax(state->target.counts[bin], error);
+    return error * error * fmax(1, state->replicas.counts.mean[bin] / counts);
 }
 
 /// χ² by bin that noise alone exceeds in one of a thousand fits. Bins beside each other are off
 /// together: all count as (Σ ρ_aa)²/Σ ρ_ab² independent ones, by the correlations ρ of the samples.
-static double find_probable(const struct inversion *inversion,
+static double find_probable(const struct inversion_state *state,
                             const struct inversion_section *section) {
     static const double chance = 1e-3;
-    const struct comoments *counts = &inversion->replicas.counts;
+    const struct comoments *counts = &state->replicas.counts;
     const size_t end = section->known + section->known_count;
     double bins = 0, squares = 0;
     for (size_t a = section->known; a < end; a++) {
-        const size_t i = inversion->grid.known_bin[a];
+        const size_t i = state->grid.known_bin[a];
         const double own = mf_comoments_covariance(counts, i, i);
-        if (!inversion->grid.seen[a])
+        if (!state->grid.seen[a])
             continue;
         bins++;
         squares++;
         for (size_t b = section->known; b < a && own > 0; b++) {
-            const size_t j = inversion->grid.known_bin[b];
+            const size_t j = state->grid.known_bin[b];
             const double other = mf_comoments_covariance(counts, j, j);
-            if (inversion->grid.seen[b] && other > 0)
+            if (state->grid.seen[b] && other > 0)
                 squares += 2 * pow(mf_comoments_covariance(counts, i, j), 2) / (own * other);
         }
     }
@@ -80,28 +76,28 @@ static double find_probable(const struct inversion *inversion,
 
 /// What a block's bins have in common with the error of its factor: u·x and |u|², with u that error
 /// and x the excess in units of their noise.
-static void find_common(const struct inversion *inversion, const double *excess, size_t begin,
+static void find_common(const struct inversion_state *state, const double *excess, size_t begin,
                         size_t end, double *along, double *squares) {
     *along = *squares = 0;
     for (size_t a = begin; a < end; a++) {
-        const double u = inversion->common[a] / sqrt(inversion->variance[a]);
-        if (!inversion->grid.seen[a])
+        const double u = state->target.common[a] / sqrt(state->variance[a]);
+        if (!state->grid.seen[a])
             continue;
-        *along += u * excess[a] / sqrt(inversion->variance[a]);
+        *along += u * excess[a] / sqrt(state->variance[a]);
         *squares += u * u;
     }
 }
 
 /// By how much the factors of pair types make the χ² of a section smaller: Σ (u·x)²/(1 + |u|²).
-static double find_explained(const struct inversion *inversion, const double *excess, size_t begin,
-                             size_t end) {
-    const struct potential_grid *grid = &inversion->grid;
+static double find_explained(const struct inversion_state *state, const double *excess,
+                             size_t begin, size_t end) {
+    const struct potential_grid *grid = &state->grid;
     double sum = 0;
-    for (size_t block = 0, first = 0; inversion->common && block < grid->blocks; block++) {
+    for (size_t block = 0, first = 0; state->target.common && block < grid->blocks; block++) {
         const size_t last = first + grid->known_of[block];
         double along, squares;
         if (first >= begin && last <= end) {
-            find_common(inversion, excess, first, last, &along, &squares);
+            find_common(state, excess, first, last, &along, &squares);
             sum += along * along / (1 + squares);
         }
         first = last;
@@ -109,22 +105,23 @@ static double find_explained(const struct inversion *inversion, const double *ex
     return sum;
 }
 
-double mf_inversion_chi_squared(const struct inversion *inversion, const double *excess,
+double mf_inversion_chi_squared(const struct inversion_state *state, const double *excess,
                                 size_t begin, size_t end) {
     double sum = 0;
     for (size_t a = begin; a < end; a++)
-        sum += inversion->grid.seen[a] ? excess[a] * excess[a] / inversion->variance[a] : 0;
-    return sum - find_explained(inversion, excess, begin, end);
+        sum += state->grid.seen[a] ? excess[a] * excess[a] / state->variance[a] : 0;
+    return sum - find_explained(state, excess, begin, end);
 }
 
-void mf_inversion_find_factor(const struct inversion *inversion, struct inversion_factor *factor) {
-    const struct potential_grid *grid = &inversion->grid;
-    const struct targets *targets = &inversion->problem->targets;
+void mf_inversion_find_factor(const struct inversion_state *state,
+                              struct inversion_factor *factor) {
+    const struct potential_grid *grid = &state->grid;
+    const struct targets *targets = &state->problem->targets;
     *factor = (struct inversion_factor){0};
-    for (size_t pair = 0, first = 0; inversion->common && pair < grid->pairs; pair++) {
+    for (size_t pair = 0, first = 0; state->target.common && pair < grid->pairs; pair++) {
         const size_t last = first + grid->known_of[pair];
         double along, squares;
-        find_common(inversion, inversion->excess, first, last, &along, &squares);
+        find_common(state, state->excess, first, last, &along, &squares);
         first = last;
         if (!(squares > 0))
             continue;
@@ -137,42 +134,42 @@ void mf_inversion_find_factor(const struct inversion *inversion, struct inversio
 }
 
 /// Of one section; returns its χ².
-static double assess(struct inversion *inversion, struct inversion_section *section) {
-    const struct comoments *counts = &inversion->replicas.counts;
-    const size_t *known_bin = inversion->grid.known_bin;
+static double assess(struct inversion_state *state, struct inversion_section *section) {
+    const struct comoments *counts = &state->replicas.counts;
+    const size_t *known_bin = state->grid.known_bin;
     section->inefficiency = mf_replicas_inefficiency(
-        &inversion->replicas, inversion->ideal, known_bin + section->known, section->known_count);
+        &state->replicas, state->target.ideal, known_bin + section->known, section->known_count);
     const double independent = counts->count / section->inefficiency;
     const double bins = (double)section->bins;
     double sum = 0, own = 0, both = 0, seen = 0;
     for (size_t n = section->bin; n < section->bin + section->bins; n++)
-        sum += pow((counts->mean[n] - inversion->target_counts[n]) / inversion->unit[n], 2);
+        sum += pow((counts->mean[n] - state->target.counts[n]) / state->target.unit[n], 2);
     for (size_t a = section->known; a < section->known + section->known_count; a++) {
         const size_t bin = known_bin[a];
-        const double unit = inversion->unit[bin] * inversion->unit[bin];
+        const double unit = state->target.unit[bin] * state->target.unit[bin];
         // An empty bin still has the uncertainty of one count.
         const double sampled =
             fmax(mf_comoments_covariance(counts, bin, bin), 1 / counts->count) / independent;
-        const double common = inversion->common ? inversion->common[a] : 0;
-        inversion->excess[a] = counts->mean[bin] - inversion->target_counts[bin];
-        inversion->variance[a] = sampled + find_target_variance(inversion, a);
-        if (!inversion->grid.seen[a])
+        const double common = state->target.common ? state->target.common[a] : 0;
+        state->excess[a] = counts->mean[bin] - state->target.counts[bin];
+        state->variance[a] = sampled + find_target_variance(state, a);
+        if (!state->grid.seen[a])
             continue;
         seen++;
         own += sampled / unit;
-        both += (inversion->variance[a] + common * common) / unit;
+        both += (state->variance[a] + common * common) / unit;
     }
-    const double misfit = mf_inversion_chi_squared(inversion, inversion->excess, section->known,
+    const double misfit = mf_inversion_chi_squared(state, state->excess, section->known,
                                                    section->known + section->known_count);
-    add_distance(&inversion->distance[section->kind], sum, both, own, section->bins);
+    add_distance(&state->verdict.distance[section->kind], sum, both, own, section->bins);
     section->rms = sqrt(sum / bins) / section->peak;
     section->noise = sqrt(both / bins) / section->peak;
     section->misfit = seen > 0 ? misfit / seen : 0;
-    section->probable = find_probable(inversion, section);
+    section->probable = find_probable(state, section);
     section->own_noise = sqrt(own / bins) / section->peak;
     const double worth = section->kind == TARGET_RDF ? worth_knowing : worth_knowing_of_groups;
-    section->precision = fmax(inversion->settings.common.precision,
-                              worth * sqrt((both - own) / bins) / section->peak);
+    section->precision =
+        fmax(state->parameters->precision, worth * sqrt((both - own) / bins) / section->peak);
     return misfit;
 }
 
@@ -185,90 +182,74 @@ static double count_seen(const struct potential_grid *grid) {
 }
 
 /// From the mean variance of the bins to that of their rms.
-static void finish_distance(struct inversion *inversion, int kind) {
-    struct target_distance *distance = &inversion->distance[kind];
+static void finish_distance(struct inversion_state *state, int kind) {
+    struct target_distance *distance = &state->verdict.distance[kind];
     bool counted = false;
-    for (int k = 0; k < inversion->sections; k++)
-        counted = counted || inversion->section[k].kind == kind;
+    for (int k = 0; k < state->verdict.sections; k++)
+        counted = counted || state->verdict.section[k].kind == kind;
     if (counted)
         distance->variance =
             mf_targets_rms_variance(distance->rms, distance->variance, (double)distance->count);
 }
 
-void mf_inversion_assess(struct inversion *inversion) {
+void mf_inversion_assess(struct inversion_state *state) {
     double misfit = 0;
-    inversion->own_noise = inversion->inefficiency = 0;
-    for (int k = 0; k < inversion->sections; k++)
-        inversion->distance[inversion->section[k].kind] = (struct target_distance){0};
-    for (int k = 0; k < inversion->sections; k++) {
-        const struct inversion_section *section = &inversion->section[k];
-        misfit += assess(inversion, &inversion->section[k]);
-        inversion->own_noise = fmax(inversion->own_noise, section->own_noise);
-        inversion->inefficiency = fmax(inversion->inefficiency, section->inefficiency);
+    state->verdict.own_noise = state->inefficiency = 0;
+    for (int k = 0; k < state->verdict.sections; k++)
+        state->verdict.distance[state->verdict.section[k].kind] = (struct target_distance){0};
+    for (int k = 0; k < state->verdict.sections; k++) {
+        const struct inversion_section *section = &state->verdict.section[k];
+        misfit += assess(state, &state->verdict.section[k]);
+        state->verdict.own_noise = fmax(state->verdict.own_noise, section->own_noise);
+        state->inefficiency = fmax(state->inefficiency, section->inefficiency);
     }
     for (int kind = 0; kind < TARGETS; kind++)
-        finish_distance(inversion, kind);
-    inversion->disagreement = mf_replicas_disagreement(
-        &inversion->replicas, inversion->ideal, inversion->grid.known_bin, inversion->grid.known);
-    inversion->misfit = misfit / count_seen(&inversion->grid);
-    mf_inversion_kirkwood_buff_measure(inversion);
+        finish_distance(state, kind);
+    state->verdict.disagreement = mf_replicas_disagreement(
+        &state->replicas, state->target.ideal, state->grid.known_bin, state->grid.known);
+    state->verdict.misfit = misfit / count_seen(&state->grid);
+    mf_inversion_kirkwood_buff_measure(state);
 }
 
-const struct inversion_section *mf_inversion_worst(const struct inversion *inversion) {
-    const struct inversion_section *worst = &inversion->section[0];
-    for (int k = 1; k < inversion->sections; k++) {
-        const struct inversion_section *section = &inversion->section[k];
-        if (section->misfit * worst->probable > worst->misfit * section->probable)
-            worst = section;
-    }
-    return worst;
-}
-
-bool mf_inversion_is_near(const struct inversion *inversion) {
-    const double noises = inversion->progress.pool > 0 ? still_near_noises : near_noises;
-    if (inversion->basis.count > 0)
-        return inversion->progress.miss < near_gradient;
-    for (int k = 0; k < inversion->sections; k++)
-        if (!(inversion->section[k].misfit < noises * noises) &&
-            !inversion_section_agrees(&inversion->section[k]))
-            return false;
-    return true;
+bool mf_inversion_state_is_near(const struct inversion_state *state) {
+    if (state->basis.count > 0)
+        return state->gradient < near_gradient;
+    return mf_inversion_verdict_is_near(&state->verdict, state->pool.samples > 0);
 }
 
 /// The mean excess of the pool, S̄ at the mean potential Φ̄, at the present one: S̄ − C (Φ − Φ̄)/k_B T.
-static void move_pool(struct inversion *inversion) {
-    const struct potential_grid *grid = &inversion->grid;
-    const double *response = mf_inversion_response_values(inversion);
-    const double temperature = inversion->problem->scene.temperature;
+static void move_pool(struct inversion_state *state) {
+    const struct potential_grid *grid = &state->grid;
+    const double *response = mf_inversion_response_values(state);
+    const double temperature = state->problem->scene.temperature;
     for (size_t a = 0; a < grid->known; a++)
-        inversion->excess[a] = inversion->pooled[a];
+        state->excess[a] = state->pool.excess[a];
     for (size_t b = 0; b < grid->known; b++) {
         const size_t point = grid->known_point[b];
-        const double change = (inversion->phi[point] - inversion->pooled_phi[point]) / temperature;
+        const double change = (state->phi[point] - state->pool.phi[point]) / temperature;
         for (size_t a = 0; a < grid->known; a++)
-            inversion->excess[a] -= response[a * grid->known + b] * change;
+            state->excess[a] -= response[a * grid->known + b] * change;
     }
 }
 
-void mf_inversion_pool(struct inversion *inversion) {
-    const struct potential_grid *grid = &inversion->grid;
-    double *pool = &inversion->progress.pool;
-    const double now = inversion->replicas.counts.count;
-    if (!mf_inversion_is_near(inversion)) {
+void mf_inversion_pool(struct inversion_state *state) {
+    const struct potential_grid *grid = &state->grid;
+    double *pool = &state->pool.samples;
+    const double now = state->replicas.counts.count;
+    if (!mf_inversion_state_is_near(state)) {
         *pool = 0;
         return;
     }
     const double share = fmax(least_share, now / (*pool + now));
     for (size_t a = 0; a < grid->known; a++) {
-        const double target = find_target_variance(inversion, a);
-        double *excess = &inversion->pooled[a], *sampled = &inversion->pooled_variance[a];
-        *excess = (1 - share) * *excess + share * inversion->excess[a];
-        *sampled = pow(1 - share, 2) * *sampled + pow(share, 2) * (inversion->variance[a] - target);
-        inversion->variance[a] = *sampled + target;
+        const double target = find_target_variance(state, a);
+        double *excess = &state->pool.excess[a], *sampled = &state->pool.variance[a];
+        *excess = (1 - share) * *excess + share * state->excess[a];
+        *sampled = pow(1 - share, 2) * *sampled + pow(share, 2) * (state->variance[a] - target);
+        state->variance[a] = *sampled + target;
     }
     for (size_t k = 0; k < grid->points; k++)
-        inversion->pooled_phi[k] =
-            (1 - share) * inversion->pooled_phi[k] + share * inversion->phi[k];
-    move_pool(inversion);
+        state->pool.phi[k] = (1 - share) * state->pool.phi[k] + share * state->phi[k];
+    move_pool(state);
     *pool = 1 / (pow(1 - share, 2) / fmax(*pool, 1) + share * share / now);
 }

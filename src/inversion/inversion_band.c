@@ -70,9 +70,9 @@ done:
 /// U of a group is known but for a constant, which no distribution sees and the prior alone holds:
 /// the errors are those of U less its mean over the target. Σ ← P Σ Pᵀ, P = 1 − 1 wᵀ for w ~ p.
 static void take_constants_off(struct inversion *inversion) {
-    const struct potential_grid *grid = &inversion->grid;
+    const struct potential_grid *grid = inversion_grid(inversion);
     const size_t n = grid->known;
-    double *covariance = inversion->band.covariance;
+    double *covariance = inversion->course.band.covariance;
     size_t first = grid->pairs_known;
     for (size_t g = 0; g < grid->groups; first += grid->group[g++].own.known) {
         const struct bonded_grid *own = &grid->group[g].own;
@@ -92,7 +92,7 @@ static void take_constants_off(struct inversion *inversion) {
 
 /// Weights w of the best ramp, A = Σ w_a Φ_a, over the bins that are well known.
 static void weigh_ramp(const struct inversion *inversion, double *weight) {
-    const struct potential_grid *grid = &inversion->grid;
+    const struct potential_grid *grid = inversion_grid(inversion);
     double squares = 0;
     for (size_t a = 0; a < grid->known; a++) {
         weight[a] = grid->well_known[a] ? mf_potential_grid_ramp(grid, grid->known_point[a]) : 0;
@@ -104,12 +104,12 @@ static void weigh_ramp(const struct inversion *inversion, double *weight) {
 
 /// out = Σ v; returns v·Σ v.
 static double spread(const struct inversion *inversion, const double *v, double *out) {
-    const size_t n = inversion->grid.known;
+    const size_t n = inversion_grid(inversion)->known;
     double variance = 0;
     for (size_t a = 0; a < n; a++) {
         out[a] = 0;
         for (size_t b = 0; b < n; b++)
-            out[a] += inversion->band.covariance[a * n + b] * v[b];
+            out[a] += inversion->course.band.covariance[a * n + b] * v[b];
         variance += v[a] * out[a];
     }
     return variance;
@@ -117,22 +117,23 @@ static double spread(const struct inversion *inversion, const double *v, double 
 
 /// Σ ← Σ + factor u uᵀ.
 static void add_square(struct inversion *inversion, double factor, const double *u) {
-    const size_t n = inversion->grid.known;
+    const size_t n = inversion_grid(inversion)->known;
     for (size_t a = 0; a < n; a++)
         for (size_t b = 0; b < n; b++)
-            inversion->band.covariance[a * n + b] += factor * u[a] * u[b];
+            inversion->course.band.covariance[a * n + b] += factor * u[a] * u[b];
 }
 
 /// The step from here: the most probable one, x = Σ Bᵀ V^−½ excess, or that of the coefficients.
 static enum status find_step(const struct inversion *inversion, const struct imc_system *system,
                              double *step) {
     enum status status = STATUS_OK;
-    const size_t n = inversion->grid.known;
+    const size_t n = inversion_grid(inversion)->known;
     gsl_matrix *response = NULL;
     gsl_vector *excess = NULL, *asked = NULL;
     for (size_t a = 0; a < n; a++)
-        step[a] = inversion->step[inversion->grid.known_point[a]];
-    if (inversion->basis.count > 0 || (inversion->coarse.count > 0 && inversion->settling))
+        step[a] = inversion->course.step[inversion_grid(inversion)->known_point[a]];
+    if (inversion->state->basis.count > 0 ||
+        (inversion->state->coarse.count > 0 && inversion->course.most_probable))
         return STATUS_OK;
     response = gsl_matrix_alloc(n, n);
     excess = gsl_vector_alloc(n);
@@ -152,12 +153,12 @@ done:
 /// (A/σ_A²)² Σw (Σw)ᵀ.
 static void add_way(struct inversion *inversion, const double *step, const double *weight,
                     double *scratch) {
-    const size_t n = inversion->grid.known;
-    struct inverse_ramp *ramp = &inversion->band.ramp;
+    const size_t n = inversion_grid(inversion)->known;
+    struct inverse_ramp *ramp = &inversion->course.band.ramp;
     ramp->way = ramp->pressure_way = 0;
     for (size_t a = 0; a < n; a++) {
         ramp->way += weight[a] * step[a];
-        ramp->pressure_way += inversion->pressure.slope[a] * step[a];
+        ramp->pressure_way += inversion->state->pressure.slope[a] * step[a];
     }
     const double variance = spread(inversion, weight, scratch);
     if (variance > 0) // without pairs there is no ramp
@@ -166,13 +167,13 @@ static void add_way(struct inversion *inversion, const double *step, const doubl
 
 /// Of several states the pressure whose way is the most of its error.
 static void find_farthest(struct inversion *inversion, const double *step, double *scratch) {
-    const struct inverse_ramp *ramp = &inversion->band.ramp;
-    struct inversion_band_pressure *farthest = &inversion->band.farthest;
+    const struct inverse_ramp *ramp = &inversion->course.band.ramp;
+    struct inversion_band_pressure *farthest = &inversion->course.band.farthest;
     *farthest = (struct inversion_band_pressure){ramp->pressure_way, ramp->pressure_open};
-    for (size_t s = 1; inversion->joint && s < inversion->joint->states; s++) {
-        const double *slope = inversion->joint->state[s].pressure.slope;
+    for (size_t s = 1; s < inversion->states; s++) {
+        const double *slope = inversion->state[s].pressure.slope;
         struct inversion_band_pressure own = {0, sqrt(spread(inversion, slope, scratch))};
-        for (size_t a = 0; a < inversion->grid.known; a++)
+        for (size_t a = 0; a < inversion_grid(inversion)->known; a++)
             own.way += slope[a] * step[a];
         if (fabs(own.way) * farthest->open > fabs(farthest->way) * own.open)
             *farthest = own;
@@ -181,11 +182,11 @@ static void find_farthest(struct inversion *inversion, const double *step, doubl
 
 /// What a pressure with its error adds: Σ ← Σ − Σp (Σp)ᵀ/(p·Σp + σ_P²).
 static void add_pressure(struct inversion *inversion, double *scratch) {
-    const double open = spread(inversion, inversion->pressure.slope, scratch);
-    inversion->band.ramp.pressure_open = sqrt(open);
-    if (!targets_ask(&inversion->problem->targets, TARGET_PRESSURE) || inversion->joint)
-        return;
-    const double noise = inversion->distance[TARGET_PRESSURE].noise;
+    const double open = spread(inversion, inversion->state->pressure.slope, scratch);
+    inversion->course.band.ramp.pressure_open = sqrt(open);
+    if (!targets_ask(&inversion->problem->targets, TARGET_PRESSURE) || inversion->equations.reduced)
+        return; // it is among the equations
+    const double noise = inversion->verdict.distance[TARGET_PRESSURE].noise;
     add_square(inversion, -1 / (open + noise * noise), scratch);
 }
 
@@ -196,15 +197,14 @@ double mf_inversion_band_of_counts(double counts) {
 /// What the counts of the target and those of the samples allow the error of Φ of a known bin to be
 /// at least: both of all states together. 0 of groups, which end as smooth as the prior has them.
 static double least_error(const struct inversion *inversion, size_t a) {
-    const struct inversion_joint *joint = inversion->joint;
-    const size_t bin = inversion->grid.known_bin[a];
+    const size_t bin = inversion_grid(inversion)->known_bin[a];
     double asked = 0, seen = 0;
-    if (a >= inversion->grid.pairs_known || inversion->basis.count > 0)
+    if (a >= inversion_grid(inversion)->pairs_known || inversion->state->basis.count > 0)
         return 0;
-    for (size_t s = 0; s < (joint ? joint->states : 1); s++) {
-        const struct inversion *own = joint ? &joint->state[s] : inversion;
-        const double target = pow(own->target_error[bin], 2);
-        asked += pow(own->target_counts[bin], 2) / target;
+    for (size_t s = 0; s < inversion->states; s++) {
+        const struct inversion_state *own = &inversion->state[s];
+        const double target = pow(own->target.error[bin], 2);
+        asked += pow(own->target.counts[bin], 2) / target;
         seen += pow(own->replicas.counts.mean[bin], 2) / (own->variance[a] - target);
     }
     return isfinite(asked) && isfinite(seen)
@@ -215,8 +215,8 @@ static double least_error(const struct inversion *inversion, size_t a) {
 
 /// Standard errors, those of A, and those of Φ if A were known.
 static void find_errors(struct inversion *inversion, const double *weight, double *scratch) {
-    const struct potential_grid *grid = &inversion->grid;
-    struct inversion_band *band = &inversion->band;
+    const struct potential_grid *grid = inversion_grid(inversion);
+    struct inversion_band *band = &inversion->course.band;
     const size_t n = grid->known;
     const double ramp_variance = spread(inversion, weight, scratch);
     for (size_t a = 0; a < n; a++) {
@@ -232,7 +232,7 @@ static void find_errors(struct inversion *inversion, const double *weight, doubl
         mf_potential_grid_close(grid, g, band->without_ramp);
     }
     band->ramp.error = sqrt(ramp_variance);
-    band->ramp.pressure = mf_inversion_pressure_ramp_slope(inversion);
+    band->ramp.pressure = mf_inversion_pressure_ramp_slope(inversion->state);
     band->ramp.bins = (double)n;
 }
 
@@ -248,8 +248,8 @@ static double *flat_at(const struct potential_grid *grid, const struct inversion
 /// Widest principal components of the well-known bins, continued to the others.
 static enum status find_flat(struct inversion *inversion) {
     enum status status = STATUS_OK;
-    const struct potential_grid *grid = &inversion->grid;
-    const struct inversion_band *band = &inversion->band;
+    const struct potential_grid *grid = inversion_grid(inversion);
+    const struct inversion_band *band = &inversion->course.band;
     const size_t n = grid->known;
     gsl_matrix *part = gsl_matrix_calloc(n, n), *vectors = gsl_matrix_alloc(n, n);
     gsl_vector *values = gsl_vector_alloc(n);
@@ -277,33 +277,35 @@ done:
     return status;
 }
 
-double mf_inversion_band_birge(const struct inversion *inversion) {
-    return fmax(1, inversion->misfit);
+double mf_inversion_band_birge(const struct inversion_verdict *verdict) {
+    return fmax(1, verdict->misfit);
 }
 
 double mf_inversion_band_prior(const struct inversion *inversion) {
-    return mf_inversion_band_birge(inversion) / pow(inversion->problem->scene.temperature, 2);
+    return mf_inversion_band_birge(&inversion->verdict) /
+           pow(inversion->problem->scene.temperature, 2);
 }
 
 enum status mf_inversion_band_find(struct inversion *inversion) {
     enum status status = STATUS_OK;
-    const struct potential_grid *grid = &inversion->grid;
-    struct inversion_band *band = &inversion->band;
+    const struct potential_grid *grid = inversion_grid(inversion);
+    struct inversion_band *band = &inversion->course.band;
     double *weight = NULL, *scratch = NULL, *variance = NULL, *step = NULL;
     struct imc_shape *shape = NULL;
     NEW_ARRAY(weight, grid->known);
     NEW_ARRAY(scratch, grid->known);
     NEW_ARRAY(variance, grid->known);
     NEW_ARRAY(step, grid->known);
-    struct imc_system system = mf_inversion_system(inversion);
+    struct imc_system system = inversion->equations.system;
     for (size_t a = 0; a < system.size; a++)
-        variance[a] = mf_inversion_band_birge(inversion) * system.variance[a];
+        variance[a] = mf_inversion_band_birge(&inversion->verdict) * system.variance[a];
     system.variance = variance;
     NEW_ARRAY(shape, grid->blocks);
     mf_inversion_smooth_shapes(inversion, shape);
     system.shape = shape;
-    CHECK(inversion->basis.count > 0
-              ? mf_inversion_basis_covariance(inversion, band->covariance, &band->ramp.directions)
+    CHECK(inversion->state->basis.count > 0
+              ? mf_inversion_basis_covariance(inversion->state, band->covariance,
+                                              &band->ramp.directions)
               : mf_inversion_band_covariance(&system, band->covariance, &band->ramp.directions));
     take_constants_off(inversion);
     weigh_ramp(inversion, weight);

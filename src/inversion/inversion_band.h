@@ -40,6 +40,7 @@
 #include "problem/inverse.h"
 
 struct inversion;
+struct inversion_verdict;
 
 struct inversion_band {
     double *covariance;   ///< of Φ in the known bins, shape [known, known]
@@ -70,7 +71,7 @@ enum status mf_inversion_band_covariance(const struct imc_system *system, double
 
 /// χ² by bin, if above 1: by so much the variances of g are larger, as what is left of the excess
 /// shows. R. T. Birge, Phys. Rev. 40, 207 (1932).
-double mf_inversion_band_birge(const struct inversion *inversion);
+double mf_inversion_band_birge(const struct inversion_verdict *verdict);
 
 /// Strength of mf_imc_solve's prior with which its step is the most probable one.
 double mf_inversion_band_prior(const struct inversion *inversion);

@@ -4,7 +4,7 @@
 #include "base/memory.h"
 #include "base/statistics.h"
 #include "curves/shape.h"
-#include "inversion/inversion.h"
+#include "inversion/inversion_state.h"
 #include "problem/parametrisation_bonded.h"
 
 #include <gsl/gsl_blas.h>
@@ -14,7 +14,7 @@
 
 /// Coefficients of a block of the grid.
 static size_t count_of(const struct potential_grid *grid, size_t block,
-                       const struct entropy_parameters *parameters) {
+                       const struct inversion_basis_size *parameters) {
     const size_t known = grid->known_of[block];
     const size_t wanted =
         (size_t)(block < grid->pairs ? parameters->coefficients : parameters->group_coefficients);
@@ -40,7 +40,7 @@ done:
 
 enum status mf_inversion_basis_init(struct inversion_basis *basis,
                                     const struct potential_grid *grid,
-                                    const struct entropy_parameters *parameters) {
+                                    const struct inversion_basis_size *parameters) {
     enum status status = STATUS_OK;
     double *own = NULL;
     *basis = (struct inversion_basis){0};
@@ -96,15 +96,15 @@ static void make_curve(const struct inversion_basis *basis, const struct potenti
     }
 }
 
-void mf_inversion_basis_weights(const struct inversion *inversion, double *weight) {
+void mf_inversion_basis_weights(const struct inversion_state *state, double *weight) {
     static const double least = 0.01;
-    const struct potential_grid *grid = &inversion->grid;
+    const struct potential_grid *grid = &state->grid;
     double sum = 0;
     for (size_t a = 0; a < grid->known; a++)
-        sum += inversion->target_counts[grid->known_bin[a]];
+        sum += state->target.counts[grid->known_bin[a]];
     for (size_t a = 0; a < grid->known; a++)
         weight[a] =
-            fmax(inversion->target_counts[grid->known_bin[a]], least * sum / (double)grid->known);
+            fmax(state->target.counts[grid->known_bin[a]], least * sum / (double)grid->known);
 }
 
 enum status mf_inversion_basis_project(const struct inversion_basis *basis,
@@ -137,20 +137,21 @@ done:
 
 /// BᵀC B, and the noise of the gradient but for the samples': that of the target, bin by bin, and
 /// of one count where there are none.
-static void fill_matrices(struct inversion_basis *basis, const struct inversion *inversion) {
-    const struct potential_grid *grid = &inversion->grid;
+static void fill_matrices(struct inversion_basis *basis, const struct inversion_state *state) {
+    const struct potential_grid *grid = &state->grid;
     const size_t count = basis->count, known = grid->known;
-    const double empty = inversion->inefficiency / pow(inversion->replicas.counts.count, 2);
+    const double empty = state->inefficiency / pow(state->replicas.counts.count, 2);
     memset(basis->hessian, 0, count * count * sizeof *basis->hessian);
     memset(basis->noise, 0, count * count * sizeof *basis->noise);
     for (size_t a = 0; a < known; a++) {
         const double *row = basis->value + a * count;
-        const double error = inversion->target_error[grid->known_bin[a]];
+        const double error = state->target.error[grid->known_bin[a]];
         double *covered = basis->inverse; // Bᵀ of a row of C, for the time being
         memset(covered, 0, count * sizeof *covered);
         for (size_t b = 0; b < known; b++)
             for (size_t k = 0; k < count; k++)
-                covered[k] += inversion->covariance[a * known + b] * basis->value[b * count + k];
+                covered[k] +=
+                    state->response.covariance[a * known + b] * basis->value[b * count + k];
         for (size_t k = 0; k < count; k++)
             for (size_t n = 0; n < count; n++) {
                 basis->hessian[k * count + n] += row[k] * covered[n];
@@ -160,31 +161,32 @@ static void fill_matrices(struct inversion_basis *basis, const struct inversion 
 }
 
 /// Bᵀ S of a block of samples, or of all blocks of a replica, for one coefficient.
-static double block_gradient(const struct inversion_basis *basis, const struct inversion *inversion,
-                             size_t member, size_t begin, size_t end, size_t coefficient) {
-    const struct potential_grid *grid = &inversion->grid;
+static double block_gradient(const struct inversion_basis *basis,
+                             const struct inversion_state *state, size_t member, size_t begin,
+                             size_t end, size_t coefficient) {
+    const struct potential_grid *grid = &state->grid;
     double sum = 0;
     for (size_t b = begin; b < end; b++)
         for (size_t a = 0; a < grid->known; a++)
             sum += basis->value[a * basis->count + coefficient] *
-                   inversion->replicas.member[member]
-                       .block[b * inversion->replicas.numbers + grid->known_bin[a]];
+                   state->replicas.member[member]
+                       .block[b * state->replicas.numbers + grid->known_bin[a]];
     return sum / (double)(end - begin);
 }
 
 /// Samples that count as one independent: by the scatter of parts of them, of blocks or of whole
 /// replicas, the mean over coefficients of the variance over that of independent ones.
 static double find_inefficiency(const struct inversion_basis *basis,
-                                const struct inversion *inversion, size_t parts) {
-    const struct replicas *replicas = &inversion->replicas;
+                                const struct inversion_state *state, size_t parts) {
+    const struct replicas *replicas = &state->replicas;
     const size_t length = REPLICAS_BLOCKS / parts;
     double sum = 0;
     for (size_t k = 0; k < basis->count; k++) {
         struct running_mean found = {0};
         for (size_t m = 0; m < replicas->count; m++)
             for (size_t part = 0; part < parts; part++)
-                mf_statistics_add(&found, block_gradient(basis, inversion, m, part * length,
-                                                         (part + 1) * length, k));
+                mf_statistics_add(
+                    &found, block_gradient(basis, state, m, part * length, (part + 1) * length, k));
         const double variance = basis->hessian[k * (basis->count + 1)];
         if (variance > 0)
             sum += found.squares / (found.count - 1) / variance;
@@ -194,15 +196,14 @@ static double find_inefficiency(const struct inversion_basis *basis,
 
 /// Few replicas hardly know how they scatter: halves of them count then.
 static double count_independent(const struct inversion_basis *basis,
-                                const struct inversion *inversion) {
+                                const struct inversion_state *state) {
     enum { MANY = 4 };
-    const size_t parts = inversion->replicas.count < MANY ? 2 : 1;
-    double inefficiency = inversion->inefficiency;
-    if (inversion->replicas.count > 1)
-        inefficiency =
-            fmax(inefficiency, fmax(find_inefficiency(basis, inversion, parts),
-                                    find_inefficiency(basis, inversion, REPLICAS_BLOCKS)));
-    return inversion->replicas.counts.count / inefficiency;
+    const size_t parts = state->replicas.count < MANY ? 2 : 1;
+    double inefficiency = state->inefficiency;
+    if (state->replicas.count > 1)
+        inefficiency = fmax(inefficiency, fmax(find_inefficiency(basis, state, parts),
+                                               find_inefficiency(basis, state, REPLICAS_BLOCKS)));
+    return state->replicas.counts.count / inefficiency;
 }
 
 /// gᵀN⁻¹g; N is overwritten. Infinite if it has no inverse.
@@ -237,7 +238,7 @@ static void invert(const struct inversion_basis *basis, double larger, double he
 /// all but stops what C hardly sees, as the ramp.
 static void damp(struct inversion_basis *basis, bool near) {
     static const double most = 0.5;
-    const double part = (double)basis->count / basis->behind;
+    const double part = (double)basis->count / basis->samples;
     invert(basis, near ? 1 : 1 + part, 1 / basis->pooled, basis->damped);
     for (size_t k = 0; near && k < basis->count * basis->count; k++)
         basis->damped[k] *= 1 - fmin(part, most);
@@ -259,56 +260,57 @@ static void find_change(struct inversion_basis *basis, double temperature) {
 }
 
 /// The noise that the factors of pair types make.
-static void add_common(struct inversion_basis *basis, const struct inversion *inversion) {
-    const struct potential_grid *grid = &inversion->grid;
+static void add_common(struct inversion_basis *basis, const struct inversion_state *state) {
+    const struct potential_grid *grid = &state->grid;
     const size_t count = basis->count;
     double *along = basis->inverse; // for the time being
-    for (size_t block = 0, a = 0; inversion->common && block < grid->blocks; block++) {
+    for (size_t block = 0, a = 0; state->target.common && block < grid->blocks; block++) {
         memset(along, 0, count * sizeof *along);
         for (const size_t last = a + grid->known_of[block]; a < last; a++)
             for (size_t k = 0; k < count; k++)
-                along[k] += basis->value[a * count + k] * inversion->common[a];
+                along[k] += basis->value[a * count + k] * state->target.common[a];
         for (size_t k = 0; k < count * count; k++)
             basis->noise[k] += along[k / count] * along[k % count];
     }
 }
 
-void mf_inversion_basis_respond(struct inversion_basis *basis, const struct inversion *inversion) {
-    fill_matrices(basis, inversion);
-    add_common(basis, inversion);
-    const double now = inversion->replicas.counts.count;
-    basis->independent = count_independent(basis, inversion);
-    basis->pooled = basis->independent * fmax(1, inversion->progress.pool / now);
-    basis->behind = basis->independent * fmax(1, inversion->behind / now);
+void mf_inversion_basis_respond(struct inversion_basis *basis,
+                                const struct inversion_state *state) {
+    fill_matrices(basis, state);
+    add_common(basis, state);
+    const double now = state->replicas.counts.count;
+    basis->independent = count_independent(basis, state);
+    basis->pooled = basis->independent * fmax(1, state->pool.samples / now);
+    basis->samples = basis->independent * fmax(1, state->response.samples / now);
 }
 
-void mf_inversion_basis_measure(struct inversion_basis *basis, const struct inversion *inversion,
+void mf_inversion_basis_measure(struct inversion_basis *basis, const struct inversion_state *state,
                                 double *step) {
-    const struct potential_grid *grid = &inversion->grid;
+    const struct potential_grid *grid = &state->grid;
     const size_t count = basis->count;
     memset(basis->gradient, 0, count * sizeof *basis->gradient);
     for (size_t a = 0; a < grid->known; a++)
         for (size_t k = 0; k < count; k++)
-            basis->gradient[k] += basis->value[a * count + k] * inversion->excess[a];
-    mf_inversion_basis_respond(basis, inversion);
+            basis->gradient[k] += basis->value[a * count + k] * state->excess[a];
+    mf_inversion_basis_respond(basis, state);
     for (size_t k = 0; k < count * count; k++)
         basis->noise[k] += basis->hessian[k] / basis->pooled;
     memcpy(basis->inverse, basis->noise, count * count * sizeof *basis->noise);
     basis->miss = sqrt(measure_against(basis->inverse, basis->gradient, basis->change, count) /
                        (double)count);
     invert(basis, 1, 1 / basis->pooled, basis->inverse);
-    damp(basis, mf_inversion_is_near(inversion));
-    find_change(basis, inversion->problem->scene.temperature);
+    damp(basis, mf_inversion_state_is_near(state));
+    find_change(basis, state->problem->scene.temperature);
     make_curve(basis, grid, basis->change, step);
 }
 
-enum status mf_inversion_basis_covariance(const struct inversion *inversion, double *covariance,
+enum status mf_inversion_basis_covariance(const struct inversion_state *state, double *covariance,
                                           double *directions) {
     enum status status = STATUS_OK;
-    const struct inversion_basis *basis = &inversion->basis;
-    const size_t count = basis->count, known = inversion->grid.known;
+    const struct inversion_basis *basis = &state->basis;
+    const size_t count = basis->count, known = state->grid.known;
     const double held = 1 / basis->pooled;
-    const double unit = pow(inversion->problem->scene.temperature, 2);
+    const double unit = pow(state->problem->scene.temperature, 2);
     double *noise = NULL, *product = NULL, *half = NULL;
     NEW_ARRAY(noise, count * count);
     NEW_ARRAY(product, count * count);

@@ -16,9 +16,9 @@
 
 #include "problem/potential_grid.h"
 
-struct inversion;
+struct inversion_state;
 
-struct entropy_parameters {
+struct inversion_basis_size {
     int64_t coefficients, group_coefficients;
 };
 
@@ -35,8 +35,8 @@ struct inversion_basis {
     double *change; ///< the Newton step of the coefficients [k_B T_0], shape [count]
     double independent; ///< samples, by the scatter of the gradient: it follows all bins a little,
                         ///< and so what changes more slowly than each of them does
-    double pooled;      ///< the same behind the excess, of all iterations near the target
-    double behind;      ///< the same behind C
+    double pooled;      ///< the same of the excess, of all iterations near the target
+    double samples;     ///< the same of C
     double miss;        ///< gradient in units of its noise, rms over coefficients
     double decrement;   ///< g·H⁻¹g: twice the fall of S_rel that the step promises
     double chance;      ///< what noise alone makes of that
@@ -46,13 +46,13 @@ struct inversion_basis {
 /// Fails: NO_MEMORY.
 enum status mf_inversion_basis_init(struct inversion_basis *basis,
                                     const struct potential_grid *grid,
-                                    const struct entropy_parameters *parameters) MUST_USE;
+                                    const struct inversion_basis_size *parameters) MUST_USE;
 void mf_inversion_basis_clear(struct inversion_basis *basis);
 
 /// Weights of the known bins, shape [known]: what the target has there, which is by how much each
 /// one enters S_rel, and at least a hundredth of their mean, so that no coefficient is unseen where
 /// a target is empty.
-void mf_inversion_basis_weights(const struct inversion *inversion, double *weight);
+void mf_inversion_basis_weights(const struct inversion_state *state, double *weight);
 
 /// Replace the known values of `phi`, shape [points], by the nearest that coefficients make, by
 /// least squares with these weights of the known bins. Nothing is completed. Fails: NO_MEMORY.
@@ -61,17 +61,17 @@ enum status mf_inversion_basis_project(const struct inversion_basis *basis,
                                        double *phi) MUST_USE;
 
 /// Hessian and independent samples, and the noise of the gradient by the target alone.
-void mf_inversion_basis_respond(struct inversion_basis *basis, const struct inversion *inversion);
+void mf_inversion_basis_respond(struct inversion_basis *basis, const struct inversion_state *state);
 
 /// Gradient, Hessian and Newton step by the excess and C, near the target those of all iterations
 /// since it was reached.
 /// @param[out] step  of the potential in the known bins, shape [points]
 /// Tested: test_inversion_basis.
-void mf_inversion_basis_measure(struct inversion_basis *basis, const struct inversion *inversion,
+void mf_inversion_basis_measure(struct inversion_basis *basis, const struct inversion_state *state,
                                 double *step);
 
 /// Covariance of the potential in the known bins, shape [known, known]: (k_B T)² B A (N + 1/n²) A
 /// Bᵀ with the inverse A above and the noise N of the gradient; and the directions that the samples
 /// determine, the trace of A BᵀC B. Fails: NO_MEMORY.
-enum status mf_inversion_basis_covariance(const struct inversion *inversion, double *covariance,
+enum status mf_inversion_basis_covariance(const struct inversion_state *state, double *covariance,
                                           double *directions) MUST_USE;

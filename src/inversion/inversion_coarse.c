@@ -3,6 +3,7 @@
 
 #include "base/memory.h"
 #include "inversion/inversion.h"
+#include "inversion/method_steps.h"
 
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_eigen.h>
@@ -13,13 +14,13 @@
 /// The largest eigenvalue of the response in units of Boltzmann inversion's.
 static const double largest = 2;
 
-enum status mf_inversion_coarse_init(struct inversion *inversion) {
-    static const struct entropy_parameters size = {.coefficients = 20, .group_coefficients = 8};
-    return mf_inversion_basis_init(&inversion->coarse, &inversion->grid, &size);
+enum status mf_inversion_coarse_init(struct inversion_state *state) {
+    static const struct inversion_basis_size size = {.coefficients = 20, .group_coefficients = 8};
+    return mf_inversion_basis_init(&state->coarse, &state->grid, &size);
 }
 
 bool mf_inversion_is_coarse(const struct inversion *inversion) {
-    return inversion->coarse.count > 0 && !mf_inversion_is_near(inversion);
+    return inversion->state->coarse.count > 0 && !mf_inversion_is_near(inversion);
 }
 
 /// Work space of one step, in coefficients.
@@ -55,16 +56,16 @@ static enum status response_allocate(struct response *r, size_t count) {
 }
 
 /// T and Bᵀ S* u.
-static enum status fill_ideal(const struct inversion *inversion, const double *step,
+static enum status fill_ideal(const struct inversion_state *state, const double *step,
                               struct response *r) {
     static const double ridge = 1e-9;
     enum status status = STATUS_OK;
-    const struct inversion_basis *coarse = &inversion->coarse;
-    const struct potential_grid *grid = &inversion->grid;
+    const struct inversion_basis *coarse = &state->coarse;
+    const struct potential_grid *grid = &state->grid;
     const size_t count = coarse->count;
     double *weight = NULL;
     NEW_ARRAY(weight, grid->known);
-    mf_inversion_basis_weights(inversion, weight);
+    mf_inversion_basis_weights(state, weight);
     for (size_t a = 0; a < grid->known; a++) {
         const double *row = coarse->value + a * count;
         for (size_t k = 0; k < count; k++) {
@@ -96,9 +97,9 @@ static bool decompose(const struct inversion_basis *coarse, struct response *r) 
 }
 
 /// step += B (H⁻¹ − T⁻¹) Bᵀ S* u.
-static void add_difference(const struct inversion *inversion, struct response *r, double *step) {
-    const struct inversion_basis *coarse = &inversion->coarse;
-    const struct potential_grid *grid = &inversion->grid;
+static void add_difference(const struct inversion_state *state, struct response *r, double *step) {
+    const struct inversion_basis *coarse = &state->coarse;
+    const struct potential_grid *grid = &state->grid;
     const double scatter = sqrt((double)coarse->count / coarse->independent);
     const double share = scatter / (1 + scatter);
     for (size_t k = 0; k < coarse->count; k++) {
@@ -113,14 +114,14 @@ static void add_difference(const struct inversion *inversion, struct response *r
                 coarse->value[a * coarse->count + k] * gsl_vector_get(r->asked, k);
 }
 
-enum status mf_inversion_coarse_respond(struct inversion *inversion, double *step) {
+enum status mf_inversion_coarse_respond(struct inversion_state *state, double *step) {
     enum status status = STATUS_OK;
     struct response response = {0};
-    CHECK(response_allocate(&response, inversion->coarse.count));
-    mf_inversion_basis_respond(&inversion->coarse, inversion);
-    CHECK(fill_ideal(inversion, step, &response));
-    if (decompose(&inversion->coarse, &response))
-        add_difference(inversion, &response, step);
+    CHECK(response_allocate(&response, state->coarse.count));
+    mf_inversion_basis_respond(&state->coarse, state);
+    CHECK(fill_ideal(state, step, &response));
+    if (decompose(&state->coarse, &response))
+        add_difference(state, &response, step);
 done:
     response_free(&response);
     return status;
@@ -128,17 +129,17 @@ done:
 
 /// Of an excess of which a part is noise, the rest is to be removed (N. Wiener, Extrapolation,
 /// Interpolation, and Smoothing of Stationary Time Series (1949)): 1 − noise²/rms² of each section.
-static void leave_noise(const struct inversion *inversion, double *step) {
-    for (int k = 0; k < inversion->sections; k++) {
-        const struct inversion_section *section = &inversion->section[k];
+static void leave_noise(const struct inversion_state *state, double *step) {
+    for (int k = 0; k < state->verdict.sections; k++) {
+        const struct inversion_section *section = &state->verdict.section[k];
         const double share = fmax(0, 1 - pow(section->noise / section->rms, 2));
         for (size_t a = section->known; a < section->known + section->known_count; a++)
-            step[inversion->grid.known_point[a]] *= share;
+            step[state->grid.known_point[a]] *= share;
     }
 }
 
-enum status mf_inversion_coarse_step(struct inversion *inversion, double *step) {
-    mf_ibi_logarithms(inversion, step);
-    leave_noise(inversion, step);
-    return mf_inversion_coarse_respond(inversion, step);
+enum status mf_inversion_coarse_step(struct inversion_state *state, double *step) {
+    mf_ibi_logarithms(state, step);
+    leave_noise(state, step);
+    return mf_inversion_coarse_respond(state, step);
 }

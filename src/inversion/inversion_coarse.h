@@ -6,7 +6,7 @@
 /// has C_aa x·C x/n: what a step does is predicted with an error that is larger than what it does.
 /// Of a few coefficients B, BᵀC B is known better. Boltzmann inversion takes S* for C, which is
 /// right for what is narrow, and slow or too much for what is wide, as the ramp. So the part of its
-/// step that the coefficients can make is made anew with their BᵀC B, as by the coarse grid of a
+/// step that the coefficients can make is made again with their BᵀC B, as by the coarse grid of a
 /// two-grid method (W. Hackbusch, Multi-Grid Methods and Applications (1985), section 2).
 #pragma once
 
@@ -15,9 +15,10 @@
 #include <stdbool.h>
 
 struct inversion;
+struct inversion_state;
 
 /// Make the coefficients. Fails: NO_MEMORY.
-enum status mf_inversion_coarse_init(struct inversion *inversion) MUST_USE;
+enum status mf_inversion_coarse_init(struct inversion_state *state) MUST_USE;
 
 /// Whether the next step is such a one: of a fit with groups whose targets are not near.
 bool mf_inversion_is_coarse(const struct inversion *inversion);
@@ -30,8 +31,8 @@ bool mf_inversion_is_coarse(const struct inversion *inversion);
 /// twice as long as the right one. h above 2 counts as 2: samples that drift have such ones.
 /// @param[in,out] step  u in the known bins, shape [points]. Fails: NO_MEMORY. Tested:
 /// test_inversion_coarse.
-enum status mf_inversion_coarse_respond(struct inversion *inversion, double *step) MUST_USE;
+enum status mf_inversion_coarse_respond(struct inversion_state *state, double *step) MUST_USE;
 
 /// The step in the known bins; it does not look at the pressure.
 /// @param[out] step  shape [points]. Fails: NO_MEMORY.
-enum status mf_inversion_coarse_step(struct inversion *inversion, double *step) MUST_USE;
+enum status mf_inversion_coarse_step(struct inversion_state *state, double *step) MUST_USE;

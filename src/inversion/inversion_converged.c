@@ -18,58 +18,59 @@ enum { LEAST_MET_WITH_GROUPS = 2 };
 static const double enough_near = 2.99;
 
 bool mf_inversion_ends_with_mean(const struct inversion *inversion) {
-    const struct potential_grid *grid = &inversion->grid;
+    const struct inversion_state *first = inversion->state;
+    const struct potential_grid *grid = &first->grid;
+    const double samples = first->pool.samples;
     double mean = 0, now = 0;
-    if (inversion->progress.pool <= 0 ||
-        inversion->progress.pool < enough_near * inversion->replicas.counts.count ||
+    if (samples <= 0 || samples < enough_near * first->replicas.counts.count ||
         !((const struct inversion_rule *)inversion->method->own)->forgets ||
         targets_ask(&inversion->problem->targets, TARGET_PRESSURE))
         return false;
     for (size_t a = 0; a < grid->known; a++) {
         const size_t bin = grid->known_bin[a];
-        const double excess = inversion->replicas.counts.mean[bin] - inversion->target_counts[bin];
-        mean += pow(inversion->pooled[a], 2) / inversion->variance[a];
-        now += pow(excess, 2) / inversion->variance[a];
+        const double excess = first->replicas.counts.mean[bin] - first->target.counts[bin];
+        mean += pow(first->pool.excess[a], 2) / first->variance[a];
+        now += pow(excess, 2) / first->variance[a];
     }
     return mean < now;
 }
 
 /// Whether that mean meets the targets of a section.
-static bool mean_meets_section(const struct inversion *inversion,
+static bool mean_meets_section(const struct inversion_state *state,
                                const struct inversion_section *section) {
     const size_t end = section->known + section->known_count;
     double bins = 0;
     for (size_t a = section->known; a < end; a++)
-        bins += inversion->grid.seen[a];
-    return mf_inversion_chi_squared(inversion, inversion->pooled, section->known, end) <=
+        bins += state->grid.seen[a];
+    return mf_inversion_chi_squared(state, state->pool.excess, section->known, end) <=
            section->probable * bins;
 }
 
 /// Whether that mean meets the targets of all sections.
-static bool mean_meets(const struct inversion *inversion) {
-    for (int k = 0; k < inversion->sections; k++)
-        if (!mean_meets_section(inversion, &inversion->section[k]))
+static bool mean_meets(const struct inversion_state *state) {
+    for (int k = 0; k < state->verdict.sections; k++)
+        if (!mean_meets_section(state, &state->verdict.section[k]))
             return false;
     return true;
 }
 
 /// Whether a kind of targets is that of sections.
-static bool has_sections(const struct inversion *inversion, int kind) {
+static bool has_sections(const struct inversion_verdict *verdict, int kind) {
     bool has = false;
-    for (int k = 0; k < inversion->sections; k++)
-        has = has || inversion->section[k].kind == kind;
+    for (int k = 0; k < verdict->sections; k++)
+        has = has || verdict->section[k].kind == kind;
     return has;
 }
 
 /// Whether the present potential meets all targets as far as their noise lets see: each section by
 /// its χ², and the numbers beside them.
 static bool present_meets(const struct inversion *inversion) {
-    if (!inversion_section_agrees(mf_inversion_worst(inversion)))
+    const struct inversion_verdict *verdict = &inversion->verdict;
+    if (!inversion_section_agrees(mf_inversion_verdict_worst(verdict)))
         return false;
     for (int kind = 0; kind < TARGETS; kind++)
-        if (targets_ask(&inversion->problem->targets, kind) && !has_sections(inversion, kind) &&
-            inversion->distance[kind].rms >
-                mf_inverse_noise_margin * inversion->distance[kind].noise)
+        if (targets_ask(&inversion->problem->targets, kind) && !has_sections(verdict, kind) &&
+            verdict->distance[kind].rms > mf_inverse_noise_margin * verdict->distance[kind].noise)
             return false;
     return true;
 }
@@ -78,15 +79,16 @@ static bool present_meets(const struct inversion *inversion) {
 /// has less noise and follows a slow fit at a distance; of few coefficients, whether no change of
 /// these makes it better.
 static bool meets_targets(const struct inversion *inversion) {
-    if (inversion->basis.count > 0)
-        return inversion->basis.miss <= mf_inverse_noise_margin;
+    const struct inversion_basis *basis = &inversion->state->basis;
+    if (basis->count > 0)
+        return basis->miss <= mf_inverse_noise_margin;
     return present_meets(inversion) ||
-           (mf_inversion_ends_with_mean(inversion) && mean_meets(inversion));
+           (mf_inversion_ends_with_mean(inversion) && mean_meets(inversion->state));
 }
 
 /// Whether a method that takes the most probable step must go all of the way that g hardly sees.
 static bool must_settle(const struct inversion *inversion) {
-    return inversion->settling && inversion->grid.pairs > 0 &&
+    return inversion->course.most_probable && inversion_grid(inversion)->pairs > 0 &&
            !targets_ask(&inversion->problem->targets, TARGET_PRESSURE);
 }
 
@@ -94,8 +96,8 @@ static bool must_settle(const struct inversion *inversion) {
 /// but for a part of their errors: each one has the noise of its samples, and what goes on goes on
 /// in one direction.
 static bool has_settled(const struct inversion *inversion, uint32_t least) {
-    const struct inversion_band *band = &inversion->band;
-    const struct inversion_ways *ways = &inversion->progress.ways;
+    const struct inversion_band *band = &inversion->course.band;
+    const struct inversion_ways *ways = &inversion->course.progress.ways;
     double ramp = 0, pressure = 0;
     for (uint32_t k = 1; k <= ways->met && k <= INVERSION_MOST_WAYS; k++) {
         const uint32_t place = (ways->met - k) % INVERSION_MOST_WAYS;
@@ -109,16 +111,17 @@ static bool has_settled(const struct inversion *inversion, uint32_t least) {
 }
 
 bool mf_inversion_has_converged(struct inversion *inversion, bool kept) {
-    struct inversion_ways *ways = &inversion->progress.ways;
+    struct inversion_ways *ways = &inversion->course.progress.ways;
     if (!kept) // it goes back to the one before
         return false;
-    if (!inversion->progress.best_precise || !meets_targets(inversion)) {
+    if (!inversion->course.progress.best.precise || !meets_targets(inversion)) {
         ways->met = 0;
         return false;
     }
-    ways->ramp[ways->met % INVERSION_MOST_WAYS] = inversion->band.ramp.way;
-    ways->pressure[ways->met % INVERSION_MOST_WAYS] = inversion->band.farthest.way;
+    ways->ramp[ways->met % INVERSION_MOST_WAYS] = inversion->course.band.ramp.way;
+    ways->pressure[ways->met % INVERSION_MOST_WAYS] = inversion->course.band.farthest.way;
     ways->met++;
     return !must_settle(inversion) ||
-           has_settled(inversion, inversion->grid.groups > 0 ? LEAST_MET_WITH_GROUPS : 1);
+           has_settled(inversion,
+                       inversion_grid(inversion)->groups > 0 ? LEAST_MET_WITH_GROUPS : 1);
 }

@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "inversion/inversion.h"
+#include "inversion/inversion_state.h"
 
 #include "observe/kirkwood_buff_observable.h"
 
 #include <math.h>
 
-static const struct target *target_of(const struct inversion *inversion) {
-    return &inversion->problem->targets.target[mf_kirkwood_buff_kind()];
+static const struct target *target_of(const struct inversion_state *state) {
+    return &state->problem->targets.target[mf_kirkwood_buff_kind()];
 }
 
-enum status mf_inversion_kirkwood_buff_init(struct inversion *inversion) {
+enum status mf_inversion_kirkwood_buff_init(struct inversion_state *state) {
     enum status status = STATUS_OK;
-    struct inversion_kirkwood_buff *kb = &inversion->kirkwood_buff;
-    const struct targets *targets = &inversion->problem->targets;
+    struct inversion_kirkwood_buff *kb = &state->kirkwood_buff;
+    const struct targets *targets = &state->problem->targets;
     const struct kirkwood_buff_settings *settings =
         targets->settings[mf_observable_kind(mf_kirkwood_buff_kind()).place];
-    kb->pairs = target_of(inversion)->count;
+    kb->pairs = target_of(state)->count;
     if (kb->pairs == 0)
         return STATUS_OK;
     kb->q_maximum = settings->q_maximum;
-    NEW_ARRAY(kb->slope, kb->pairs * inversion->grid.known);
+    NEW_ARRAY(kb->slope, kb->pairs * state->grid.known);
 done:
     return status;
 }
@@ -29,40 +29,40 @@ void mf_inversion_kirkwood_buff_clear(struct inversion_kirkwood_buff *kb) {
     *kb = (struct inversion_kirkwood_buff){0};
 }
 
-void mf_inversion_kirkwood_buff_measure(struct inversion *inversion) {
-    struct inversion_kirkwood_buff *kb = &inversion->kirkwood_buff;
+void mf_inversion_kirkwood_buff_measure(struct inversion_state *state) {
+    struct inversion_kirkwood_buff *kb = &state->kirkwood_buff;
     for (size_t pair = 0; pair < kb->pairs; pair++) {
         const struct replicas_mean mean =
-            mf_replicas_mean(&inversion->replicas, SAMPLER_SUMS + pair, inversion->inefficiency);
+            mf_replicas_mean(&state->replicas, SAMPLER_SUMS + pair, state->inefficiency);
         kb->value[pair] = mean.mean;
         kb->error[pair] = mean.error;
     }
     if (kb->pairs > 0)
-        inversion->distance[mf_kirkwood_buff_kind()] =
-            mf_targets_worst(target_of(inversion), kb->value, kb->error);
+        state->verdict.distance[mf_kirkwood_buff_kind()] =
+            mf_targets_worst(target_of(state), kb->value, kb->error);
 }
 
-void mf_inversion_kirkwood_buff_respond(struct inversion *inversion, double share) {
-    const struct inversion_kirkwood_buff *kb = &inversion->kirkwood_buff;
-    const struct potential_grid *grid = &inversion->grid;
-    const double temperature = inversion->problem->scene.temperature;
+void mf_inversion_kirkwood_buff_respond(struct inversion_state *state, double share) {
+    const struct inversion_kirkwood_buff *kb = &state->kirkwood_buff;
+    const struct potential_grid *grid = &state->grid;
+    const double temperature = state->problem->scene.temperature;
     for (size_t pair = 0; pair < kb->pairs; pair++)
         for (size_t b = 0; b < grid->known; b++) {
             double *slope = &kb->slope[pair * grid->known + b];
-            const double now = -mf_comoments_covariance(&inversion->replicas.counts,
-                                                        inversion->bins + SAMPLER_SUMS + pair,
-                                                        grid->known_bin[b]) /
-                               temperature;
+            const double now =
+                -mf_comoments_covariance(&state->replicas.counts, state->bins + SAMPLER_SUMS + pair,
+                                         grid->known_bin[b]) /
+                temperature;
             *slope = (1 - share) * *slope + share * now;
         }
 }
 
-struct inverse_doubling mf_inversion_kirkwood_buff_noise(const struct inversion *inversion) {
+struct inverse_doubling mf_inversion_kirkwood_buff_noise(const struct inversion_state *state) {
     static const double noise_share = 1.0 / 3;
-    const struct inversion_kirkwood_buff *kb = &inversion->kirkwood_buff;
-    const struct target *target = target_of(inversion);
+    const struct inversion_kirkwood_buff *kb = &state->kirkwood_buff;
+    const struct target *target = target_of(state);
     struct inverse_doubling noisiest = {.wanted = 1, .unit = ""};
-    if (!mf_inversion_is_near(inversion))
+    if (!mf_inversion_state_is_near(state))
         return noisiest;
     for (size_t pair = 0; pair < kb->pairs; pair++) {
         const double off = fabs(kb->value[pair] - target->value[pair]);

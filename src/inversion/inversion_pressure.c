@@ -1,37 +1,37 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "inversion/inversion.h"
+#include "inversion/inversion_state.h"
 
 #include <math.h>
 
 /// d V of the Monte Carlo system.
-static double virial_unit(const struct inversion *inversion) {
-    double volume = inversion->box.dimensions;
-    for (int d = 0; d < inversion->box.dimensions; d++)
-        volume *= inversion->box.length[d];
+static double virial_unit(const struct inversion_state *state) {
+    double volume = state->box.dimensions;
+    for (int d = 0; d < state->box.dimensions; d++)
+        volume *= state->box.length[d];
     return volume;
 }
 
-void mf_inversion_pressure_measure(struct inversion *inversion) {
+void mf_inversion_pressure_measure(struct inversion_state *state) {
     const struct replicas_mean virial =
-        mf_replicas_mean(&inversion->replicas, SAMPLER_VIRIAL, inversion->inefficiency);
-    const double unit = virial_unit(inversion);
-    const double ideal = (double)mf_composition_particles(&inversion->composition) *
-                         inversion->problem->scene.temperature;
-    inversion->pressure.value = (inversion->box.dimensions * ideal + virial.mean) / unit;
-    inversion->pressure.error = virial.error / unit;
+        mf_replicas_mean(&state->replicas, SAMPLER_VIRIAL, state->inefficiency);
+    const double unit = virial_unit(state);
+    const double ideal =
+        (double)mf_composition_particles(&state->composition) * state->problem->scene.temperature;
+    state->pressure.value = (state->box.dimensions * ideal + virial.mean) / unit;
+    state->pressure.error = virial.error / unit;
 }
 
-double mf_inversion_pressure_shift(const struct inversion *inversion) {
+double mf_inversion_pressure_shift(const struct inversion_state *state) {
     const double square =
-        mf_inversion_settled_shift(&inversion->replicas, inversion->bins + SAMPLER_VIRIAL);
-    return sqrt(fmax(square, 0)) / virial_unit(inversion);
+        mf_inversion_settled_shift(&state->replicas, state->bins + SAMPLER_VIRIAL);
+    return sqrt(fmax(square, 0)) / virial_unit(state);
 }
 
 /// Σ_a S_a ∂(−r_a U'(r_a))/∂U_b of bond lengths, U' being a central difference: what the value of
 /// a bin does to the virial of the bins beside it.
-static double bond_virial(const struct inversion *inversion, size_t b) {
-    const struct potential_grid *grid = &inversion->grid;
-    const double *counts = inversion->replicas.counts.mean;
+static double bond_virial(const struct inversion_state *state, size_t b) {
+    const struct potential_grid *grid = &state->grid;
+    const double *counts = state->replicas.counts.mean;
     const size_t point = grid->known_point[b], bin = grid->known_bin[b];
     for (size_t g = 0; g < grid->groups; g++) {
         const struct potential_group *group = &grid->group[g];
@@ -48,45 +48,45 @@ static double bond_virial(const struct inversion *inversion, size_t b) {
     return 0;
 }
 
-enum status mf_inversion_pressure_slopes(struct inversion *inversion) {
+enum status mf_inversion_pressure_slopes(struct inversion_state *state) {
     enum status status = STATUS_OK;
-    const struct potential_grid *grid = &inversion->grid;
-    const struct comoments *counts = &inversion->replicas.counts;
+    const struct potential_grid *grid = &state->grid;
+    const struct comoments *counts = &state->replicas.counts;
     double *virial = NULL;
     NEW_ARRAY(virial, grid->pair_bins * grid->known);
-    CHECK(mf_potential_grid_virials(grid, &inversion->problem->targets.bins,
-                                    inversion->box.dimensions, inversion->phi, virial));
+    CHECK(mf_potential_grid_virials(grid, &state->problem->targets.bins, state->box.dimensions,
+                                    state->phi, virial));
     for (size_t b = 0; b < grid->known; b++) {
         double slope =
-            -mf_comoments_covariance(counts, inversion->bins + SAMPLER_VIRIAL, grid->known_bin[b]) /
-            inversion->problem->scene.temperature;
-        slope += bond_virial(inversion, b);
+            -mf_comoments_covariance(counts, state->bins + SAMPLER_VIRIAL, grid->known_bin[b]) /
+            state->problem->scene.temperature;
+        slope += bond_virial(state, b);
         for (size_t a = 0; a < grid->pair_bins; a++)
             slope += counts->mean[a] * virial[a * grid->known + b];
-        inversion->pressure.slope[b] = slope / virial_unit(inversion);
+        state->pressure.slope[b] = slope / virial_unit(state);
     }
 done:
     mf_memory_free(virial);
     return status;
 }
 
-double mf_inversion_pressure_ramp_slope(const struct inversion *inversion) {
-    const struct potential_grid *grid = &inversion->grid;
+double mf_inversion_pressure_ramp_slope(const struct inversion_state *state) {
+    const struct potential_grid *grid = &state->grid;
     double slope = 0;
     for (size_t b = 0; b < grid->known; b++)
-        slope += inversion->pressure.slope[b] * mf_potential_grid_ramp(grid, grid->known_point[b]);
+        slope += state->pressure.slope[b] * mf_potential_grid_ramp(grid, grid->known_point[b]);
     return slope;
 }
 
-void mf_inversion_pressure_add_ramp(const struct inversion *inversion, double *step) {
-    const struct potential_grid *grid = &inversion->grid;
-    const struct targets *targets = &inversion->problem->targets;
+void mf_inversion_pressure_add_ramp(const struct inversion_state *state, double *step) {
+    const struct potential_grid *grid = &state->grid;
+    const struct targets *targets = &state->problem->targets;
     if (!targets_ask(targets, TARGET_PRESSURE) || grid->pairs == 0)
         return;
-    double missing = *targets->target[TARGET_PRESSURE].value - inversion->pressure.value;
+    double missing = *targets->target[TARGET_PRESSURE].value - state->pressure.value;
     for (size_t b = 0; b < grid->known; b++)
-        missing -= inversion->pressure.slope[b] * step[grid->known_point[b]];
-    const double amplitude = missing / mf_inversion_pressure_ramp_slope(inversion);
+        missing -= state->pressure.slope[b] * step[grid->known_point[b]];
+    const double amplitude = missing / mf_inversion_pressure_ramp_slope(state);
     for (size_t n = 0; n < grid->known; n++)
         step[grid->known_point[n]] +=
             amplitude * mf_potential_grid_ramp(grid, grid->known_point[n]);

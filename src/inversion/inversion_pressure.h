@@ -4,7 +4,7 @@
 
 #include "base/status.h"
 
-struct inversion;
+struct inversion_state;
 
 struct inversion_pressure {
     double value, error; ///< ρ k_B T + ⟨W⟩/(dV) of the samples, and its standard error
@@ -13,19 +13,19 @@ struct inversion_pressure {
 
 /// Value and error. The error is the scatter of the chains' means, or what that of the samples
 /// makes of as many independent ones as g(r) sees, if that is more: few chains may agree by chance.
-void mf_inversion_pressure_measure(struct inversion *inversion);
+void mf_inversion_pressure_measure(struct inversion_state *state);
 
 /// How far from that of equilibrium the pressure may be, see mf_inversion_settled_shift.
-double mf_inversion_pressure_shift(const struct inversion *inversion);
+double mf_inversion_pressure_shift(const struct inversion_state *state);
 
 /// Slopes, from how the virial W = −Σ r Φ'(r) over all pairs depends on the potential itself, and
 /// on the pairs that it makes:
 ///   ∂P/∂Φ_b = [⟨∂W/∂Φ_b⟩ − cov(W, S_b)/k_B T]/(dV).
 /// Fails: NO_MEMORY. Tested: test_inversion_pressure, against differences of simulations.
-enum status mf_inversion_pressure_slopes(struct inversion *inversion) MUST_USE;
+enum status mf_inversion_pressure_slopes(struct inversion_state *state) MUST_USE;
 
 /// ∂P/∂A of the ramp A (1 − r/r_c) [1/λ^d].
-double mf_inversion_pressure_ramp_slope(const struct inversion *inversion);
+double mf_inversion_pressure_ramp_slope(const struct inversion_state *state);
 
 /// Add to a step the ramp A (1 − r/r_c) that makes up for the pressure, if the problem asks for
 /// one:
@@ -35,4 +35,4 @@ double mf_inversion_pressure_ramp_slope(const struct inversion *inversion);
 /// below 1. This differs because a step towards g has a pressure of its own: with theirs, tried at
 /// P* = 0 for water, hypernetted-chain steps stayed between 0.8 and 1.2. What is too much for the
 /// linear response is damped as the whole step is.
-void mf_inversion_pressure_add_ramp(const struct inversion *inversion, double *step);
+void mf_inversion_pressure_add_ramp(const struct inversion_state *state, double *step);

@@ -8,7 +8,7 @@
 
 /// The kind of a distribution of groups that is off, or −1.
 static int find_missed(const struct inversion *inversion) {
-    const struct inversion_section *worst = &inversion->progress.best_worst;
+    const struct inversion_section *worst = &inversion->course.progress.best.worst;
     return worst->kind == TARGET_RDF || inversion_section_agrees(worst) ? -1 : worst->kind;
 }
 
@@ -29,23 +29,23 @@ static void tell_of_groups(const struct inversion *inversion, char reason[INVERS
     snprintf(reason, INVERSE_REASON_SIZE,
              "the distributions agree within a statistical error of %.2g of their peaks, but "
              "\"precision\" asks for %.2g: more \"samples\" or \"iterations\" are needed",
-             inversion->progress.best_own_noise, inversion->settings.common.precision);
+             inversion->course.progress.best.own_noise, inversion->parameters.precision);
 }
 
 /// Why a fit whose g agrees has not converged.
 static void tell_what_is_missing(const struct inversion *inversion,
                                  char reason[INVERSE_REASON_SIZE]) {
-    const struct inversion_progress *p = &inversion->progress;
-    const struct inversion_parameters *settings = &inversion->settings.common;
-    const struct target_distance *pressure = &p->best[TARGET_PRESSURE];
-    const struct target_distance *integrals = &p->best[mf_kirkwood_buff_kind()];
+    const struct inversion_progress *p = &inversion->course.progress;
+    const struct inversion_parameters *settings = &inversion->parameters;
+    const struct target_distance *pressure = &p->best.distance[TARGET_PRESSURE];
+    const struct target_distance *integrals = &p->best.distance[mf_kirkwood_buff_kind()];
     const int missed = find_missed(inversion);
     if (missed >= 0)
         snprintf(reason, INVERSE_REASON_SIZE,
                  "the error of %s is %.2g, its statistical error %.2g, and chi^2 by bin is %.2g "
                  "where noise makes %.2g at most: more \"iterations\" or \"samples\" may help",
-                 mf_targets_name(missed), p->best[missed].rms, p->best[missed].noise,
-                 p->best_worst.misfit, p->best_worst.probable);
+                 mf_targets_name(missed), p->best.distance[missed].rms,
+                 p->best.distance[missed].noise, p->best.worst.misfit, p->best.worst.probable);
     else if (targets_ask(&inversion->problem->targets, TARGET_PRESSURE) &&
              pressure->rms > mf_inverse_noise_margin * pressure->noise)
         snprintf(reason, INVERSE_REASON_SIZE,
@@ -57,67 +57,67 @@ static void tell_what_is_missing(const struct inversion *inversion,
                  "%.2g: more \"iterations\" or \"samples\" may help, or a longer cutoff of the "
                  "potential",
                  integrals->rms, integrals->noise);
-    else if (inversion->grid.groups > 0 && inversion->grid.pairs == 0)
+    else if (inversion_grid(inversion)->groups > 0 && inversion_grid(inversion)->pairs == 0)
         tell_of_groups(inversion, reason);
-    else if (isnan(inversion->band.ramp.way))
+    else if (isnan(inversion->course.band.ramp.way))
         snprintf(
             reason, INVERSE_REASON_SIZE,
             "g agrees within %.2g, but its covariances have no inverse, so that the errors of the "
             "potential are not known: more \"samples\" are needed",
-            p->best_own_noise);
-    else if (p->best_precise)
+            p->best.own_noise);
+    else if (p->best.precise)
         snprintf(reason, INVERSE_REASON_SIZE,
                  "g agrees, but what it hardly sees has not settled, a ramp A (1 - r/cutoff) of "
                  "the potential and with it the pressure: they went on by %.2g k_B T_0, known "
                  "within %.2g, and by %.2g, known within %.2g; give \"pressure\" as a second "
                  "target, or more \"iterations\"",
-                 inversion->band.ramp.way, inversion->band.ramp.error, inversion->band.farthest.way,
-                 inversion->band.farthest.open);
+                 inversion->course.band.ramp.way, inversion->course.band.ramp.error,
+                 inversion->course.band.farthest.way, inversion->course.band.farthest.open);
     else
         snprintf(
             reason, INVERSE_REASON_SIZE,
             "g agrees within a statistical error of %.2g, but \"precision\" asks for %.2g: more "
             "\"samples\" or \"iterations\" are needed",
-            p->best_own_noise, settings->precision);
+            p->best.own_noise, settings->precision);
 }
 
 /// The same of potentials made of coefficients, which need not meet g.
 static void tell_gradient(const struct inversion *inversion, char reason[INVERSE_REASON_SIZE]) {
-    const struct inversion_progress *p = &inversion->progress;
-    if (!(p->miss <= mf_inverse_noise_margin))
+    if (!(inversion->state->gradient <= mf_inverse_noise_margin))
         snprintf(reason, INVERSE_REASON_SIZE,
                  "the gradient of the relative entropy is %.2g times its noise: more "
                  "\"iterations\" or \"samples\", or fewer \"coefficients\", may help",
-                 p->miss);
+                 inversion->state->gradient);
     else
         tell_what_is_missing(inversion, reason);
 }
 
 /// The first reason that applies.
 void mf_inversion_reason_tell(const struct inversion *inversion, char reason[INVERSE_REASON_SIZE]) {
-    const struct inversion_progress *p = &inversion->progress;
-    if (p->unsettled.found && p->unsettled.for_long) {
-        tell_unsettled(&p->unsettled, reason);
+    const struct inversion_progress *p = &inversion->course.progress;
+    const struct inversion_unsettled *unsettled = &inversion->verdict.unsettled;
+    if (unsettled->found && unsettled->for_long) {
+        tell_unsettled(unsettled, reason);
         return;
     }
-    if (inversion->basis.count > 0) {
+    if (inversion->state->basis.count > 0) {
         tell_gradient(inversion, reason);
         return;
     }
-    const struct inversion_parameters *settings = &inversion->settings.common;
-    const struct target_distance *rdf = &p->best[TARGET_RDF];
+    const struct inversion_parameters *settings = &inversion->parameters;
+    const struct target_distance *rdf = &p->best.distance[TARGET_RDF];
     const bool stuck = p->damping < mf_inversion_least_damping;
-    const struct inversion_section *worst = &p->best_worst;
+    const struct inversion_section *worst = &p->best.worst;
     const bool agrees = worst->kind != TARGET_RDF || inversion_section_agrees(worst);
     static const double most = 3; // standard deviations of what was known of a factor
     const double improved = rdf->rms / p->first_error;
-    if (!agrees && fabs(p->best_factor.missing) > most * p->best_factor.prior)
+    if (!agrees && fabs(p->best.factor.missing) > most * p->best.factor.prior)
         snprintf(reason, INVERSE_REASON_SIZE,
                  "g of the target is too %s as a whole by %.2g %%, which no short-ranged potential "
                  "makes, and which its \"particles\" or \"normalisation\" allow by %.2g %%; look "
                  "at these, its density and its cutoff, or give \"pressure\" as a second target",
-                 p->best_factor.missing > 0 ? "small" : "large", 100 * fabs(p->best_factor.missing),
-                 100 * p->best_factor.prior);
+                 p->best.factor.missing > 0 ? "small" : "large", 100 * fabs(p->best.factor.missing),
+                 100 * p->best.factor.prior);
     else if (improved > 0.9 && p->second_error > p->first_error + 2 * rdf->noise && !agrees)
         snprintf(reason, INVERSE_REASON_SIZE,
                  "the error of g rose from %.2g to %.2g with the first step, and no shorter one "

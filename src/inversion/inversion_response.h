@@ -12,21 +12,28 @@
 
 #include <stddef.h>
 
-struct inversion;
+struct inversion_state;
 
-/// −k_B T ∂⟨S_a⟩/∂Φ_b = Σ_c C_ac M_cb, shape [known, known]: C is that of the samples, and M_cb
-/// the mean over bin c of what a unit at point b makes of the curve. Without groups this is C.
+/// −k_B T ∂⟨S_a⟩/∂Φ_b = Σ_c C_ac M_cb: C is that of the samples, and M_cb the mean over bin c of
+/// what a unit at point b makes of the curve. Without groups this is C.
 struct inversion_response {
-    double *means;  ///< M of each group, one behind the other; NULL without groups
-    double *values; ///< shape [known, known]
+    double *covariance; ///< C of S in the known bins, shape [known, known]
+    double *means;      ///< M of each group, one after the other; NULL without groups
+    double *values;     ///< the response, shape [known, known]; NULL without groups
+    double samples;     ///< that C is made of
+    double kept;        ///< of these, what the next iteration's C adds to: all near the noise
 };
 
 /// Fails: NO_MEMORY.
-enum status mf_inversion_response_init(struct inversion *inversion) MUST_USE;
+enum status mf_inversion_response_init(struct inversion_state *state) MUST_USE;
 void mf_inversion_response_clear(struct inversion_response *response);
 
 /// Fill the response from the present C. Tested: test_inversion_response.
-void mf_inversion_response_find(struct inversion *inversion);
+void mf_inversion_response_find(struct inversion_state *state);
 
 /// The response, C itself without groups.
-const double *mf_inversion_response_values(const struct inversion *inversion);
+const double *mf_inversion_response_values(const struct inversion_state *state);
+
+/// What settled samples say besides g: how far the pressure is from what is asked for, and how all
+/// respond to the potential. Fails: NO_MEMORY.
+enum status mf_inversion_response_assess(struct inversion_state *state) MUST_USE;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The samples of an iteration: until they have settled and are exact enough.
+// The samples of a state in an iteration: until they have settled and are exact enough.
 #include "inversion/inversion.h"
 
 #include <math.h>
@@ -16,8 +16,8 @@ static const double gradient_of_noise = 2;
 /// Samples of an iteration double at most so often.
 enum { MOST_DOUBLINGS = 7 };
 
-/// Replicas that are placed anew are equilibrated so many times as long.
-enum { ANEW_EQUILIBRATION = 5 };
+/// Replicas that begin from disorder are equilibrated so many times as long.
+enum { DISORDER_EQUILIBRATION = 5 };
 
 /// Sweeps of one potential, over those of its first samples, after which it is given up if it has
 /// not settled.
@@ -26,31 +26,30 @@ enum { MOST_TIMES = 200 };
 /// The sweeps and least samples of an iteration, with so many times the least equilibration and
 /// spacing.
 static struct replicas_plan plan(const struct inversion *inversion, int64_t stretch) {
-    const struct inversion_parameters *p = &inversion->settings.common;
-    const bool anew = inversion->progress.anew;
-    return (struct replicas_plan){.scatter = anew,
-                                  .equilibration =
-                                      p->equilibration * (anew ? ANEW_EQUILIBRATION : 1) * stretch,
+    const struct inversion_parameters *p = &inversion->parameters;
+    const bool scatter = inversion->course.progress.from_disorder;
+    return (struct replicas_plan){.scatter = scatter,
+                                  .equilibration = p->equilibration * stretch *
+                                                   (scatter ? DISORDER_EQUILIBRATION : 1),
                                   .block_samples = (p->samples - 1) / REPLICAS_BLOCKS + 1,
                                   .every = p->every * stretch};
 }
 
 /// What of a section is off is known well enough for a step if this part of it is uncertain.
 /// What is out of reach, or noise itself, is no error that hides the noise.
-static double find_share(const struct inversion *inversion,
+static double find_share(const struct inversion_state *state,
                          const struct inversion_section *section) {
-    const bool reached = inversion->progress.miss < gradient_of_noise;
+    const bool reached = state->gradient < gradient_of_noise;
     return reached || inversion_section_agrees(section) ? 0 : noise_share;
 }
 
 /// The error that is farthest from what the samples are to make it: as small as was asked for, or a
 /// small part of what is off.
-static struct inverse_doubling find_noisiest(const struct inversion *inversion) {
-    struct inverse_doubling noisiest = mf_inversion_kirkwood_buff_noise(inversion);
-    for (int k = 0; k < inversion->sections; k++) {
-        const struct inversion_section *section = &inversion->section[k];
-        const double wanted =
-            fmax(section->precision, find_share(inversion, section) * section->rms);
+static struct inverse_doubling find_noisiest(const struct inversion_state *state) {
+    struct inverse_doubling noisiest = mf_inversion_kirkwood_buff_noise(state);
+    for (int k = 0; k < state->verdict.sections; k++) {
+        const struct inversion_section *section = &state->verdict.section[k];
+        const double wanted = fmax(section->precision, find_share(state, section) * section->rms);
         if (section->own_noise * noisiest.wanted > noisiest.noise * wanted)
             noisiest = (struct inverse_doubling){
                 .noise = section->own_noise, .wanted = wanted, .unit = ""};
@@ -59,32 +58,19 @@ static struct inverse_doubling find_noisiest(const struct inversion *inversion) 
 }
 
 /// Whether more samples help. Replicas that are stuck would never be told apart from noise.
-static bool needs_samples(const struct inversion *inversion, struct inverse_doubling *doubling) {
+static bool needs_samples(const struct inversion_state *state, struct inverse_doubling *doubling) {
     const int before = doubling->number;
-    *doubling = find_noisiest(inversion);
+    *doubling = find_noisiest(state);
     doubling->number = before + 1;
     doubling->most = MOST_DOUBLINGS;
     return doubling->noise > doubling->wanted && before < MOST_DOUBLINGS;
 }
 
-double mf_inversion_count_noises(const struct inversion *inversion,
-                                 const struct target_distance distance[TARGETS]) {
-    double sum = 0;
-    for (int kind = 0; kind < TARGETS; kind++)
-        if (targets_ask(&inversion->problem->targets, kind) && inversion->distance[kind].noise > 0)
-            sum += pow(distance[kind].rms / inversion->distance[kind].noise, 2);
-    return sqrt(sum);
-}
-
-bool mf_inversion_is_near_enough(const struct inversion *inversion) {
-    const struct inversion_progress *progress = &inversion->progress;
-    return isinf(progress->best[TARGET_RDF].rms) ||
-           mf_inversion_count_noises(inversion, inversion->distance) <=
-               mf_inversion_count_noises(inversion, progress->least) + 2;
-}
-
 /// The samples of an iteration as they are taken.
 struct sampling {
+    const struct inversion *inversion;
+    struct inversion_state *state;
+    const struct inverse_listener *listener;
     struct replicas_plan plan;
     struct inverse_progress progress;
     uint64_t sweeps;                        ///< of each replica
@@ -94,114 +80,123 @@ struct sampling {
 
 /// Whether the section is so far from its targets that what has not settled hardly changes the way
 /// to them.
-static bool tells_way(const struct inversion *inversion, const struct inversion_section *section) {
+static bool section_tells_way(const struct inversion_state *state,
+                              const struct inversion_section *section) {
     double squares = 0;
     for (size_t a = section->known; a < section->known + section->known_count; a++) {
-        const size_t bin = inversion->grid.known_bin[a];
-        squares += mf_inversion_settled_shift(&inversion->replicas, bin) /
-                   (inversion->unit[bin] * inversion->unit[bin]);
+        const size_t bin = state->grid.known_bin[a];
+        squares += mf_inversion_settled_shift(&state->replicas, bin) /
+                   (state->target.unit[bin] * state->target.unit[bin]);
     }
     return sqrt(fmax(squares, 0) / (double)section->bins) <
-           section->peak * section->rms * find_share(inversion, section);
+           section->peak * section->rms * find_share(state, section);
 }
 
-bool mf_inversion_tells_way(const struct inversion *inversion) {
-    const struct targets *targets = &inversion->problem->targets;
-    if (inversion->basis.count > 0) // what is off may be out of reach of the gradient
+bool mf_inversion_tells_way(const struct inversion_state *state) {
+    const struct targets *targets = &state->problem->targets;
+    if (state->basis.count > 0) // what is off may be out of reach of the gradient
         return false;
-    for (int k = 0; k < inversion->sections; k++)
-        if (!tells_way(inversion, &inversion->section[k]))
+    for (int k = 0; k < state->verdict.sections; k++)
+        if (!section_tells_way(state, &state->verdict.section[k]))
             return false;
     return !targets_ask(targets, TARGET_PRESSURE) ||
-           mf_inversion_pressure_shift(inversion) <
-               noise_share *
-                   fabs(inversion->pressure.value - *targets->target[TARGET_PRESSURE].value);
+           mf_inversion_pressure_shift(state) <
+               noise_share * fabs(state->pressure.value - *targets->target[TARGET_PRESSURE].value);
 }
 
 /// Whether samples that have not settled are to be left: they have cost enough, are those of a
 /// start that is left anyway, or get farther from the targets though they are too far off to be
-/// kept, or those of a start beside which there is another.
-static bool is_hopeless(struct inversion *inversion, struct sampling *sampling) {
+/// kept, or those of a start beside which there is another. Of several states only all together are
+/// kept or not.
+static bool is_hopeless(struct sampling *sampling) {
+    const struct inversion *inversion = sampling->inversion;
+    const struct targets *targets = &sampling->state->problem->targets;
+    struct inversion_verdict *verdict = &sampling->state->verdict;
     const struct replicas_plan least = plan(inversion, 1);
     const uint64_t first = replicas_plan_sweeps(&least) + (uint64_t)least.equilibration;
     const bool farther = sampling->before[TARGET_RDF].count > 0 &&
-                         mf_inversion_count_noises(inversion, inversion->distance) >
-                             mf_inversion_count_noises(inversion, sampling->before);
-    const bool worse =
-        inversion->basis.count == 0 && farther &&
-        (mf_inversion_start_has_other(inversion) || !mf_inversion_is_near_enough(inversion));
-    const bool poor = mf_inversion_start_is_poor(inversion, true);
-    inversion->progress.unsettled.for_long = sampling->sweeps > MOST_TIMES * first;
-    memcpy(sampling->before, inversion->distance, sizeof sampling->before);
-    return inversion->progress.unsettled.for_long || worse || poor;
+                         mf_inversion_verdict_noises(verdict, targets, verdict->distance) >
+                             mf_inversion_verdict_noises(verdict, targets, sampling->before);
+    const bool other = mf_inversion_start_has_other(inversion, sampling->state);
+    const bool lost =
+        other || (inversion->states == 1 && !mf_inversion_is_near_enough(inversion, verdict));
+    const bool worse = sampling->state->basis.count == 0 && farther && lost;
+    const bool poor = other && inversion->course.progress.iteration == 0 &&
+                      mf_inversion_start_tears(sampling->state, verdict);
+    verdict->unsettled.for_long = sampling->sweeps > MOST_TIMES * first;
+    memcpy(sampling->before, verdict->distance, sizeof sampling->before);
+    return verdict->unsettled.for_long || worse || poor;
 }
 
 /// Take samples by the plan, all of them or as many again.
-static enum status take(struct inversion *inversion, struct sampling *sampling, bool again,
-                        const struct inverse_listener *listener) {
+static enum status take(struct sampling *sampling, bool again) {
+    struct inversion_state *state = sampling->state;
     struct replicas_plan *now = &sampling->plan;
-    const int threads = inversion->problem->threads;
+    const struct inverse_listener *listener = sampling->listener;
+    const int threads = state->problem->threads;
     if (again) {
         listener->tell(listener->context, &sampling->progress); // it takes as long as all before
-        TRY(mf_replicas_double(&inversion->replicas, now, threads, &sampling->progress, listener));
+        TRY(mf_replicas_double(&state->replicas, now, threads, &sampling->progress, listener));
         sampling->sweeps += replicas_plan_sweeps(now) / 2;
     } else {
-        TRY(mf_replicas_run(&inversion->replicas, now, threads, &sampling->progress, listener));
+        TRY(mf_replicas_run(&state->replicas, now, threads, &sampling->progress, listener));
         sampling->sweeps += replicas_plan_sweeps(now) + (uint64_t)now->equilibration;
     }
-    mf_inversion_assess(inversion);
-    mf_inversion_pressure_measure(inversion);
-    return mf_inversion_settled_judge(inversion, &inversion->progress.unsettled);
+    mf_inversion_assess(state);
+    mf_inversion_pressure_measure(state);
+    return mf_inversion_settled_judge(state, &state->verdict.unsettled);
 }
 
 /// What drifts was equilibration; what only remembers its begin is too short.
-static enum status settle(struct inversion *inversion, struct sampling *sampling,
-                          const struct inverse_listener *listener) {
+static enum status settle(struct sampling *sampling) {
+    struct inversion_verdict *verdict = &sampling->state->verdict;
     struct replicas_plan *now = &sampling->plan;
-    const bool drifts = inversion->progress.unsettled.drifts;
+    const bool drifts = verdict->unsettled.drifts;
     if (!drifts || sampling->failures++ > 0)
-        inversion->stretch *= 2;
+        verdict->stretch *= 2;
     if (!drifts)
-        return take(inversion, sampling, true, listener);
+        return take(sampling, true);
     now->scatter = false;
-    now->equilibration = inversion->settings.common.equilibration * inversion->stretch;
+    now->equilibration = sampling->state->parameters->equilibration * verdict->stretch;
     if (sampling->failures > 1)
         now->every *= 2;
-    return take(inversion, sampling, false, listener);
+    return take(sampling, false);
 }
 
-enum status mf_inversion_sample(struct inversion *inversion,
+enum status mf_inversion_sample(struct inversion *inversion, struct inversion_state *state,
                                 const struct inverse_listener *listener) {
-    struct inversion_progress *state = &inversion->progress;
-    struct inversion_unsettled *unsettled = &state->unsettled;
-    const uint64_t replicas = (uint64_t)inversion->settings.common.replicas;
-    struct sampling sampling = {
-        .plan = plan(inversion, state->stretch),
-        .progress = {.iteration = state->iteration,
-                     .iterations = (uint32_t)inversion->settings.common.iterations,
-                     .best = mf_targets_error(&inversion->problem->targets, state->best),
-                     .least = NAN,
-                     .mean = NAN}};
-    inversion->stretch = state->stretch;
+    const struct inversion_progress *progress = &inversion->course.progress;
+    struct inversion_unsettled *unsettled = &state->verdict.unsettled;
+    const uint64_t replicas = (uint64_t)state->parameters->replicas;
+    struct sampling sampling = {.inversion = inversion,
+                                .state = state,
+                                .listener = listener,
+                                .plan = plan(inversion, progress->stretch),
+                                .progress = {.iteration = progress->iteration,
+                                             .iterations = (uint32_t)state->parameters->iterations,
+                                             .best = mf_targets_error(&inversion->problem->targets,
+                                                                      progress->best.distance),
+                                             .least = NAN,
+                                             .mean = NAN}};
+    state->verdict.stretch = progress->stretch;
     unsettled->for_long = false;
-    TRY(mf_inversion_tabulate(inversion));
-    state->evaluations += replicas;
-    TRY(take(inversion, &sampling, false, listener));
+    TRY(mf_inversion_tabulate(state));
+    state->work.evaluations += replicas;
+    TRY(take(&sampling, false));
     sampling.progress.done = sampling.progress.total = replicas;
     for (;;) {
-        const bool waits = unsettled->found && !mf_inversion_tells_way(inversion);
-        if (waits && is_hopeless(inversion, &sampling))
+        const bool waits = unsettled->found && !mf_inversion_tells_way(state);
+        if (waits && is_hopeless(&sampling))
             break;
         if (waits)
-            TRY(settle(inversion, &sampling, listener));
-        else if (needs_samples(inversion, &sampling.progress.doubling))
-            TRY(take(inversion, &sampling, true, listener));
+            TRY(settle(&sampling));
+        else if (needs_samples(state, &sampling.progress.doubling))
+            TRY(take(&sampling, true));
         else
             break;
     }
     unsettled->sweeps = sampling.sweeps;
-    inversion->unsettled = unsettled->found;
-    inversion->useless = unsettled->found && !mf_inversion_tells_way(inversion);
-    state->sweeps += replicas * sampling.sweeps;
+    state->verdict.useless = unsettled->found && !mf_inversion_tells_way(state);
+    state->work.sweeps += replicas * sampling.sweeps;
     return STATUS_OK;
 }

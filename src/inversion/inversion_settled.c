@@ -2,7 +2,7 @@
 #include "inversion/inversion_settled.h"
 
 #include "base/statistics.h"
-#include "inversion/inversion.h"
+#include "inversion/inversion_state.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -10,7 +10,7 @@
 /// Chance with which one of all tests of one look complains of samples in equilibrium.
 static const double false_alarm = 1e-3;
 
-/// Room for what is told apart: sections, and what stands behind the bins.
+/// Room for what is told apart: sections, and the sums of a sample.
 enum { TESTS = 2, MOST_QUANTITIES = INVERSION_MOST_SECTIONS + SAMPLER_SUMS };
 
 /// Σ t² of the middles of the blocks, in parts of the samples from their middle.
@@ -33,25 +33,24 @@ struct quantity {
     const char *name;
 };
 
-static size_t list(const struct inversion *inversion, struct quantity quantity[MOST_QUANTITIES]) {
+static size_t list(const struct inversion_state *state, struct quantity quantity[MOST_QUANTITIES]) {
     size_t n = 0;
     for (size_t k = 0; k < SAMPLER_SUMS; k++)
-        if (mf_comoments_covariance(&inversion->replicas.counts, inversion->bins + k,
-                                    inversion->bins + k) > 0)
-            quantity[n++] = (struct quantity){1, inversion->bins + k, NULL, sums[k]};
-    for (int k = 0; k < inversion->sections; k++) {
-        const struct inversion_section *section = &inversion->section[k];
+        if (mf_comoments_covariance(&state->replicas.counts, state->bins + k, state->bins + k) > 0)
+            quantity[n++] = (struct quantity){1, state->bins + k, NULL, sums[k]};
+    for (int k = 0; k < state->verdict.sections; k++) {
+        const struct inversion_section *section = &state->verdict.section[k];
         quantity[n++] = (struct quantity){
-            section->known_count, 0, inversion->grid.known_bin + section->known,
+            section->known_count, 0, state->grid.known_bin + section->known,
             section->kind == TARGET_RDF ? "g(r)" : mf_targets_name(section->kind)};
     }
     return n;
 }
 
-static enum status test(const struct inversion *inversion, const struct quantity *quantity,
+static enum status test(const struct inversion_state *state, const struct quantity *quantity,
                         struct stationary *result) {
     enum status status = STATUS_OK;
-    const struct replicas *replicas = &inversion->replicas;
+    const struct replicas *replicas = &state->replicas;
     const double *chain[REPLICAS_MOST];
     double *weight = NULL;
     NEW_ARRAY(weight, quantity->count);
@@ -104,16 +103,16 @@ double mf_inversion_settled_shift(const struct replicas *replicas, size_t number
            noise / count * (1 / times_squared + 1.0 / REPLICAS_BLOCKS);
 }
 
-enum status mf_inversion_settled_judge(const struct inversion *inversion,
+enum status mf_inversion_settled_judge(const struct inversion_state *state,
                                        struct inversion_unsettled *unsettled) {
     struct quantity quantity[MOST_QUANTITIES];
-    const size_t count = list(inversion, quantity);
+    const size_t count = list(state, quantity);
     double least = false_alarm / (double)(TESTS * count);
     const double limit = least;
     unsettled->found = unsettled->drifts = false;
     for (size_t k = 0; k < count; k++) {
         struct stationary is;
-        TRY(test(inversion, &quantity[k], &is));
+        TRY(test(state, &quantity[k], &is));
         const double chance = stationary_chance(&is);
         unsettled->drifts = unsettled->drifts || is.drift < limit;
         if (!(chance < least))

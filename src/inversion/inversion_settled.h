@@ -12,7 +12,7 @@
 
 #include <stdint.h>
 
-struct inversion;
+struct inversion_state;
 struct replicas;
 
 enum { INVERSION_QUANTITY_SIZE = 32 };
@@ -35,5 +35,5 @@ double mf_inversion_settled_shift(const struct replicas *replicas, size_t number
 
 /// Judge the present samples. Of samples in equilibrium a thousandth is found not to be. Fails:
 /// NO_MEMORY. Tested: test_inversion_settled.
-enum status mf_inversion_settled_judge(const struct inversion *inversion,
+enum status mf_inversion_settled_judge(const struct inversion_state *state,
                                        struct inversion_unsettled *unsettled) MUST_USE;

@@ -17,12 +17,12 @@ struct group {
     struct imc_shape shape; ///< of the prior
 };
 
-static struct group group_of(const struct inversion *inversion, size_t g) {
-    const struct potential_grid *grid = &inversion->grid;
+static struct group group_of(const struct inversion_state *state, size_t g) {
+    const struct potential_grid *grid = &state->grid;
     size_t first = grid->pairs_known;
     for (size_t before = 0; before < g; before++)
         first += grid->group[before].own.known;
-    return (struct group){&grid->group[g].own, first, inversion->shape[grid->pairs + g]};
+    return (struct group){&grid->group[g].own, first, state->target.shape[grid->pairs + g]};
 }
 
 /// Value of a term of the law at a known bin, with lengths and angles from −1 to 1.
@@ -102,16 +102,16 @@ done:
 // How smooth -------------------------------------------------------------------------------------
 
 /// −k_B T ln(p/J) of the target, and what its errors know of that.
-static void take_target(const struct inversion *inversion, const struct group *group, double *curve,
-                        double *information) {
+static void take_target(const struct inversion_state *state, const struct group *group,
+                        double *curve, double *information) {
     static const double exact = 1e-4;
     const struct bonded_grid *own = group->own;
-    const double temperature = inversion->problem->scene.temperature;
+    const double temperature = state->problem->scene.temperature;
     for (size_t a = 0; a < own->known; a++) {
-        const size_t bin = inversion->grid.known_bin[group->first + a];
-        const double counts = inversion->target_counts[bin];
-        const double least = inversion->least[bin] * inversion->ideal[bin];
-        const double error = fmax(inversion->target_error[bin], exact * inversion->ideal[bin]);
+        const size_t bin = state->grid.known_bin[group->first + a];
+        const double counts = state->target.counts[bin];
+        const double least = state->target.least[bin] * state->target.ideal[bin];
+        const double error = fmax(state->target.error[bin], exact * state->target.ideal[bin]);
         const double jacobian = mf_bonded_distribution_jacobian(
             own->unknown->order, own->dimensions, &own->unknown->bins, own->first + a);
         curve[a] = -temperature * log(fmax(counts, least) / jacobian);
@@ -121,20 +121,20 @@ static void take_target(const struct inversion *inversion, const struct group *g
 
 /// The strength of the prior over its own, at most 1, with the least risk, χ² + 2 directions: C. L.
 /// Mallows, Technometrics 15, 661 (1973).
-static enum status find_smoothness(const struct inversion *inversion, size_t g,
+static enum status find_smoothness(const struct inversion_state *state, size_t g,
                                    double *smoothness) {
     enum { STRENGTHS = 13 };
     static const double ratio = 0.31622776601683794;
     enum status status = STATUS_OK;
-    const struct group group = group_of(inversion, g);
+    const struct group group = group_of(state, g);
     const size_t known = group.own->known;
-    const double temperature = inversion->problem->scene.temperature;
+    const double temperature = state->problem->scene.temperature;
     double *target = NULL, *curve = NULL, *information = NULL;
     double least = INFINITY;
     NEW_ARRAY(target, known);
     NEW_ARRAY(curve, known);
     NEW_ARRAY(information, known);
-    take_target(inversion, &group, target, information);
+    take_target(state, &group, target, information);
     for (int k = 0; k < STRENGTHS; k++) {
         struct imc_solution solution;
         memcpy(curve, target, known * sizeof *curve);
@@ -155,16 +155,17 @@ done:
 
 enum status mf_inversion_smooth_init(struct inversion *inversion) {
     enum status status = STATUS_OK;
-    NEW_ARRAY(inversion->smoothness, inversion->grid.groups);
-    for (size_t g = 0; g < inversion->grid.groups; g++)
-        CHECK(find_smoothness(inversion, g, &inversion->smoothness[g]));
+    const size_t groups = inversion_grid(inversion)->groups;
+    NEW_ARRAY(inversion->smoothness, groups);
+    for (size_t g = 0; g < groups; g++)
+        CHECK(find_smoothness(inversion->state, g, &inversion->smoothness[g]));
 done:
     return status;
 }
 
 void mf_inversion_smooth_shapes(const struct inversion *inversion, struct imc_shape *shape) {
-    const struct potential_grid *grid = &inversion->grid;
-    memcpy(shape, inversion->shape, grid->blocks * sizeof *shape);
+    const struct potential_grid *grid = inversion_grid(inversion);
+    memcpy(shape, inversion->state->target.shape, grid->blocks * sizeof *shape);
     for (size_t g = 0; g < grid->groups; g++)
         shape[grid->pairs + g].bend *= pow(inversion->smoothness[g], 0.25);
 }
@@ -173,18 +174,22 @@ void mf_inversion_smooth_shapes(const struct inversion *inversion, struct imc_sh
 
 /// What the samples of one state know of U where they are of the present one, F = S²/(σ k_B T)²,
 /// and F u.
-static void add_state(const struct inversion *state, const struct group *group, bool moves,
-                      double *information, double *moved) {
+static void add_state(const struct inversion *inversion, const struct inversion_state *state,
+                      const struct group *group, double *information, double *moved) {
     static const double most = 1; // an empty bin tells no more than that of (S − S*)/S
     const double temperature = state->problem->scene.temperature;
-    const bool mean = moves && mf_inversion_ends_with_mean(state);
+    const bool moves = ((const struct inversion_rule *)inversion->method->own)->forgets;
+    const bool mean = moves && mf_inversion_ends_with_mean(inversion);
+    // The first state counts with what is left of all, as the equations do, the others with their
+    // own.
+    const double birge =
+        mf_inversion_band_birge(state == inversion->state ? &inversion->verdict : &state->verdict);
     for (size_t a = 0; a < group->own->known; a++) {
         const size_t known = group->first + a, bin = state->grid.known_bin[known];
-        const double counts = state->replicas.counts.mean[bin], target = state->target_counts[bin];
-        const double excess = mean ? state->pooled[known] : counts - target;
-        const double least = state->least[bin] * state->ideal[bin];
-        const double own = pow(counts / temperature, 2) /
-                           (mf_inversion_band_birge(state) * state->variance[known]);
+        const double counts = state->replicas.counts.mean[bin], target = state->target.counts[bin];
+        const double excess = mean ? state->pool.excess[known] : counts - target;
+        const double least = state->target.least[bin] * state->target.ideal[bin];
+        const double own = pow(counts / temperature, 2) / (birge * state->variance[known]);
         if (!state->grid.seen[known] || !(counts > 0))
             continue;
         const double step = log(fmax(target + excess, least) / fmax(target, least));
@@ -195,9 +200,9 @@ static void add_state(const struct inversion *state, const struct group *group, 
 
 static enum status smooth_group(struct inversion *inversion, size_t g) {
     enum status status = STATUS_OK;
-    const struct group group = group_of(inversion, g);
-    const struct inversion_joint *joint = inversion->joint;
-    const bool moves = ((const struct inversion_rule *)inversion->method->own)->forgets;
+    const struct group group = group_of(inversion->state, g);
+    const size_t *point = inversion_grid(inversion)->known_point + group.first;
+    double *phi = inversion->course.phi;
     const size_t known = group.own->known;
     const double temperature = inversion->problem->scene.temperature;
     double *curve = NULL, *information = NULL, *moved = NULL;
@@ -205,15 +210,14 @@ static enum status smooth_group(struct inversion *inversion, size_t g) {
     NEW_ARRAY(curve, known);
     NEW_ARRAY(information, known);
     NEW_ARRAY(moved, known);
-    for (size_t s = 0; s < (joint ? joint->states : 1); s++)
-        add_state(joint ? &joint->state[s] : inversion, &group, moves, information, moved);
+    for (size_t s = 0; s < inversion->states; s++)
+        add_state(inversion, &inversion->state[s], &group, information, moved);
     for (size_t a = 0; a < known; a++)
-        curve[a] = inversion->phi[inversion->grid.known_point[group.first + a]] +
-                   (information[a] > 0 ? moved[a] / information[a] : 0);
+        curve[a] = phi[point[a]] + (information[a] > 0 ? moved[a] / information[a] : 0);
     CHECK(smooth(&group, temperature, inversion->smoothness[g] / (temperature * temperature),
                  information, curve, &solution));
     for (size_t a = 0; a < known; a++)
-        inversion->phi[inversion->grid.known_point[group.first + a]] = curve[a];
+        phi[point[a]] = curve[a];
 done:
     mf_memory_free(curve);
     mf_memory_free(information);
@@ -222,10 +226,10 @@ done:
 }
 
 enum status mf_inversion_smooth(struct inversion *inversion) {
-    if (inversion->basis.count > 0)
+    if (inversion->state->basis.count > 0)
         return STATUS_OK;
-    for (size_t g = 0; g < inversion->grid.groups; g++)
+    for (size_t g = 0; g < inversion_grid(inversion)->groups; g++)
         TRY(smooth_group(inversion, g));
-    mf_potential_grid_complete(&inversion->grid, inversion->phi);
+    mf_potential_grid_complete(inversion_grid(inversion), inversion->course.phi);
     return STATUS_OK;
 }

@@ -15,31 +15,30 @@ static const double poor = 0.1;
 
 /// Whether the run file gives a start, of a mixture for any of its pair types: the others then
 /// begin with −k_B T ln g.
-static bool has_own(const struct inversion *inversion) {
-    for (size_t pair = 0; pair < inversion->grid.pairs; pair++)
-        if (inversion->problem->unknown[UNKNOWN_POTENTIAL].start[pair])
+static bool has_own(const struct inversion_state *state) {
+    for (size_t pair = 0; pair < state->grid.pairs; pair++)
+        if (state->problem->unknown[UNKNOWN_POTENTIAL].start[pair])
             return true;
     return false;
 }
 
-static bool is_from_hnc(const struct inversion *inversion) {
-    const struct simulation_setup *scene = &inversion->problem->scene;
-    return !has_own(inversion) && inversion->box.dimensions == 3 &&
+static bool is_from_hnc(const struct inversion_state *state) {
+    const struct simulation_setup *scene = &state->problem->scene;
+    return !has_own(state) && state->box.dimensions == 3 &&
            mf_molecules_find(scene->interaction, scene->interactions) == NULL &&
-           inversion->settings.common.start == INVERSION_FROM_HNC;
+           state->parameters->start == INVERSION_FROM_HNC;
 }
 
 /// Variance of −k_B T ln g*, or ln p*, in the known bins; false if the target does not say it of
 /// all.
-static bool find_variance(const struct inversion *inversion, double *variance) {
-    const struct potential_grid *grid = &inversion->grid;
+static bool find_variance(const struct inversion_state *state, double *variance) {
+    const struct potential_grid *grid = &state->grid;
     for (size_t a = 0; a < grid->known; a++) {
         const size_t bin = grid->known_bin[a];
-        const double g = fmax(mf_inversion_target_g(inversion, bin), inversion->least[bin]);
-        const double error = inversion->target_error[bin] / inversion->ideal[bin];
+        const double g = fmax(mf_inversion_target_g(state, bin), state->target.least[bin]);
+        const double error = state->target.error[bin] / state->target.ideal[bin];
         // What another state has seen is known within k_B T here.
-        variance[a] =
-            pow(inversion->problem->scene.temperature * (grid->seen[a] ? error / g : 1), 2);
+        variance[a] = pow(state->problem->scene.temperature * (grid->seen[a] ? error / g : 1), 2);
         if (!(variance[a] > 0))
             return false;
     }
@@ -48,31 +47,32 @@ static bool find_variance(const struct inversion *inversion, double *variance) {
 
 /// The smoothest potential within the errors of the target: a response C/k_B T = 1, with the
 /// potential itself as the excess.
-static enum status smooth(struct inversion *inversion) {
+static enum status smooth(struct inversion_state *state, double *start) {
     enum status status = STATUS_OK;
-    const struct potential_grid *grid = &inversion->grid;
+    const struct potential_grid *grid = &state->grid;
+    double *unit = state->response.covariance;
     const size_t known = grid->known;
-    struct imc_system system = mf_inversion_system(inversion);
+    struct imc_system system = mf_inversion_equations_of(state);
     struct imc_solution solution;
     double *variance = NULL, *phi = NULL, *x = NULL;
     NEW_ARRAY(variance, known);
     NEW_ARRAY(phi, known);
     NEW_ARRAY(x, known);
-    if (!find_variance(inversion, variance))
+    if (!find_variance(state, variance))
         goto done;
     for (size_t a = 0; a < known; a++) {
-        phi[a] = inversion->phi[grid->known_point[a]];
+        phi[a] = start[grid->known_point[a]];
         for (size_t b = 0; b < known; b++)
-            inversion->covariance[a * known + b] = a == b ? system.temperature : 0;
+            unit[a * known + b] = a == b ? system.temperature : 0;
     }
-    system.covariance = inversion->covariance;
+    system.covariance = unit;
     system.excess = phi;
     system.variance = variance;
     system.common = NULL;
     CHECK(mf_imc_solve(&system, 0, x, &solution));
     for (size_t a = 0; a < known; a++)
-        inversion->phi[grid->known_point[a]] = x[a];
-    mf_potential_grid_complete(grid, inversion->phi);
+        start[grid->known_point[a]] = x[a];
+    mf_potential_grid_complete(grid, start);
 done:
     mf_memory_free(variance);
     mf_memory_free(phi);
@@ -81,75 +81,80 @@ done:
 }
 
 /// phi += k_B T (h − c).
-static enum status add_indirect(struct inversion *inversion) {
+static enum status add_indirect(const struct inversion_state *state, double *phi) {
     enum status status = STATUS_OK;
-    const struct inverse_problem *problem = inversion->problem;
-    const struct potential_grid *grid = &inversion->grid;
+    const struct inverse_problem *problem = state->problem;
+    const struct potential_grid *grid = &state->grid;
     double *g = NULL, *indirect = NULL;
-    NEW_ARRAY(g, inversion->bins);
-    NEW_ARRAY(indirect, inversion->bins);
-    for (size_t k = 0; k < inversion->bins; k++)
-        g[k] = mf_inversion_target_g(inversion, k);
-    CHECK(mf_hnc_closure(&problem->targets.bins, &inversion->box, &inversion->composition, g,
-                         indirect));
+    NEW_ARRAY(g, state->bins);
+    NEW_ARRAY(indirect, state->bins);
+    for (size_t k = 0; k < state->bins; k++)
+        g[k] = mf_inversion_target_g(state, k);
+    CHECK(mf_hnc_closure(&problem->targets.bins, &state->box, &state->composition, g, indirect));
     for (size_t n = 0; n < grid->known; n++)
-        inversion->phi[grid->known_point[n]] +=
-            problem->scene.temperature * indirect[grid->known_bin[n]];
+        phi[grid->known_point[n]] += problem->scene.temperature * indirect[grid->known_bin[n]];
 done:
     mf_memory_free(g);
     mf_memory_free(indirect);
     return status;
 }
 
-enum status mf_inversion_restrict(struct inversion *inversion) {
+/// Replace phi by the nearest that coefficients make, where potentials are made of them.
+static enum status restrict_to_basis(const struct inversion_state *state, double *phi) {
     enum status status = STATUS_OK;
-    const struct potential_grid *grid = &inversion->grid;
     double *weight = NULL;
-    if (inversion->basis.count == 0)
+    if (state->basis.count == 0)
         return STATUS_OK;
-    NEW_ARRAY(weight, grid->known);
-    mf_inversion_basis_weights(inversion, weight);
-    CHECK(mf_inversion_basis_project(&inversion->basis, grid, weight, inversion->phi));
-    mf_potential_grid_complete(grid, inversion->phi);
+    NEW_ARRAY(weight, state->grid.known);
+    mf_inversion_basis_weights(state, weight);
+    CHECK(mf_inversion_basis_project(&state->basis, &state->grid, weight, phi));
+    mf_potential_grid_complete(&state->grid, phi);
 done:
     mf_memory_free(weight);
     return status;
 }
 
-enum status mf_inversion_start(struct inversion *inversion) {
-    if (!is_from_hnc(inversion))
-        return mf_inversion_start_again(inversion);
-    mf_potential_grid_start(&inversion->grid, inversion->problem, inversion->phi);
-    TRY(add_indirect(inversion));
-    TRY(smooth(inversion));
-    return mf_inversion_restrict(inversion);
+enum status mf_inversion_start(struct inversion_state *state, double *phi) {
+    if (!is_from_hnc(state))
+        return mf_inversion_start_again(state, phi);
+    mf_potential_grid_start(&state->grid, state->problem, phi);
+    TRY(add_indirect(state, phi));
+    TRY(smooth(state, phi));
+    return restrict_to_basis(state, phi);
 }
 
 /// rms of g* − 1.
-static double find_structure(const struct inversion *inversion) {
+static double find_structure(const struct inversion_state *state) {
     double sum = 0;
-    for (size_t n = 0; n < inversion->bins; n++)
-        sum += pow(mf_inversion_target_g(inversion, n) - 1, 2);
-    return sqrt(sum / (double)inversion->bins);
+    for (size_t n = 0; n < state->bins; n++)
+        sum += pow(mf_inversion_target_g(state, n) - 1, 2);
+    return sqrt(sum / (double)state->bins);
 }
 
-bool mf_inversion_start_has_other(const struct inversion *inversion) {
-    const struct inversion_progress *progress = &inversion->progress;
-    return is_from_hnc(inversion) && !progress->again && progress->iteration <= 1;
+bool mf_inversion_start_has_other(const struct inversion *inversion,
+                                  const struct inversion_state *state) {
+    const struct inversion_progress *progress = &inversion->course.progress;
+    return is_from_hnc(state) && !progress->second_start && progress->iteration <= 1;
+}
+
+bool mf_inversion_start_tears(const struct inversion_state *state,
+                              const struct inversion_verdict *verdict) {
+    return verdict->distance[TARGET_RDF].rms > poor * find_structure(state) &&
+           state->pressure.value < 0;
 }
 
 bool mf_inversion_start_is_poor(const struct inversion *inversion, bool kept) {
-    if (!mf_inversion_start_has_other(inversion))
+    const struct inversion_state *first = inversion->state;
+    if (!mf_inversion_start_has_other(inversion, first))
         return false;
-    if (inversion->progress.iteration == 1 || inversion->useless)
+    if (inversion->course.progress.iteration == 1 || inversion->verdict.useless)
         return !kept;
-    return inversion->distance[TARGET_RDF].rms > poor * find_structure(inversion) &&
-           inversion->pressure.value < 0;
+    return mf_inversion_start_tears(first, &inversion->verdict);
 }
 
-enum status mf_inversion_start_again(struct inversion *inversion) {
-    mf_potential_grid_start(&inversion->grid, inversion->problem, inversion->phi);
-    if (!has_own(inversion))
-        TRY(smooth(inversion));
-    return mf_inversion_restrict(inversion);
+enum status mf_inversion_start_again(struct inversion_state *state, double *phi) {
+    mf_potential_grid_start(&state->grid, state->problem, phi);
+    if (!has_own(state))
+        TRY(smooth(state, phi));
+    return restrict_to_basis(state, phi);
 }

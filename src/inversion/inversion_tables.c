@@ -13,38 +13,38 @@
 
 enum { COLUMNS = 5 };
 
-/// `bins` values from `first` on, behind their places: target, samples, standard error, S − S*.
-static void fill(const struct inversion *inversion, size_t first, size_t bins,
+/// `bins` values from `first` on, with their places: target, samples, standard error, S − S*.
+static void fill(const struct inversion_state *state, size_t first, size_t bins,
                  double *const column[COLUMNS]) {
-    const struct comoments *counts = &inversion->replicas.counts;
-    const double independent = fmax(1, counts->count / inversion->inefficiency);
+    const struct comoments *counts = &state->replicas.counts;
+    const double independent = fmax(1, counts->count / state->inefficiency);
     for (size_t k = 0; k < bins; k++) {
         const size_t bin = first + k;
-        const double unit = inversion->unit[bin];
-        column[1][k] = inversion->target_counts[bin] / unit;
+        const double unit = state->target.unit[bin];
+        column[1][k] = state->target.counts[bin] / unit;
         column[2][k] = counts->mean[bin] / unit;
         column[3][k] = sqrt(mf_comoments_covariance(counts, bin, bin) / independent) / unit;
-        column[4][k] = counts->mean[bin] - inversion->target_counts[bin];
+        column[4][k] = counts->mean[bin] - state->target.counts[bin];
     }
 }
 
 /// Of a pair type: "rdf_now_A-B.tsv", "excess_A-B_history.tsv".
-static void find_path(const struct inversion *inversion, size_t pair, const char *name,
+static void find_path(const struct inversion_state *state, size_t pair, const char *name,
                       const char *end, const struct inverse_folder *folder, char *path) {
     char kind[COMPOSITION_PAIR_NAME_SIZE], file[COMPOSITION_PAIR_NAME_SIZE + 32];
-    mf_composition_pair_name(&inversion->composition, (int)pair, kind);
+    mf_composition_pair_name(&state->composition, (int)pair, kind);
     snprintf(file, sizeof file, "%s%s%s%s", name, kind[0] ? "_" : "", kind, end);
     folder->file(folder->context, file, path);
 }
 
 /// Columns of a table for each section of bins, of the longest one.
-static enum status allocate_columns(const struct inversion *inversion, double **memory,
+static enum status allocate_columns(const struct inversion_state *state, double **memory,
                                     double *column[COLUMNS]) {
     enum status status = STATUS_OK;
-    size_t most = inversion->grid.bins;
-    for (size_t g = 0; g < inversion->grid.groups; g++)
-        if (inversion->grid.group[g].own.unknown->bins.count > most)
-            most = inversion->grid.group[g].own.unknown->bins.count;
+    size_t most = state->grid.bins;
+    for (size_t g = 0; g < state->grid.groups; g++)
+        if (state->grid.group[g].own.unknown->bins.count > most)
+            most = state->grid.group[g].own.unknown->bins.count;
     NEW_ARRAY(*memory, COLUMNS * most);
     for (size_t c = 0; c < COLUMNS; c++)
         column[c] = *memory + c * most;
@@ -52,9 +52,9 @@ done:
     return status;
 }
 
-static enum status write_pairs(const struct inversion *inversion,
+static enum status write_pairs(const struct inversion_state *state,
                                const struct inverse_folder *folder, double *column[COLUMNS]) {
-    const size_t bins = inversion->grid.bins;
+    const size_t bins = state->grid.bins;
     const struct data_column columns[COLUMNS] = {{"r[lambda]", column[0], NULL},
                                                  {"target[1]", column[1], "%.8g"},
                                                  {"result[1]", column[2], "%.8g"},
@@ -62,22 +62,22 @@ static enum status write_pairs(const struct inversion *inversion,
                                                  {"excess[1]", column[4], "%.6g"}};
     char path[OUTPUT_PATH_SIZE];
     for (size_t k = 0; k < bins; k++)
-        column[0][k] = mf_rdf_bins_centre(&inversion->problem->targets.bins, k);
-    for (size_t pair = 0; pair < inversion->grid.pairs; pair++) {
-        if (!mf_composition_has_pairs(&inversion->composition, (int)pair))
+        column[0][k] = mf_rdf_bins_centre(&state->problem->targets.bins, k);
+    for (size_t pair = 0; pair < state->grid.pairs; pair++) {
+        if (!mf_composition_has_pairs(&state->composition, (int)pair))
             continue;
-        fill(inversion, pair * bins, bins, column);
-        find_path(inversion, pair, "rdf_now", ".tsv", folder, path);
+        fill(state, pair * bins, bins, column);
+        find_path(state, pair, "rdf_now", ".tsv", folder, path);
         TRY(mf_data_table_write_in(path, folder->units, NULL, columns, COLUMNS, bins));
     }
     return STATUS_OK;
 }
 
 /// p of a group: "now_bond_lengths_backbone.tsv".
-static enum status write_group(const struct inversion *inversion, size_t g,
+static enum status write_group(const struct inversion_state *state, size_t g,
                                const struct inverse_folder *folder, double *column[COLUMNS]) {
-    const struct simulation_setup *scene = &inversion->problem->scene;
-    const struct potential_group *group = &inversion->grid.group[g];
+    const struct simulation_setup *scene = &state->problem->scene;
+    const struct potential_group *group = &state->grid.group[g];
     const struct bonded_unknown *unknown = group->own.unknown;
     const struct molecules *molecules = mf_molecules_find(scene->interaction, scene->interactions);
     const struct observable_target *about =
@@ -93,27 +93,27 @@ static enum status write_group(const struct inversion *inversion, size_t g,
                                                  {"excess[1]", column[4], "%.6g"}};
     for (size_t k = 0; k < unknown->bins.count; k++)
         column[0][k] = bonded_bins_centre(&unknown->bins, k);
-    fill(inversion, group->bin, unknown->bins.count, column);
+    fill(state, group->bin, unknown->bins.count, column);
     snprintf(file, sizeof file, "now_%s_%s.tsv", about->name,
              molecules->group[unknown->order][unknown->group].name);
     folder->file(folder->context, file, path);
     return mf_data_table_write_in(path, folder->units, NULL, columns, COLUMNS, unknown->bins.count);
 }
 
-static enum status write_now(const struct inversion *inversion,
+static enum status write_now(const struct inversion_state *state,
                              const struct inverse_folder *folder) {
     enum status status = STATUS_OK;
     double *memory = NULL, *column[COLUMNS];
-    CHECK(allocate_columns(inversion, &memory, column));
-    CHECK(write_pairs(inversion, folder, column));
-    for (size_t g = 0; g < inversion->grid.groups; g++)
-        CHECK(write_group(inversion, g, folder, column));
+    CHECK(allocate_columns(state, &memory, column));
+    CHECK(write_pairs(state, folder, column));
+    for (size_t g = 0; g < state->grid.groups; g++)
+        CHECK(write_group(state, g, folder, column));
 done:
     mf_memory_free(memory);
     return status;
 }
 
-/// A first column and behind it a column an iteration, named by its number.
+/// A first column and then a column an iteration, named by its number.
 /// @param[in] values  of the first iteration, the others `stride` numbers apart
 static enum status write_iterations(const char *path, const struct units *units,
                                     struct data_column first, const double *values, size_t stride,
@@ -138,25 +138,26 @@ done:
 
 static enum status write_excess(const struct inversion *inversion,
                                 const struct inverse_folder *folder) {
+    const struct inversion_state *first = inversion->state;
     const struct inversion_trail *trail = &inversion->trail;
-    const size_t bins = inversion->grid.bins;
+    const size_t bins = first->grid.bins;
     char path[OUTPUT_PATH_SIZE];
-    for (size_t pair = 0; pair < inversion->grid.pairs; pair++) {
-        if (!mf_composition_has_pairs(&inversion->composition, (int)pair))
+    for (size_t pair = 0; pair < first->grid.pairs; pair++) {
+        if (!mf_composition_has_pairs(&first->composition, (int)pair))
             continue;
         const struct data_column r = {
-            "r[lambda]", inversion->grid.r + mf_potential_grid_block(&inversion->grid, pair), NULL};
-        find_path(inversion, pair, "excess", "_history.tsv", folder, path);
+            "r[lambda]", first->grid.r + mf_potential_grid_block(&first->grid, pair), NULL};
+        find_path(first, pair, "excess", "_history.tsv", folder, path);
         TRY(write_iterations(path, folder->units, r, trail->excess + pair * bins, trail->bins,
                              trail->iterations, bins));
     }
     return STATUS_OK;
 }
 
-enum status mf_inversion_write(const void *state, const struct inverse_folder *folder) {
-    const struct inversion *inversion = state;
-    if (!(inversion->replicas.counts.count > 0))
+enum status mf_inversion_write(const void *memory, const struct inverse_folder *folder) {
+    const struct inversion *inversion = memory;
+    if (!(inversion->state->replicas.counts.count > 0))
         return STATUS_OK;
-    TRY(write_now(inversion, folder));
+    TRY(write_now(inversion->state, folder));
     return write_excess(inversion, folder);
 }

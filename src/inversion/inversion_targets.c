@@ -1,52 +1,52 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // What an inversion counts, and how much of it its targets ask for.
-#include "inversion/inversion.h"
+#include "inversion/inversion_state.h"
 
 #include "observe/finite_size.h"
 
 #include <math.h>
 
 /// S of the pairs if g were 1, and of their target.
-static void count_pairs(struct inversion *inversion) {
-    const struct inverse_problem *problem = inversion->problem;
+static void count_pairs(struct inversion_state *state) {
+    const struct inverse_problem *problem = state->problem;
     const struct simulation_setup *scene = &problem->scene;
     const struct rdf_bins *bins = &problem->targets.bins;
     const struct target *target = &problem->targets.target[TARGET_RDF];
     const double from = (double)mf_composition_particles(&scene->composition);
-    const double to = (double)mf_composition_particles(&inversion->composition);
+    const double to = (double)mf_composition_particles(&state->composition);
     const struct molecules *molecules = mf_molecules_find(scene->interaction, scene->interactions);
     const struct finite_size_fluid fluid = {.box = &scene->box,
                                             .composition = &scene->composition,
                                             .topology = molecules ? &molecules->topology : NULL};
-    for (size_t first = 0; first < inversion->grid.pair_bins; first += bins->count) {
+    for (size_t first = 0; first < state->grid.pair_bins; first += bins->count) {
         const int pair = (int)(first / bins->count);
         const double factor = mf_finite_size_factor_of(
             bins, target->value + first, target->error + first, &fluid, pair, from, to);
         for (size_t k = 0; k < bins->count; k++) {
             const size_t bin = first + k;
             const double ideal =
-                mf_rdf_ideal_pairs_of(bins, k, &inversion->box, &inversion->composition, pair);
-            inversion->least[bin] = problem->core_threshold;
-            inversion->ideal[bin] = inversion->unit[bin] = ideal > 0 ? ideal : 1;
+                mf_rdf_ideal_pairs_of(bins, k, &state->box, &state->composition, pair);
+            state->target.least[bin] = problem->core_threshold;
+            state->target.ideal[bin] = state->target.unit[bin] = ideal > 0 ? ideal : 1;
             if (!(ideal > 0))
                 continue; // no pairs are counted, and none are wanted
-            inversion->target_counts[bin] = ideal * target->value[bin] * factor;
-            inversion->target_error[bin] = ideal * target->error[bin];
+            state->target.counts[bin] = ideal * target->value[bin] * factor;
+            state->target.error[bin] = ideal * target->error[bin];
         }
     }
 }
 
 /// What the error of a pair type's factor makes of its target.
-static void count_common(struct inversion *inversion) {
-    const struct potential_grid *grid = &inversion->grid;
-    const struct targets *targets = &inversion->problem->targets;
+static void count_common(struct inversion_state *state) {
+    const struct potential_grid *grid = &state->grid;
+    const struct targets *targets = &state->problem->targets;
     const double *factor_error = targets->target[TARGET_RDF].factor_error;
     for (size_t a = 0; factor_error && a < grid->pairs_known; a++) {
         const size_t bin = grid->known_bin[a];
         if (grid->seen[a])
-            inversion->common[a] =
-                inversion->target_counts[bin] * factor_error[bin / targets->bins.count];
+            state->target.common[a] =
+                state->target.counts[bin] * factor_error[bin / targets->bins.count];
     }
 }
 
@@ -58,8 +58,8 @@ static double peak_of(const struct bonded_grid *group) {
 }
 
 /// The same of a group; `ideal` is S where p is its mean over the known bins.
-static void count_group(struct inversion *inversion, const struct potential_group *group) {
-    const struct inverse_problem *problem = inversion->problem;
+static void count_group(struct inversion_state *state, const struct potential_group *group) {
+    const struct inverse_problem *problem = state->problem;
     const struct simulation_setup *scene = &problem->scene;
     const struct bonded_unknown *unknown = group->own.unknown;
     const double *error =
@@ -70,56 +70,56 @@ static void count_group(struct inversion *inversion, const struct potential_grou
     const double unit = unknown->bins.width * terms;
     for (size_t k = 0; k < unknown->bins.count; k++) {
         const size_t bin = group->bin + k;
-        inversion->unit[bin] = unit;
-        inversion->ideal[bin] = unit * mean;
-        inversion->target_counts[bin] = unit * group->own.target[k];
-        inversion->target_error[bin] = unit * error[k];
-        inversion->least[bin] = mf_bonded_distribution_seen * peak / mean;
+        state->target.unit[bin] = unit;
+        state->target.ideal[bin] = unit * mean;
+        state->target.counts[bin] = unit * group->own.target[k];
+        state->target.error[bin] = unit * error[k];
+        state->target.least[bin] = mf_bonded_distribution_seen * peak / mean;
     }
 }
 
-/// A section behind those before.
-static struct inversion_section *add_section(struct inversion *inversion, int kind) {
-    struct inversion_section *section = &inversion->section[inversion->sections];
-    if (inversion->sections > 0) {
+/// Another section.
+static struct inversion_section *add_section(struct inversion_state *state, int kind) {
+    struct inversion_section *section = &state->verdict.section[state->verdict.sections];
+    if (state->verdict.sections > 0) {
         const struct inversion_section *last = section - 1;
         section->bin = last->bin + last->bins;
         section->known = last->known + last->known_count;
     }
     section->kind = kind;
-    inversion->sections++;
+    state->verdict.sections++;
     return section;
 }
 
 /// The groups stand in the order of their kinds. U may bend by k_B T within a tenth of the range
 /// that is known.
-static void enter_group(struct inversion *inversion, size_t g) {
+static void enter_group(struct inversion_state *state, size_t g) {
     static const double narrow = 0.1;
-    const struct bonded_grid *own = &inversion->grid.group[g].own;
+    const struct bonded_grid *own = &state->grid.group[g].own;
     const struct bonded_unknown *unknown = own->unknown;
     struct inversion_section *section =
-        add_section(inversion, mf_bonded_distribution_kind(unknown->order));
+        add_section(state, mf_bonded_distribution_kind(unknown->order));
     section->bins = unknown->bins.count;
     section->known_count = own->known;
     section->peak = peak_of(own);
-    inversion->groups[g] = (struct sampler_group){unknown->order, unknown->group, unknown->bins};
-    inversion->shape[inversion->grid.pairs + g] =
+    state->groups[g] = (struct sampler_group){unknown->order, unknown->group, unknown->bins};
+    state->target.shape[state->grid.pairs + g] =
         (struct imc_shape){.bend = fmax(1, narrow * (double)own->known),
                            .periodic = unknown->order == TOPOLOGY_DIHEDRAL};
 }
 
-void mf_inversion_count_targets(struct inversion *inversion) {
-    const struct potential_grid *grid = &inversion->grid;
+void mf_inversion_count_targets(struct inversion_state *state) {
+    const struct potential_grid *grid = &state->grid;
     if (grid->pairs > 0) {
-        struct inversion_section *section = add_section(inversion, TARGET_RDF);
+        struct inversion_section *section = add_section(state, TARGET_RDF);
         section->bins = grid->pair_bins;
         section->known_count = grid->pairs_known;
         section->peak = 1;
     }
-    count_pairs(inversion);
-    count_common(inversion);
+    count_pairs(state);
+    count_common(state);
     for (size_t g = 0; g < grid->groups; g++) {
-        count_group(inversion, &grid->group[g]);
-        enter_group(inversion, g);
+        count_group(state, &grid->group[g]);
+        enter_group(state, g);
     }
 }

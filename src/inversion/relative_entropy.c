@@ -3,11 +3,14 @@
 // Relative entropy minimisation: M. S. Shell, J. Chem. Phys. 129, 144108 (2008); by Newton steps in
 // the coefficients of splines (inversion/inversion_basis.h), as A. Chaimovich and M. S. Shell, J.
 // Chem. Phys. 134, 094112 (2011), take them.
+#include "inversion/relative_entropy.h"
+
 #include "inversion/inversion.h"
+#include "inversion/method_steps.h"
 
 #include <math.h>
 
-#define MEMBER(name) .offset = offsetof(struct entropy_parameters, name)
+#define MEMBER(name) .offset = offsetof(struct inversion_basis_size, name)
 static const struct field own_fields[] = {
     {"coefficients", FIELD_INTEGER, MEMBER(coefficients), .initial = 20, .minimum = 1,
      .maximum = INVERSION_MOST_BINS, .unit = "",
@@ -24,12 +27,12 @@ static const char *const columns[] = {INVERSION_COLUMNS, "gradient[1]", "decreme
 /// The step of Boltzmann inversion, as near as coefficients come to it.
 static enum status take_logarithms(struct inversion *inversion) {
     enum status status = STATUS_OK;
-    const struct potential_grid *grid = &inversion->grid;
-    double *weight = NULL;
-    NEW_ARRAY(weight, grid->known);
-    mf_inversion_basis_weights(inversion, weight);
-    mf_ibi_logarithms(inversion, inversion->step);
-    CHECK(mf_inversion_basis_project(&inversion->basis, grid, weight, inversion->step));
+    const struct inversion_state *first = inversion->state;
+    double *weight = NULL, *step = inversion->course.step;
+    NEW_ARRAY(weight, first->grid.known);
+    mf_inversion_basis_weights(first, weight);
+    mf_ibi_logarithms(first, step);
+    CHECK(mf_inversion_basis_project(&first->basis, &first->grid, weight, step));
 done:
     mf_memory_free(weight);
     return status;
@@ -39,17 +42,22 @@ done:
 /// less, that of Boltzmann inversion, which has the noise of the present samples alone.
 static enum status update(struct inversion *inversion, double *extra) {
     static const double enough = 2;
-    const struct inversion_basis *basis = &inversion->basis;
-    mf_inversion_basis_measure(&inversion->basis, inversion, inversion->step);
-    inversion->progress.miss = extra[0] = basis->miss;
+    struct inversion_state *first = inversion->state;
+    const struct inversion_basis *basis = &first->basis;
+    mf_inversion_basis_measure(&first->basis, first, inversion->course.step);
+    first->gradient = extra[0] = basis->miss;
     extra[1] = basis->decrement;
     extra[2] = (double)basis->count;
-    if (basis->behind < enough * (double)basis->count) {
-        inversion->progress.pool = 0;
+    if (basis->samples < enough * (double)basis->count) {
+        first->pool.samples = 0;
         return take_logarithms(inversion);
     }
-    inversion->settling = mf_inversion_is_near(inversion);
+    inversion->course.most_probable = mf_inversion_is_near(inversion);
     return STATUS_OK;
+}
+
+static const struct inversion_basis_size *coefficients(const void *parameters) {
+    return &((const struct relative_entropy_parameters *)parameters)->size;
 }
 
 static enum status create(void *inversion, const struct inverse_method *method,
@@ -65,10 +73,12 @@ const struct inverse_method mf_relative_entropy = {
     .name = "relative-entropy",
     .summary = "the best potentials of few coefficients; M. S. Shell, J. Chem. Phys. 129, 144108 "
                "(2008)",
-    .own = &(const struct inversion_rule){.update = update},
-    .tables =
-        (const struct inverse_table[]){
-            INVERSION_TABLE, {own_fields, offsetof(struct inversion_settings, entropy)}, {NULL, 0}},
+    .own = &(const struct inversion_rule){.update = update, .coefficients = coefficients},
+    .parameters_size = sizeof(struct relative_entropy_parameters),
+    .tables = (const struct inverse_table[]){INVERSION_TABLE,
+                                             {own_fields,
+                                              offsetof(struct relative_entropy_parameters, size)},
+                                             {NULL, 0}},
     .knows_molecules = true,
     .restricted = true,
     .columns = columns,

@@ -193,9 +193,9 @@ double mf_replicas_disagreement(const struct replicas *replicas, const double *i
     return REPLICAS_BLOCKS * between / within;
 }
 
-struct replicas_mean mf_replicas_mean(const struct replicas *replicas, size_t behind,
+struct replicas_mean mf_replicas_mean(const struct replicas *replicas, size_t sum,
                                       double inefficiency) {
-    const size_t at = replicas->bins + behind;
+    const size_t at = replicas->bins + sum;
     struct running_mean chains = {0};
     for (size_t k = 0; k < replicas->count; k++)
         mf_statistics_add(&chains, replicas->member[k].counts.mean[at]);

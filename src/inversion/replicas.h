@@ -13,7 +13,7 @@ enum { REPLICAS_MOST = 64 };
 enum { REPLICAS_BLOCKS = 4 }; // even, so that they can be joined in pairs
 
 struct replicas {
-    size_t bins, numbers, count; ///< numbers of a sample: bins, and what stands behind them
+    size_t bins, numbers, count; ///< numbers of a sample: bins, then sums and integrals
     struct replica {
         struct sampler sampler;
         struct comoments counts; ///< of the samples
@@ -25,7 +25,7 @@ struct replicas {
 };
 
 struct replicas_plan {
-    bool scatter;          ///< first: the particles are placed anew, without order
+    bool scatter;          ///< first: the particles are placed again, without order
     int64_t equilibration; ///< sweeps before the samples
     int64_t block_samples; ///< of each of the REPLICAS_BLOCKS of each sampler
     int64_t every;         ///< sweeps between them
@@ -59,11 +59,11 @@ struct replicas_mean {
     double mean, error;
 };
 
-/// What stands behind the bins of a sample, enum sampler_sum or one of the integrals, with the
+/// One of the sums of a sample, enum sampler_sum, or of the integrals after them, with the
 /// standard error that is the larger of two: by the scatter of the replicas, and by that of all
 /// samples.
 /// @param[in] inefficiency  of mf_replicas_inefficiency
-struct replicas_mean mf_replicas_mean(const struct replicas *replicas, size_t behind,
+struct replicas_mean mf_replicas_mean(const struct replicas *replicas, size_t sum,
                                       double inefficiency);
 
 /// Part of the moves that were taken, the mean over the samplers.

@@ -150,13 +150,13 @@ enum status mf_sampler_sample(struct sampler *sampler, uint64_t sweeps, double *
     }
     for (size_t a = 0; a < bins; a++)
         sample[a] = counts[a];
-    double *behind = count_groups(sampler, sample + bins);
-    behind[SAMPLER_VIRIAL] = sums.virial;
-    behind[SAMPLER_ENERGY] = sums.energy;
-    sum_sizes(sampler, behind);
+    double *sum = count_groups(sampler, sample + bins);
+    sum[SAMPLER_VIRIAL] = sums.virial;
+    sum[SAMPLER_ENERGY] = sums.energy;
+    sum_sizes(sampler, sum);
     if (sampler->waves)
         mf_kirkwood_buff_waves_take(&sampler->kirkwood_buff, particles_of(sampler), 1,
-                                    behind + SAMPLER_SUMS);
+                                    sum + SAMPLER_SUMS);
     return STATUS_OK;
 }
 

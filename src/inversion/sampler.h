@@ -51,7 +51,7 @@ struct sampler_system {
     double low, width; ///< of the bins that count pairs, within the potential's cutoff [λ]
     size_t bins;       ///< of each pair type; 0: pairs are not counted
     const struct molecules *molecules; ///< or NULL; its laws may be exchanged as the potential may
-    const struct sampler_group *group; ///< to be counted behind the pairs, shape [groups]
+    const struct sampler_group *group; ///< to be counted after the pairs, shape [groups]
     size_t groups;
     size_t integrals; ///< of Kirkwood and Buff: pairs of components, if they are asked for, or 0
     double q_maximum; ///< of their waves, as of mf_kirkwood_buff_waves_init [1/λ]
@@ -71,7 +71,7 @@ enum status mf_sampler_init(struct sampler *sampler, enum sampler_kind kind,
                             const struct sampler_system *system) MUST_USE;
 void mf_sampler_clear(struct sampler *sampler);
 
-/// Forget the configuration: the particles are placed anew, without order. From a lattice, a
+/// Forget the configuration: the particles are placed again, without order. From a lattice, a
 /// potential that favours a crystal would keep one. Fails: NO_MEMORY.
 enum status mf_sampler_scatter(struct sampler *sampler) MUST_USE;
 
@@ -83,7 +83,7 @@ enum status mf_sampler_begin(struct sampler *sampler) MUST_USE;
 /// INTERRUPTED.
 enum status mf_sampler_equilibrate(struct sampler *sampler, uint64_t sweeps) MUST_USE;
 
-/// What stands behind the bins of a sample.
+/// What follows the bins of a sample.
 enum sampler_sum {
     SAMPLER_VIRIAL,   ///< Σ r·F [k_B T_0]
     SAMPLER_ENERGY,   ///< Σ Φ, and U of molecules [k_B T_0]
@@ -92,8 +92,8 @@ enum sampler_sum {
     SAMPLER_SUMS,
 };
 
-/// Sweeps, then a sample: S of each bin of each pair type and of each group, behind them the sums,
-/// and behind these the integrals of the configuration.
+/// Sweeps, then a sample: S of each bin of each pair type and of each group, then the sums,
+/// then the integrals of the configuration.
 /// @param[out] sample  shape [mf_sampler_numbers]
 /// Fails: NO_MEMORY, INTERRUPTED. Tested: test_monte_carlo_mixture.
 enum status mf_sampler_sample(struct sampler *sampler, uint64_t sweeps, double *sample) MUST_USE;

@@ -63,8 +63,7 @@ static void print_time(double seconds, char text[TIME_SIZE]) {
 /// asked for. The first ones are shorter.
 static enum status print_sampling(const struct fit_file *fit) {
     static const double inefficiency = 2;
-    const struct inversion_parameters *p =
-        &((const struct inversion_settings *)fit->method_parameters)->common;
+    const struct inversion_parameters *p = fit->method_parameters;
     const struct simulation_setup *setup = &fit->scene.setup;
     const double count = (double)(p->particles > 0 ? p->particles : setup->placement.count);
     const double replicas = (double)p->replicas,

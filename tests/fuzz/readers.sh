@@ -26,7 +26,7 @@ add r $corpus/*/run.json
 add x tests/fuzz/trajectories/*
 add l tests/fuzz/trajectories/*.d*
 printf 'm{"beads": {"A": {"residue": "B", "atoms": "C D"}, "E": {"first": 1, "last": 6, "size": 3}}, "masses": {"C": 1}}' >"$place/m-map"
-printf 'cmesofit state 4' >"$place/c-head"
+printf 'cmesofit state 5' >"$place/c-head"
 for kind in 1 2 3 4 5; do
     add $kind $corpus/fit/target.tsv $corpus/simulate/potential.tsv
 done

@@ -5,7 +5,8 @@
 // their bands; and relative entropy finds the best parabola where the truth is none.
 #include "base/memory.h"
 #include "curves/formula.h"
-#include "inversion/joint.h"
+#include "inversion/inversion.h"
+#include "inversion/relative_entropy.h"
 #include "problem/verify.h"
 #include "shared/fluids.h"
 #include "shared/length.h"
@@ -107,7 +108,7 @@ static void clear_twin(struct twin *twin) {
 /// is left in errors.
 static void fit_parabola(const struct inversion *inversion, size_t g, double unit, double *k,
                          double *deviation) {
-    const struct potential_grid *grid = &inversion->grid;
+    const struct potential_grid *grid = inversion_grid(inversion);
     double normal[3][4] = {{0}}, sum = 0, count = 0, c[3];
     for (int pass = 0; pass < 2; pass++) {
         for (size_t a = 0; a < grid->known; a++) {
@@ -116,7 +117,8 @@ static void fit_parabola(const struct inversion *inversion, size_t g, double uni
                 point >= grid->group[g].point + grid->group[g].own.points)
                 continue;
             const double q = unit * grid->r[point] - (g == 0 ? 0.6 : 110 * M_PI / 180);
-            const double error = inversion->band.error[point], u = inversion->best[point];
+            const double error = inversion->course.band.error[point],
+                         u = inversion->course.best.phi[point];
             const double row[4] = {1, q, q * q, u};
             for (int i = 0; i < 3 && pass == 0; i++)
                 for (int j = 0; j < 4; j++)
@@ -138,13 +140,13 @@ static void fit_parabola(const struct inversion *inversion, size_t g, double uni
 }
 
 static void check_pairs(const struct inversion *inversion) {
-    const struct potential_grid *grid = &inversion->grid;
+    const struct potential_grid *grid = inversion_grid(inversion);
     double above = 0, below = 0, squares = 0, count = 0;
     for (size_t a = 0; a < grid->pairs_known; a++) {
         const size_t point = grid->known_point[a];
         const double r = grid->r[point], shape = mf_potential_grid_ramp(grid, point);
         const double truth = r < 1 ? repulsion * (1 - r) * (1 - r) / 2 : 0;
-        const double off = inversion->best[point] - truth;
+        const double off = inversion->course.best.phi[point] - truth;
         if (!grid->well_known[a])
             continue;
         above += shape * off;
@@ -154,7 +156,7 @@ static void check_pairs(const struct inversion *inversion) {
     }
     const double rms = sqrt((squares - above * above / below) / count);
     print_message("pairs: rms without the ramp %.4f, ramp %.3f (%.3f)\n", rms, above / below,
-                  inversion->band.ramp.error);
+                  inversion->course.band.ramp.error);
     assert_true(rms < 0.1);
 }
 
@@ -182,7 +184,7 @@ static double true_energy(size_t g, double q) {
 /// Mean square of U − U_true over its stated error where U is well known, of one group; a constant
 /// of U is none, so that both have the mean 0 over the target.
 static double find_deviation(const struct inversion *inversion, size_t g) {
-    const struct potential_grid *grid = &inversion->grid;
+    const struct potential_grid *grid = inversion_grid(inversion);
     size_t first = grid->pairs_known;
     for (size_t before = 0; before < g; before++)
         first += grid->group[before].own.known;
@@ -191,13 +193,13 @@ static double find_deviation(const struct inversion *inversion, size_t g) {
     for (int pass = 0; pass < 2; pass++)
         for (size_t a = first; a < end; a++) {
             const size_t point = grid->known_point[a];
-            const double weight = inversion->target_counts[grid->known_bin[a]];
-            const double off = inversion->best[point] - true_energy(g, grid->r[point]);
+            const double weight = inversion->state->target.counts[grid->known_bin[a]];
+            const double off = inversion->course.best.phi[point] - true_energy(g, grid->r[point]);
             if (pass == 0) {
                 mean += weight * off;
                 sum += weight;
             } else if (grid->well_known[a]) {
-                squares += pow((off - mean / sum) / inversion->band.error[point], 2);
+                squares += pow((off - mean / sum) / inversion->course.band.error[point], 2);
                 count++;
             }
         }
@@ -225,25 +227,26 @@ static double judge_deviations(const struct inversion *inversion) {
 /// Its seed is the twin's.
 static double find(const struct inverse_method *method, const struct twin *twin, judgement *judge) {
     void *state = mf_memory_zeroed(1, method->state_size);
-    struct inversion_settings settings = {.common = {0}};
+    struct inversion_parameters *settings = mf_memory_zeroed(1, method->parameters_size);
     struct inverse_step step;
     for (const struct inverse_table *table = method->tables; table->fields; table++)
-        mf_fields_set_defaults(table->fields, (char *)&settings + table->offset);
-    settings.common.replicas = 4;
-    settings.common.equilibration = 60;
-    settings.common.precision = 0.008;
-    assert_ok(method->create(state, method, &twin->problem, &settings));
+        mf_fields_set_defaults(table->fields, (char *)settings + table->offset);
+    settings->replicas = 4;
+    settings->equilibration = 60;
+    settings->precision = 0.008;
+    assert_ok(method->create(state, method, &twin->problem, settings));
     do {
         assert_ok(method->iterate(state, &step, &listener));
         print_message("%s, iteration %u: error %.4f, noise %.4f\n", method->name, step.iteration,
                       step.error, step.noise);
     } while (!step.finished);
     assert_true(step.converged);
-    const struct inversion *inversion = method->knows_states ? joint_leader(state) : state;
+    const struct inversion *inversion = state;
     check_pairs(inversion);
     const double squares = judge(inversion);
     method->destroy(state);
     mf_memory_free(state);
+    mf_memory_free(settings);
     return squares;
 }
 
@@ -345,7 +348,7 @@ static void make_dimers(struct dimers *dimers) {
 /// Means of r and r² with p, or with exp(−U/k_B T) r² by quadrature where p is known.
 static void find_moments(const struct inversion *inversion, const double *p, double moment[2]) {
     enum { PLACES = 4000 };
-    const struct bonded_grid *grid = &inversion->grid.group[0].own;
+    const struct bonded_grid *grid = &inversion_grid(inversion)->group[0].own;
     double sum = 0, above[2] = {0};
     if (p) {
         for (size_t k = grid->first; k < grid->first + grid->known; k++) {
@@ -358,7 +361,7 @@ static void find_moments(const struct inversion *inversion, const double *p, dou
         struct bonded_curve curve = {0};
         const double low = wide_bins.low + wide_bins.width * (double)grid->first,
                      high = low + wide_bins.width * (double)grid->known;
-        assert_ok(mf_bonded_grid_curve(grid, inversion->best, &curve));
+        assert_ok(mf_bonded_grid_curve(grid, inversion->course.best.phi, &curve));
         for (int k = 0; k < PLACES; k++) {
             const double r = low + (high - low) * (k + 0.5) / PLACES;
             double energy;
@@ -383,7 +386,7 @@ static void test_relative_entropy_of_a_parabola_keeps_the_moments(void **state) 
     static struct dimers dimers;
     const struct inverse_method *method = &mf_relative_entropy;
     struct inversion *inversion = mf_memory_zeroed(1, method->state_size);
-    struct inversion_settings settings = {.common = {0}};
+    struct relative_entropy_parameters settings = {.common = {0}};
     struct inverse_step step;
     double wanted[2], found[2];
     make_dimers(&dimers);
@@ -391,12 +394,12 @@ static void test_relative_entropy_of_a_parabola_keeps_the_moments(void **state) 
         mf_fields_set_defaults(table->fields, (char *)&settings + table->offset);
     settings.common.replicas = 4;
     settings.common.equilibration = 60;
-    settings.entropy.group_coefficients = 2;
+    settings.size.group_coefficients = 2;
     assert_ok(method->create(inversion, method, &dimers.problem, &settings));
     do {
         assert_ok(method->iterate(inversion, &step, &listener));
         print_message("iteration %u: error %.4f, noise %.4f, gradient %.2f\n", step.iteration,
-                      step.error, step.noise, inversion->basis.miss);
+                      step.error, step.noise, inversion->state->basis.miss);
     } while (!step.finished);
     assert_true(step.converged);
     assert_true(step.error > 5 * step.noise);

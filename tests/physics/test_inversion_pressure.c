@@ -26,12 +26,12 @@ static void measure(const struct fluid *fluid, const struct rdf_bins *bins, cons
                     const struct curve *potential, struct inversion *inversion) {
     static const double errors[MOST_BINS];
     const struct inverse_listener listener = {ignore, NULL};
-    struct inversion_settings settings = {.common = {.replicas = 8,
-                                                     .equilibration = 60,
-                                                     .samples = length_is_long() ? 1500 : 240,
-                                                     .every = 4,
-                                                     .iterations = 1,
-                                                     .precision = 1}};
+    struct inversion_parameters settings = {.replicas = 8,
+                                            .equilibration = 60,
+                                            .samples = length_is_long() ? 1500 : 240,
+                                            .every = 4,
+                                            .iterations = 1,
+                                            .precision = 1};
     const struct inverse_problem problem = {
         .targets = {.bins = *bins, .target[TARGET_RDF] = {bins->count, g, errors, 0}},
         .unknown[UNKNOWN_POTENTIAL] = {.wanted = true, .start = {potential}},
@@ -44,7 +44,7 @@ static void measure(const struct fluid *fluid, const struct rdf_bins *bins, cons
     *inversion = (struct inversion){0};
     assert_ok(mf_inversion_create(inversion, &mf_ibi, &problem, &settings));
     assert_ok(mf_inversion_iterate(inversion, &step, &listener));
-    inversion->problem = NULL;
+    inversion->problem = inversion->state->problem = NULL;
 }
 
 /// The ramp, and a bump where the first neighbours are.
@@ -53,16 +53,18 @@ static double change_of(int kind, double r, double cutoff) {
 }
 
 static double pressure_when_changed(const struct fluid *fluid, const struct rdf_bins *bins,
-                                    const double *g, const struct inversion *at, int kind,
+                                    const double *g, const struct inversion *from, int kind,
                                     double amount) {
+    const struct inversion_state *at = from->state;
     struct inversion changed;
     struct curve curve;
     double phi[MOST_BINS + 1];
     for (size_t k = 0; k < at->grid.points; k++)
-        phi[k] = at->best[k] + amount * change_of(kind, at->grid.r[k], mf_rdf_bins_range(bins));
+        phi[k] = from->course.best.phi[k] +
+                 amount * change_of(kind, at->grid.r[k], mf_rdf_bins_range(bins));
     assert_ok(mf_sampled_create(&curve, at->grid.r, phi, at->grid.points));
     measure(fluid, bins, g, &curve, &changed);
-    const double pressure = changed.pressure.value;
+    const double pressure = changed.state->pressure.value;
     mf_inversion_destroy(&changed);
     mf_curve_clear(&curve);
     return pressure;
@@ -70,24 +72,25 @@ static double pressure_when_changed(const struct fluid *fluid, const struct rdf_
 
 static void check_slopes(const struct fluid *fluid, const struct rdf_bins *bins, size_t core,
                          const struct curve *potential, double amount) {
-    struct inversion at;
+    struct inversion from;
     double g[MOST_BINS];
     for (size_t k = 0; k < bins->count; k++)
         g[k] = k < core ? 0 : 1;
-    measure(fluid, bins, g, potential, &at);
+    measure(fluid, bins, g, potential, &from);
+    const struct inversion_state *at = from.state;
     for (int kind = 0; kind < 2; kind++) {
         double predicted = 0;
-        for (size_t b = 0; b < at.grid.known; b++)
+        for (size_t b = 0; b < at->grid.known; b++)
             predicted +=
-                2 * amount * at.pressure.slope[b] *
-                change_of(kind, at.grid.r[at.grid.known_point[b]], mf_rdf_bins_range(bins));
-        const double found = pressure_when_changed(fluid, bins, g, &at, kind, amount) -
-                             pressure_when_changed(fluid, bins, g, &at, kind, -amount);
-        print_message("pressure %.3f(%.3f), change predicted %.4f, found %.4f\n", at.pressure.value,
-                      at.pressure.error, predicted, found);
+                2 * amount * at->pressure.slope[b] *
+                change_of(kind, at->grid.r[at->grid.known_point[b]], mf_rdf_bins_range(bins));
+        const double found = pressure_when_changed(fluid, bins, g, &from, kind, amount) -
+                             pressure_when_changed(fluid, bins, g, &from, kind, -amount);
+        print_message("pressure %.3f(%.3f), change predicted %.4f, found %.4f\n",
+                      at->pressure.value, at->pressure.error, predicted, found);
         assert_close_relative(predicted, found, length_is_long() ? tolerance : tolerance_in_short);
     }
-    mf_inversion_destroy(&at);
+    mf_inversion_destroy(&from);
 }
 
 static void test_inversion_pressure_slopes_are_those_of_simulations_when_it_is_soft(void **state) {

@@ -15,17 +15,17 @@ void inversions_run(const struct inverse_method *method, const struct inverse_pr
     const size_t pairs = (size_t)mf_composition_pairs(&problem->scene.composition);
     const size_t points = pairs * (problem->targets.bins.count + 1);
     void *state = calloc(1, method->state_size);
-    struct inversion_settings *settings = calloc(1, method->parameters_size);
+    struct inversion_parameters *settings = calloc(1, method->parameters_size);
     assert_non_null(state);
     assert_non_null(settings);
     for (const struct inverse_table *table = method->tables; table->fields; table++)
         mf_fields_set_defaults(table->fields, (char *)settings + table->offset);
-    settings->common.replicas = 4;
-    settings->common.samples = 250;
-    settings->common.equilibration = 100;
-    settings->common.iterations = 40;
+    settings->replicas = 4;
+    settings->samples = 250;
+    settings->equilibration = 100;
+    settings->iterations = 40;
     if (precision > 0)
-        settings->common.precision = precision;
+        settings->precision = precision;
     assert_ok(method->create(state, method, problem, settings));
     do {
         assert_ok(method->iterate(state, step, &listener));

@@ -40,7 +40,7 @@ static void test_fit_defaults_choose_all_that_target_density_and_temperature_lea
     assert_ok(read_run(state, &fit, "run.json",
                        TARGET "\"scene\": {\"density\": 0.3, \"temperature\": 1}}"));
     const struct simulation_setup *setup = &fit.scene.setup;
-    const struct inversion_settings *settings = fit.method_parameters;
+    const struct inversion_parameters *settings = fit.method_parameters;
     const double range = mf_rdf_bins_range(&fit.problem.targets.bins);
     for (size_t k = 0; k < fit.choices.count; k++)
         print_message("%s\n", fit.choices.line[k]);
@@ -55,8 +55,8 @@ static void test_fit_defaults_choose_all_that_target_density_and_temperature_lea
     assert_true(setup->time_step <= sqrt(0.04 / (2 * 30)) && setup->time_step > 0.01);
     assert_true(fit.scene.omega.curves == 1 && mf_integrator_list[0] != NULL);
     assert_true(setup->integrator->dissipative);
-    assert_in_range(settings->common.particles, 700, 1e5);
-    assert_close(settings->common.precision, 0.002, 1e-3);
+    assert_in_range(settings->particles, 700, 1e5);
+    assert_close(settings->precision, 0.002, 1e-3);
     assert_in_range(fit.verification.plan.samples, 50, 1e6);
     assert_int_equal(fit.verification.shorten, 1);
     mf_fit_file_clear(&fit);
@@ -81,7 +81,7 @@ static void test_fit_defaults_stand_in_used_json(void **state) {
     assert_int_equal(again.problem.targets.bins.count, fit.problem.targets.bins.count);
     assert_memory_equal(&again.verification, &fit.verification, sizeof fit.verification);
     assert_memory_equal(again.method_parameters, fit.method_parameters,
-                        sizeof(struct inversion_settings));
+                        sizeof(struct inversion_parameters));
     assert_identical(mf_curve_value(&again.scene.omega.curve[0], 0.5),
                      mf_curve_value(&fit.scene.omega.curve[0], 0.5));
     mf_fit_file_clear(&fit);

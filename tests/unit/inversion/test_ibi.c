@@ -2,7 +2,8 @@
 //
 // Steps of iterative Boltzmann inversion in bins of few counts, drawn by Poisson's law.
 #include "base/rng.h"
-#include "inversion/inversion.h"
+#include "inversion/inversion_state.h"
+#include "inversion/method_steps.h"
 #include "shared/is_close.h"
 #include "shared/testing.h"
 
@@ -14,7 +15,7 @@ enum { BINS = 2, SAMPLES = 200, DRAWS = 1000, RARE = 0, FULL = 1 };
 /// errors of a tenth.
 struct scene {
     struct inverse_problem problem;
-    struct inversion inversion;
+    struct inversion_state state;
     size_t place[BINS];
     bool seen[BINS], well_known[BINS];
     double ideal[BINS], least[BINS], target[BINS], error[BINS], mean[BINS];
@@ -23,7 +24,7 @@ struct scene {
 };
 
 static void make(struct scene *scene, double rare) {
-    struct inversion *inversion = &scene->inversion;
+    struct inversion_state *state = &scene->state;
     *scene = (struct scene){.problem.scene.temperature = 1.5,
                             .place = {RARE, FULL},
                             .seen = {true, true},
@@ -34,18 +35,18 @@ static void make(struct scene *scene, double rare) {
         scene->target[k] = (k == RARE ? 1 : 1000) * rare / SAMPLES;
         scene->error[k] = 0.1 * scene->target[k];
     }
-    *inversion = (struct inversion){.problem = &scene->problem,
-                                    .grid = {.known = BINS,
-                                             .known_point = scene->place,
-                                             .known_bin = scene->place,
-                                             .seen = scene->seen,
-                                             .well_known = scene->well_known},
-                                    .ideal = scene->ideal,
-                                    .least = scene->least,
-                                    .target_counts = scene->target,
-                                    .target_error = scene->error,
-                                    .inefficiency = 1};
-    inversion->replicas.counts = (struct comoments){
+    *state = (struct inversion_state){.problem = &scene->problem,
+                                      .grid = {.known = BINS,
+                                               .known_point = scene->place,
+                                               .known_bin = scene->place,
+                                               .seen = scene->seen,
+                                               .well_known = scene->well_known},
+                                      .target = {.ideal = scene->ideal,
+                                                 .least = scene->least,
+                                                 .counts = scene->target,
+                                                 .error = scene->error},
+                                      .inefficiency = 1};
+    state->replicas.counts = (struct comoments){
         .size = BINS, .count = SAMPLES, .mean = scene->mean, .comoment = scene->comoment};
 }
 
@@ -55,7 +56,7 @@ static double step_of(struct scene *scene, double counts) {
     scene->mean[FULL] = 1.1 * scene->target[FULL];
     for (int k = 0; k < BINS; k++)
         scene->comoment[k * (BINS + 1)] = scene->mean[k] * SAMPLES; // Poisson's
-    mf_ibi_step(&scene->inversion, scene->step);
+    mf_ibi_step(&scene->state, scene->step);
     return scene->step[RARE];
 }
 

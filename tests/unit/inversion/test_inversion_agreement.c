@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // When g(r) agrees with its target but for noise: of counts that are made up.
-#include "inversion/inversion.h"
+#include "inversion/inversion_state.h"
 #include "shared/testing.h"
 
 #include <gsl/gsl_randist.h>
@@ -13,7 +13,8 @@ enum { BINS = 40, SAMPLES = 400 };
 /// by its own counts, and the samples of a potential.
 struct made {
     struct inverse_problem problem;
-    struct inversion inversion;
+    struct inversion_parameters parameters;
+    struct inversion_state state;
     size_t known_bin[BINS];
     bool seen[BINS];
     double expected[BINS], sampled[BINS]; ///< by the truth, and by the potential
@@ -25,22 +26,25 @@ struct made {
 /// a part of them.
 static void make(struct made *made, gsl_rng *rng, double frames, double wrong) {
     *made = (struct made){0};
-    struct inversion *inversion = &made->inversion;
-    *inversion = (struct inversion){
-        .problem = &made->problem,
-        .bins = BINS,
-        .grid = {.known = BINS,
-                 .pairs_known = BINS,
-                 .known_bin = made->known_bin,
-                 .seen = made->seen},
-        .sections = 1,
-        .section[0] = {.kind = TARGET_RDF, .bins = BINS, .known_count = BINS, .peak = 1},
-        .ideal = made->unit,
-        .unit = made->unit,
-        .target_counts = made->target,
-        .target_error = made->error,
-        .excess = made->excess,
-        .variance = made->variance};
+    struct inversion_state *state = &made->state;
+    *state = (struct inversion_state){.problem = &made->problem,
+                                      .parameters = &made->parameters,
+                                      .bins = BINS,
+                                      .grid = {.known = BINS,
+                                               .pairs_known = BINS,
+                                               .known_bin = made->known_bin,
+                                               .seen = made->seen},
+                                      .verdict = {.sections = 1,
+                                                  .section[0] = {.kind = TARGET_RDF,
+                                                                 .bins = BINS,
+                                                                 .known_count = BINS,
+                                                                 .peak = 1}},
+                                      .target = {.ideal = made->unit,
+                                                 .unit = made->unit,
+                                                 .counts = made->target,
+                                                 .error = made->error},
+                                      .excess = made->excess,
+                                      .variance = made->variance};
     for (size_t k = 0; k < BINS; k++) {
         made->known_bin[k] = k;
         made->seen[k] = true;
@@ -53,11 +57,11 @@ static void make(struct made *made, gsl_rng *rng, double frames, double wrong) {
         made->mean[k] = gsl_ran_poisson(rng, SAMPLES * made->sampled[k]) / (double)SAMPLES;
         made->comoment[k * (BINS + 1)] = SAMPLES * made->sampled[k];
     }
-    inversion->replicas = (struct replicas){
+    state->replicas = (struct replicas){
         .bins = BINS,
         .numbers = BINS,
         .counts = {.size = BINS, .count = SAMPLES, .mean = made->mean, .comoment = made->comoment}};
-    mf_inversion_assess(inversion);
+    mf_inversion_assess(state);
 }
 
 /// Of the first bin 2.4 counts are expected, of all others 10 to 10,000: the share of targets that
@@ -68,7 +72,8 @@ static double count_agreements(int trials, double wrong) {
     double agree = 0;
     for (int k = 0; k < trials; k++) {
         make(&made, rng, 100, wrong);
-        agree += inversion_section_agrees(mf_inversion_worst(&made.inversion)) / (double)trials;
+        agree += inversion_section_agrees(mf_inversion_verdict_worst(&made.state.verdict)) /
+                 (double)trials;
     }
     gsl_rng_free(rng);
     return agree;
@@ -89,7 +94,7 @@ test_wrong_potential_does_not_agree_though_the_noise_of_rare_pairs_is_larger(voi
     static struct made made;
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
     make(&made, rng, 100, 0.05);
-    const struct inversion_section *section = &made.inversion.section[0];
+    const struct inversion_section *section = &made.state.verdict.section[0];
     print_message("rms %.3f of a noise of %.3f, chi^2 by bin %.2f of %.2f\n", section->rms,
                   section->noise, section->misfit, section->probable);
     assert_true(section->rms < 1.7 * section->noise);
@@ -109,8 +114,8 @@ static void test_noise_of_a_bin_is_that_of_the_counts_that_are_expected(void **s
     made.target[0] = 0.02;
     made.error[0] = sqrt(2) / 100;
     made.mean[0] = 0.05;
-    mf_inversion_assess(&made.inversion);
-    const double sampled = made.comoment[0] / SAMPLES / (SAMPLES / made.inversion.inefficiency);
+    mf_inversion_assess(&made.state);
+    const double sampled = made.comoment[0] / SAMPLES / (SAMPLES / made.state.inefficiency);
     assert_true(fabs(made.variance[0] - sampled - 5e-4) < 1e-9);
     gsl_rng_free(rng);
 }
@@ -127,22 +132,22 @@ static void test_target_that_is_off_as_a_whole_agrees_where_its_factor_may_be(vo
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
     make(&made, rng, 100, 0);
     made.problem.targets.target[TARGET_RDF].factor_error = &prior;
-    made.inversion.grid.pairs = made.inversion.grid.blocks = 1;
-    made.inversion.grid.known_of = (size_t *)known_of;
+    made.state.grid.pairs = made.state.grid.blocks = 1;
+    made.state.grid.known_of = (size_t *)known_of;
     for (size_t k = 0; k < BINS; k++) {
         made.target[k] *= moved;
         made.error[k] *= moved;
         common[k] = prior * made.target[k];
     }
-    mf_inversion_assess(&made.inversion);
-    print_message("without: %.2f\n", made.inversion.section[0].misfit);
-    assert_false(inversion_section_agrees(&made.inversion.section[0]));
-    made.inversion.common = common;
-    mf_inversion_assess(&made.inversion);
-    mf_inversion_find_factor(&made.inversion, &factor);
-    print_message("with: %.2f of %.2f; factor %.4f\n", made.inversion.section[0].misfit,
-                  made.inversion.section[0].probable, factor.missing);
-    assert_true(inversion_section_agrees(&made.inversion.section[0]));
+    mf_inversion_assess(&made.state);
+    print_message("without: %.2f\n", made.state.verdict.section[0].misfit);
+    assert_false(inversion_section_agrees(&made.state.verdict.section[0]));
+    made.state.target.common = common;
+    mf_inversion_assess(&made.state);
+    mf_inversion_find_factor(&made.state, &factor);
+    print_message("with: %.2f of %.2f; factor %.4f\n", made.state.verdict.section[0].misfit,
+                  made.state.verdict.section[0].probable, factor.missing);
+    assert_true(inversion_section_agrees(&made.state.verdict.section[0]));
     assert_true(fabs(factor.missing - (1 / moved - 1)) < 0.003);
     gsl_rng_free(rng);
 }

@@ -3,7 +3,7 @@
 // Potentials of few coefficients: with one for each bin their Newton step is that of inverse Monte
 // Carlo, a curve that they can make is left as it is, and the covariance is what the noise of the
 // gradient makes of the step.
-#include "inversion/inversion.h"
+#include "inversion/inversion_state.h"
 #include "base/memory.h"
 #include "base/rng.h"
 #include "shared/is_close.h"
@@ -20,7 +20,7 @@ static const double temperature = 1.5;
 /// number of them.
 struct made {
     struct inverse_problem problem;
-    struct inversion inversion;
+    struct inversion_state state;
     double g[BINS], error[BINS], covariance[KNOWN * KNOWN], excess[KNOWN], step[BINS + 1];
 };
 
@@ -31,7 +31,7 @@ static double uniform(struct rng_sequence *random) {
 static void make(struct made *made, size_t coefficients, double samples) {
     struct rng_sequence random = mf_rng_sequence_begin(7, RNG_INITIAL, 0, 0);
     double factor[KNOWN * KNOWN];
-    struct inversion *inversion = &made->inversion;
+    struct inversion_state *state = &made->state;
     *made = (struct made){.problem = {.scene = {.temperature = temperature},
                                       .core_threshold = 1e-3,
                                       .core_stiffness = 2000}};
@@ -39,8 +39,8 @@ static void make(struct made *made, size_t coefficients, double samples) {
         made->g[k] = k < CORE ? 0 : 1;
     made->problem.targets.bins = (struct rdf_bins){0, 0.1, BINS};
     made->problem.targets.target[TARGET_RDF] = (struct target){.count = BINS, .value = made->g};
-    assert_ok(mf_potential_grid_init(&inversion->grid, &made->problem));
-    assert_int_equal(inversion->grid.known, KNOWN);
+    assert_ok(mf_potential_grid_init(&state->grid, &made->problem));
+    assert_int_equal(state->grid.known, KNOWN);
     for (size_t k = 0; k < KNOWN * KNOWN; k++)
         factor[k] = uniform(&random) + (k % (KNOWN + 1) == 0);
     for (size_t a = 0; a < KNOWN; a++) {
@@ -50,21 +50,20 @@ static void make(struct made *made, size_t coefficients, double samples) {
             for (size_t k = 0; k < KNOWN; k++)
                 made->covariance[a * KNOWN + b] += factor[a * KNOWN + k] * factor[b * KNOWN + k];
     }
-    inversion->problem = &made->problem;
-    inversion->covariance = made->covariance;
-    inversion->excess = made->excess;
-    inversion->target_error = made->error;
-    inversion->step = made->step;
-    inversion->inefficiency = 1;
-    inversion->replicas.counts.count = samples;
-    assert_ok(mf_inversion_basis_init(&inversion->basis, &inversion->grid,
-                                      &(struct entropy_parameters){(int64_t)coefficients, 1}));
-    assert_int_equal(inversion->basis.count, coefficients < KNOWN ? coefficients : KNOWN);
+    state->problem = &made->problem;
+    state->response.covariance = made->covariance;
+    state->excess = made->excess;
+    state->target.error = made->error;
+    state->inefficiency = 1;
+    state->replicas.counts.count = samples;
+    assert_ok(mf_inversion_basis_init(&state->basis, &state->grid,
+                                      &(struct inversion_basis_size){(int64_t)coefficients, 1}));
+    assert_int_equal(state->basis.count, coefficients < KNOWN ? coefficients : KNOWN);
 }
 
 static void clear(struct made *made) {
-    mf_inversion_basis_clear(&made->inversion.basis);
-    mf_potential_grid_clear(&made->inversion.grid);
+    mf_inversion_basis_clear(&made->state.basis);
+    mf_potential_grid_clear(&made->state.grid);
 }
 
 /// C x/k_B T is the excess, which many samples tell.
@@ -72,7 +71,7 @@ static void test_basis_of_all_bins_takes_the_step_of_inverse_monte_carlo(void **
     (void)state;
     static struct made made;
     make(&made, 100, 1e14);
-    mf_inversion_basis_measure(&made.inversion.basis, &made.inversion, made.step);
+    mf_inversion_basis_measure(&made.state.basis, &made.state, made.step);
     for (size_t a = 0; a < KNOWN; a++) {
         double predicted = 0;
         for (size_t b = 0; b < KNOWN; b++)
@@ -88,9 +87,9 @@ static void test_basis_of_few_coefficients_makes_their_gradient_zero(void **stat
     (void)state;
     static struct made made;
     make(&made, 4, 1e14);
-    const struct inversion_basis *basis = &made.inversion.basis;
+    const struct inversion_basis *basis = &made.state.basis;
     double left[KNOWN], promised = 0, whole = 0;
-    mf_inversion_basis_measure(&made.inversion.basis, &made.inversion, made.step);
+    mf_inversion_basis_measure(&made.state.basis, &made.state, made.step);
     for (size_t a = 0; a < KNOWN; a++) {
         left[a] = made.excess[a];
         for (size_t b = 0; b < KNOWN; b++)
@@ -114,7 +113,7 @@ static void test_basis_leaves_a_curve_as_it_is_that_it_can_make(void **state) {
     static struct made made;
     double weight[KNOWN], phi[BINS + 1], wanted[BINS + 1];
     make(&made, 5, 100);
-    const struct potential_grid *grid = &made.inversion.grid;
+    const struct potential_grid *grid = &made.state.grid;
     const double begin = grid->r[CORE], end = grid->r[BINS];
     for (size_t k = 0; k <= BINS; k++) {
         const double left = (end - grid->r[k]) / (end - begin);
@@ -122,7 +121,7 @@ static void test_basis_leaves_a_curve_as_it_is_that_it_can_make(void **state) {
     }
     for (size_t a = 0; a < KNOWN; a++)
         weight[a] = 1 + (double)a;
-    assert_ok(mf_inversion_basis_project(&made.inversion.basis, grid, weight, phi));
+    assert_ok(mf_inversion_basis_project(&made.state.basis, grid, weight, phi));
     for (size_t k = CORE; k <= BINS; k++)
         assert_close(phi[k], wanted[k], 1e-6);
     clear(&made);
@@ -183,16 +182,16 @@ static void test_basis_covariance_is_the_scatter_of_the_step(void **state) {
     factorise(made.covariance, factor);
     for (uint32_t draw = 0; draw < DRAWS; draw++) {
         draw_excess(&made, factor, samples, draw);
-        mf_inversion_basis_measure(&made.inversion.basis, &made.inversion, made.step);
-        misses += pow(made.inversion.basis.miss, 2) / DRAWS;
-        decrement += made.inversion.basis.decrement / DRAWS;
+        mf_inversion_basis_measure(&made.state.basis, &made.state, made.step);
+        misses += pow(made.state.basis.miss, 2) / DRAWS;
+        decrement += made.state.basis.decrement / DRAWS;
         for (size_t a = 0; a < KNOWN; a++)
             squares[a] += pow(made.step[CORE + a], 2) / DRAWS;
     }
-    assert_ok(mf_inversion_basis_covariance(&made.inversion, covariance, &directions));
+    assert_ok(mf_inversion_basis_covariance(&made.state, covariance, &directions));
     assert_close(directions, 4, 0.01);
     assert_close(misses, 1, 0.06);
-    assert_close(decrement / made.inversion.basis.chance, 1, 0.07);
+    assert_close(decrement / made.state.basis.chance, 1, 0.07);
     for (size_t a = 0; a < KNOWN; a++)
         assert_close(sqrt(squares[a] / covariance[a * (KNOWN + 1)]), 1, 5 * 0.0112);
     clear(&made);
@@ -213,16 +212,16 @@ static void test_basis_near_the_target_steps_all_of_the_way_on_average(void **st
     factorise(exact, factor);
     for (size_t a = 0; a < KNOWN; a++)
         for (size_t k = 0; k < COUNT; k++)
-            wanted[a] += made.inversion.basis.value[a * COUNT + k] * coefficient[k];
+            wanted[a] += made.state.basis.value[a * COUNT + k] * coefficient[k];
     for (size_t a = 0; a < KNOWN; a++) {
         made.excess[a] = 0;
         for (size_t b = 0; b < KNOWN; b++)
             made.excess[a] += exact[a * KNOWN + b] * wanted[b] / temperature;
     }
-    made.inversion.progress.miss = 1;
+    made.state.gradient = 1;
     for (uint32_t draw = 0; draw < DRAWS; draw++) {
         sample_covariance(&made, factor, SAMPLES, draw);
-        mf_inversion_basis_measure(&made.inversion.basis, &made.inversion, made.step);
+        mf_inversion_basis_measure(&made.state.basis, &made.state, made.step);
         for (size_t a = 0; a < KNOWN; a++)
             mean[a] += made.step[CORE + a] / DRAWS;
     }

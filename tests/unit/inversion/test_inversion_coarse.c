@@ -3,7 +3,7 @@
 // The coarse part of a step: of an ideal response it is Boltzmann inversion's, of many samples
 // Newton's, and what coefficients cannot make is left as it is.
 #include "inversion/inversion_coarse.h"
-#include "inversion/inversion.h"
+#include "inversion/inversion_state.h"
 #include "shared/is_close.h"
 #include "shared/testing.h"
 
@@ -15,13 +15,13 @@ enum { BINS = 12, CORE = 2, KNOWN = BINS - CORE };
 /// `softness`, with D the counts of the target.
 struct made {
     struct inverse_problem problem;
-    struct inversion inversion;
+    struct inversion_state state;
     double g[BINS], counts[BINS], error[BINS], covariance[KNOWN * KNOWN], step[BINS + 1];
 };
 
 static void make(struct made *made, size_t coefficients, double samples, double softness,
                  double collective) {
-    struct inversion *inversion = &made->inversion;
+    struct inversion_state *state = &made->state;
     *made = (struct made){
         .problem = {.scene = {.temperature = 1.5}, .core_threshold = 1e-3, .core_stiffness = 2000}};
     for (size_t k = 0; k < BINS; k++) {
@@ -30,28 +30,28 @@ static void make(struct made *made, size_t coefficients, double samples, double 
     }
     made->problem.targets.bins = (struct rdf_bins){0, 0.1, BINS};
     made->problem.targets.target[TARGET_RDF] = (struct target){.count = BINS, .value = made->g};
-    assert_ok(mf_potential_grid_init(&inversion->grid, &made->problem));
-    assert_int_equal(inversion->grid.known, KNOWN);
+    assert_ok(mf_potential_grid_init(&state->grid, &made->problem));
+    assert_int_equal(state->grid.known, KNOWN);
     for (size_t a = 0; a < KNOWN; a++)
         for (size_t b = 0; b < KNOWN; b++)
             made->covariance[a * KNOWN + b] =
                 softness * sqrt(made->counts[a + CORE] * made->counts[b + CORE]) *
                 ((a == b) + collective * cos((double)a) * cos((double)b));
-    inversion->problem = &made->problem;
-    inversion->covariance = made->covariance;
-    inversion->target_counts = made->counts;
-    inversion->target_error = made->error;
-    inversion->inefficiency = 1;
-    inversion->replicas.counts.count = samples;
-    assert_ok(mf_inversion_basis_init(&inversion->coarse, &inversion->grid,
-                                      &(struct entropy_parameters){(int64_t)coefficients, 1}));
+    state->problem = &made->problem;
+    state->response.covariance = made->covariance;
+    state->target.counts = made->counts;
+    state->target.error = made->error;
+    state->inefficiency = 1;
+    state->replicas.counts.count = samples;
+    assert_ok(mf_inversion_basis_init(&state->coarse, &state->grid,
+                                      &(struct inversion_basis_size){(int64_t)coefficients, 1}));
     for (size_t k = CORE; k <= BINS; k++)
         made->step[k] = sin(1.7 * (double)k);
 }
 
 static void clear(struct made *made) {
-    mf_inversion_basis_clear(&made->inversion.coarse);
-    mf_potential_grid_clear(&made->inversion.grid);
+    mf_inversion_basis_clear(&made->state.coarse);
+    mf_potential_grid_clear(&made->state.grid);
 }
 
 /// C = S*: nothing is changed, of however few samples.
@@ -61,7 +61,7 @@ static void test_coarse_step_of_an_ideal_response_is_that_of_boltzmann_inversion
     static const double samples[] = {1, 10, 1e6};
     for (size_t n = 0; n < sizeof samples / sizeof *samples; n++) {
         make(&made, 4, samples[n], 1, 0);
-        assert_ok(mf_inversion_coarse_respond(&made.inversion, made.step));
+        assert_ok(mf_inversion_coarse_respond(&made.state, made.step));
         for (size_t k = CORE; k < BINS; k++)
             assert_close(made.step[k], sin(1.7 * (double)k), 1e-6);
         clear(&made);
@@ -73,7 +73,7 @@ static void test_coarse_step_of_many_samples_is_newtons(void **state) {
     (void)state;
     static struct made made;
     make(&made, 100, 1e16, 0.3, 0.4);
-    assert_ok(mf_inversion_coarse_respond(&made.inversion, made.step));
+    assert_ok(mf_inversion_coarse_respond(&made.state, made.step));
     for (size_t a = 0; a < KNOWN; a++) {
         double response = 0;
         for (size_t b = 0; b < KNOWN; b++)
@@ -89,14 +89,14 @@ static void test_coarse_step_of_few_samples_is_short(void **state) {
     (void)state;
     static struct made made;
     make(&made, 100, KNOWN, 0.1, 0);
-    assert_ok(mf_inversion_coarse_respond(&made.inversion, made.step));
+    assert_ok(mf_inversion_coarse_respond(&made.state, made.step));
     for (size_t k = CORE; k < BINS; k++)
         assert_close(made.step[k], sin(1.7 * (double)k) / 0.55, 1e-6);
     clear(&made);
 
     make(&made, 3, 1e16, 0.1, 0);
-    assert_ok(mf_inversion_coarse_respond(&made.inversion, made.step));
-    const struct inversion_basis *coarse = &made.inversion.coarse;
+    assert_ok(mf_inversion_coarse_respond(&made.state, made.step));
+    const struct inversion_basis *coarse = &made.state.coarse;
     for (size_t k = 0; k < coarse->count; k++) {
         double before = 0, after = 0;
         for (size_t a = 0; a < KNOWN; a++) {
@@ -114,7 +114,7 @@ static void test_coarse_step_is_not_shortened_by_what_drifts(void **state) {
     (void)state;
     static struct made made;
     make(&made, 100, 1e16, 50, 0);
-    assert_ok(mf_inversion_coarse_respond(&made.inversion, made.step));
+    assert_ok(mf_inversion_coarse_respond(&made.state, made.step));
     for (size_t k = CORE; k < BINS; k++)
         assert_close(made.step[k], 0.5 * sin(1.7 * (double)k), 1e-6);
     clear(&made);
@@ -130,7 +130,7 @@ static void test_coarse_step_of_a_target_with_a_hole_is_finite(void **state) {
         for (size_t a = 0; a < KNOWN; a++)
             made.covariance[a * KNOWN + k - CORE] = made.covariance[(k - CORE) * KNOWN + a] = 0;
     }
-    assert_ok(mf_inversion_coarse_respond(&made.inversion, made.step));
+    assert_ok(mf_inversion_coarse_respond(&made.state, made.step));
     for (size_t k = CORE; k < BINS; k++)
         assert_true(fabs(made.step[k]) < 10);
     clear(&made);

@@ -42,17 +42,17 @@ static double observe(double precision, struct told *told) {
         .core_stiffness = 2000,
         .seed = 5,
         .threads = 1};
-    const struct inversion_settings settings = {.common = {.replicas = REPLICAS,
-                                                           .equilibration = 10,
-                                                           .samples = 16,
-                                                           .every = 2,
-                                                           .iterations = 2,
-                                                           .precision = precision,
-                                                           .start = INVERSION_FROM_MEAN_FORCE}};
+    const struct inversion_parameters settings = {.replicas = REPLICAS,
+                                                  .equilibration = 10,
+                                                  .samples = 16,
+                                                  .every = 2,
+                                                  .iterations = 2,
+                                                  .precision = precision,
+                                                  .start = INVERSION_FROM_MEAN_FORCE};
     *told = (struct told){0};
     assert_ok(mf_inversion_create(inversion, &mf_imc, &problem, &settings));
     assert_ok(mf_inversion_observe(inversion, &(struct inverse_listener){hear, told}));
-    const double noise = inversion->own_noise;
+    const double noise = inversion->verdict.own_noise;
     mf_inversion_destroy(inversion);
     free(inversion);
     fluid_clear(&fluid);

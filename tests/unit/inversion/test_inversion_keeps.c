@@ -10,68 +10,74 @@
 #include <math.h>
 
 /// An inversion to g(r), and perhaps a pressure, that has no potential yet.
-static void begin(struct inversion *inversion, struct inverse_problem *problem, bool pressure) {
-    *problem = (struct inverse_problem){
-        .targets.target = {[TARGET_RDF].count = 10, [TARGET_PRESSURE].count = pressure}};
-    *inversion = (struct inversion){.problem = problem};
-    inversion->progress.best[TARGET_RDF].rms = INFINITY;
+struct fit {
+    struct inverse_problem problem;
+    struct inversion_state state;
+    struct inversion inversion;
+};
+
+static struct inversion *begin(struct fit *fit, bool pressure) {
+    *fit = (struct fit){
+        .problem.targets.target = {[TARGET_RDF].count = 10, [TARGET_PRESSURE].count = pressure},
+        .inversion = {.problem = &fit->problem, .state = &fit->state, .states = 1}};
+    fit->inversion.course.progress.best.distance[TARGET_RDF].rms = INFINITY;
+    return &fit->inversion;
 }
 
 /// Samples say that g is this far off; what is kept becomes the best, as in an iteration.
 static bool keeps(struct inversion *inversion, double rms, double noise) {
-    inversion->distance[TARGET_RDF] = (struct target_distance){.rms = rms, .noise = noise};
+    struct target_distance *distance = inversion->verdict.distance;
+    struct inversion_best_samples *best = &inversion->course.progress.best;
+    distance[TARGET_RDF] = (struct target_distance){.rms = rms, .noise = noise};
     const bool kept = mf_inversion_keeps(inversion);
     if (kept)
-        memcpy(inversion->progress.best, inversion->distance, sizeof inversion->progress.best);
+        memcpy(best->distance, distance, sizeof best->distance);
     return kept;
 }
 
 static void test_inversion_keeps_what_is_worse_by_chance(void **state) {
     (void)state;
-    struct inversion inversion;
-    struct inverse_problem problem;
-    begin(&inversion, &problem, false);
-    assert_true(keeps(&inversion, 0.2, 0.01));
-    assert_true(keeps(&inversion, 0.1, 0.01));
-    assert_true(keeps(&inversion, 0.119, 0.01));
-    assert_true(keeps(&inversion, 0.119, 0.01));
-    assert_false(keeps(&inversion, 0.121, 0.01));
+    struct fit fit;
+    struct inversion *inversion = begin(&fit, false);
+    assert_true(keeps(inversion, 0.2, 0.01));
+    assert_true(keeps(inversion, 0.1, 0.01));
+    assert_true(keeps(inversion, 0.119, 0.01));
+    assert_true(keeps(inversion, 0.119, 0.01));
+    assert_false(keeps(inversion, 0.121, 0.01));
     // An error of noise alone is kept.
-    assert_true(keeps(&inversion, 0.001, 0.002));
-    assert_true(keeps(&inversion, 0.0049, 0.002));
+    assert_true(keeps(inversion, 0.001, 0.002));
+    assert_true(keeps(inversion, 0.0049, 0.002));
 }
 
 /// Samples end where their noise is a third of the error: each potential 1.6 times as far off as
 /// the one before is within two noises of it.
 static void test_inversion_keeps_no_slow_divergence(void **state) {
     (void)state;
-    struct inversion inversion;
-    struct inverse_problem problem;
-    begin(&inversion, &problem, false);
+    struct fit fit;
+    struct inversion *inversion = begin(&fit, false);
     double error = 0.01;
     int kept = 0;
-    for (; kept < 20 && keeps(&inversion, error, error / 3); kept++)
+    for (; kept < 20 && keeps(inversion, error, error / 3); kept++)
         error *= 1.6;
     assert_in_range(kept, 1, 3);
-    assert_true(inversion.progress.best[TARGET_RDF].rms <= 3 * 0.01);
-    assert_true(inversion.progress.least[TARGET_RDF].rms == 0.01);
+    assert_true(inversion->course.progress.best.distance[TARGET_RDF].rms <= 3 * 0.01);
+    assert_true(inversion->course.progress.least[TARGET_RDF].rms == 0.01);
 }
 
 /// Several targets count in units of their noise; a new start begins anew.
 static void test_inversion_keeps_by_all_targets_since_its_start(void **state) {
     (void)state;
-    struct inversion inversion;
-    struct inverse_problem problem;
-    begin(&inversion, &problem, true);
-    inversion.distance[TARGET_PRESSURE] = (struct target_distance){.rms = 1, .noise = 1};
-    assert_true(keeps(&inversion, 0.01, 0.01));
-    inversion.distance[TARGET_PRESSURE].rms = 3.1;
-    assert_true(keeps(&inversion, 0.01, 0.01)); // sqrt(1 + 9.6) of sqrt(2) + 2
-    inversion.distance[TARGET_PRESSURE].rms = 3.4;
-    assert_false(keeps(&inversion, 0.01, 0.01));
-    inversion.progress.best[TARGET_RDF].rms = INFINITY;
-    assert_true(keeps(&inversion, 0.5, 0.01));
-    assert_false(keeps(&inversion, 0.6, 0.01));
+    struct fit fit;
+    struct inversion *inversion = begin(&fit, true);
+    inversion->verdict.distance[TARGET_PRESSURE] = (struct target_distance){.rms = 1, .noise = 1};
+    assert_true(keeps(inversion, 0.01, 0.01));
+    inversion->verdict.distance[TARGET_PRESSURE].rms = 3.1;
+    assert_true(keeps(inversion, 0.01, 0.01)); // sqrt(1 + 9.6) of sqrt(2) + 2
+    inversion->verdict.distance[TARGET_PRESSURE].rms = 3.4;
+    assert_false(keeps(inversion, 0.01, 0.01));
+    inversion->course.progress.best.distance[TARGET_RDF].rms = INFINITY;
+    assert_true(keeps(inversion, 0.5, 0.01));
+    assert_false(keeps(inversion, 0.6, 0.01));
 }
 
 /// Steps −2.2 Φ towards 0 swing about it and grow; the share that leads there is 1/2.2. Steps of
@@ -84,51 +90,52 @@ static void test_inversion_shortens_steps_that_go_too_far(void **state) {
         bool well_known = true;
         const double slope = slopes[k];
         double best = 0.2, best_step = -slope * best, phi = best + best_step, step = -slope * phi;
+        struct inversion_state made = {
+            .grid = {.known = 1, .known_point = &point, .well_known = &well_known}};
         struct inversion inversion = {
-            .grid = {.known = 1, .known_point = &point, .well_known = &well_known},
-            .sections = 1,
-            .section[0] = {.misfit = 100, .probable = 2},
-            .phi = &phi,
-            .step = &step,
-            .best = &best,
-            .best_step = &best_step,
-            .progress = {.damping = 1}};
+            .state = &made,
+            .states = 1,
+            .verdict = {.sections = 1, .section[0] = {.misfit = 100, .probable = 2}},
+            .course = {.phi = &phi,
+                       .step = &step,
+                       .best = {.phi = &best, .step = &best_step},
+                       .progress.damping = 1}};
         mf_inversion_relax(&inversion);
-        assert_close(inversion.progress.damping, k == 0 ? 1 / slope : 1, 1e-12);
-        inversion.section[0].misfit = 1; // noise points anywhere
-        inversion.progress.damping = 0.5;
+        assert_close(inversion.course.progress.damping, k == 0 ? 1 / slope : 1, 1e-12);
+        inversion.verdict.section[0].misfit = 1; // noise points anywhere
+        inversion.course.progress.damping = 0.5;
         mf_inversion_relax(&inversion);
-        assert_close(inversion.progress.damping, 0.75, 1e-12);
+        assert_close(inversion.course.progress.damping, 0.75, 1e-12);
     }
 }
 
-/// An inversion of one bin near its target, with 50 samples.
+/// A state of one bin near its target, with 50 samples.
 struct one_bin {
     size_t bin, point;
     double target_error, covariance, excess, variance, pooled, pooled_variance, phi, pooled_phi;
     struct inverse_problem problem;
-    struct inversion inversion;
+    struct inversion_state state;
 };
 
 static void make_one_bin(struct one_bin *one, double response) {
     *one = (struct one_bin){.covariance = response, .problem.scene.temperature = 1};
-    one->inversion = (struct inversion){.problem = &one->problem,
-                                        .grid = {.known = 1,
-                                                 .pairs_known = 1,
-                                                 .points = 1,
-                                                 .known_bin = &one->bin,
-                                                 .known_point = &one->point},
-                                        .sections = 1,
-                                        .section[0] = {.misfit = 1, .probable = 2},
-                                        .target_error = &one->target_error,
-                                        .covariance = &one->covariance,
-                                        .excess = &one->excess,
-                                        .variance = &one->variance,
-                                        .pooled = &one->pooled,
-                                        .pooled_variance = &one->pooled_variance,
-                                        .phi = &one->phi,
-                                        .pooled_phi = &one->pooled_phi,
-                                        .replicas.counts.count = 50};
+    one->state = (struct inversion_state){
+        .problem = &one->problem,
+        .grid = {.known = 1,
+                 .pairs_known = 1,
+                 .points = 1,
+                 .known_bin = &one->bin,
+                 .known_point = &one->point},
+        .verdict = {.sections = 1, .section[0] = {.misfit = 1, .probable = 2}},
+        .target.error = &one->target_error,
+        .response.covariance = &one->covariance,
+        .excess = &one->excess,
+        .variance = &one->variance,
+        .pool = {.excess = &one->pooled,
+                 .variance = &one->pooled_variance,
+                 .phi = &one->pooled_phi},
+        .phi = &one->phi,
+        .replicas.counts.count = 50};
 }
 
 /// S = S* − 4 (Φ − 2)/k_B T without noise, of which two iterations tell a response twice as large:
@@ -143,7 +150,7 @@ static void test_inversion_pool_is_moved_by_the_newest_response(void **state) {
         one.covariance = response[n];
         one.excess = -4 * (one.phi - 2);
         one.variance = 1;
-        mf_inversion_pool(&one.inversion);
+        mf_inversion_pool(&one.state);
     }
     assert_close(one.excess, 2, 1e-12);
     assert_close(one.variance, 1.0 / 3, 1e-12);
@@ -160,28 +167,28 @@ static void test_inversion_pool_steps_with_a_fifth_of_the_noise(void **state) {
     enum { STEPS = 30000, FIRST = 100 };
     static const double response = 4;
     struct one_bin one;
-    struct inversion *inversion = &one.inversion;
+    struct inversion_state *made = &one.state;
     double sum = 0;
     make_one_bin(&one, response);
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
     for (int n = 0; n < STEPS; n++) {
         one.excess = -response * one.phi + gsl_ran_gaussian(rng, 1);
         one.variance = 1;
-        mf_inversion_pool(inversion);
+        mf_inversion_pool(made);
         if (n >= FIRST)
             sum += pow(response * one.phi, 2) / (STEPS - FIRST);
         one.phi += one.excess / response;
     }
-    const double worth = inversion->progress.pool / inversion->replicas.counts.count;
+    const double worth = made->pool.samples / made->replicas.counts.count;
     print_message("variance left %.4f, stated %.4f, worth %.3f samples\n", sum, one.variance,
                   worth);
     assert_close(sum, 0.2, 0.02);
     assert_close(one.variance, 0.2, 1e-6);
     assert_close(worth, 5, 1e-6);
     // What is far off begins anew.
-    inversion->section[0].misfit = 9.1;
-    mf_inversion_pool(inversion);
-    assert_true(inversion->progress.pool == 0);
+    made->verdict.section[0].misfit = 9.1;
+    mf_inversion_pool(made);
+    assert_true(made->pool.samples == 0);
     gsl_rng_free(rng);
 }
 
@@ -190,18 +197,18 @@ static void test_inversion_pool_of_coefficients_goes_by_their_gradient(void **st
     (void)state;
     struct one_bin one;
     make_one_bin(&one, 4);
-    one.inversion.section[0].misfit = 900;
-    mf_inversion_pool(&one.inversion);
-    assert_true(one.inversion.progress.pool == 0);
-    one.inversion.basis.count = 1;
+    one.state.verdict.section[0].misfit = 900;
+    mf_inversion_pool(&one.state);
+    assert_true(one.state.pool.samples == 0);
+    one.state.basis.count = 1;
     for (int n = 1; n <= 2; n++) {
-        one.inversion.progress.miss = 2.9;
-        mf_inversion_pool(&one.inversion);
-        assert_close(one.inversion.progress.pool, 50 * n, 1e-12);
+        one.state.gradient = 2.9;
+        mf_inversion_pool(&one.state);
+        assert_close(one.state.pool.samples, 50 * n, 1e-12);
     }
-    one.inversion.progress.miss = 3.1;
-    mf_inversion_pool(&one.inversion);
-    assert_true(one.inversion.progress.pool == 0);
+    one.state.gradient = 3.1;
+    mf_inversion_pool(&one.state);
+    assert_true(one.state.pool.samples == 0);
 }
 
 /// The result is what the last samples ask for, if the step is the most probable one; of a method
@@ -216,38 +223,38 @@ static void test_inversion_ends_with_the_step_that_is_left_or_the_mean(void **st
     bool well_known[] = {true, true};
     double phi[2], best[] = {2, 1}, best_step[] = {0.3, -0.1}, pooled_phi[] = {1.5, 1.25};
     double pooled[] = {0.1, 0.1}, variance[] = {1, 1}, mean[] = {10.1, 10.2}, target[] = {10, 10};
-    struct inversion inversion = {.method = &method,
-                                  .problem = &problem,
-                                  .grid = {.known = 2,
-                                           .points = 2,
-                                           .known_point = known_point,
-                                           .known_bin = known_bin,
-                                           .well_known = well_known},
-                                  .replicas.counts = {.count = 30, .mean = mean},
-                                  .target_counts = target,
-                                  .variance = variance,
-                                  .pooled = pooled,
-                                  .pooled_phi = pooled_phi,
-                                  .progress = {.damping = 1, .pool = 100},
-                                  .phi = phi,
-                                  .best = best,
-                                  .best_step = best_step};
+    struct inversion_state first = {.problem = &problem,
+                                    .grid = {.known = 2,
+                                             .points = 2,
+                                             .known_point = known_point,
+                                             .known_bin = known_bin,
+                                             .well_known = well_known},
+                                    .replicas.counts = {.count = 30, .mean = mean},
+                                    .target.counts = target,
+                                    .variance = variance,
+                                    .pool = {.excess = pooled, .phi = pooled_phi, .samples = 100}};
+    struct inversion inversion = {
+        .method = &method,
+        .problem = &problem,
+        .state = &first,
+        .states = 1,
+        .course = {.phi = phi, .best = {.phi = best, .step = best_step}, .progress.damping = 1}};
     assert_ok(mf_inversion_take_last_step(&inversion));
     assert_true(best[0] == 2 && best[1] == 1);
-    inversion.settling = true;
+    inversion.course.most_probable = true;
     assert_ok(mf_inversion_take_last_step(&inversion));
     assert_close(best[0], 2.3, 1e-15);
     assert_close(best[1], 0.9, 1e-15);
-    inversion.settling = false;
+    inversion.course.most_probable = false;
     method.own = &forgetting;
     pooled[0] = 0.3;
     assert_ok(mf_inversion_take_last_step(&inversion));
     assert_close(best[0], 2.3, 1e-15);
     pooled[0] = 0.1;
-    inversion.progress.pool = 60;
+    first.pool.samples = 60;
     assert_ok(mf_inversion_take_last_step(&inversion));
     assert_close(best[0], 2.3, 1e-15);
-    inversion.progress.pool = 90;
+    first.pool.samples = 90;
     assert_ok(mf_inversion_take_last_step(&inversion));
     assert_true(best[0] == 1.5 && best[1] == 1.25);
 }

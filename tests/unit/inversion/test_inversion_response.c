@@ -2,7 +2,7 @@
 //
 // How a distribution follows the values of U, against bonds that nothing else acts upon: their p is
 // r² exp(−U/k_B T), by quadrature.
-#include "inversion/inversion.h"
+#include "inversion/inversion_state.h"
 
 #include "curves/bonded_law.h"
 #include "shared/is_close.h"
@@ -10,6 +10,7 @@
 #include "shared/testing.h"
 
 #include <math.h>
+#include <string.h>
 
 enum { BINS = 24, POINTS = 3 * BINS };
 
@@ -21,7 +22,7 @@ struct twin {
     struct molecules molecules;
     struct inverse_problem problem;
     struct potential_group group;
-    struct inversion inversion;
+    struct inversion_state state;
     double target[BINS], error[BINS], covariance[BINS * BINS];
 };
 
@@ -71,16 +72,15 @@ static void make_twin(struct twin *twin, double *values, double *counts) {
         for (size_t b = 0; b < BINS; b++)
             twin->covariance[a * BINS + b] =
                 (a == b ? counts[a] : 0) - counts[a] * counts[b] / terms;
-    twin->inversion =
-        (struct inversion){.problem = &twin->problem,
-                           .covariance = twin->covariance,
-                           .grid = {.groups = 1, .known = BINS, .group = &twin->group}};
-    assert_ok(mf_inversion_response_init(&twin->inversion));
-    mf_inversion_response_find(&twin->inversion);
+    twin->state = (struct inversion_state){
+        .problem = &twin->problem, .grid = {.groups = 1, .known = BINS, .group = &twin->group}};
+    assert_ok(mf_inversion_response_init(&twin->state));
+    memcpy(twin->state.response.covariance, twin->covariance, sizeof twin->covariance);
+    mf_inversion_response_find(&twin->state);
 }
 
 static void clear_twin(struct twin *twin) {
-    mf_inversion_response_clear(&twin->inversion.response);
+    mf_inversion_response_clear(&twin->state.response);
     mf_molecules_clear(&twin->molecules);
 }
 
@@ -111,7 +111,7 @@ static void test_inversion_response_tells_how_lengths_follow_their_values(void *
         values[twin.group.own.below + b] += change[b];
     }
     count_bonds(&twin.group.own, values, after);
-    const double by_curve = miss(twin.inversion.response.values, before, after, change),
+    const double by_curve = miss(twin.state.response.values, before, after, change),
                  by_bins = miss(twin.covariance, before, after, change);
     print_message("missed with the curve %.4f, with constant bins %.4f\n", by_curve, by_bins);
     assert_true(by_curve < 0.05);

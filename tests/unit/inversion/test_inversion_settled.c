@@ -12,7 +12,7 @@
 enum { REPLICAS = 8, BINS = 12, NUMBERS = BINS + SAMPLER_SUMS };
 
 struct made {
-    struct inversion inversion;
+    struct inversion_state state;
     struct inversion_unsettled found;
     size_t known_bin[BINS];
     double block[REPLICAS][REPLICAS_BLOCKS * NUMBERS];
@@ -21,16 +21,17 @@ struct made {
 
 /// Blocks of unit variance; one number changes along them, by so much in all.
 static void make(struct made *made, gsl_rng *rng, size_t number, double change) {
-    *made = (struct made){
-        .inversion = {
-            .bins = BINS, .grid.known = BINS, .sections = 1, .section[0] = {.known_count = BINS}}};
-    struct replicas *replicas = &made->inversion.replicas;
+    *made =
+        (struct made){.state = {.bins = BINS,
+                                .grid.known = BINS,
+                                .verdict = {.sections = 1, .section[0] = {.known_count = BINS}}}};
+    struct replicas *replicas = &made->state.replicas;
     *replicas = (struct replicas){
         .bins = BINS,
         .numbers = NUMBERS,
         .count = REPLICAS,
         .counts = {.size = NUMBERS, .count = 10, .mean = made->mean, .comoment = made->comoment}};
-    made->inversion.grid.known_bin = made->known_bin;
+    made->state.grid.known_bin = made->known_bin;
     for (size_t n = 0; n < NUMBERS; n++)
         made->comoment[n * NUMBERS + n] = 10;
     for (size_t n = 0; n < BINS; n++)
@@ -52,7 +53,7 @@ static void test_settled_samples_are_hardly_ever_found_not_to_be(void **state) {
     int found = 0;
     for (int k = 0; k < TRIALS; k++) {
         make(&made, rng, 0, 0);
-        assert_ok(mf_inversion_settled_judge(&made.inversion, &made.found));
+        assert_ok(mf_inversion_settled_judge(&made.state, &made.found));
         found += made.found.found;
     }
     print_message("%d of %d\n", found, TRIALS);
@@ -74,14 +75,14 @@ static void test_what_has_not_settled_is_named(void **state) {
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
     for (size_t k = 0; k < sizeof kind / sizeof *kind; k++) {
         make(&made, rng, kind[k].number, 12);
-        assert_ok(mf_inversion_settled_judge(&made.inversion, &made.found));
+        assert_ok(mf_inversion_settled_judge(&made.state, &made.found));
         assert_true(made.found.found && made.found.drifts);
         assert_string_equal(made.found.quantity, kind[k].name);
     }
     make(&made, rng, 0, 0);
     for (size_t b = 0; b < REPLICAS_BLOCKS; b++)
         made.block[5][b * NUMBERS + BINS + SAMPLER_ENERGY] += 12;
-    assert_ok(mf_inversion_settled_judge(&made.inversion, &made.found));
+    assert_ok(mf_inversion_settled_judge(&made.state, &made.found));
     assert_true(made.found.found && !made.found.drifts);
     assert_string_equal(made.found.quantity, "the energy");
     gsl_rng_free(rng);
@@ -96,7 +97,7 @@ static void test_shift_is_the_way_along_the_samples_and_the_scatter_of_replicas(
     static struct made made;
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
     make(&made, rng, 3, 12);
-    const struct replicas *replicas = &made.inversion.replicas;
+    const struct replicas *replicas = &made.state.replicas;
     double noise = 0, apart = 0;
     assert_true(fabs(sqrt(mf_inversion_settled_shift(replicas, 3)) - 12) < 2);
     enum { TRIALS = 2000 };
@@ -122,12 +123,12 @@ test_samples_tell_the_way_to_a_target_that_is_far_from_what_has_not_settled(void
     struct inverse_problem problem = {.targets.target[TARGET_RDF].count = BINS};
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
     make(&made, rng, 3, 12);
-    struct inversion *inversion = &made.inversion;
-    struct inversion_section *section = &inversion->section[0];
-    inversion->problem = &problem;
-    inversion->unit = unit;
-    inversion->progress.miss = INFINITY;
-    inversion->box = (struct box){3, {1, 1, 1}};
+    struct inversion_state *samples = &made.state;
+    struct inversion_section *section = &samples->verdict.section[0];
+    samples->problem = &problem;
+    samples->target.unit = unit;
+    samples->gradient = INFINITY;
+    samples->box = (struct box){3, {1, 1, 1}};
     for (size_t n = 0; n < BINS; n++)
         unit[n] = 1;
     section->bins = BINS;
@@ -135,14 +136,14 @@ test_samples_tell_the_way_to_a_target_that_is_far_from_what_has_not_settled(void
     section->misfit = 2;
     section->probable = 1;
     section->rms = 8;
-    assert_false(mf_inversion_tells_way(inversion));
+    assert_false(mf_inversion_tells_way(samples));
     section->rms = 14;
-    assert_true(mf_inversion_tells_way(inversion));
-    inversion->basis.count = 1; // g may be off for want of coefficients
-    assert_false(mf_inversion_tells_way(inversion));
-    inversion->basis.count = 0;
+    assert_true(mf_inversion_tells_way(samples));
+    samples->basis.count = 1; // g may be off for want of coefficients
+    assert_false(mf_inversion_tells_way(samples));
+    samples->basis.count = 0;
     section->misfit = 1; // agreement of what may be elsewhere tells nothing
-    assert_false(mf_inversion_tells_way(inversion));
+    assert_false(mf_inversion_tells_way(samples));
     section->misfit = 2;
     // The pressure changes by 12/(3 V).
     for (size_t k = 0; k < REPLICAS; k++)
@@ -150,10 +151,10 @@ test_samples_tell_the_way_to_a_target_that_is_far_from_what_has_not_settled(void
             made.block[k][b * NUMBERS + BINS + SAMPLER_VIRIAL] +=
                 12.0 * (double)b / REPLICAS_BLOCKS;
     problem.targets.target[TARGET_PRESSURE] = (struct target){.count = 1, .value = &wanted};
-    inversion->pressure.value = -8;
-    assert_false(mf_inversion_tells_way(inversion));
-    inversion->pressure.value = -16;
-    assert_true(mf_inversion_tells_way(inversion));
+    samples->pressure.value = -8;
+    assert_false(mf_inversion_tells_way(samples));
+    samples->pressure.value = -16;
+    assert_true(mf_inversion_tells_way(samples));
     gsl_rng_free(rng);
 }
 
@@ -187,18 +188,19 @@ static double observe(double repulsion, int64_t equilibration, double *sweeps) {
         .core_stiffness = 2000,
         .seed = 5,
         .threads = 1};
-    const struct inversion_settings settings = {.common = {.replicas = SOFT_REPLICAS,
-                                                           .equilibration = equilibration,
-                                                           .samples = FIRST,
-                                                           .every = 1,
-                                                           .iterations = 2,
-                                                           .precision = 1,
-                                                           .start = INVERSION_FROM_MEAN_FORCE}};
+    const struct inversion_parameters settings = {.replicas = SOFT_REPLICAS,
+                                                  .equilibration = equilibration,
+                                                  .samples = FIRST,
+                                                  .every = 1,
+                                                  .iterations = 2,
+                                                  .precision = 1,
+                                                  .start = INVERSION_FROM_MEAN_FORCE};
     assert_ok(mf_inversion_create(inversion, &mf_imc, &problem, &settings));
     assert_ok(mf_inversion_observe(inversion, &(struct inverse_listener){ignore, NULL}));
-    assert_false(inversion->unsettled);
-    *sweeps = (double)inversion->progress.sweeps / SOFT_REPLICAS;
-    const double energy = mf_replicas_mean(&inversion->replicas, SAMPLER_ENERGY, 1).mean / 150;
+    assert_false(inversion->verdict.unsettled.found);
+    *sweeps = (double)inversion->state->work.sweeps / SOFT_REPLICAS;
+    const double energy =
+        mf_replicas_mean(&inversion->state->replicas, SAMPLER_ENERGY, 1).mean / 150;
     mf_inversion_destroy(inversion);
     free(inversion);
     fluid_clear(&fluid);

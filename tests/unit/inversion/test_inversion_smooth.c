@@ -19,6 +19,7 @@ struct scene {
     struct inversion_rule rule;
     struct inverse_method method;
     struct potential_group group;
+    struct inversion_state state;
     struct inversion inversion;
     struct imc_shape shape;
     size_t place[BINS];
@@ -58,22 +59,25 @@ static void make(struct scene *scene, double (*truth)(double), double peak) {
     }
     scene->inversion = (struct inversion){.method = &scene->method,
                                           .problem = &scene->problem,
-                                          .grid = {.blocks = 1,
-                                                   .groups = 1,
-                                                   .group = &scene->group,
-                                                   .known = BINS,
-                                                   .points = BINS,
-                                                   .known_point = scene->place,
-                                                   .known_bin = scene->place,
-                                                   .seen = scene->seen},
-                                          .shape = &scene->shape,
-                                          .ideal = scene->ideal,
-                                          .least = scene->least,
-                                          .target_counts = scene->target,
-                                          .target_error = scene->error,
-                                          .variance = scene->variance,
-                                          .phi = scene->phi};
-    scene->inversion.replicas.counts.mean = scene->mean;
+                                          .state = &scene->state,
+                                          .states = 1,
+                                          .course.phi = scene->phi};
+    scene->state = (struct inversion_state){.problem = &scene->problem,
+                                            .grid = {.blocks = 1,
+                                                     .groups = 1,
+                                                     .group = &scene->group,
+                                                     .known = BINS,
+                                                     .points = BINS,
+                                                     .known_point = scene->place,
+                                                     .known_bin = scene->place,
+                                                     .seen = scene->seen},
+                                            .target = {.shape = &scene->shape,
+                                                       .ideal = scene->ideal,
+                                                       .least = scene->least,
+                                                       .counts = scene->target,
+                                                       .error = scene->error},
+                                            .variance = scene->variance};
+    scene->state.replicas.counts.mean = scene->mean;
 }
 
 /// D. E. Knuth, The Art of Computer Programming, vol. 2, 3.4.1 F; above 50 as normal.
@@ -191,29 +195,28 @@ static void test_error_of_few_counts_is_that_of_those_expected(void **state) {
     double target[] = {1, 9, 90}, error[] = {1, 3, 9}, mean[] = {3, 3, 100}, unit[] = {1, 1, 1};
     double comoment[THREE * THREE] = {0}, excess[THREE], variance[THREE];
     struct inverse_problem problem = {0};
-    struct inversion inversion = {
+    struct inversion_parameters parameters = {0};
+    struct inversion_state made = {
         .problem = &problem,
+        .parameters = &parameters,
         .grid = {.known = THREE, .known_bin = bin, .seen = seen, .well_known = well_known},
-        .sections = 1,
-        .section[0] = {.kind = mf_bonded_distribution_kind(TOPOLOGY_BOND),
-                       .bins = THREE,
-                       .known_count = THREE,
-                       .peak = 100},
-        .ideal = unit,
-        .unit = unit,
-        .target_counts = target,
-        .target_error = error,
+        .verdict = {.sections = 1,
+                    .section[0] = {.kind = mf_bonded_distribution_kind(TOPOLOGY_BOND),
+                                   .bins = THREE,
+                                   .known_count = THREE,
+                                   .peak = 100}},
+        .target = {.ideal = unit, .unit = unit, .counts = target, .error = error},
         .excess = excess,
         .variance = variance};
     (void)state;
-    inversion.replicas.counts =
+    made.replicas.counts =
         (struct comoments){.size = THREE, .count = 1e6, .mean = mean, .comoment = comoment};
-    mf_inversion_assess(&inversion);
+    mf_inversion_assess(&made);
     assert_close(variance[0], 3, 1e-9);
     assert_close(variance[1], 9, 1e-9);
     assert_close(variance[2], 90, 1e-9);
     // (s² + s⁴/(2 e²))/n of the samples' own s² = 1e-12.
-    assert_close(inversion.distance[mf_bonded_distribution_kind(TOPOLOGY_BOND)].variance,
+    assert_close(made.verdict.distance[mf_bonded_distribution_kind(TOPOLOGY_BOND)].variance,
                  1e-12 / THREE, 1e-3 * 1e-12);
 }
 

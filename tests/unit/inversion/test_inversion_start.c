@@ -17,7 +17,7 @@ struct made {
     struct fluid fluid;
     double g[BINS], error[BINS], exact[BINS];
     struct inverse_problem problem;
-    struct inversion_settings settings;
+    struct inversion_parameters settings;
     struct inversion inversion;
 };
 
@@ -48,13 +48,13 @@ static void make(struct made *made, int start) {
                                  .core_stiffness = 2000,
                                  .seed = 5,
                                  .threads = 1};
-    made->settings = (struct inversion_settings){.common = {.replicas = 2,
-                                                            .equilibration = 10,
-                                                            .samples = 8,
-                                                            .every = 1,
-                                                            .iterations = 2,
-                                                            .precision = 1,
-                                                            .start = start}};
+    made->settings = (struct inversion_parameters){.replicas = 2,
+                                                   .equilibration = 10,
+                                                   .samples = 8,
+                                                   .every = 1,
+                                                   .iterations = 2,
+                                                   .precision = 1,
+                                                   .start = start};
 }
 
 static void clear(struct made *made) {
@@ -72,16 +72,17 @@ static void test_inversion_start_is_smooth_within_the_errors_of_the_target(void 
     const double temperature = made.problem.scene.temperature;
     // Beyond the minimum, where the truth itself is nearly straight within three bins.
     for (size_t k = 75; k + 1 < BINS; k++) {
-        const double *phi = inversion->phi + k;
+        const double *phi = inversion->course.phi + k;
         const double *g = made.g + k;
         rough += pow(phi[-1] - 2 * phi[0] + phi[1], 2);
         raw += pow(temperature * log(g[-1] * g[1] / (g[0] * g[0])), 2);
     }
-    for (size_t a = 0; a < inversion->grid.known; a++) {
-        const size_t bin = inversion->grid.known_bin[a];
-        off += pow((inversion->phi[bin] + temperature * log(made.g[bin])) / temperature / noise, 2);
+    for (size_t a = 0; a < inversion->state->grid.known; a++) {
+        const size_t bin = inversion->state->grid.known_bin[a];
+        off += pow(
+            (inversion->course.phi[bin] + temperature * log(made.g[bin])) / temperature / noise, 2);
     }
-    off = sqrt(off / (double)inversion->grid.known);
+    off = sqrt(off / (double)inversion->state->grid.known);
     print_message("off by %.2f standard errors, rough %.3g of the raw\n", off, sqrt(rough / raw));
     assert_true(off > 0.5 && off < 1.1);
     // Measured: 0.236, and the square of it here.
@@ -96,8 +97,8 @@ static void test_inversion_start_is_the_target_as_it_stands_without_errors(void 
     made.error[BINS - 1] = 0;
     assert_ok(mf_inversion_create(&made.inversion, &mf_imc, &made.problem, &made.settings));
     for (size_t k = 60; k < BINS; k++)
-        assert_float_equal(made.inversion.phi[k], -made.problem.scene.temperature * log(made.g[k]),
-                           1e-12);
+        assert_float_equal(made.inversion.course.phi[k],
+                           -made.problem.scene.temperature * log(made.g[k]), 1e-12);
     clear(&made);
 }
 
@@ -106,24 +107,24 @@ static void test_inversion_start_is_poor_when_g_is_far_off_under_tension(void **
     struct made made;
     make(&made, INVERSION_FROM_HNC);
     assert_ok(mf_inversion_create(&made.inversion, &mf_imc, &made.problem, &made.settings));
-    made.inversion.distance[TARGET_RDF].rms = 0.5;
-    made.inversion.pressure.value = 0.1;
+    made.inversion.verdict.distance[TARGET_RDF].rms = 0.5;
+    made.inversion.state->pressure.value = 0.1;
     assert_false(mf_inversion_start_is_poor(&made.inversion, true));
-    made.inversion.pressure.value = -4;
+    made.inversion.state->pressure.value = -4;
     assert_true(mf_inversion_start_is_poor(&made.inversion, true));
-    made.inversion.distance[TARGET_RDF].rms = 0.01;
+    made.inversion.verdict.distance[TARGET_RDF].rms = 0.01;
     assert_false(mf_inversion_start_is_poor(&made.inversion, true));
-    made.inversion.distance[TARGET_RDF].rms = 0.5;
-    made.inversion.progress.iteration = 1;
+    made.inversion.verdict.distance[TARGET_RDF].rms = 0.5;
+    made.inversion.course.progress.iteration = 1;
     assert_false(mf_inversion_start_is_poor(&made.inversion, true));
     assert_true(mf_inversion_start_is_poor(&made.inversion, false));
-    made.inversion.progress.again = true; // it is the other one
+    made.inversion.course.progress.second_start = true; // it is the other one
     assert_false(mf_inversion_start_is_poor(&made.inversion, false));
-    made.inversion.progress.again = false;
-    made.inversion.progress.iteration = 2;
+    made.inversion.course.progress.second_start = false;
+    made.inversion.course.progress.iteration = 2;
     assert_false(mf_inversion_start_is_poor(&made.inversion, false));
-    made.inversion.progress.iteration = 0;
-    made.inversion.settings.common.start = INVERSION_FROM_MEAN_FORCE;
+    made.inversion.course.progress.iteration = 0;
+    made.inversion.parameters.start = INVERSION_FROM_MEAN_FORCE;
     assert_false(mf_inversion_start_is_poor(&made.inversion, true));
     clear(&made);
 }
@@ -146,7 +147,7 @@ static void test_inversion_create_makes_one_sampler_for_a_trial(void **state) {
         make(&made, INVERSION_FROM_MEAN_FORCE);
         made.problem.trial = trial;
         assert_ok(mf_inversion_create(&made.inversion, &mf_imc, &made.problem, &made.settings));
-        assert_int_equal(made.inversion.replicas.count, trial ? 1 : made.settings.common.replicas);
+        assert_int_equal(made.inversion.state->replicas.count, trial ? 1 : made.settings.replicas);
         clear(&made);
     }
 }
@@ -163,18 +164,19 @@ static void test_inversion_band_widens_when_more_than_noise_is_left(void **state
     const struct inverse_listener listener = {ignore, NULL};
     double error[2];
     make(&made, INVERSION_FROM_MEAN_FORCE);
-    made.settings.common.samples = 200; // enough for the data to say more than the prior
+    made.settings.samples = 200; // enough for the data to say more than the prior
     assert_ok(mf_inversion_create(&made.inversion, &mf_imc, &made.problem, &made.settings));
     struct inversion *inversion = &made.inversion;
     assert_ok(mf_inversion_iterate(inversion, &step, &listener));
     for (int left = 0; left < 2; left++) {
         // Of alternating signs, which no ramp removes.
         const double noises = left ? 3 : 0.5;
-        for (size_t a = 0; a < inversion->grid.known; a++)
-            inversion->excess[a] = (a % 2 ? noises : -noises) * sqrt(inversion->variance[a]);
-        inversion->misfit = noises * noises;
+        for (size_t a = 0; a < inversion->state->grid.known; a++)
+            inversion->state->excess[a] =
+                (a % 2 ? noises : -noises) * sqrt(inversion->state->variance[a]);
+        inversion->verdict.misfit = noises * noises;
         assert_ok(mf_inversion_band_find(inversion));
-        error[left] = inversion->band.error[inversion->grid.known_point[30]];
+        error[left] = inversion->course.band.error[inversion->state->grid.known_point[30]];
     }
     print_message("errors of %.4f and %.4f\n", error[0], error[1]);
     assert_true(error[1] > 1.2 * error[0] && error[1] < 3.01 * error[0]);
@@ -189,21 +191,21 @@ static void test_inversion_band_counts_the_ramp_that_is_asked_for(void **state) 
     const struct inverse_listener listener = {ignore, NULL};
     const double ramp = 1.5;
     make(&made, INVERSION_FROM_MEAN_FORCE);
-    made.settings.common.samples = 200;
+    made.settings.samples = 200;
     assert_ok(mf_inversion_create(&made.inversion, &mf_imc, &made.problem, &made.settings));
     struct inversion *inversion = &made.inversion;
-    const struct potential_grid *grid = &inversion->grid;
+    const struct potential_grid *grid = &inversion->state->grid;
     assert_ok(mf_inversion_iterate(inversion, &step, &listener));
     for (size_t a = 0; a < grid->known; a++) {
-        inversion->excess[a] = 0;
+        inversion->state->excess[a] = 0;
         for (size_t b = 0; b < grid->known; b++)
-            inversion->excess[a] += inversion->covariance[a * grid->known + b] * ramp *
-                                    mf_potential_grid_ramp(grid, grid->known_point[b]) /
-                                    made.problem.scene.temperature;
+            inversion->state->excess[a] +=
+                inversion->state->response.covariance[a * grid->known + b] * ramp *
+                mf_potential_grid_ramp(grid, grid->known_point[b]) / made.problem.scene.temperature;
     }
-    inversion->misfit = 1;
+    inversion->verdict.misfit = 1;
     assert_ok(mf_inversion_band_find(inversion));
-    const struct inverse_ramp found = inversion->band.ramp;
+    const struct inverse_ramp found = inversion->course.band.ramp;
     print_message("ramp %.3f, asked for %.3f, error %.3f\n", ramp, found.way, found.error);
     assert_true(fabs(found.way - ramp) < 0.2 * ramp);
     assert_true(found.error > fabs(found.way));
@@ -217,49 +219,43 @@ static void test_inversion_band_looks_at_the_pressures_of_all_states(void **stat
     struct made made;
     struct inverse_step step;
     const struct inverse_listener listener = {ignore, NULL};
-    struct inversion states[2] = {{.own_noise = 0}};
-    struct inversion_joint joint = {.state = states, .states = 2};
+    static struct inversion_state states[2];
     struct inversion_band_pressure farthest[2];
     struct inverse_ramp ramp[2];
     make(&made, INVERSION_FROM_MEAN_FORCE);
-    made.settings.common.samples = 200;
+    made.settings.samples = 200;
     assert_ok(mf_inversion_create(&made.inversion, &mf_imc, &made.problem, &made.settings));
     struct inversion *inversion = &made.inversion;
-    const size_t known = inversion->grid.known;
+    struct inversion_state *first = inversion->state;
+    const size_t known = first->grid.known;
     double *other = calloc(known, sizeof *other);
     assert_non_null(other);
     assert_ok(mf_inversion_iterate(inversion, &step, &listener));
     for (size_t a = 0; a < known; a++) {
-        inversion->pressure.slope[a] =
-            mf_potential_grid_ramp(&inversion->grid, inversion->grid.known_point[a]);
+        first->pressure.slope[a] = mf_potential_grid_ramp(&first->grid, first->grid.known_point[a]);
         other[a] = a == known / 2;
     }
+    double *slope[2] = {first->pressure.slope, other};
+    states[0] = states[1] = *first;
+    inversion->state = states;
+    inversion->states = 2;
     for (int n = 0; n < 2; n++) {
-        states[n].target_error = inversion->target_error;
-        states[n].target_counts = inversion->target_counts;
-        states[n].variance = inversion->variance;
-        states[n].replicas.counts.mean = inversion->replicas.counts.mean;
-    }
-    joint.system = mf_inversion_system(inversion);
-    double *slope[2] = {inversion->pressure.slope, other};
-    for (int first = 0; first < 2; first++) {
-        inversion->pressure.slope = slope[first];
-        states[1].pressure.slope = slope[1 - first];
-        inversion->joint = &joint;
+        states[0].pressure.slope = slope[n];
+        states[1].pressure.slope = slope[1 - n];
         assert_ok(mf_inversion_band_find(inversion));
-        inversion->joint = NULL;
-        ramp[first] = inversion->band.ramp;
-        farthest[first] = inversion->band.farthest;
+        ramp[n] = inversion->course.band.ramp;
+        farthest[n] = inversion->course.band.farthest;
     }
-    inversion->pressure.slope = slope[0];
+    inversion->state = first;
+    inversion->states = 1;
     free(other);
     const double ratio[2] = {fabs(ramp[0].pressure_way) / ramp[0].pressure_open,
                              fabs(ramp[1].pressure_way) / ramp[1].pressure_open};
     const int farther = ratio[1] > ratio[0];
     print_message("ways of %.3f and %.3f errors\n", ratio[0], ratio[1]);
-    for (int first = 0; first < 2; first++) {
-        assert_close(farthest[first].way, ramp[farther].pressure_way, 1e-9);
-        assert_close(farthest[first].open, ramp[farther].pressure_open, 1e-9);
+    for (int n = 0; n < 2; n++) {
+        assert_close(farthest[n].way, ramp[farther].pressure_way, 1e-9);
+        assert_close(farthest[n].open, ramp[farther].pressure_open, 1e-9);
     }
     clear(&made);
 }

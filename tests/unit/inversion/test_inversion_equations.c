@@ -2,7 +2,8 @@
 //
 // The equations that several states leave: their least squares are those of all rows, but for bins
 // that a state has not seen; and Birge's factor does not widen what pressures say.
-#include "inversion/joint.h"
+#include "inversion/inversion_equations.h"
+#include "inversion/inversion_state.h"
 #include "shared/is_close.h"
 #include "shared/testing.h"
 
@@ -15,18 +16,17 @@ static const double birge = 4, pressure_error = 0.1, temperature[STATES] = {1, 1
 /// Two states with pressures; the second has not seen one of the bins.
 struct made {
     struct inverse_problem problem[STATES];
-    struct inversion state[STATES];
-    struct joint joint;
+    struct inversion_state state[STATES];
     double g[BINS], pressure[STATES], covariance[STATES][KNOWN * KNOWN], excess[STATES][KNOWN],
         variance[STATES][KNOWN], slope[STATES][KNOWN];
 };
 
 static void make(struct made *made) {
-    *made = (struct made){.joint = {.states = STATES, .state = made->state}};
+    *made = (struct made){.g = {0}};
     for (size_t k = 0; k < BINS; k++)
         made->g[k] = k >= CORE;
     for (size_t s = 0; s < STATES; s++) {
-        struct inversion *state = &made->state[s];
+        struct inversion_state *state = &made->state[s];
         struct targets *targets = &made->problem[s].targets;
         made->problem[s].scene.temperature = temperature[s];
         made->problem[s].core_threshold = 1e-3;
@@ -45,14 +45,13 @@ static void make(struct made *made) {
                     (a == b ? 3 : 0) + 0.5 * cos((double)(a + b + s));
         }
         state->problem = &made->problem[s];
-        state->covariance = made->covariance[s];
+        state->response.covariance = made->covariance[s];
         state->excess = made->excess[s];
         state->variance = made->variance[s];
         state->pressure.slope = made->slope[s];
         state->pressure.value = 1;
-        state->distance[TARGET_PRESSURE].noise = pressure_error;
+        state->verdict.distance[TARGET_PRESSURE].noise = pressure_error;
     }
-    made->state[0].misfit = birge;
     made->state[1].grid.seen[UNSEEN] = false;
 }
 
@@ -83,18 +82,18 @@ static double right_side(const struct made *made, size_t a, double factor) {
     return sum;
 }
 
-static void test_rows_of_states_have_the_same_least_squares(void **state) {
+static void test_equations_of_states_have_the_same_least_squares(void **state) {
     (void)state;
     static struct made made;
-    struct inversion_rows equations = {0};
+    struct inversion_equations equations = {0};
     make(&made);
-    assert_ok(mf_inversion_rows_init(&equations, &made.state[0]));
-    assert_ok(mf_inversion_rows_reduce(&equations, made.state, STATES, false));
+    assert_ok(mf_inversion_equations_init(&equations, made.state, STATES));
+    assert_ok(mf_inversion_equations_fill(&equations, birge));
     const double *c = equations.system.covariance, unit = equations.system.temperature;
     for (size_t a = 0; a < KNOWN; a++) {
         double asked = 0;
         for (size_t n = 0; n < KNOWN; n++)
-            asked += c[n * KNOWN + a] / unit * equations.excess[n] / birge;
+            asked += c[n * KNOWN + a] / unit * equations.system.excess[n] / birge;
         assert_close(asked, right_side(&made, a, birge), 1e-9);
         for (size_t b = 0; b < KNOWN; b++) {
             double found = 0;
@@ -104,14 +103,14 @@ static void test_rows_of_states_have_the_same_least_squares(void **state) {
             assert_close(found, normal(&made, a, b, birge), 1e-9);
         }
     }
-    mf_inversion_rows_clear(&equations);
+    mf_inversion_equations_clear(&equations);
     for (size_t s = 0; s < STATES; s++)
         mf_potential_grid_clear(&made.state[s].grid);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_rows_of_states_have_the_same_least_squares),
+        cmocka_unit_test(test_equations_of_states_have_the_same_least_squares),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

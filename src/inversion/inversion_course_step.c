@@ -18,57 +18,62 @@ static const double largest_unknown_change = 3;
 static const double most_left = 0.5;
 
 void mf_inversion_relax(struct inversion *inversion) {
-    const struct potential_grid *grid = &inversion->grid;
-    double *damping = &inversion->progress.damping;
+    const struct potential_grid *grid = inversion_grid(inversion);
+    struct inversion_course *course = &inversion->course;
+    double *damping = &course->progress.damping;
     double way = 0, squares = 0, left = 0;
     for (size_t a = 0; a < grid->known; a++) {
         const size_t point = grid->known_point[a];
-        const double last = inversion->best_step[point];
+        const double last = course->best.step[point];
         if (!grid->well_known[a])
             continue;
-        way += last * (inversion->phi[point] - inversion->best[point]);
-        left += last * inversion->step[point];
+        way += last * (course->phi[point] - course->best.phi[point]);
+        left += last * course->step[point];
         squares += last * last;
     }
     *damping = fmin(1, 1.5 * *damping);
     if (left < -most_left * squares && !mf_inversion_is_near(inversion) &&
-        inversion->has_other == inversion->progress.best_other)
+        course->has_other == course->progress.has_other)
         *damping = fmin(*damping, way / (squares - left));
 }
 
 void mf_inversion_take_step(struct inversion *inversion) {
-    const struct potential_grid *grid = &inversion->grid;
-    const bool whole = inversion->basis.count > 0;
+    const struct inversion_state *first = inversion->state;
+    const struct potential_grid *grid = &first->grid;
+    struct inversion_course *course = &inversion->course;
+    const bool whole = first->basis.count > 0;
     double largest = 0;
     for (size_t a = 0; a < grid->known; a++) {
-        const double size = fabs(inversion->best_step[grid->known_point[a]]);
+        const double size = fabs(course->best.step[grid->known_point[a]]);
         if (grid->well_known[a] || whole)
             largest =
                 fmax(largest,
                      grid->well_known[a] ? size : size * largest_change / largest_unknown_change);
     }
-    const double share = fmin(inversion->progress.damping, largest_change / fmax(largest, 1e-300));
+    const double share = fmin(course->progress.damping, largest_change / fmax(largest, 1e-300));
     for (size_t a = 0; a < grid->known; a++) {
         const size_t point = grid->known_point[a];
-        double change = share * inversion->best_step[point];
+        double change = share * course->best.step[point];
         if (!grid->well_known[a] && !whole)
             change = fmax(-largest_unknown_change, fmin(largest_unknown_change, change));
-        inversion->phi[point] = inversion->best[point] + change;
+        course->phi[point] = course->best.phi[point] + change;
     }
-    mf_potential_grid_complete(grid, inversion->phi);
+    mf_potential_grid_complete(grid, course->phi);
 }
 
 enum status mf_inversion_take_last_step(struct inversion *inversion) {
-    const size_t bytes = inversion->grid.points * sizeof(double);
+    const struct potential_grid *grid = inversion_grid(inversion);
+    struct inversion_course *course = &inversion->course;
+    const size_t bytes = grid->points * sizeof(double);
     if (mf_inversion_ends_with_mean(inversion)) {
-        memcpy(inversion->phi, inversion->pooled_phi, bytes);
-        mf_potential_grid_complete(&inversion->grid, inversion->phi);
-    } else if (inversion->settling) {
+        memcpy(course->phi, inversion->state->pool.phi, bytes);
+        mf_potential_grid_complete(grid, course->phi);
+    } else if (course->most_probable) {
         mf_inversion_take_step(inversion);
     } else {
-        memcpy(inversion->phi, inversion->best, bytes);
+        memcpy(course->phi, course->best.phi, bytes);
     }
     TRY(mf_inversion_smooth(inversion));
-    memcpy(inversion->best, inversion->phi, bytes);
+    memcpy(course->best.phi, course->phi, bytes);
     return STATUS_OK;
 }

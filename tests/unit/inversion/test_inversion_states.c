@@ -3,7 +3,8 @@
 // The mean of the coarse steps of several states: each one's constant of a group is of no
 // consequence, and a bin that one state has not seen is the other's alone.
 #include "inversion/inversion_coarse.h"
-#include "inversion/joint.h"
+#include "inversion/inversion_state.h"
+#include "inversion/inversion_states.h"
 #include "shared/is_close.h"
 #include "shared/molecules.h"
 #include "shared/testing.h"
@@ -22,10 +23,9 @@ struct made {
     struct composition composition;
     struct inverse_problem problem[STATES];
     const struct inverse_problem *problems[STATES];
-    struct inversion state[STATES];
-    struct joint joint;
+    struct inversion_state state[STATES];
     double target[STATES][BINS], none[BINS], one[BINS], least[BINS], counts[STATES][BINS],
-        variance[STATES][BINS], covariance[STATES][BINS * BINS], step[STATES][3 * BINS];
+        variance[STATES][BINS], covariance[STATES][BINS * BINS];
 };
 
 /// What U lacks, as Boltzmann inversion sees it.
@@ -39,7 +39,7 @@ static bool is_seen(size_t s, size_t bin) {
 
 static void make_state(struct made *made, size_t s, double temperature) {
     static const struct bonded_bins bins = {0.2, 0.05, BINS};
-    struct inversion *state = &made->state[s];
+    struct inversion_state *state = &made->state[s];
     struct inverse_problem *problem = &made->problem[s];
     const int kind = mf_bonded_distribution_kind(TOPOLOGY_BOND);
     *problem = (struct inverse_problem){
@@ -62,7 +62,7 @@ static void make_state(struct made *made, size_t s, double temperature) {
 
 /// Samples that are off by exp(wanted/k_B T) times a factor, as normalisation makes it.
 static void sample_state(struct made *made, size_t s, double factor) {
-    struct inversion *state = &made->state[s];
+    struct inversion_state *state = &made->state[s];
     const double temperature = made->problem[s].scene.temperature;
     assert_ok(mf_potential_grid_init(&state->grid, &made->problem[s]));
     assert_int_equal(state->grid.known, BINS);
@@ -73,23 +73,23 @@ static void sample_state(struct made *made, size_t s, double factor) {
         for (size_t n = 0; n < BINS; n++)
             made->covariance[s][k * BINS + n] = n == k ? p : 0;
     }
-    state->ideal = state->unit = made->one;
-    state->least = made->least;
-    state->target_counts = made->target[s];
-    state->target_error = made->none;
+    state->target = (struct inversion_target){.ideal = made->one,
+                                              .unit = made->one,
+                                              .least = made->least,
+                                              .counts = made->target[s],
+                                              .error = made->none};
     state->variance = made->variance[s];
-    state->covariance = made->covariance[s];
+    state->response.covariance = made->covariance[s];
     state->replicas.counts = (struct comoments){.count = sampled, .mean = made->counts[s]};
     state->inefficiency = 1;
-    state->step = made->step[s];
-    state->sections = 1;
-    state->section[0] =
+    state->verdict.sections = 1;
+    state->verdict.section[0] =
         (struct inversion_section){.known_count = BINS, .rms = 1, .noise = 0, .bins = BINS};
     assert_ok(mf_inversion_coarse_init(state));
 }
 
 static void make(struct made *made, const double factor[STATES]) {
-    *made = (struct made){.joint = {.states = STATES, .state = made->state}};
+    *made = (struct made){.none = {0}};
     for (size_t k = 0; k < BINS; k++)
         made->least[k] = 0.01;
     made->composition =
@@ -119,7 +119,7 @@ static void test_constants_of_states_do_not_bend_the_mean(void **state) {
     (void)state;
     for (size_t n = 0; n < 2; n++) {
         make(&made, factors[n]);
-        assert_ok(mf_joint_coarse_step(&made.joint, step));
+        assert_ok(mf_inversion_states_coarse_step(made.state, STATES, step));
         const size_t *point = made.state[0].grid.known_point;
         const double constant = step[point[FIRST]] - wanted(FIRST);
         for (size_t k = 0; k < BINS; k++)
@@ -135,11 +135,11 @@ static void test_what_a_state_has_not_seen_is_no_news_of_it(void **state) {
     double step[3 * BINS] = {0}, again[3 * BINS] = {0};
     (void)state;
     make(&made, factor);
-    assert_ok(mf_joint_coarse_step(&made.joint, step));
+    assert_ok(mf_inversion_states_coarse_step(made.state, STATES, step));
     for (size_t k = 0; k < BINS; k++)
         assert_int_equal(made.state[0].grid.seen[k], is_seen(0, k));
     made.counts[0][0] = 4000;
-    assert_ok(mf_joint_coarse_step(&made.joint, again));
+    assert_ok(mf_inversion_states_coarse_step(made.state, STATES, again));
     for (size_t k = 0; k < made.state[0].grid.points; k++)
         assert_close(step[k], again[k], 1e-12);
     clear(&made);

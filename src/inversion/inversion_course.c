@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What of the potentials of an inversion is kept, and where it goes on from there.
+#include "inversion/inversion.h"
+
+#include <math.h>
+#include <string.h>
+
+const double mf_inversion_least_damping = 1.0 / 64;
+
+enum status mf_inversion_course_init(struct inversion_course *course, size_t known, size_t points,
+                                     size_t bins) {
+    enum status status = STATUS_OK;
+    NEW_ARRAY(course->phi, points);
+    NEW_ARRAY(course->step, points);
+    NEW_ARRAY(course->other_step, points);
+    NEW_ARRAY(course->best.phi, points);
+    NEW_ARRAY(course->best.step, points);
+    NEW_ARRAY(course->best.other_step, points);
+    NEW_ARRAY(course->best.counts, bins);
+    CHECK(mf_inversion_band_init(&course->band, known, points));
+    course->progress = (struct inversion_progress){.from_disorder = true,
+                                                   .stretch = 1,
+                                                   .damping = 1,
+                                                   .best.distance[TARGET_RDF].rms = INFINITY,
+                                                   .least_decrement = INFINITY};
+done:
+    return status;
+}
+
+void mf_inversion_course_clear(struct inversion_course *course) {
+    double *arrays[] = {course->phi,        course->step,      course->other_step,
+                        course->best.phi,   course->best.step, course->best.other_step,
+                        course->best.counts};
+    for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
+        mf_memory_free(arrays[k]);
+    mf_inversion_band_clear(&course->band);
+}
+
+size_t mf_inversion_course_spans(struct inversion_course *course, size_t points, size_t bins,
+                                 struct memory_span *span) {
+    double *curves[] = {course->phi, course->best.phi, course->best.step, course->best.other_step};
+    size_t n = 0;
+    span[n++] = (struct memory_span){&course->progress, sizeof course->progress};
+    for (size_t k = 0; k < sizeof curves / sizeof *curves; k++)
+        span[n++] = (struct memory_span){curves[k], points * sizeof(double)};
+    span[n++] = (struct memory_span){course->best.counts, bins * sizeof(double)};
+    return n + mf_inversion_band_spans(&course->band, points, span + n);
+}
+
+/// Keep the present potential as the best, with the steps that lead on from it.
+static enum status keep(struct inversion *inversion) {
+    struct inversion_course *course = &inversion->course;
+    const struct inversion_state *first = inversion->state;
+    const struct inversion_verdict *verdict = &inversion->verdict;
+    struct inversion_best_samples *best = &course->progress.best;
+    const size_t bytes = first->grid.points * sizeof(double);
+    memcpy(course->best.phi, course->phi, bytes);
+    memcpy(course->best.step, course->step, bytes);
+    memcpy(course->best.other_step, course->other_step, bytes);
+    memcpy(course->best.counts, first->replicas.counts.mean, first->bins * sizeof(double));
+    course->progress.has_other = course->has_other;
+    memcpy(best->distance, verdict->distance, sizeof best->distance);
+    best->own_noise = verdict->own_noise;
+    best->precise = mf_inversion_verdict_is_precise(verdict);
+    best->worst = *mf_inversion_verdict_worst(verdict);
+    mf_inversion_find_factor(first, &best->factor);
+    return mf_inversion_band_find(inversion);
+}
+
+/// Go back to the best, for its other step if it has one, or for half of its step.
+static void go_back(struct inversion_course *course, size_t points) {
+    if (!course->progress.has_other) {
+        course->progress.damping *= 0.5;
+        return;
+    }
+    memcpy(course->best.step, course->best.other_step, points * sizeof(double));
+    course->progress.has_other = false;
+    course->progress.damping = 1;
+}
+
+/// S_rel is convex: its Newton steps promise less and less, unless one was too long.
+static bool keeps_by_gradient(struct inversion *inversion) {
+    const struct inversion_basis *basis = &inversion->state->basis;
+    double *least = &inversion->course.progress.least_decrement;
+    const bool kept = basis->decrement <= 2 * *least + 8 * basis->chance;
+    *least = fmin(*least, basis->decrement);
+    return kept;
+}
+
+bool mf_inversion_is_near_enough(const struct inversion *inversion,
+                                 const struct inversion_verdict *verdict) {
+    const struct inversion_progress *progress = &inversion->course.progress;
+    const struct targets *targets = &inversion->problem->targets;
+    return isinf(progress->best.distance[TARGET_RDF].rms) ||
+           mf_inversion_verdict_noises(verdict, targets, verdict->distance) <=
+               mf_inversion_verdict_noises(verdict, targets, progress->least) + 2;
+}
+
+bool mf_inversion_keeps(struct inversion *inversion) {
+    struct inversion_progress *progress = &inversion->course.progress;
+    const struct inversion_verdict *verdict = &inversion->verdict;
+    const struct targets *targets = &inversion->problem->targets;
+    if (inversion->state->basis.count > 0)
+        return keeps_by_gradient(inversion);
+    const bool kept = mf_inversion_is_near_enough(inversion, verdict);
+    if (isinf(progress->best.distance[TARGET_RDF].rms) ||
+        mf_inversion_verdict_noises(verdict, targets, verdict->distance) <
+            mf_inversion_verdict_noises(verdict, targets, progress->least))
+        memcpy(progress->least, verdict->distance, sizeof progress->least);
+    return kept;
+}
+
+enum status mf_inversion_course_judge(struct inversion *inversion, bool *kept) {
+    struct inversion_progress *progress = &inversion->course.progress;
+    const struct inversion_verdict *verdict = &inversion->verdict;
+    const double error = verdict->distance[TARGET_RDF].rms;
+    const bool start = isinf(progress->best.distance[TARGET_RDF].rms);
+    *kept = !verdict->useless && mf_inversion_keeps(inversion);
+    progress->from_disorder = !*kept;
+    progress->lost = start && !*kept && !mf_inversion_start_is_poor(inversion, false);
+    if (start && !*kept)
+        return keep(inversion); // to have something to show
+    if (start)
+        progress->first_error = progress->second_error = error;
+    else if (progress->second_error == progress->first_error)
+        progress->second_error = error;
+    if (!*kept) {
+        go_back(&inversion->course, inversion_grid(inversion)->points);
+        return STATUS_OK;
+    }
+    if (!start)
+        mf_inversion_relax(inversion);
+    progress->stretch = verdict->stretch > 1 ? verdict->stretch / 2 : 1;
+    return keep(inversion);
+}
+
+enum status mf_inversion_course_go_on(struct inversion *inversion, bool kept) {
+    struct inversion_progress *progress = &inversion->course.progress;
+    if (!mf_inversion_start_is_poor(inversion, kept)) {
+        mf_inversion_take_step(inversion);
+        return STATUS_OK;
+    }
+    progress->best.distance[TARGET_RDF].rms = progress->least_decrement = INFINITY;
+    progress->damping = 1;
+    progress->from_disorder = progress->second_start = true;
+    return mf_inversion_start_again(inversion->state, inversion->course.phi);
+}

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file Where an inversion is on its way: the present potential, the step from it, and the best so
+/// far.
+///
+/// The best potential is kept; a worse one than chance allows makes the next step half as long,
+/// from the best, or the method's other step if it has one. The fit has converged when χ² of each
+/// target is that of noise.
+#pragma once
+
+#include "inversion/inversion_band.h"
+#include "inversion/inversion_state.h"
+
+/// What the samples of the best potential said.
+struct inversion_best_samples {
+    struct target_distance distance[TARGETS]; ///< rms of g infinite: there is none yet
+    struct inversion_section worst; ///< section with the largest χ² by bin over the probable
+    struct inversion_factor factor; ///< mf_inversion_find_factor
+    double own_noise;
+    bool precise; ///< they are as exact as was asked for
+};
+
+/// What iterations running that met all targets still asked for, of the ramp and of the pressure.
+enum { INVERSION_MOST_WAYS = 8 };
+struct inversion_ways {
+    uint32_t met; ///< such iterations; the last of them are kept
+    double ramp[INVERSION_MOST_WAYS], pressure[INVERSION_MOST_WAYS];
+};
+
+/// What a checkpoint keeps besides arrays and samplers.
+struct inversion_progress {
+    uint32_t iteration;
+    bool from_disorder; ///< the replicas are placed without order
+    bool has_other;     ///< the best has another step
+    double damping;     ///< of the step from the best
+    int64_t stretch;    ///< of equilibration and spacing, by which the next samples begin
+    struct inversion_best_samples best;
+    struct target_distance least[TARGETS]; ///< nearest so far, of all that was kept
+    double least_decrement;                ///< of what was kept, by the gradient
+    double first_error, second_error;      ///< of g, in the first two iterations from a start
+    struct inversion_ways ways;
+    bool second_start; ///< it began again, from −k_B T ln g
+    bool lost;         ///< none of the starts settled
+};
+
+/// Curves are of shape [points].
+struct inversion_course {
+    double *phi, *step; ///< present potential and the step from it
+    double *other_step; ///< what to do if the step makes it worse
+    bool has_other;     ///< else: half of it
+    bool most_probable; ///< the step is the most probable one, near the noise
+    struct inversion_best {
+        double *phi, *step, *other_step;
+        double *counts; ///< ⟨S⟩ of the first state, shape [bins]
+    } best;
+    struct inversion_band band; ///< of the best
+    struct inversion_progress progress;
+};
+
+struct inversion;
+
+enum status mf_inversion_course_init(struct inversion_course *course, size_t known, size_t points,
+                                     size_t bins) MUST_USE;
+void mf_inversion_course_clear(struct inversion_course *course);
+
+/// What a checkpoint keeps; returns the number of spans.
+size_t mf_inversion_course_spans(struct inversion_course *course, size_t points, size_t bins,
+                                 struct memory_span *span);
+
+/// Damping below this: the step leads nowhere, and the fit ends.
+extern const double mf_inversion_least_damping;
+
+/// Whether distances are near enough to the targets for their potential to be kept.
+bool mf_inversion_is_near_enough(const struct inversion *inversion,
+                                 const struct inversion_verdict *verdict);
+
+/// Whether the present potential is kept: unless it is farther from the targets than the nearest so
+/// far, by two of the present noises. The nearest, not the last: samples are no more precise than a
+/// third of the error, so that each could be 1.67 times as far as the one before, and so on.
+/// Remembers the nearest. By the gradient: unless what is still promised of S_rel, which is convex,
+/// is more than twice the least so far. Tested: test_inversion_keeps.
+bool mf_inversion_keeps(struct inversion *inversion);
+
+/// Keep the present potential, or go back if it is worse than the nearest by more than chance.
+/// Replicas that a worse potential may have frozen or torn apart are not gone on with. Fails:
+/// NO_MEMORY.
+enum status mf_inversion_course_judge(struct inversion *inversion, bool *kept) MUST_USE;
+
+/// The next potential to be sampled: the other start, or a step from the best. Fails: NO_MEMORY.
+enum status mf_inversion_course_go_on(struct inversion *inversion, bool kept) MUST_USE;
+
+/// Lengthen the steps after one that is kept, by half, or shorten them if it went much too far: if
+/// it was a share s of the step f, and f' from there leads back half of f or more, so much that
+/// both lead to one place, s |f|²/(|f|² − f·f'). B. M. Irons and R. C. Tuck, Int. J. Numer. Methods
+/// Eng. 1, 275 (1969). Near the target, where f' is noise, it is not asked. Tested:
+/// test_inversion_keeps.
+void mf_inversion_relax(struct inversion *inversion);
+
+/// phi = best + damping · best step, bounded as a whole where the target is well known, and bin by
+/// bin elsewhere; as a whole everywhere if it is made of coefficients.
+void mf_inversion_take_step(struct inversion *inversion);
+
+/// Whether the result of a method that forgets is the mean of the potentials near the target, and
+/// no longer the present one (B. T. Polyak and A. B. Juditsky, SIAM J. Control Optim. 30, 838
+/// (1992)): there are three or more, and their mean g is nearer. A fit with a pressure, which may
+/// have come nearer meanwhile, ends with its last potential. Tested: test_inversion_keeps,
+/// test_inversion_converged.
+bool mf_inversion_ends_with_mean(const struct inversion *inversion);
+
+/// The same as the end of a fit that has converged, where the step is the most probable one: the
+/// potential that the samples ask for is the result, and not the one that they were taken of, which
+/// lies on the side that the fit came from. Or the mean of the potentials near the target. U of
+/// groups is then as smooth as the prior of the band has it (mf_inversion_smooth). Fails:
+/// NO_MEMORY. Tested: test_inversion_keeps.
+enum status mf_inversion_take_last_step(struct inversion *inversion) MUST_USE;
+
+/// Whether this iteration, whose potential was kept or not, ends the fit: its samples are as exact
+/// as was asked for, agree with all targets, and leave no way that g hardly sees. The way has the
+/// noise of the samples: the mean of those of the last iterations that met the targets may be half
+/// of its error. In fits with groups it is that of two or more, since each step goes a part of its
+/// way, from one side, and an iteration that finds it over by chance would end there and take the
+/// same chance into the last step: the pressures of 16 twins were 0.6 errors too low. Iterations
+/// that are not kept, or whose samples have not settled, do not count. Tested:
+/// test_inversion_converged.
+bool mf_inversion_has_converged(struct inversion *inversion, bool kept);
+
+/// Why a fit that has finished did not converge, in words.
+void mf_inversion_reason_tell(const struct inversion *inversion, char reason[INVERSE_REASON_SIZE]);

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "inversion/inversion_equations.h"
+
+#include "inversion/inversion_state.h"
+#include "inversion/method_steps.h"
+#include "observe/kirkwood_buff_observable.h"
+
+#include <gsl/gsl_linalg.h>
+#include <math.h>
+
+struct imc_system mf_inversion_equations_of(const struct inversion_state *state) {
+    return (struct imc_system){.size = state->grid.known,
+                               .block = state->grid.known_of,
+                               .blocks = state->grid.blocks,
+                               .shape = state->target.shape,
+                               .covariance = mf_inversion_response_values(state),
+                               .excess = state->excess,
+                               .variance = state->variance,
+                               .common = state->target.common,
+                               .temperature = state->problem->scene.temperature,
+                               .spacing = state->problem->targets.bins.width};
+}
+
+/// Room for a system that is reduced.
+static enum status rows_init(struct inversion_rows *rows, size_t known) {
+    enum status status = STATUS_OK;
+    NEW_ARRAY(rows->covariance, known * known);
+    NEW_ARRAY(rows->excess, known);
+    NEW_ARRAY(rows->variance, known);
+done:
+    return status;
+}
+
+static void rows_clear(struct inversion_rows *rows) {
+    mf_memory_free(rows->covariance);
+    mf_memory_free(rows->excess);
+    mf_memory_free(rows->variance);
+}
+
+enum status mf_inversion_equations_init(struct inversion_equations *equations,
+                                        const struct inversion_state *state, size_t states) {
+    enum status status = STATUS_OK;
+    const bool groups = state->coarse.count > 0;
+    equations->state = state;
+    equations->states = states;
+    equations->reduced = states > 1 || state->kirkwood_buff.pairs > 0;
+    equations->system = equations->of_response = mf_inversion_equations_of(state);
+    if (groups)
+        NEW_ARRAY(equations->response_variance, state->grid.known);
+    if (equations->reduced)
+        CHECK(rows_init(&equations->rows, state->grid.known));
+    if (equations->reduced && groups)
+        CHECK(rows_init(&equations->rows_of_response, state->grid.known));
+done:
+    return status;
+}
+
+void mf_inversion_equations_clear(struct inversion_equations *equations) {
+    mf_memory_free(equations->response_variance);
+    rows_clear(&equations->rows);
+    rows_clear(&equations->rows_of_response);
+    *equations = (struct inversion_equations){0};
+}
+
+/// Rows to be filled, from the first on.
+struct filling {
+    gsl_matrix *rows;
+    gsl_vector *rhs;
+    size_t row;
+    gsl_matrix *response; ///< scratch, of one state
+    gsl_vector *excess;
+    double *response_variance; ///< scratch, with the variances of the response; or NULL
+    double birge;              ///< by which the variances of all rows will be larger
+};
+
+/// slope·x = missing within the error.
+static void fill_row(struct filling *to, const double *slope, double missing, double wide) {
+    const double error = wide / sqrt(to->birge);
+    for (size_t b = 0; b < to->rows->size2; b++)
+        gsl_matrix_set(to->rows, to->row, b, slope[b] / error);
+    gsl_vector_set(to->rhs, to->row, missing / error);
+    to->row++;
+}
+
+/// The rows of g(r) and of groups, in the bins that the state has seen; the others stay 0.
+static enum status fill_bins(const struct inversion_state *state, struct filling *to) {
+    struct imc_system own = mf_inversion_equations_of(state);
+    if (to->response_variance) {
+        TRY(mf_imc_response_variance(state, to->response_variance));
+        own.variance = to->response_variance;
+    }
+    mf_imc_solve_rows(&own, to->response, to->excess);
+    for (size_t a = 0; a < own.size; a++, to->row++) {
+        if (!state->grid.seen[a])
+            continue;
+        for (size_t b = 0; b < own.size; b++)
+            gsl_matrix_set(to->rows, to->row, b, gsl_matrix_get(to->response, a, b));
+        gsl_vector_set(to->rhs, to->row, gsl_vector_get(to->excess, a));
+    }
+    return STATUS_OK;
+}
+
+/// P + p·x = P*, and the same of the integrals, within the errors of both sides.
+static void fill_others(const struct inversion_state *state, struct filling *to) {
+    const struct targets *targets = &state->problem->targets;
+    const struct inversion_kirkwood_buff *kb = &state->kirkwood_buff;
+    const struct target *integrals = &targets->target[mf_kirkwood_buff_kind()];
+    if (targets_ask(targets, TARGET_PRESSURE))
+        fill_row(to, state->pressure.slope,
+                 *targets->target[TARGET_PRESSURE].value - state->pressure.value,
+                 state->verdict.distance[TARGET_PRESSURE].noise);
+    for (size_t pair = 0; pair < kb->pairs; pair++)
+        if (isfinite(integrals->value[pair]))
+            fill_row(to, kb->slope + pair * state->grid.known,
+                     integrals->value[pair] - kb->value[pair],
+                     hypot(kb->error[pair], integrals->error[pair]));
+}
+
+/// Room for all rows; those that stay empty are 0.
+static size_t count_rows(const struct inversion_equations *equations) {
+    size_t count = 0;
+    for (size_t s = 0; s < equations->states; s++) {
+        const struct inversion_state *state = &equations->state[s];
+        count += state->grid.known + state->kirkwood_buff.pairs +
+                 targets_ask(&state->problem->targets, TARGET_PRESSURE);
+    }
+    return count;
+}
+
+/// R x = Qᵀ b as a system, whose variances are 1 and have what is common in them.
+static void take_triangle(const gsl_matrix *rows, const gsl_vector *rhs, struct inversion_rows *to,
+                          struct imc_system *system) {
+    const size_t known = rows->size2;
+    for (size_t a = 0; a < known; a++) {
+        to->excess[a] = gsl_vector_get(rhs, a);
+        to->variance[a] = 1;
+        for (size_t b = 0; b < known; b++)
+            to->covariance[a * known + b] =
+                b < a ? 0 : gsl_matrix_get(rows, a, b) * system->temperature;
+    }
+    system->covariance = to->covariance;
+    system->excess = to->excess;
+    system->variance = to->variance;
+    system->common = NULL;
+}
+
+/// @param[in] response_variance  scratch, to fill the rows with the variances of the response;
+/// NULL:
+///                               with those of the excess
+static enum status reduce(const struct inversion_equations *equations, double birge,
+                          double *response_variance, struct inversion_rows *to,
+                          struct imc_system *system) {
+    enum status status = STATUS_OK;
+    const size_t known = equations->state->grid.known, count = count_rows(equations);
+    struct filling all = {.rows = gsl_matrix_calloc(count, known),
+                          .rhs = gsl_vector_calloc(count),
+                          .response = gsl_matrix_alloc(known, known),
+                          .excess = gsl_vector_alloc(known),
+                          .response_variance = response_variance,
+                          .birge = birge};
+    gsl_vector *reflect = gsl_vector_alloc(known);
+    CHECK(all.rows && all.rhs && all.response && all.excess && reflect ? STATUS_OK
+                                                                       : STATUS_NO_MEMORY);
+    for (size_t s = 0; s < equations->states; s++) {
+        CHECK(fill_bins(&equations->state[s], &all));
+        fill_others(&equations->state[s], &all);
+    }
+    gsl_linalg_QR_decomp(all.rows, reflect);
+    gsl_linalg_QR_QTvec(all.rows, reflect, all.rhs);
+    take_triangle(all.rows, all.rhs, to, system);
+done:
+    gsl_matrix_free(all.rows);
+    gsl_vector_free(all.rhs);
+    gsl_matrix_free(all.response);
+    gsl_vector_free(all.excess);
+    gsl_vector_free(reflect);
+    return status;
+}
+
+enum status mf_inversion_equations_fill(struct inversion_equations *equations, double birge) {
+    double *variance = equations->response_variance;
+    if (equations->reduced) {
+        TRY(reduce(equations, birge, NULL, &equations->rows, &equations->system));
+        return variance ? reduce(equations, birge, variance, &equations->rows_of_response,
+                                 &equations->of_response)
+                        : STATUS_OK;
+    }
+    if (variance) {
+        TRY(mf_imc_response_variance(equations->state, variance));
+        equations->of_response.variance = variance;
+    }
+    return STATUS_OK;
+}

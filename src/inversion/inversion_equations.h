@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file The linear equations that a step is made of.
+///
+/// Those of one state are its own as they stand, whose pressure is met as a constraint
+/// (mf_imc_solve). Of several states, or of one with integrals of Kirkwood and Buff, the rows B_s x
+/// = b_s of the states, each over its errors, and below each state's those of its pressure and its
+/// integrals, if they are asked for, stand one below the other. A QR decomposition leaves as many
+/// rows as unknowns, with the same least squares, so that the strength of the regularisation, the
+/// band and its ramp are found as of one state. A bin that a state has not seen has no row of that
+/// state. Birge's factor, by which the band widens the variances, is of g: the rows of the others
+/// are that much narrower before.
+#pragma once
+
+#include "inversion/imc_solve.h"
+
+struct inversion_state;
+
+/// What a reduced system is made of; its variances are 1.
+struct inversion_rows {
+    double *covariance, *excess, *variance;
+};
+
+struct inversion_equations {
+    const struct inversion_state *state; ///< shape [states]; borrowed
+    size_t states;
+    bool reduced; ///< to as many as one state has; pressures and integrals are among them
+    struct imc_system system;      ///< with the variances of the excess
+    struct imc_system of_response; ///< of fits with groups: with those of mf_imc_response_variance
+    struct inversion_rows rows, rows_of_response;
+    double *response_variance; ///< shape [known], of fits with groups; else NULL
+};
+
+/// Must be cleared, also after a failure. Fails: NO_MEMORY.
+enum status mf_inversion_equations_init(struct inversion_equations *equations,
+                                        const struct inversion_state *state,
+                                        size_t states) MUST_USE;
+void mf_inversion_equations_clear(struct inversion_equations *equations);
+
+/// Fill them from the present samples of all states.
+/// @param[in] birge  mf_inversion_band_birge
+/// Fails: NO_MEMORY. Tested: test_inversion_equations, test_fit_states, test_fit_kirkwood_buff.
+enum status mf_inversion_equations_fill(struct inversion_equations *equations,
+                                        double birge) MUST_USE;
+
+/// The equations of one state as they stand, without the pressure.
+struct imc_system mf_inversion_equations_of(const struct inversion_state *state);

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What a state is made of: its system, its memory.
+#include "inversion/inversion_state.h"
+#include "inversion/inversion_coarse.h"
+
+#include <math.h>
+
+/// By which the share of a type may change with the number of particles: rare types are rounded,
+/// and keep two beads.
+static const double most_distortion = 0.2;
+
+/// As many particles as are asked for, at the densities of the scene.
+static enum status choose_size(struct inversion_state *state) {
+    const struct simulation_setup *scene = &state->problem->scene;
+    const int64_t wanted = state->parameters->particles;
+    const int64_t count = mf_composition_particles(&scene->composition);
+    if (wanted > 0 && wanted != count && mf_molecules_find(scene->interaction, scene->interactions))
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "method.particles: molecules are sampled in the scene's box, with "
+                              "all of its %lld beads; leave it out",
+                              (long long)count);
+    state->composition =
+        wanted > 0 ? mf_composition_scaled(&scene->composition, wanted) : scene->composition;
+    state->box =
+        mf_box_scaled(&scene->box, (double)mf_composition_particles(&state->composition) /
+                                       (double)mf_composition_particles(&scene->composition));
+    const double distortion = mf_composition_distortion(&scene->composition, &state->composition);
+    if (distortion <= most_distortion)
+        return STATUS_OK;
+    return mf_status_fail(
+        STATUS_BAD_INPUT,
+        "method.particles: %lld change the share of a type by %.0f %%; %lld are the "
+        "next that keep all shares",
+        (long long)wanted, 100 * distortion,
+        (long long)mf_composition_least_particles(&scene->composition, wanted, most_distortion));
+}
+
+/// No potential of pairs empties a shell in the midst of a liquid: an empty bin beyond one that is
+/// well known is a fault of the target, and what would be made of it a barrier without an end.
+static enum status refuse_holes(const struct inversion_state *state) {
+    static const double well = 0.1;
+    const struct inverse_problem *problem = state->problem;
+    const struct potential_grid *grid = &state->grid;
+    for (size_t n = 0; n < grid->pairs_known; n++) {
+        const size_t bin = grid->known_bin[n], next = grid->known_bin[n] + 1;
+        const double *g = problem->targets.target[TARGET_RDF].value;
+        if (next % grid->bins == 0 || !(g[bin] > well) || g[next] > problem->core_threshold)
+            continue;
+        const double r = mf_rdf_bins_centre(&problem->targets.bins, next % grid->bins);
+        char kind[COMPOSITION_PAIR_NAME_SIZE];
+        mf_composition_pair_name(&problem->scene.composition, (int)(bin / grid->bins), kind);
+        return mf_status_fail(
+            STATUS_BAD_INPUT,
+            "%s%sthe target is empty at r = %g, where the bin before it has g = %.3g: no "
+            "potential of pairs makes such a hole; mend the target there, or end "
+            "it before by \"cutoff\"",
+            kind, kind[0] ? ": " : "", r, problem->targets.target[TARGET_RDF].value[bin]);
+    }
+    return STATUS_OK;
+}
+
+static enum status allocate(struct inversion_state *state) {
+    enum status status = STATUS_OK;
+    const size_t bins = state->bins, known = state->grid.known;
+    struct inversion_target *target = &state->target;
+    NEW_ARRAY(target->ideal, bins);
+    NEW_ARRAY(target->unit, bins);
+    NEW_ARRAY(target->counts, bins);
+    NEW_ARRAY(target->error, bins);
+    NEW_ARRAY(target->least, bins);
+    NEW_ARRAY(target->common, known);
+    NEW_ARRAY(target->shape, state->grid.blocks);
+    NEW_ARRAY(state->groups, state->grid.groups);
+    NEW_ARRAY(state->excess, known);
+    NEW_ARRAY(state->variance, known);
+    NEW_ARRAY(state->pool.excess, known);
+    NEW_ARRAY(state->pool.variance, known);
+    NEW_ARRAY(state->pool.phi, state->grid.points);
+    NEW_ARRAY(state->pressure.slope, known);
+    CHECK(mf_inversion_response_init(state));
+    CHECK(mf_inversion_kirkwood_buff_init(state));
+done:
+    return status;
+}
+
+enum status mf_inversion_state_init(struct inversion_state *state,
+                                    const struct inverse_problem *problem,
+                                    const struct inversion_parameters *parameters,
+                                    const struct inversion_basis_size *coefficients) {
+    state->problem = problem;
+    state->parameters = parameters;
+    state->gradient = INFINITY;
+    TRY(choose_size(state));
+    TRY(mf_potential_grid_init(&state->grid, problem));
+    state->bins = state->grid.all_bins;
+    TRY(refuse_holes(state));
+    TRY(allocate(state));
+    mf_inversion_count_targets(state);
+    if (state->grid.pairs == 0 && targets_ask(&problem->targets, TARGET_PRESSURE))
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "target.pressure: no potential of pairs is to be found that could "
+                              "meet it; with \"fitted\": \"no\" it is compared with");
+    if (coefficients)
+        return mf_inversion_basis_init(&state->basis, &state->grid, coefficients);
+    return state->grid.groups > 0 ? mf_inversion_coarse_init(state) : STATUS_OK;
+}
+
+enum status mf_inversion_tabulate(struct inversion_state *state) {
+    const struct simulation_setup *scene = &state->problem->scene;
+    const struct potential_grid *grid = &state->grid;
+    const struct molecules *molecules = mf_molecules_find(scene->interaction, scene->interactions);
+    mf_table_clear(&state->interaction.table);
+    mf_potential_grid_molecules_clear(grid, &state->interaction.molecules);
+    if (grid->pairs > 0)
+        TRY(mf_potential_grid_table(grid, state->phi, &state->interaction.table));
+    return molecules ? mf_potential_grid_molecules(grid, state->phi + grid->pair_points, molecules,
+                                                   &state->interaction.molecules)
+                     : STATUS_OK;
+}
+
+enum status mf_inversion_state_make_samplers(struct inversion_state *state) {
+    const struct inverse_problem *problem = state->problem;
+    const struct inversion_parameters *p = state->parameters;
+    const struct simulation_setup *scene = &problem->scene;
+    const struct rdf_bins *bins = &problem->targets.bins;
+    const bool joined = mf_molecules_find(scene->interaction, scene->interactions) != NULL;
+    const bool pairs = state->grid.pairs > 0;
+    TRY(mf_inversion_tabulate(state));
+    // What one cannot sample none can: molecules take long to be placed.
+    return mf_replicas_init(
+        &state->replicas, problem->trial ? 1 : (size_t)p->replicas, (enum sampler_kind)p->sampler,
+        &(struct sampler_system){.cancel = scene->cancel,
+                                 .box = &state->box,
+                                 .composition = &state->composition,
+                                 .potential = pairs ? &state->interaction.table : scene->potential,
+                                 .temperature = scene->temperature,
+                                 .low = bins->low,
+                                 .width = bins->width,
+                                 .bins = pairs ? bins->count : 0,
+                                 .molecules = joined ? &state->interaction.molecules : NULL,
+                                 .group = state->groups,
+                                 .groups = state->grid.groups,
+                                 .integrals = state->kirkwood_buff.pairs,
+                                 .q_maximum = state->kirkwood_buff.q_maximum,
+                                 .seed = problem->seed});
+}
+
+void mf_inversion_state_clear(struct inversion_state *state) {
+    mf_replicas_clear(&state->replicas);
+    mf_table_clear(&state->interaction.table);
+    mf_potential_grid_molecules_clear(&state->grid, &state->interaction.molecules);
+    mf_potential_grid_clear(&state->grid);
+    mf_inversion_basis_clear(&state->basis);
+    mf_inversion_basis_clear(&state->coarse);
+    mf_inversion_kirkwood_buff_clear(&state->kirkwood_buff);
+    mf_inversion_response_clear(&state->response);
+    mf_memory_free(state->target.shape);
+    mf_memory_free(state->groups);
+    double *arrays[] = {state->target.ideal,  state->target.unit,  state->target.counts,
+                        state->target.error,  state->target.least, state->target.common,
+                        state->excess,        state->variance,     state->pool.excess,
+                        state->pool.variance, state->pool.phi,     state->pressure.slope};
+    for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
+        mf_memory_free(arrays[k]);
+}
+
+size_t mf_inversion_state_spans(struct inversion_state *state, struct memory_span *span) {
+    const size_t known = state->grid.known, bytes = known * sizeof(double);
+    struct inversion_pool *pool = &state->pool;
+    struct inversion_response *response = &state->response;
+    size_t n = 0;
+    span[n++] = (struct memory_span){&state->work, sizeof state->work};
+    span[n++] = (struct memory_span){&state->gradient, sizeof state->gradient};
+    span[n++] = (struct memory_span){&pool->samples, sizeof pool->samples};
+    span[n++] = (struct memory_span){pool->excess, bytes};
+    span[n++] = (struct memory_span){pool->variance, bytes};
+    span[n++] = (struct memory_span){pool->phi, state->grid.points * sizeof(double)};
+    span[n++] = (struct memory_span){&response->kept, sizeof response->kept};
+    span[n++] = (struct memory_span){response->covariance, known * bytes};
+    if (state->kirkwood_buff.pairs > 0)
+        span[n++] =
+            (struct memory_span){state->kirkwood_buff.slope, state->kirkwood_buff.pairs * bytes};
+    return n + mf_replicas_spans(&state->replicas, span + n);
+}

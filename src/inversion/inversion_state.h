@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file One state of an inversion: what is sampled, what its targets ask for, and what its samples
+/// say.
+///
+/// A state has a problem of its own: targets, temperature, density, composition; the potentials are
+/// those of all states. Samples double until their noise is small against the error, or as small as
+/// was asked for, and until they are those of equilibrium (inversion/inversion_settled.h), or what
+/// is not is small against the error: for a step, and for no more.
+#pragma once
+
+#include "inversion/imc_solve.h"
+#include "inversion/inversion_basis.h"
+#include "inversion/inversion_kirkwood_buff.h"
+#include "inversion/inversion_pressure.h"
+#include "inversion/inversion_response.h"
+#include "inversion/inversion_verdict.h"
+#include "inversion/replicas.h"
+#include "problem/potential_grid.h"
+
+/// Bins of all pair types. There are some 20 matrices of bins by bins: 2.5 GB with so many, and
+/// minutes to solve.
+enum { INVERSION_MOST_BINS = 4000 };
+
+/// The parameters of all inversions, the first of each method's own.
+struct inversion_parameters {
+    int64_t particles, replicas;
+    int64_t equilibration, samples, every;
+    int64_t iterations;
+    double precision;
+    int start;   ///< INVERSION_FROM_…
+    int sampler; ///< enum sampler_kind
+};
+
+enum { INVERSION_FROM_HNC, INVERSION_FROM_MEAN_FORCE };
+
+/// What its targets ask of S, shape [bins] each.
+struct inversion_target {
+    double *ideal;           ///< S if g were 1, or p its mean over the known bins
+    double *unit;            ///< S for a value of 1 of the target
+    double *counts, *error;  ///< S of the target and its error
+    double *least;           ///< S/ideal that counts as none
+    double *common;          ///< error of S* by the factor of its pair type, shape [known]
+    struct imc_shape *shape; ///< of each block
+};
+
+/// The present potentials as the samplers read them.
+struct inversion_interaction {
+    struct table table;
+    struct molecules molecules; ///< with the present U of the groups
+};
+
+/// The excess of all iterations near the target: S̄ − S* at the mean potential, see
+/// mf_inversion_pool.
+struct inversion_pool {
+    double *excess, *variance; ///< shape [known]
+    double *phi;               ///< the mean potential, shape [points]
+    double samples;            ///< that the pool is worth, 0 far off
+};
+
+struct inversion_state {
+    const struct inverse_problem *problem;
+    const struct inversion_parameters *parameters;
+    const double *phi; ///< the present potential, of all states; borrowed
+    struct potential_grid grid;
+    struct box box; ///< of the system that is sampled
+    struct composition composition;
+    size_t bins; ///< of all pair types and groups
+    struct inversion_target target;
+    struct sampler_group *groups; ///< that are counted, shape [grid.groups]
+    struct inversion_interaction interaction;
+    struct replicas replicas;
+    double *excess, *variance;          ///< of S in the known bins, shape [known]
+    double inefficiency;                ///< the largest of all sections
+    struct inversion_response response; ///< of S to the potential, by C
+    struct inversion_pool pool;
+    struct inversion_pressure pressure;
+    struct inversion_kirkwood_buff kirkwood_buff;
+    struct inversion_verdict verdict;
+    struct inversion_basis basis;  ///< of methods that go by the gradient; else its count is 0
+    struct inversion_basis coarse; ///< of steps far from the targets, of fits with groups
+    double gradient;               ///< of coefficients in its noise, when it was measured last
+    struct inversion_work {
+        uint64_t evaluations, sweeps; ///< so far
+    } work;
+};
+
+/// All but the samplers, by the parameters, which are borrowed.
+/// @param[in] coefficients  of potentials that are made of few; NULL: bins have values of their own
+/// Must be cleared, also after a failure. Fails: NO_MEMORY, BAD_INPUT.
+enum status mf_inversion_state_init(struct inversion_state *state,
+                                    const struct inverse_problem *problem,
+                                    const struct inversion_parameters *parameters,
+                                    const struct inversion_basis_size *coefficients) MUST_USE;
+
+/// Make the samplers of the present potential. Fails: as mf_replicas_init.
+enum status mf_inversion_state_make_samplers(struct inversion_state *state) MUST_USE;
+void mf_inversion_state_clear(struct inversion_state *state);
+
+/// What a checkpoint keeps; returns the number of spans.
+size_t mf_inversion_state_spans(struct inversion_state *state, struct memory_span *span);
+
+/// S/ideal of the samples in a bin, g of pairs, and of the target in the same system.
+double mf_inversion_g(const struct inversion_state *state, size_t bin);
+double mf_inversion_target_g(const struct inversion_state *state, size_t bin);
+
+/// Fill the sections, the shapes and all that the targets say of the bins.
+void mf_inversion_count_targets(struct inversion_state *state);
+
+/// Make the tables of the present potentials, which the samplers read. Fails: NO_MEMORY.
+enum status mf_inversion_tabulate(struct inversion_state *state) MUST_USE;
+
+/// What the present samples say of g and p of groups: excess, variance and inefficiencies of S, the
+/// distances over the bins of each section, and their noise.
+void mf_inversion_assess(struct inversion_state *state);
+
+/// χ² of an excess in the known bins begin … end − 1, with the variances of the present samples and
+/// the factors of pair types, which are known within an error each.
+/// @param[in] excess  shape [known]
+double mf_inversion_chi_squared(const struct inversion_state *state, const double *excess,
+                                size_t begin, size_t end);
+
+/// By how much of itself g of the samples is larger than that of a target as a whole, and the
+/// standard deviation that was expected of it.
+struct inversion_factor {
+    double missing, prior;
+};
+
+/// Fill in the factor of a pair type that is farthest from what was known of it.
+void mf_inversion_find_factor(const struct inversion_state *state, struct inversion_factor *factor);
+
+/// Near the target, replace the excess and its variance by those of all iterations since it was
+/// reached: what the earlier ones saw, moved to the present potential by the newest response, which
+/// is the best known: each moved by that of its time took for gone what a noisy C had promised. A
+/// step from the present samples alone carries their noise into the next potential, so that its
+/// error is sqrt(2) times the noise, iteration after iteration; Kushner and Yin, Stochastic
+/// Approximation (2003), section 1.1. Present samples weigh a third at least, for what C does not
+/// tell. Tested: test_inversion_keeps.
+void mf_inversion_pool(struct inversion_state *state);
+
+/// Whether g, and p of all groups, are so near to their targets, by their noise, that C hardly
+/// changes any more; or the gradient of coefficients to 0, by its own.
+bool mf_inversion_state_is_near(const struct inversion_state *state);

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file The steps of the methods, for the known bins; each meets the pressure if it is asked for.
+#pragma once
+
+#include "base/status.h"
+
+struct inversion;
+struct inversion_state;
+
+/// k_B T ln(g/g*) of the known bins.
+void mf_ibi_logarithms(const struct inversion_state *state, double *step);
+
+/// The logarithms; where the target is not well known, of the counts nearest to it that are within
+/// two standard errors of those of the samples. Tested: test_ibi.
+void mf_ibi_step(const struct inversion_state *state, double *step);
+
+/// The same with the slope of the hypernetted chain. Fails: NO_MEMORY.
+enum status mf_hnc_step(const struct inversion_state *state, double *step) MUST_USE;
+
+/// The regularised Newton step of the equations, or, with groups far from their targets, that of
+/// mf_inversion_coarse_step. `extra` are strength, misfit and directions. Sets `most_probable`.
+/// Fails: NO_MEMORY.
+enum status mf_imc_step(struct inversion *inversion, double *step, double extra[3]) MUST_USE;
+
+/// The variances of what C predicts. C is itself sampled: of n independent samples C_ab has the
+/// variance (C_aa C_bb + C_ab²)/n (normal S), and so Σ_b C_ab x_b/k_B T has
+///   (C_aa Σ_b C_bb x_b² + (Σ_b C_ab x_b)²)/(n (k_B T)²),
+/// where the last sum is about the excess, and x about the step of Boltzmann inversion. Several
+/// pair types and groups have about as many bins as an iteration has independent samples: a step
+/// that removed the excess as far as its own noise would follow the noise of C, by thousands of k_B
+/// T.
+/// @param[out] variance  of the excess with these, shape [known]
+/// Fails: NO_MEMORY.
+enum status mf_imc_response_variance(const struct inversion_state *state,
+                                     double *variance) MUST_USE;
