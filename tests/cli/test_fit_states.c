@@ -149,13 +149,14 @@ static void test_auto_takes_the_steps_of_imc_when_there_are_several_states(void 
 
 /// The run with the pressures of the truth among the targets.
 static void write_with_pressures(struct temporary_folder *folder) {
-    static const char with[] = "{\"seed\": 4, " COMMON ",\n\"states\": {\n"
-                               " \"dilute\": {\"scene\": {\"particles\": {\"count\": 250}},\n"
-                               "  \"target\": {\"rdf\": {\"file\": \"dilute/rdf.tsv\"},\n"
-                               "  \"pressure\": {\"value\": %.6g, \"error\": 0.05}}},\n"
-                               " \"dense\": {\"scene\": {\"particles\": {\"count\": 500}},\n"
-                               "  \"target\": {\"rdf\": {\"file\": \"dense/rdf.tsv\"},\n"
-                               "  \"pressure\": {\"value\": %.6g, \"error\": 0.05}}}}}\n";
+    static const char with[] =
+        "{\"seed\": 4, " COMMON ",\n\"states\": {\n"
+        " \"dilute\": {\"scene\": {\"particles\": {\"count\": 250}},\n"
+        "  \"target\": {\"rdf\": {\"file\": \"dilute/rdf.tsv\", \"particles\": 250},\n"
+        "  \"pressure\": {\"value\": %.6g, \"error\": 0.05}}},\n"
+        " \"dense\": {\"scene\": {\"particles\": {\"count\": 500}},\n"
+        "  \"target\": {\"rdf\": {\"file\": \"dense/rdf.tsv\", \"particles\": 500},\n"
+        "  \"pressure\": {\"value\": %.6g, \"error\": 0.05}}}}}\n";
     char text[4096];
     snprintf(text, sizeof text, with, results_number("dilute/summary.json", "pressure"),
              results_number("dense/summary.json", "pressure"));
