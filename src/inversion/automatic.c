@@ -1,59 +1,30 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Inverse Monte Carlo where its linear response holds, and before that the steps that need none, or
-// little of it: by the hypernetted chain, or in two dimensions and of molecules Boltzmann
-// inversion, of groups with the response of few coefficients (inversion/inversion_coarse.h). A
-// Newton step converges at once near the solution and leads away from far off it (its basin; P.
-// Deuflhard, Newton Methods for Nonlinear Problems (2004), section 2.1, which tests it as here, by
-// what the last step did against what was predicted).
+// Inverse Monte Carlo near its solution, and before that the steps that need no response, or little
+// of it: by the hypernetted chain, or in two dimensions and of molecules Boltzmann inversion, of
+// groups with the response of few coefficients (inversion/inversion_coarse.h). A Newton step
+// converges at once near the solution and leads away from far off it (its basin; P. Deuflhard,
+// Newton Methods for Nonlinear Problems (2004), section 2.1): it is tried, with the other in
+// reserve, each time that the error has halved since it led away.
 #include "inversion/inversion_coarse.h"
 #include "inversion/inversion.h"
 #include "inversion/method_steps.h"
 
 #include <math.h>
 
-/// The response holds if it tells what the last step did within this part.
-static const double trust = 0.3;
+/// Newton's steps are tried again where the error is this part of that at which they failed.
+static const double again = 0.5;
 
 static const char *const columns[] = {INVERSION_COLUMNS, "newton", "misfit[1]", "directions", NULL};
 
-/// Whether −C ΔΦ/k_B T is the change of S from the best potential to this one, in the norm of their
-/// noise, but for the noise of both.
-static bool predicts(const struct inversion *inversion) {
-    const struct inversion_state *first = inversion->state;
-    const struct inversion_course *course = &inversion->course;
-    const struct potential_grid *grid = &first->grid;
-    const double *response = mf_inversion_response_values(first);
-    double miss = 0, change = 0;
-    for (size_t a = 0; a < grid->known; a++) {
-        const size_t bin = grid->known_bin[a];
-        const double actual = first->replicas.counts.mean[bin] - course->best.counts[bin];
-        double predicted = 0;
-        for (size_t b = 0; b < grid->known; b++) {
-            const size_t point = grid->known_point[b];
-            predicted -= response[a * grid->known + b] *
-                         (course->phi[point] - course->best.phi[point]) /
-                         first->problem->scene.temperature;
-        }
-        miss += (actual - predicted) * (actual - predicted) / first->variance[a];
-        change += actual * actual / first->variance[a];
-    }
-    return miss <= trust * trust * change + 2 * (double)grid->known;
-}
-
-/// Whether the last step was Newton's, which keeps the other in reserve, and halved the error.
-static bool newton_helped(const struct inversion *inversion) {
-    const struct inversion_progress *progress = &inversion->course.progress;
-    return progress->has_other && inversion->verdict.distance[TARGET_RDF].rms <
-                                      0.5 * progress->best.distance[TARGET_RDF].rms;
-}
-
-/// Inside the basin of inverse Monte Carlo: near the noise, where its response holds, or where its
-/// steps converge. Of groups C tells no more than the careful step until the targets are near.
+/// Whether Newton's step is tried: near the noise, or where it has not failed yet. Of groups C
+/// tells no more than the careful step until the targets are near.
 static bool in_basin(const struct inversion *inversion) {
-    const bool first = isinf(inversion->course.progress.best.distance[TARGET_RDF].rms);
-    return mf_inversion_is_near(inversion) || (!first && inversion->state->coarse.count == 0 &&
-                                               (newton_helped(inversion) || predicts(inversion)));
+    const struct inversion_progress *progress = &inversion->course.progress;
+    const bool first = isinf(progress->best.distance[TARGET_RDF].rms);
+    return mf_inversion_is_near(inversion) ||
+           (!first && inversion->state->coarse.count == 0 &&
+            inversion->verdict.distance[TARGET_RDF].rms < again * progress->failed_error);
 }
 
 static enum status careful_step(struct inversion_state *state, double *step) {

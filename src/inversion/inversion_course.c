@@ -75,6 +75,7 @@ static void go_back(struct inversion_course *course, size_t points) {
         return;
     }
     memcpy(course->best.step, course->best.other_step, points * sizeof(double));
+    course->progress.failed_error = course->progress.best.distance[TARGET_RDF].rms;
     course->progress.has_other = false;
     course->progress.damping = 1;
 }
@@ -122,7 +123,7 @@ enum status mf_inversion_course_judge(struct inversion *inversion, bool *kept) {
     if (start && !*kept)
         return keep(inversion); // to have something to show
     if (start)
-        progress->first_error = progress->second_error = error;
+        progress->first_error = progress->second_error = progress->failed_error = error;
     else if (progress->second_error == progress->first_error)
         progress->second_error = error;
     if (!*kept) {

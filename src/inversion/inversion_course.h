@@ -37,6 +37,7 @@ struct inversion_progress {
     struct target_distance least[TARGETS]; ///< nearest so far, of all that was kept
     double least_decrement;                ///< of what was kept, by the gradient
     double first_error, second_error;      ///< of g, in the first two iterations from a start
+    double failed_error; ///< of g, from where a step with another in reserve led away, or the first
     struct inversion_ways ways;
     bool second_start; ///< it began again, from −k_B T ln g
     bool lost;         ///< none of the starts settled
