@@ -3,8 +3,7 @@
 
 #include "base/rng.h"
 #include "dynamics/hybrid_step.h"
-#include "dynamics/relax.h"
-#include "dynamics/relax_soft.h"
+#include "dynamics/relax_molecules.h"
 #include "dynamics/respa.h"
 
 #include <math.h>
@@ -113,8 +112,7 @@ static enum status scatter_molecules(struct simulation *simulation,
     TRY(mf_molecules_place(molecules, particles, &simulation->setup.placement,
                            simulation->setup.seed));
     TRY(mf_neighbours_sort_and_build(&simulation->neighbours, particles));
-    TRY(mf_relax_soft(simulation));
-    return mf_relax_overlaps(simulation);
+    return mf_relax_molecules(simulation);
 }
 
 enum status mf_hybrid_scatter(struct hybrid *hybrid) {

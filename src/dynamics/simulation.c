@@ -5,7 +5,7 @@
 #include "base/interrupt.h"
 #include "base/visible.h"
 #include "dynamics/relax.h"
-#include "dynamics/relax_soft.h"
+#include "dynamics/relax_molecules.h"
 #include "dynamics/simulation_place.h"
 #include "dynamics/unstable.h"
 #include "forces/molecules.h"
@@ -192,9 +192,8 @@ enum status mf_simulation_init(struct simulation *simulation, const struct simul
     CHECK(add_interactions(simulation));
     CHECK(mf_neighbours_sort_and_build(&simulation->neighbours, &simulation->particles));
     if (molecules && setup->placement.kind != PLACEMENT_FILE)
-        CHECK(mf_relax_soft(simulation));
-    if (molecules ? setup->placement.kind != PLACEMENT_FILE
-                  : setup->placement.kind == PLACEMENT_RANDOM && setup->potential)
+        CHECK(mf_relax_molecules(simulation));
+    if (!molecules && setup->placement.kind == PLACEMENT_RANDOM && setup->potential)
         CHECK(mf_relax_overlaps(simulation));
     CHECK(mf_simulation_compute_forces(simulation, 0));
     if (setup->integrator->begin)

@@ -85,7 +85,7 @@ struct simulation_start {
 };
 
 /// Place the particles, draw their velocities and compute the first forces. Particles placed at
-/// random are parted where they overlap (mf_relax_overlaps).
+/// random are parted where they overlap (mf_relax_overlaps), molecules always (mf_relax_molecules).
 /// @param[in] start  for PLACEMENT_FILE, else NULL
 /// Fails: BAD_INPUT (box below twice the cutoff, no room, more neighbours than this machine has
 /// memory for), NO_MEMORY, UNSTABLE.
