@@ -7,10 +7,6 @@
 #include <math.h>
 #include <string.h>
 
-/// The part of the noise of its target, at which g of the samples is known well enough: more of
-/// them would make the error of the result smaller by an eighth at most. The same of groups.
-static const double worth_knowing = 0.5, worth_knowing_of_groups = 1;
-
 /// Share of the present samples in what all iterations near the target tell, at least.
 static const double least_share = 1.0 / 3;
 
@@ -167,9 +163,10 @@ static double assess(struct inversion_state *state, struct inversion_section *se
     section->misfit = seen > 0 ? misfit / seen : 0;
     section->probable = find_probable(state, section);
     section->own_noise = sqrt(own / bins) / section->peak;
-    const double worth = section->kind == TARGET_RDF ? worth_knowing : worth_knowing_of_groups;
-    section->precision =
-        fmax(state->parameters->precision, worth * sqrt((both - own) / bins) / section->peak);
+    // p of a group need not be known better than that of its target, which has as many bins.
+    section->precision = state->parameters->precision;
+    if (section->kind != TARGET_RDF)
+        section->precision = fmax(section->precision, sqrt((both - own) / bins) / section->peak);
     return misfit;
 }
 

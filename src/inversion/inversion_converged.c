@@ -11,7 +11,7 @@ static const double settled_way = 0.5;
 
 /// Iterations running, of those that are kept, that must meet the targets where C is that of few
 /// samples, so that a step goes a part of its way.
-enum { LEAST_MET_WITH_GROUPS = 2 };
+enum { LEAST_MET_WITH_GROUPS = 3 };
 
 /// Iterations near the target whose mean is worth more than the last: of fewer the first ones lie
 /// on the side that the fit came from. As many samples, less what rounding may take.

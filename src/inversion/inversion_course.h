@@ -117,10 +117,10 @@ enum status mf_inversion_take_last_step(struct inversion *inversion) MUST_USE;
 /// Whether this iteration, whose potential was kept or not, ends the fit: its samples are as exact
 /// as was asked for, agree with all targets, and leave no way that g hardly sees. The way has the
 /// noise of the samples: the mean of those of the last iterations that met the targets may be half
-/// of its error. In fits with groups it is that of two or more, since each step goes a part of its
-/// way, from one side, and an iteration that finds it over by chance would end there and take the
-/// same chance into the last step: the pressures of 16 twins were 0.6 errors too low. Iterations
-/// that are not kept, or whose samples have not settled, do not count. Tested:
+/// of its error. In fits with groups it is that of three or more, since each step goes a part of
+/// its way, from one side, and an iteration that finds it over by chance would end there and take
+/// the same chance into the last step: the pressures of 16 twins were 0.6 errors too low.
+/// Iterations that are not kept, or whose samples have not settled, do not count. Tested:
 /// test_inversion_converged.
 bool mf_inversion_has_converged(struct inversion *inversion, bool kept);
 

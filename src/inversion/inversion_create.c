@@ -32,9 +32,7 @@ const struct field mf_inversion_fields[] = {
      .unit = "", .help = "at most"},
     {"precision", FIELD_NUMBER, MEMBER(precision), .initial = 0.004, .minimum = FIELD_ABOVE_ZERO,
      .maximum = 1, .unit = "",
-     .help =
-         "statistical error of g, rms over bins, at which an agreement is believed; half of its "
-         "target's is enough"},
+     .help = "statistical error of g, rms over bins, at which an agreement is believed"},
     {"start", FIELD_CHOICE, MEMBER(start), .choices = starts, .initial = INVERSION_FROM_HNC,
      .unit = "",
      .help = "without unknowns.potential.start: the hypernetted-chain inversion, and -k_B T ln g "

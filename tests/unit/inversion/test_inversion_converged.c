@@ -44,7 +44,7 @@ static void test_fit_of_pairs_ends_when_it_agrees_once(void **state) {
 }
 
 /// A way that is over once may be so by chance; what goes on goes on in one direction.
-static void test_fit_with_groups_ends_when_the_ways_of_two_iterations_cancel(void **state) {
+static void test_fit_with_groups_ends_when_the_ways_of_three_iterations_cancel(void **state) {
     (void)state;
     struct end end;
     struct inversion *inversion = make_end(&end, 1);
@@ -64,7 +64,7 @@ static void test_fit_with_groups_ends_when_the_ways_of_two_iterations_cancel(voi
     assert_false(mf_inversion_has_converged(inversion, true));
     inversion->course.band.farthest.way = 0.3;
     assert_false(mf_inversion_has_converged(inversion, true));
-    inversion->course.band.ramp.way = -0.15; // the last two
+    inversion->course.band.ramp.way = -0.15; // the last three
     assert_true(mf_inversion_has_converged(inversion, true));
 }
 
@@ -131,7 +131,7 @@ static void test_fit_that_forgets_ends_when_its_mean_or_its_last_potential_agree
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_fit_of_pairs_ends_when_it_agrees_once),
-        cmocka_unit_test(test_fit_with_groups_ends_when_the_ways_of_two_iterations_cancel),
+        cmocka_unit_test(test_fit_with_groups_ends_when_the_ways_of_three_iterations_cancel),
         cmocka_unit_test(test_fit_with_groups_ends_at_once_where_nothing_must_settle),
         cmocka_unit_test(test_fit_ends_when_all_sections_agree),
         cmocka_unit_test(test_fit_that_forgets_ends_when_its_mean_or_its_last_potential_agrees),
