@@ -133,8 +133,15 @@ void mf_inversion_find_factor(const struct inversion_state *state,
 static double assess(struct inversion_state *state, struct inversion_section *section) {
     const struct comoments *counts = &state->replicas.counts;
     const size_t *known_bin = state->grid.known_bin;
-    section->inefficiency = mf_replicas_inefficiency(
-        &state->replicas, state->target.ideal, known_bin + section->known, section->known_count);
+    const double *ideal = state->target.ideal;
+    const size_t *known = known_bin + section->known;
+    section->inefficiency = mf_replicas_inefficiency(&state->replicas, REPLICAS_BLOCKS, ideal,
+                                                     known, section->known_count);
+    // Blocks do not see what lasts longer than a replica.
+    if (state->verdict.unsettled.found)
+        section->inefficiency =
+            fmax(section->inefficiency,
+                 mf_replicas_inefficiency(&state->replicas, 1, ideal, known, section->known_count));
     const double independent = counts->count / section->inefficiency;
     const double bins = (double)section->bins;
     double sum = 0, own = 0, both = 0, seen = 0;

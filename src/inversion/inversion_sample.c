@@ -139,12 +139,15 @@ static enum status take(struct sampling *sampling, bool again) {
         TRY(mf_replicas_double(&state->replicas, now, threads, &sampling->progress, listener));
         sampling->sweeps += replicas_plan_sweeps(now) / 2;
     } else {
+        state->work.mixed = state->work.mixed && !now->scatter;
         TRY(mf_replicas_run(&state->replicas, now, threads, &sampling->progress, listener));
         sampling->sweeps += replicas_plan_sweeps(now) + (uint64_t)now->equilibration;
     }
+    TRY(mf_inversion_settled_judge(state, &state->verdict.unsettled));
     mf_inversion_assess(state);
     mf_inversion_pressure_measure(state);
-    return mf_inversion_settled_judge(state, &state->verdict.unsettled);
+    mf_inversion_settled_forget(state);
+    return STATUS_OK;
 }
 
 /// What drifts was equilibration; what only remembers its begin is too short.

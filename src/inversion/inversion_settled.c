@@ -124,3 +124,11 @@ enum status mf_inversion_settled_judge(const struct inversion_state *state,
     }
     return STATUS_OK;
 }
+
+void mf_inversion_settled_forget(struct inversion_state *state) {
+    struct inversion_unsettled *unsettled = &state->verdict.unsettled;
+    if (!unsettled->found)
+        state->work.mixed = true;
+    if (state->work.mixed)
+        unsettled->found = unsettled->drifts;
+}

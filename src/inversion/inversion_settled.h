@@ -37,3 +37,9 @@ double mf_inversion_settled_shift(const struct replicas *replicas, size_t number
 /// NO_MEMORY. Tested: test_inversion_settled.
 enum status mf_inversion_settled_judge(const struct inversion_state *state,
                                        struct inversion_unsettled *unsettled) MUST_USE;
+
+/// What the replicas remember is noise once they have been told apart by no more than that since
+/// they were placed: each goes on from a state of its own of the potential before, and
+/// mf_inversion_assess has taken the scatter of their means for the error. What drifts is none.
+/// Tested: test_inversion_settled.
+void mf_inversion_settled_forget(struct inversion_state *state);

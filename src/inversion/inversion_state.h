@@ -81,6 +81,7 @@ struct inversion_state {
     double gradient;               ///< of coefficients in its noise, when it was measured last
     struct inversion_work {
         uint64_t evaluations, sweeps; ///< so far
+        bool mixed; ///< since they were placed the replicas have agreed but for their noise
     } work;
 };
 

@@ -152,24 +152,32 @@ enum status mf_replicas_double(struct replicas *replicas, struct replicas_plan *
     return run_all(replicas, plan, threads, progress, listener, double_one);
 }
 
-double mf_replicas_inefficiency(const struct replicas *replicas, const double *ideal,
+/// Mean of number a over part p of `parts` of a replica's samples.
+static double mean_of_part(const struct replicas *replicas, size_t k, size_t p, size_t parts,
+                           size_t a) {
+    const size_t length = REPLICAS_BLOCKS / parts;
+    double sum = 0;
+    for (size_t b = p * length; b < (p + 1) * length; b++)
+        sum += replicas->member[k].block[b * replicas->numbers + a];
+    return sum / (double)length;
+}
+
+double mf_replicas_inefficiency(const struct replicas *replicas, size_t parts, const double *ideal,
                                 const size_t *seen, size_t count) {
-    const size_t numbers = replicas->numbers;
     double scatter = 0, variance = 0;
     for (size_t n = 0; n < count; n++) {
         const size_t a = seen[n];
-        struct running_mean blocks = {0};
+        struct running_mean means = {0};
         for (size_t k = 0; k < replicas->count; k++)
-            for (size_t b = 0; b < REPLICAS_BLOCKS; b++)
-                mf_statistics_add(&blocks, replicas->member[k].block[b * numbers + a]);
+            for (size_t p = 0; p < parts; p++)
+                mf_statistics_add(&means, mean_of_part(replicas, k, p, parts, a));
         // Weighted by 1/S²: bins with many pairs would drown the others.
         const double weight = 1 / (ideal[a] * ideal[a]);
-        scatter += weight * blocks.squares / (blocks.count - 1);
+        scatter += weight * means.squares / (means.count - 1);
         variance += weight * mf_comoments_covariance(&replicas->counts, a, a);
     }
-    const double block_samples =
-        replicas->counts.count / (double)(replicas->count * REPLICAS_BLOCKS);
-    return variance > 0 ? fmax(1, scatter / variance * block_samples) : 1;
+    const double samples = replicas->counts.count / (double)(replicas->count * parts);
+    return variance > 0 ? fmax(1, scatter / variance * samples) : 1;
 }
 
 double mf_replicas_disagreement(const struct replicas *replicas, const double *ideal,

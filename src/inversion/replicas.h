@@ -69,10 +69,12 @@ struct replicas_mean mf_replicas_mean(const struct replicas *replicas, size_t su
 /// Part of the moves that were taken, the mean over the samplers.
 double mf_replicas_acceptance(const struct replicas *replicas);
 
-/// How many samples count as one independent, from the scatter of the block means, averaged over
-/// `count` bins, the numbers of which are in `seen`, because that of one bin is noisy.
+/// How many samples count as one independent, from the scatter of the means of parts of each
+/// replica's samples, averaged over `count` bins, the numbers of which are in `seen`, because that
+/// of one bin is noisy.
+/// @param[in] parts  REPLICAS_BLOCKS, or 1 where samples remember more than a block
 /// @param[in] ideal  shape [bins]: S if g were 1
-double mf_replicas_inefficiency(const struct replicas *replicas, const double *ideal,
+double mf_replicas_inefficiency(const struct replicas *replicas, size_t parts, const double *ideal,
                                 const size_t *seen, size_t count);
 
 /// Variance of the replicas' means over what the scatter of the blocks within them makes of it:

@@ -88,6 +88,64 @@ static void test_what_has_not_settled_is_named(void **state) {
     gsl_rng_free(rng);
 }
 
+/// What differs between replicas is noise after they have been alike once since they were placed;
+/// what changes along the samples never is.
+static void test_what_replicas_remember_is_noise_once_they_have_mixed(void **state) {
+    (void)state;
+    static struct made made;
+    struct inversion_unsettled *unsettled = &made.state.verdict.unsettled;
+    gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
+    for (int mixed = 0; mixed < 2; mixed++) {
+        make(&made, rng, 0, 0);
+        for (size_t b = 0; b < REPLICAS_BLOCKS; b++)
+            made.block[5][b * NUMBERS + 3] += 12;
+        made.state.work.mixed = mixed;
+        assert_ok(mf_inversion_settled_judge(&made.state, unsettled));
+        mf_inversion_settled_forget(&made.state);
+        assert_true(unsettled->found == !mixed);
+        make(&made, rng, 3, 12);
+        made.state.work.mixed = mixed;
+        assert_ok(mf_inversion_settled_judge(&made.state, unsettled));
+        mf_inversion_settled_forget(&made.state);
+        assert_true(unsettled->found);
+    }
+    make(&made, rng, 0, 0);
+    assert_ok(mf_inversion_settled_judge(&made.state, unsettled));
+    mf_inversion_settled_forget(&made.state);
+    assert_true(made.state.work.mixed);
+    gsl_rng_free(rng);
+}
+
+/// Replicas whose means scatter by 2 about the truth, with blocks of unit variance: the mean of all
+/// is off by sqrt((4 + 1/4)/8). By blocks alone it would be known twice as well.
+static void test_error_of_samples_is_that_of_replicas_that_remember(void **state) {
+    (void)state;
+    enum { TRIALS = 400 };
+    static struct made made;
+    double ideal[BINS], blocks = 0, whole = 0;
+    gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
+    for (int n = 0; n < BINS; n++)
+        ideal[n] = 1;
+    for (int trial = 0; trial < TRIALS; trial++) {
+        make(&made, rng, 0, 0);
+        for (size_t k = 0; k < REPLICAS; k++)
+            for (size_t n = 0; n < BINS; n++) {
+                const double off = gsl_ran_gaussian(rng, 2);
+                for (size_t b = 0; b < REPLICAS_BLOCKS; b++)
+                    made.block[k][b * NUMBERS + n] += off;
+            }
+        const struct replicas *replicas = &made.state.replicas;
+        blocks += mf_replicas_inefficiency(replicas, REPLICAS_BLOCKS, ideal, made.known_bin, BINS) /
+                  replicas->counts.count / TRIALS;
+        whole += mf_replicas_inefficiency(replicas, 1, ideal, made.known_bin, BINS) /
+                 replicas->counts.count / TRIALS;
+    }
+    print_message("variance %.3f by replicas, %.3f by blocks; 4.25/8 is right\n", whole, blocks);
+    assert_true(fabs(whole - 4.25 / 8) < 0.02);
+    assert_true(blocks < 0.5 * whole);
+    gsl_rng_free(rng);
+}
+
 /// A change of a number along the samples is how far it may be off, and so is the standard error of
 /// its mean by replicas of which one is elsewhere, 12/8; noise alone, of unit variance in each
 /// block, is none on average: its squares are 0.4 and 1/32, and of 2000 the mean has an error of
@@ -222,6 +280,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_settled_samples_are_hardly_ever_found_not_to_be),
         cmocka_unit_test(test_what_has_not_settled_is_named),
+        cmocka_unit_test(test_what_replicas_remember_is_noise_once_they_have_mixed),
+        cmocka_unit_test(test_error_of_samples_is_that_of_replicas_that_remember),
         cmocka_unit_test(test_shift_is_the_way_along_the_samples_and_the_scatter_of_replicas),
         cmocka_unit_test(
             test_samples_tell_the_way_to_a_target_that_is_far_from_what_has_not_settled),
