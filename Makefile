@@ -13,7 +13,7 @@
 # make check-live     the live view, also in a browser (minutes)
 # make check-stress   time steps, friction, tables, sizes and lengths beyond the ordinary; kills, a clock set
 #                     back, a German locale (minutes)
-# make asan           the whole test suite under address and undefined-behaviour sanitizers
+# make asan           unit and cli tests under address and undefined-behaviour sanitizers
 # make fuzz           damaged files, SECONDS=600 of them: every reader (libFuzzer, needs clang), whole runs
 # make tsan           tests of threads and a threaded simulation under the thread sanitizer
 # make lint           formatting, static analysis, layers, names, licence lines, lengths
@@ -199,13 +199,12 @@ check-stress: all $(STRESS) $(KILL_HOOK) $(CLOCK_HOOK)
 	$(MAKE) SECONDS=60 fuzz-programs
 	KILL_HOOK=$(abspath $(KILL_HOOK)) CLOCK_HOOK=$(abspath $(CLOCK_HOOK)) MESOFIT=$(abspath $(PROGRAM)) tests/tools/run_tests.sh $(STRESS)
 
-# -Og: with -O1 GCC takes two to four times as long over the vector kernels, which are one large
-# function for each combination of constant arguments.
-SANITIZED = -Og -g1 -fno-omit-frame-pointer
+# Unit and cli tests: those of physics run the same code for longer.
+SANITIZED = -O1 -g1 -fno-omit-frame-pointer
 ASAN = $(MAKE) BUILD=build/asan SANITIZE="-fsanitize=address,undefined -fno-sanitize-recover=all" \
 	    CFLAGS="$(SANITIZED)"
 asan:
-	$(ASAN) check-all
+	$(ASAN) check-sanitized
 
 # Fuzzing. The readers belong to a few layers, which clang builds anew; the rest is as it always is.
 FUZZED  = $(filter src/base/% src/curves/% src/io/% src/input/% src/trajectory/%,$(SOURCES)) src/system/composition.c \
@@ -243,10 +242,13 @@ tsan:
 check-threads: $(PROGRAM) $(THREADED)
 	tests/tools/check_threads.sh $(PROGRAM) $(THREADED)
 
-# The tutorial's fits are long for sanitizers, and shorter ones see the same code.
-.PHONY: check-all
+.PHONY: check-all check-sanitized
 check-all: $(PROGRAM) $(TESTS)
-	MESOFIT=$(abspath $(PROGRAM)) tests/tools/run_tests.sh $(filter-out $(if $(SANITIZE),%/test_tutorial),$(TESTS))
+	MESOFIT=$(abspath $(PROGRAM)) tests/tools/run_tests.sh $(TESTS)
+
+# The tutorial's fits are long for sanitizers, and shorter ones see the same code.
+check-sanitized: $(PROGRAM) $(UNIT) $(CLI)
+	MESOFIT=$(abspath $(PROGRAM)) tests/tools/run_tests.sh $(filter-out %/test_tutorial,$(UNIT) $(CLI))
 
 PREFIX ?= /usr/local
 LIBDIR ?= $(PREFIX)/lib
