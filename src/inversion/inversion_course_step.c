@@ -34,7 +34,7 @@ void mf_inversion_relax(struct inversion *inversion) {
     *damping = fmin(1, 1.5 * *damping);
     if (left < -most_left * squares && !mf_inversion_is_near(inversion) &&
         course->has_other == course->progress.has_other)
-        *damping = fmin(*damping, way / (squares - left));
+        *damping = fmin(*damping, fmax(mf_inversion_least_damping, way / (squares - left)));
 }
 
 void mf_inversion_take_step(struct inversion *inversion) {

@@ -19,6 +19,10 @@ void mf_inversion_pressure_measure(struct inversion_state *state) {
         (double)mf_composition_particles(&state->composition) * state->problem->scene.temperature;
     state->pressure.value = (state->box.dimensions * ideal + virial.mean) / unit;
     state->pressure.error = virial.error / unit;
+    const struct target *target = &state->problem->targets.target[TARGET_PRESSURE];
+    if (target->count > 0)
+        state->verdict.distance[TARGET_PRESSURE] =
+            mf_targets_distance(target, &state->pressure.value, &state->pressure.error);
 }
 
 double mf_inversion_pressure_shift(const struct inversion_state *state) {

@@ -90,11 +90,7 @@ static void assess_covariance(struct inversion_state *state) {
 }
 
 enum status mf_inversion_response_assess(struct inversion_state *state) {
-    const struct targets *targets = &state->problem->targets;
     mf_inversion_pressure_measure(state);
-    if (targets_ask(targets, TARGET_PRESSURE))
-        state->verdict.distance[TARGET_PRESSURE] = mf_targets_distance(
-            &targets->target[TARGET_PRESSURE], &state->pressure.value, &state->pressure.error);
     assess_covariance(state);
     return mf_inversion_pressure_slopes(state);
 }

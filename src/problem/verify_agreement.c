@@ -114,8 +114,7 @@ static double find_share(const struct targets *targets, const struct observed *o
     for (int kind = 0; kind < TARGETS; kind++) {
         const struct target *const target = &targets->target[kind];
         for (size_t k = 0; k < target->count; k++) {
-            const double error =
-                hypot(known_or_0(target->error[k]), common_error(targets, target, k));
+            const double error = known_or_0(target->error[k]);
             theirs[kind].noise += error * error / (double)target->count;
             own[kind].noise += pow(known_or_0(observed->error[kind][k]), 2) / (double)target->count;
         }
@@ -133,8 +132,13 @@ static double find_share(const struct targets *targets, const struct observed *o
 /// values are as often too small: F instead of χ².
 static double find_probable(const struct statistics_independence *known) {
     static const double chance = 1e-3;
-    return known->freedom > 0 ? gsl_cdf_fdist_Qinv(chance, known->numbers, known->freedom)
-                              : INFINITY;
+    static const double many = 200; // F is that of known errors, and GSL's inverse fails at times
+    const double numbers = fmax(1, known->numbers);
+    if (!(known->freedom >= 1))
+        return INFINITY;
+    const double probable =
+        known->freedom < many ? gsl_cdf_fdist_Qinv(chance, numbers, known->freedom) : NAN;
+    return isfinite(probable) ? probable : gsl_cdf_chisq_Qinv(chance, numbers) / numbers;
 }
 
 /// A target with few counts has too small an error where they are fewer than expected: it is that

@@ -117,7 +117,7 @@ bool mf_fit_verdict_contradicts(const struct verification *verification,
     char unit[UNITS_NAME_SIZE];
     mf_units_suffix(units, "k_B T_0/lambda^d", unit);
     const struct target_distance *rdf = &agreement[TARGET_RDF].distance;
-    const bool several = rdf->count < verification->distance[TARGET_RDF].count;
+    const bool several = fitted->bins.count < fitted->target[TARGET_RDF].count;
     const struct thermodynamics_summary *found = &verification->thermodynamics;
     const struct target_distance *pressure = &verification->distance[TARGET_PRESSURE];
     if (targets_ask(fitted, TARGET_PRESSURE) && pressure->rms > noise_margin * pressure->noise) {

@@ -129,13 +129,29 @@ static void test_agreement_knows_that_the_factor_of_a_target_is_uncertain(void *
     for (int k = 0; k < BINS; k += 2)
         of.value[k] = 1.01;
     assert_false(holds(&of, 0));
-    // The noise of a fit has that error, too, and nothing of it is its samples'.
+    // The noise of a fit does not have that error: a difference between bins is none of it.
     make(&of, 1e-6, 1e-6, 50);
     of.targets.bins.count = BINS;
     of.targets.target[TARGET_RDF].factor_error = &one_percent;
     for (int k = 0; k < BINS; k++)
         of.value[k] += k % 2 ? 1e-5 : -1e-5;
-    assert_false(holds(&of, 0.01));
+    assert_false(holds(&of, 1e-6));
+}
+
+/// A target of which a value is not known, and a verification whose bins hardly know each other's
+/// scatter, judge the others nevertheless: a bound that is no number would hold anything.
+static void test_agreement_is_judged_where_a_value_is_not_known(void **state) {
+    struct case_of of;
+    (void)state;
+    make(&of, 0.002, 0.002, 50);
+    for (int k = 0; k < BINS; k++)
+        of.value[k] = 1.1;
+    of.value[3] = NAN;
+    assert_false(holds(&of, 0.003));
+    // GSL's inverse of F has no answer here.
+    of.sections.section[0].known.numbers = 13.99;
+    of.sections.section[0].known.freedom = 770.5;
+    assert_false(holds(&of, 0.003));
 }
 
 /// The farthest section is the one that is told, by its own measure.
@@ -164,6 +180,7 @@ int main(void) {
         cmocka_unit_test(test_agreement_is_wrong_in_one_of_a_thousand),
         cmocka_unit_test(test_agreement_takes_the_error_of_the_counts_that_are_expected),
         cmocka_unit_test(test_agreement_knows_that_the_factor_of_a_target_is_uncertain),
+        cmocka_unit_test(test_agreement_is_judged_where_a_value_is_not_known),
         cmocka_unit_test(test_agreement_is_of_the_least_probable_section),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
