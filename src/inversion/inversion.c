@@ -126,6 +126,8 @@ static enum status advance(struct inversion *inversion, struct inverse_step *ste
     mf_inversion_trail_add(&inversion->trail, first->replicas.counts.mean, first->target.counts);
     TRY(mf_inversion_course_judge(inversion, &kept));
     converged = mf_inversion_has_converged(inversion, kept && !inversion->verdict.unsettled.found);
+    if (course->walked)
+        TRY(mf_inversion_band_find(inversion));
     if (converged)
         TRY(mf_inversion_take_last_step(inversion));
     describe(inversion, own, converged, step);

@@ -153,13 +153,14 @@ static double assess(struct inversion_state *state, struct inversion_section *se
         // An empty bin still has the uncertainty of one count.
         const double sampled =
             fmax(mf_comoments_covariance(counts, bin, bin), 1 / counts->count) / independent;
+        const double common = state->target.common ? state->target.common[a] : 0;
         state->excess[a] = counts->mean[bin] - state->target.counts[bin];
         state->variance[a] = sampled + find_target_variance(state, a);
         if (!state->grid.seen[a])
             continue;
         seen++;
         own += sampled / unit;
-        both += state->variance[a] / unit;
+        both += (state->variance[a] + common * common) / unit;
     }
     const double misfit = mf_inversion_chi_squared(state, state->excess, section->known,
                                                    section->known + section->known_count);

@@ -165,6 +165,16 @@ static void add_way(struct inversion *inversion, const double *step, const doubl
         add_square(inversion, pow(ramp->way / variance, 2), scratch);
 }
 
+/// A fit that ends while it walks on has gone where its targets hardly see: the way is an error.
+static void add_walk(struct inversion *inversion, double *scratch) {
+    const struct potential_grid *grid = inversion_grid(inversion);
+    for (size_t a = 0; a < grid->known; a++) {
+        const size_t point = grid->known_point[a];
+        scratch[a] = inversion->course.best.phi[point] - inversion->course.met_phi[point];
+    }
+    add_square(inversion, 1, scratch);
+}
+
 /// Of several states the pressure whose way is the most of its error.
 static void find_farthest(struct inversion *inversion, const double *step, double *scratch) {
     const struct inverse_ramp *ramp = &inversion->course.band.ramp;
@@ -307,6 +317,8 @@ enum status mf_inversion_band_find(struct inversion *inversion) {
               ? mf_inversion_basis_covariance(inversion->state, band->covariance,
                                               &band->ramp.directions)
               : mf_inversion_band_covariance(&system, band->covariance, &band->ramp.directions));
+    if (inversion->course.walked)
+        add_walk(inversion, scratch);
     take_constants_off(inversion);
     weigh_ramp(inversion, weight);
     CHECK(find_step(inversion, &system, step));

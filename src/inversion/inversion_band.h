@@ -13,11 +13,14 @@
 ///
 /// What the most probable step from there would still change of the ramp is an error too. `imc` and
 /// `auto` take this step near the noise, and end when it is below half of the errors of A and of
-/// the pressure, with groups twice running. They take it then, too; it still counts, as the
-/// response is not exactly linear.
+/// the pressure, with groups in the mean of three or more. They take it then, too; it still counts,
+/// as the response is not exactly linear.
 ///
 /// C of groups is that of inversion_response. Off over stated, U of bonds and angles: 0.98(4) and
 /// 1.04(3) over 32 twins (docs/results/molecules.md).
+///
+/// A fit that ends though it would walk on (mf_inversion_has_converged) has an error more, the way
+/// it has walked: Σ + w wᵀ.
 ///
 /// Errors of bins count as independent. Those by sampling are correlated as S is, and with that
 /// F = n C/(k_B T)² (n independent configurations; the canonical ensemble is an exponential family)

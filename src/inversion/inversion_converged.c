@@ -4,6 +4,7 @@
 #include "inversion/inversion.h"
 
 #include <math.h>
+#include <string.h>
 
 /// The way that is left of the ramp, and of the pressure, in their errors, at which both have
 /// settled.
@@ -121,7 +122,12 @@ bool mf_inversion_has_converged(struct inversion *inversion, bool kept) {
     ways->ramp[ways->met % INVERSION_MOST_WAYS] = inversion->course.band.ramp.way;
     ways->pressure[ways->met % INVERSION_MOST_WAYS] = inversion->course.band.farthest.way;
     ways->met++;
-    return !must_settle(inversion) ||
-           has_settled(inversion,
-                       inversion_grid(inversion)->groups > 0 ? LEAST_MET_WITH_GROUPS : 1);
+    const struct potential_grid *grid = inversion_grid(inversion);
+    if (ways->met == 1 && grid->points > 0)
+        memcpy(inversion->course.met_phi, inversion->course.phi, grid->points * sizeof(double));
+    if (!must_settle(inversion) ||
+        has_settled(inversion, grid->groups > 0 ? LEAST_MET_WITH_GROUPS : 1))
+        return true;
+    inversion->course.walked = grid->groups > 0 && ways->met >= INVERSION_MOST_WAYS;
+    return inversion->course.walked;
 }

@@ -102,8 +102,9 @@ static double known_or_0(double error) {
 
 /// The error that value k has in common with the others of its pair type: that of their factor.
 static double common_error(const struct targets *targets, const struct target *target, size_t k) {
-    return target->factor_error ? target->factor_error[k / targets->bins.count] * target->value[k]
-                                : 0;
+    return target->factor_error
+               ? known_or_0(target->factor_error[k / targets->bins.count] * target->value[k])
+               : 0;
 }
 
 /// How many times the variance of the verification is that of the fit's samples: with it the noise
@@ -114,7 +115,8 @@ static double find_share(const struct targets *targets, const struct observed *o
     for (int kind = 0; kind < TARGETS; kind++) {
         const struct target *const target = &targets->target[kind];
         for (size_t k = 0; k < target->count; k++) {
-            const double error = known_or_0(target->error[k]);
+            const double error =
+                hypot(known_or_0(target->error[k]), common_error(targets, target, k));
             theirs[kind].noise += error * error / (double)target->count;
             own[kind].noise += pow(known_or_0(observed->error[kind][k]), 2) / (double)target->count;
         }

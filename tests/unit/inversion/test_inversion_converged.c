@@ -58,7 +58,7 @@ static void test_fit_with_groups_ends_when_the_ways_of_three_iterations_cancel(v
     inversion->verdict.section[0].misfit = 1.5;
     inversion->course.band.ramp.way = -0.2;
     inversion->course.band.farthest.way = 0.7;
-    for (int k = 0; k < 20; k++)
+    for (int k = 0; k < 4; k++)
         assert_false(mf_inversion_has_converged(inversion, true));
     inversion->course.band.ramp.way = 0.12;
     assert_false(mf_inversion_has_converged(inversion, true));
@@ -66,6 +66,28 @@ static void test_fit_with_groups_ends_when_the_ways_of_three_iterations_cancel(v
     assert_false(mf_inversion_has_converged(inversion, true));
     inversion->course.band.ramp.way = -0.15; // the last three
     assert_true(mf_inversion_has_converged(inversion, true));
+}
+
+/// Eight iterations running that meet the targets are enough, and the way since then is an error.
+static void test_fit_with_groups_ends_though_it_walks_on(void **state) {
+    (void)state;
+    struct end end;
+    struct inversion *inversion = make_end(&end, 1);
+    double phi[2] = {0, 0}, met[2] = {0, 0};
+    inversion->state->grid.points = 2;
+    inversion->course.phi = phi;
+    inversion->course.met_phi = met;
+    inversion->course.band.ramp.way = -0.06;
+    for (int n = 0; n < 5; n++, phi[0] += 1)
+        assert_false(mf_inversion_has_converged(inversion, true));
+    inversion->verdict.section[0].misfit = 2.1;
+    assert_false(mf_inversion_has_converged(inversion, true));
+    inversion->verdict.section[0].misfit = 1.5;
+    for (int n = 0; n < INVERSION_MOST_WAYS - 1; n++, phi[0] += 1)
+        assert_false(mf_inversion_has_converged(inversion, true));
+    assert_true(mf_inversion_has_converged(inversion, true));
+    assert_true(inversion->course.walked);
+    assert_true(met[0] == 5);
 }
 
 /// A pressure among the targets holds what g hardly sees, and groups alone have no ramp.
@@ -132,6 +154,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_fit_of_pairs_ends_when_it_agrees_once),
         cmocka_unit_test(test_fit_with_groups_ends_when_the_ways_of_three_iterations_cancel),
+        cmocka_unit_test(test_fit_with_groups_ends_though_it_walks_on),
         cmocka_unit_test(test_fit_with_groups_ends_at_once_where_nothing_must_settle),
         cmocka_unit_test(test_fit_ends_when_all_sections_agree),
         cmocka_unit_test(test_fit_that_forgets_ends_when_its_mean_or_its_last_potential_agrees),
