@@ -138,20 +138,36 @@ static void test_agreement_knows_that_the_factor_of_a_target_is_uncertain(void *
     assert_false(holds(&of, 0.01));
 }
 
-/// A target of which a value is not known, and a verification whose bins hardly know each other's
-/// scatter, judge the others nevertheless: a bound that is no number would hold anything.
-static void test_agreement_is_judged_where_a_value_is_not_known(void **state) {
+/// The noise of the fit counts whatever single values of the target are not known, as those of a
+/// type with one bead.
+static void test_agreement_knows_the_noise_of_the_fit_where_a_value_is_not_known(void **state) {
+    static const double exact = 0;
     struct case_of of;
     (void)state;
-    make(&of, 0.002, 0.002, 50);
+    make(&of, 0.002, 1e-4, 50);
+    of.targets.bins.count = BINS;
+    of.targets.target[TARGET_RDF].factor_error = &exact;
     for (int k = 0; k < BINS; k++)
-        of.value[k] = 1.1;
-    of.value[3] = NAN;
-    assert_false(holds(&of, 0.003));
-    // GSL's inverse of F has no answer here.
+        of.value[k] += k % 2 ? 0.01 : -0.01;
+    of.wanted[3] = of.value[3] = NAN;
+    assert_false(holds(&of, 0.002));
+    assert_true(holds(&of, 0.01));
+}
+
+/// GSL's inverse of F has no answer for these, and a bound that is no number would hold anything.
+static void test_agreement_is_bounded_where_the_inverse_of_f_fails(void **state) {
+    struct case_of of;
+    struct verify_agreement agreement[TARGETS];
+    (void)state;
+    make(&of, 0.002, 0.002, 50);
     of.sections.section[0].known.numbers = 13.99;
     of.sections.section[0].known.freedom = 770.5;
-    assert_false(holds(&of, 0.003));
+    mf_verify_agree(&of.targets, &of.sections, &of.observed, 0, agreement);
+    print_message("bound %.4f\n", agreement[TARGET_RDF].probable);
+    assert_true(fabs(agreement[TARGET_RDF].probable - 2.58) < 0.05);
+    of.sections.section[0].known.freedom = 0.5; // hardly two values: nothing is known
+    mf_verify_agree(&of.targets, &of.sections, &of.observed, 0, agreement);
+    assert_true(isinf(agreement[TARGET_RDF].probable));
 }
 
 /// The farthest section is the one that is told, by its own measure.
@@ -180,7 +196,8 @@ int main(void) {
         cmocka_unit_test(test_agreement_is_wrong_in_one_of_a_thousand),
         cmocka_unit_test(test_agreement_takes_the_error_of_the_counts_that_are_expected),
         cmocka_unit_test(test_agreement_knows_that_the_factor_of_a_target_is_uncertain),
-        cmocka_unit_test(test_agreement_is_judged_where_a_value_is_not_known),
+        cmocka_unit_test(test_agreement_knows_the_noise_of_the_fit_where_a_value_is_not_known),
+        cmocka_unit_test(test_agreement_is_bounded_where_the_inverse_of_f_fails),
         cmocka_unit_test(test_agreement_is_of_the_least_probable_section),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
