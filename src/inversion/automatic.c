@@ -17,13 +17,20 @@ static const double again = 0.5;
 
 static const char *const columns[] = {INVERSION_COLUMNS, "newton", "misfit[1]", "directions", NULL};
 
-/// Whether Newton's step is tried: near the noise, or where it has not failed yet. Of groups C
-/// tells no more than the careful step until the targets are near.
+/// What Newton's step leaves of what is off, by the noise of C: of N bins and n independent samples
+/// it is the root of N/n.
+static const double well_known = 1.0 / 3;
+
+/// Whether Newton's step is tried: near the noise, or where C is well known and it has not failed
+/// yet.
 static bool in_basin(const struct inversion *inversion) {
     const struct inversion_progress *progress = &inversion->course.progress;
-    const bool first = isinf(progress->best.distance[TARGET_RDF].rms);
+    const struct inversion_state *first = inversion->state;
+    const bool start = isinf(progress->best.distance[TARGET_RDF].rms);
+    const double independent = first->response.samples / first->inefficiency;
     return mf_inversion_is_near(inversion) ||
-           (!first && inversion->state->coarse.count == 0 &&
+           (!start && first->coarse.count == 0 &&
+            (double)first->grid.known < well_known * well_known * independent &&
             inversion->verdict.distance[TARGET_RDF].rms < again * progress->failed_error);
 }
 

@@ -37,7 +37,7 @@ enum status mf_inversion_observe(struct inversion *inversion,
                                 &(struct inverse_listener){tell_of_state, &sharing}));
         TRY(mf_inversion_response_assess(state));
         if (state->verdict.unsettled.found)
-            state->response.kept = state->pool.samples = 0;
+            state->pool.samples = 0;
         else
             mf_inversion_pool(state);
     }

@@ -144,7 +144,7 @@ static double assess(struct inversion_state *state, struct inversion_section *se
                  mf_replicas_inefficiency(&state->replicas, 1, ideal, known, section->known_count));
     const double independent = counts->count / section->inefficiency;
     const double bins = (double)section->bins;
-    double sum = 0, own = 0, both = 0, seen = 0;
+    double sum = 0, own = 0, both = 0, alone = 0, seen = 0;
     for (size_t n = section->bin; n < section->bin + section->bins; n++)
         sum += pow((counts->mean[n] - state->target.counts[n]) / state->target.unit[n], 2);
     for (size_t a = section->known; a < section->known + section->known_count; a++) {
@@ -160,6 +160,7 @@ static double assess(struct inversion_state *state, struct inversion_section *se
             continue;
         seen++;
         own += sampled / unit;
+        alone += sampled / state->variance[a];
         both += (state->variance[a] + common * common) / unit;
     }
     const double misfit = mf_inversion_chi_squared(state, state->excess, section->known,
@@ -168,6 +169,7 @@ static double assess(struct inversion_state *state, struct inversion_section *se
     section->rms = sqrt(sum / bins) / section->peak;
     section->noise = sqrt(both / bins) / section->peak;
     section->misfit = seen > 0 ? misfit / seen : 0;
+    section->own_misfit = seen > 0 ? alone / seen : 0;
     section->probable = find_probable(state, section);
     section->own_noise = sqrt(own / bins) / section->peak;
     // p of a group need not be known better than that of its target, which has as many bins.

@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "inversion/inversion_state.h"
 
+#include <math.h>
 #include <string.h>
 
 enum status mf_inversion_response_init(struct inversion_state *state) {
@@ -12,6 +13,7 @@ enum status mf_inversion_response_init(struct inversion_state *state) {
     struct inversion_response *response = &state->response;
     size_t size = 0;
     NEW_ARRAY(response->covariance, grid->known * grid->known);
+    NEW_ARRAY(response->mean, grid->known);
     if (grid->groups == 0)
         return STATUS_OK;
     for (size_t g = 0; g < grid->groups; g++)
@@ -31,6 +33,7 @@ done:
 void mf_inversion_response_clear(struct inversion_response *response) {
     mf_memory_free(response->means);
     mf_memory_free(response->values);
+    mf_memory_free(response->mean);
     mf_memory_free(response->covariance);
     *response = (struct inversion_response){0};
 }
@@ -65,32 +68,45 @@ const double *mf_inversion_response_values(const struct inversion_state *state) 
     return state->response.values ? state->response.values : state->response.covariance;
 }
 
-/// C of the present samples, and near the target of all since it was reached. The noise of C leads
-/// from every direction into those that g sees best, so that little seen ones seem better known
-/// than they are and each step goes a part of their way: a third for soft beads with 1400 samples
-/// and as many again in the target, where the pressure was still off by three of its errors
-/// when g had agreed.
-static void assess_covariance(struct inversion_state *state) {
+/// The samples at the present potential that the C of before is worth. Of n samples, s of which are
+/// one independent, C of N bins has the relative variance N s/n as a matrix; and where g has
+/// changed by δ it is off by 2 δ, as a product of two counts is.
+static double find_worth(const struct inversion_state *state) {
+    const struct inversion_response *response = &state->response;
+    const double known = (double)state->grid.known;
+    double squares = 0;
+    for (size_t a = 0; a < state->grid.known; a++) {
+        const size_t bin = state->grid.known_bin[a];
+        squares += pow(
+            (state->replicas.counts.mean[bin] - response->mean[a]) / state->target.ideal[bin], 2);
+    }
+    const double bias = 4 * squares / known;
+    return response->samples > 0
+               ? 1 / (1 / response->samples + bias / (known * state->inefficiency))
+               : 0;
+}
+
+void mf_inversion_response_add(struct inversion_state *state) {
     const struct potential_grid *grid = &state->grid;
     const struct comoments *counts = &state->replicas.counts;
-    const bool near = mf_inversion_state_is_near(state);
-    const double before = near ? state->response.kept : 0;
-    const double share = counts->count / (before + counts->count);
-    state->response.samples = before + counts->count;
-    for (size_t a = 0; a < grid->known; a++)
+    struct inversion_response *response = &state->response;
+    response->samples = find_worth(state) + counts->count;
+    const double share = counts->count / response->samples;
+    for (size_t a = 0; a < grid->known; a++) {
+        const size_t bin = grid->known_bin[a];
         for (size_t b = 0; b < grid->known; b++) {
-            double *c = &state->response.covariance[a * grid->known + b];
-            const double now =
-                mf_comoments_covariance(counts, grid->known_bin[a], grid->known_bin[b]);
-            *c = (1 - share) * *c + share * now;
+            double *c = &response->covariance[a * grid->known + b];
+            *c =
+                (1 - share) * *c + share * mf_comoments_covariance(counts, bin, grid->known_bin[b]);
         }
+        response->mean[a] = (1 - share) * response->mean[a] + share * counts->mean[bin];
+    }
     mf_inversion_response_find(state);
     mf_inversion_kirkwood_buff_respond(state, share);
-    state->response.kept = near ? state->response.samples : 0;
 }
 
 enum status mf_inversion_response_assess(struct inversion_state *state) {
     mf_inversion_pressure_measure(state);
-    assess_covariance(state);
+    mf_inversion_response_add(state);
     return mf_inversion_pressure_slopes(state);
 }

@@ -6,7 +6,9 @@
 #include <math.h>
 #include <string.h>
 
-/// Samples are doubled until their noise is this share of the error, or as small as was asked for.
+/// Samples are doubled until their noise is this share of what is off, each bin in units of its
+/// error, or as small as was asked for: pairs that are rare, of which nobody knows much, then do
+/// not decide how many samples the others need.
 static const double noise_share = 1.0 / 3;
 
 /// A gradient below this many times its noise is hardly more than that: what g is still off is out
@@ -49,7 +51,9 @@ static struct inverse_doubling find_noisiest(const struct inversion_state *state
     struct inverse_doubling noisiest = mf_inversion_kirkwood_buff_noise(state);
     for (int k = 0; k < state->verdict.sections; k++) {
         const struct inversion_section *section = &state->verdict.section[k];
-        const double wanted = fmax(section->precision, find_share(state, section) * section->rms);
+        const double noises = sqrt(section->misfit / section->own_misfit);
+        const double wanted =
+            fmax(section->precision, find_share(state, section) * noises * section->own_noise);
         if (section->own_noise * noisiest.wanted > noisiest.noise * wanted)
             noisiest = (struct inverse_doubling){
                 .noise = section->own_noise, .wanted = wanted, .unit = ""};
@@ -82,14 +86,14 @@ struct sampling {
 /// to them.
 static bool section_tells_way(const struct inversion_state *state,
                               const struct inversion_section *section) {
-    double squares = 0;
+    double squares = 0, seen = 0;
     for (size_t a = section->known; a < section->known + section->known_count; a++) {
         const size_t bin = state->grid.known_bin[a];
-        squares += mf_inversion_settled_shift(&state->replicas, bin) /
-                   (state->target.unit[bin] * state->target.unit[bin]);
+        if (state->grid.seen[a])
+            squares += mf_inversion_settled_shift(&state->replicas, bin) / state->variance[a];
+        seen += state->grid.seen[a];
     }
-    return sqrt(fmax(squares, 0) / (double)section->bins) <
-           section->peak * section->rms * find_share(state, section);
+    return squares < seen * section->misfit * pow(find_share(state, section), 2);
 }
 
 bool mf_inversion_tells_way(const struct inversion_state *state) {

@@ -15,6 +15,7 @@ struct inversion_section {
     double rms, noise;         ///< of the samples and their targets, in peaks
     double own_noise;          ///< of the samples alone
     double misfit;             ///< χ² by bin of the samples, with the noise that they expect
+    double own_misfit;         ///< what the noise of the samples alone adds to it
     double probable;           ///< the same at most, of what agrees but for noise
     double precision;          ///< at which that is small enough
 };

@@ -22,15 +22,16 @@ static void hear(void *context, const struct inverse_progress *progress) {
     told->word[told->words++] = *progress;
 }
 
-/// What is told of one iteration that asks for this noise of g; returns the noise that is left.
-static double observe(double precision, struct told *told) {
+/// What is told of one iteration whose target is this g, 1 of the ideal gas, and that asks for this
+/// noise of it; returns the noise that is left.
+static double observe(double target, double precision, struct told *told) {
     double g[BINS], error[BINS];
     struct fluid fluid;
     struct inversion *inversion = calloc(1, sizeof *inversion);
     assert_non_null(inversion);
     fluid_ideal_gas(&fluid, 3, PARTICLES, 0.01);
     for (int k = 0; k < BINS; k++) {
-        g[k] = 1;
+        g[k] = target;
         error[k] = 1e-4;
     }
     const struct inverse_problem problem = {
@@ -62,7 +63,7 @@ static double observe(double precision, struct told *told) {
 static void test_no_doubling_is_told_where_the_first_samples_are_enough(void **state) {
     (void)state;
     static struct told told;
-    observe(1, &told);
+    observe(1, 1, &told);
     assert_int_equal(told.words, REPLICAS);
     for (int k = 0; k < told.words; k++)
         assert_int_equal(told.word[k].doubling.number, 0);
@@ -71,8 +72,8 @@ static void test_no_doubling_is_told_where_the_first_samples_are_enough(void **s
 static void test_doublings_tell_a_noise_that_falls_to_what_is_wanted(void **state) {
     (void)state;
     static struct told told;
-    const double first = observe(1, &told), wanted = first / 3;
-    const double left = observe(wanted, &told);
+    const double first = observe(1, 1, &told), wanted = first / 3;
+    const double left = observe(1, wanted, &told);
     print_message("noise %.4f, wanted %.4f, left %.4f\n", first, wanted, left);
     assert_true(left <= wanted);
     int number = 0;
@@ -96,11 +97,22 @@ static void test_doublings_tell_a_noise_that_falls_to_what_is_wanted(void **stat
 static void test_doublings_end_with_the_last_that_was_told(void **state) {
     (void)state;
     static struct told told;
-    const double wanted = 1e-6, left = observe(wanted, &told);
+    const double wanted = 1e-6, left = observe(1, wanted, &told);
     const struct inverse_doubling *last = &told.word[told.words - 1].doubling;
     assert_int_equal(last->number, last->most);
     assert_true(left > wanted);
     assert_int_equal(told.words, REPLICAS + last->most * (1 + REPLICAS));
+}
+
+/// The innermost bin has so few pairs that its noise, over all bins, is more than a third of what g
+/// is off; the others tell that it is off, and by how much.
+static void test_bins_with_few_pairs_do_not_decide(void **state) {
+    (void)state;
+    static struct told told;
+    const double noise = observe(0.86, 1e-6, &told);
+    print_message("noise %.3f of 0.14\n", noise);
+    assert_true(noise > 0.14 / 3);
+    assert_int_equal(told.words, REPLICAS);
 }
 
 int main(void) {
@@ -108,6 +120,7 @@ int main(void) {
         cmocka_unit_test(test_no_doubling_is_told_where_the_first_samples_are_enough),
         cmocka_unit_test(test_doublings_tell_a_noise_that_falls_to_what_is_wanted),
         cmocka_unit_test(test_doublings_end_with_the_last_that_was_told),
+        cmocka_unit_test(test_bins_with_few_pairs_do_not_decide),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

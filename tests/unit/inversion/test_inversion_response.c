@@ -119,9 +119,43 @@ static void test_inversion_response_tells_how_lengths_follow_their_values(void *
     clear_twin(&twin);
 }
 
+/// Ten samples of two bins, with this mean of the first and this variance of both.
+static void add_samples(struct inversion_state *state, double mean, double variance) {
+    enum { NUMBERS = 2 };
+    double means[NUMBERS] = {mean, 5},
+           comoment[NUMBERS * NUMBERS] = {10 * variance, 0, 0, 10 * variance};
+    state->replicas.counts =
+        (struct comoments){.size = NUMBERS, .count = 10, .mean = means, .comoment = comoment};
+    mf_inversion_response_add(state);
+}
+
+/// Samples of the same g add up; those of a g that is off by 1 in one of two bins are worth one:
+/// 1/(1/20 + (4/2)/2), where C of each has a relative variance of 2/n.
+static void test_inversion_response_forgets_what_has_changed(void **unused) {
+    (void)unused;
+    size_t bins_known[] = {0, 1};
+    double ideal[] = {5, 5};
+    struct inverse_problem problem = {0};
+    struct inversion_state state = {.problem = &problem,
+                                    .grid = {.known = 2, .known_bin = bins_known},
+                                    .target.ideal = ideal,
+                                    .inefficiency = 1};
+    assert_ok(mf_inversion_response_init(&state));
+    add_samples(&state, 5, 1);
+    assert_close(state.response.covariance[0], 1, 1e-12);
+    add_samples(&state, 5, 3);
+    assert_close(state.response.covariance[0], 2, 1e-12);
+    assert_close(state.response.samples, 20, 1e-12);
+    add_samples(&state, 10, 8);
+    assert_close(state.response.samples, 10 + 1 / 1.05, 1e-12);
+    assert_true(state.response.covariance[0] > 7.3 && state.response.covariance[0] < 8);
+    mf_inversion_response_clear(&state.response);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_inversion_response_tells_how_lengths_follow_their_values),
+        cmocka_unit_test(test_inversion_response_forgets_what_has_changed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

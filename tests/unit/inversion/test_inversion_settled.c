@@ -177,32 +177,31 @@ static void
 test_samples_tell_the_way_to_a_target_that_is_far_from_what_has_not_settled(void **state) {
     (void)state;
     static struct made made;
-    double unit[BINS], wanted = 0;
+    double variance[BINS], wanted = 0;
+    bool seen[BINS];
     struct inverse_problem problem = {.targets.target[TARGET_RDF].count = BINS};
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
     make(&made, rng, 3, 12);
     struct inversion_state *samples = &made.state;
     struct inversion_section *section = &samples->verdict.section[0];
     samples->problem = &problem;
-    samples->target.unit = unit;
+    samples->variance = variance;
+    samples->grid.seen = seen;
     samples->gradient = INFINITY;
     samples->box = (struct box){3, {1, 1, 1}};
     for (size_t n = 0; n < BINS; n++)
-        unit[n] = 1;
-    section->bins = BINS;
-    section->peak = 1;
-    section->misfit = 2;
+        variance[n] = seen[n] = 1;
     section->probable = 1;
-    section->rms = 8;
+    section->misfit = 8 * 8;
     assert_false(mf_inversion_tells_way(samples));
-    section->rms = 14;
+    section->misfit = 14 * 14;
     assert_true(mf_inversion_tells_way(samples));
     samples->basis.count = 1; // g may be off for want of coefficients
     assert_false(mf_inversion_tells_way(samples));
     samples->basis.count = 0;
     section->misfit = 1; // agreement of what may be elsewhere tells nothing
     assert_false(mf_inversion_tells_way(samples));
-    section->misfit = 2;
+    section->misfit = 14 * 14;
     // The pressure changes by 12/(3 V).
     for (size_t k = 0; k < REPLICAS; k++)
         for (size_t b = 0; b < REPLICAS_BLOCKS; b++)
@@ -235,7 +234,7 @@ static double observe(double repulsion, int64_t equilibration, double *sweeps) {
     for (int k = 0; k < POINTS; k++) {
         const double r = 0.1 * (k + 0.5);
         g[k] = exp(-repulsion * exp(-r * r / 0.25));
-        error[k] = 0.1; // nothing is to be doubled
+        error[k] = 1; // nothing is to be doubled, nor far off
     }
     const struct inverse_problem problem = {
         .targets = {.bins = {0, 0.1, POINTS},
