@@ -8,9 +8,24 @@
 #include <math.h>
 #include <string.h>
 
+/// By how much larger the noise of g of all pair types is, rms, than that of g of all beads in the
+/// same samples: of few beads there are few pairs.
+static double find_rarity(const struct composition *composition) {
+    double all = 0, sum = 0, pairs = 0;
+    for (int pair = 0; pair < mf_composition_pairs(composition); pair++)
+        all += mf_composition_possible_pairs(composition, pair);
+    for (int pair = 0; pair < mf_composition_pairs(composition); pair++) {
+        const double own = mf_composition_possible_pairs(composition, pair);
+        sum += own > 0 ? all / own : 0;
+        pairs += own > 0;
+    }
+    return pairs > 0 ? sqrt(sum / pairs) : 1;
+}
+
 double mf_fit_defaults_precision(const struct fit_choice *c) {
     // Molecules move slowly: a third of the noise would take ten times as long.
-    const double least = scene_has_molecules(&c->read->scene.molecules) ? 0.003 : 0.001;
+    const double alike = scene_has_molecules(&c->read->scene.molecules) ? 0.003 : 0.001;
+    const double least = alike * find_rarity(c->rdf->composition);
     static const double most = 0.004;
     // More samples than that would make the error of the result smaller by an eighth at most.
     static const double part_of_target = 0.5;

@@ -15,13 +15,13 @@
 static const struct run_options options = {.threads = 1};
 
 /// A gas of soft beads, g = exp(−10 exp(−(r/0.5)²)), up to 4.5, whose parabolas are gentle.
-static void write_target(void **state) {
+static void write_target(void **state, double error) {
     char text[8192];
     int length = snprintf(text, sizeof text, "# r[lambda]\tg[1]\tg_error[1]\n");
     for (int k = 0; k < 150; k++) {
         const double r = (k + 0.5) * 0.03;
-        length += snprintf(text + length, sizeof text - (size_t)length, "%.4f %.6f 0.002\n", r,
-                           exp(-10 * exp(-r * r / 0.25)));
+        length += snprintf(text + length, sizeof text - (size_t)length, "%.4f %.6f %g\n", r,
+                           exp(-10 * exp(-r * r / 0.25)), error);
     }
     temporary_folder_write(*state, "rdf.tsv", text, (size_t)length);
 }
@@ -36,7 +36,7 @@ static enum status read_run(void **state, struct fit_file *fit, const char *name
 
 static void test_fit_defaults_choose_all_that_target_density_and_temperature_leave(void **state) {
     struct fit_file fit;
-    write_target(state);
+    write_target(state, 0.002);
     assert_ok(read_run(state, &fit, "run.json",
                        TARGET "\"scene\": {\"density\": 0.3, \"temperature\": 1}}"));
     const struct simulation_setup *setup = &fit.scene.setup;
@@ -62,11 +62,27 @@ static void test_fit_defaults_choose_all_that_target_density_and_temperature_lea
     mf_fit_file_clear(&fit);
 }
 
+/// Of two types in equal parts a quarter of all pairs are of either and half are unlike: in the
+/// samples that tell g of all beads within 0.001, theirs is known within that times
+/// sqrt((4 + 2 + 4)/3).
+static void test_fit_defaults_ask_of_types_what_samples_of_all_beads_tell(void **state) {
+    struct fit_file fit;
+    write_target(state, 1e-5);
+    assert_ok(read_run(state, &fit, "run.json",
+                       "{\"target\": {\"rdf\": {\"A-A\": {\"file\": \"rdf.tsv\"}, "
+                       "\"A-B\": {\"file\": \"rdf.tsv\"}, \"B-B\": {\"file\": \"rdf.tsv\"}}}, "
+                       "\"scene\": {\"density\": 0.3, "
+                       "\"particles\": {\"types\": {\"A\": 4000, \"B\": 4000}}}}"));
+    assert_close(((const struct inversion_parameters *)fit.method_parameters)->precision,
+                 0.001 * sqrt(10.0 / 3), 1e-6);
+    mf_fit_file_clear(&fit);
+}
+
 /// What used.json says is what was chosen, so that nothing is left to be chosen again.
 static void test_fit_defaults_stand_in_used_json(void **state) {
     struct fit_file fit, again;
     char path[1024];
-    write_target(state);
+    write_target(state, 0.002);
     assert_ok(read_run(state, &fit, "run.json", TARGET "\"scene\": {\"density\": 0.3}}"));
     snprintf(path, sizeof path, "%s", temporary_folder_file(*state, "used.json"));
     struct json_writer *writer = mf_json_writer_create();
@@ -90,7 +106,7 @@ static void test_fit_defaults_stand_in_used_json(void **state) {
 
 static void test_fit_defaults_leave_what_the_file_says(void **state) {
     struct fit_file fit;
-    write_target(state);
+    write_target(state, 0.002);
     assert_ok(
         read_run(state, &fit, "run.json",
                  "{\"target\": {\"rdf\": {\"file\": \"rdf.tsv\", \"cutoff\": 3.5}}, "
@@ -111,7 +127,7 @@ static void test_fit_defaults_leave_what_the_file_says(void **state) {
 /// As many samples in all, in how many simulations ever.
 static void test_fit_defaults_choose_samples_for_the_simulations_that_the_file_says(void **state) {
     struct fit_file few, many;
-    write_target(state);
+    write_target(state, 0.002);
 #define SCENE "\"scene\": {\"density\": 0.3, \"temperature\": 1}, \"verification\": "
     assert_ok(read_run(state, &few, "few.json", TARGET SCENE "{\"replicas\": 1}}"));
     assert_ok(read_run(state, &many, "many.json", TARGET SCENE "{\"replicas\": 2}}"));
@@ -137,7 +153,7 @@ static void test_fit_defaults_choose_friction_and_time_step_beside_a_method(void
                                         "\"dissipative_transverse\": {\"law\": \"power\", "
                                         "\"sigma\": 3}, "};
     static const size_t choices[] = {2, 1, 0, 1};
-    write_target(state);
+    write_target(state, 0.002);
     for (int k = 0; k < 4; k++) {
         struct fit_file fit;
         char text[2048];
@@ -159,7 +175,7 @@ static void test_fit_defaults_choose_friction_and_time_step_beside_a_method(void
 static void test_fit_defaults_choose_time_steps_by_the_friction_without_velocities(void **state) {
     static const char *const integrators[] = {"euler-maruyama", "brownian"};
     double time_step[2][2];
-    write_target(state);
+    write_target(state, 0.002);
     for (int k = 0; k < 4; k++) {
         struct fit_file fit;
         char text[2048];
@@ -187,7 +203,7 @@ static void test_fit_defaults_choose_time_steps_by_the_friction_without_velociti
 static void test_fit_defaults_choose_no_friction_where_that_across_pairs_is_found(void **state) {
     static const char vacf[] = "0 1\n0.05 0.9\n0.1 0.8\n0.15 0.7\n";
     struct fit_file fit;
-    write_target(state);
+    write_target(state, 0.002);
     temporary_folder_write(*state, "vacf.tsv", vacf, strlen(vacf));
     assert_ok(read_run(state, &fit, "run.json",
                        "{\"target\": {\"rdf\": {\"file\": \"rdf.tsv\", \"fitted\": \"no\"}, "
@@ -204,7 +220,7 @@ static void test_fit_defaults_choose_no_friction_where_that_across_pairs_is_foun
 /// Half of a box that is given ends g(r), all of the last bin within it.
 static void test_fit_defaults_cut_g_at_half_of_a_box_that_is_given(void **state) {
     struct fit_file fit;
-    write_target(state);
+    write_target(state, 0.002);
     assert_ok(read_run(state, &fit, "run.json",
                        TARGET
                        "\"scene\": {\"box\": [5.6, 5.6, 5.6], \"particles\": {\"count\": 53}}}"));
@@ -273,7 +289,7 @@ static void test_fit_defaults_find_omega_where_targets_move(void **state) {
     static const char etd[] = "# time[tau]\tE(r0=0.55)[1]\tE(r0=0.65)[1]\tE(r0=0.75)[1]\n"
                               "0 1 1 1\n0.07 1 0.9 0.6\n0.14 0.9 0.7 0.4\n0.21 0.8 0.6 0.3\n";
     struct fit_file fit;
-    write_target(state);
+    write_target(state, 0.002);
     temporary_folder_write(*state, "etd.tsv", etd, strlen(etd));
     assert_ok(read_run(state, &fit, "run.json",
                        "{\"target\": {\"rdf\": {\"file\": \"rdf.tsv\"}, \"etd\": {\"file\": "
@@ -291,7 +307,7 @@ static void test_fit_defaults_find_omega_where_targets_move(void **state) {
 
 static void test_fit_defaults_tell_faults_once_and_only_what_is_missing(void **state) {
     struct fit_file fit;
-    write_target(state);
+    write_target(state, 0.002);
     assert_fails(read_run(state, &fit, "a.json", TARGET "\"scene\": {\"temperature\": 1}}"),
                  STATUS_BAD_INPUT, "scene.box: missing: it or \"density\" is required");
     mf_fit_file_clear(&fit);
@@ -316,6 +332,7 @@ static void test_fit_defaults_tell_faults_once_and_only_what_is_missing(void **s
 int main(void) {
     const struct CMUnitTest tests[] = {
         IN_FOLDER(test_fit_defaults_choose_all_that_target_density_and_temperature_leave),
+        IN_FOLDER(test_fit_defaults_ask_of_types_what_samples_of_all_beads_tell),
         IN_FOLDER(test_fit_defaults_stand_in_used_json),
         IN_FOLDER(test_fit_defaults_leave_what_the_file_says),
         IN_FOLDER(test_fit_defaults_choose_samples_for_the_simulations_that_the_file_says),
