@@ -36,8 +36,8 @@ size_t mf_inversion_band_spans(struct inversion_band *band, size_t points,
     return INVERSION_BAND_SPANS;
 }
 
-enum status mf_inversion_band_covariance(const struct imc_system *system, double *covariance,
-                                         double *directions) {
+enum status mf_inversion_band_covariance(const struct imc_system *system, double birge,
+                                         double *covariance, double *directions) {
     enum status status = STATUS_OK;
     const size_t size = system->size;
     const double unit = 1 / (system->temperature * system->temperature);
@@ -47,7 +47,7 @@ enum status mf_inversion_band_covariance(const struct imc_system *system, double
     CHECK(prior && response && known ? STATUS_OK : STATUS_NO_MEMORY);
     mf_imc_solve_rows(system, response, NULL);
     mf_imc_solve_prior(system, prior);
-    gsl_blas_dsyrk(CblasLower, CblasTrans, 1, response, 0, known);
+    gsl_blas_dsyrk(CblasLower, CblasTrans, 1 / birge, response, 0, known);
     gsl_matrix_memcpy(&to.matrix, known);
     gsl_blas_dsyrk(CblasLower, CblasTrans, unit, prior, 1, &to.matrix);
     // Rounding may leave it not positive: then there is no band.
@@ -123,9 +123,10 @@ static void add_square(struct inversion *inversion, double factor, const double 
             inversion->course.band.covariance[a * n + b] += factor * u[a] * u[b];
 }
 
-/// The step from here: the most probable one, x = Σ Bᵀ V^−½ excess, or that of the coefficients.
+/// The step from here: the most probable one, x = Σ Bᵀ V^−½ excess with V as large as Birge's
+/// factor has it, or that of the coefficients.
 static enum status find_step(const struct inversion *inversion, const struct imc_system *system,
-                             double *step) {
+                             double birge, double *step) {
     enum status status = STATUS_OK;
     const size_t n = inversion_grid(inversion)->known;
     gsl_matrix *response = NULL;
@@ -140,7 +141,7 @@ static enum status find_step(const struct inversion *inversion, const struct imc
     asked = gsl_vector_alloc(n);
     CHECK(response && excess && asked ? STATUS_OK : STATUS_NO_MEMORY);
     mf_imc_solve_rows(system, response, excess);
-    gsl_blas_dgemv(CblasTrans, 1, response, excess, 0, asked);
+    gsl_blas_dgemv(CblasTrans, 1 / birge, response, excess, 0, asked);
     spread(inversion, asked->data, step);
 done:
     gsl_matrix_free(response);
@@ -300,28 +301,26 @@ enum status mf_inversion_band_find(struct inversion *inversion) {
     enum status status = STATUS_OK;
     const struct potential_grid *grid = inversion_grid(inversion);
     struct inversion_band *band = &inversion->course.band;
-    double *weight = NULL, *scratch = NULL, *variance = NULL, *step = NULL;
+    double *weight = NULL, *scratch = NULL, *step = NULL;
+    const double birge = mf_inversion_band_birge(&inversion->verdict);
     struct imc_shape *shape = NULL;
     NEW_ARRAY(weight, grid->known);
     NEW_ARRAY(scratch, grid->known);
-    NEW_ARRAY(variance, grid->known);
     NEW_ARRAY(step, grid->known);
     struct imc_system system = inversion->equations.system;
-    for (size_t a = 0; a < system.size; a++)
-        variance[a] = mf_inversion_band_birge(&inversion->verdict) * system.variance[a];
-    system.variance = variance;
     NEW_ARRAY(shape, grid->blocks);
     mf_inversion_smooth_shapes(inversion, shape);
     system.shape = shape;
     CHECK(inversion->state->basis.count > 0
               ? mf_inversion_basis_covariance(inversion->state, band->covariance,
                                               &band->ramp.directions)
-              : mf_inversion_band_covariance(&system, band->covariance, &band->ramp.directions));
+              : mf_inversion_band_covariance(&system, birge, band->covariance,
+                                             &band->ramp.directions));
     if (inversion->course.walked)
         add_walk(inversion, scratch);
     take_constants_off(inversion);
     weigh_ramp(inversion, weight);
-    CHECK(find_step(inversion, &system, step));
+    CHECK(find_step(inversion, &system, birge, step));
     add_way(inversion, step, weight, scratch);
     add_pressure(inversion, scratch);
     find_farthest(inversion, step, scratch);
@@ -331,7 +330,6 @@ enum status mf_inversion_band_find(struct inversion *inversion) {
 done:
     mf_memory_free(weight);
     mf_memory_free(scratch);
-    mf_memory_free(variance);
     mf_memory_free(shape);
     mf_memory_free(step);
     return status;

@@ -9,7 +9,8 @@
 /// more where its target does, and the result is made as smooth as that (inversion_smooth.h).
 ///
 /// Where more of the excess is left than these say, χ² by bin above 1, the σ_a² are that much
-/// larger: a fit stops within 1.7 times the noise, and what it leaves is an error of Φ too.
+/// larger, and so is the square of what the bins of a pair type have in common: a fit stops
+/// within 1.7 times the noise, and what it leaves is an error of Φ too.
 ///
 /// What the most probable step from there would still change of the ramp is an error too. `imc` and
 /// `auto` take this step near the noise, and end when it is below half of the errors of A and of
@@ -65,14 +66,16 @@ struct inversion_band {
 double mf_inversion_band_of_counts(double counts);
 
 /// (F + prior)⁻¹.
-/// @param[in]  system      size, blocks, C, variances, temperature, spacing
+/// @param[in]  system      size, blocks, C, variances and what bins have in common, temperature,
+///                         spacing
+/// @param[in]  birge       by which the covariance V of the excess is larger than the system says
 /// @param[out] covariance  shape [size, size]
 /// @param[out] directions  that the data determine: trace of F (F + prior)⁻¹
 /// Fails: NO_MEMORY. Tested: test_inversion_band.
-enum status mf_inversion_band_covariance(const struct imc_system *system, double *covariance,
-                                         double *directions) MUST_USE;
+enum status mf_inversion_band_covariance(const struct imc_system *system, double birge,
+                                         double *covariance, double *directions) MUST_USE;
 
-/// χ² by bin, if above 1: by so much the variances of g are larger, as what is left of the excess
+/// χ² by bin, if above 1: by so much the covariances of g are larger, as what is left of the excess
 /// shows. R. T. Birge, Phys. Rev. 40, 207 (1932).
 double mf_inversion_band_birge(const struct inversion_verdict *verdict);
 

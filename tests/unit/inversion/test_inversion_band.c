@@ -38,7 +38,7 @@ static void test_inversion_band_is_the_scatter_when_the_data_say_all(void **stat
                                         .variance = variance,
                                         .temperature = temperature,
                                         .spacing = spacing};
-    assert_ok(mf_inversion_band_covariance(&response, covariance, &directions));
+    assert_ok(mf_inversion_band_covariance(&response, 1, covariance, &directions));
     for (uint32_t trial = 0; trial < TRIALS; trial++) {
         double excess[SIZE], x[SIZE];
         struct imc_solution solution;
@@ -59,6 +59,37 @@ static void test_inversion_band_is_the_scatter_when_the_data_say_all(void **stat
     assert_close(directions, SIZE, 0.1);
 }
 
+/// An excess that is twice as large in all that it may be, with what bins have in common, makes
+/// errors twice as large.
+static void test_inversion_band_is_wider_by_birges_factor(void **state) {
+    (void)state;
+    double counts[SIZE][SIZE], variance[SIZE], common[SIZE], directions;
+    double narrow[SIZE * SIZE], wide[SIZE * SIZE], doubled[SIZE * SIZE];
+    make_counts(counts);
+    struct imc_system system = {.size = SIZE,
+                                .covariance = &counts[0][0],
+                                .variance = variance,
+                                .common = common,
+                                .temperature = temperature,
+                                .spacing = spacing};
+    for (int k = 0; k < SIZE; k++) {
+        variance[k] = 0.02 + 0.005 * k;
+        common[k] = 0.5 + 0.1 * k;
+    }
+    assert_ok(mf_inversion_band_covariance(&system, 1, narrow, &directions));
+    assert_ok(mf_inversion_band_covariance(&system, 4, wide, &directions));
+    for (int k = 0; k < SIZE; k++) {
+        variance[k] *= 4;
+        common[k] *= 2;
+    }
+    assert_ok(mf_inversion_band_covariance(&system, 1, doubled, &directions));
+    for (int k = 0; k < SIZE * SIZE; k += SIZE + 1) {
+        assert_close_relative(wide[k], doubled[k], 1e-9);
+        // The prior holds the less known directions.
+        assert_true(wide[k] > 3.5 * narrow[k] && wide[k] < 4 * narrow[k]);
+    }
+}
+
 static void test_inversion_band_is_the_prior_when_the_data_say_nothing(void **state) {
     (void)state;
     double counts[SIZE][SIZE] = {{0}}, variance[SIZE], covariance[SIZE * SIZE], directions;
@@ -69,7 +100,7 @@ static void test_inversion_band_is_the_prior_when_the_data_say_nothing(void **st
                                         .variance = variance,
                                         .temperature = temperature,
                                         .spacing = spacing};
-    assert_ok(mf_inversion_band_covariance(&response, covariance, &directions));
+    assert_ok(mf_inversion_band_covariance(&response, 1, covariance, &directions));
     assert_close(directions, 0, 1e-12);
     // One number has the ridge alone: 10 k_B T of it, spread over the whole curve; the last bin,
     // half a spacing from the end, is held by its bend.
@@ -122,7 +153,7 @@ static double ramp_variance(double counts[SIZE][SIZE], double samples) {
                                       .variance = variance,
                                       .temperature = temperature,
                                       .spacing = spacing};
-    assert_ok(mf_inversion_band_covariance(&system, covariance, &directions));
+    assert_ok(mf_inversion_band_covariance(&system, 1, covariance, &directions));
     for (int a = 0; a < SIZE; a++) {
         const double ramp = 1 - (a + 0.5) / SIZE;
         squares += ramp * ramp;
@@ -184,6 +215,7 @@ static void test_inversion_band_of_counts_is_that_of_the_logarithm_of_their_mean
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_inversion_band_is_the_scatter_when_the_data_say_all),
+        cmocka_unit_test(test_inversion_band_is_wider_by_birges_factor),
         cmocka_unit_test(test_inversion_band_is_the_prior_when_the_data_say_nothing),
         cmocka_unit_test(test_inversion_band_is_not_narrower_by_the_noise_of_counts),
         cmocka_unit_test(test_inversion_band_of_counts_is_that_of_the_logarithm_of_their_mean),
