@@ -32,10 +32,7 @@ static void add_distance(struct target_distance *distance, double sum, double bo
     distance->count += bins;
 }
 
-/// Variance of S* of a known bin, as it would be if the potential were right: where the target has
-/// few counts, they are as often fewer than expected as more, and would have too small an error
-/// then. It is that of the counts that the samples expect, if these are more.
-static double find_target_variance(const struct inversion_state *state, size_t a) {
+double mf_inversion_target_variance(const struct inversion_state *state, size_t a) {
     const size_t bin = state->grid.known_bin[a];
     const double error = state->target.error[bin];
     if (!(error > 0))
@@ -155,7 +152,7 @@ static double assess(struct inversion_state *state, struct inversion_section *se
             fmax(mf_comoments_covariance(counts, bin, bin), 1 / counts->count) / independent;
         const double common = state->target.common ? state->target.common[a] : 0;
         state->excess[a] = counts->mean[bin] - state->target.counts[bin];
-        state->variance[a] = sampled + find_target_variance(state, a);
+        state->variance[a] = sampled + mf_inversion_target_variance(state, a);
         if (!state->grid.seen[a])
             continue;
         seen++;
@@ -246,7 +243,7 @@ void mf_inversion_pool(struct inversion_state *state) {
     }
     const double share = fmax(least_share, now / (*pool + now));
     for (size_t a = 0; a < grid->known; a++) {
-        const double target = find_target_variance(state, a);
+        const double target = mf_inversion_target_variance(state, a);
         double *excess = &state->pool.excess[a], *sampled = &state->pool.variance[a];
         *excess = (1 - share) * *excess + share * state->excess[a];
         *sampled = pow(1 - share, 2) * *sampled + pow(share, 2) * (state->variance[a] - target);

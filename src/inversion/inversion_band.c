@@ -202,26 +202,27 @@ static void add_pressure(struct inversion *inversion, double *scratch) {
 }
 
 double mf_inversion_band_of_counts(double counts) {
-    return sqrt(gsl_sf_psi_1(counts + 0.5));
+    return isfinite(counts) ? sqrt(gsl_sf_psi_1(counts + 0.5)) : 0;
 }
 
-/// What the counts of the target and those of the samples allow the error of Φ of a known bin to be
-/// at least: both of all states together. 0 of groups, which end as smooth as the prior has them.
-static double least_error(const struct inversion *inversion, size_t a) {
+/// Counts whose mean has this variance; without any there is none to be had.
+static double counts_of(double mean, double variance) {
+    return mean > 0 ? mean * mean / fmax(variance, 0) : 0;
+}
+
+double mf_inversion_band_least(const struct inversion *inversion, size_t a) {
     const size_t bin = inversion_grid(inversion)->known_bin[a];
     double asked = 0, seen = 0;
     if (a >= inversion_grid(inversion)->pairs_known || inversion->state->basis.count > 0)
         return 0;
     for (size_t s = 0; s < inversion->states; s++) {
         const struct inversion_state *own = &inversion->state[s];
-        const double target = pow(own->target.error[bin], 2);
-        asked += pow(own->target.counts[bin], 2) / target;
-        seen += pow(own->replicas.counts.mean[bin], 2) / (own->variance[a] - target);
+        asked += counts_of(own->target.counts[bin], pow(own->target.error[bin], 2));
+        seen += counts_of(own->replicas.counts.mean[bin],
+                          own->variance[a] - mf_inversion_target_variance(own, a));
     }
-    return isfinite(asked) && isfinite(seen)
-               ? inversion->problem->scene.temperature *
-                     hypot(mf_inversion_band_of_counts(asked), mf_inversion_band_of_counts(seen))
-               : 0;
+    return inversion->problem->scene.temperature *
+           hypot(mf_inversion_band_of_counts(asked), mf_inversion_band_of_counts(seen));
 }
 
 /// Standard errors, those of A, and those of Φ if A were known.
@@ -233,7 +234,7 @@ static void find_errors(struct inversion *inversion, const double *weight, doubl
     for (size_t a = 0; a < n; a++) {
         const double variance = band->covariance[a * n + a];
         const double of_ramp = ramp_variance > 0 ? scratch[a] * scratch[a] / ramp_variance : 0;
-        const double least = least_error(inversion, a);
+        const double least = mf_inversion_band_least(inversion, a);
         band->error[grid->known_point[a]] = variance >= 0 ? fmax(sqrt(variance), least) : NAN;
         band->without_ramp[grid->known_point[a]] =
             variance >= 0 ? fmax(sqrt(fmax(0, variance - of_ramp)), least) : NAN;

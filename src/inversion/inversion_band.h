@@ -62,8 +62,14 @@ struct inversion_band {
 
 /// Standard deviation of ln λ of a Poisson distribution with the mean λ of which so many were
 /// counted: that of its posterior, a gamma distribution of the shape counts + ½ by H. Jeffreys's
-/// prior. Tested: test_inversion_band.
+/// prior; 0 of infinitely many. Tested: test_inversion_band.
 double mf_inversion_band_of_counts(double counts);
+
+/// What the counts of the targets and those of the samples allow the error of Φ of a known bin to
+/// be at least: both of all states together, of which some have none there, and exact targets
+/// infinitely many. 0 of groups, which end as smooth as the prior has them. Tested:
+/// test_inversion_band.
+double mf_inversion_band_least(const struct inversion *inversion, size_t a);
 
 /// (F + prior)⁻¹.
 /// @param[in]  system      size, blocks, C, variances and what bins have in common, temperature,

@@ -5,6 +5,7 @@
 #include "base/rng.h"
 #include "base/statistics.h"
 #include "inversion/imc_solve.h"
+#include "inversion/inversion.h"
 #include "shared/is_close.h"
 #include "shared/testing.h"
 
@@ -212,6 +213,57 @@ static void test_inversion_band_of_counts_is_that_of_the_logarithm_of_their_mean
     assert_close_relative(mf_inversion_band_of_counts(1e8), 1e-4, 1e-6);
 }
 
+/// Two states and one bin: by how many pairs were counted in each.
+struct counted {
+    struct inverse_problem problem;
+    struct inversion_state state[2];
+    struct inversion inversion;
+    size_t bin;
+    double target[2], error[2], mean[2], variance[2];
+};
+
+static double least_error(struct counted *counted, const double target[2],
+                          const double sampled[2]) {
+    static const double frames = 10;
+    *counted = (struct counted){
+        .problem.scene.temperature = temperature,
+        .inversion = {.problem = &counted->problem, .state = counted->state, .states = 2}};
+    for (int s = 0; s < 2; s++) {
+        struct inversion_state *state = &counted->state[s];
+        counted->target[s] = target[s] / frames;
+        counted->error[s] = sqrt(target[s]) / frames;
+        counted->mean[s] = sampled[s] / frames;
+        counted->variance[s] = (fmax(sampled[s], 1) +
+                                target[s] * (target[s] > 0 ? fmax(1, sampled[s] / target[s]) : 0)) /
+                               (frames * frames);
+        state->grid = (struct potential_grid){
+            .pairs = 1, .pairs_known = 1, .known = 1, .known_bin = &counted->bin};
+        state->target.counts = &counted->target[s];
+        state->target.error = &counted->error[s];
+        state->replicas.counts = (struct comoments){.size = 1, .mean = &counted->mean[s]};
+        state->variance = &counted->variance[s];
+    }
+    return mf_inversion_band_least(&counted->inversion, 0);
+}
+
+/// A core that the hot state enters and the cold one does not is known by what the hot one counted.
+static void test_inversion_band_of_few_counts_is_that_of_the_states_that_have_any(void **state) {
+    (void)state;
+    struct counted counted;
+    const double five = scatter_of_logarithm(5), two = scatter_of_logarithm(2);
+    const double none[2] = {0, 0}, one[2] = {0, 5}, both[2] = {3, 2}, few[2] = {2, 0};
+    assert_close(least_error(&counted, one, one), temperature * hypot(five, five), 1e-4);
+    assert_close(least_error(&counted, both, one), temperature * hypot(five, five), 1e-4);
+    assert_close(least_error(&counted, one, few), temperature * hypot(five, two), 1e-4);
+    // Nobody has seen it: psi_1(1/2) is pi^2/2.
+    assert_close(least_error(&counted, none, none), temperature * M_PI, 1e-9);
+    // An exact target says all, and the samples what they have.
+    assert_true(least_error(&counted, one, one) > temperature * five);
+    counted.error[1] = 0;
+    counted.variance[1] = 0.05;
+    assert_close(mf_inversion_band_least(&counted.inversion, 0), temperature * five, 1e-4);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_inversion_band_is_the_scatter_when_the_data_say_all),
@@ -219,6 +271,7 @@ int main(void) {
         cmocka_unit_test(test_inversion_band_is_the_prior_when_the_data_say_nothing),
         cmocka_unit_test(test_inversion_band_is_not_narrower_by_the_noise_of_counts),
         cmocka_unit_test(test_inversion_band_of_counts_is_that_of_the_logarithm_of_their_mean),
+        cmocka_unit_test(test_inversion_band_of_few_counts_is_that_of_the_states_that_have_any),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
