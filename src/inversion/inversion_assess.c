@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // What the samples of a state say beside its targets.
+#include "base/statistics.h"
 #include "inversion/inversion_state.h"
 
 #include <gsl/gsl_cdf.h>
@@ -41,13 +42,13 @@ double mf_inversion_target_variance(const struct inversion_state *state, size_t 
     return error * error * fmax(1, state->replicas.counts.mean[bin] / counts);
 }
 
-/// χ² by bin that noise alone exceeds in one of a thousand fits. Bins beside each other are off
-/// together: all count as (Σ ρ_aa)²/Σ ρ_ab² independent ones, by the correlations ρ of the samples.
-static double find_probable(const struct inversion_state *state,
-                            const struct inversion_section *section) {
-    static const double chance = 1e-3;
+/// As how many independent bins those of a section count, which are off together with the bins
+/// beside them: (Σ ρ_aa)²/Σ ρ_ab² by the correlations ρ of the samples; 0 if none was seen.
+static double count_independent(const struct inversion_state *state,
+                                const struct inversion_section *section) {
     const struct comoments *counts = &state->replicas.counts;
     const size_t end = section->known + section->known_count;
+    const double samples = counts->count / section->inefficiency;
     double bins = 0, squares = 0;
     for (size_t a = section->known; a < end; a++) {
         const size_t i = state->grid.known_bin[a];
@@ -55,16 +56,26 @@ static double find_probable(const struct inversion_state *state,
         if (!state->grid.seen[a])
             continue;
         bins++;
-        squares++;
         for (size_t b = section->known; b < a && own > 0; b++) {
             const size_t j = state->grid.known_bin[b];
             const double other = mf_comoments_covariance(counts, j, j);
             if (state->grid.seen[b] && other > 0)
-                squares += 2 * pow(mf_comoments_covariance(counts, i, j), 2) / (own * other);
+                squares +=
+                    2 * mf_statistics_square_of_correlation(
+                            pow(mf_comoments_covariance(counts, i, j), 2) / (own * other), samples);
         }
     }
-    const double independent = bins * bins / fmax(squares, 1);
-    return bins > 0 ? gsl_cdf_chisq_Qinv(chance, independent) / independent : INFINITY;
+    if (!(samples > 2))
+        return fmin(bins, 1);
+    return bins > 0 ? bins * bins / (bins + fmax(squares, 0)) : 0;
+}
+
+/// χ² by bin that noise alone exceeds in one of a thousand fits.
+static double find_probable(const struct inversion_state *state,
+                            const struct inversion_section *section) {
+    static const double chance = 1e-3;
+    const double independent = count_independent(state, section);
+    return independent > 0 ? gsl_cdf_chisq_Qinv(chance, independent) / independent : INFINITY;
 }
 
 /// What a block's bins have in common with the error of its factor: u·x and |u|², with u that error

@@ -105,6 +105,43 @@ test_wrong_potential_does_not_agree_though_the_noise_of_rare_pairs_is_larger(voi
     assert_true(agree < 0.01);
 }
 
+/// Bins that are independent, whose samples are correlated by chance: what a thousandth of chi^2 of
+/// 40 degrees of freedom exceeds is 73.40 (tables of the distribution), and with bins that are
+/// pairs of the same counts, of 20, 45.31.
+static double mean_bound(uint32_t samples, uint32_t alike) {
+    enum { TRIALS = 40 };
+    static struct made made;
+    struct comoments moments;
+    double sum = 0;
+    gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
+    make(&made, rng, 100, 0);
+    for (int trial = 0; trial < TRIALS; trial++) {
+        assert_ok(mf_comoments_init(&moments, BINS));
+        for (uint32_t n = 0; n < samples; n++) {
+            double value[BINS];
+            for (uint32_t k = 0; k < BINS; k++)
+                value[k] = k % alike == 0 ? 5 + gsl_ran_gaussian(rng, 1) : value[k - 1];
+            mf_comoments_add(&moments, value);
+        }
+        made.state.replicas.counts = moments;
+        mf_inversion_assess(&made.state);
+        sum += made.state.verdict.section[0].probable / TRIALS;
+        mf_comoments_clear(&moments);
+    }
+    gsl_rng_free(rng);
+    return sum;
+}
+
+static void test_bound_of_agreement_is_that_of_the_bins_not_of_few_samples(void **state) {
+    (void)state;
+    const double few = mean_bound(25, 1), many = mean_bound(400, 1), pairs = mean_bound(25, 2);
+    print_message("%.3f and %.3f of %.3f, of pairs %.3f of %.3f\n", few, many, 73.402 / 40, pairs,
+                  45.315 / 20);
+    assert_true(fabs(few - 73.402 / 40) < 0.06);
+    assert_true(fabs(many - 73.402 / 40) < 0.03);
+    assert_true(fabs(pairs - 45.315 / 20) < 0.09);
+}
+
 /// Poisson counts: an error of 2 counts where 5 are expected is that of 5.
 static void test_noise_of_a_bin_is_that_of_the_counts_that_are_expected(void **state) {
     (void)state;
@@ -158,6 +195,7 @@ int main(void) {
         cmocka_unit_test(
             test_wrong_potential_does_not_agree_though_the_noise_of_rare_pairs_is_larger),
         cmocka_unit_test(test_target_that_is_off_as_a_whole_agrees_where_its_factor_may_be),
+        cmocka_unit_test(test_bound_of_agreement_is_that_of_the_bins_not_of_few_samples),
         cmocka_unit_test(test_noise_of_a_bin_is_that_of_the_counts_that_are_expected),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
