@@ -32,7 +32,7 @@ size_t mf_inversion_band_spans(struct inversion_band *band, size_t points,
     span[1] = (struct memory_span){band->without_ramp, points * sizeof(double)};
     span[2] = (struct memory_span){band->flat, INVERSE_FLAT * points * sizeof(double)};
     span[3] = (struct memory_span){&band->ramp, sizeof band->ramp};
-    span[4] = (struct memory_span){&band->farthest, sizeof band->farthest};
+    span[4] = (struct memory_span){&band->ways, sizeof band->ways};
     return INVERSION_BAND_SPANS;
 }
 
@@ -150,20 +150,30 @@ done:
     return status;
 }
 
-/// The way of A and of the pressure that this step would go. Of A it counts as an error: Σ ← Σ +
-/// (A/σ_A²)² Σw (Σw)ᵀ.
-static void add_way(struct inversion *inversion, const double *step, const double *weight,
-                    double *scratch) {
-    const size_t n = inversion_grid(inversion)->known;
-    struct inverse_ramp *ramp = &inversion->course.band.ramp;
-    ramp->way = ramp->pressure_way = 0;
-    for (size_t a = 0; a < n; a++) {
-        ramp->way += weight[a] * step[a];
-        ramp->pressure_way += inversion->state->pressure.slope[a] * step[a];
-    }
+/// What this step would change of the number whose slope is v.
+static struct inversion_band_way find_way(const struct inversion *inversion, const double *v,
+                                          const double *step, double *scratch) {
+    struct inversion_band_way found = {0, sqrt(spread(inversion, v, scratch))};
+    for (size_t a = 0; a < inversion_grid(inversion)->known; a++)
+        found.way += v[a] * step[a];
+    return found;
+}
+
+static void find_ways(struct inversion *inversion, const double *step, const double *weight,
+                      double *scratch) {
+    struct inversion_band_ways *ways = &inversion->course.band.ways;
+    ways->ramp = find_way(inversion, weight, step, scratch);
+    for (size_t s = 0; s < inversion->states; s++)
+        ways->pressure[s] = find_way(inversion, inversion->state[s].pressure.slope, step, scratch);
+    inversion->course.band.ramp.way = ways->ramp.way;
+    inversion->course.band.ramp.pressure_way = ways->pressure[0].way;
+}
+
+/// The way of A counts as an error: Σ ← Σ + (A/σ_A²)² Σw (Σw)ᵀ.
+static void add_way(struct inversion *inversion, const double *weight, double *scratch) {
     const double variance = spread(inversion, weight, scratch);
     if (variance > 0) // without pairs there is no ramp
-        add_square(inversion, pow(ramp->way / variance, 2), scratch);
+        add_square(inversion, pow(inversion->course.band.ways.ramp.way / variance, 2), scratch);
 }
 
 /// A fit that ends while it walks on has gone where its targets hardly see: the way is an error.
@@ -174,21 +184,6 @@ static void add_walk(struct inversion *inversion, double *scratch) {
         scratch[a] = inversion->course.best.phi[point] - inversion->course.met_phi[point];
     }
     add_square(inversion, 1, scratch);
-}
-
-/// Of several states the pressure whose way is the most of its error.
-static void find_farthest(struct inversion *inversion, const double *step, double *scratch) {
-    const struct inverse_ramp *ramp = &inversion->course.band.ramp;
-    struct inversion_band_pressure *farthest = &inversion->course.band.farthest;
-    *farthest = (struct inversion_band_pressure){ramp->pressure_way, ramp->pressure_open};
-    for (size_t s = 1; s < inversion->states; s++) {
-        const double *slope = inversion->state[s].pressure.slope;
-        struct inversion_band_pressure own = {0, sqrt(spread(inversion, slope, scratch))};
-        for (size_t a = 0; a < inversion_grid(inversion)->known; a++)
-            own.way += slope[a] * step[a];
-        if (fabs(own.way) * farthest->open > fabs(farthest->way) * own.open)
-            *farthest = own;
-    }
 }
 
 /// What a pressure with its error adds: Σ ← Σ − Σp (Σp)ᵀ/(p·Σp + σ_P²).
@@ -289,6 +284,16 @@ done:
     return status;
 }
 
+struct inversion_band_way mf_inversion_band_farthest(const struct inversion *inversion) {
+    const struct inversion_band_way *pressure = inversion->course.band.ways.pressure;
+    size_t farthest = 0;
+    for (size_t s = 1; s < inversion->states; s++)
+        if (fabs(pressure[s].way) * pressure[farthest].open >
+            fabs(pressure[farthest].way) * pressure[s].open)
+            farthest = s;
+    return pressure[farthest];
+}
+
 double mf_inversion_band_birge(const struct inversion_verdict *verdict) {
     return fmax(1, verdict->misfit);
 }
@@ -317,14 +322,16 @@ enum status mf_inversion_band_find(struct inversion *inversion) {
                                               &band->ramp.directions)
               : mf_inversion_band_covariance(&system, birge, band->covariance,
                                              &band->ramp.directions));
-    if (inversion->course.walked)
-        add_walk(inversion, scratch);
     take_constants_off(inversion);
     weigh_ramp(inversion, weight);
     CHECK(find_step(inversion, &system, birge, step));
-    add_way(inversion, step, weight, scratch);
+    find_ways(inversion, step, weight, scratch);
+    if (inversion->course.walked) {
+        add_walk(inversion, scratch);
+        take_constants_off(inversion);
+    }
+    add_way(inversion, weight, scratch);
     add_pressure(inversion, scratch);
-    find_farthest(inversion, step, scratch);
     find_errors(inversion, weight, scratch);
     if (!isnan(band->covariance[0]))
         CHECK(find_flat(inversion));

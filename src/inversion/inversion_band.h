@@ -46,6 +46,13 @@
 struct inversion;
 struct inversion_verdict;
 
+/// What the target still asks for of a number that it hardly sees, and the standard error by g(r)
+/// alone: that of the present samples, in which no way counts, neither this one nor that of a fit
+/// that has walked.
+struct inversion_band_way {
+    double way, open;
+};
+
 struct inversion_band {
     double *covariance;   ///< of Φ in the known bins, shape [known, known]
     double *error;        ///< standard errors, shape [points]; 0 where Φ is set
@@ -53,11 +60,9 @@ struct inversion_band {
     double
         *flat; ///< inverse_step.curve_flat, shape [INVERSE_FLAT, points] of pairs, then of groups
     struct inverse_ramp ramp;
-    /// Of the pressure of the state that is farthest from having settled: what the target still
-    /// asks for, and the standard error by g(r) alone [k_B T_0/λ^d].
-    struct inversion_band_pressure {
-        double way, open;
-    } farthest;
+    struct inversion_band_ways {
+        struct inversion_band_way ramp, pressure[INVERSE_MOST_STATES];
+    } ways; ///< of A, and of the pressure of each state [k_B T_0/λ^d]
 };
 
 /// Standard deviation of ln λ of a Poisson distribution with the mean λ of which so many were
@@ -80,6 +85,10 @@ double mf_inversion_band_least(const struct inversion *inversion, size_t a);
 /// Fails: NO_MEMORY. Tested: test_inversion_band.
 enum status mf_inversion_band_covariance(const struct imc_system *system, double birge,
                                          double *covariance, double *directions) MUST_USE;
+
+/// Of the pressures of all states the one whose way is the most of its error. Tested:
+/// test_inversion_start.
+struct inversion_band_way mf_inversion_band_farthest(const struct inversion *inversion);
 
 /// χ² by bin, if above 1: by so much the covariances of g are larger, as what is left of the excess
 /// shows. R. T. Birge, Phys. Rev. 40, 207 (1932).

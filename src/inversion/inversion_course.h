@@ -19,11 +19,12 @@ struct inversion_best_samples {
     bool precise; ///< they are as exact as was asked for
 };
 
-/// What iterations running that met all targets still asked for, of the ramp and of the pressure.
+/// What iterations running that met all targets still asked for, of the ramp and of the pressure of
+/// each state.
 enum { INVERSION_MOST_WAYS = 8 };
 struct inversion_ways {
     uint32_t met; ///< such iterations; the last of them are kept
-    double ramp[INVERSION_MOST_WAYS], pressure[INVERSION_MOST_WAYS];
+    double ramp[INVERSION_MOST_WAYS], pressure[INVERSION_MOST_WAYS][INVERSE_MOST_STATES];
 };
 
 /// What a checkpoint keeps besides arrays and samplers.
