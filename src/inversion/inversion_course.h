@@ -16,7 +16,8 @@ struct inversion_best_samples {
     struct inversion_section worst; ///< section with the largest χ² by bin over the probable
     struct inversion_factor factor; ///< mf_inversion_find_factor
     double own_noise;
-    bool precise; ///< they are as exact as was asked for
+    double noise[INVERSE_MOST_STATES]; ///< mf_targets_noise of each state
+    bool precise;                      ///< they are as exact as was asked for
 };
 
 /// What iterations running that met all targets still asked for, of the ramp and of the pressure of

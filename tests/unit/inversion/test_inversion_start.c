@@ -234,6 +234,7 @@ static void test_inversion_band_looks_at_the_pressures_of_all_states(void **stat
     const struct inverse_listener listener = {ignore, NULL};
     static struct inversion_state states[2];
     struct inversion_band_way farthest[2], ways[2];
+    bool kept;
     make(&made, INVERSION_FROM_MEAN_FORCE);
     made.settings.samples = 200;
     assert_ok(mf_inversion_create(&made.inversion, &mf_imc, &made.problem, &made.settings));
@@ -258,6 +259,12 @@ static void test_inversion_band_looks_at_the_pressures_of_all_states(void **stat
         ways[n] = inversion->course.band.ways.pressure[0];
         farthest[n] = mf_inversion_band_farthest(inversion);
     }
+    // A verification judges each state by the noise of its own samples.
+    states[0].verdict.distance[TARGET_RDF].noise = 0.01;
+    states[1].verdict.distance[TARGET_RDF].noise = 0.03;
+    assert_ok(mf_inversion_course_judge(inversion, &kept));
+    assert_close(inversion->course.progress.best.noise[0], 0.01, 1e-15);
+    assert_close(inversion->course.progress.best.noise[1], 0.03, 1e-15);
     inversion->state = first;
     inversion->states = 1;
     free(other);
