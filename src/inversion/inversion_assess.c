@@ -92,21 +92,43 @@ static void find_common(const struct inversion_state *state, const double *exces
     }
 }
 
-/// By how much the factors of pair types make the χ² of a section smaller: Σ (u·x)²/(1 + |u|²).
-static double find_explained(const struct inversion_state *state, const double *excess,
-                             size_t begin, size_t end) {
+/// What the factors of pair types explain of the excess of a section.
+struct explained {
+    double misfit; ///< of χ²: Σ (u·x)²/(1 + |u|²)
+    double square; ///< of Σ x², where each factor is the one that is most probable
+    double noise;  ///< of Σ σ²: the most probable factor follows the noise of its bins
+};
+
+/// The most probable factor of a block, in its errors, explains f u of the excess, with
+/// f = u·x/(1 + |u|²). What is left of noise has the covariance 1 − u uᵀ/(1 + |u|²), in units of
+/// that of the bins.
+static void explain_block(const struct inversion_state *state, const double *excess, size_t begin,
+                          size_t end, struct explained *explained) {
+    double along, squares;
+    find_common(state, excess, begin, end, &along, &squares);
+    const double factor = along / (1 + squares);
+    explained->misfit += along * factor;
+    for (size_t a = begin; a < end; a++) {
+        const double unit = state->target.unit[state->grid.known_bin[a]];
+        const double common = state->target.common[a] / unit, x = excess[a] / unit;
+        if (!state->grid.seen[a])
+            continue;
+        explained->square += x * x - pow(x - factor * common, 2);
+        explained->noise += common * common / (1 + squares);
+    }
+}
+
+static struct explained explain(const struct inversion_state *state, const double *excess,
+                                size_t begin, size_t end) {
     const struct potential_grid *grid = &state->grid;
-    double sum = 0;
+    struct explained explained = {0};
     for (size_t block = 0, first = 0; state->target.common && block < grid->blocks; block++) {
         const size_t last = first + grid->known_of[block];
-        double along, squares;
-        if (first >= begin && last <= end) {
-            find_common(state, excess, first, last, &along, &squares);
-            sum += along * along / (1 + squares);
-        }
+        if (first >= begin && last <= end)
+            explain_block(state, excess, first, last, &explained);
         first = last;
     }
-    return sum;
+    return explained;
 }
 
 double mf_inversion_chi_squared(const struct inversion_state *state, const double *excess,
@@ -114,25 +136,29 @@ double mf_inversion_chi_squared(const struct inversion_state *state, const doubl
     double sum = 0;
     for (size_t a = begin; a < end; a++)
         sum += state->grid.seen[a] ? excess[a] * excess[a] / state->variance[a] : 0;
-    return sum - find_explained(state, excess, begin, end);
+    return sum - explain(state, excess, begin, end).misfit;
+}
+
+struct inversion_factor mf_inversion_factor_of(const struct inversion_state *state, size_t pair) {
+    const struct potential_grid *grid = &state->grid;
+    const double *prior = state->problem->targets.target[TARGET_RDF].factor_error;
+    double along, squares;
+    size_t first = 0;
+    if (state->target.common == NULL || prior == NULL)
+        return (struct inversion_factor){0};
+    for (size_t n = 0; n < pair; n++)
+        first += grid->known_of[n];
+    find_common(state, state->excess, first, first + grid->known_of[pair], &along, &squares);
+    return (struct inversion_factor){.missing = prior[pair] * along / (1 + squares),
+                                     .prior = squares > 0 ? prior[pair] : 0};
 }
 
 void mf_inversion_find_factor(const struct inversion_state *state,
                               struct inversion_factor *factor) {
-    const struct potential_grid *grid = &state->grid;
-    const struct targets *targets = &state->problem->targets;
     *factor = (struct inversion_factor){0};
-    for (size_t pair = 0, first = 0; state->target.common && pair < grid->pairs; pair++) {
-        const size_t last = first + grid->known_of[pair];
-        double along, squares;
-        find_common(state, state->excess, first, last, &along, &squares);
-        first = last;
-        if (!(squares > 0))
-            continue;
-        const double prior = targets->target[TARGET_RDF].factor_error[pair];
-        const struct inversion_factor own = {.missing = prior * along / (1 + squares),
-                                             .prior = prior};
-        if (fabs(own.missing) * factor->prior >= fabs(factor->missing) * own.prior)
+    for (size_t pair = 0; pair < state->grid.pairs; pair++) {
+        const struct inversion_factor own = mf_inversion_factor_of(state, pair);
+        if (own.prior > 0 && fabs(own.missing) * factor->prior >= fabs(factor->missing) * own.prior)
             *factor = own;
     }
 }
@@ -152,7 +178,7 @@ static double assess(struct inversion_state *state, struct inversion_section *se
                  mf_replicas_inefficiency(&state->replicas, 1, ideal, known, section->known_count));
     const double independent = counts->count / section->inefficiency;
     const double bins = (double)section->bins;
-    double sum = 0, own = 0, both = 0, seen = 0;
+    double sum = 0, own = 0, both = 0, whole = 0, seen = 0;
     for (size_t n = section->bin; n < section->bin + section->bins; n++)
         sum += pow((counts->mean[n] - state->target.counts[n]) / state->target.unit[n], 2);
     for (size_t a = section->known; a < section->known + section->known_count; a++) {
@@ -168,13 +194,16 @@ static double assess(struct inversion_state *state, struct inversion_section *se
             continue;
         seen++;
         own += sampled / unit;
-        both += (state->variance[a] + common * common) / unit;
+        both += state->variance[a] / unit;
+        whole += (state->variance[a] + common * common) / unit;
     }
     const double misfit = mf_inversion_chi_squared(state, state->excess, section->known,
                                                    section->known + section->known_count);
-    add_distance(&state->verdict.distance[section->kind], sum, both, own, section->bins);
-    section->rms = sqrt(sum / bins) / section->peak;
-    section->noise = sqrt(both / bins) / section->peak;
+    const struct explained explained =
+        explain(state, state->excess, section->known, section->known + section->known_count);
+    add_distance(&state->verdict.distance[section->kind], sum, whole, own, section->bins);
+    section->rms = sqrt(fmax(0, sum - explained.square) / bins) / section->peak;
+    section->noise = sqrt(fmax(0, both - explained.noise) / bins) / section->peak;
     section->misfit = seen > 0 ? misfit / seen : 0;
     section->probable = find_probable(state, section);
     section->own_noise = sqrt(own / bins) / section->peak;

@@ -131,6 +131,9 @@ struct inversion_factor {
     double missing, prior;
 };
 
+/// Of a pair type; 0 where it is known.
+struct inversion_factor mf_inversion_factor_of(const struct inversion_state *state, size_t pair);
+
 /// Fill in the factor of a pair type that is farthest from what was known of it.
 void mf_inversion_find_factor(const struct inversion_state *state, struct inversion_factor *factor);
 

@@ -189,6 +189,44 @@ static void test_target_that_is_off_as_a_whole_agrees_where_its_factor_may_be(vo
     gsl_rng_free(rng);
 }
 
+/// Targets of the truth whose factor is off by chance: what the factor does not explain scatters as
+/// the noise has it, which is that without a factor, and the whole distance as the whole
+/// noise.
+static void test_error_of_a_factor_is_no_noise_of_bins(void **state) {
+    enum { TRIALS = 400 };
+    (void)state;
+    static struct made made;
+    double common[BINS], squares = 0, noise = 0, alone = 0, whole = 0, all = 0;
+    const double prior = 0.03;
+    const size_t known_of[] = {BINS};
+    gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
+    for (int trial = 0; trial < TRIALS; trial++) {
+        make(&made, rng, 1000, 0);
+        alone += pow(made.state.verdict.section[0].noise, 2) / TRIALS;
+        made.problem.targets.target[TARGET_RDF].factor_error = &prior;
+        made.state.grid.pairs = made.state.grid.blocks = 1;
+        made.state.grid.known_of = (size_t *)known_of;
+        made.state.target.common = common;
+        const double moved = 1 + gsl_ran_gaussian(rng, prior);
+        for (size_t k = 0; k < BINS; k++) {
+            made.target[k] *= moved;
+            common[k] = prior * made.target[k];
+        }
+        mf_inversion_assess(&made.state);
+        const struct target_distance *distance = &made.state.verdict.distance[TARGET_RDF];
+        squares += pow(made.state.verdict.section[0].rms, 2) / TRIALS;
+        noise += pow(made.state.verdict.section[0].noise, 2) / TRIALS;
+        whole += distance->rms * distance->rms / TRIALS;
+        all += distance->noise * distance->noise / TRIALS;
+    }
+    gsl_rng_free(rng);
+    print_message("%.3g of %.3g, %.3g without a factor; the whole %.3g of %.3g\n", squares, noise,
+                  alone, whole, all);
+    assert_true(fabs(squares / noise - 1) < 0.1);
+    assert_true(fabs(noise / alone - 1) < 0.05);
+    assert_true(fabs(whole / all - 1) < 0.1);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_truth_agrees_with_its_target_whatever_the_counts_of_one_bin),
@@ -196,6 +234,7 @@ int main(void) {
             test_wrong_potential_does_not_agree_though_the_noise_of_rare_pairs_is_larger),
         cmocka_unit_test(test_target_that_is_off_as_a_whole_agrees_where_its_factor_may_be),
         cmocka_unit_test(test_bound_of_agreement_is_that_of_the_bins_not_of_few_samples),
+        cmocka_unit_test(test_error_of_a_factor_is_no_noise_of_bins),
         cmocka_unit_test(test_noise_of_a_bin_is_that_of_the_counts_that_are_expected),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
