@@ -141,6 +141,10 @@ static size_t standardise(const double *values, size_t n, size_t numbers, double
     return found;
 }
 
+double mf_statistics_square_of_correlation(double square, double independent) {
+    return 1 - (1 - square) * (independent - 1) / (independent - 2);
+}
+
 enum status mf_statistics_independence(const double *values, size_t length, size_t chains,
                                        size_t numbers, struct statistics_independence *found) {
     enum status status = STATUS_OK;
@@ -162,7 +166,7 @@ enum status mf_statistics_independence(const double *values, size_t length, size
             double r = 0;
             for (size_t m = 0; m < n; m++)
                 r += scaled[a * n + m] * scaled[b * n + m];
-            squares += 2 * (1 - (1 - r * r) * (independent - 1) / (independent - 2));
+            squares += 2 * mf_statistics_square_of_correlation(r * r, independent);
         }
     const double all = (double)seen;
     found->numbers = all * all / (all + fmax(squares, 0));

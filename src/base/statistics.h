@@ -71,9 +71,13 @@ struct statistics_independence {
     double freedom; ///< degrees of freedom of the errors: independent values, less one
 };
 
-/// By the scatter of their values. Few values are correlated by chance, and m of them have
-/// r² = 1/(m − 1) in the mean where ρ is 0: ρ² is taken as 1 − (1 − r²) (m − 1)/(m − 2), of which a
-/// sum over many pairs is right. Of fewer than three values all numbers count as one.
+/// ρ² of two numbers whose correlation r was found by so many independent values, more than two.
+/// Few are correlated by chance, and m of them have r² = 1/(m − 1) in the mean where ρ is 0: it is
+/// 1 − (1 − r²) (m − 1)/(m − 2), of which a sum over many pairs is right. Tested: test_statistics.
+double mf_statistics_square_of_correlation(double square, double independent);
+
+/// By the scatter of their values, with mf_statistics_square_of_correlation. Of fewer than three
+/// values all numbers count as one.
 /// @param[in] values  shape [numbers, chains, length]
 /// Fails: NO_MEMORY. Tested: test_statistics.
 enum status mf_statistics_independence(const double *values, size_t length, size_t chains,

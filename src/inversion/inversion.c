@@ -106,6 +106,7 @@ static void describe(const struct inversion *inversion, const double *own, bool 
         .finished = converged || stuck || progress->lost ||
                     progress->iteration + 1 >= inversion->parameters.iterations,
     };
+    memcpy(step->noise_of_state, progress->best.noise, sizeof step->noise_of_state);
     show_groups(inversion, step);
     describe_samples(inversion, own, step);
     if (step->finished && !converged)

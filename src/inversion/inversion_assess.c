@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // What the samples of a state say beside its targets.
+#include "base/statistics.h"
 #include "inversion/inversion_state.h"
 
 #include <gsl/gsl_cdf.h>
@@ -32,10 +33,7 @@ static void add_distance(struct target_distance *distance, double sum, double bo
     distance->count += bins;
 }
 
-/// Variance of S* of a known bin, as it would be if the potential were right: where the target has
-/// few counts, they are as often fewer than expected as more, and would have too small an error
-/// then. It is that of the counts that the samples expect, if these are more.
-static double find_target_variance(const struct inversion_state *state, size_t a) {
+double mf_inversion_target_variance(const struct inversion_state *state, size_t a) {
     const size_t bin = state->grid.known_bin[a];
     const double error = state->target.error[bin];
     if (!(error > 0))
@@ -44,13 +42,13 @@ static double find_target_variance(const struct inversion_state *state, size_t a
     return error * error * fmax(1, state->replicas.counts.mean[bin] / counts);
 }
 
-/// χ² by bin that noise alone exceeds in one of a thousand fits. Bins beside each other are off
-/// together: all count as (Σ ρ_aa)²/Σ ρ_ab² independent ones, by the correlations ρ of the samples.
-static double find_probable(const struct inversion_state *state,
-                            const struct inversion_section *section) {
-    static const double chance = 1e-3;
+/// As how many independent bins those of a section count, which are off together with the bins
+/// beside them: (Σ ρ_aa)²/Σ ρ_ab² by the correlations ρ of the samples; 0 if none was seen.
+static double count_independent(const struct inversion_state *state,
+                                const struct inversion_section *section) {
     const struct comoments *counts = &state->replicas.counts;
     const size_t end = section->known + section->known_count;
+    const double samples = counts->count / section->inefficiency;
     double bins = 0, squares = 0;
     for (size_t a = section->known; a < end; a++) {
         const size_t i = state->grid.known_bin[a];
@@ -58,16 +56,26 @@ static double find_probable(const struct inversion_state *state,
         if (!state->grid.seen[a])
             continue;
         bins++;
-        squares++;
         for (size_t b = section->known; b < a && own > 0; b++) {
             const size_t j = state->grid.known_bin[b];
             const double other = mf_comoments_covariance(counts, j, j);
             if (state->grid.seen[b] && other > 0)
-                squares += 2 * pow(mf_comoments_covariance(counts, i, j), 2) / (own * other);
+                squares +=
+                    2 * mf_statistics_square_of_correlation(
+                            pow(mf_comoments_covariance(counts, i, j), 2) / (own * other), samples);
         }
     }
-    const double independent = bins * bins / fmax(squares, 1);
-    return bins > 0 ? gsl_cdf_chisq_Qinv(chance, independent) / independent : INFINITY;
+    if (!(samples > 2))
+        return fmin(bins, 1);
+    return bins > 0 ? bins * bins / (bins + fmax(squares, 0)) : 0;
+}
+
+/// χ² by bin that noise alone exceeds in one of a thousand fits.
+static double find_probable(const struct inversion_state *state,
+                            const struct inversion_section *section) {
+    static const double chance = 1e-3;
+    const double independent = count_independent(state, section);
+    return independent > 0 ? gsl_cdf_chisq_Qinv(chance, independent) / independent : INFINITY;
 }
 
 /// What a block's bins have in common with the error of its factor: u·x and |u|², with u that error
@@ -84,21 +92,43 @@ static void find_common(const struct inversion_state *state, const double *exces
     }
 }
 
-/// By how much the factors of pair types make the χ² of a section smaller: Σ (u·x)²/(1 + |u|²).
-static double find_explained(const struct inversion_state *state, const double *excess,
-                             size_t begin, size_t end) {
+/// What the factors of pair types explain of the excess of a section.
+struct explained {
+    double misfit; ///< of χ²: Σ (u·x)²/(1 + |u|²)
+    double square; ///< of Σ x², where each factor is the one that is most probable
+    double noise;  ///< of Σ σ²: the most probable factor follows the noise of its bins
+};
+
+/// The most probable factor of a block, in its errors, explains f u of the excess, with
+/// f = u·x/(1 + |u|²). What is left of noise has the covariance 1 − u uᵀ/(1 + |u|²), in units of
+/// that of the bins.
+static void explain_block(const struct inversion_state *state, const double *excess, size_t begin,
+                          size_t end, struct explained *explained) {
+    double along, squares;
+    find_common(state, excess, begin, end, &along, &squares);
+    const double factor = along / (1 + squares);
+    explained->misfit += along * factor;
+    for (size_t a = begin; a < end; a++) {
+        const double unit = state->target.unit[state->grid.known_bin[a]];
+        const double common = state->target.common[a] / unit, x = excess[a] / unit;
+        if (!state->grid.seen[a])
+            continue;
+        explained->square += x * x - pow(x - factor * common, 2);
+        explained->noise += common * common / (1 + squares);
+    }
+}
+
+static struct explained explain(const struct inversion_state *state, const double *excess,
+                                size_t begin, size_t end) {
     const struct potential_grid *grid = &state->grid;
-    double sum = 0;
+    struct explained explained = {0};
     for (size_t block = 0, first = 0; state->target.common && block < grid->blocks; block++) {
         const size_t last = first + grid->known_of[block];
-        double along, squares;
-        if (first >= begin && last <= end) {
-            find_common(state, excess, first, last, &along, &squares);
-            sum += along * along / (1 + squares);
-        }
+        if (first >= begin && last <= end)
+            explain_block(state, excess, first, last, &explained);
         first = last;
     }
-    return sum;
+    return explained;
 }
 
 double mf_inversion_chi_squared(const struct inversion_state *state, const double *excess,
@@ -106,25 +136,29 @@ double mf_inversion_chi_squared(const struct inversion_state *state, const doubl
     double sum = 0;
     for (size_t a = begin; a < end; a++)
         sum += state->grid.seen[a] ? excess[a] * excess[a] / state->variance[a] : 0;
-    return sum - find_explained(state, excess, begin, end);
+    return sum - explain(state, excess, begin, end).misfit;
+}
+
+struct inversion_factor mf_inversion_factor_of(const struct inversion_state *state, size_t pair) {
+    const struct potential_grid *grid = &state->grid;
+    const double *prior = state->problem->targets.target[TARGET_RDF].factor_error;
+    double along, squares;
+    size_t first = 0;
+    if (state->target.common == NULL || prior == NULL)
+        return (struct inversion_factor){0};
+    for (size_t n = 0; n < pair; n++)
+        first += grid->known_of[n];
+    find_common(state, state->excess, first, first + grid->known_of[pair], &along, &squares);
+    return (struct inversion_factor){.missing = prior[pair] * along / (1 + squares),
+                                     .prior = squares > 0 ? prior[pair] : 0};
 }
 
 void mf_inversion_find_factor(const struct inversion_state *state,
                               struct inversion_factor *factor) {
-    const struct potential_grid *grid = &state->grid;
-    const struct targets *targets = &state->problem->targets;
     *factor = (struct inversion_factor){0};
-    for (size_t pair = 0, first = 0; state->target.common && pair < grid->pairs; pair++) {
-        const size_t last = first + grid->known_of[pair];
-        double along, squares;
-        find_common(state, state->excess, first, last, &along, &squares);
-        first = last;
-        if (!(squares > 0))
-            continue;
-        const double prior = targets->target[TARGET_RDF].factor_error[pair];
-        const struct inversion_factor own = {.missing = prior * along / (1 + squares),
-                                             .prior = prior};
-        if (fabs(own.missing) * factor->prior >= fabs(factor->missing) * own.prior)
+    for (size_t pair = 0; pair < state->grid.pairs; pair++) {
+        const struct inversion_factor own = mf_inversion_factor_of(state, pair);
+        if (own.prior > 0 && fabs(own.missing) * factor->prior >= fabs(factor->missing) * own.prior)
             *factor = own;
     }
 }
@@ -144,7 +178,7 @@ static double assess(struct inversion_state *state, struct inversion_section *se
                  mf_replicas_inefficiency(&state->replicas, 1, ideal, known, section->known_count));
     const double independent = counts->count / section->inefficiency;
     const double bins = (double)section->bins;
-    double sum = 0, own = 0, both = 0, alone = 0, seen = 0;
+    double sum = 0, own = 0, both = 0, whole = 0, alone = 0, seen = 0;
     for (size_t n = section->bin; n < section->bin + section->bins; n++)
         sum += pow((counts->mean[n] - state->target.counts[n]) / state->target.unit[n], 2);
     for (size_t a = section->known; a < section->known + section->known_count; a++) {
@@ -155,19 +189,22 @@ static double assess(struct inversion_state *state, struct inversion_section *se
             fmax(mf_comoments_covariance(counts, bin, bin), 1 / counts->count) / independent;
         const double common = state->target.common ? state->target.common[a] : 0;
         state->excess[a] = counts->mean[bin] - state->target.counts[bin];
-        state->variance[a] = sampled + find_target_variance(state, a);
+        state->variance[a] = sampled + mf_inversion_target_variance(state, a);
         if (!state->grid.seen[a])
             continue;
         seen++;
         own += sampled / unit;
         alone += sampled / state->variance[a];
-        both += (state->variance[a] + common * common) / unit;
+        both += state->variance[a] / unit;
+        whole += (state->variance[a] + common * common) / unit;
     }
     const double misfit = mf_inversion_chi_squared(state, state->excess, section->known,
                                                    section->known + section->known_count);
-    add_distance(&state->verdict.distance[section->kind], sum, both, own, section->bins);
-    section->rms = sqrt(sum / bins) / section->peak;
-    section->noise = sqrt(both / bins) / section->peak;
+    const struct explained explained =
+        explain(state, state->excess, section->known, section->known + section->known_count);
+    add_distance(&state->verdict.distance[section->kind], sum, whole, own, section->bins);
+    section->rms = sqrt(fmax(0, sum - explained.square) / bins) / section->peak;
+    section->noise = sqrt(fmax(0, both - explained.noise) / bins) / section->peak;
     section->misfit = seen > 0 ? misfit / seen : 0;
     section->own_misfit = seen > 0 ? alone / seen : 0;
     section->probable = find_probable(state, section);
@@ -248,7 +285,7 @@ void mf_inversion_pool(struct inversion_state *state) {
     }
     const double share = fmax(least_share, now / (*pool + now));
     for (size_t a = 0; a < grid->known; a++) {
-        const double target = find_target_variance(state, a);
+        const double target = mf_inversion_target_variance(state, a);
         double *excess = &state->pool.excess[a], *sampled = &state->pool.variance[a];
         *excess = (1 - share) * *excess + share * state->excess[a];
         *sampled = pow(1 - share, 2) * *sampled + pow(share, 2) * (state->variance[a] - target);

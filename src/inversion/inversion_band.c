@@ -32,12 +32,12 @@ size_t mf_inversion_band_spans(struct inversion_band *band, size_t points,
     span[1] = (struct memory_span){band->without_ramp, points * sizeof(double)};
     span[2] = (struct memory_span){band->flat, INVERSE_FLAT * points * sizeof(double)};
     span[3] = (struct memory_span){&band->ramp, sizeof band->ramp};
-    span[4] = (struct memory_span){&band->farthest, sizeof band->farthest};
+    span[4] = (struct memory_span){&band->ways, sizeof band->ways};
     return INVERSION_BAND_SPANS;
 }
 
-enum status mf_inversion_band_covariance(const struct imc_system *system, double *covariance,
-                                         double *directions) {
+enum status mf_inversion_band_covariance(const struct imc_system *system, double birge,
+                                         double *covariance, double *directions) {
     enum status status = STATUS_OK;
     const size_t size = system->size;
     const double unit = 1 / (system->temperature * system->temperature);
@@ -47,7 +47,7 @@ enum status mf_inversion_band_covariance(const struct imc_system *system, double
     CHECK(prior && response && known ? STATUS_OK : STATUS_NO_MEMORY);
     mf_imc_solve_rows(system, response, NULL);
     mf_imc_solve_prior(system, prior);
-    gsl_blas_dsyrk(CblasLower, CblasTrans, 1, response, 0, known);
+    gsl_blas_dsyrk(CblasLower, CblasTrans, 1 / birge, response, 0, known);
     gsl_matrix_memcpy(&to.matrix, known);
     gsl_blas_dsyrk(CblasLower, CblasTrans, unit, prior, 1, &to.matrix);
     // Rounding may leave it not positive: then there is no band.
@@ -123,9 +123,10 @@ static void add_square(struct inversion *inversion, double factor, const double 
             inversion->course.band.covariance[a * n + b] += factor * u[a] * u[b];
 }
 
-/// The step from here: the most probable one, x = Σ Bᵀ V^−½ excess, or that of the coefficients.
+/// The step from here: the most probable one, x = Σ Bᵀ V^−½ excess with V as large as Birge's
+/// factor has it, or that of the coefficients.
 static enum status find_step(const struct inversion *inversion, const struct imc_system *system,
-                             double *step) {
+                             double birge, double *step) {
     enum status status = STATUS_OK;
     const size_t n = inversion_grid(inversion)->known;
     gsl_matrix *response = NULL;
@@ -140,7 +141,7 @@ static enum status find_step(const struct inversion *inversion, const struct imc
     asked = gsl_vector_alloc(n);
     CHECK(response && excess && asked ? STATUS_OK : STATUS_NO_MEMORY);
     mf_imc_solve_rows(system, response, excess);
-    gsl_blas_dgemv(CblasTrans, 1, response, excess, 0, asked);
+    gsl_blas_dgemv(CblasTrans, 1 / birge, response, excess, 0, asked);
     spread(inversion, asked->data, step);
 done:
     gsl_matrix_free(response);
@@ -149,20 +150,30 @@ done:
     return status;
 }
 
-/// The way of A and of the pressure that this step would go. Of A it counts as an error: Σ ← Σ +
-/// (A/σ_A²)² Σw (Σw)ᵀ.
-static void add_way(struct inversion *inversion, const double *step, const double *weight,
-                    double *scratch) {
-    const size_t n = inversion_grid(inversion)->known;
-    struct inverse_ramp *ramp = &inversion->course.band.ramp;
-    ramp->way = ramp->pressure_way = 0;
-    for (size_t a = 0; a < n; a++) {
-        ramp->way += weight[a] * step[a];
-        ramp->pressure_way += inversion->state->pressure.slope[a] * step[a];
-    }
+/// What this step would change of the number whose slope is v.
+static struct inversion_band_way find_way(const struct inversion *inversion, const double *v,
+                                          const double *step, double *scratch) {
+    struct inversion_band_way found = {0, sqrt(spread(inversion, v, scratch))};
+    for (size_t a = 0; a < inversion_grid(inversion)->known; a++)
+        found.way += v[a] * step[a];
+    return found;
+}
+
+static void find_ways(struct inversion *inversion, const double *step, const double *weight,
+                      double *scratch) {
+    struct inversion_band_ways *ways = &inversion->course.band.ways;
+    ways->ramp = find_way(inversion, weight, step, scratch);
+    for (size_t s = 0; s < inversion->states; s++)
+        ways->pressure[s] = find_way(inversion, inversion->state[s].pressure.slope, step, scratch);
+    inversion->course.band.ramp.way = ways->ramp.way;
+    inversion->course.band.ramp.pressure_way = ways->pressure[0].way;
+}
+
+/// The way of A counts as an error: Σ ← Σ + (A/σ_A²)² Σw (Σw)ᵀ.
+static void add_way(struct inversion *inversion, const double *weight, double *scratch) {
     const double variance = spread(inversion, weight, scratch);
     if (variance > 0) // without pairs there is no ramp
-        add_square(inversion, pow(ramp->way / variance, 2), scratch);
+        add_square(inversion, pow(inversion->course.band.ways.ramp.way / variance, 2), scratch);
 }
 
 /// A fit that ends while it walks on has gone where its targets hardly see: the way is an error.
@@ -173,21 +184,6 @@ static void add_walk(struct inversion *inversion, double *scratch) {
         scratch[a] = inversion->course.best.phi[point] - inversion->course.met_phi[point];
     }
     add_square(inversion, 1, scratch);
-}
-
-/// Of several states the pressure whose way is the most of its error.
-static void find_farthest(struct inversion *inversion, const double *step, double *scratch) {
-    const struct inverse_ramp *ramp = &inversion->course.band.ramp;
-    struct inversion_band_pressure *farthest = &inversion->course.band.farthest;
-    *farthest = (struct inversion_band_pressure){ramp->pressure_way, ramp->pressure_open};
-    for (size_t s = 1; s < inversion->states; s++) {
-        const double *slope = inversion->state[s].pressure.slope;
-        struct inversion_band_pressure own = {0, sqrt(spread(inversion, slope, scratch))};
-        for (size_t a = 0; a < inversion_grid(inversion)->known; a++)
-            own.way += slope[a] * step[a];
-        if (fabs(own.way) * farthest->open > fabs(farthest->way) * own.open)
-            *farthest = own;
-    }
 }
 
 /// What a pressure with its error adds: Σ ← Σ − Σp (Σp)ᵀ/(p·Σp + σ_P²).
@@ -201,26 +197,27 @@ static void add_pressure(struct inversion *inversion, double *scratch) {
 }
 
 double mf_inversion_band_of_counts(double counts) {
-    return sqrt(gsl_sf_psi_1(counts + 0.5));
+    return isfinite(counts) ? sqrt(gsl_sf_psi_1(counts + 0.5)) : 0;
 }
 
-/// What the counts of the target and those of the samples allow the error of Φ of a known bin to be
-/// at least: both of all states together. 0 of groups, which end as smooth as the prior has them.
-static double least_error(const struct inversion *inversion, size_t a) {
+/// Counts whose mean has this variance; without any there is none to be had.
+static double counts_of(double mean, double variance) {
+    return mean > 0 ? mean * mean / fmax(variance, 0) : 0;
+}
+
+double mf_inversion_band_least(const struct inversion *inversion, size_t a) {
     const size_t bin = inversion_grid(inversion)->known_bin[a];
     double asked = 0, seen = 0;
     if (a >= inversion_grid(inversion)->pairs_known || inversion->state->basis.count > 0)
         return 0;
     for (size_t s = 0; s < inversion->states; s++) {
         const struct inversion_state *own = &inversion->state[s];
-        const double target = pow(own->target.error[bin], 2);
-        asked += pow(own->target.counts[bin], 2) / target;
-        seen += pow(own->replicas.counts.mean[bin], 2) / (own->variance[a] - target);
+        asked += counts_of(own->target.counts[bin], pow(own->target.error[bin], 2));
+        seen += counts_of(own->replicas.counts.mean[bin],
+                          own->variance[a] - mf_inversion_target_variance(own, a));
     }
-    return isfinite(asked) && isfinite(seen)
-               ? inversion->problem->scene.temperature *
-                     hypot(mf_inversion_band_of_counts(asked), mf_inversion_band_of_counts(seen))
-               : 0;
+    return inversion->problem->scene.temperature *
+           hypot(mf_inversion_band_of_counts(asked), mf_inversion_band_of_counts(seen));
 }
 
 /// Standard errors, those of A, and those of Φ if A were known.
@@ -232,7 +229,7 @@ static void find_errors(struct inversion *inversion, const double *weight, doubl
     for (size_t a = 0; a < n; a++) {
         const double variance = band->covariance[a * n + a];
         const double of_ramp = ramp_variance > 0 ? scratch[a] * scratch[a] / ramp_variance : 0;
-        const double least = least_error(inversion, a);
+        const double least = mf_inversion_band_least(inversion, a);
         band->error[grid->known_point[a]] = variance >= 0 ? fmax(sqrt(variance), least) : NAN;
         band->without_ramp[grid->known_point[a]] =
             variance >= 0 ? fmax(sqrt(fmax(0, variance - of_ramp)), least) : NAN;
@@ -287,6 +284,16 @@ done:
     return status;
 }
 
+struct inversion_band_way mf_inversion_band_farthest(const struct inversion *inversion) {
+    const struct inversion_band_way *pressure = inversion->course.band.ways.pressure;
+    size_t farthest = 0;
+    for (size_t s = 1; s < inversion->states; s++)
+        if (fabs(pressure[s].way) * pressure[farthest].open >
+            fabs(pressure[farthest].way) * pressure[s].open)
+            farthest = s;
+    return pressure[farthest];
+}
+
 double mf_inversion_band_birge(const struct inversion_verdict *verdict) {
     return fmax(1, verdict->misfit);
 }
@@ -300,38 +307,37 @@ enum status mf_inversion_band_find(struct inversion *inversion) {
     enum status status = STATUS_OK;
     const struct potential_grid *grid = inversion_grid(inversion);
     struct inversion_band *band = &inversion->course.band;
-    double *weight = NULL, *scratch = NULL, *variance = NULL, *step = NULL;
+    double *weight = NULL, *scratch = NULL, *step = NULL;
+    const double birge = mf_inversion_band_birge(&inversion->verdict);
     struct imc_shape *shape = NULL;
     NEW_ARRAY(weight, grid->known);
     NEW_ARRAY(scratch, grid->known);
-    NEW_ARRAY(variance, grid->known);
     NEW_ARRAY(step, grid->known);
     struct imc_system system = inversion->equations.system;
-    for (size_t a = 0; a < system.size; a++)
-        variance[a] = mf_inversion_band_birge(&inversion->verdict) * system.variance[a];
-    system.variance = variance;
     NEW_ARRAY(shape, grid->blocks);
     mf_inversion_smooth_shapes(inversion, shape);
     system.shape = shape;
     CHECK(inversion->state->basis.count > 0
               ? mf_inversion_basis_covariance(inversion->state, band->covariance,
                                               &band->ramp.directions)
-              : mf_inversion_band_covariance(&system, band->covariance, &band->ramp.directions));
-    if (inversion->course.walked)
-        add_walk(inversion, scratch);
+              : mf_inversion_band_covariance(&system, birge, band->covariance,
+                                             &band->ramp.directions));
     take_constants_off(inversion);
     weigh_ramp(inversion, weight);
-    CHECK(find_step(inversion, &system, step));
-    add_way(inversion, step, weight, scratch);
+    CHECK(find_step(inversion, &system, birge, step));
+    find_ways(inversion, step, weight, scratch);
+    if (inversion->course.walked) {
+        add_walk(inversion, scratch);
+        take_constants_off(inversion);
+    }
+    add_way(inversion, weight, scratch);
     add_pressure(inversion, scratch);
-    find_farthest(inversion, step, scratch);
     find_errors(inversion, weight, scratch);
     if (!isnan(band->covariance[0]))
         CHECK(find_flat(inversion));
 done:
     mf_memory_free(weight);
     mf_memory_free(scratch);
-    mf_memory_free(variance);
     mf_memory_free(shape);
     mf_memory_free(step);
     return status;

@@ -9,7 +9,8 @@
 /// more where its target does, and the result is made as smooth as that (inversion_smooth.h).
 ///
 /// Where more of the excess is left than these say, χ² by bin above 1, the σ_a² are that much
-/// larger: a fit stops within 1.7 times the noise, and what it leaves is an error of Φ too.
+/// larger, and so is the square of what the bins of a pair type have in common: a fit stops
+/// within 1.7 times the noise, and what it leaves is an error of Φ too.
 ///
 /// What the most probable step from there would still change of the ramp is an error too. `imc` and
 /// `auto` take this step near the noise, and end when it is below half of the errors of A and of
@@ -45,6 +46,13 @@
 struct inversion;
 struct inversion_verdict;
 
+/// What the target still asks for of a number that it hardly sees, and the standard error by g(r)
+/// alone: that of the present samples, in which no way counts, neither this one nor that of a fit
+/// that has walked.
+struct inversion_band_way {
+    double way, open;
+};
+
 struct inversion_band {
     double *covariance;   ///< of Φ in the known bins, shape [known, known]
     double *error;        ///< standard errors, shape [points]; 0 where Φ is set
@@ -52,27 +60,37 @@ struct inversion_band {
     double
         *flat; ///< inverse_step.curve_flat, shape [INVERSE_FLAT, points] of pairs, then of groups
     struct inverse_ramp ramp;
-    /// Of the pressure of the state that is farthest from having settled: what the target still
-    /// asks for, and the standard error by g(r) alone [k_B T_0/λ^d].
-    struct inversion_band_pressure {
-        double way, open;
-    } farthest;
+    struct inversion_band_ways {
+        struct inversion_band_way ramp, pressure[INVERSE_MOST_STATES];
+    } ways; ///< of A, and of the pressure of each state [k_B T_0/λ^d]
 };
 
 /// Standard deviation of ln λ of a Poisson distribution with the mean λ of which so many were
 /// counted: that of its posterior, a gamma distribution of the shape counts + ½ by H. Jeffreys's
-/// prior. Tested: test_inversion_band.
+/// prior; 0 of infinitely many. Tested: test_inversion_band.
 double mf_inversion_band_of_counts(double counts);
 
+/// What the counts of the targets and those of the samples allow the error of Φ of a known bin to
+/// be at least: both of all states together, of which some have none there, and exact targets
+/// infinitely many. 0 of groups, which end as smooth as the prior has them. Tested:
+/// test_inversion_band.
+double mf_inversion_band_least(const struct inversion *inversion, size_t a);
+
 /// (F + prior)⁻¹.
-/// @param[in]  system      size, blocks, C, variances, temperature, spacing
+/// @param[in]  system      size, blocks, C, variances and what bins have in common, temperature,
+///                         spacing
+/// @param[in]  birge       by which the covariance V of the excess is larger than the system says
 /// @param[out] covariance  shape [size, size]
 /// @param[out] directions  that the data determine: trace of F (F + prior)⁻¹
 /// Fails: NO_MEMORY. Tested: test_inversion_band.
-enum status mf_inversion_band_covariance(const struct imc_system *system, double *covariance,
-                                         double *directions) MUST_USE;
+enum status mf_inversion_band_covariance(const struct imc_system *system, double birge,
+                                         double *covariance, double *directions) MUST_USE;
 
-/// χ² by bin, if above 1: by so much the variances of g are larger, as what is left of the excess
+/// Of the pressures of all states the one whose way is the most of its error. Tested:
+/// test_inversion_start.
+struct inversion_band_way mf_inversion_band_farthest(const struct inversion *inversion);
+
+/// χ² by bin, if above 1: by so much the covariances of g are larger, as what is left of the excess
 /// shows. R. T. Birge, Phys. Rev. 40, 207 (1932).
 double mf_inversion_band_birge(const struct inversion_verdict *verdict);
 

@@ -127,6 +127,21 @@ done:
     return status;
 }
 
+/// Take off the steps of pairs what the most probable factor of each type explains: it is an error
+/// of the target, and the logarithm would ask the potential for a constant up to its cutoff.
+static void leave_factors(const struct inversion_state *state, double *step) {
+    const struct potential_grid *grid = &state->grid;
+    for (size_t pair = 0, first = 0; state->target.common && pair < grid->pairs; pair++) {
+        const size_t last = first + grid->known_of[pair];
+        const double explained =
+            state->problem->scene.temperature * log1p(mf_inversion_factor_of(state, pair).missing);
+        for (size_t a = first; a < last; a++)
+            if (grid->seen[a])
+                step[grid->known_point[a]] -= explained;
+        first = last;
+    }
+}
+
 /// Of an excess of which a part is noise, the rest is to be removed (N. Wiener, Extrapolation,
 /// Interpolation, and Smoothing of Stationary Time Series (1949)): 1 − noise²/rms² of each section.
 static void leave_noise(const struct inversion_state *state, double *step) {
@@ -140,6 +155,7 @@ static void leave_noise(const struct inversion_state *state, double *step) {
 
 enum status mf_inversion_coarse_step(struct inversion_state *state, double *step) {
     mf_ibi_logarithms(state, step);
+    leave_factors(state, step);
     leave_noise(state, step);
     return mf_inversion_coarse_respond(state, step);
 }

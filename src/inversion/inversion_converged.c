@@ -93,22 +93,39 @@ static bool must_settle(const struct inversion *inversion) {
            !targets_ask(&inversion->problem->targets, TARGET_PRESSURE);
 }
 
+/// Whether the sum of the last `count` ways of a number is a part of so many errors.
+static bool cancels(double sum, uint32_t count, const struct inversion_band_way *last) {
+    return fabs(sum) <= count * settled_way * last->open;
+}
+
 /// Whether the ways of the last iterations that met the targets, `least` of them or more, cancel
 /// but for a part of their errors: each one has the noise of its samples, and what goes on goes on
-/// in one direction.
+/// in one direction. Each state has a pressure of its own, and so a sum.
 static bool has_settled(const struct inversion *inversion, uint32_t least) {
-    const struct inversion_band *band = &inversion->course.band;
+    const struct inversion_band_ways *last = &inversion->course.band.ways;
     const struct inversion_ways *ways = &inversion->course.progress.ways;
-    double ramp = 0, pressure = 0;
+    double ramp = 0, pressure[INVERSE_MOST_STATES] = {0};
     for (uint32_t k = 1; k <= ways->met && k <= INVERSION_MOST_WAYS; k++) {
         const uint32_t place = (ways->met - k) % INVERSION_MOST_WAYS;
         ramp += ways->ramp[place];
-        pressure += ways->pressure[place];
-        if (k >= least && fabs(ramp) <= k * settled_way * band->ramp.error &&
-            fabs(pressure) <= k * settled_way * band->farthest.open)
+        bool settled = k >= least && cancels(ramp, k, &last->ramp);
+        for (size_t s = 0; s < inversion->states; s++) {
+            pressure[s] += ways->pressure[place][s];
+            settled = settled && cancels(pressure[s], k, &last->pressure[s]);
+        }
+        if (settled)
             return true;
     }
     return false;
+}
+
+static void note_ways(const struct inversion *inversion, struct inversion_ways *ways) {
+    const struct inversion_band_ways *last = &inversion->course.band.ways;
+    const uint32_t place = ways->met % INVERSION_MOST_WAYS;
+    ways->ramp[place] = last->ramp.way;
+    for (size_t s = 0; s < inversion->states; s++)
+        ways->pressure[place][s] = last->pressure[s].way;
+    ways->met++;
 }
 
 bool mf_inversion_has_converged(struct inversion *inversion, bool kept) {
@@ -119,9 +136,7 @@ bool mf_inversion_has_converged(struct inversion *inversion, bool kept) {
         ways->met = 0;
         return false;
     }
-    ways->ramp[ways->met % INVERSION_MOST_WAYS] = inversion->course.band.ramp.way;
-    ways->pressure[ways->met % INVERSION_MOST_WAYS] = inversion->course.band.farthest.way;
-    ways->met++;
+    note_ways(inversion, ways);
     const struct potential_grid *grid = inversion_grid(inversion);
     if (ways->met == 1 && grid->points > 0)
         memcpy(inversion->course.met_phi, inversion->course.phi, grid->points * sizeof(double));

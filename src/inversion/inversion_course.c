@@ -64,6 +64,9 @@ static enum status keep(struct inversion *inversion) {
     course->progress.has_other = course->has_other;
     memcpy(best->distance, verdict->distance, sizeof best->distance);
     best->own_noise = verdict->own_noise;
+    for (size_t s = 0; s < inversion->states; s++)
+        best->noise[s] = mf_targets_noise(&inversion->state[s].problem->targets,
+                                          inversion->state[s].verdict.distance);
     best->precise = mf_inversion_verdict_is_precise(verdict);
     best->worst = *mf_inversion_verdict_worst(verdict);
     mf_inversion_find_factor(first, &best->factor);

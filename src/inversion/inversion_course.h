@@ -16,14 +16,16 @@ struct inversion_best_samples {
     struct inversion_section worst; ///< section with the largest χ² by bin over the probable
     struct inversion_factor factor; ///< mf_inversion_find_factor
     double own_noise;
-    bool precise; ///< they are as exact as was asked for
+    double noise[INVERSE_MOST_STATES]; ///< mf_targets_noise of each state
+    bool precise;                      ///< they are as exact as was asked for
 };
 
-/// What iterations running that met all targets still asked for, of the ramp and of the pressure.
+/// What iterations running that met all targets still asked for, of the ramp and of the pressure of
+/// each state.
 enum { INVERSION_MOST_WAYS = 8 };
 struct inversion_ways {
     uint32_t met; ///< such iterations; the last of them are kept
-    double ramp[INVERSION_MOST_WAYS], pressure[INVERSION_MOST_WAYS];
+    double ramp[INVERSION_MOST_WAYS], pressure[INVERSION_MOST_WAYS][INVERSE_MOST_STATES];
 };
 
 /// What a checkpoint keeps besides arrays and samplers.

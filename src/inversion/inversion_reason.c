@@ -39,6 +39,8 @@ static void tell_what_is_missing(const struct inversion *inversion,
     const struct inversion_parameters *settings = &inversion->parameters;
     const struct target_distance *pressure = &p->best.distance[TARGET_PRESSURE];
     const struct target_distance *integrals = &p->best.distance[mf_kirkwood_buff_kind()];
+    const struct inversion_band_way *ramp = &inversion->course.band.ways.ramp;
+    const struct inversion_band_way walks = mf_inversion_band_farthest(inversion);
     const int missed = find_missed(inversion);
     if (missed >= 0)
         snprintf(reason, INVERSE_REASON_SIZE,
@@ -59,7 +61,7 @@ static void tell_what_is_missing(const struct inversion *inversion,
                  integrals->rms, integrals->noise);
     else if (inversion_grid(inversion)->groups > 0 && inversion_grid(inversion)->pairs == 0)
         tell_of_groups(inversion, reason);
-    else if (isnan(inversion->course.band.ramp.way))
+    else if (isnan(ramp->way))
         snprintf(
             reason, INVERSE_REASON_SIZE,
             "g agrees within %.2g, but its covariances have no inverse, so that the errors of the "
@@ -71,8 +73,7 @@ static void tell_what_is_missing(const struct inversion *inversion,
                  "the potential and with it the pressure: they went on by %.2g k_B T_0, known "
                  "within %.2g, and by %.2g, known within %.2g; give \"pressure\" as a second "
                  "target, or more \"iterations\"",
-                 inversion->course.band.ramp.way, inversion->course.band.ramp.error,
-                 inversion->course.band.farthest.way, inversion->course.band.farthest.open);
+                 ramp->way, ramp->open, walks.way, walks.open);
     else
         snprintf(
             reason, INVERSE_REASON_SIZE,

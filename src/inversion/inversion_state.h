@@ -104,6 +104,11 @@ size_t mf_inversion_state_spans(struct inversion_state *state, struct memory_spa
 double mf_inversion_g(const struct inversion_state *state, size_t bin);
 double mf_inversion_target_g(const struct inversion_state *state, size_t bin);
 
+/// Variance of S* of a known bin, as it would be if the potential were right: where the target has
+/// few counts, they are as often fewer than expected as more, and would have too small an error
+/// then. It is that of the counts that the samples expect, if these are more.
+double mf_inversion_target_variance(const struct inversion_state *state, size_t a);
+
 /// Fill the sections, the shapes and all that the targets say of the bins.
 void mf_inversion_count_targets(struct inversion_state *state);
 
@@ -125,6 +130,9 @@ double mf_inversion_chi_squared(const struct inversion_state *state, const doubl
 struct inversion_factor {
     double missing, prior;
 };
+
+/// Of a pair type; 0 where it is known.
+struct inversion_factor mf_inversion_factor_of(const struct inversion_state *state, size_t pair);
 
 /// Fill in the factor of a pair type that is farthest from what was known of it.
 void mf_inversion_find_factor(const struct inversion_state *state, struct inversion_factor *factor);

@@ -12,7 +12,7 @@ struct inversion_section {
     size_t known, known_count; ///< the same of those that are known
     double peak;               ///< largest value of a group's target; of g 1
     double inefficiency;       ///< samples that count as one independent
-    double rms, noise;         ///< of the samples and their targets, in peaks
+    double rms, noise;         ///< of what the factors of targets do not explain, in peaks
     double own_noise;          ///< of the samples alone
     double misfit;             ///< χ² by bin of the samples, with the noise that they expect
     double own_misfit;         ///< what the noise of the samples alone adds to it

@@ -200,11 +200,13 @@ struct inverse_step {
     uint32_t iteration;    ///< from 0
     uint64_t evaluations;  ///< simulations so far
     uint64_t engine_steps; ///< time steps or Monte Carlo sweeps so far, over all replicas
-    double error;    ///< mf_targets_error of the best curves so far, as the method measured it
-    double noise;    ///< what the statistical errors alone would give
-    double variance; ///< of error by the noise of what was measured; 0: not known
-    double extra[INVERSE_EXTRA];         ///< columns of the method's own
-    const double *curve[UNKNOWNS];       ///< on the unknown's points, best so far; NULL: not fitted
+    double error; ///< mf_targets_error of the best curves so far, as the method measured it
+    double noise; ///< what the statistical errors alone would give
+    double noise_of_state[INVERSE_MOST_STATES]; ///< the same of each state by its own targets, of
+                                                ///< inversions
+    double variance;               ///< of error by the noise of what was measured; 0: not known
+    double extra[INVERSE_EXTRA];   ///< columns of the method's own
+    const double *curve[UNKNOWNS]; ///< on the unknown's points, best so far; NULL: not fitted
     const double *curve_error[UNKNOWNS]; ///< standard errors; NULL where the method has none
     /// Changes of a curve that the data say least of, one standard error each, widest first: shape
     /// [INVERSE_FLAT, points]; NULL where the method has none.

@@ -125,7 +125,8 @@ static void name_state(const struct fit_file *state, char reason[INVERSE_REASON_
 
 static bool is_contradicted(const struct fit_file *state, const struct inverse_method *method,
                             const struct verification *verification,
-                            const struct fit_accuracy *of_fit, char reason[INVERSE_REASON_SIZE]) {
+                            const struct fit_accuracy *of_fit, double noise,
+                            char reason[INVERSE_REASON_SIZE]) {
     static const double noise_margin = 3;
     const struct targets *targets = &state->problem.targets;
     const struct units *units = &state->scene.units;
@@ -137,8 +138,7 @@ static bool is_contradicted(const struct fit_file *state, const struct inverse_m
     if (method->restricted)
         return mf_fit_verdict_is_worse_than_samples(verification, targets, of_fit->error,
                                                     of_fit->variance, temperature, units, reason);
-    mf_verify_agree(targets, &verification->sections, &verification->observed, of_fit->noise,
-                    agreement);
+    mf_verify_agree(targets, &verification->sections, &verification->observed, noise, agreement);
     return mf_fit_verdict_contradicts(verification, agreement, targets, temperature, noise_margin,
                                       units, reason);
 }
@@ -148,7 +148,8 @@ bool mf_fit_verify_contradicts(const struct fit_file *fit, const struct verifica
                                char reason[INVERSE_REASON_SIZE]) {
     for (size_t s = 0; s <= fit->others; s++) {
         const struct fit_file *state = s == 0 ? fit : &fit->other[s - 1];
-        if (!is_contradicted(state, fit->method, &verification[s], of_fit, reason))
+        if (!is_contradicted(state, fit->method, &verification[s], of_fit, of_fit->noise[s],
+                             reason))
             continue;
         if (state->name[0])
             name_state(state, reason);

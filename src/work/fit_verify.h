@@ -22,7 +22,8 @@ enum status mf_fit_verify_states(struct fit_file *fit, double *const *curve,
 
 /// How far a fit is from its targets, by itself.
 struct fit_accuracy {
-    double error, noise, variance; ///< as in struct inverse_step
+    double error, variance;            ///< as in struct inverse_step
+    double noise[INVERSE_MOST_STATES]; ///< of each state, of inversions
 };
 
 /// Whether the verification of any state contradicts the fit, and why. An inversion has converged

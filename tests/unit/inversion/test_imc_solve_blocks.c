@@ -123,11 +123,11 @@ static void test_inversion_band_of_two_blocks_is_each_of_them_alone(void **state
     struct pair_of_systems s;
     double both[SIZE * SIZE], alone[FIRST * FIRST], directions, sum = 0;
     make(&s);
-    assert_ok(mf_inversion_band_covariance(&s.whole, both, &directions));
+    assert_ok(mf_inversion_band_covariance(&s.whole, 1, both, &directions));
     for (int block = 0; block < 2; block++) {
         double of_one;
         const size_t first = begin_of(block);
-        assert_ok(mf_inversion_band_covariance(&s.part[block], alone, &of_one));
+        assert_ok(mf_inversion_band_covariance(&s.part[block], 1, alone, &of_one));
         for (size_t a = 0; a < blocks[block]; a++)
             for (size_t b = 0; b < blocks[block]; b++)
                 assert_close(both[(first + a) * SIZE + first + b], alone[a * blocks[block] + b],

@@ -105,6 +105,43 @@ test_wrong_potential_does_not_agree_though_the_noise_of_rare_pairs_is_larger(voi
     assert_true(agree < 0.01);
 }
 
+/// Bins that are independent, whose samples are correlated by chance: what a thousandth of chi^2 of
+/// 40 degrees of freedom exceeds is 73.40 (tables of the distribution), and with bins that are
+/// pairs of the same counts, of 20, 45.31.
+static double mean_bound(uint32_t samples, uint32_t alike) {
+    enum { TRIALS = 40 };
+    static struct made made;
+    struct comoments moments;
+    double sum = 0;
+    gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
+    make(&made, rng, 100, 0);
+    for (int trial = 0; trial < TRIALS; trial++) {
+        assert_ok(mf_comoments_init(&moments, BINS));
+        for (uint32_t n = 0; n < samples; n++) {
+            double value[BINS];
+            for (uint32_t k = 0; k < BINS; k++)
+                value[k] = k % alike == 0 ? 5 + gsl_ran_gaussian(rng, 1) : value[k - 1];
+            mf_comoments_add(&moments, value);
+        }
+        made.state.replicas.counts = moments;
+        mf_inversion_assess(&made.state);
+        sum += made.state.verdict.section[0].probable / TRIALS;
+        mf_comoments_clear(&moments);
+    }
+    gsl_rng_free(rng);
+    return sum;
+}
+
+static void test_bound_of_agreement_is_that_of_the_bins_not_of_few_samples(void **state) {
+    (void)state;
+    const double few = mean_bound(25, 1), many = mean_bound(400, 1), pairs = mean_bound(25, 2);
+    print_message("%.3f and %.3f of %.3f, of pairs %.3f of %.3f\n", few, many, 73.402 / 40, pairs,
+                  45.315 / 20);
+    assert_true(fabs(few - 73.402 / 40) < 0.06);
+    assert_true(fabs(many - 73.402 / 40) < 0.03);
+    assert_true(fabs(pairs - 45.315 / 20) < 0.09);
+}
+
 /// Poisson counts: an error of 2 counts where 5 are expected is that of 5.
 static void test_noise_of_a_bin_is_that_of_the_counts_that_are_expected(void **state) {
     (void)state;
@@ -152,12 +189,52 @@ static void test_target_that_is_off_as_a_whole_agrees_where_its_factor_may_be(vo
     gsl_rng_free(rng);
 }
 
+/// Targets of the truth whose factor is off by chance: what the factor does not explain scatters as
+/// the noise has it, which is that without a factor, and the whole distance as the whole
+/// noise.
+static void test_error_of_a_factor_is_no_noise_of_bins(void **state) {
+    enum { TRIALS = 400 };
+    (void)state;
+    static struct made made;
+    double common[BINS], squares = 0, noise = 0, alone = 0, whole = 0, all = 0;
+    const double prior = 0.03;
+    const size_t known_of[] = {BINS};
+    gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
+    for (int trial = 0; trial < TRIALS; trial++) {
+        make(&made, rng, 1000, 0);
+        alone += pow(made.state.verdict.section[0].noise, 2) / TRIALS;
+        made.problem.targets.target[TARGET_RDF].factor_error = &prior;
+        made.state.grid.pairs = made.state.grid.blocks = 1;
+        made.state.grid.known_of = (size_t *)known_of;
+        made.state.target.common = common;
+        const double moved = 1 + gsl_ran_gaussian(rng, prior);
+        for (size_t k = 0; k < BINS; k++) {
+            made.target[k] *= moved;
+            common[k] = prior * made.target[k];
+        }
+        mf_inversion_assess(&made.state);
+        const struct target_distance *distance = &made.state.verdict.distance[TARGET_RDF];
+        squares += pow(made.state.verdict.section[0].rms, 2) / TRIALS;
+        noise += pow(made.state.verdict.section[0].noise, 2) / TRIALS;
+        whole += distance->rms * distance->rms / TRIALS;
+        all += distance->noise * distance->noise / TRIALS;
+    }
+    gsl_rng_free(rng);
+    print_message("%.3g of %.3g, %.3g without a factor; the whole %.3g of %.3g\n", squares, noise,
+                  alone, whole, all);
+    assert_true(fabs(squares / noise - 1) < 0.1);
+    assert_true(fabs(noise / alone - 1) < 0.05);
+    assert_true(fabs(whole / all - 1) < 0.1);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_truth_agrees_with_its_target_whatever_the_counts_of_one_bin),
         cmocka_unit_test(
             test_wrong_potential_does_not_agree_though_the_noise_of_rare_pairs_is_larger),
         cmocka_unit_test(test_target_that_is_off_as_a_whole_agrees_where_its_factor_may_be),
+        cmocka_unit_test(test_bound_of_agreement_is_that_of_the_bins_not_of_few_samples),
+        cmocka_unit_test(test_error_of_a_factor_is_no_noise_of_bins),
         cmocka_unit_test(test_noise_of_a_bin_is_that_of_the_counts_that_are_expected),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

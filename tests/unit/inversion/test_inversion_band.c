@@ -5,6 +5,7 @@
 #include "base/rng.h"
 #include "base/statistics.h"
 #include "inversion/imc_solve.h"
+#include "inversion/inversion.h"
 #include "shared/is_close.h"
 #include "shared/testing.h"
 
@@ -38,7 +39,7 @@ static void test_inversion_band_is_the_scatter_when_the_data_say_all(void **stat
                                         .variance = variance,
                                         .temperature = temperature,
                                         .spacing = spacing};
-    assert_ok(mf_inversion_band_covariance(&response, covariance, &directions));
+    assert_ok(mf_inversion_band_covariance(&response, 1, covariance, &directions));
     for (uint32_t trial = 0; trial < TRIALS; trial++) {
         double excess[SIZE], x[SIZE];
         struct imc_solution solution;
@@ -59,6 +60,37 @@ static void test_inversion_band_is_the_scatter_when_the_data_say_all(void **stat
     assert_close(directions, SIZE, 0.1);
 }
 
+/// An excess that is twice as large in all that it may be, with what bins have in common, makes
+/// errors twice as large.
+static void test_inversion_band_is_wider_by_birges_factor(void **state) {
+    (void)state;
+    double counts[SIZE][SIZE], variance[SIZE], common[SIZE], directions;
+    double narrow[SIZE * SIZE], wide[SIZE * SIZE], doubled[SIZE * SIZE];
+    make_counts(counts);
+    struct imc_system system = {.size = SIZE,
+                                .covariance = &counts[0][0],
+                                .variance = variance,
+                                .common = common,
+                                .temperature = temperature,
+                                .spacing = spacing};
+    for (int k = 0; k < SIZE; k++) {
+        variance[k] = 0.02 + 0.005 * k;
+        common[k] = 0.5 + 0.1 * k;
+    }
+    assert_ok(mf_inversion_band_covariance(&system, 1, narrow, &directions));
+    assert_ok(mf_inversion_band_covariance(&system, 4, wide, &directions));
+    for (int k = 0; k < SIZE; k++) {
+        variance[k] *= 4;
+        common[k] *= 2;
+    }
+    assert_ok(mf_inversion_band_covariance(&system, 1, doubled, &directions));
+    for (int k = 0; k < SIZE * SIZE; k += SIZE + 1) {
+        assert_close_relative(wide[k], doubled[k], 1e-9);
+        // The prior holds the less known directions.
+        assert_true(wide[k] > 3.5 * narrow[k] && wide[k] < 4 * narrow[k]);
+    }
+}
+
 static void test_inversion_band_is_the_prior_when_the_data_say_nothing(void **state) {
     (void)state;
     double counts[SIZE][SIZE] = {{0}}, variance[SIZE], covariance[SIZE * SIZE], directions;
@@ -69,7 +101,7 @@ static void test_inversion_band_is_the_prior_when_the_data_say_nothing(void **st
                                         .variance = variance,
                                         .temperature = temperature,
                                         .spacing = spacing};
-    assert_ok(mf_inversion_band_covariance(&response, covariance, &directions));
+    assert_ok(mf_inversion_band_covariance(&response, 1, covariance, &directions));
     assert_close(directions, 0, 1e-12);
     // One number has the ridge alone: 10 k_B T of it, spread over the whole curve; the last bin,
     // half a spacing from the end, is held by its bend.
@@ -122,7 +154,7 @@ static double ramp_variance(double counts[SIZE][SIZE], double samples) {
                                       .variance = variance,
                                       .temperature = temperature,
                                       .spacing = spacing};
-    assert_ok(mf_inversion_band_covariance(&system, covariance, &directions));
+    assert_ok(mf_inversion_band_covariance(&system, 1, covariance, &directions));
     for (int a = 0; a < SIZE; a++) {
         const double ramp = 1 - (a + 0.5) / SIZE;
         squares += ramp * ramp;
@@ -181,12 +213,65 @@ static void test_inversion_band_of_counts_is_that_of_the_logarithm_of_their_mean
     assert_close_relative(mf_inversion_band_of_counts(1e8), 1e-4, 1e-6);
 }
 
+/// Two states and one bin: by how many pairs were counted in each.
+struct counted {
+    struct inverse_problem problem;
+    struct inversion_state state[2];
+    struct inversion inversion;
+    size_t bin;
+    double target[2], error[2], mean[2], variance[2];
+};
+
+static double least_error(struct counted *counted, const double target[2],
+                          const double sampled[2]) {
+    static const double frames = 10;
+    *counted = (struct counted){
+        .problem.scene.temperature = temperature,
+        .inversion = {.problem = &counted->problem, .state = counted->state, .states = 2}};
+    for (int s = 0; s < 2; s++) {
+        struct inversion_state *state = &counted->state[s];
+        counted->target[s] = target[s] / frames;
+        counted->error[s] = sqrt(target[s]) / frames;
+        counted->mean[s] = sampled[s] / frames;
+        counted->variance[s] = (fmax(sampled[s], 1) +
+                                target[s] * (target[s] > 0 ? fmax(1, sampled[s] / target[s]) : 0)) /
+                               (frames * frames);
+        state->grid = (struct potential_grid){
+            .pairs = 1, .pairs_known = 1, .known = 1, .known_bin = &counted->bin};
+        state->target.counts = &counted->target[s];
+        state->target.error = &counted->error[s];
+        state->replicas.counts = (struct comoments){.size = 1, .mean = &counted->mean[s]};
+        state->variance = &counted->variance[s];
+    }
+    return mf_inversion_band_least(&counted->inversion, 0);
+}
+
+/// A core that the hot state enters and the cold one does not is known by what the hot one counted.
+static void test_inversion_band_of_few_counts_is_that_of_the_states_that_have_any(void **state) {
+    (void)state;
+    struct counted counted;
+    const double five = scatter_of_logarithm(5), two = scatter_of_logarithm(2);
+    const double none[2] = {0, 0}, one[2] = {0, 5}, both[2] = {3, 2}, few[2] = {2, 0};
+    assert_close(least_error(&counted, one, one), temperature * hypot(five, five), 1e-4);
+    assert_close(least_error(&counted, both, one), temperature * hypot(five, five), 1e-4);
+    assert_close(least_error(&counted, one, few), temperature * hypot(five, two), 1e-4);
+    // Nobody has seen it: psi_1(1/2) is pi^2/2.
+    assert_close(least_error(&counted, none, none), temperature * M_PI, 1e-9);
+    // An exact target says all, and the samples what they have.
+    assert_true(least_error(&counted, one, one) > temperature * five);
+    counted.error[1] = 0;
+    counted.variance[1] = 0.05;
+    assert_close(mf_inversion_band_least(&counted.inversion, 0), temperature * five, 1e-4);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_inversion_band_is_the_scatter_when_the_data_say_all),
+        cmocka_unit_test(test_inversion_band_is_wider_by_birges_factor),
         cmocka_unit_test(test_inversion_band_is_the_prior_when_the_data_say_nothing),
         cmocka_unit_test(test_inversion_band_is_not_narrower_by_the_noise_of_counts),
         cmocka_unit_test(test_inversion_band_of_counts_is_that_of_the_logarithm_of_their_mean),
+        cmocka_unit_test(test_inversion_band_of_few_counts_is_that_of_the_states_that_have_any),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

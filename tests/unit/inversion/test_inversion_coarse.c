@@ -136,6 +136,42 @@ static void test_coarse_step_of_a_target_with_a_hole_is_finite(void **state) {
     clear(&made);
 }
 
+/// Samples that are a twentieth above their target, whose factor may be off by a tenth, and a wave
+/// besides: the potential is asked for the wave alone.
+static void test_coarse_step_leaves_what_the_factor_of_a_target_explains(void **state) {
+    (void)state;
+    static struct made made;
+    static const double prior = 0.1, factor = 1.05, wave = 0.02;
+    double mean[BINS], unit[BINS], least[BINS] = {0}, excess[KNOWN], variance[KNOWN], common[KNOWN];
+    make(&made, 4, 1e16, 1, 0);
+    struct inversion_state *const of = &made.state;
+    made.problem.targets.target[TARGET_RDF].factor_error = &prior;
+    for (size_t k = 0; k < BINS; k++) {
+        // Of a wave that is orthogonal to the factor where all bins are known alike.
+        mean[k] = made.counts[k] * (factor + wave * (k % 2 ? 1 : -1));
+        unit[k] = 1;
+    }
+    for (size_t a = 0; a < KNOWN; a++) {
+        const double counts = made.counts[CORE + a];
+        excess[a] = mean[CORE + a] - counts;
+        variance[a] = pow(1e-3 * counts, 2);
+        common[a] = prior * counts;
+    }
+    of->target.ideal = of->target.unit = unit;
+    of->target.least = least;
+    of->target.common = common;
+    of->replicas.counts.mean = mean;
+    of->excess = excess;
+    of->variance = variance;
+    of->verdict.sections = 1;
+    of->verdict.section[0] =
+        (struct inversion_section){.kind = TARGET_RDF, .known_count = KNOWN, .rms = 1, .noise = 0};
+    assert_ok(mf_inversion_coarse_step(of, made.step));
+    for (size_t k = CORE; k < BINS; k++)
+        assert_close(made.step[k], 1.5 * (k % 2 ? 1 : -1) * wave / factor, 2e-3);
+    clear(&made);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_coarse_step_of_an_ideal_response_is_that_of_boltzmann_inversion),
@@ -143,6 +179,7 @@ int main(void) {
         cmocka_unit_test(test_coarse_step_of_few_samples_is_short),
         cmocka_unit_test(test_coarse_step_is_not_shortened_by_what_drifts),
         cmocka_unit_test(test_coarse_step_of_a_target_with_a_hole_is_finite),
+        cmocka_unit_test(test_coarse_step_leaves_what_the_factor_of_a_target_explains),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -20,8 +20,8 @@ static struct inversion *make_end(struct end *end, size_t groups) {
                       .states = 1,
                       .verdict = {.sections = 1, .section[0] = {.misfit = 1.5, .probable = 2}},
                       .course = {.most_probable = true,
-                                 .band = {.ramp = {.way = -0.04, .error = 0.1},
-                                          .farthest = {.way = 0.4, .open = 1}},
+                                 .band.ways = {.ramp = {.way = -0.04, .open = 0.1},
+                                               .pressure[0] = {.way = 0.4, .open = 1}},
                                  .progress.best.precise = true}}};
     return &end->inversion;
 }
@@ -34,12 +34,12 @@ static void test_fit_of_pairs_ends_when_it_agrees_once(void **state) {
     assert_false(mf_inversion_has_converged(inversion, true));
     inversion->verdict.section[0].misfit = 1.5;
     assert_false(mf_inversion_has_converged(inversion, false));
-    inversion->course.band.ramp.way = -0.06;
+    inversion->course.band.ways.ramp.way = -0.06;
     assert_false(mf_inversion_has_converged(inversion, true));
-    inversion->course.band.ramp.way = -0.04;
-    inversion->course.band.farthest.way = 0.9;
+    inversion->course.band.ways.ramp.way = -0.04;
+    inversion->course.band.ways.pressure[0].way = 0.9;
     assert_false(mf_inversion_has_converged(inversion, true));
-    inversion->course.band.farthest.way = 0.4;
+    inversion->course.band.ways.pressure[0].way = 0.4;
     assert_true(mf_inversion_has_converged(inversion, true));
 }
 
@@ -49,22 +49,45 @@ static void test_fit_with_groups_ends_when_the_ways_of_three_iterations_cancel(v
     struct end end;
     struct inversion *inversion = make_end(&end, 1);
     assert_false(mf_inversion_has_converged(inversion, true));
-    inversion->course.band.ramp.way = -0.07;
+    inversion->course.band.ways.ramp.way = -0.07;
     assert_false(mf_inversion_has_converged(inversion, true));
-    inversion->course.band.ramp.way = 0.04;
+    inversion->course.band.ways.ramp.way = 0.04;
     assert_false(mf_inversion_has_converged(inversion, false)); // back to the one before
     inversion->verdict.section[0].misfit = 2.1;
     assert_false(mf_inversion_has_converged(inversion, true));
     inversion->verdict.section[0].misfit = 1.5;
-    inversion->course.band.ramp.way = -0.2;
-    inversion->course.band.farthest.way = 0.7;
+    inversion->course.band.ways.ramp.way = -0.2;
+    inversion->course.band.ways.pressure[0].way = 0.7;
     for (int k = 0; k < 4; k++)
         assert_false(mf_inversion_has_converged(inversion, true));
-    inversion->course.band.ramp.way = 0.12;
+    inversion->course.band.ways.ramp.way = 0.12;
     assert_false(mf_inversion_has_converged(inversion, true));
-    inversion->course.band.farthest.way = 0.3;
+    inversion->course.band.ways.pressure[0].way = 0.3;
     assert_false(mf_inversion_has_converged(inversion, true));
-    inversion->course.band.ramp.way = -0.15; // the last three
+    inversion->course.band.ways.ramp.way = -0.15; // the last three
+    assert_true(mf_inversion_has_converged(inversion, true));
+}
+
+/// The pressures of two states that take turns in being the farthest do not cancel each other.
+static void test_pressure_of_each_state_must_settle(void **state) {
+    (void)state;
+    struct end end;
+    struct inversion *inversion = make_end(&end, 1);
+    struct inversion_band_way *pressure = inversion->course.band.ways.pressure;
+    inversion->states = 2;
+    inversion->course.band.ways.ramp.way = 0;
+    pressure[1].open = 1;
+    for (int k = 0; k < INVERSION_MOST_WAYS - 1; k++) {
+        pressure[0].way = k % 2 ? 0.6 : 0.7;
+        pressure[1].way = k % 2 ? -0.7 : -0.6;
+        assert_false(mf_inversion_has_converged(inversion, true));
+    }
+    inversion->course.progress.ways.met = 0;
+    for (int k = 0; k < 2; k++) {
+        pressure[0].way = pressure[1].way = k % 2 ? 0.7 : -0.7;
+        assert_false(mf_inversion_has_converged(inversion, true));
+    }
+    pressure[0].way = pressure[1].way = 0.1;
     assert_true(mf_inversion_has_converged(inversion, true));
 }
 
@@ -77,7 +100,7 @@ static void test_fit_with_groups_ends_though_it_walks_on(void **state) {
     inversion->state->grid.points = 2;
     inversion->course.phi = phi;
     inversion->course.met_phi = met;
-    inversion->course.band.ramp.way = -0.06;
+    inversion->course.band.ways.ramp.way = -0.06;
     for (int n = 0; n < 5; n++, phi[0] += 1)
         assert_false(mf_inversion_has_converged(inversion, true));
     inversion->verdict.section[0].misfit = 2.1;
@@ -96,11 +119,11 @@ static void test_fit_with_groups_ends_at_once_where_nothing_must_settle(void **s
     struct end end;
     struct inversion *inversion = make_end(&end, 1);
     end.state.grid.pairs = 0;
-    inversion->course.band.ramp.way = 1;
+    inversion->course.band.ways.ramp.way = 1;
     assert_true(mf_inversion_has_converged(inversion, true));
     inversion = make_end(&end, 1);
     end.problem.targets.target[TARGET_PRESSURE].count = 1;
-    inversion->course.band.ramp.way = 1;
+    inversion->course.band.ways.ramp.way = 1;
     assert_true(mf_inversion_has_converged(inversion, true));
 }
 
@@ -154,6 +177,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_fit_of_pairs_ends_when_it_agrees_once),
         cmocka_unit_test(test_fit_with_groups_ends_when_the_ways_of_three_iterations_cancel),
+        cmocka_unit_test(test_pressure_of_each_state_must_settle),
         cmocka_unit_test(test_fit_with_groups_ends_though_it_walks_on),
         cmocka_unit_test(test_fit_with_groups_ends_at_once_where_nothing_must_settle),
         cmocka_unit_test(test_fit_ends_when_all_sections_agree),

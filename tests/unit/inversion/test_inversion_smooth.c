@@ -127,7 +127,7 @@ static void find_errors(struct scene *scene, double error[BINS]) {
                                       .variance = scene->variance,
                                       .temperature = 1.5,
                                       .spacing = 1};
-    assert_ok(mf_inversion_band_covariance(&system, covariance, &directions));
+    assert_ok(mf_inversion_band_covariance(&system, 1, covariance, &directions));
     for (size_t a = 0; a < BINS; a++) {
         all += scene->expected[a];
         half[a] = 0;

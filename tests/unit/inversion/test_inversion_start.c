@@ -209,6 +209,19 @@ static void test_inversion_band_counts_the_ramp_that_is_asked_for(void **state) 
     print_message("ramp %.3f, asked for %.3f, error %.3f\n", ramp, found.way, found.error);
     assert_true(fabs(found.way - ramp) < 0.2 * ramp);
     assert_true(found.error > fabs(found.way));
+    // What the way is compared with is what the data know of it, whatever they ask for: twice the
+    // excess asks for twice the way.
+    const struct inversion_band_ways once = inversion->course.band.ways;
+    for (size_t a = 0; a < grid->known; a++)
+        inversion->state->excess[a] *= 2;
+    assert_ok(mf_inversion_band_find(inversion));
+    const struct inversion_band_ways twice = inversion->course.band.ways;
+    print_message("way %.3f of %.3f, and %.3f of %.3f\n", once.ramp.way, once.ramp.open,
+                  twice.ramp.way, twice.ramp.open);
+    assert_close_relative(twice.ramp.way, 2 * once.ramp.way, 1e-6);
+    assert_close_relative(twice.ramp.open, once.ramp.open, 1e-6);
+    assert_close_relative(twice.pressure[0].way, 2 * once.pressure[0].way, 1e-6);
+    assert_close_relative(twice.pressure[0].open, once.pressure[0].open, 1e-6);
     clear(&made);
 }
 
@@ -220,8 +233,8 @@ static void test_inversion_band_looks_at_the_pressures_of_all_states(void **stat
     struct inverse_step step;
     const struct inverse_listener listener = {ignore, NULL};
     static struct inversion_state states[2];
-    struct inversion_band_pressure farthest[2];
-    struct inverse_ramp ramp[2];
+    struct inversion_band_way farthest[2], ways[2];
+    bool kept;
     make(&made, INVERSION_FROM_MEAN_FORCE);
     made.settings.samples = 200;
     assert_ok(mf_inversion_create(&made.inversion, &mf_imc, &made.problem, &made.settings));
@@ -243,19 +256,24 @@ static void test_inversion_band_looks_at_the_pressures_of_all_states(void **stat
         states[0].pressure.slope = slope[n];
         states[1].pressure.slope = slope[1 - n];
         assert_ok(mf_inversion_band_find(inversion));
-        ramp[n] = inversion->course.band.ramp;
-        farthest[n] = inversion->course.band.farthest;
+        ways[n] = inversion->course.band.ways.pressure[0];
+        farthest[n] = mf_inversion_band_farthest(inversion);
     }
+    // A verification judges each state by the noise of its own samples.
+    states[0].verdict.distance[TARGET_RDF].noise = 0.01;
+    states[1].verdict.distance[TARGET_RDF].noise = 0.03;
+    assert_ok(mf_inversion_course_judge(inversion, &kept));
+    assert_close(inversion->course.progress.best.noise[0], 0.01, 1e-15);
+    assert_close(inversion->course.progress.best.noise[1], 0.03, 1e-15);
     inversion->state = first;
     inversion->states = 1;
     free(other);
-    const double ratio[2] = {fabs(ramp[0].pressure_way) / ramp[0].pressure_open,
-                             fabs(ramp[1].pressure_way) / ramp[1].pressure_open};
+    const double ratio[2] = {fabs(ways[0].way) / ways[0].open, fabs(ways[1].way) / ways[1].open};
     const int farther = ratio[1] > ratio[0];
     print_message("ways of %.3f and %.3f errors\n", ratio[0], ratio[1]);
     for (int n = 0; n < 2; n++) {
-        assert_close(farthest[n].way, ramp[farther].pressure_way, 1e-9);
-        assert_close(farthest[n].open, ramp[farther].pressure_open, 1e-9);
+        assert_close(farthest[n].way, ways[farther].way, 1e-9);
+        assert_close(farthest[n].open, ways[farther].open, 1e-9);
     }
     clear(&made);
 }
