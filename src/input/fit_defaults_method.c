@@ -168,14 +168,27 @@ enum status mf_fit_defaults_method(struct fit_choice *c) {
     return choose_rounds(c, fields_with(method, "equilibration"));
 }
 
-/// How many samples of each replica make the noise of g so small that the rms of g − g* is known
-/// within a tenth: half of what the errors of target and method make.
-static double samples_for_rdf(const struct fit_choice *c, double replicas) {
-    static const double part = 0.5, inefficiency = 2;
+/// How many samples of each replica make the noise of g such a part of what the errors of target
+/// and method make. With half of it the rms of g − g* is known within a tenth.
+static double samples_for_rdf(const struct fit_choice *c, double replicas, double part) {
+    static const double inefficiency = 2;
     const double wanted = part * hypot(c->scales.noise, c->precision);
     const double noise =
         mf_fit_scales_noise_of_sample(c->rdf, &c->read->scene.setup.box, c->count, c->range);
     return inefficiency * pow(noise / wanted, 2) / replicas;
+}
+
+/// How many samples of each replica, so many crossings apart, tell the temperature within a third
+/// of a per cent: a bead forgets its velocity in one.
+static double samples_for_temperature(const struct fit_choice *c, double replicas, double apart) {
+    static const double wanted = 1.0 / 300;
+    const double degrees = c->read->scene.setup.box.dimensions * c->count;
+    return 2 / (degrees * wanted * wanted) / (fmin(1, apart) * replicas);
+}
+
+/// As exact as is wanted where that costs little; else as exact as is needed, if that may be paid.
+static double what_pays(double wanted, double needed, double little, double most) {
+    return fmin(wanted, fmax(little, fmin(needed, most)));
 }
 
 /// What the file says of the verification, or what is chosen.
@@ -185,7 +198,7 @@ static double given_or(const struct fit_choice *c, const char *key, int64_t give
 
 enum status mf_fit_defaults_verification(struct fit_choice *c) {
     static const double apart = 0.1, equilibration = 10, least = 50, windows = 20;
-    static const double most_moves = 3e8;
+    static const double most_moves = 3e8, few_moves = 1e8, exact = 0.5, enough = 1;
     const char *path = "verification";
     enum target_kind longest;
     const struct verify_parameters *read = &c->read->verification;
@@ -196,12 +209,19 @@ enum status mf_fit_defaults_verification(struct fit_choice *c) {
     const double begin = fmax(1000, ceil(equilibration * c->crossing / time_step));
     const double window =
         (double)mf_measurement_window(&c->read->problem.compared, time_step, &longest);
-    const double can = most_moves / (replicas * c->count * every);
+    const double sample = replicas * c->count * every;
     const double looks = windows * window / every;
-    const double counts = c->read->files.given[TARGET_RDF] ? samples_for_rdf(c, replicas) : 0;
+    const bool counted = c->read->files.given[TARGET_RDF];
+    const double counts = counted ? samples_for_rdf(c, replicas, exact) : 0;
     const double wanted = fmax(counts, fmax(least, looks));
-    const double samples = ceil(fmax(fmin(wanted, can), fmax(least, window / every)));
-    const char *why = wanted > samples   ? "as many as a few minutes allow"
+    const double needed =
+        fmax(counted ? samples_for_rdf(c, replicas, enough) : wanted,
+             fmax(looks, samples_for_temperature(c, replicas, every * time_step / c->crossing)));
+    const double can = what_pays(wanted, needed, few_moves / sample, most_moves / sample);
+    const double samples = ceil(fmax(can, fmax(least, window / every)));
+    const char *why = wanted > samples && needed > samples ? "as many as a few minutes allow"
+                      : wanted > samples ? "so that the noise of g is no more than that of target "
+                                           "and method, and T known within a third of a per cent"
                       : counts == wanted ? "so that the difference of g is known within a tenth "
                                            "of it"
                       : looks == wanted  ? "20 times as long as the targets look"

@@ -41,8 +41,10 @@ struct work {
     const struct inverse_problem *problem;
     const struct table *potential, *omega;
     struct verify_parameters parameters;
-    uint32_t attempt; ///< with another time step
+    uint32_t attempt; ///< with another time step, or again as the first had not settled
     bool last;        ///< no shorter step will be tried
+    double
+        *begin; ///< where they begin, shape [replicas, dimensions, particles]; NULL: as the scene
     const struct inverse_listener *listener;
     struct measurement *replicas;
     struct inverse_progress progress;
@@ -51,11 +53,17 @@ struct work {
 static enum status begin_replica(void *context, size_t number, void *result) {
     const struct work *work = context;
     const struct verify_parameters *parameters = &work->parameters;
+    const size_t particles = (size_t)work->problem->scene.placement.count;
+    const size_t dimensions = (size_t)work->problem->scene.box.dimensions;
+    const double *position[3] = {NULL};
     (void)result;
+    for (size_t d = 0; work->begin && d < dimensions; d++)
+        position[d] = work->begin + (number * dimensions + d) * particles;
     const struct measurement_setup setup = {
         .targets = &work->problem->compared,
         .potential = work->potential,
         .omega = work->omega,
+        .position = work->begin ? position : NULL,
         .time_step = parameters->time_step,
         .plan = parameters->plan,
         .thermodynamics = true,
@@ -277,10 +285,30 @@ static void clear_replicas(struct measurement *replicas, size_t count) {
     }
 }
 
-/// Run them until they have settled, or twice again.
+/// Let those that come next begin where these have ended.
+static enum status go_on(struct work *work) {
+    enum status status = STATUS_OK;
+    const size_t replicas = (size_t)work->parameters.replicas;
+    const size_t particles = work->replicas->simulation.particles.count;
+    const size_t dimensions = (size_t)work->problem->scene.box.dimensions;
+    if (work->begin == NULL)
+        NEW_ARRAY(work->begin, replicas * dimensions * particles);
+    for (size_t r = 0; r < replicas; r++) {
+        const struct particles *ended = &work->replicas[r].simulation.particles;
+        for (size_t d = 0; d < dimensions; d++)
+            for (size_t k = 0; k < particles; k++)
+                work->begin[(r * dimensions + d) * particles + ended->id[k]] =
+                    ended->position[d][k];
+    }
+    work->attempt += VERIFY_STEP_HALVINGS + 1; // other seeds than those of other time steps
+done:
+    clear_replicas(work->replicas, replicas);
+    return status;
+}
+
+/// Run them until they have settled, or twice again: what has not is equilibration, and goes on.
 static enum status run_until_settled(struct work *work, struct verification *verification) {
     enum { MOST_ATTEMPTS = 3 };
-    struct measure_plan *plan = &work->parameters.plan;
     const size_t count = (size_t)work->parameters.replicas;
     for (int attempt = 1;; attempt++) {
         TRY(run_replicas(work));
@@ -289,9 +317,8 @@ static enum status run_until_settled(struct work *work, struct verification *ver
             verification->engine_steps += work->replicas[k].simulation.step;
         if (verification->unsettled[0] == '\0' || attempt == MOST_ATTEMPTS)
             return STATUS_OK;
-        plan->equilibration = (int64_t)mf_measure_steps(plan);
-        plan->every *= 2;
-        clear_replicas(work->replicas, count);
+        work->parameters.plan.every *= 2;
+        TRY(go_on(work));
     }
 }
 
@@ -315,6 +342,8 @@ static enum status verify_once(struct work *work, struct verification *verificat
 done:
     clear_replicas(replicas, count);
     mf_memory_free(replicas);
+    mf_memory_free(work->begin);
+    work->begin = NULL;
     return status;
 }
 

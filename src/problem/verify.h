@@ -40,9 +40,9 @@ struct verification {
 
 /// Simulate the problem's scene with new seeds; replicas in parallel. With a step that may be
 /// shortened it is done again until that suits the potential (problem/verify_step.h), for as long a
-/// time each. What has not settled is simulated again, after an equilibration as long as all that
-/// and with twice as many steps between samples, up to two times.
-/// Fails: as mf_simulation_run.
+/// time each. What has not settled was equilibration: it goes on from where it ended, equilibrated
+/// for new velocities and with twice as many steps between samples, up to two times.
+/// Fails: as mf_simulation_run. Tested: test_verify_again.
 enum status mf_verify(const struct inverse_problem *problem, const struct table *potential,
                       const struct table *omega, const struct verify_parameters *parameters,
                       const struct inverse_listener *listener,

@@ -141,6 +141,26 @@ static void test_fit_defaults_choose_samples_for_the_simulations_that_the_file_s
     mf_fit_file_clear(&many);
 }
 
+/// Twice the noise is that of a quarter of the samples: where samples are dear, and of so many
+/// beads that each of them tells T.
+static void test_fit_defaults_choose_no_more_samples_than_needed_where_they_are_dear(void **state) {
+    struct fit_file cheap, dear;
+    write_target(state);
+#define SCENE                                                                                      \
+    "\"scene\": {\"density\": 0.3, \"temperature\": 1}, "                                          \
+    "\"verification\": {\"replicas\": 1, \"every\": "
+    assert_ok(read_run(state, &cheap, "cheap.json", TARGET SCENE "1}}"));
+    assert_ok(read_run(state, &dear, "dear.json", TARGET SCENE "150}}"));
+#undef SCENE
+    print_message("%d samples, %d of dear ones\n", (int)cheap.verification.plan.samples,
+                  (int)dear.verification.plan.samples);
+    assert_in_range(dear.verification.plan.samples, 51, 1e6); // more than there are at least
+    assert_close((double)cheap.verification.plan.samples,
+                 4 * (double)dear.verification.plan.samples, 4);
+    mf_fit_file_clear(&cheap);
+    mf_fit_file_clear(&dear);
+}
+
 static void test_fit_defaults_choose_friction_and_time_step_beside_a_method(void **state) {
     static const char scene[] =
         TARGET "\"scene\": {\"box\": [9.1, 9.1, 9.1], %s\"particles\": {\"count\": 226}}, "
@@ -336,6 +356,7 @@ int main(void) {
         IN_FOLDER(test_fit_defaults_stand_in_used_json),
         IN_FOLDER(test_fit_defaults_leave_what_the_file_says),
         IN_FOLDER(test_fit_defaults_choose_samples_for_the_simulations_that_the_file_says),
+        IN_FOLDER(test_fit_defaults_choose_no_more_samples_than_needed_where_they_are_dear),
         IN_FOLDER(test_fit_defaults_choose_friction_and_time_step_beside_a_method),
         IN_FOLDER(test_fit_defaults_choose_time_steps_by_the_friction_without_velocities),
         IN_FOLDER(test_fit_defaults_choose_no_friction_where_that_across_pairs_is_found),
