@@ -145,7 +145,7 @@ static void test_fit_defaults_choose_samples_for_the_simulations_that_the_file_s
 /// beads that each of them tells T.
 static void test_fit_defaults_choose_no_more_samples_than_needed_where_they_are_dear(void **state) {
     struct fit_file cheap, dear;
-    write_target(state);
+    write_target(state, 0.002);
 #define SCENE                                                                                      \
     "\"scene\": {\"density\": 0.3, \"temperature\": 1}, "                                          \
     "\"verification\": {\"replicas\": 1, \"every\": "
