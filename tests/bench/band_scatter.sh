@@ -4,7 +4,7 @@
 # Whether the stated errors of a potential are its scatter: independent repetitions of an inversion
 # of Lennard-Jones, each with a target, a fit and seeds of its own. Prints, over the bins with
 # g > 0.1, the scatter and the deviation from the truth in units of the stated standard errors,
-# as they are and without the best ramp A (1 − r/r_c) of each (docs/results/hard-targets.md).
+# as they are and without the best ramp A (1 − r/r_c) of each (lab/hard-targets.md).
 #
 # tests/bench/band_scatter.sh [PROGRAM] [FOLDER] [REPETITIONS]
 # METHOD=hnc picks another method, FIRST=21 other seeds. What FOLDER holds already is not run again.

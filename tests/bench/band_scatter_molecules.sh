@@ -5,7 +5,7 @@
 # independent repetitions of a fit of chains of three beads, each with a target, a fit and seeds of
 # its own. Prints, for each and for all, k of the parabola through U below 4 k_B T, the deviation of
 # U from the truth in units of its stated errors (rms of the bins below 2.3 k_B T, less the mean),
-# and the pressure of the verification (docs/results/molecules.md#bands-of-bonds-and-angles).
+# and the pressure of the verification (lab/molecules.md#bands-of-bonds-and-angles).
 #
 # tests/bench/band_scatter_molecules.sh [PROGRAM] [FOLDER] [REPETITIONS]
 # FIRST=21 picks other seeds, SAMPLES=6400 PRECISION=0.003 longer targets and finer fits. What FOLDER

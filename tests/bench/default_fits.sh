@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 #
 # The targets of the repository with the shortest run files, beside the run files made by hand. Prints
-# a row for each fit and seed (docs/results/default-fits.md).
+# a row for each fit and seed (lab/default-fits.md).
 #
 # tests/bench/default_fits.sh [PROGRAM] [FOLDER]
 # SEEDS="1 2 3" and RUNS="lennard-jones …" pick some. What FOLDER holds already is not run again.

@@ -3,7 +3,7 @@
 #
 # Targets that make an inversion difficult, of Lennard-Jones fluids, so that the truth is known:
 # noise, coarse and fine bins, a gap, a hole, a dense fluid and a gas. Prints how each fit ends and
-# how far it is from the truth (docs/results/hard-targets.md).
+# how far it is from the truth (lab/hard-targets.md).
 #
 # tests/bench/hard_targets.sh [PROGRAM] [FOLDER]
 # METHODS="imc auto" picks methods. What FOLDER holds already is not run again.

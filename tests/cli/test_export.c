@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // `mesofit export` from outside. Tables are read back by readers of their own, written from the
-// rules of each engine's source (docs/results/export.md), and compared with the formula of the
+// rules of each engine's source (lab/export.md), and compared with the formula of the
 // potential: Φ = ½ a k_B T (1 − r/r_c)², a = 25, r_c = 0.7 nm, T = 300 K.
 #include "shared/results.h"
 #include "shared/run_program.h"

@@ -103,7 +103,7 @@ static void test_fit_nears_the_integrals_of_molecules(void **state) {
     assert_true(with < 0.7 * without);
 }
 
-/// By g alone they are 4 to 6 errors off. Seeds: docs/results/molecules.md.
+/// By g alone they are 4 to 6 errors off. Seeds: lab/molecules.md.
 static void test_fit_meets_the_integrals_of_molecules(void **state) {
     char members[1024];
     integrals_of_truth(&integrals, integrals.error, members, sizeof members);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The time steps at which each integrator is still right and where it no longer is, at small and
-// large friction: docs/results/stability.md. tests/stress looks at more of them.
+// large friction: lab/stability.md. tests/stress looks at more of them.
 #include "shared/stability.h"
 #include "shared/testing.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Every integrator from tiny to absurd time steps, at friction up to 1000:
-// docs/results/stability.md.
+// lab/stability.md.
 #include "shared/stability.h"
 #include "shared/testing.h"
 

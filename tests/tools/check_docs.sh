@@ -1,9 +1,10 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 #
-# check_docs.sh: what pages name is there. Links between files lead somewhere; the headers and citations of
-# docs/theory.md are those of the sources; docs/converged.md quotes reasons that the program gives; the
-# README stays short. Run at the root of the source tree.
+# check_docs.sh: what pages name is there. Links between files lead somewhere, also those to a section; the
+# headers and citations of docs/theory.md are those of the sources; docs/fit.md quotes reasons that the
+# program gives; user pages need no laboratory record; .ci/run does what the README's two commands do; pages
+# stay short. Run at the root of the source tree.
 set -u
 export LC_ALL=C.UTF-8
 
@@ -13,13 +14,44 @@ sources=$(cat src/*/*.[ch] | sed -e 's|^ *//[/!]*||' | tr '\n' ' ' | sed -e 's/"
 # Cited where no header needs it: fluctuation and dissipation, and the uniqueness of a potential.
 general='30, 191 (1995)|49, 197 (1974)'
 
+# Names of the sections of a page, as links have them.
+list_sections() {
+    awk '/^```/ { code = !code } /^#+ / && !code' "$1" | sed -E 's/^#+ //; s/\]\([^)]*\)//g' |
+        tr '[:upper:]' '[:lower:]' | sed -E 's/[^[:alnum:] _-]//g; s/ /-/g'
+}
+
 check_links() {
-    local page link
+    local page link file section
     git ls-files --cached --others --exclude-standard '*.md' ':!targets' | while IFS= read -r page; do
-        grep -oE '\]\([^)#]+' "$page" | sed 's/^](//' | grep -v '^http' | while IFS= read -r link; do
-            [ -e "$(dirname "$page")/$link" ] || echo "$page: no $link"
+        [ -e "$page" ] || continue
+        grep -oE '\]\([^) ]+' "$page" | sed 's/^](//' | grep -v '^http' | while IFS= read -r link; do
+            file=$page section=
+            [ "${link%%#*}" = "" ] || file=$(dirname "$page")/${link%%#*}
+            case $link in *.md#* | "#"*) section=${link#*#} ;; esac
+            if [ ! -e "$file" ]; then
+                echo "$page: no $link"
+            elif [ -n "$section" ] && ! list_sections "$file" | grep -qxF -- "$section"; then
+                echo "$page: no section $link"
+            fi
         done
     done
+}
+
+# What the README installs and runs, .ci/run installs and runs.
+check_commands() {
+    local package
+    sed -n 's/.*apt-get install -y \([^&]*\)&&.*/\1/p' README.md | head -n 1 | tr ' ' '\n' | grep . |
+        while IFS= read -r package; do
+            grep -qw -- "$package" .ci/run || echo "README.md: .ci/run does not install $package"
+        done
+    grep -qx 'make test' README.md && grep -q '^run test ' .ci/run || echo "README.md, .ci/run: no make test"
+}
+
+# check_length FILE MOST -w|-l: no more words or lines than that, as wc counts them.
+check_length() {
+    local length
+    length=$(wc "$3" <"$1")
+    [ "$length" -le "$2" ] || echo "$1: wc $3 says $length; $2 are enough"
 }
 
 # Texts in which the sources' own words are to be found.
@@ -31,7 +63,7 @@ check_quotes() {
 }
 
 list_reasons() {
-    sed -n 's/^| "\([^…"]*[^…" ]\).*/\1/p' docs/converged.md
+    sed -n 's/^| "\([^…"]*[^…" ]\).*/\1/p' docs/fit.md
 }
 
 list_citations() {
@@ -48,10 +80,12 @@ check_headers() {
 faults=$(
     check_links
     check_headers
-    list_reasons | check_quotes docs/converged.md
+    list_reasons | check_quotes docs/fit.md
     list_citations | check_quotes docs/theory.md
-    words=$(wc -w <README.md)
-    [ "$words" -le 900 ] || echo "README.md: $words words; 900 are enough"
+    check_commands
+    grep -nE '\]\(\.\./lab/' docs/*.md | sed 's/$/: a user needs no laboratory record/'
+    check_length README.md 700 -w
+    check_length CHANGELOG.md 100 -l
 )
 if [ -n "$faults" ]; then
     printf 'docs:\n%s\n' "$faults"
