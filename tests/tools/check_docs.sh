@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 #
 # check_docs.sh: what pages name is there. Links between files lead somewhere, also those to a section; the
-# headers and citations of docs/theory.md are those of the sources; docs/fit.md quotes reasons that the
-# program gives; user pages need no laboratory record; .ci/run does what the README's two commands do; pages
-# stay short. Run at the root of the source tree.
+# files that ARCHITECTURE.md names are there; the headers and citations of docs/theory.md are those of the
+# sources; docs/fit.md quotes reasons that the program gives; user pages need no laboratory record; .ci/run
+# does what the README's two commands do; pages stay short. Run at the root of the source tree.
 set -u
 export LC_ALL=C.UTF-8
 
@@ -35,6 +35,16 @@ check_links() {
             fi
         done
     done
+}
+
+# Files of src that ARCHITECTURE.md names, with or without what they end with.
+check_modules() {
+    local name
+    grep -oE '`[a-z]+/[a-z_0-9]+(\.[chxt]+)?`' ARCHITECTURE.md | tr -d '`' | grep -vE '^(tests|src)/' |
+        while IFS= read -r name; do
+            compgen -G "src/$name" >/dev/null || compgen -G "src/$name.[ch]" >/dev/null ||
+                echo "ARCHITECTURE.md: no src/$name"
+        done
 }
 
 # What the README installs and runs, .ci/run installs and runs.
@@ -80,11 +90,13 @@ check_headers() {
 faults=$(
     check_links
     check_headers
+    check_modules
     list_reasons | check_quotes docs/fit.md
     list_citations | check_quotes docs/theory.md
     check_commands
     grep -nE '\]\(\.\./lab/' docs/*.md | sed 's/$/: a user needs no laboratory record/'
     check_length README.md 700 -w
+    check_length ARCHITECTURE.md 2500 -w
     check_length CHANGELOG.md 100 -l
 )
 if [ -n "$faults" ]; then
