@@ -72,7 +72,7 @@ double mf_inversion_band_of_counts(double counts);
 
 /// What the counts of the targets and those of the samples allow the error of Φ of a known bin to
 /// be at least: both of all states together, of which some have none there, and exact targets
-/// infinitely many. 0 of groups, which end as smooth as the prior has them. Tested:
+/// infinitely many; of groups what the errors of their bins have in common. Tested:
 /// test_inversion_band.
 double mf_inversion_band_least(const struct inversion *inversion, size_t a);
 

@@ -264,6 +264,32 @@ static void test_inversion_band_of_few_counts_is_that_of_the_states_that_have_an
     assert_close(mf_inversion_band_least(&counted.inversion, 0), temperature * five, 1e-4);
 }
 
+/// Bonds whose counts scatter as 100 of each bin do, and whose errors are those of 100 counts and
+/// 30 more that all have in common. Counts that alternate by d have fourth differences of 16 d, and
+/// those that scatter by 10 have such of 10 sqrt(70).
+static void test_inversion_band_of_a_group_has_what_its_bins_err_in_common(void **unused) {
+    (void)unused;
+    enum { BINS = 20 };
+    const double d = 10 * sqrt(70.0) / 16;
+    double counts[BINS], error[BINS];
+    size_t known_bin[BINS];
+    struct inverse_problem problem = {.scene.temperature = temperature};
+    struct potential_group group = {.own = {.known = BINS}};
+    struct inversion_state state = {
+        .grid = {.groups = 1, .known = BINS, .known_bin = known_bin, .group = &group},
+        .target = {.counts = counts, .error = error}};
+    const struct inversion inversion = {.problem = &problem, .state = &state, .states = 1};
+    for (size_t k = 0; k < BINS; k++) {
+        known_bin[k] = k;
+        counts[k] = k % 2 ? 100 + d : 100 - d;
+        error[k] = hypot(10, 30);
+    }
+    assert_close(mf_inversion_band_least(&inversion, 8) * counts[8], temperature * 30, 0.2);
+    for (size_t k = 0; k < BINS; k++)
+        error[k] = 9;
+    assert_close(mf_inversion_band_least(&inversion, 8), 0, 1e-12);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_inversion_band_is_the_scatter_when_the_data_say_all),
@@ -272,6 +298,7 @@ int main(void) {
         cmocka_unit_test(test_inversion_band_is_not_narrower_by_the_noise_of_counts),
         cmocka_unit_test(test_inversion_band_of_counts_is_that_of_the_logarithm_of_their_mean),
         cmocka_unit_test(test_inversion_band_of_few_counts_is_that_of_the_states_that_have_any),
+        cmocka_unit_test(test_inversion_band_of_a_group_has_what_its_bins_err_in_common),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
