@@ -178,7 +178,7 @@ static double assess(struct inversion_state *state, struct inversion_section *se
                  mf_replicas_inefficiency(&state->replicas, 1, ideal, known, section->known_count));
     const double independent = counts->count / section->inefficiency;
     const double bins = (double)section->bins;
-    double sum = 0, own = 0, both = 0, whole = 0, alone = 0, seen = 0;
+    double sum = 0, own = 0, both = 0, whole = 0, alone = 0, followed = 0, seen = 0;
     for (size_t n = section->bin; n < section->bin + section->bins; n++)
         sum += pow((counts->mean[n] - state->target.counts[n]) / state->target.unit[n], 2);
     for (size_t a = section->known; a < section->known + section->known_count; a++) {
@@ -195,6 +195,7 @@ static double assess(struct inversion_state *state, struct inversion_section *se
         seen++;
         own += sampled / unit;
         alone += sampled / state->variance[a];
+        followed += state->pool.samples > 0 ? state->pool.variance[a] / state->variance[a] : 0;
         both += state->variance[a] / unit;
         whole += (state->variance[a] + common * common) / unit;
     }
@@ -207,7 +208,8 @@ static double assess(struct inversion_state *state, struct inversion_section *se
     section->noise = sqrt(fmax(0, both - explained.noise) / bins) / section->peak;
     section->misfit = seen > 0 ? misfit / seen : 0;
     section->own_misfit = seen > 0 ? alone / seen : 0;
-    section->probable = find_probable(state, section);
+    // The potential follows the noise of the samples that it was made from.
+    section->probable = find_probable(state, section) * (1 + (seen > 0 ? followed / seen : 0));
     section->own_noise = sqrt(own / bins) / section->peak;
     // p of a group need not be known better than that of its target, which has as many bins.
     section->precision = state->parameters->precision;
