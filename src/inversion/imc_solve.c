@@ -24,8 +24,8 @@ static const double noise_share = 0.5;
 struct workspace {
     const struct imc_system *system;
     size_t size;
-    gsl_matrix *rows;    ///< B = V^−½ C / k_B T, then D and sqrt(ρ): shape [3 size − 1, size]
-    gsl_vector *rhs;     ///< b = V^−½ excess, then zeros
+    gsl_matrix *rows;    ///< B = L⁻¹ C / k_B T, then D and sqrt(ρ): shape [3 size − 1, size]
+    gsl_vector *rhs;     ///< b = L⁻¹ excess, then zeros
     gsl_matrix *factor;  ///< QR of `rows` at one strength
     gsl_vector *reflect; ///< of the Householder vectors
     gsl_vector *x, *residual;
@@ -58,47 +58,21 @@ static enum status workspace_allocate(struct workspace *w, const struct imc_syst
     return mf_status_fail(STATUS_NO_MEMORY, "no memory for %zu linear equations", n);
 }
 
-/// V^−½ = (1 + u uᵀ)^−½ W^½ of a block, u = W^½ common:
-///   (1 + u uᵀ)^−½ = 1 − (1 − 1/sqrt(1 + |u|²)) u uᵀ/|u|².
-static void whiten_block(const struct imc_system *s, size_t begin, size_t end, double *v,
-                         size_t stride) {
-    double along = 0, squares = 0;
-    for (size_t a = begin; a < end; a++)
-        v[a * stride] /= sqrt(s->variance[a]);
-    if (s->common == NULL)
-        return;
-    for (size_t a = begin; a < end; a++) {
-        const double u = s->common[a] / sqrt(s->variance[a]);
-        along += u * v[a * stride];
-        squares += u * u;
-    }
-    if (!(squares > 0))
-        return;
-    const double share = along / squares * (1 - 1 / sqrt(1 + squares));
-    for (size_t a = begin; a < end; a++)
-        v[a * stride] -= share * s->common[a] / sqrt(s->variance[a]);
-}
-
-/// v ← V^−½ v.
-static void whiten(const struct imc_system *s, double *v, size_t stride) {
-    const size_t blocks = s->blocks > 0 ? s->blocks : 1;
-    for (size_t b = 0, begin = 0; b < blocks; b++) {
-        const size_t end = begin + (s->blocks > 0 ? s->block[b] : s->size);
-        whiten_block(s, begin, end, v, stride);
-        begin = end;
-    }
-}
-
 void mf_imc_solve_rows(const struct imc_system *s, gsl_matrix *response, gsl_vector *excess) {
-    for (size_t a = 0; a < s->size; a++)
+    for (size_t a = 0; a < s->size; a++) {
+        const double scale = s->noise ? 1 : sqrt(s->variance[a]);
         for (size_t b = 0; b < s->size; b++)
-            gsl_matrix_set(response, a, b, s->covariance[a * s->size + b] / s->temperature);
-    for (size_t b = 0; b < s->size; b++)
-        whiten(s, gsl_matrix_ptr(response, 0, b), response->tda);
-    for (size_t a = 0; excess && a < s->size; a++)
-        gsl_vector_set(excess, a, s->excess[a]);
+            gsl_matrix_set(response, a, b,
+                           s->covariance[a * s->size + b] / (s->temperature * scale));
+        if (excess)
+            gsl_vector_set(excess, a, s->excess[a] / scale);
+    }
+    if (s->noise == NULL)
+        return;
+    gsl_matrix_const_view l = gsl_matrix_const_view_array(s->noise, s->size, s->size);
+    gsl_blas_dtrsm(CblasLeft, CblasLower, CblasNoTrans, CblasNonUnit, 1, &l.matrix, response);
     if (excess)
-        whiten(s, excess->data, excess->stride);
+        gsl_blas_dtrsv(CblasLower, CblasNoTrans, CblasNonUnit, &l.matrix, excess);
 }
 
 /// Row k of D is (x_{k−1} − 2 x_k + x_{k+1}) (ℓ/h)². In the last the neighbour is the cutoff, half

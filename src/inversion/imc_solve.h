@@ -26,11 +26,11 @@ struct imc_system {
     const double *covariance;      ///< C, shape [size, size], row-major
     const double *excess;          ///< ⟨S⟩ − S*, shape [size]
     const double *variance;        ///< of the excess by statistics alone, shape [size], > 0
-    const double *common;          ///< error that the bins of a block have in common, as by a
-                                   ///< factor of its target, shape [size]; NULL: none
-    double temperature;            ///< [k_B T_0]
-    double spacing;                ///< of the bins [λ]
-    const double *constraint;      ///< p, shape [size]: x is to meet p·x = wanted exactly; or NULL
+    const double *noise;      ///< L of the covariance V = L Lᵀ of the excess, lower triangle,
+                              ///< shape [size, size]; NULL: the variances are all
+    double temperature;       ///< [k_B T_0]
+    double spacing;           ///< of the bins [λ]
+    const double *constraint; ///< p, shape [size]: x is to meet p·x = wanted exactly; or NULL
     double wanted;
 };
 
@@ -41,21 +41,20 @@ struct imc_solution {
 };
 
 /// Change of the potential that removes the excess as far as it is more than noise:
-///   minimise  |V^−½ (excess − C x/k_B T)|² + α (|Dx|² + ρ|x|²)
-/// (Tikhonov) with the covariance V of the excess, the variances and the square of what is common
-/// to a block, with D and ρ of mf_imc_solve_prior, subject to the constraint if there is one. The
-/// strength α is the largest whose predicted excess is within the noise, χ² = size (discrepancy
-/// principle: V. A. Morozov, Soviet Math. Dokl. 7, 414 (1966)), unless `strength` > 0 gives it.
-/// Excess that no x removes, as where C is singular, is left: then χ² is what remains at the
-/// weakest strength, and half the size. Differs from the paper, which solves C x = k_B T · excess
-/// as it stands: C has directions that the sampling does not determine, and their noise would be
-/// amplified into the potential.
+///   minimise  |L⁻¹ (excess − C x/k_B T)|² + α (|Dx|² + ρ|x|²)
+/// (Tikhonov) with the covariance V = L Lᵀ of the excess, with D and ρ of mf_imc_solve_prior,
+/// subject to the constraint if there is one. The strength α is the largest whose predicted excess
+/// is within the noise, χ² = size (discrepancy principle: V. A. Morozov, Soviet Math. Dokl. 7, 414
+/// (1966)), unless `strength` > 0 gives it. Excess that no x removes, as where C is singular, is
+/// left: then χ² is what remains at the weakest strength, and half the size. Differs from the
+/// paper, which solves C x = k_B T · excess as it stands: C has directions that the sampling does
+/// not determine, and their noise would be amplified into the potential.
 /// @param[out] x  shape [size] [k_B T_0]
 /// Fails: NO_MEMORY. Tested: test_imc_solve, and against VOTCA's answers test_imc_solve_votca.
 enum status mf_imc_solve(const struct imc_system *system, double strength, double *x,
                          struct imc_solution *solution) MUST_USE;
 
-/// The whitened equations: B = V^−½ C/k_B T, shape [size, size], and V^−½ excess, shape [size],
+/// The whitened equations: B = L⁻¹ C/k_B T, shape [size, size], and L⁻¹ excess, shape [size],
 /// or NULL.
 void mf_imc_solve_rows(const struct imc_system *system, gsl_matrix *response, gsl_vector *excess);
 

@@ -123,7 +123,7 @@ static void add_square(struct inversion *inversion, double factor, const double 
             inversion->course.band.covariance[a * n + b] += factor * u[a] * u[b];
 }
 
-/// The step from here: the most probable one, x = Σ Bᵀ V^−½ excess with V as large as Birge's
+/// The step from here: the most probable one, x = Σ Bᵀ L⁻¹ excess with V as large as Birge's
 /// factor has it, or that of the coefficients.
 static enum status find_step(const struct inversion *inversion, const struct imc_system *system,
                              double birge, double *step) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "inversion/inversion_equations.h"
 
+#include "inversion/inversion_noise.h"
 #include "inversion/inversion_state.h"
 #include "inversion/method_steps.h"
 #include "observe/kirkwood_buff_observable.h"
@@ -16,7 +17,6 @@ struct imc_system mf_inversion_equations_of(const struct inversion_state *state)
                                .covariance = mf_inversion_response_values(state),
                                .excess = state->excess,
                                .variance = state->variance,
-                               .common = state->target.common,
                                .temperature = state->problem->scene.temperature,
                                .spacing = state->problem->targets.bins.width};
 }
@@ -45,8 +45,11 @@ enum status mf_inversion_equations_init(struct inversion_equations *equations,
     equations->states = states;
     equations->reduced = states > 1 || state->kirkwood_buff.pairs > 0;
     equations->system = equations->of_response = mf_inversion_equations_of(state);
-    if (groups)
+    NEW_ARRAY(equations->noise, state->grid.known * state->grid.known);
+    if (groups) {
         NEW_ARRAY(equations->response_variance, state->grid.known);
+        NEW_ARRAY(equations->noise_of_response, state->grid.known * state->grid.known);
+    }
     if (equations->reduced)
         CHECK(rows_init(&equations->rows, state->grid.known));
     if (equations->reduced && groups)
@@ -56,6 +59,8 @@ done:
 }
 
 void mf_inversion_equations_clear(struct inversion_equations *equations) {
+    mf_memory_free(equations->noise);
+    mf_memory_free(equations->noise_of_response);
     mf_memory_free(equations->response_variance);
     rows_clear(&equations->rows);
     rows_clear(&equations->rows_of_response);
@@ -69,6 +74,7 @@ struct filling {
     size_t row;
     gsl_matrix *response; ///< scratch, of one state
     gsl_vector *excess;
+    double *noise;             ///< scratch, of one state
     double *response_variance; ///< scratch, with the variances of the response; or NULL
     double birge;              ///< by which the variances of all rows will be larger
 };
@@ -85,10 +91,10 @@ static void fill_row(struct filling *to, const double *slope, double missing, do
 /// The rows of g(r) and of groups, in the bins that the state has seen; the others stay 0.
 static enum status fill_bins(const struct inversion_state *state, struct filling *to) {
     struct imc_system own = mf_inversion_equations_of(state);
-    if (to->response_variance) {
+    if (to->response_variance)
         TRY(mf_imc_response_variance(state, to->response_variance));
-        own.variance = to->response_variance;
-    }
+    mf_inversion_noise_find(state, to->response_variance, to->noise);
+    own.noise = to->noise;
     mf_imc_solve_rows(&own, to->response, to->excess);
     for (size_t a = 0; a < own.size; a++, to->row++) {
         if (!state->grid.seen[a])
@@ -141,7 +147,7 @@ static void take_triangle(const gsl_matrix *rows, const gsl_vector *rhs, struct 
     system->covariance = to->covariance;
     system->excess = to->excess;
     system->variance = to->variance;
-    system->common = NULL;
+    system->noise = NULL;
 }
 
 /// @param[in] response_variance  scratch, to fill the rows with the variances of the response;
@@ -156,6 +162,7 @@ static enum status reduce(const struct inversion_equations *equations, double bi
                           .rhs = gsl_vector_calloc(count),
                           .response = gsl_matrix_alloc(known, known),
                           .excess = gsl_vector_alloc(known),
+                          .noise = equations->noise,
                           .response_variance = response_variance,
                           .birge = birge};
     gsl_vector *reflect = gsl_vector_alloc(known);
@@ -178,6 +185,7 @@ done:
 }
 
 enum status mf_inversion_equations_fill(struct inversion_equations *equations, double birge) {
+    const struct inversion_state *state = equations->state;
     double *variance = equations->response_variance;
     if (equations->reduced) {
         TRY(reduce(equations, birge, NULL, &equations->rows, &equations->system));
@@ -185,9 +193,12 @@ enum status mf_inversion_equations_fill(struct inversion_equations *equations, d
                                  &equations->of_response)
                         : STATUS_OK;
     }
-    if (variance) {
-        TRY(mf_imc_response_variance(equations->state, variance));
-        equations->of_response.variance = variance;
-    }
+    mf_inversion_noise_find(state, NULL, equations->noise);
+    equations->system.noise = equations->noise;
+    if (variance == NULL)
+        return STATUS_OK;
+    TRY(mf_imc_response_variance(state, variance));
+    mf_inversion_noise_find(state, variance, equations->noise_of_response);
+    equations->of_response.noise = equations->noise_of_response;
     return STATUS_OK;
 }

@@ -24,10 +24,12 @@ struct inversion_equations {
     const struct inversion_state *state; ///< shape [states]; borrowed
     size_t states;
     bool reduced; ///< to as many as one state has; pressures and integrals are among them
-    struct imc_system system;      ///< with the variances of the excess
-    struct imc_system of_response; ///< of fits with groups: with those of mf_imc_response_variance
+    struct imc_system system;      ///< with the noise of the excess
+    struct imc_system of_response; ///< of fits with groups: with that of the response, too
     struct inversion_rows rows, rows_of_response;
-    double *response_variance; ///< shape [known], of fits with groups; else NULL
+    double *noise;             ///< of mf_inversion_noise_find, shape [known, known]
+    double *noise_of_response; ///< the same with mf_imc_response_variance; NULL without groups
+    double *response_variance; ///< shape [known]; NULL without groups
 };
 
 /// Must be cleared, also after a failure. Fails: NO_MEMORY.

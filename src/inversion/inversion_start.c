@@ -68,7 +68,7 @@ static enum status smooth(struct inversion_state *state, double *start) {
     system.covariance = unit;
     system.excess = phi;
     system.variance = variance;
-    system.common = NULL;
+    system.noise = NULL;
     CHECK(mf_imc_solve(&system, 0, x, &solution));
     for (size_t a = 0; a < known; a++)
         start[grid->known_point[a]] = x[a];

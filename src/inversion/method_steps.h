@@ -29,7 +29,7 @@ enum status mf_imc_step(struct inversion *inversion, double *step, double extra[
 /// pair types and groups have about as many bins as an iteration has independent samples: a step
 /// that removed the excess as far as its own noise would follow the noise of C, by thousands of k_B
 /// T.
-/// @param[out] variance  of the excess with these, shape [known]
+/// @param[out] variance  shape [known]
 /// Fails: NO_MEMORY.
 enum status mf_imc_response_variance(const struct inversion_state *state,
                                      double *variance) MUST_USE;

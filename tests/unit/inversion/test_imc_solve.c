@@ -362,27 +362,25 @@ test_imc_solve_follows_all_directions_when_it_is_weak_and_none_when_strong(void 
 }
 
 /// Bᵀ B and Bᵀ excess are Cᵀ V⁻¹ C and Cᵀ V⁻¹ excess with V itself and its inverse by Cholesky.
-static void test_imc_solve_whitens_what_the_bins_of_a_block_have_in_common(void **state) {
+static void test_imc_solve_whitens_by_the_covariance_of_the_excess(void **state) {
     (void)state;
-    double covariance[SIZE][SIZE], variance[SIZE], excess[SIZE], common[SIZE];
-    const size_t block[] = {SIZE / 3, SIZE - SIZE / 3};
+    double covariance[SIZE][SIZE], variance[SIZE], excess[SIZE], noise[SIZE * SIZE];
+    gsl_matrix_view factor = gsl_matrix_view_array(noise, SIZE, SIZE);
     gsl_matrix *v = gsl_matrix_calloc(SIZE, SIZE), *rows = gsl_matrix_alloc(SIZE, SIZE);
     gsl_vector *right = gsl_vector_alloc(SIZE);
     make_covariance(covariance);
-    for (size_t a = 0; a < SIZE; a++) {
+    for (size_t a = 0; a < SIZE; a++)
         variance[a] = 1 + 0.3 * (double)a;
-        common[a] = a < block[0] ? 2 + 0.1 * (double)a : 5 - 0.2 * (double)a;
-    }
     make_excess(covariance, variance, 1, 9, excess);
     struct imc_system system = make_system(covariance, excess, variance);
-    system.block = block;
-    system.blocks = 2;
-    system.common = common;
+    system.noise = noise;
     for (size_t a = 0; a < SIZE; a++)
         for (size_t b = 0; b < SIZE; b++)
             gsl_matrix_set(v, a, b,
                            (a == b ? variance[a] : 0) +
-                               ((a < block[0]) == (b < block[0]) ? common[a] * common[b] : 0));
+                               (2 + 0.1 * (double)a) * (2 + 0.1 * (double)b));
+    gsl_matrix_memcpy(&factor.matrix, v);
+    assert_int_equal(gsl_linalg_cholesky_decomp1(&factor.matrix), 0);
     mf_imc_solve_rows(&system, rows, right);
     assert_int_equal(gsl_linalg_cholesky_decomp1(v), 0);
     assert_int_equal(gsl_linalg_cholesky_invert(v), 0);
@@ -403,7 +401,7 @@ static void test_imc_solve_whitens_what_the_bins_of_a_block_have_in_common(void 
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_imc_solve_is_exact_when_there_is_no_noise),
-        cmocka_unit_test(test_imc_solve_whitens_what_the_bins_of_a_block_have_in_common),
+        cmocka_unit_test(test_imc_solve_whitens_by_the_covariance_of_the_excess),
         cmocka_unit_test(test_imc_solve_is_the_minimum_when_the_strength_is_given),
         cmocka_unit_test(test_imc_solve_leaves_just_the_noise_when_the_excess_is_significant),
         cmocka_unit_test(test_imc_solve_changes_nothing_when_the_excess_is_noise),

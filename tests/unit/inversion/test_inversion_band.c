@@ -60,35 +60,57 @@ static void test_inversion_band_is_the_scatter_when_the_data_say_all(void **stat
     assert_close(directions, SIZE, 0.1);
 }
 
-/// An excess that is twice as large in all that it may be, with what bins have in common, makes
-/// errors twice as large.
+/// An excess that is twice as large in all that it may be makes errors twice as large.
 static void test_inversion_band_is_wider_by_birges_factor(void **state) {
     (void)state;
-    double counts[SIZE][SIZE], variance[SIZE], common[SIZE], directions;
+    double counts[SIZE][SIZE], noise[SIZE * SIZE] = {0}, directions;
     double narrow[SIZE * SIZE], wide[SIZE * SIZE], doubled[SIZE * SIZE];
     make_counts(counts);
-    struct imc_system system = {.size = SIZE,
-                                .covariance = &counts[0][0],
-                                .variance = variance,
-                                .common = common,
-                                .temperature = temperature,
-                                .spacing = spacing};
-    for (int k = 0; k < SIZE; k++) {
-        variance[k] = 0.02 + 0.005 * k;
-        common[k] = 0.5 + 0.1 * k;
-    }
+    const struct imc_system system = {.size = SIZE,
+                                      .covariance = &counts[0][0],
+                                      .noise = noise,
+                                      .temperature = temperature,
+                                      .spacing = spacing};
+    for (int a = 0; a < SIZE; a++)
+        for (int b = 0; b <= a; b++)
+            noise[a * SIZE + b] = a == b ? 0.2 : 0.02 / (1 + a - b);
     assert_ok(mf_inversion_band_covariance(&system, 1, narrow, &directions));
     assert_ok(mf_inversion_band_covariance(&system, 4, wide, &directions));
-    for (int k = 0; k < SIZE; k++) {
-        variance[k] *= 4;
-        common[k] *= 2;
-    }
+    for (int k = 0; k < SIZE * SIZE; k++)
+        noise[k] *= 2;
     assert_ok(mf_inversion_band_covariance(&system, 1, doubled, &directions));
     for (int k = 0; k < SIZE * SIZE; k += SIZE + 1) {
         assert_close_relative(wide[k], doubled[k], 1e-9);
         // The prior holds the less known directions.
         assert_true(wide[k] > 3.5 * narrow[k] && wide[k] < 4 * narrow[k]);
     }
+}
+
+/// The excess of n independent samples has the covariance C/n, and so the x that removes it has
+/// (k_B T)² C⁻¹/n; R. A. Fisher's bound for potentials, whose likelihood is of the exponential
+/// family.
+static void test_inversion_band_of_samples_alone_is_the_inverse_of_what_they_scatter(void **state) {
+    (void)state;
+    enum { SAMPLES = 4000 };
+    double counts[SIZE][SIZE], noise[SIZE * SIZE], covariance[SIZE * SIZE], directions;
+    gsl_matrix *inverse = gsl_matrix_alloc(SIZE, SIZE);
+    make_counts(counts);
+    for (int k = 0; k < SIZE * SIZE; k++)
+        inverse->data[k] = counts[k / SIZE][k % SIZE];
+    assert_int_equal(gsl_linalg_cholesky_decomp1(inverse), 0);
+    for (int k = 0; k < SIZE * SIZE; k++)
+        noise[k] = inverse->data[k] / sqrt(SAMPLES);
+    assert_int_equal(gsl_linalg_cholesky_invert(inverse), 0);
+    const struct imc_system system = {.size = SIZE,
+                                      .covariance = &counts[0][0],
+                                      .noise = noise,
+                                      .temperature = temperature,
+                                      .spacing = spacing};
+    assert_ok(mf_inversion_band_covariance(&system, 1, covariance, &directions));
+    for (int k = 0; k < SIZE * SIZE; k += SIZE + 1)
+        assert_close_relative(covariance[k], pow(temperature, 2) * inverse->data[k] / SAMPLES,
+                              0.02);
+    gsl_matrix_free(inverse);
 }
 
 static void test_inversion_band_is_the_prior_when_the_data_say_nothing(void **state) {
@@ -294,6 +316,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_inversion_band_is_the_scatter_when_the_data_say_all),
         cmocka_unit_test(test_inversion_band_is_wider_by_birges_factor),
+        cmocka_unit_test(test_inversion_band_of_samples_alone_is_the_inverse_of_what_they_scatter),
         cmocka_unit_test(test_inversion_band_is_the_prior_when_the_data_say_nothing),
         cmocka_unit_test(test_inversion_band_is_not_narrower_by_the_noise_of_counts),
         cmocka_unit_test(test_inversion_band_of_counts_is_that_of_the_logarithm_of_their_mean),

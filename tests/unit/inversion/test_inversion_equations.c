@@ -18,7 +18,7 @@ struct made {
     struct inverse_problem problem[STATES];
     struct inversion_state state[STATES];
     double g[BINS], pressure[STATES], covariance[STATES][KNOWN * KNOWN], excess[STATES][KNOWN],
-        variance[STATES][KNOWN], slope[STATES][KNOWN];
+        variance[STATES][KNOWN], slope[STATES][KNOWN], exact[BINS];
 };
 
 static void make(struct made *made) {
@@ -46,6 +46,8 @@ static void make(struct made *made) {
         }
         state->problem = &made->problem[s];
         state->response.covariance = made->covariance[s];
+        state->target.error = made->exact;
+        state->inefficiency = 1;
         state->excess = made->excess[s];
         state->variance = made->variance[s];
         state->pressure.slope = made->slope[s];

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "inversion/inversion_noise.h"
+
+#include "inversion/inversion_state.h"
+
+#include <gsl/gsl_linalg.h>
+#include <math.h>
+#include <string.h>
+
+/// The samples' part: variances as they are, and the correlations of C.
+static void fill_samples(const struct inversion_state *state, double *v) {
+    const size_t known = state->grid.known;
+    const bool *seen = state->grid.seen;
+    const double *c = state->response.covariance;
+    const double independent = state->response.samples / state->inefficiency;
+    const double counts = independent / (independent + (double)known);
+    for (size_t a = 0; a < known; a++)
+        v[a * known + a] = fmax(0, state->variance[a] - mf_inversion_target_variance(state, a));
+    for (size_t a = 0; a < known; a++)
+        for (size_t b = 0; b < a; b++) {
+            const double own = c[a * known + a] * c[b * known + b];
+            v[a * known + b] =
+                own > 0 && seen[a] && seen[b]
+                    ? counts * c[a * known + b] * sqrt(v[a * known + a] * v[b * known + b] / own)
+                    : 0;
+        }
+}
+
+/// What is each bin's own beside it.
+static void add_own(const struct inversion_state *state, const double *more, double *v) {
+    const size_t known = state->grid.known;
+    for (size_t a = 0; a < known; a++)
+        v[a * known + a] = state->variance[a] + (more ? more[a] : 0);
+}
+
+/// u uᵀ of each pair type, u the error of its factor.
+static void add_common(const struct inversion_state *state, double *v) {
+    const struct potential_grid *grid = &state->grid;
+    const double *u = state->target.common;
+    for (size_t block = 0, first = 0; u && block < grid->blocks; first += grid->known_of[block++])
+        for (size_t a = first; a < first + grid->known_of[block]; a++)
+            for (size_t b = first; b <= a; b++)
+                if (grid->seen[a] && grid->seen[b])
+                    v[a * grid->known + b] += u[a] * u[b];
+}
+
+/// Where rounding has left V without a factor: that of its diagonal.
+static void take_diagonal(const struct inversion_state *state, const double *more, double *factor) {
+    const size_t known = state->grid.known;
+    memset(factor, 0, known * known * sizeof *factor);
+    add_own(state, more, factor);
+    for (size_t a = 0; a < known; a++)
+        factor[a * known + a] = sqrt(factor[a * known + a]);
+}
+
+void mf_inversion_noise_find(const struct inversion_state *state, const double *more,
+                             double *factor) {
+    const size_t known = state->grid.known;
+    gsl_matrix_view v = gsl_matrix_view_array(factor, known, known);
+    fill_samples(state, factor);
+    add_own(state, more, factor);
+    add_common(state, factor);
+    if (gsl_linalg_cholesky_decomp1(&v.matrix) != GSL_SUCCESS)
+        take_diagonal(state, more, factor);
+}
