@@ -112,7 +112,8 @@ void mf_inversion_reason_tell(const struct inversion *inversion, char reason[INV
     const bool agrees = worst->kind != TARGET_RDF || inversion_section_agrees(worst);
     static const double most = 3; // standard deviations of what was known of a factor
     const double improved = rdf->rms / p->first_error;
-    if (!agrees && fabs(p->best.factor.missing) > most * p->best.factor.prior)
+    const bool explains = worst->rms < mf_inverse_noise_margin * worst->noise;
+    if (!agrees && explains && fabs(p->best.factor.missing) > most * p->best.factor.prior)
         snprintf(reason, INVERSE_REASON_SIZE,
                  "g of the target is too %s as a whole by %.2g %%, which no short-ranged potential "
                  "makes, and which its \"particles\" or \"normalisation\" allow by %.2g %%; look "

@@ -118,6 +118,11 @@ static void test_inversion_reason_is_a_target_that_is_off_as_a_whole(void **stat
     fit.problem.scene.temperature = 1;
     inversion->course.progress.best.factor =
         (struct inversion_factor){.missing = 0.004, .prior = 0.001};
+    struct inversion_section *worst = &inversion->course.progress.best.worst;
+    worst->rms = 0.009; // what the factor leaves
+    worst->noise = 0.003;
+    assert_says(inversion, "after 30 iterations");
+    worst->rms = 0.004;
     assert_says(inversion, "too small as a whole by 0.4 %");
     assert_says(inversion, "\"normalisation\" allow by 0.1 %");
     inversion->course.progress.best.factor.missing = -0.0029;
