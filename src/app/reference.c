@@ -261,7 +261,7 @@ void mf_reference_print_markdown(FILE *stream, const struct topic *topics, size_
     fprintf(stream, "# Reference\n\nThis page is made by `make docs` from what `mesofit describe "
                     "--format markdown` prints; the man page\n`mesofit(1)` says the same. What "
                     "runs leave in their folders, every table and every key of\n`summary.json`, "
-                    "is told in [results-of-a-fit.md](results-of-a-fit.md).\n");
+                    "is told in [files.md](files.md#results).\n");
     print_body(stream, &markdown, topics, count);
 }
 

@@ -25,7 +25,7 @@ double mf_hybrid_step_squared_frequency(enum topology_order order, double varian
 /// The share of (Ω Δt)² by which an integrator makes the variance of a stiff bond wrong: a quarter
 /// for Verlet's kind (of harmonic bonds, exactly). Of aboba it was 0.015 in a melt of harmonic
 /// bonds and angles; the U of fits has narrower bends, and 0.1 is reckoned with
-/// (docs/results/molecules.md).
+/// (lab/molecules.md).
 double mf_hybrid_step_wrong(const struct integrator *integrator);
 
 /// ω² of the fastest group of molecules of mass 1 [1/τ²].

@@ -14,7 +14,7 @@ struct export_grid {
 };
 
 /// How an engine places its rows and reads between them. `value` takes r from the first row to the
-/// last. Each is written from the engine's source, which docs/results/export.md names.
+/// last. Each is written from the engine's source, which lab/export.md names.
 struct export_interpolation {
     const char *summary;
     double first; ///< of the first row, as a share of the cutoff

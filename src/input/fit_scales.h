@@ -54,7 +54,7 @@ struct fit_scales mf_fit_scales_find(const struct fit_scales_rdf *rdf, double te
 
 /// A g that differs from 1 by less, on the mean of five bins, ends: layers farther out are made by
 /// those inside, not by forces of their own. Hexane with a cutoff of 1.3 nm, beyond which g differs
-/// from 1 by 0.03 at most, has g from there to 2 nm within 0.003 (docs/results/molecules.md).
+/// from 1 by 0.03 at most, has g from there to 2 nm within 0.003 (lab/molecules.md).
 static const double fit_scales_little = 0.03;
 
 /// rms of the errors of g up to `range` that one sample of so many beads in a box of that density

@@ -18,7 +18,7 @@
 /// as the response is not exactly linear.
 ///
 /// C of groups is that of inversion_response. Off over stated, U of bonds and angles: 0.98(4) and
-/// 1.04(3) over 32 twins (docs/results/molecules.md).
+/// 1.04(3) over 32 twins (lab/molecules.md).
 ///
 /// A fit that ends though it would walk on (mf_inversion_has_converged) has an error more, the way
 /// it has walked: Σ + w wᵀ.

@@ -14,7 +14,7 @@
 ///
 /// s is 1, or less where the target shows that U bends more than the prior expects: a bond of
 /// several wells (inversion->smoothness). 24 twins of 40 samples each, whose U was off by 1.9
-/// to 3.6 stated errors where 2 to 100 counts were expected: docs/results/molecules.md.
+/// to 3.6 stated errors where 2 to 100 counts were expected: lab/molecules.md.
 #pragma once
 
 #include "inversion/imc_solve.h"

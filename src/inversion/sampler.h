@@ -2,7 +2,7 @@
 /// @file One source of configurations of the canonical ensemble, by single moves or by dynamics.
 ///
 /// A sweep is a move of every particle (metropolis), or a trajectory of a few time steps (hybrid).
-/// Which of them makes more of a second: docs/results/samplers.md.
+/// Which of them makes more of a second: lab/samplers.md.
 #pragma once
 
 #include "base/memory.h"

@@ -146,7 +146,7 @@ void mf_fit_closing_say(struct progress *to, const struct fit_file *fit,
                         folder, folder);
     else
         mf_progress_say(to,
-                        "next: figures and summary.json are in %s; docs/converged.md says what "
+                        "next: figures and summary.json are in %s; docs/fit.md says what "
                         "to do about each reason",
                         folder);
 }
