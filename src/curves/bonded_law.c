@@ -8,15 +8,6 @@
 
 NAMED_RECORD(struct bonded_law);
 
-static const struct bonded_law *const bonds[] = {&mf_bond_harmonic, &mf_bond_fene,
-                                                 &mf_bonded_table_bond, NULL};
-static const struct bonded_law *const angles[] = {
-    &mf_angle_harmonic, &mf_angle_cosine, &mf_angle_cosine_squared, &mf_bonded_table_angle, NULL};
-static const struct bonded_law *const dihedrals[] = {
-    &mf_dihedral_ryckaert_bellemans, &mf_dihedral_periodic, &mf_bonded_table_dihedral, NULL};
-
-const struct bonded_law *const *const mf_bonded_laws[BONDED_KINDS] = {bonds, angles, dihedrals};
-
 enum status mf_bonded_create(struct bonded_curve *curve, const struct bonded_law *law) {
     *curve = (struct bonded_curve){law, mf_memory_zeroed(1, law->size)};
     if (curve->parameters == NULL)

@@ -18,7 +18,7 @@ struct export_bonded_table {
 struct export_bonded {
     int tables;
     size_t rows; ///< of each table; of dihedrals one less
-    struct export_bonded_table table[TOPOLOGY_ORDERS][MOLECULES_MOST_GROUPS];
+    struct export_bonded_table table[BONDED_KINDS][MOLECULES_MOST_GROUPS];
     double energy_error, slope_error; ///< the worst, linear between rows: [k_B T], of the largest
 };
 
@@ -33,7 +33,7 @@ void mf_export_bonded_clear(struct export_bonded *bonded);
 
 /// Rows of a table of that order.
 static inline size_t export_bonded_rows(const struct export_bonded *bonded, int order) {
-    return order == TOPOLOGY_DIHEDRAL ? bonded->rows - 1 : bonded->rows;
+    return mf_bonded_kinds[order]->periodic ? bonded->rows - 1 : bonded->rows;
 }
 
 /// A parameter of a law by its name in a scene.

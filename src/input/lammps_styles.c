@@ -15,7 +15,7 @@ struct numbers {
 };
 
 struct style {
-    enum bonded_kind kind;
+    enum bonded_order order;
     const char *name;
     int least, most; ///< numbers
     const struct bonded_law *law;
@@ -118,10 +118,10 @@ static const struct style styles[] = {
 };
 enum { STYLES = sizeof styles / sizeof *styles };
 
-static const struct style *find_style(enum bonded_kind kind, const char *name, char known[160]) {
+static const struct style *find_style(enum bonded_order order, const char *name, char known[160]) {
     known[0] = '\0';
     for (size_t k = 0; k < STYLES; k++) {
-        if (styles[k].kind != kind)
+        if (styles[k].order != order)
             continue;
         if (strcmp(styles[k].name, name) == 0)
             return &styles[k];
@@ -131,11 +131,11 @@ static const struct style *find_style(enum bonded_kind kind, const char *name, c
     return NULL;
 }
 
-enum status mf_lammps_style_create(struct bonded_curve *curve, enum bonded_kind kind,
+enum status mf_lammps_style_create(struct bonded_curve *curve, enum bonded_order order,
                                    const char *style, const double *number, int count,
                                    double length, double energy, const char **note) {
     char known[160];
-    const struct style *found = find_style(kind, style, known);
+    const struct style *found = find_style(order, style, known);
     if (found == NULL)
         return mf_status_fail(STATUS_BAD_INPUT, "style \"%.40s\" is not known, but %s", style,
                               known);

@@ -10,17 +10,15 @@
 
 #include <string.h>
 
-const char *const mf_scene_group_keys[TOPOLOGY_ORDERS] = {"bonds", "angles", "dihedrals"};
-
 /// Points of the law "table".
 static enum status load_points(struct bonded_curve *curve, int order, struct json_object *object,
                                const struct units *units) {
-    const char *const unit[2] = {order == TOPOLOGY_BOND ? "lambda" : "degrees", "k_B T_0"};
+    const char *const unit[2] = {mf_bonded_kinds[order]->unit, "k_B T_0"};
     const struct bonded_table *table = curve->parameters;
     double *q = NULL, *energy = NULL;
     size_t count = 0;
-    enum status status = mf_scene_read_columns(
-        table->file, unit, order == TOPOLOGY_DIHEDRAL ? -DBL_MAX : 0, units, &q, &energy, &count);
+    enum status status =
+        mf_scene_read_columns(table->file, unit, bonded_least(order), units, &q, &energy, &count);
     if (status != STATUS_OK)
         mf_json_fault(object, "file", "%s", mf_status_message());
     else if ((status = mf_bonded_table_set_points(curve, q, energy, count)) != STATUS_OK)
@@ -37,12 +35,12 @@ static enum status read_group(struct molecules *molecules, int order, struct jso
     struct json_object object = mf_json_child_of(groups, name, true, "law");
     if (object.item == NULL)
         return STATUS_OK;
-    TRY(mf_names_collect(mf_bonded_laws[order], NULL, &names));
+    TRY(mf_names_collect(mf_bonded_kinds[order]->laws, NULL, &names));
     const char *chosen = mf_json_choice(&object, "law", names, NULL);
     mf_memory_free(names);
     if (chosen == NULL)
         return STATUS_OK;
-    const struct bonded_law *law = mf_names_find(mf_bonded_laws[order], chosen);
+    const struct bonded_law *law = mf_names_find(mf_bonded_kinds[order]->laws, chosen);
     const size_t faults = mf_json_fault_count(object.document);
     TRY(mf_bonded_create(&group->curve, law));
     snprintf(group->name, sizeof group->name, "%s", name);
@@ -62,15 +60,13 @@ bool mf_scene_groups_are_fitted(const struct molecules_group *group) {
 /// A table without points.
 static enum status add_fitted(struct molecules *molecules, int order, const char *name,
                               struct json_object *scene) {
-    static const struct bonded_law *const tables[TOPOLOGY_ORDERS] = {
-        &mf_bonded_table_bond, &mf_bonded_table_angle, &mf_bonded_table_dihedral};
     struct molecules_group *group = &molecules->group[order][molecules->groups[order]];
     if (molecules->groups[order] >= MOLECULES_MOST_GROUPS) {
-        mf_json_fault(scene, mf_scene_group_keys[order], "there are more than %d groups",
+        mf_json_fault(scene, mf_bonded_kinds[order]->plural, "there are more than %d groups",
                       MOLECULES_MOST_GROUPS);
         return STATUS_OK;
     }
-    TRY(mf_bonded_create(&group->curve, tables[order]));
+    TRY(mf_bonded_create(&group->curve, mf_bonded_kinds[order]->table));
     snprintf(group->name, sizeof group->name, "%s", name);
     molecules->groups[order]++;
     return STATUS_OK;
@@ -80,7 +76,7 @@ static enum status add_fitted(struct molecules *molecules, int order, const char
 static enum status read_known(struct molecules *molecules, int order, struct json_object *scene,
                               const struct units *units) {
     const char *name;
-    struct json_object groups = mf_json_child(scene, mf_scene_group_keys[order], false);
+    struct json_object groups = mf_json_child(scene, mf_bonded_kinds[order]->plural, false);
     if (groups.item == NULL)
         return STATUS_OK;
     for (size_t n = 0; (name = mf_json_key(&groups, n)); n++) {
@@ -122,7 +118,7 @@ static enum status open_group(struct molecules *molecules, struct json_object *o
             MOLECULES_MOST_GROUPS, TOPOLOGY_NAME_SIZE - 1);
         return STATUS_OK;
     }
-    TRY(mf_bonded_create(&group->curve, mf_bonded_laws[order][0]));
+    TRY(mf_bonded_create(&group->curve, mf_bonded_kinds[order]->laws[0]));
     snprintf(group->name, sizeof group->name, "%s", name);
     molecules->groups[order]++;
     return STATUS_OK;
@@ -130,10 +126,10 @@ static enum status open_group(struct molecules *molecules, struct json_object *o
 
 enum status mf_scene_groups_open(struct molecules *molecules, struct json_object *kind) {
     struct json_object chain = mf_json_child(kind, "chain", false);
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++) {
-        struct json_object terms = mf_json_child(kind, mf_scene_group_keys[order], false);
+    for (int order = 0; order < BONDED_KINDS; order++) {
+        struct json_object terms = mf_json_child(kind, mf_bonded_kinds[order]->plural, false);
         const char *name =
-            chain.item ? mf_json_choice(&chain, mf_topology_order_names[order], NULL, "") : "";
+            chain.item ? mf_json_choice(&chain, mf_bonded_kinds[order]->name, NULL, "") : "";
         if (name && name[0])
             TRY(open_group(molecules, &chain, order, name));
         for (size_t n = 0; terms.item && (name = mf_json_key(&terms, n)); n++)
@@ -159,7 +155,7 @@ static void fault_unnamed(const struct scene_fitted *fitted, int order,
             continue;
         mf_nearest_hint(fitted->name[order][n], known, count, hint, sizeof hint);
         mf_json_fault(&from, fitted->name[order][n], "no molecule has such %s %s%s%s",
-                      order == TOPOLOGY_ANGLE ? "an" : "a", mf_topology_order_names[order],
+                      mf_bonded_kinds[order]->article, mf_bonded_kinds[order]->name,
                       count > 0 ? "; " : "", count > 0 ? hint : "");
     }
 }
@@ -178,7 +174,7 @@ enum status mf_scene_groups_check_fitted(const struct scene_fitted *fitted,
         struct json_object kind = mf_json_child(&kinds, name, false);
         CHECK(mf_scene_groups_open(&named, &kind));
     }
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+    for (int order = 0; order < BONDED_KINDS; order++)
         fault_unnamed(fitted, order, &named);
 done:
     mf_molecules_clear(&named);
@@ -186,13 +182,13 @@ done:
 }
 
 enum status mf_scene_groups_forget_tables(struct molecules *molecules) {
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+    for (int order = 0; order < BONDED_KINDS; order++)
         for (int g = 0; g < molecules->groups[order]; g++) {
             struct molecules_group *group = &molecules->group[order][g];
             if (!mf_scene_groups_are_fitted(group))
                 continue;
             mf_bonded_clear(&group->curve);
-            TRY(mf_bonded_create(&group->curve, mf_bonded_laws[order][0]));
+            TRY(mf_bonded_create(&group->curve, mf_bonded_kinds[order]->laws[0]));
         }
     return STATUS_OK;
 }
@@ -212,7 +208,7 @@ static bool takes(const struct molecules_group *group, const struct molecules_gr
     if (mf_scene_groups_are_fitted(group) || (looked_for && fitted->told))
         return true;
     if (!looked_for) {
-        struct json_object laws = mf_json_child(scene, mf_scene_group_keys[order], false);
+        struct json_object laws = mf_json_child(scene, mf_bonded_kinds[order]->plural, false);
         mf_json_fault(&laws, told->name, "the topology of \"molecules\" has its law; leave it out");
     }
     return false;
@@ -221,20 +217,20 @@ static bool takes(const struct molecules_group *group, const struct molecules_gr
 /// A law of the scene for a group that there is not.
 static void fault_unused(const struct molecules_group *told, int order,
                          const struct molecules *molecules, struct json_object *scene) {
-    struct json_object laws = mf_json_child(scene, mf_scene_group_keys[order], false);
+    struct json_object laws = mf_json_child(scene, mf_bonded_kinds[order]->plural, false);
     const char *known[MOLECULES_MOST_GROUPS];
     char hint[1024];
     for (int g = 0; g < molecules->groups[order]; g++)
         known[g] = molecules->group[order][g].name;
     mf_nearest_hint(told->name, known, (size_t)molecules->groups[order], hint, sizeof hint);
     mf_json_fault(&laws, told->name, "no molecule has such %s %s%s%s",
-                  order == TOPOLOGY_ANGLE ? "an" : "a", mf_topology_order_names[order],
+                  mf_bonded_kinds[order]->article, mf_bonded_kinds[order]->name,
                   molecules->groups[order] ? "; " : "", molecules->groups[order] ? hint : "");
 }
 
 void mf_scene_groups_join(struct molecules *molecules, struct molecules *told,
                           const struct scene_fitted *fitted, struct json_object *scene) {
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++) {
+    for (int order = 0; order < BONDED_KINDS; order++) {
         bool known[MOLECULES_MOST_GROUPS] = {false};
         for (int n = 0; n < told->groups[order]; n++) {
             struct molecules_group *own = &told->group[order][n];
@@ -255,9 +251,9 @@ void mf_scene_groups_join(struct molecules *molecules, struct molecules *told,
                 mf_json_fault(scene, "molecules",
                               "the %s \"%s\" is a table in the topology, which is not read: "
                               "\"scene.%s\" or, of a fit, \"target.%s\" tells it by that name",
-                              mf_topology_order_names[order], molecules->group[order][g].name,
-                              mf_scene_group_keys[order],
-                              mf_bonded_distribution_of((enum topology_order)order)->name);
+                              mf_bonded_kinds[order]->name, molecules->group[order][g].name,
+                              mf_bonded_kinds[order]->plural,
+                              mf_bonded_distribution_of((enum bonded_order)order)->name);
     }
 }
 
@@ -268,7 +264,7 @@ void mf_scene_groups_write(const struct molecules *molecules, int order,
         known += !mf_scene_groups_are_fitted(&molecules->group[order][g]);
     if (known == 0)
         return;
-    mf_json_begin(writer, mf_scene_group_keys[order]);
+    mf_json_begin(writer, mf_bonded_kinds[order]->plural);
     for (int g = 0; g < molecules->groups[order]; g++) {
         const struct molecules_group *group = &molecules->group[order][g];
         if (mf_scene_groups_are_fitted(group))
@@ -283,7 +279,7 @@ void mf_scene_groups_write(const struct molecules *molecules, int order,
 
 void mf_scene_molecules_digest(const struct scene_molecules *molecules, uint64_t *digest) {
     const struct molecules *own = &molecules->molecules;
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+    for (int order = 0; order < BONDED_KINDS; order++)
         for (int g = 0; g < own->groups[order]; g++) {
             const struct bonded_curve *curve = &own->group[order][g].curve;
             const struct bonded_table *table = curve->parameters;
