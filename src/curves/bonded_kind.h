@@ -21,7 +21,7 @@
     EACH(DIHEDRAL, dihedral, 4, dihedral_angles, "dihedral angles", "phi[degrees]", "1/degrees")
 
 #define BONDED_NUMBER(NAME, ...) BONDED_##NAME,
-enum bonded_order { BONDED_LIST(BONDED_NUMBER) BONDED_KINDS };
+enum { BONDED_LIST(BONDED_NUMBER) BONDED_KINDS };
 #undef BONDED_NUMBER
 
 enum {

@@ -36,6 +36,10 @@ struct bonded_curve {
 enum status mf_bonded_create(struct bonded_curve *curve, const struct bonded_law *law) MUST_USE;
 void mf_bonded_clear(struct bonded_curve *curve);
 
+/// A parameter by its name in a scene; set it, or false if it is out of its range.
+double mf_bonded_number(const struct bonded_curve *curve, const char *name);
+bool mf_bonded_set_number(struct bonded_curve *curve, const char *name, double value);
+
 /// Energy and slope at one q; each may be NULL. Tested: test_bonded_law.
 void mf_bonded_value(const struct bonded_curve *curve, double q, double *energy, double *slope);
 

@@ -53,15 +53,14 @@ static double width_of(const struct bonded_curve *curve, double low, double high
     return fmax(0.5 * (to - from), spacing);
 }
 
-double mf_hybrid_step_variance(const struct bonded_curve *curve, enum bonded_order order,
-                               double temperature) {
+double mf_hybrid_step_variance(const struct bonded_curve *curve, int order, double temperature) {
     const struct bonded_kind *kind = mf_bonded_kinds[order];
     const double high =
         kind->is_length ? mf_bonded_reach(curve, temperature) : kind->scale * kind->high;
     return pow(width_of(curve, kind->scale * kind->low, high, temperature), 2);
 }
 
-double mf_hybrid_step_squared_frequency(enum bonded_order order, double variance, double length,
+double mf_hybrid_step_squared_frequency(int order, double variance, double length,
                                         double temperature) {
     static const double bend = 6;
     const double joints = mf_bonded_kinds[order]->is_length ? 2 : bend / (length * length);
@@ -79,12 +78,11 @@ double mf_hybrid_step_fastest(const struct molecules *molecules, double temperat
             fmin(length, mf_bonded_reach(&molecules->group[BONDED_BOND][g].curve, temperature));
     for (int order = 0; order < BONDED_KINDS; order++)
         for (int g = 0; g < molecules->groups[order]; g++)
-            fastest =
-                fmax(fastest, mf_hybrid_step_squared_frequency(
-                                  (enum bonded_order)order,
-                                  mf_hybrid_step_variance(&molecules->group[order][g].curve,
-                                                          (enum bonded_order)order, temperature),
-                                  length, temperature));
+            fastest = fmax(fastest, mf_hybrid_step_squared_frequency(
+                                        order,
+                                        mf_hybrid_step_variance(&molecules->group[order][g].curve,
+                                                                order, temperature),
+                                        length, temperature));
     return fastest;
 }
 

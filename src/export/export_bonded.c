@@ -6,24 +6,6 @@
 #include "export/export_grid.h"
 
 #include <math.h>
-#include <string.h>
-
-double mf_export_bonded_number(const struct bonded_curve *curve, const char *name) {
-    const struct field *field = curve->law->fields;
-    while (strcmp(field->name, name) != 0)
-        field++;
-    const void *member = (const char *)curve->parameters + field->offset;
-    return field->type == FIELD_INTEGER ? (double)*(const int64_t *)member
-                                        : *(const double *)member;
-}
-
-size_t mf_export_bonded_count(const struct molecules *molecules, int order) {
-    size_t count = 0;
-    for (int k = 0; k < molecules->topology.kinds; k++)
-        count += (size_t)molecules->topology.kind[k].terms[order] *
-                 (size_t)molecules->topology.kind[k].count;
-    return count;
-}
 
 static double length_of(const struct export_model *model, uint32_t i, uint32_t j) {
     double square = 0;

@@ -36,11 +36,5 @@ static inline size_t export_bonded_rows(const struct export_bonded *bonded, int 
     return mf_bonded_kinds[order]->periodic ? bonded->rows - 1 : bonded->rows;
 }
 
-/// A parameter of a law by its name in a scene.
-double mf_export_bonded_number(const struct bonded_curve *curve, const char *name);
-
-/// Terms of an order in all molecules.
-size_t mf_export_bonded_count(const struct molecules *molecules, int order);
-
 /// The longest bond of the model's configuration [λ].
 double mf_export_bonded_longest(const struct export_model *model);

@@ -31,7 +31,7 @@ static void print_law(const struct export_job *job, int order, int group, FILE *
     fprintf(stream, " %d", function->number);
     for (int n = 0; n < GROMACS_MOST_PARAMETERS && function->parameter[n]; n++)
         fprintf(stream, " %.10g",
-                mf_export_bonded_number(curve, function->parameter[n]) *
+                mf_bonded_number(curve, function->parameter[n]) *
                     gromacs_unit(function->unit[n], job->units.length, job->units.energy));
 }
 

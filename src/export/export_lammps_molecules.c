@@ -20,26 +20,26 @@ struct style {
 static void print_harmonic_bond(const struct export_units *units, const struct bonded_curve *curve,
                                 FILE *stream) {
     fprintf(stream, "%.12g %.12g",
-            0.5 * mf_export_bonded_number(curve, "k") * units->energy / pow(units->length, 2),
-            mf_export_bonded_number(curve, "length") * units->length);
+            0.5 * mf_bonded_number(curve, "k") * units->energy / pow(units->length, 2),
+            mf_bonded_number(curve, "length") * units->length);
 }
 
 static void print_fene(const struct export_units *units, const struct bonded_curve *curve,
                        FILE *stream) {
     fprintf(stream, "%.12g %.12g 0 0",
-            mf_export_bonded_number(curve, "k") * units->energy / pow(units->length, 2),
-            mf_export_bonded_number(curve, "longest") * units->length);
+            mf_bonded_number(curve, "k") * units->energy / pow(units->length, 2),
+            mf_bonded_number(curve, "longest") * units->length);
 }
 
 static void print_angle(const struct export_units *units, const struct bonded_curve *curve,
                         FILE *stream) {
-    fprintf(stream, "%.12g %.12g", 0.5 * mf_export_bonded_number(curve, "k") * units->energy,
-            mf_export_bonded_number(curve, "angle"));
+    fprintf(stream, "%.12g %.12g", 0.5 * mf_bonded_number(curve, "k") * units->energy,
+            mf_bonded_number(curve, "angle"));
 }
 
 static void print_cosine(const struct export_units *units, const struct bonded_curve *curve,
                          FILE *stream) {
-    fprintf(stream, "%.12g", mf_export_bonded_number(curve, "k") * units->energy);
+    fprintf(stream, "%.12g", mf_bonded_number(curve, "k") * units->energy);
 }
 
 static void print_cosines(const struct export_units *units, const struct bonded_curve *curve,
@@ -47,15 +47,14 @@ static void print_cosines(const struct export_units *units, const struct bonded_
     static const char *const c[] = {"c0", "c1", "c2", "c3", "c4"};
     for (int n = 0; n < 5; n++)
         fprintf(stream, "%s%.12g", n ? " " : "",
-                (n % 2 ? -1 : 1) * mf_export_bonded_number(curve, c[n]) * units->energy);
+                (n % 2 ? -1 : 1) * mf_bonded_number(curve, c[n]) * units->energy);
 }
 
 /// The last number is the weight of pairs four beads apart.
 static void print_periodic(const struct export_units *units, const struct bonded_curve *curve,
                            FILE *stream) {
-    fprintf(stream, "%.12g %.0f %.0f 0.0", mf_export_bonded_number(curve, "k") * units->energy,
-            mf_export_bonded_number(curve, "multiplicity"),
-            mf_export_bonded_number(curve, "phase"));
+    fprintf(stream, "%.12g %.0f %.0f 0.0", mf_bonded_number(curve, "k") * units->energy,
+            mf_bonded_number(curve, "multiplicity"), mf_bonded_number(curve, "phase"));
 }
 
 static const struct style styles[] = {
@@ -71,10 +70,10 @@ static const struct style styles[] = {
 static const struct style table_style = {NULL, "table", NULL};
 
 static const struct style *find_style(const struct bonded_curve *curve) {
-    if (curve->law == &mf_dihedral_ryckaert_bellemans && mf_export_bonded_number(curve, "c5") != 0)
+    if (curve->law == &mf_dihedral_ryckaert_bellemans && mf_bonded_number(curve, "c5") != 0)
         return &table_style;
     if (curve->law == &mf_dihedral_periodic) {
-        const double phase = mf_export_bonded_number(curve, "phase");
+        const double phase = mf_bonded_number(curve, "phase");
         if (phase != rint(phase))
             return &table_style;
     }
@@ -123,7 +122,7 @@ void mf_export_lammps_counts(const struct export_job *job, FILE *stream) {
     const struct molecules *molecules = job->model->molecules;
     for (int order = 0; order < BONDED_KINDS; order++)
         if (molecules->groups[order] > 0)
-            fprintf(stream, "%zu %s\n%d %s types\n", mf_export_bonded_count(molecules, order),
+            fprintf(stream, "%zu %s\n%d %s types\n", mf_topology_terms(&molecules->topology, order),
                     mf_bonded_kinds[order]->plural, molecules->groups[order],
                     mf_bonded_kinds[order]->name);
 }

@@ -9,6 +9,8 @@
 #include "forces/molecules_layout.h"
 
 #include <math.h>
+#include <stdio.h>
+#include <string.h>
 
 struct state {
     const struct molecules *molecules;
@@ -23,6 +25,23 @@ void mf_molecules_clear(struct molecules *molecules) {
         for (int g = 0; g < molecules->groups[order]; g++)
             mf_bonded_clear(&molecules->group[order][g].curve);
     *molecules = (struct molecules){0};
+}
+
+struct molecules_group *mf_molecules_group(struct molecules *molecules, int order,
+                                           const char *name) {
+    for (int g = 0; g < molecules->groups[order]; g++)
+        if (strcmp(molecules->group[order][g].name, name) == 0)
+            return &molecules->group[order][g];
+    return NULL;
+}
+
+enum status mf_molecules_add_group(struct molecules *molecules, int order, const char *name,
+                                   const struct bonded_law *law) {
+    struct molecules_group *group = &molecules->group[order][molecules->groups[order]];
+    TRY(mf_bonded_create(&group->curve, law));
+    snprintf(group->name, sizeof group->name, "%s", name);
+    molecules->groups[order]++;
+    return STATUS_OK;
 }
 
 const struct molecules *mf_molecules_find(const struct interaction_choice *interactions,

@@ -28,6 +28,15 @@ struct molecules {
 
 void mf_molecules_clear(struct molecules *molecules);
 
+/// The group of that name, or NULL.
+struct molecules_group *mf_molecules_group(struct molecules *molecules, int order,
+                                           const char *name);
+
+/// Add a group of that name with a law of default parameters, for which there is room. Fails:
+/// NO_MEMORY.
+enum status mf_molecules_add_group(struct molecules *molecules, int order, const char *name,
+                                   const struct bonded_law *law) MUST_USE;
+
 /// Whether molecules go into a box: a term sees the nearest images of its beads, so that a bond, at
 /// rest or as long as it can be, is shorter than half of it; dihedrals need three dimensions.
 /// Fails: BAD_INPUT, naming the group.

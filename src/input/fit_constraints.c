@@ -8,7 +8,7 @@
 #include <math.h>
 
 /// The law of a group, by what its target says of it.
-static struct fit_constraint law_of(enum bonded_order order, const char *name,
+static struct fit_constraint law_of(int order, const char *name,
                                     const struct bonded_moments *moments, double temperature) {
     struct fit_constraint law = {.order = order, .moments = *moments};
     snprintf(law.name, sizeof law.name, "%s", name);
@@ -20,7 +20,7 @@ static struct fit_constraint law_of(enum bonded_order order, const char *name,
 void mf_fit_constraints_find(const struct fit_file *read, struct fit_constraints *constraints) {
     const struct molecules *molecules = &read->scene.molecules.molecules;
     constraints->count = 0;
-    for (enum bonded_order order = 0; order < BONDED_KINDS; order++)
+    for (int order = 0; order < BONDED_KINDS; order++)
         for (int g = 0; mf_bonded_kinds[order]->narrow > 0 && g < molecules->groups[order]; g++) {
             const struct target_groups *groups = &read->files.groups[order];
             const struct molecules_group *group = &molecules->group[order][g];

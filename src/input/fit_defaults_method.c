@@ -56,8 +56,7 @@ static void find_well(const struct target_bonded *target, double *mean, double *
 }
 
 /// ω² of a group, by its target, or by its law if it has none.
-static double fastest_of(const struct fit_choice *c, enum bonded_order order, size_t g,
-                         double length) {
+static double fastest_of(const struct fit_choice *c, int order, size_t g, double length) {
     const struct target_groups *groups = &c->read->files.groups[order];
     const struct bonded_curve *curve = &c->read->scene.molecules.molecules.group[order][g].curve;
     const double temperature = c->read->scene.setup.temperature;
@@ -106,7 +105,7 @@ double mf_fit_defaults_stiff_step(const struct fit_choice *c) {
     double fastest = 0;
     for (int order = 0; order < BONDED_KINDS; order++)
         for (size_t g = 0; g < (size_t)molecules->groups[order]; g++)
-            fastest = fmax(fastest, fastest_of(c, (enum bonded_order)order, g, length));
+            fastest = fmax(fastest, fastest_of(c, order, g, length));
     return integrator->mobility ? mf_fit_defaults_relaxing_step(c, c->mass * fastest, allowed)
                                 : sqrt(allowed / (mf_hybrid_step_wrong(integrator) * fastest));
 }

@@ -170,7 +170,7 @@ static enum status read_root(struct fit_file *fit, struct json_object *root,
 static void state_groups(struct fit_file *fit) {
     struct inverse_problem *problem = &fit->problem;
     const struct molecules *molecules = &fit->scene.molecules.molecules;
-    for (enum bonded_order order = 0; order < BONDED_KINDS; order++)
+    for (int order = 0; order < BONDED_KINDS; order++)
         for (int g = 0; g < molecules->groups[order]; g++) {
             const struct target_groups *groups = &fit->files.groups[order];
             if (!mf_scene_groups_are_fitted(&molecules->group[order][g]) ||
@@ -189,7 +189,7 @@ static void compare_known(struct fit_file *fit) {
     for (size_t n = 0; n < fit->numbers; n++)
         if (fit->number[n].place == INVERSE_OF_BONDED)
             found[inverse_order(fit->number[n].part)] = true;
-    for (enum bonded_order order = 0; order < BONDED_KINDS; order++)
+    for (int order = 0; order < BONDED_KINDS; order++)
         if (!found[order])
             fit->files.use[mf_bonded_distribution_kind(order)].fitted = 0;
 }

@@ -135,7 +135,7 @@ static void add_memory(struct entries *entries, const struct scene_memory *memor
 
 /// Laws of bonds, angles and dihedrals: "bonds.backbone.k".
 static void add_groups(struct entries *entries, const struct molecules *molecules) {
-    for (enum bonded_order order = 0; order < BONDED_KINDS; order++)
+    for (int order = 0; order < BONDED_KINDS; order++)
         for (int g = 0; g < molecules->groups[order]; g++) {
             const struct molecules_group *group = &molecules->group[order][g];
             char prefix[INVERSE_NUMBER_NAME_SIZE];

@@ -25,7 +25,7 @@ static bool knows_all(const struct json_object *root, const struct json_object *
 static bool has_potential(struct json_object *root) {
     const struct json_object target = mf_json_child(root, "target", false);
     bool groups = knows_all(root, &target);
-    for (enum bonded_order order = 0; order < BONDED_KINDS; order++)
+    for (int order = 0; order < BONDED_KINDS; order++)
         groups = groups || mf_json_is_object(&target, mf_bonded_distribution_of(order)->name);
     return !groups || mf_json_is_member(&target, mf_targets_name(TARGET_RDF));
 }
@@ -46,7 +46,7 @@ int mf_fit_unknowns_left_out(struct json_object *root) {
 }
 
 /// A group is looked for, unless the scene knows its law.
-static void enter_group(struct scene_fitted *fitted, enum bonded_order order, const char *name,
+static void enter_group(struct scene_fitted *fitted, int order, const char *name,
                         const struct json_object *known, struct json_object *from) {
     const bool has_law = mf_json_is_member(known, name);
     if (has_law && fitted->told)
@@ -79,7 +79,7 @@ void mf_fit_unknowns_groups(struct json_object *root, struct json_object *scene,
     const bool told = mf_fit_unknowns_name_groups(root);
     struct json_object parent = mf_json_child(root, told ? "unknowns" : "target", false);
     *fitted = (struct scene_fitted){.told = told};
-    for (enum bonded_order order = 0; order < BONDED_KINDS; order++) {
+    for (int order = 0; order < BONDED_KINDS; order++) {
         const struct json_object known =
             mf_json_child(scene, mf_bonded_kinds[order]->plural, false);
         const char *key = told ? mf_bonded_kinds[order]->plural
@@ -95,8 +95,7 @@ void mf_fit_unknowns_groups(struct json_object *root, struct json_object *scene,
     }
 }
 
-static void read_shape(struct bonded_shape *shape, enum bonded_order order,
-                       struct json_object *group) {
+static void read_shape(struct bonded_shape *shape, int order, struct json_object *group) {
     enum { COEFFICIENTS = 4, OF_CIRCLE = 6 };
     mf_json_fields(group, mf_inverse_group_fields, shape);
     if (shape->coefficients == 0)
@@ -109,7 +108,7 @@ static void read_shape(struct bonded_shape *shape, enum bonded_order order,
 static void read_groups(struct fit_file *fit, struct json_object *root,
                         struct json_object *unknowns) {
     const struct molecules *molecules = &fit->scene.molecules.molecules;
-    for (enum bonded_order order = 0; order < BONDED_KINDS; order++) {
+    for (int order = 0; order < BONDED_KINDS; order++) {
         const struct target_groups *targets = &fit->files.groups[order];
         struct json_object groups = mf_json_child(unknowns, mf_bonded_kinds[order]->plural, false);
         for (int g = 0; g < molecules->groups[order]; g++) {
@@ -318,7 +317,7 @@ static void write_memory(const struct fit_file *fit, struct json_writer *writer)
 
 static void write_groups(const struct fit_file *fit, struct json_writer *writer) {
     const struct molecules *molecules = &fit->scene.molecules.molecules;
-    for (enum bonded_order order = 0; order < BONDED_KINDS; order++) {
+    for (int order = 0; order < BONDED_KINDS; order++) {
         bool begun = false;
         for (int g = 0; g < molecules->groups[order]; g++) {
             if (!mf_scene_groups_are_fitted(&molecules->group[order][g]))

@@ -9,7 +9,7 @@ enum { GROMACS_MOST_PARAMETERS = 6 };
 enum gromacs_unit { GROMACS_PURE, GROMACS_LENGTH, GROMACS_ENERGY, GROMACS_BOND };
 
 struct gromacs_function {
-    enum bonded_order order;
+    int order;
     int number;
     const struct bonded_law *law;
     const char *parameter[GROMACS_MOST_PARAMETERS]; ///< in their order, by their names in a scene

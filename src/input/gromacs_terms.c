@@ -40,7 +40,7 @@ struct topology_kind *mf_gromacs_last_kind(const struct gromacs_reading *reading
 
 static const struct gromacs_function *find_function(int order, int64_t number) {
     for (const struct gromacs_function *f = mf_gromacs_functions; f->law; f++)
-        if ((int)f->order == order && f->number == number)
+        if (f->order == order && f->number == number)
             return f;
     return number == mf_gromacs_tables[order].number ? &mf_gromacs_tables[order] : NULL;
 }
@@ -50,7 +50,7 @@ static void list_functions(int order, char *text, size_t size) {
     size_t length = 0;
     text[0] = '\0';
     for (const struct gromacs_function *f = mf_gromacs_functions; f->law; f++)
-        if ((int)f->order == order && length < size)
+        if (f->order == order && length < size)
             length += (size_t)snprintf(text + length, size - length, "%d (%s), ", f->number,
                                        f->law->name);
 }
@@ -134,7 +134,7 @@ static enum status find_values(const struct gromacs_reading *reading,
     int found = 0;
     for (size_t k = 0; k < reading->types; k++) {
         const struct gromacs_term_type *type = &reading->type[k];
-        if (type->order != (int)function->order || type->number != function->number ||
+        if (type->order != function->order || type->number != function->number ||
             type->words == 0 || !is_of(reading, term, type))
             continue;
         found++;
@@ -157,25 +157,16 @@ static enum status find_values(const struct gromacs_reading *reading,
 /// Set a parameter of a law, which must be in its range.
 static enum status set_number(const struct gromacs_line *line, struct bonded_curve *curve,
                               const char *name, double value) {
-    const struct field *field = curve->law->fields;
-    while (strcmp(field->name, name) != 0)
-        field++;
-    if (value < field->minimum || value > field->maximum ||
-        (field->type == FIELD_INTEGER && value != rint(value)))
-        return mf_gromacs_fail(line, "%s of the law \"%s\" cannot be %g", name, curve->law->name,
-                               value);
-    const int64_t integer = field->type == FIELD_INTEGER ? (int64_t)value : 0;
-    memcpy((char *)curve->parameters + field->offset,
-           field->type == FIELD_INTEGER ? (const void *)&integer : (const void *)&value,
-           sizeof value);
-    return STATUS_OK;
+    return mf_bonded_set_number(curve, name, value)
+               ? STATUS_OK
+               : mf_gromacs_fail(line, "%s of the law \"%s\" cannot be %g", name, curve->law->name,
+                                 value);
 }
 
 /// "A-B", of the types of a term; "A-B_2" if another group is called so.
 static void name_group(const struct gromacs_reading *reading, int order,
                        const struct topology_term *term, char name[TOPOLOGY_NAME_SIZE]) {
     const struct topology_kind *kind = mf_gromacs_last_kind(reading);
-    const struct molecules *molecules = reading->molecules;
     char plain[TOPOLOGY_NAME_SIZE - 4] = "";
     for (int k = 0; k < mf_bonded_kinds[order]->beads; k++) {
         const size_t length = strlen(plain);
@@ -183,11 +174,8 @@ static void name_group(const struct gromacs_reading *reading, int order,
                  reading->composition->name[kind->type[term->bead[k]]]);
     }
     snprintf(name, TOPOLOGY_NAME_SIZE, "%s", plain);
-    for (int g = 0, number = 2; g < molecules->groups[order]; g++)
-        if (strcmp(molecules->group[order][g].name, name) == 0) {
-            snprintf(name, TOPOLOGY_NAME_SIZE, "%s_%d", plain, number++);
-            g = -1; // from the first on
-        }
+    for (int number = 2; mf_molecules_group(reading->molecules, order, name); number++)
+        snprintf(name, TOPOLOGY_NAME_SIZE, "%s_%d", plain, number);
 }
 
 /// The law of a function with these numbers. Tables are told apart by their numbers alone.
@@ -214,7 +202,7 @@ static enum status make_law(const struct gromacs_reading *reading, const struct 
 static enum status find_group(struct gromacs_reading *reading, const struct gromacs_line *line,
                               const struct gromacs_function *function, const double *values,
                               struct topology_term *term) {
-    const int order = (int)function->order;
+    const int order = function->order;
     struct molecules *molecules = reading->molecules;
     struct bonded_curve curve;
     enum status status = STATUS_OK;

@@ -89,9 +89,9 @@ static enum status find_group(struct reading *reading, int order, int type, size
                               reading->file, line, MOLECULES_MOST_GROUPS,
                               mf_bonded_kinds[order]->name);
     struct molecules_group *group = &molecules->group[order][g];
-    const enum status status = mf_lammps_style_create(
-        &group->curve, (enum bonded_order)order, coefficient->style, coefficient->number,
-        coefficient->count, reading->length, reading->energy, &note);
+    const enum status status =
+        mf_lammps_style_create(&group->curve, order, coefficient->style, coefficient->number,
+                               coefficient->count, reading->length, reading->energy, &note);
     if (status != STATUS_OK)
         return mf_status_prefix(status, "%s:%zu", reading->file, coefficient->line);
     memcpy(group->name, name, sizeof name);

@@ -81,7 +81,7 @@ static enum status find_columns(const struct target_bonded_parameters *p, const 
                                       table, p->file, error);
 }
 
-static enum status read_columns(const struct target_bonded_parameters *p, enum bonded_order order,
+static enum status read_columns(const struct target_bonded_parameters *p, int order,
                                 const char *name, const struct units *units, struct rows *rows) {
     enum { USUAL = 2 };
     const char *unit = mf_bonded_kinds[order]->unit, *inverse = mf_bonded_kinds[order]->density;
@@ -117,7 +117,7 @@ done:
 }
 
 /// From nm or radians.
-static enum status read_votca(const struct target_bonded_parameters *p, enum bonded_order order,
+static enum status read_votca(const struct target_bonded_parameters *p, int order,
                               const struct units *units, struct rows *rows) {
     const struct bonded_kind *kind = mf_bonded_kinds[order];
     const double unit = kind->is_length ? 1 / units->length : 1 / kind->scale;
@@ -168,7 +168,7 @@ static enum status check_rows(const struct rows *rows, const char *file) {
     return STATUS_OK;
 }
 
-static enum status check_range(const struct rows *rows, enum bonded_order order, const char *file) {
+static enum status check_range(const struct rows *rows, int order, const char *file) {
     const double width = width_of(rows), last = rows->q[rows->count - 1];
     const struct bonded_kind *kind = mf_bonded_kinds[order];
     const double low = kind->periodic ? -360 : kind->low, high = kind->periodic ? 360 : kind->high;
@@ -252,7 +252,7 @@ static void trim(struct rows *rows) {
 
 /// σ² = c² p of counts: c² by fourth differences of −ln(p/J), whose variance is c² Σ b_j²/p_j,
 /// where p is above a twentieth of its peak; NaN if that does not tell.
-static enum status find_scatter(const struct rows *rows, enum bonded_order order, int dimensions,
+static enum status find_scatter(const struct rows *rows, int order, int dimensions,
                                 const struct bonded_bins *bins, double *square) {
     enum { TAPS = 5, LEAST_DIFFERENCES = 8 };
     static const double taps[TAPS] = {1, -4, 6, -4, 1}, least = 0.05;
@@ -295,8 +295,8 @@ static void set_errors_of_unseen(struct rows *rows) {
 }
 
 /// What was not seen has the error of what was seen once.
-static enum status set_errors(struct target_bonded *target, struct rows *rows,
-                              enum bonded_order order, int dimensions) {
+static enum status set_errors(struct target_bonded *target, struct rows *rows, int order,
+                              int dimensions) {
     double square, peak = 0;
     if (rows->has_errors) {
         set_errors_of_unseen(rows);
@@ -338,7 +338,7 @@ static void join(struct target_bonded *target, struct rows *rows, bool circle) {
     }
 }
 
-static enum status load(struct target_bonded *target, enum bonded_order order, const char *name,
+static enum status load(struct target_bonded *target, int order, const char *name,
                         const struct units *units, int dimensions) {
     enum status status = STATUS_OK;
     const struct target_bonded_parameters *p = &target->parameters;
@@ -367,9 +367,9 @@ done:
     return status;
 }
 
-enum status mf_target_bonded_read(struct target_bonded *target, enum bonded_order order,
-                                  const char *name, struct json_object *object,
-                                  const struct units *units, int dimensions) {
+enum status mf_target_bonded_read(struct target_bonded *target, int order, const char *name,
+                                  struct json_object *object, const struct units *units,
+                                  int dimensions) {
     const size_t faults = mf_json_fault_count(object->document);
     *target = (struct target_bonded){0};
     mf_json_fields(object, mf_target_bonded_fields, &target->parameters);

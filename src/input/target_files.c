@@ -45,9 +45,8 @@ static enum status read_settings(struct target_files *files, const struct observ
 
 /// p of each group, and what is to be measured for them.
 static enum status read_groups(struct target_files *files, const struct observable_kind *kind,
-                               enum bonded_order order, struct json_object *object,
-                               const struct box *box, const struct molecules *molecules,
-                               const struct units *units) {
+                               int order, struct json_object *object, const struct box *box,
+                               const struct molecules *molecules, const struct units *units) {
     struct bonded_settings *settings = mf_memory_zeroed(1, sizeof *settings);
     if (settings == NULL)
         return STATUS_NO_MEMORY;
@@ -60,7 +59,7 @@ static enum status read_groups(struct target_files *files, const struct observab
     return STATUS_OK;
 }
 
-enum status mf_target_files_widen(struct target_files *files, enum bonded_order order, size_t group,
+enum status mf_target_files_widen(struct target_files *files, int order, size_t group,
                                   const struct bonded_bins *bins) {
     const int place = mf_observable_kind(mf_bonded_distribution_kind(order)).place;
     struct bonded_settings *settings = files->settings[place];
@@ -88,7 +87,7 @@ static enum status read_kind(struct target_files *files, int number, struct json
                              const struct units *units) {
     const struct observable_kind kind = mf_observable_kind(number);
     const enum observable_form form = kind.target->form;
-    const enum bonded_order order = mf_bonded_distribution_order(number);
+    const int order = mf_bonded_distribution_order(number);
     if (order < BONDED_KINDS)
         return read_groups(files, &kind, order, object, box, molecules, units);
     if (kind.target->has_settings)
@@ -187,7 +186,7 @@ static void write_kind(const struct target_files *files, int number, struct json
     const enum observable_form form = kind.target->form;
     if (kind.target->has_settings)
         mf_json_put_fields(writer, kind.observable->fields, files->settings[kind.place]);
-    const enum bonded_order order = mf_bonded_distribution_order(number);
+    const int order = mf_bonded_distribution_order(number);
     if (order < BONDED_KINDS)
         mf_target_groups_write(&files->groups[order], writer);
     else if (number == TARGET_RDF)
@@ -315,7 +314,7 @@ static struct target target_of(const struct target_files *files, int kind) {
     const struct target_curve *curve = &files->curve[kind];
     const struct target_number *number = &files->number[kind];
     const enum observable_form form = mf_observable_kind(kind).target->form;
-    const enum bonded_order order = mf_bonded_distribution_order(kind);
+    const int order = mf_bonded_distribution_order(kind);
     if (order < BONDED_KINDS)
         return (struct target){.count = files->groups[order].first[files->groups[order].groups],
                                .value = files->groups[order].value,

@@ -47,7 +47,7 @@ void mf_target_files_digest(const struct target_files *files, uint64_t *digest);
 
 /// As mf_target_groups_widen, of a group of bonds, angles or dihedrals; it is measured in these
 /// bins, too.
-enum status mf_target_files_widen(struct target_files *files, enum bonded_order order, size_t group,
+enum status mf_target_files_widen(struct target_files *files, int order, size_t group,
                                   const struct bonded_bins *bins) MUST_USE;
 
 /// Divide g(r) by its normalisation: what the file says, else what mf_normalisation_find makes of

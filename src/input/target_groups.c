@@ -54,7 +54,7 @@ done:
     return status;
 }
 
-enum status mf_target_groups_read(struct target_groups *groups, enum bonded_order order,
+enum status mf_target_groups_read(struct target_groups *groups, int order,
                                   struct json_object *object, const struct molecules *molecules,
                                   const struct units *units, int dimensions) {
     enum status status = STATUS_OK;

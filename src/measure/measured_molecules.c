@@ -215,15 +215,14 @@ enum status mf_measured_molecules_start(struct measured_molecules *measured,
     TRY(make_shell(measured, interval));
     place_beads(measured, beads);
     find_rest(measured);
-    for (enum bonded_order order = 0; order < BONDED_KINDS; order++)
+    for (int order = 0; order < BONDED_KINDS; order++)
         if (measured->molecules->groups[order] > 0)
             TRY(add_observable(measured, mf_bonded_distribution_of(order),
                                mf_bonded_kinds[order]->fine, use++));
     return add_observable(measured, find_observable("molecule_sizes"), 0, use);
 }
 
-static const struct observable_use *find_use(const struct measured_molecules *measured,
-                                             enum bonded_order order) {
+static const struct observable_use *find_use(const struct measured_molecules *measured, int order) {
     const struct observable_use *use = measured->use;
     while (use->observable && use->observable != mf_bonded_distribution_of(order))
         use++;
@@ -231,16 +230,15 @@ static const struct observable_use *find_use(const struct measured_molecules *me
 }
 
 void mf_measured_molecules_end(struct measured_molecules *measured) {
-    for (enum bonded_order order = 0; order < BONDED_KINDS; order++) {
+    for (int order = 0; order < BONDED_KINDS; order++) {
         const struct observable_use *use = find_use(measured, order);
         if (use)
             mf_bonded_distribution_join(use->state);
     }
 }
 
-enum status mf_measured_molecules_moments(const struct measured_molecules *measured,
-                                          enum bonded_order order, int group,
-                                          struct bonded_moments *moments) {
+enum status mf_measured_molecules_moments(const struct measured_molecules *measured, int order,
+                                          int group, struct bonded_moments *moments) {
     struct bonded_bins bins;
     double *counts = mf_bonded_distribution_counts(find_use(measured, order)->state, group, &bins);
     if (counts == NULL)

@@ -24,29 +24,28 @@ static const struct field fields[] = {
     FIELD_END,
 };
 
-const struct observable *mf_bonded_distribution_of(enum bonded_order order) {
+const struct observable *mf_bonded_distribution_of(int order) {
 #define OF(NAME, kind, ...) &mf_bonded_distribution_##kind,
     static const struct observable *const of[] = {BONDED_LIST(OF)};
     return of[order];
 }
 
-enum bonded_order mf_bonded_distribution_order(int kind) {
+int mf_bonded_distribution_order(int kind) {
     const struct observable *observable = mf_observable_kind(kind).observable;
-    for (enum bonded_order order = 0; order < BONDED_KINDS; order++)
+    for (int order = 0; order < BONDED_KINDS; order++)
         if (observable && observable == mf_bonded_distribution_of(order))
             return order;
     return BONDED_KINDS;
 }
 
-int mf_bonded_distribution_kind(enum bonded_order order) {
+int mf_bonded_distribution_kind(int order) {
     int kind = 0;
     while (mf_bonded_distribution_order(kind) != order)
         kind++;
     return kind;
 }
 
-size_t mf_bonded_distribution_terms(const struct molecules *molecules, enum bonded_order order,
-                                    int group) {
+size_t mf_bonded_distribution_terms(const struct molecules *molecules, int order, int group) {
     size_t terms = 0;
     for (int k = 0; k < molecules->topology.kinds; k++) {
         const struct topology_kind *kind = &molecules->topology.kind[k];
@@ -56,8 +55,8 @@ size_t mf_bonded_distribution_terms(const struct molecules *molecules, enum bond
     return terms;
 }
 
-double mf_bonded_distribution_jacobian(enum bonded_order order, int dimensions,
-                                       const struct bonded_bins *bins, size_t bin) {
+double mf_bonded_distribution_jacobian(int order, int dimensions, const struct bonded_bins *bins,
+                                       size_t bin) {
     return mf_bonded_kinds[order]->jacobian(dimensions, bins->low + (double)bin * bins->width,
                                             bins->width);
 }
@@ -84,8 +83,7 @@ static struct bonded_bins choose_bins(const struct molecules *molecules, int ord
     return (struct bonded_bins){kind->low, (high - kind->low) / (double)count, (size_t)count};
 }
 
-static enum status begin(struct bonded_state *s, enum bonded_order order,
-                         const struct bonded_settings *settings,
+static enum status begin(struct bonded_state *s, int order, const struct bonded_settings *settings,
                          const struct simulation *simulation, const struct measure_plan *plan) {
     enum status status = STATUS_OK;
     const struct simulation_setup *setup = &simulation->setup;
@@ -120,7 +118,7 @@ static void clear(void *state) {
 }
 
 /// The bin of q, or −1. The end of the circle may be rounded up.
-static int64_t find_bin(const struct bonded_bins *bins, enum bonded_order order, double q) {
+static int64_t find_bin(const struct bonded_bins *bins, int order, double q) {
     double place = (q - bins->low) / bins->width;
     if (mf_bonded_kinds[order]->periodic)
         place -= 360 / bins->width * floor(place * bins->width / 360);
@@ -138,9 +136,9 @@ struct counting {
 };
 
 /// Count one term in all molecules of a kind.
-static void count_term(enum bonded_order order, const struct bonded_bins *bins,
-                       const struct particles *particles, const struct topology_kind *kind,
-                       const struct topology_term *term, const struct counting *counting) {
+static void count_term(int order, const struct bonded_bins *bins, const struct particles *particles,
+                       const struct topology_kind *kind, const struct topology_term *term,
+                       const struct counting *counting) {
     const int beads = mf_bonded_kinds[order]->beads;
     const double unit = 1 / mf_bonded_kinds[order]->scale;
     for (int64_t m = 0; m < kind->count; m += BONDED_BATCH) {
@@ -166,7 +164,7 @@ static void count_term(enum bonded_order order, const struct bonded_bins *bins,
     }
 }
 
-static void count_group(const struct molecules *molecules, enum bonded_order order, int group,
+static void count_group(const struct molecules *molecules, int order, int group,
                         const struct bonded_bins *bins, const struct particles *particles,
                         const struct counting *counting) {
     const struct topology *topology = &molecules->topology;
@@ -177,9 +175,9 @@ static void count_group(const struct molecules *molecules, enum bonded_order ord
                            &topology->kind[k].term[order][t], counting);
 }
 
-void mf_bonded_distribution_count(const struct molecules *molecules, enum bonded_order order,
-                                  int group, const struct bonded_bins *bins,
-                                  const struct particles *particles, double *counts) {
+void mf_bonded_distribution_count(const struct molecules *molecules, int order, int group,
+                                  const struct bonded_bins *bins, const struct particles *particles,
+                                  double *counts) {
     count_group(molecules, order, group, bins, particles, &(struct counting){.all = counts});
 }
 
@@ -336,13 +334,10 @@ done:
 }
 
 /// Nanoseconds of a term and sample.
-static void explain(const struct simulation_setup *setup, enum bonded_order order, const char *what,
-                    double every, struct stages *stages) {
+static void explain(const struct simulation_setup *setup, int order, const char *what, double every,
+                    struct stages *stages) {
     const struct molecules *molecules = mf_molecules_find(setup->interaction, setup->interactions);
-    double terms = 0;
-    for (int k = 0; molecules && k < molecules->topology.kinds; k++)
-        terms += (double)molecules->topology.kind[k].terms[order] *
-                 (double)molecules->topology.kind[k].count;
+    const double terms = molecules ? (double)mf_topology_terms(&molecules->topology, order) : 0;
     mf_stages_add(stages, what, true,
                   mf_bonded_kinds[order]->cost * terms /
                       (every * fmax(1, (double)setup->placement.count)),

@@ -32,12 +32,11 @@ struct bonded_moments mf_bonded_distribution_moments(const struct bonded_bins *b
     return moments;
 }
 
-double mf_bonded_distribution_narrow(enum bonded_order order, double mean) {
+double mf_bonded_distribution_narrow(int order, double mean) {
     const struct bonded_kind *kind = mf_bonded_kinds[order];
     return kind->is_length ? kind->narrow * mean : kind->narrow;
 }
 
-bool mf_bonded_distribution_is_constrained(enum bonded_order order,
-                                           const struct bonded_moments *moments) {
+bool mf_bonded_distribution_is_constrained(int order, const struct bonded_moments *moments) {
     return moments->deviation < mf_bonded_distribution_narrow(order, moments->mean);
 }

@@ -107,11 +107,11 @@ struct inverse_number {
 };
 
 /// The number of a group among those of all orders, and back.
-static inline int inverse_group(enum bonded_order order, int group) {
+static inline int inverse_group(int order, int group) {
     return (int)order * (int)MOLECULES_MOST_GROUPS + group;
 }
-static inline enum bonded_order inverse_order(int group) {
-    return (enum bonded_order)(group / (int)MOLECULES_MOST_GROUPS);
+static inline int inverse_order(int group) {
+    return (group / (int)MOLECULES_MOST_GROUPS);
 }
 
 /// The curves of a law of the scene. Borrowed.
@@ -130,7 +130,7 @@ extern const struct field mf_inverse_group_fields[];
 
 /// A group of bonds, angles or dihedrals whose U(q) is to be found.
 struct bonded_unknown {
-    enum bonded_order order;
+    int order;
     int group;               ///< among those of its order
     struct bonded_bins bins; ///< of its target
     size_t first;            ///< its first value in the target of its order

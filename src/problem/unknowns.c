@@ -78,7 +78,7 @@ const char *mf_unknowns_heading(const struct unknowns *unknowns, enum unknown_ki
                                 size_t curve) {
     if (kind != UNKNOWN_BONDED)
         return "r[lambda]";
-    const enum bonded_order order = unknowns->potential.group[curve].own.unknown->order;
+    const int order = unknowns->potential.group[curve].own.unknown->order;
     return mf_observable_kind(mf_bonded_distribution_kind(order)).target->argument;
 }
 

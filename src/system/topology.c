@@ -340,6 +340,13 @@ void mf_topology_walk(const struct topology_kind *kind, int *order, int *parent)
     }
 }
 
+size_t mf_topology_terms(const struct topology *topology, int order) {
+    size_t terms = 0;
+    for (int k = 0; k < topology->kinds; k++)
+        terms += (size_t)topology->kind[k].terms[order] * (size_t)topology->kind[k].count;
+    return terms;
+}
+
 void mf_topology_kind_clear(struct topology_kind *kind) {
     mf_memory_free(kind->type);
     for (int order = 0; order < BONDED_KINDS; order++)

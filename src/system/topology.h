@@ -103,6 +103,9 @@ enum status mf_topology_bonds(const struct topology_kind *kind,
 /// each bead the one before it, or −1
 void mf_topology_walk(const struct topology_kind *kind, int *order, int *parent);
 
+/// Terms of an order in all molecules.
+size_t mf_topology_terms(const struct topology *topology, int order);
+
 /// Free a topology, complete or not; a zeroed one is fine.
 void mf_topology_clear(struct topology *topology);
 void mf_topology_kind_clear(struct topology_kind *kind);

@@ -297,7 +297,7 @@ static void put_diffusion_target(const struct measure_result *result, struct jso
 static void put_groups(const struct measure_result *result, struct json_writer *writer) {
     const struct molecules *const molecules = &result->kinds->molecules;
     for (int order = 0; order < BONDED_KINDS; order++) {
-        const struct observable *observable = mf_bonded_distribution_of((enum bonded_order)order);
+        const struct observable *observable = mf_bonded_distribution_of(order);
         if (molecules->groups[order] > 0)
             mf_json_begin(writer, observable->name);
         for (int g = 0; g < molecules->groups[order]; g++) {

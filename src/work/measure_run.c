@@ -289,7 +289,7 @@ static void say_molecules(struct run *run, const struct measure_result *result) 
 /// Bonds and angles that a fit takes a law for.
 static enum status say_constraints(struct run *run) {
     const struct molecules *const molecules = run->measured.molecules.molecules;
-    for (enum bonded_order order = 0; molecules && order < BONDED_KINDS; order++)
+    for (int order = 0; molecules && order < BONDED_KINDS; order++)
         for (int g = 0; g < molecules->groups[order]; g++) {
             struct bonded_moments found;
             TRY(mf_measured_molecules_moments(&run->measured.molecules, order, g, &found));

@@ -226,7 +226,7 @@ static void compare(struct temporary_folder *folder, bool with_tables, double pe
     assert_true(fabs(energy[0] / units.energy - ours.pairs) < 1e-5 * (double)ours.model.count);
     for (int order = 0; order < BONDED_KINDS; order++)
         assert_true(fabs(energy[1 + order] / units.energy - ours.bonded[order]) <
-                    per_term * (double)mf_export_bonded_count(ours.model.molecules, order));
+                    per_term * (double)mf_topology_terms(&ours.model.molecules->topology, order));
     assert_true(force < force_bound);
     if (system("cd lammps && lmp -in in.mesofit -var steps 200 -var equilibration 100 >lmp.out "
                "2>&1") != 0)
@@ -321,7 +321,7 @@ static void compare_gromacs(struct temporary_folder *folder, bool with_tables, d
     print_message("\n");
     for (int order = 0; order < BONDED_KINDS; order++)
         assert_true(fabs(energy[order] / units.energy - ours.bonded[order]) <
-                    per_term * (double)mf_export_bonded_count(ours.model.molecules, order));
+                    per_term * (double)mf_topology_terms(&ours.model.molecules->topology, order));
     clear_ours(&ours);
 }
 

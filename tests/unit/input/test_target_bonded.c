@@ -16,8 +16,8 @@
 static const struct units units = {.length = 0.5, .temperature = 300.68, .mass = 1e-26};
 
 /// Read `table` as the target of a group "b"; the status is that of the document.
-static enum status read(void **state, const char *table, const char *members,
-                        enum bonded_order order, struct target_bonded *target) {
+static enum status read(void **state, const char *table, const char *members, int order,
+                        struct target_bonded *target) {
     char text[512];
     struct json_document *document;
     temporary_folder_write(*state, "p.tsv", table, strlen(table));
@@ -43,7 +43,7 @@ static char *normal(double low, double width, int rows, double mean, double sigm
     return text;
 }
 
-static void assert_refused(void **state, char *table, const char *members, enum bonded_order order,
+static void assert_refused(void **state, char *table, const char *members, int order,
                            const char *part) {
     struct target_bonded target;
     assert_fails(read(state, table, members, order, &target), STATUS_BAD_INPUT, part);

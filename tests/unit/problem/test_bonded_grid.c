@@ -23,7 +23,7 @@ struct twin {
 };
 
 /// p of a bin is proportional to exp(−U/k_B T) and to the Jacobian at its centre.
-static void make_twin(struct twin *twin, enum bonded_order order, struct bonded_bins bins,
+static void make_twin(struct twin *twin, int order, struct bonded_bins bins,
                       double (*energy)(double)) {
     *twin = (struct twin){.problem = {.scene = {.temperature = temperature,
                                                 .box = {.dimensions = 3, .length = {9, 9, 9}}}}};
@@ -208,7 +208,7 @@ static double mean_over(const struct bonded_grid *grid, const double *values, do
 }
 
 /// Of the points at an end, beside it and in the middle, against the curve that the engine reads.
-static void assert_means(enum bonded_order order, struct bonded_bins bins, double unit,
+static void assert_means(int order, struct bonded_bins bins, double unit,
                          double (*energy)(double)) {
     enum { MOST = 60 };
     static struct twin twin;

@@ -29,14 +29,14 @@ struct twin {
 static const struct bonded_bins bins[BONDED_KINDS] = {
     {0.5, 0.6 / BINS, BINS}, {60, 120.0 / BINS, BINS}, {-180, 360.0 / BINS, BINS}};
 
-static double true_energy(enum bonded_order order, double q) {
+static double true_energy(int order, double q) {
     return order == BONDED_BOND    ? 300 * pow(q - 0.8, 2) / 2
            : order == BONDED_ANGLE ? 20 * pow((q - 115) * M_PI / 180, 2) / 2
                                    : 1 + cos(3 * q * M_PI / 180);
 }
 
 /// p by the mean Jacobian of each bin, with errors as of so many counts.
-static void make_target(struct twin *twin, enum bonded_order order) {
+static void make_target(struct twin *twin, int order) {
     double *p = twin->target[order], sum = 0;
     for (size_t k = 0; k < BINS; k++) {
         const double energy = true_energy(order, bonded_bins_centre(&bins[order], k));
@@ -70,7 +70,7 @@ static void make_twin(struct twin *twin) {
     problem->unknown[UNKNOWN_POTENTIAL] =
         (struct unknown){true, {INVERSE_CURVE_BSPLINE, 7, -3, 3, 0, 0, {0}, 0}, {NULL}, NULL};
     problem->unknown[UNKNOWN_BONDED].wanted = true;
-    for (enum bonded_order order = 0; order < BONDED_KINDS; order++) {
+    for (int order = 0; order < BONDED_KINDS; order++) {
         make_target(twin, order);
         problem->group[problem->bonded++] =
             (struct bonded_unknown){order, 0, bins[order], 0, {4 + (int)order, 2 + (int)order}};
