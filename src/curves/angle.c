@@ -103,7 +103,7 @@ const struct bonded_law mf_angle_cosine_squared = {
     .rest = given_rest,
 };
 
-BONDED_TABLE(mf_bonded_table_angle, "columns theta in degrees, U",
+BONDED_TABLE(mf_angle_table, "columns theta in degrees, U",
              "cubic spline through the points of a file, straight lines beyond its ends");
 
 // Geometry: a = r_0 − r_1 and b = r_2 − r_1 -------------------------------------------------------
@@ -146,10 +146,10 @@ static double jacobian(int dimensions, double low, double width) {
                            : (to - from) * BONDED_RADIANS;
 }
 
-static const struct bonded_law *const laws[] = {
-    &mf_angle_harmonic, &mf_angle_cosine, &mf_angle_cosine_squared, &mf_bonded_table_angle, NULL};
+static const struct bonded_law *const laws[] = {&mf_angle_harmonic, &mf_angle_cosine,
+                                                &mf_angle_cosine_squared, &mf_angle_table, NULL};
 
-const struct bonded_kind mf_bonded_angle = {
+const struct bonded_kind mf_angle = {
     .name = "angle",
     .plural = "angles",
     .article = "an",
@@ -164,7 +164,7 @@ const struct bonded_kind mf_bonded_angle = {
     BONDED_ANGLES,
     .high = 180,
     .laws = laws,
-    .table = &mf_bonded_table_angle,
+    .table = &mf_angle_table,
     .narrow = 1,
     .fine = 9000,
     .cost = 40,

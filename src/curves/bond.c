@@ -114,7 +114,7 @@ const struct bonded_law mf_bond_fene = {
     .longest = fene_longest,
 };
 
-BONDED_TABLE(mf_bonded_table_bond, "columns r, U",
+BONDED_TABLE(mf_bond_table, "columns r, U",
              "cubic spline through the points of a file, straight lines beyond its ends");
 
 // Geometry ----------------------------------------------------------------------------------------
@@ -139,10 +139,10 @@ static double jacobian(int dimensions, double low, double width) {
     return dimensions == 3 ? (pow(to, 3) - pow(from, 3)) / 3 : (to * to - from * from) / 2;
 }
 
-static const struct bonded_law *const laws[] = {&mf_bond_harmonic, &mf_bond_fene,
-                                                &mf_bonded_table_bond, NULL};
+static const struct bonded_law *const laws[] = {&mf_bond_harmonic, &mf_bond_fene, &mf_bond_table,
+                                                NULL};
 
-const struct bonded_kind mf_bonded_bond = {
+const struct bonded_kind mf_bond = {
     .name = "bond",
     .plural = "bonds",
     .article = "a",
@@ -157,7 +157,7 @@ const struct bonded_kind mf_bonded_bond = {
     BONDED_LENGTHS,
     .high = INFINITY,
     .laws = laws,
-    .table = &mf_bonded_table_bond,
+    .table = &mf_bond_table,
     .narrow = 0.01,
     .fine = 10000,
     .cost = 15,

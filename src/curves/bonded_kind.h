@@ -74,8 +74,8 @@ struct bonded_kind {
 #define BONDED_ANGLES .unit = "degrees", .density = "1/degrees", .scale = BONDED_RADIANS
 
 #define BONDED_DECLARE(NAME, kind, ...)                                                            \
-    extern const struct bonded_kind mf_bonded_##kind;                                              \
-    extern const struct bonded_law mf_bonded_table_##kind;
+    extern const struct bonded_kind mf_##kind;                                                     \
+    extern const struct bonded_law mf_##kind##_table;
 BONDED_LIST(BONDED_DECLARE)
 #undef BONDED_DECLARE
 

@@ -103,7 +103,7 @@ const struct bonded_law mf_dihedral_periodic = {
     .rest = periodic_rest,
 };
 
-BONDED_TABLE(mf_bonded_table_dihedral,
+BONDED_TABLE(mf_dihedral_table,
              "columns phi in degrees, U: 360 of them; 0 is cis and 180 trans (IUPAC)",
              "periodic cubic spline through the points of a file");
 
@@ -154,10 +154,10 @@ static double jacobian(int dimensions, double low, double width) {
     return width * BONDED_RADIANS;
 }
 
-static const struct bonded_law *const laws[] = {
-    &mf_dihedral_ryckaert_bellemans, &mf_dihedral_periodic, &mf_bonded_table_dihedral, NULL};
+static const struct bonded_law *const laws[] = {&mf_dihedral_ryckaert_bellemans,
+                                                &mf_dihedral_periodic, &mf_dihedral_table, NULL};
 
-const struct bonded_kind mf_bonded_dihedral = {
+const struct bonded_kind mf_dihedral = {
     .name = "dihedral",
     .plural = "dihedrals",
     .article = "a",
@@ -175,7 +175,7 @@ const struct bonded_kind mf_bonded_dihedral = {
     .high = 180,
     .periodic = true,
     .laws = laws,
-    .table = &mf_bonded_table_dihedral,
+    .table = &mf_dihedral_table,
     .fine = 3600,
     .cost = 60,
     .common = true,

@@ -32,5 +32,5 @@ const struct gromacs_function mf_gromacs_functions[] = {
 };
 
 #define TABLE(NAME, kind, ...)                                                                     \
-    {BONDED_##NAME, 8, &mf_bonded_table_##kind, {"table", "k"}, {GROMACS_PURE, GROMACS_PURE}},
+    {BONDED_##NAME, 8, &mf_##kind##_table, {"table", "k"}, {GROMACS_PURE, GROMACS_PURE}},
 const struct gromacs_function mf_gromacs_tables[BONDED_KINDS] = {BONDED_LIST(TABLE)};

@@ -316,7 +316,7 @@ static void make_dimers(struct dimers *dimers) {
         molecules_topology(&dimers->molecules.topology, molecules_chain(CHAINS, type, 2, 0, 1),
                            (struct topology_kind){0}, 1, NULL);
     double sum = 0;
-    molecules_add_group(&dimers->molecules, BONDED_BOND, &mf_bonded_table_bond, NULL);
+    molecules_add_group(&dimers->molecules, BONDED_BOND, &mf_bond_table, NULL);
     fluid_groot_warren(&dimers->fluid, CHAINS * 2, 0.004);
     mf_table_clear(&dimers->fluid.potential);
     assert_ok(mf_table_init_potential(&dimers->fluid.potential, &curve));
