@@ -41,12 +41,16 @@ static const struct inner run_objects[] = {
     {NULL, NULL, NULL},
 };
 
+/// "the same of angles" behind what is said of bonds.
+#define SAME_UNKNOWNS(NAME, kind, ...) {#kind "s", "the same of " #kind "s", "group"},
+#define SAME_GROUPS(NAME, kind, ...) {#kind "s", "the same of " #kind "s", #kind "s"},
+#define SAME_TERMS(NAME, kind, beads, ...)                                                         \
+    {#kind "s", "the same of " #kind "s, of " #beads " beads each", #kind "s"},
+
 static const struct inner unknowns_objects[] = {
     {"potential", "Phi(r)", "potential"},
     {"bonds", "{\"backbone\": {}, …}: U(r) of groups of molecules", "group"},
-    {"angles", "the same of angles", "group"},
-    {"dihedrals", "the same of dihedrals", "group"},
-    {"omega", "omega(r)", "omega"},
+    BONDED_LIST_BEYOND_BONDS(SAME_UNKNOWNS){"omega", "omega(r)", "omega"},
     {"omega_transverse", "the same across pairs", "omega"},
     {"memory",
      "{\"slow\": {…}, …}: the same of modes of the scene's \"memory\", which then have no "
@@ -82,9 +86,8 @@ static const struct inner scene_objects[] = {
     {"memory", "{\"slow\": {…}, …}: friction that remembers, modes under names of yours", "memory"},
     {"molecules", "{\"hexane\": {…}, …}: kinds of molecules under names of yours", "molecule"},
     {"bonds", "{\"backbone\": {\"law\": …}, …}: groups of bonds under names of yours", "bonds"},
-    {"angles", "the same of angles", "angles"},
-    {"dihedrals", "the same of dihedrals", "dihedrals"},
-    {"interactions", "what acts beside the pairs: {\"harmonic-trap\": {…}, …}", "interactions"},
+    BONDED_LIST_BEYOND_BONDS(SAME_GROUPS){
+        "interactions", "what acts beside the pairs: {\"harmonic-trap\": {…}, …}", "interactions"},
     {"dynamics",
      "{\"integrator\": …} and its numbers; without it \"aboba\" if there is friction, else "
      "\"velocity-verlet\"",
@@ -98,9 +101,7 @@ static const struct inner molecule_objects[] = {
     {"chain", "the beads one after the other; in its place \"beads\": [\"A\", \"B\", …] and",
      "chain"},
     {"bonds", "{\"backbone\": [[1, 2], …], …}: the beads of each bond, from 1 on", "bonds"},
-    {"angles", "the same of angles, [[1, 2, 3], …]", "angles"},
-    {"dihedrals", "the same of dihedrals, [[1, 2, 3, 4], …]", "dihedrals"},
-    {NULL, NULL, NULL},
+    BONDED_LIST_BEYOND_BONDS(SAME_TERMS){NULL, NULL, NULL},
 };
 
 static const struct inner memory_objects[] = {
@@ -235,12 +236,12 @@ size_t mf_describe_topics(struct topic topics[DESCRIBE_MOST_TOPICS]) {
                                          {mf_observables[k]->fields}};
     n = add_curves(topics, n, "conservative", mf_curve_potentials);
     n = add_curves(topics, n, "dissipative", mf_curve_omegas);
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
-        for (size_t k = 0; mf_bonded_laws[order][k]; k++)
-            topics[n++] = (struct topic){mf_scene_group_keys[order],
-                                         mf_bonded_laws[order][k]->name,
-                                         mf_bonded_laws[order][k]->summary,
-                                         {mf_bonded_laws[order][k]->fields}};
+    for (int order = 0; order < BONDED_KINDS; order++)
+        for (size_t k = 0; mf_bonded_kinds[order]->laws[k]; k++)
+            topics[n++] = (struct topic){mf_bonded_kinds[order]->plural,
+                                         mf_bonded_kinds[order]->laws[k]->name,
+                                         mf_bonded_kinds[order]->laws[k]->summary,
+                                         {mf_bonded_kinds[order]->laws[k]->fields}};
     for (size_t k = 0; mf_interaction_list[k]; k++)
         topics[n++] = (struct topic){"interactions",
                                      mf_interaction_list[k]->name,
@@ -291,7 +292,7 @@ static size_t add_targets(struct topic_object *objects, size_t n) {
     for (int kind = 0; (found = mf_observable_kind(kind)).observable; kind++) {
         const struct observable_target *target = found.target;
         char topic[sizeof objects->topic];
-        const bool of_groups = mf_bonded_distribution_order(kind) < TOPOLOGY_ORDERS;
+        const bool of_groups = mf_bonded_distribution_order(kind) < BONDED_KINDS;
         snprintf(topic, sizeof topic, "%s-target",
                  of_groups                              ? "distribution"
                  : kind == mf_rdf_intermolecular_kind() ? mf_targets_name(TARGET_RDF)

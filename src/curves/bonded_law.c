@@ -5,17 +5,9 @@
 #include "base/names.h"
 
 #include <math.h>
+#include <string.h>
 
 NAMED_RECORD(struct bonded_law);
-
-static const struct bonded_law *const bonds[] = {&mf_bond_harmonic, &mf_bond_fene,
-                                                 &mf_bonded_table_bond, NULL};
-static const struct bonded_law *const angles[] = {
-    &mf_angle_harmonic, &mf_angle_cosine, &mf_angle_cosine_squared, &mf_bonded_table_angle, NULL};
-static const struct bonded_law *const dihedrals[] = {
-    &mf_dihedral_ryckaert_bellemans, &mf_dihedral_periodic, &mf_bonded_table_dihedral, NULL};
-
-const struct bonded_law *const *const mf_bonded_laws[BONDED_KINDS] = {bonds, angles, dihedrals};
 
 enum status mf_bonded_create(struct bonded_curve *curve, const struct bonded_law *law) {
     *curve = (struct bonded_curve){law, mf_memory_zeroed(1, law->size)};
@@ -30,6 +22,33 @@ void mf_bonded_clear(struct bonded_curve *curve) {
         curve->law->clear(curve->parameters);
     mf_memory_free(curve->parameters);
     *curve = (struct bonded_curve){0};
+}
+
+static const struct field *find_field(const struct bonded_curve *curve, const char *name) {
+    const struct field *field = curve->law->fields;
+    while (strcmp(field->name, name) != 0)
+        field++;
+    return field;
+}
+
+double mf_bonded_number(const struct bonded_curve *curve, const char *name) {
+    const struct field *field = find_field(curve, name);
+    const void *member = (const char *)curve->parameters + field->offset;
+    return field->type == FIELD_INTEGER ? (double)*(const int64_t *)member
+                                        : *(const double *)member;
+}
+
+bool mf_bonded_set_number(struct bonded_curve *curve, const char *name, double value) {
+    const struct field *field = find_field(curve, name);
+    void *member = (char *)curve->parameters + field->offset;
+    if (!(value >= field->minimum && value <= field->maximum) ||
+        (field->type == FIELD_INTEGER && value != rint(value)))
+        return false;
+    if (field->type == FIELD_INTEGER)
+        *(int64_t *)member = (int64_t)value;
+    else
+        *(double *)member = value;
+    return true;
 }
 
 void mf_bonded_value(const struct bonded_curve *curve, double q, double *energy, double *slope) {

@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file The energy U(q) of a bond, an angle or a dihedral, and the record of its law.
+/// @file The energy U(q) of a bonded term, and the record of its law.
 ///
 /// q is the length of a bond [λ], an angle from 0 to π, or a dihedral from −π to π [rad], 0 where
 /// the outer beads are on the same side (cis) and π where they are on opposite ones (trans), as
 /// IUPAC has it. A law is one record: name, parameters, energy and slope. To add one, write the
-/// record and add it to a list in bonded_law.c.
+/// record and add it to the laws of its kind (bond.c, angle.c, dihedral.c).
 #pragma once
 
 #include "base/fields.h"
 #include "base/status.h"
-
-enum bonded_kind { BONDED_BOND, BONDED_ANGLE, BONDED_DIHEDRAL, BONDED_KINDS };
 
 struct bonded_law {
     const char *name;           ///< value of "law" in a scene
@@ -34,12 +32,13 @@ struct bonded_curve {
     void *parameters;
 };
 
-/// Laws that a scene can name, of each kind, NULL-terminated.
-extern const struct bonded_law *const *const mf_bonded_laws[BONDED_KINDS];
-
 /// Start a curve with the law's default parameters. Fails: NO_MEMORY.
 enum status mf_bonded_create(struct bonded_curve *curve, const struct bonded_law *law) MUST_USE;
 void mf_bonded_clear(struct bonded_curve *curve);
+
+/// A parameter by its name in a scene; set it, or false if it is out of its range.
+double mf_bonded_number(const struct bonded_curve *curve, const char *name);
+bool mf_bonded_set_number(struct bonded_curve *curve, const char *name, double value);
 
 /// Energy and slope at one q; each may be NULL. Tested: test_bonded_law.
 void mf_bonded_value(const struct bonded_curve *curve, double q, double *energy, double *slope);
@@ -59,10 +58,6 @@ double mf_bonded_reach(const struct bonded_curve *curve, double height);
 double mf_bonded_share_beyond(const struct bonded_curve *curve, double length, double temperature,
                               int dimensions);
 
-#define BONDED_RADIANS (M_PI / 180) ///< of a degree
-
-extern const struct bonded_law mf_bond_harmonic, mf_bond_fene, mf_bonded_table_bond;
-extern const struct bonded_law mf_angle_harmonic, mf_angle_cosine, mf_angle_cosine_squared,
-    mf_bonded_table_angle;
-extern const struct bonded_law mf_dihedral_ryckaert_bellemans, mf_dihedral_periodic,
-    mf_bonded_table_dihedral;
+extern const struct bonded_law mf_bond_harmonic, mf_bond_fene;
+extern const struct bonded_law mf_angle_harmonic, mf_angle_cosine, mf_angle_cosine_squared;
+extern const struct bonded_law mf_dihedral_ryckaert_bellemans, mf_dihedral_periodic;

@@ -30,8 +30,8 @@ SIMD_CLONES static void evaluate_places(const struct bonded_table *p, size_t cou
     }
 }
 
-static void evaluate(const void *parameters, size_t count, const double *q, double *energy,
-                     double *slope) {
+void mf_bonded_table_evaluate(const void *parameters, size_t count, const double *q, double *energy,
+                              double *slope) {
     const struct bonded_table *p = parameters;
     const double inverse = 1 / p->spacing, last = p->intervals;
     for (size_t n = 0; n < count; n++)
@@ -41,15 +41,15 @@ static void evaluate(const void *parameters, size_t count, const double *q, doub
     evaluate_places(p, count, energy, slope);
 }
 
-static double rest(const void *parameters) {
+double mf_bonded_table_rest(const void *parameters) {
     return ((const struct bonded_table *)parameters)->rest;
 }
 
-static void clear(void *parameters) {
+void mf_bonded_table_clear(void *parameters) {
     mf_memory_free(((struct bonded_table *)parameters)->point);
 }
 
-static enum status check_points(const struct bonded_curve *curve, const double *q,
+static enum status check_points(const struct bonded_kind *kind, const double *q,
                                 const double *energy, size_t count) {
     static const double rounding = 1e-6;
     if (count < 4)
@@ -59,23 +59,23 @@ static enum status check_points(const struct bonded_curve *curve, const double *
             return mf_status_fail(STATUS_BAD_INPUT, "the first column does not grow at point %zu",
                                   k + 1);
     const double span = q[count - 1] - q[0];
-    if (curve->law == &mf_bonded_table_dihedral && fabs(span - 360) > 360 * rounding)
-        return mf_status_fail(STATUS_BAD_INPUT, "a dihedral's table spans 360 degrees, not %g",
-                              span);
-    if (curve->law == &mf_bonded_table_dihedral &&
-        fabs(energy[count - 1] - energy[0]) > rounding * (1 + fabs(energy[0])))
+    if (kind->periodic && fabs(span - 360) > 360 * rounding)
+        return mf_status_fail(STATUS_BAD_INPUT, "%s %s's table spans 360 degrees, not %g",
+                              kind->article, kind->name, span);
+    if (kind->periodic && fabs(energy[count - 1] - energy[0]) > rounding * (1 + fabs(energy[0])))
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "the ends of a dihedral's table are the same angle and have the "
+                              "the ends of %s %s's table are the same angle and have the "
                               "energies %g and %g",
-                              energy[0], energy[count - 1]);
-    if (curve->law == &mf_bonded_table_angle &&
-        q[count - 1] < 7) // 2 pi, and no angle of a molecule
+                              kind->article, kind->name, energy[0], energy[count - 1]);
+    if (kind->is_length || kind->periodic)
+        return STATUS_OK;
+    if (q[count - 1] < 7) // 2 pi, and no angle of a molecule
         return mf_status_fail(STATUS_BAD_INPUT,
                               "the angles end at %g, as if in radians; they are in degrees",
                               q[count - 1]);
-    if (curve->law == &mf_bonded_table_angle && (q[0] < 0 || q[count - 1] > 180 * (1 + rounding)))
-        return mf_status_fail(STATUS_BAD_INPUT, "angles are 0 to 180 degrees, not %g to %g", q[0],
-                              q[count - 1]);
+    if (q[0] < kind->low || q[count - 1] > kind->high * (1 + rounding))
+        return mf_status_fail(STATUS_BAD_INPUT, "%s are %g to %g degrees, not %g to %g",
+                              kind->plural, kind->low, kind->high, q[0], q[count - 1]);
     return STATUS_OK;
 }
 
@@ -102,8 +102,9 @@ enum status mf_bonded_table_set_points(struct bonded_curve *curve, const double 
     struct bonded_table *p = curve->parameters;
     gsl_spline *spline = NULL;
     double *values = NULL;
-    TRY(check_points(curve, q, energy, count));
-    p->periodic = curve->law == &mf_bonded_table_dihedral;
+    const struct bonded_kind *kind = mf_bonded_kind_of_table(curve->law);
+    TRY(check_points(kind, q, energy, count));
+    p->periodic = kind->periodic;
     NEW_ARRAY(values, count);
     for (size_t k = 0; k < count; k++)
         values[k] = p->periodic && k + 1 == count ? energy[0] : energy[k];
@@ -112,34 +113,9 @@ enum status mf_bonded_table_set_points(struct bonded_curve *curve, const double 
         gsl_spline_alloc(p->periodic ? gsl_interp_cspline_periodic : gsl_interp_cspline, count);
     if (spline == NULL || gsl_spline_init(spline, q, values, count) != 0)
         CHECK(mf_status_fail(STATUS_NO_MEMORY, "no memory for a table of %zu points", count));
-    fill_grid(p, spline, curve->law == &mf_bonded_table_bond ? 1 : BONDED_RADIANS);
+    fill_grid(p, spline, kind->scale);
 done:
     gsl_spline_free(spline);
     mf_memory_free(values);
     return status;
 }
-
-#define TABLE_FIELDS(name, text)                                                                   \
-    static const struct field name[] = {{"file", FIELD_FILE,                                       \
-                                         .offset = offsetof(struct bonded_table, file),            \
-                                         .required = true, .unit = "", .help = text},              \
-                                        FIELD_END}
-TABLE_FIELDS(bond_fields, "columns r, U");
-TABLE_FIELDS(angle_fields, "columns theta in degrees, U");
-TABLE_FIELDS(dihedral_fields,
-             "columns phi in degrees, U: 360 of them; 0 is cis and 180 trans (IUPAC)");
-
-#define TABLE(record, table_fields, text)                                                          \
-    const struct bonded_law record = {.name = "table",                                             \
-                                      .summary = text,                                             \
-                                      .fields = table_fields,                                      \
-                                      .size = sizeof(struct bonded_table),                         \
-                                      .evaluate = evaluate,                                        \
-                                      .rest = rest,                                                \
-                                      .clear = clear}
-TABLE(mf_bonded_table_bond, bond_fields,
-      "cubic spline through the points of a file, straight lines beyond its ends");
-TABLE(mf_bonded_table_angle, angle_fields,
-      "cubic spline through the points of a file, straight lines beyond its ends");
-TABLE(mf_bonded_table_dihedral, dihedral_fields,
-      "periodic cubic spline through the points of a file");

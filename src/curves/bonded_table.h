@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file U(q) through given points: the law "table" of bonds, angles and dihedrals.
+/// @file U(q) through given points: the law "table" of each kind of bonded terms.
 #pragma once
 
-#include "curves/bonded_law.h"
+#include "curves/bonded_kind.h"
+
+#include <stddef.h>
 
 struct bonded_table {
     char file[FIELD_TEXT_SIZE]; ///< where the points came from; "" if from memory
@@ -14,8 +16,7 @@ struct bonded_table {
 };
 
 static inline bool bonded_is_table(const struct bonded_law *law) {
-    return law == &mf_bonded_table_bond || law == &mf_bonded_table_angle ||
-           law == &mf_bonded_table_dihedral;
+    return mf_bonded_kind_of_table(law) != NULL;
 }
 
 /// Give a curve of such a law its points: a cubic spline through them, natural or, of a dihedral,
@@ -26,3 +27,22 @@ static inline bool bonded_is_table(const struct bonded_law *law) {
 /// Fails: BAD_INPUT, NO_MEMORY. Tested: test_bonded_law.
 enum status mf_bonded_table_set_points(struct bonded_curve *curve, const double *q,
                                        const double *energy, size_t count) MUST_USE;
+
+void mf_bonded_table_evaluate(const void *parameters, size_t count, const double *q, double *energy,
+                              double *slope);
+double mf_bonded_table_rest(const void *parameters);
+void mf_bonded_table_clear(void *parameters);
+
+/// Define the law of a kind.
+#define BONDED_TABLE(record, columns, text)                                                        \
+    static const struct field table_fields[] = {{"file", FIELD_FILE,                               \
+                                                 .offset = offsetof(struct bonded_table, file),    \
+                                                 .required = true, .unit = "", .help = columns},   \
+                                                FIELD_END};                                        \
+    const struct bonded_law record = {.name = "table",                                             \
+                                      .summary = text,                                             \
+                                      .fields = table_fields,                                      \
+                                      .size = sizeof(struct bonded_table),                         \
+                                      .evaluate = mf_bonded_table_evaluate,                        \
+                                      .rest = mf_bonded_table_rest,                                \
+                                      .clear = mf_bonded_table_clear}

@@ -53,17 +53,17 @@ static double width_of(const struct bonded_curve *curve, double low, double high
     return fmax(0.5 * (to - from), spacing);
 }
 
-double mf_hybrid_step_variance(const struct bonded_curve *curve, enum topology_order order,
-                               double temperature) {
-    const double low = order == TOPOLOGY_DIHEDRAL ? -M_PI : 0;
-    const double high = order == TOPOLOGY_BOND ? mf_bonded_reach(curve, temperature) : M_PI;
-    return pow(width_of(curve, low, high, temperature), 2);
+double mf_hybrid_step_variance(const struct bonded_curve *curve, int order, double temperature) {
+    const struct bonded_kind *kind = mf_bonded_kinds[order];
+    const double high =
+        kind->is_length ? mf_bonded_reach(curve, temperature) : kind->scale * kind->high;
+    return pow(width_of(curve, kind->scale * kind->low, high, temperature), 2);
 }
 
-double mf_hybrid_step_squared_frequency(enum topology_order order, double variance, double length,
+double mf_hybrid_step_squared_frequency(int order, double variance, double length,
                                         double temperature) {
     static const double bend = 6;
-    const double joints = order == TOPOLOGY_BOND ? 2 : bend / (length * length);
+    const double joints = mf_bonded_kinds[order]->is_length ? 2 : bend / (length * length);
     return joints * temperature / variance;
 }
 
@@ -73,17 +73,16 @@ double mf_hybrid_step_wrong(const struct integrator *integrator) {
 
 double mf_hybrid_step_fastest(const struct molecules *molecules, double temperature) {
     double length = INFINITY, fastest = 0;
-    for (int g = 0; g < molecules->groups[TOPOLOGY_BOND]; g++)
+    for (int g = 0; g < molecules->groups[BONDED_BOND]; g++)
         length =
-            fmin(length, mf_bonded_reach(&molecules->group[TOPOLOGY_BOND][g].curve, temperature));
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+            fmin(length, mf_bonded_reach(&molecules->group[BONDED_BOND][g].curve, temperature));
+    for (int order = 0; order < BONDED_KINDS; order++)
         for (int g = 0; g < molecules->groups[order]; g++)
-            fastest =
-                fmax(fastest, mf_hybrid_step_squared_frequency(
-                                  (enum topology_order)order,
-                                  mf_hybrid_step_variance(&molecules->group[order][g].curve,
-                                                          (enum topology_order)order, temperature),
-                                  length, temperature));
+            fastest = fmax(fastest, mf_hybrid_step_squared_frequency(
+                                        order,
+                                        mf_hybrid_step_variance(&molecules->group[order][g].curve,
+                                                                order, temperature),
+                                        length, temperature));
     return fastest;
 }
 

@@ -13,13 +13,12 @@ struct hybrid_step {
 
 /// Variance of q [λ²] or [rad²] by the law of a group: the square of half the width of its well at
 /// k_B T/2.
-double mf_hybrid_step_variance(const struct bonded_curve *curve, enum topology_order order,
-                               double temperature);
+double mf_hybrid_step_variance(const struct bonded_curve *curve, int order, double temperature);
 
 /// ω² of a group whose q has this variance, in molecules of mass 1 whose shortest bond has the
 /// length [λ]: with U'' = k_B T/variance of a bond 2 U'', of others 6 U''/length², which is that of
 /// a straight angle and more than that of others.
-double mf_hybrid_step_squared_frequency(enum topology_order order, double variance, double length,
+double mf_hybrid_step_squared_frequency(int order, double variance, double length,
                                         double temperature);
 
 /// The share of (Ω Δt)² by which an integrator makes the variance of a stiff bond wrong: a quarter

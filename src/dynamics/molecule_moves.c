@@ -79,19 +79,19 @@ static double run_energy(const struct molecule_moves *moves, int k, uint32_t m,
     const struct topology_kind *kind = &moves->molecules->topology.kind[k];
     const struct bonded_curve *curve = &moves->molecules->group[run->order][run->group].curve;
     const double longest = mf_bonded_longest(curve);
-    const int beads = topology_beads(run->order);
+    const int beads = mf_bonded_kinds[run->order]->beads;
     const int *bead = moves->plan[k].term_bead + run->first;
     double sum = 0;
     for (int done = 0; done < run->count; done += SOME) {
         const int some = run->count - done < SOME ? run->count - done : SOME;
-        int32_t place[SOME * TOPOLOGY_MOST_BEADS];
+        int32_t place[SOME * BONDED_MOST_TERM_BEADS];
         double q[SOME], energy[SOME], slope[SOME];
         for (int n = 0; n < some * beads; n++)
             place[n] = (int32_t)particles->place[topology_id(kind, m, *bead++)];
         mf_bonded_measure(run->order, (size_t)some, place, particles, q);
         curve->law->evaluate(curve->parameters, (size_t)some, q, energy, slope);
         for (int n = 0; n < some; n++)
-            sum += run->order == TOPOLOGY_BOND && q[n] >= longest ? INFINITY : energy[n];
+            sum += q[n] >= longest ? INFINITY : energy[n];
     }
     return sum;
 }

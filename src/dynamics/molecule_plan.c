@@ -16,9 +16,9 @@ static bool are_bonded(const struct topology_bonds *bonds, int a, int b) {
 /// Whether all beads that are next to each other in a term are bonded.
 static bool terms_follow_bonds(const struct topology_kind *kind,
                                const struct topology_bonds *bonds) {
-    for (int order = TOPOLOGY_ANGLE; order < TOPOLOGY_ORDERS; order++)
+    for (int order = 0; order < BONDED_KINDS; order++)
         for (int n = 0; n < kind->terms[order]; n++)
-            for (int k = 0; k + 1 < topology_beads(order); k++)
+            for (int k = 0; k + 1 < mf_bonded_kinds[order]->beads; k++)
                 if (!are_bonded(bonds, kind->term[order][n].bead[k],
                                 kind->term[order][n].bead[k + 1]))
                     return false;
@@ -127,9 +127,9 @@ static int compare_entries(const void *a, const void *b) {
 
 static size_t list_entries(const struct topology_kind *kind, struct entry *entry) {
     size_t count = 0;
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+    for (int order = 0; order < BONDED_KINDS; order++)
         for (int n = 0; n < kind->terms[order]; n++)
-            for (int k = 0; k < topology_beads(order); k++, count++)
+            for (int k = 0; k < mf_bonded_kinds[order]->beads; k++, count++)
                 if (entry)
                     entry[count] = (struct entry){kind->term[order][n].bead[k], order,
                                                   kind->term[order][n].group, n};
@@ -145,7 +145,7 @@ static enum status find_runs(struct molecule_plan *plan, const struct topology_k
     NEW_ARRAY(entry, entries);
     NEW_ARRAY(plan->run_start, kind->beads + 1);
     NEW_ARRAY(plan->run, entries);
-    NEW_ARRAY(plan->term_bead, TOPOLOGY_MOST_BEADS * entries);
+    NEW_ARRAY(plan->term_bead, BONDED_MOST_TERM_BEADS * entries);
     list_entries(kind, entry);
     qsort(entry, entries, sizeof *entry, compare_entries);
     for (size_t e = 0; e < entries; e++) {
@@ -155,7 +155,7 @@ static enum status find_runs(struct molecule_plan *plan, const struct topology_k
             plan->run[runs++] = (struct molecule_run){here->order, here->group, 0, used};
         plan->run[runs - 1].count++;
         plan->run_start[here->bead + 1] = runs;
-        for (int k = 0; k < topology_beads(here->order); k++)
+        for (int k = 0; k < mf_bonded_kinds[here->order]->beads; k++)
             plan->term_bead[used++] = kind->term[here->order][here->term].bead[k];
     }
     for (int bead = 0; bead < kind->beads; bead++)

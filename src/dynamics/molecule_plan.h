@@ -8,7 +8,7 @@
 struct molecule_run {
     int order, group;
     int count;    ///< terms
-    size_t first; ///< their beads are term_bead[first …], topology_beads(order) each
+    size_t first; ///< their beads are term_bead[first …], mf_bonded_kinds[order]->beads each
 };
 
 /// What turns about a bead where a bond that is in no ring leaves it: the smaller of both sides.

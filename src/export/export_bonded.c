@@ -6,24 +6,6 @@
 #include "export/export_grid.h"
 
 #include <math.h>
-#include <string.h>
-
-double mf_export_bonded_number(const struct bonded_curve *curve, const char *name) {
-    const struct field *field = curve->law->fields;
-    while (strcmp(field->name, name) != 0)
-        field++;
-    const void *member = (const char *)curve->parameters + field->offset;
-    return field->type == FIELD_INTEGER ? (double)*(const int64_t *)member
-                                        : *(const double *)member;
-}
-
-size_t mf_export_bonded_count(const struct molecules *molecules, int order) {
-    size_t count = 0;
-    for (int k = 0; k < molecules->topology.kinds; k++)
-        count += (size_t)molecules->topology.kind[k].terms[order] *
-                 (size_t)molecules->topology.kind[k].count;
-    return count;
-}
 
 static double length_of(const struct export_model *model, uint32_t i, uint32_t j) {
     double square = 0;
@@ -41,8 +23,8 @@ double mf_export_bonded_longest(const struct export_model *model) {
     for (int k = 0; k < topology->kinds; k++) {
         const struct topology_kind *kind = &topology->kind[k];
         for (int64_t m = 0; m < kind->count; m++)
-            for (int n = 0; n < kind->terms[TOPOLOGY_BOND]; n++) {
-                const int *bead = kind->term[TOPOLOGY_BOND][n].bead;
+            for (int n = 0; n < kind->terms[BONDED_BOND]; n++) {
+                const int *bead = kind->term[BONDED_BOND][n].bead;
                 longest = fmax(longest, length_of(model, topology_id(kind, m, bead[0]),
                                                   topology_id(kind, m, bead[1])));
             }
@@ -56,9 +38,10 @@ double mf_export_bonded_longest(const struct export_model *model) {
 /// is a straight line, by as much as that is wide, and have room for all bonds that there are.
 static void find_range(const struct export_model *model, int order,
                        const struct bonded_curve *curve, double *low, double *high) {
-    *low = order == TOPOLOGY_DIHEDRAL ? -M_PI : 0;
-    *high = M_PI;
-    if (order != TOPOLOGY_BOND)
+    const struct bonded_kind *kind = mf_bonded_kinds[order];
+    *low = kind->scale * kind->low;
+    *high = kind->scale * kind->high;
+    if (!kind->is_length)
         return;
     *high = 2 * fmax(mf_bonded_rest(curve), mf_export_bonded_longest(model));
     if (bonded_is_table(curve->law)) {
@@ -119,11 +102,15 @@ static enum status make_all(struct export_bonded *bonded, const struct export_mo
     bonded->rows = rows;
     bonded->tables = 0;
     bonded->energy_error = bonded->slope_error = 0;
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+    for (int order = 0; order < BONDED_KINDS; order++)
         for (int g = 0, number = 0; g < molecules->groups[order]; g++) {
             const struct bonded_curve *curve = &molecules->group[order][g].curve;
             struct export_bonded_table *table = &bonded->table[order][g];
             double low, high;
+            if (!mf_bonded_kinds[order]->common)
+                return mf_status_fail(STATUS_BAD_INPUT,
+                                      "%s: cannot be exported: other engines have no \"%s\"",
+                                      model->folder, mf_bonded_kinds[order]->plural);
             if (has_law(curve))
                 continue;
             find_range(model, order, curve, &low, &high);
@@ -157,7 +144,7 @@ done:
 }
 
 void mf_export_bonded_clear(struct export_bonded *bonded) {
-    for (int n = 0; n < TOPOLOGY_ORDERS * MOLECULES_MOST_GROUPS; n++) {
+    for (int n = 0; n < BONDED_KINDS * MOLECULES_MOST_GROUPS; n++) {
         struct export_bonded_table *table =
             &bonded->table[n / MOLECULES_MOST_GROUPS][n % MOLECULES_MOST_GROUPS];
         mf_memory_free(table->q);

@@ -18,7 +18,7 @@ struct export_bonded_table {
 struct export_bonded {
     int tables;
     size_t rows; ///< of each table; of dihedrals one less
-    struct export_bonded_table table[TOPOLOGY_ORDERS][MOLECULES_MOST_GROUPS];
+    struct export_bonded_table table[BONDED_KINDS][MOLECULES_MOST_GROUPS];
     double energy_error, slope_error; ///< the worst, linear between rows: [k_B T], of the largest
 };
 
@@ -33,14 +33,8 @@ void mf_export_bonded_clear(struct export_bonded *bonded);
 
 /// Rows of a table of that order.
 static inline size_t export_bonded_rows(const struct export_bonded *bonded, int order) {
-    return order == TOPOLOGY_DIHEDRAL ? bonded->rows - 1 : bonded->rows;
+    return mf_bonded_kinds[order]->periodic ? bonded->rows - 1 : bonded->rows;
 }
-
-/// A parameter of a law by its name in a scene.
-double mf_export_bonded_number(const struct bonded_curve *curve, const char *name);
-
-/// Terms of an order in all molecules.
-size_t mf_export_bonded_count(const struct molecules *molecules, int order);
 
 /// The longest bond of the model's configuration [λ].
 double mf_export_bonded_longest(const struct export_model *model);

@@ -31,7 +31,7 @@ static void print_law(const struct export_job *job, int order, int group, FILE *
     fprintf(stream, " %d", function->number);
     for (int n = 0; n < GROMACS_MOST_PARAMETERS && function->parameter[n]; n++)
         fprintf(stream, " %.10g",
-                mf_export_bonded_number(curve, function->parameter[n]) *
+                mf_bonded_number(curve, function->parameter[n]) *
                     gromacs_unit(function->unit[n], job->units.length, job->units.energy));
 }
 
@@ -117,7 +117,6 @@ static void print_index(const struct export_job *job, FILE *stream) {
 
 static void print_kind(const struct export_job *job, const struct topology_kind *kind,
                        FILE *stream) {
-    static const char *const sections[TOPOLOGY_ORDERS] = {"bonds", "angles", "dihedrals"};
     const struct export_model *model = job->model;
     fprintf(stream, "\n[ moleculetype ]\n%s %d\n\n[ atoms ]\n", kind->name, kind->exclude);
     for (int bead = 0; bead < kind->beads; bead++) {
@@ -125,12 +124,12 @@ static void print_kind(const struct export_job *job, const struct topology_kind 
         fprintf(stream, "%d %s 1 %.5s %.5s %d 0.0 %.9g\n", bead + 1, type, kind->name, type,
                 bead + 1, model->mass[kind->type[bead]] * job->units.mass);
     }
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++) {
+    for (int order = 0; order < BONDED_KINDS; order++) {
         if (kind->terms[order] > 0)
-            fprintf(stream, "\n[ %s ]\n", sections[order]);
+            fprintf(stream, "\n[ %s ]\n", mf_bonded_kinds[order]->plural);
         for (int n = 0; n < kind->terms[order]; n++) {
             const struct topology_term *term = &kind->term[order][n];
-            for (int bead = 0; bead < topology_beads(order); bead++)
+            for (int bead = 0; bead < mf_bonded_kinds[order]->beads; bead++)
                 fprintf(stream, "%d ", term->bead[bead] + 1);
             print_law(job, order, term->group, stream);
             fprintf(stream, " ; %s\n", job->model->molecules->group[order][term->group].name);
@@ -180,15 +179,15 @@ static void print_topology(const struct export_job *job, FILE *stream) {
 
 static enum status write_table(const struct export_job *job, int order,
                                const struct export_bonded_table *table) {
-    static const char letter[TOPOLOGY_ORDERS] = {'b', 'a', 'd'};
-    const double unit = order == TOPOLOGY_BOND ? job->units.length : 1 / BONDED_RADIANS;
+    const struct bonded_kind *kind = mf_bonded_kinds[order];
+    const double unit = kind->is_length ? job->units.length : 1 / kind->scale;
     struct output output;
     char path[OUTPUT_PATH_SIZE];
-    snprintf(path, sizeof path, "%.3800s/table_%c%d.xvg", job->folder, letter[order],
+    snprintf(path, sizeof path, "%.3800s/table_%c%d.xvg", job->folder, kind->name[0],
              table->number);
     TRY(mf_output_open(&output, path));
     fprintf(output.stream, "# %s, energy [kJ/mol], -derivative\n",
-            order == TOPOLOGY_BOND ? "r [nm]" : "angle [degrees]");
+            kind->is_length ? "r [nm]" : "angle [degrees]");
     for (size_t k = 0; k < job->bonded.rows; k++)
         fprintf(output.stream, "%.12e %.12e %.12e\n", table->q[k] * unit,
                 table->energy[k] * job->units.energy, -table->slope[k] * job->units.energy / unit);
@@ -196,7 +195,7 @@ static enum status write_table(const struct export_job *job, int order,
 }
 
 enum status mf_export_gromacs_molecules(const struct export_job *job) {
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+    for (int order = 0; order < BONDED_KINDS; order++)
         for (int g = 0; g < job->model->molecules->groups[order]; g++)
             if (job->bonded.table[order][g].q)
                 TRY(write_table(job, order, &job->bonded.table[order][g]));

@@ -5,10 +5,8 @@
 // Tables are read linearly between as many rows as they have.
 #include "export/export_lammps_molecules.h"
 
+#include <ctype.h>
 #include <math.h>
-
-static const char *const names[TOPOLOGY_ORDERS] = {"bond", "angle", "dihedral"};
-static const char *const sections[TOPOLOGY_ORDERS] = {"Bonds", "Angles", "Dihedrals"};
 
 // Laws --------------------------------------------------------------------------------------------
 
@@ -22,26 +20,26 @@ struct style {
 static void print_harmonic_bond(const struct export_units *units, const struct bonded_curve *curve,
                                 FILE *stream) {
     fprintf(stream, "%.12g %.12g",
-            0.5 * mf_export_bonded_number(curve, "k") * units->energy / pow(units->length, 2),
-            mf_export_bonded_number(curve, "length") * units->length);
+            0.5 * mf_bonded_number(curve, "k") * units->energy / pow(units->length, 2),
+            mf_bonded_number(curve, "length") * units->length);
 }
 
 static void print_fene(const struct export_units *units, const struct bonded_curve *curve,
                        FILE *stream) {
     fprintf(stream, "%.12g %.12g 0 0",
-            mf_export_bonded_number(curve, "k") * units->energy / pow(units->length, 2),
-            mf_export_bonded_number(curve, "longest") * units->length);
+            mf_bonded_number(curve, "k") * units->energy / pow(units->length, 2),
+            mf_bonded_number(curve, "longest") * units->length);
 }
 
 static void print_angle(const struct export_units *units, const struct bonded_curve *curve,
                         FILE *stream) {
-    fprintf(stream, "%.12g %.12g", 0.5 * mf_export_bonded_number(curve, "k") * units->energy,
-            mf_export_bonded_number(curve, "angle"));
+    fprintf(stream, "%.12g %.12g", 0.5 * mf_bonded_number(curve, "k") * units->energy,
+            mf_bonded_number(curve, "angle"));
 }
 
 static void print_cosine(const struct export_units *units, const struct bonded_curve *curve,
                          FILE *stream) {
-    fprintf(stream, "%.12g", mf_export_bonded_number(curve, "k") * units->energy);
+    fprintf(stream, "%.12g", mf_bonded_number(curve, "k") * units->energy);
 }
 
 static void print_cosines(const struct export_units *units, const struct bonded_curve *curve,
@@ -49,15 +47,14 @@ static void print_cosines(const struct export_units *units, const struct bonded_
     static const char *const c[] = {"c0", "c1", "c2", "c3", "c4"};
     for (int n = 0; n < 5; n++)
         fprintf(stream, "%s%.12g", n ? " " : "",
-                (n % 2 ? -1 : 1) * mf_export_bonded_number(curve, c[n]) * units->energy);
+                (n % 2 ? -1 : 1) * mf_bonded_number(curve, c[n]) * units->energy);
 }
 
 /// The last number is the weight of pairs four beads apart.
 static void print_periodic(const struct export_units *units, const struct bonded_curve *curve,
                            FILE *stream) {
-    fprintf(stream, "%.12g %.0f %.0f 0.0", mf_export_bonded_number(curve, "k") * units->energy,
-            mf_export_bonded_number(curve, "multiplicity"),
-            mf_export_bonded_number(curve, "phase"));
+    fprintf(stream, "%.12g %.0f %.0f 0.0", mf_bonded_number(curve, "k") * units->energy,
+            mf_bonded_number(curve, "multiplicity"), mf_bonded_number(curve, "phase"));
 }
 
 static const struct style styles[] = {
@@ -73,10 +70,10 @@ static const struct style styles[] = {
 static const struct style table_style = {NULL, "table", NULL};
 
 static const struct style *find_style(const struct bonded_curve *curve) {
-    if (curve->law == &mf_dihedral_ryckaert_bellemans && mf_export_bonded_number(curve, "c5") != 0)
+    if (curve->law == &mf_dihedral_ryckaert_bellemans && mf_bonded_number(curve, "c5") != 0)
         return &table_style;
     if (curve->law == &mf_dihedral_periodic) {
-        const double phase = mf_export_bonded_number(curve, "phase");
+        const double phase = mf_bonded_number(curve, "phase");
         if (phase != rint(phase))
             return &table_style;
     }
@@ -123,10 +120,11 @@ enum status mf_export_lammps_check(struct export_job *job) {
 
 void mf_export_lammps_counts(const struct export_job *job, FILE *stream) {
     const struct molecules *molecules = job->model->molecules;
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+    for (int order = 0; order < BONDED_KINDS; order++)
         if (molecules->groups[order] > 0)
-            fprintf(stream, "%zu %ss\n%d %s types\n", mf_export_bonded_count(molecules, order),
-                    names[order], molecules->groups[order], names[order]);
+            fprintf(stream, "%zu %s\n%d %s types\n", mf_topology_terms(&molecules->topology, order),
+                    mf_bonded_kinds[order]->plural, molecules->groups[order],
+                    mf_bonded_kinds[order]->name);
 }
 
 size_t mf_export_lammps_molecule(const struct export_model *model, size_t particle) {
@@ -143,7 +141,7 @@ static void print_terms(const struct topology *topology, int order, FILE *stream
             for (int n = 0; n < kind->terms[order]; n++) {
                 const struct topology_term *term = &kind->term[order][n];
                 fprintf(stream, "%zu %d", ++number, term->group + 1);
-                for (int bead = 0; bead < topology_beads(order); bead++)
+                for (int bead = 0; bead < mf_bonded_kinds[order]->beads; bead++)
                     fprintf(stream, " %u", topology_id(kind, m, term->bead[bead]) + 1);
                 fprintf(stream, "\n");
             }
@@ -152,10 +150,11 @@ static void print_terms(const struct topology *topology, int order, FILE *stream
 
 void mf_export_lammps_terms(const struct export_job *job, FILE *stream) {
     const struct molecules *molecules = job->model->molecules;
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++) {
+    for (int order = 0; order < BONDED_KINDS; order++) {
         if (molecules->groups[order] == 0)
             continue;
-        fprintf(stream, "\n%s\n\n", sections[order]);
+        fprintf(stream, "\n%c%s\n\n", toupper(mf_bonded_kinds[order]->plural[0]),
+                mf_bonded_kinds[order]->plural + 1);
         print_terms(&molecules->topology, order, stream);
     }
 }
@@ -163,26 +162,27 @@ void mf_export_lammps_terms(const struct export_job *job, FILE *stream) {
 // Tables ------------------------------------------------------------------------------------------
 
 static void print_key(const struct export_job *job, int order, int group, FILE *stream) {
-    static const char *const keys[TOPOLOGY_ORDERS] = {"BOND", "ANGLE", "DIHEDRAL"};
-    fprintf(stream, "%s_%s", keys[order], job->model->molecules->group[order][group].name);
+    for (const char *letter = mf_bonded_kinds[order]->name; *letter; letter++)
+        fputc(toupper(*letter), stream);
+    fprintf(stream, "_%s", job->model->molecules->group[order][group].name);
 }
 
 static void print_table(const struct export_job *job, int order, int group, FILE *stream) {
     const struct export_bonded_table *table = &job->bonded.table[order][group];
     const struct export_units *units = &job->units;
-    const bool is_length = order == TOPOLOGY_BOND;
-    const double unit = is_length ? units->length : 1 / BONDED_RADIANS;
+    const struct bonded_kind *kind = mf_bonded_kinds[order];
+    const double unit = kind->is_length ? units->length : 1 / kind->scale;
     fprintf(stream, "\n");
     print_key(job, order, group, stream);
     fprintf(stream, "\nN %zu%s\n\n", export_bonded_rows(&job->bonded, order),
-            order == TOPOLOGY_DIHEDRAL ? " DEGREES" : "");
+            kind->periodic ? " DEGREES" : "");
     for (size_t k = 0; k < export_bonded_rows(&job->bonded, order); k++)
         fprintf(stream, "%zu %.15g %.15g %.15g\n", k + 1, table->q[k] * unit,
                 table->energy[k] * units->energy, -table->slope[k] * units->energy / unit);
 }
 
 void mf_export_lammps_tables(const struct export_job *job, FILE *stream) {
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+    for (int order = 0; order < BONDED_KINDS; order++)
         for (int g = 0; g < job->model->molecules->groups[order]; g++)
             if (job->bonded.table[order][g].q)
                 print_table(job, order, g, stream);
@@ -211,10 +211,11 @@ static bool is_hybrid(const struct export_job *job, int order) {
 
 void mf_export_lammps_styles(const struct export_job *job, FILE *stream) {
     const struct molecules *molecules = job->model->molecules;
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++) {
+    for (int order = 0; order < BONDED_KINDS; order++) {
         if (molecules->groups[order] == 0)
             continue;
-        fprintf(stream, "%s_style%s", names[order], is_hybrid(job, order) ? " hybrid" : "");
+        fprintf(stream, "%s_style%s", mf_bonded_kinds[order]->name,
+                is_hybrid(job, order) ? " hybrid" : "");
         for (int g = 0; g < molecules->groups[order]; g++) {
             const struct style *style = style_of(job, order, g);
             if (was_named(job, order, g))
@@ -233,10 +234,10 @@ static void print_special(int exclude, FILE *stream) {
 
 void mf_export_lammps_coefficients(const struct export_job *job, FILE *stream) {
     const struct molecules *molecules = job->model->molecules;
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+    for (int order = 0; order < BONDED_KINDS; order++)
         for (int g = 0; g < molecules->groups[order]; g++) {
             const struct style *style = style_of(job, order, g);
-            fprintf(stream, "%s_coeff %d ", names[order], g + 1);
+            fprintf(stream, "%s_coeff %d ", mf_bonded_kinds[order]->name, g + 1);
             if (is_hybrid(job, order))
                 fprintf(stream, "%s ", style->name);
             if (style == &table_style) {
@@ -255,7 +256,10 @@ double mf_export_lammps_reach(const struct export_model *model) {
     if (model->molecules == NULL)
         return 0;
     double longest = mf_export_bonded_longest(model);
-    for (int g = 0; g < model->molecules->groups[TOPOLOGY_BOND]; g++)
-        longest = fmax(longest, mf_bonded_rest(&model->molecules->group[TOPOLOGY_BOND][g].curve));
-    return stretch * longest * (model->molecules->groups[TOPOLOGY_DIHEDRAL] > 0 ? 2 : 1);
+    bool far = false; // a term reaches beyond two bonds
+    for (int order = 0; order < BONDED_KINDS; order++)
+        far |= model->molecules->groups[order] > 0 && mf_bonded_kinds[order]->reach > 2;
+    for (int g = 0; g < model->molecules->groups[BONDED_BOND]; g++)
+        longest = fmax(longest, mf_bonded_rest(&model->molecules->group[BONDED_BOND][g].curve));
+    return stretch * longest * (far ? 2 : 1);
 }

@@ -259,19 +259,19 @@ done:
 /// The fitted laws of groups: bonds_backbone.tsv, angles_bend.tsv and so on.
 static enum status read_groups(struct export_model *model) {
     struct molecules *molecules = &model->scene.molecules.molecules;
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+    for (int order = 0; order < BONDED_KINDS; order++)
         for (int g = 0; g < molecules->groups[order]; g++) {
             struct molecules_group *group = &molecules->group[order][g];
-            const char *const unit[2] = {order == TOPOLOGY_BOND ? "lambda" : "degrees", "k_B T_0"};
+            const char *const unit[2] = {mf_bonded_kinds[order]->unit, "k_B T_0"};
             char path[OUTPUT_PATH_SIZE], name[2 * TOPOLOGY_NAME_SIZE];
             double *q, *energy;
             size_t count;
             if (!mf_scene_groups_are_fitted(group))
                 continue;
-            snprintf(name, sizeof name, "%s_%s.tsv", mf_scene_group_keys[order], group->name);
+            snprintf(name, sizeof name, "%s_%s.tsv", mf_bonded_kinds[order]->plural, group->name);
             file_of(model, name, path);
-            TRY(mf_scene_read_columns(path, unit, order == TOPOLOGY_DIHEDRAL ? -DBL_MAX : 0,
-                                      &model->scene.units, &q, &energy, &count));
+            TRY(mf_scene_read_columns(path, unit, bonded_least(order), &model->scene.units, &q,
+                                      &energy, &count));
             const enum status status = mf_bonded_table_set_points(&group->curve, q, energy, count);
             mf_memory_free(q);
             mf_memory_free(energy);

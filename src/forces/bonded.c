@@ -1,67 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "forces/bonded.h"
 
-#include "base/lanes.h"
-#include "base/simd.h"
+#include "curves/bonded_batch.h"
 
-#include <math.h>
 #include <string.h>
 
-/// glibc has an atan2 of vectors (libmvec) since 2.35, at most 4 units of the last place off.
-#if SIMD_X86 && defined(__GLIBC_PREREQ)
-#if __GLIBC_PREREQ(2, 35)
-__attribute__((simd("notinbranch"))) extern double atan2(double y, double x);
-#endif
-#endif
+enum { WIDTH = BONDED_LANES, TERMS = BONDED_BATCH / WIDTH };
 
-enum { WIDTH = BONDED_LANES, TERMS = BONDED_BATCH / WIDTH, MOST_ARMS = BONDED_KINDS };
-
-/// Where a sine, or a product of lengths that it is measured by, is below this there is no
-/// direction: that of a cross product is then rounding.
-static const double no_direction = 1e-9;
-
-/// All lanes, which a compiler spreads over as many registers as it takes.
+/// All lanes, which a compiler spreads over as many registers as it takes. Term t in lane l is
+/// number t · WIDTH + l of a batch.
 typedef double lanes __attribute__((vector_size(sizeof(double) * WIDTH)));
-
-/// Component d of number n is [d][n]; term t in lane l is number t · WIDTH + l.
-typedef double vectors[3][BONDED_BATCH];
-
-/// The arms of a term are differences of its beads: of a bond r_0 − r_1; of an angle that and
-/// r_2 − r_1; of a dihedral F = r_0 − r_1, G = r_1 − r_2 and H = r_3 − r_2. A force on an arm is
-/// one on its first bead, and the opposite one on the other.
-struct arm {
-    int from, to;
-};
-static const struct arm arms[BONDED_KINDS][MOST_ARMS] = {
-    [BONDED_BOND] = {{0, 1}},
-    [BONDED_ANGLE] = {{0, 1}, {2, 1}},
-    [BONDED_DIHEDRAL] = {{0, 1}, {1, 2}, {3, 2}},
-};
-
-/// Terms that are worked on together. Forces on the arms take the place of the arms.
-struct batch {
-    _Alignas(MEMORY_ALIGNMENT) vectors arm[MOST_ARMS];
-    double q[BONDED_BATCH], slope[BONDED_BATCH];
-    int order;
-    int count; ///< of numbers
-};
-
-// Vectors -----------------------------------------------------------------------------------------
-
-LANES_INLINE double dot(const double a[3], const double b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-LANES_INLINE void cross(const double a[3], const double b[3], double product[3]) {
-    product[0] = a[1] * b[2] - a[2] * b[1];
-    product[1] = a[2] * b[0] - a[0] * b[2];
-    product[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-LANES_INLINE void take(const vectors from, int n, double vector[3]) {
-    for (int d = 0; d < 3; d++)
-        vector[d] = from[d][n];
-}
 
 // Beads -------------------------------------------------------------------------------------------
 
@@ -97,17 +45,19 @@ void mf_bonded_give(const struct bonded_beads *beads, struct particles *particle
 }
 
 /// The arms of terms, to the nearest images (box_nearest).
-LANES_INLINE void stretch_arms(struct batch *batch, const struct bonded_beads *beads,
-                               const int *bead, const int order, int terms) {
+LANES_INLINE void stretch_some(const struct bonded_kind *kind, const int arms,
+                               const struct bonded_beads *beads, const int *bead, int terms,
+                               struct bonded_batch *batch) {
     static const double large = 0x1.8p52; // leaves no room for a fraction
     const double *length = beads->box->length;
     const double inverse[3] = {1 / length[0], 1 / length[1], 1 / length[2]};
-    for (int t = 0; t < terms; t++, bead += order + 2)
-        for (int k = 0; k <= order; k++)
+    const struct bonded_kind own = *kind; // which nothing that is written can change
+    for (int t = 0; t < terms; t++, bead += own.beads)
+        for (int k = 0; k < arms; k++)
             for (int d = 0; d < 3; d++) {
                 lanes from, to;
-                memcpy(&from, beads->position[bead[arms[order][k].from]][d], sizeof from);
-                memcpy(&to, beads->position[bead[arms[order][k].to]][d], sizeof to);
+                memcpy(&from, beads->position[bead[own.arm[k].from]][d], sizeof from);
+                memcpy(&to, beads->position[bead[own.arm[k].to]][d], sizeof to);
                 const lanes apart = from - to, boxes = apart * inverse[d] + large - large;
                 const lanes arm = apart - length[d] * boxes;
                 memcpy(batch->arm[k][d] + t * WIDTH, &arm, sizeof arm);
@@ -121,184 +71,79 @@ LANES_INLINE void push_bead(double *force, lanes push) {
     memcpy(force, &sum, sizeof sum);
 }
 
-LANES_INLINE void push_beads(const struct batch *batch, struct bonded_beads *beads, const int *bead,
-                             const int order, int terms) {
-    for (int t = 0; t < terms; t++, bead += order + 2)
-        for (int k = 0; k <= order; k++)
+/// Add the forces on arms to those of their beads.
+LANES_INLINE void push_some(const struct bonded_kind *kind, const int arms,
+                            const struct bonded_batch *batch, const int *bead, int terms,
+                            struct bonded_beads *beads) {
+    const struct bonded_kind own = *kind;
+    for (int t = 0; t < terms; t++, bead += own.beads)
+        for (int k = 0; k < arms; k++)
             for (int d = 0; d < 3; d++) {
                 lanes push;
                 memcpy(&push, batch->arm[k][d] + t * WIDTH, sizeof push);
-                push_bead(beads->force[bead[arms[order][k].from]][d], push);
-                push_bead(beads->force[bead[arms[order][k].to]][d], -push);
+                push_bead(beads->force[bead[own.arm[k].from]][d], push);
+                push_bead(beads->force[bead[own.arm[k].to]][d], -push);
             }
 }
 
-// Bonds -------------------------------------------------------------------------------------------
+// A number of arms that the compiler knows is worth 3 % of a simulation of chains.
 
-LANES_INLINE void measure_bonds(struct batch *batch) {
-    const double *x = batch->arm[0][0], *y = batch->arm[0][1], *z = batch->arm[0][2];
-    for (int n = 0; n < batch->count; n++)
-        batch->q[n] = sqrt(x[n] * x[n] + y[n] * y[n] + z[n] * z[n]);
+SIMD_CLONES static void stretch_arms(const struct bonded_kind *kind,
+                                     const struct bonded_beads *beads, const int *bead, int terms,
+                                     struct bonded_batch *batch) {
+    if (kind->arms == 1)
+        stretch_some(kind, 1, beads, bead, terms, batch);
+    else if (kind->arms == 2)
+        stretch_some(kind, 2, beads, bead, terms, batch);
+    else
+        stretch_some(kind, 3, beads, bead, terms, batch);
 }
 
-LANES_INLINE void find_pulls(struct batch *batch) {
-    for (int n = 0; n < batch->count; n++) {
-        const double pull = batch->q[n] > 0 ? -batch->slope[n] / batch->q[n] : 0;
-        for (int d = 0; d < 3; d++)
-            batch->arm[0][d][n] *= pull;
-    }
-}
-
-// Angles ------------------------------------------------------------------------------------------
-
-/// θ between a = r_0 − r_1 and b = r_2 − r_1, by its sine and cosine, exact at all angles.
-LANES_INLINE void measure_angles(struct batch *batch) {
-    for (int n = 0; n < batch->count; n++) {
-        double a[3], b[3], normal[3];
-        take(batch->arm[0], n, a);
-        take(batch->arm[1], n, b);
-        cross(a, b, normal);
-        batch->q[n] = atan2(sqrt(dot(normal, normal)), dot(a, b));
-    }
-}
-
-/// With p = a × b, ∂θ/∂a = a × p/(a² |p|) and ∂θ/∂b = p × b/(b² |p|), away from each other in their
-/// plane.
-LANES_INLINE void find_turns(struct batch *batch) {
-    for (int n = 0; n < batch->count; n++) {
-        double a[3], b[3], p[3], first[3], last[3];
-        take(batch->arm[0], n, a);
-        take(batch->arm[1], n, b);
-        cross(a, b, p);
-        const double aa = dot(a, a), bb = dot(b, b), length = sqrt(dot(p, p));
-        const double turn = length > no_direction * sqrt(aa * bb) ? -batch->slope[n] / length : 0;
-        cross(a, p, first);
-        cross(p, b, last);
-        for (int d = 0; d < 3; d++) {
-            batch->arm[0][d][n] = turn != 0 ? turn / aa * first[d] : 0;
-            batch->arm[1][d][n] = turn != 0 ? turn / bb * last[d] : 0;
-        }
-    }
-}
-
-// Dihedrals ---------------------------------------------------------------------------------------
-//
-// A. Blondel and M. Karplus, J. Comput. Chem. 17, 1132 (1996): with A = F × G and B = H × G nothing
-// is divided by the sine of φ.
-
-LANES_INLINE void measure_dihedrals(struct batch *batch) {
-    for (int n = 0; n < batch->count; n++) {
-        double f[3], g[3], h[3], a[3], b[3], turn[3];
-        take(batch->arm[0], n, f);
-        take(batch->arm[1], n, g);
-        take(batch->arm[2], n, h);
-        cross(f, g, a);
-        cross(h, g, b);
-        cross(b, a, turn);
-        batch->q[n] = atan2(dot(turn, g), dot(a, b) * sqrt(dot(g, g)));
-    }
-}
-
-/// Their eq. 27.
-LANES_INLINE void find_twists(struct batch *batch) {
-    static const double least = no_direction * no_direction;
-    for (int n = 0; n < batch->count; n++) {
-        double f[3], g[3], h[3], a[3], b[3];
-        take(batch->arm[0], n, f);
-        take(batch->arm[1], n, g);
-        take(batch->arm[2], n, h);
-        cross(f, g, a);
-        cross(h, g, b);
-        const double aa = dot(a, a), bb = dot(b, b), gg = dot(g, g), length = sqrt(gg);
-        const bool directed = aa > least * dot(f, f) * gg && bb > least * dot(h, h) * gg;
-        const double slope = batch->slope[n];
-        const double fg = dot(f, g) / (aa * length), hg = dot(h, g) / (bb * length);
-        for (int d = 0; d < 3; d++) {
-            batch->arm[0][d][n] = directed ? slope * length / aa * a[d] : 0;
-            batch->arm[1][d][n] = directed ? slope * (hg * b[d] - fg * a[d]) : 0;
-            batch->arm[2][d][n] = directed ? -slope * length / bb * b[d] : 0;
-        }
-    }
+SIMD_CLONES static void push_arms(const struct bonded_kind *kind, const struct bonded_batch *batch,
+                                  const int *bead, int terms, struct bonded_beads *beads) {
+    if (kind->arms == 1)
+        push_some(kind, 1, batch, bead, terms, beads);
+    else if (kind->arms == 2)
+        push_some(kind, 2, batch, bead, terms, beads);
+    else
+        push_some(kind, 3, batch, bead, terms, beads);
 }
 
 // Terms -------------------------------------------------------------------------------------------
 
-LANES_INLINE void measure(struct batch *batch, const struct bonded_beads *beads, const int *bead,
-                          const int order, int terms) {
-    stretch_arms(batch, beads, bead, order, terms);
-    if (order == BONDED_BOND)
-        measure_bonds(batch);
-    else if (order == BONDED_ANGLE)
-        measure_angles(batch);
-    else
-        measure_dihedrals(batch);
-}
-
-LANES_INLINE void push(struct batch *batch, struct bonded_beads *beads, const int *bead,
-                       const int order, int terms) {
-    if (order == BONDED_BOND)
-        find_pulls(batch);
-    else if (order == BONDED_ANGLE)
-        find_turns(batch);
-    else
-        find_twists(batch);
-    push_beads(batch, beads, bead, order, terms);
-}
-
-/// The first numbers of terms.
-SIMD_CLONES static void measure_terms(struct batch *batch, const struct bonded_beads *beads,
-                                      const int *bead, int terms) {
-    if (batch->order == BONDED_BOND)
-        measure(batch, beads, bead, BONDED_BOND, terms);
-    else if (batch->order == BONDED_ANGLE)
-        measure(batch, beads, bead, BONDED_ANGLE, terms);
-    else
-        measure(batch, beads, bead, BONDED_DIHEDRAL, terms);
-}
-
-/// From slopes to forces on the arms, and on the beads.
-SIMD_CLONES static void push_terms(struct batch *batch, struct bonded_beads *beads, const int *bead,
-                                   int terms) {
-    if (batch->order == BONDED_BOND)
-        push(batch, beads, bead, BONDED_BOND, terms);
-    else if (batch->order == BONDED_ANGLE)
-        push(batch, beads, bead, BONDED_ANGLE, terms);
-    else
-        push(batch, beads, bead, BONDED_DIHEDRAL, terms);
-}
-
-static void add_sums(const struct bonded_terms *terms, const struct batch *batch,
+static void add_sums(const struct bonded_terms *terms, const struct bonded_batch *batch,
                      const double *energy, struct bonded_sums *sums) {
     for (int n = 0; n < batch->count; n++)
         if (n % WIDTH < terms->lanes) {
             sums->energy += energy[n];
-            if (batch->order == BONDED_BOND)
+            if (mf_bonded_kinds[terms->order]->is_length)
                 sums->virial -= batch->slope[n] * batch->q[n];
         }
 }
 
-static void add_transfer(const struct bonded_terms *terms, const vectors *arm,
-                         const struct batch *forces, struct bonded_sums *sums) {
-    for (int k = 0; k <= forces->order; k++)
+static void add_transfer(const struct bonded_terms *terms, const bonded_arms *arm,
+                         const struct bonded_batch *forces, struct bonded_sums *sums) {
+    for (int k = 0; k < mf_bonded_kinds[terms->order]->arms; k++)
         for (int n = 0; n < forces->count; n++)
             for (int a = 0; a < 3 && n % WIDTH < terms->lanes; a++)
                 for (int b = 0; b < 3; b++)
                     sums->transfer[a][b] += arm[k][a][n] * forces->arm[k][b][n];
 }
 
-SIMD_CLONES static bool is_longer(const struct batch *batch, double longest) {
+SIMD_CLONES static bool is_longer(const struct bonded_batch *batch, double longest) {
     int longer = 0;
     for (int n = 0; n < batch->count; n++)
         longer |= batch->q[n] > longest;
     return longer;
 }
 
-static void find_torn(const struct bonded_terms *terms, const struct batch *batch,
+static void find_torn(const struct bonded_terms *terms, const struct bonded_batch *batch,
                       struct bonded_sums *sums) {
     const double longest = mf_bonded_longest(terms->curve);
     for (int n = 0; n < batch->count && is_longer(batch, longest); n++)
         if (batch->q[n] > longest && batch->q[n] > sums->longest) {
             sums->longest = batch->q[n];
+            sums->torn_order = terms->order;
             sums->torn = terms->group;
         }
 }
@@ -306,12 +151,13 @@ static void find_torn(const struct bonded_terms *terms, const struct batch *batc
 static void add_batch(const struct bonded_terms *terms, const int *bead, int count,
                       struct bonded_beads *beads, struct bonded_sums *sums) {
     const struct bonded_law *law = terms->curve->law;
-    struct batch batch;
+    const struct bonded_kind *kind = mf_bonded_kinds[terms->order];
+    struct bonded_batch batch;
     double energy[BONDED_BATCH];
-    vectors arm[MOST_ARMS];
-    batch.order = terms->order;
+    bonded_arms arm[BONDED_MOST_ARMS];
     batch.count = count * WIDTH;
-    measure_terms(&batch, beads, bead, count);
+    stretch_arms(kind, beads, bead, count, &batch);
+    kind->measure(&batch);
     if (law->slopes && !terms->sums)
         law->slopes(terms->curve->parameters, (size_t)batch.count, batch.q, batch.slope);
     else
@@ -322,7 +168,8 @@ static void add_batch(const struct bonded_terms *terms, const int *bead, int cou
         find_torn(terms, &batch, sums);
     if (terms->transfer)
         memcpy(arm, batch.arm, sizeof arm);
-    push_terms(&batch, beads, bead, count);
+    kind->push(&batch);
+    push_arms(kind, &batch, bead, count, beads);
     if (terms->transfer)
         add_transfer(terms, arm, &batch, sums);
 }
@@ -330,7 +177,7 @@ static void add_batch(const struct bonded_terms *terms, const int *bead, int cou
 void mf_bonded_add(const struct bonded_terms *terms, struct bonded_beads *beads,
                    struct bonded_sums *sums) {
     for (int t = 0; t < terms->count; t += TERMS)
-        add_batch(terms, terms->bead + t * (terms->order + 2),
+        add_batch(terms, terms->bead + t * mf_bonded_kinds[terms->order]->beads,
                   terms->count - t < TERMS ? terms->count - t : TERMS, beads, sums);
 }
 
@@ -339,11 +186,11 @@ void mf_bonded_add(const struct bonded_terms *terms, struct bonded_beads *beads,
 /// Terms are the lanes of one.
 void mf_bonded_measure(int order, size_t count, const int32_t *place,
                        const struct particles *particles, double *q) {
-    const size_t each = (size_t)order + 2;
-    static const int bead[MOST_ARMS + 1] = {0, 1, 2, 3};
+    const struct bonded_kind *kind = mf_bonded_kinds[order];
+    const size_t each = (size_t)kind->beads;
+    static const int bead[BONDED_MOST_TERM_BEADS] = {0, 1, 2, 3};
     struct bonded_beads beads;
-    struct batch batch;
-    batch.order = order;
+    struct bonded_batch batch;
     beads.box = &particles->box;
     memset(beads.position, 0, each * sizeof *beads.position);
     for (size_t done = 0; done < count; done += WIDTH) {
@@ -353,7 +200,8 @@ void mf_bonded_measure(int order, size_t count, const int32_t *place,
                 beads.position[n % each][d][n / each] =
                     particles->position[d][place[done * each + n]];
         batch.count = (int)some;
-        measure_terms(&batch, &beads, bead, 1);
+        stretch_arms(kind, &beads, bead, 1, &batch);
+        kind->measure(&batch);
         memcpy(q + done, batch.q, some * sizeof *q);
     }
 }

@@ -6,13 +6,12 @@
 /// terms it is in.
 #pragma once
 
-#include "curves/bonded_law.h"
+#include "curves/bonded_kind.h"
 #include "system/particles.h"
 
 enum {
     BONDED_LANES = 8,
     BONDED_MOST_BEADS = 64, ///< side by side: their columns stay in the first-level cache
-    BONDED_BATCH = 128,     ///< lengths, angles or dihedrals that a law is given together
 };
 
 /// A vector of each lane.
@@ -29,13 +28,13 @@ struct bonded_sums {
     double energy;         ///< [k_B T_0]
     double virial;         ///< Σ r·F [k_B T_0]
     double longest;        ///< of the bonds that are longer than their law allows [λ]; 0: none is
-    int torn;              ///< the group of that one
+    int torn_order, torn;  ///< the group of that one
     double transfer[3][3]; ///< Σ r_a F_b [k_B T_0]: forces/transfer.h
 };
 
 /// Some terms of a group, in each of the lanes.
 struct bonded_terms {
-    int order; ///< beads of a term − 2
+    int order;
     const struct bonded_curve *curve;
     int group;
     int count;
@@ -63,8 +62,8 @@ void mf_bonded_give(const struct bonded_beads *beads, struct particles *particle
 void mf_bonded_give_sums(const struct bonded_beads *beads, struct particles *particles,
                          const int32_t *place, int count, int used);
 
-/// Lengths [λ], angles or dihedrals [rad] of terms at the present positions, shape [count]: what
-/// the laws are given. Any of the three orders of terms (beads − 2).
+/// Lengths [λ] or angles [rad] of terms of one kind at the present positions, shape [count]: what
+/// the laws are given.
 /// @param[in] place  shape [count, beads of a term]: of the particles
 void mf_bonded_measure(int order, size_t count, const int32_t *place,
                        const struct particles *particles, double *q);

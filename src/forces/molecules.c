@@ -9,6 +9,8 @@
 #include "forces/molecules_layout.h"
 
 #include <math.h>
+#include <stdio.h>
+#include <string.h>
 
 struct state {
     const struct molecules *molecules;
@@ -19,10 +21,27 @@ struct state {
 
 void mf_molecules_clear(struct molecules *molecules) {
     mf_topology_clear(&molecules->topology);
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+    for (int order = 0; order < BONDED_KINDS; order++)
         for (int g = 0; g < molecules->groups[order]; g++)
             mf_bonded_clear(&molecules->group[order][g].curve);
     *molecules = (struct molecules){0};
+}
+
+struct molecules_group *mf_molecules_group(struct molecules *molecules, int order,
+                                           const char *name) {
+    for (int g = 0; g < molecules->groups[order]; g++)
+        if (strcmp(molecules->group[order][g].name, name) == 0)
+            return &molecules->group[order][g];
+    return NULL;
+}
+
+enum status mf_molecules_add_group(struct molecules *molecules, int order, const char *name,
+                                   const struct bonded_law *law) {
+    struct molecules_group *group = &molecules->group[order][molecules->groups[order]];
+    TRY(mf_bonded_create(&group->curve, law));
+    snprintf(group->name, sizeof group->name, "%s", name);
+    molecules->groups[order]++;
+    return STATUS_OK;
 }
 
 const struct molecules *mf_molecules_find(const struct interaction_choice *interactions,
@@ -35,21 +54,35 @@ const struct molecules *mf_molecules_find(const struct interaction_choice *inter
 
 // Begin -------------------------------------------------------------------------------------------
 
-enum status mf_molecules_check(const struct molecules *molecules, const struct box *box) {
-    for (int g = 0; g < molecules->groups[TOPOLOGY_BOND]; g++) {
-        const struct molecules_group *group = &molecules->group[TOPOLOGY_BOND][g];
+/// A length that is as long as it can be, or at rest.
+static enum status check_lengths(const struct molecules *molecules, int order,
+                                 const struct box *box) {
+    for (int g = 0; g < molecules->groups[order]; g++) {
+        const struct molecules_group *group = &molecules->group[order][g];
         const double longest = mf_bonded_longest(&group->curve);
         const double length = isfinite(longest) ? longest : mf_bonded_rest(&group->curve);
         if (!(length < 0.5 * mf_box_shortest(box)))
             return mf_status_fail(STATUS_BAD_INPUT,
-                                  "bonds.%s: a bond of %g is not shorter than half of the box, "
+                                  "%s.%s: %s %s of %g is not shorter than half of the box, "
                                   "whose shortest edge is %g",
-                                  group->name, length, mf_box_shortest(box));
+                                  mf_bonded_kinds[order]->plural, group->name,
+                                  mf_bonded_kinds[order]->article, mf_bonded_kinds[order]->name,
+                                  length, mf_box_shortest(box));
     }
-    if (box->dimensions == 2 && molecules->groups[TOPOLOGY_DIHEDRAL] > 0)
-        return mf_status_fail(STATUS_BAD_INPUT,
-                              "dihedrals: in two dimensions there are none, as nothing leaves the "
-                              "plane");
+    return STATUS_OK;
+}
+
+enum status mf_molecules_check(const struct molecules *molecules, const struct box *box) {
+    for (int order = 0; order < BONDED_KINDS; order++) {
+        const struct bonded_kind *kind = mf_bonded_kinds[order];
+        if (kind->is_length)
+            TRY(check_lengths(molecules, order, box));
+        if (box->dimensions == 2 && kind->spatial && molecules->groups[order] > 0)
+            return mf_status_fail(STATUS_BAD_INPUT,
+                                  "%s: in two dimensions there are none, as nothing leaves the "
+                                  "plane",
+                                  kind->plural);
+    }
     return STATUS_OK;
 }
 
@@ -77,7 +110,7 @@ static void add_terms(const struct sweep *sweep, const struct molecules_bundle *
                       struct bonded_beads *beads, struct bonded_sums *sums) {
     const struct molecules *molecules = sweep->state->molecules;
     const int *bead = bundle->motif->term_bead;
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+    for (int order = 0; order < BONDED_KINDS; order++)
         for (int g = 0; g < molecules->groups[order]; g++) {
             const struct bonded_terms terms = {
                 .order = order,
@@ -90,7 +123,7 @@ static void add_terms(const struct sweep *sweep, const struct molecules_bundle *
                 .transfer = sweep->pass->law->transfer != NULL,
             };
             mf_bonded_add(&terms, beads, sums);
-            bead += terms.count * topology_beads(order);
+            bead += terms.count * mf_bonded_kinds[order]->beads;
         }
 }
 
@@ -129,13 +162,16 @@ static enum status check_torn(const struct sweep *sweep) {
     const struct state *state = sweep->state;
     for (int block = 0; block < state->layout.blocks && sweep->pass->step > 0; block++) {
         const struct bonded_sums *sums = &sweep->sums[block];
-        const struct molecules_group *group = &state->molecules->group[TOPOLOGY_BOND][sums->torn];
+        const struct molecules_group *group =
+            &state->molecules->group[sums->torn_order][sums->torn];
         if (sums->longest > 0)
             return mf_status_fail(STATUS_UNSTABLE,
-                                  "unstable at step %llu: a bond \"%s\" is %.4g long, and tears at "
+                                  "unstable at step %llu: %s %s \"%s\" is %.4g long, and tears at "
                                   "%.4g; lower \"time_step\", or begin with shorter bonds",
-                                  (unsigned long long)sweep->pass->step, group->name, sums->longest,
-                                  mf_bonded_longest(&group->curve));
+                                  (unsigned long long)sweep->pass->step,
+                                  mf_bonded_kinds[sums->torn_order]->article,
+                                  mf_bonded_kinds[sums->torn_order]->name, group->name,
+                                  sums->longest, mf_bonded_longest(&group->curve));
     }
     return STATUS_OK;
 }

@@ -4,7 +4,7 @@
 /// A simulation has molecules if the interaction `mf_molecules` is in its list: its parameters are
 /// a struct molecules. Terms are grouped, and each group has a law (curves/bonded_law.h). Angles
 /// and dihedrals stay what they are when all lengths grow alike, so the virial is that of the
-/// bonds.
+/// lengths.
 #pragma once
 
 #include "curves/bonded_law.h"
@@ -12,9 +12,7 @@
 #include "system/placement.h"
 #include "system/topology.h"
 
-enum { MOLECULES_MOST_GROUPS = 16 }; ///< of bonds, of angles, of dihedrals
-
-_Static_assert((int)BONDED_KINDS == (int)TOPOLOGY_ORDERS, "a law for each order of terms");
+enum { MOLECULES_MOST_GROUPS = 16 }; ///< of each kind of terms
 
 struct molecules_group {
     char name[TOPOLOGY_NAME_SIZE];
@@ -24,11 +22,20 @@ struct molecules_group {
 /// Owns the topology and the laws. A zeroed one has none.
 struct molecules {
     struct topology topology;
-    struct molecules_group group[TOPOLOGY_ORDERS][MOLECULES_MOST_GROUPS];
-    int groups[TOPOLOGY_ORDERS];
+    struct molecules_group group[BONDED_KINDS][MOLECULES_MOST_GROUPS];
+    int groups[BONDED_KINDS];
 };
 
 void mf_molecules_clear(struct molecules *molecules);
+
+/// The group of that name, or NULL.
+struct molecules_group *mf_molecules_group(struct molecules *molecules, int order,
+                                           const char *name);
+
+/// Add a group of that name with a law of default parameters, for which there is room. Fails:
+/// NO_MEMORY.
+enum status mf_molecules_add_group(struct molecules *molecules, int order, const char *name,
+                                   const struct bonded_law *law) MUST_USE;
 
 /// Whether molecules go into a box: a term sees the nearest images of its beads, so that a bond, at
 /// rest or as long as it can be, is shorter than half of it; dihedrals need three dimensions.

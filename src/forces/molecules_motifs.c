@@ -11,7 +11,7 @@ struct numbered_term {
 
 static int lowest_bead(const struct topology_term *term, int order) {
     int lowest = term->bead[0];
-    for (int k = 1; k < topology_beads(order); k++)
+    for (int k = 1; k < mf_bonded_kinds[order]->beads; k++)
         lowest = term->bead[k] < lowest ? term->bead[k] : lowest;
     return lowest;
 }
@@ -35,7 +35,7 @@ static int compare_groups(const void *a, const void *b) {
 
 static int list_terms(const struct topology_kind *kind, struct numbered_term *terms) {
     int count = 0;
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+    for (int order = 0; order < BONDED_KINDS; order++)
         for (int n = 0; n < kind->terms[order]; n++) {
             const struct topology_term *term = &kind->term[order][n];
             terms[count++] = (struct numbered_term){term, order, lowest_bead(term, order)};
@@ -49,9 +49,9 @@ static int list_terms(const struct topology_kind *kind, struct numbered_term *te
 static int number_beads(struct molecules_motif *motif, const struct numbered_term *terms, int count,
                         int *number) {
     for (int n = 0; n < count; n++) {
-        if (motif->beads + topology_beads(terms[n].order) > BONDED_MOST_BEADS)
+        if (motif->beads + mf_bonded_kinds[terms[n].order]->beads > BONDED_MOST_BEADS)
             return n;
-        for (int k = 0; k < topology_beads(terms[n].order); k++) {
+        for (int k = 0; k < mf_bonded_kinds[terms[n].order]->beads; k++) {
             const int bead = terms[n].term->bead[k];
             if (number[bead] >= 0)
                 continue;
@@ -72,12 +72,12 @@ static enum status add_piece(struct molecules_motifs *motifs, struct numbered_te
     motif->copies = 1;
     NEW_ARRAY(motif->bead, BONDED_MOST_BEADS);
     *taken = number_beads(motif, terms, count, number);
-    NEW_ARRAY(motif->term_bead, (size_t)*taken * TOPOLOGY_MOST_BEADS);
+    NEW_ARRAY(motif->term_bead, (size_t)*taken * BONDED_MOST_TERM_BEADS);
     next = motif->term_bead;
     qsort(terms, (size_t)*taken, sizeof *terms, compare_groups);
     for (int n = 0; n < *taken; n++) {
         motif->terms[terms[n].order][terms[n].term->group]++;
-        for (int k = 0; k < topology_beads(terms[n].order); k++)
+        for (int k = 0; k < mf_bonded_kinds[terms[n].order]->beads; k++)
             *next++ = number[terms[n].term->bead[k]];
     }
     for (int b = 0; b < motif->beads; b++)
@@ -108,10 +108,10 @@ static enum status add_single(struct molecules_motifs *motifs, const struct numb
     enum status status = STATUS_OK;
     struct molecules_motif *motif = &motifs->motif[motifs->count++];
     const int order = terms->order, group = terms->term->group;
-    motif->beads = topology_beads(order);
+    motif->beads = mf_bonded_kinds[order]->beads;
     motif->terms[order][group] = 1;
-    NEW_ARRAY(motif->bead, (size_t)count * TOPOLOGY_MOST_BEADS);
-    NEW_ARRAY(motif->term_bead, TOPOLOGY_MOST_BEADS);
+    NEW_ARRAY(motif->bead, (size_t)count * BONDED_MOST_TERM_BEADS);
+    NEW_ARRAY(motif->term_bead, BONDED_MOST_TERM_BEADS);
     for (int k = 0; k < motif->beads; k++)
         motif->term_bead[k] = k;
     for (; motif->copies < count && terms[motif->copies].order == order &&
@@ -136,15 +136,15 @@ static enum status add_singles(struct molecules_motifs *motifs, struct numbered_
 enum status mf_molecules_motifs_find(struct molecules_motifs *motifs,
                                      const struct topology_kind *kind, bool single) {
     // A piece that is full has this many terms at least.
-    enum { FEWEST_TERMS = BONDED_MOST_BEADS / TOPOLOGY_MOST_BEADS - 1 };
+    enum { FEWEST_TERMS = BONDED_MOST_BEADS / BONDED_MOST_TERM_BEADS - 1 };
     enum status status = STATUS_OK;
     struct numbered_term *terms = NULL;
     size_t count = 0;
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+    for (int order = 0; order < BONDED_KINDS; order++)
         count += (size_t)kind->terms[order];
     NEW_ARRAY(terms, count);
     NEW_ARRAY(motifs->motif,
-              single ? (size_t)TOPOLOGY_ORDERS * MOLECULES_MOST_GROUPS : count / FEWEST_TERMS + 1);
+              single ? (size_t)BONDED_KINDS * MOLECULES_MOST_GROUPS : count / FEWEST_TERMS + 1);
     list_terms(kind, terms);
     CHECK(single ? add_singles(motifs, terms, (int)count)
                  : add_pieces(motifs, kind, terms, (int)count));

@@ -12,7 +12,7 @@ struct molecules_motif {
     int beads;
     int copies; ///< in a molecule: 1, or as many as there are terms of one group
     int *bead;  ///< of the molecule, shape [copies, beads]
-    int terms[TOPOLOGY_ORDERS][MOLECULES_MOST_GROUPS];
+    int terms[BONDED_KINDS][MOLECULES_MOST_GROUPS];
     int *term_bead; ///< numbers in `bead` of a copy: the terms of one group after the other
 };
 

@@ -17,8 +17,8 @@ struct joint {
 
 /// A bond of a bead that is placed with one that is not, the first in the order of bonds.
 static const struct topology_term *next_bond(const struct topology_kind *kind, const bool *placed) {
-    for (int n = 0; n < kind->terms[TOPOLOGY_BOND]; n++) {
-        const struct topology_term *bond = &kind->term[TOPOLOGY_BOND][n];
+    for (int n = 0; n < kind->terms[BONDED_BOND]; n++) {
+        const struct topology_term *bond = &kind->term[BONDED_BOND][n];
         if (placed[bond->bead[0]] != placed[bond->bead[1]])
             return bond;
     }
@@ -31,17 +31,17 @@ static int find_before(const struct molecules *molecules, const struct topology_
                        const bool *placed, int parent, int bead, double *angle) {
     int before = -1;
     *angle = NAN;
-    for (int n = 0; n < kind->terms[TOPOLOGY_ANGLE]; n++) {
-        const struct topology_term *term = &kind->term[TOPOLOGY_ANGLE][n];
+    for (int n = 0; n < kind->terms[BONDED_ANGLE]; n++) {
+        const struct topology_term *term = &kind->term[BONDED_ANGLE][n];
         const int other = term->bead[0] == bead ? term->bead[2] : term->bead[0];
         if (term->bead[1] != parent || !placed[other] ||
             (term->bead[0] != bead && term->bead[2] != bead))
             continue;
-        *angle = mf_bonded_rest(&molecules->group[TOPOLOGY_ANGLE][term->group].curve);
+        *angle = mf_bonded_rest(&molecules->group[BONDED_ANGLE][term->group].curve);
         return other;
     }
-    for (int n = 0; n < kind->terms[TOPOLOGY_BOND]; n++) {
-        const int *pair = kind->term[TOPOLOGY_BOND][n].bead;
+    for (int n = 0; n < kind->terms[BONDED_BOND]; n++) {
+        const int *pair = kind->term[BONDED_BOND][n].bead;
         for (int k = 0; k < 2 && before < 0; k++)
             if (pair[k] == parent && placed[pair[1 - k]])
                 before = pair[1 - k];
@@ -62,7 +62,7 @@ static enum status plan_growth(const struct molecules *molecules, const struct t
         if (bond) {
             joint.parent = bond->bead[placed[bond->bead[0]] ? 0 : 1];
             joint.bead = bond->bead[placed[bond->bead[0]] ? 1 : 0];
-            joint.length = mf_bonded_rest(&molecules->group[TOPOLOGY_BOND][bond->group].curve);
+            joint.length = mf_bonded_rest(&molecules->group[BONDED_BOND][bond->group].curve);
             joint.before =
                 find_before(molecules, kind, placed, joint.parent, joint.bead, &joint.angle);
         } else {

@@ -72,7 +72,7 @@ static enum status check_range(const struct fit_file *fit, const char *file, con
 
 /// Whether a kind of targets is of bonds, angles or dihedrals some of which are looked for.
 static bool is_inverted(const struct fit_file *fit, int kind) {
-    const enum topology_order order = mf_bonded_distribution_order(kind);
+    const int order = mf_bonded_distribution_order(kind);
     for (size_t g = 0; g < fit->problem.bonded; g++)
         if (fit->problem.group[g].order == order)
             return true;

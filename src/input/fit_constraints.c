@@ -8,21 +8,20 @@
 #include <math.h>
 
 /// The law of a group, by what its target says of it.
-static struct fit_constraint law_of(enum topology_order order, const char *name,
+static struct fit_constraint law_of(int order, const char *name,
                                     const struct bonded_moments *moments, double temperature) {
-    const double unit = order == TOPOLOGY_BOND ? 1 : BONDED_RADIANS;
     struct fit_constraint law = {.order = order, .moments = *moments};
     snprintf(law.name, sizeof law.name, "%s", name);
     law.deviation = fmax(moments->deviation, mf_bonded_distribution_narrow(order, moments->mean));
-    law.k = temperature / pow(law.deviation * unit, 2);
+    law.k = temperature / pow(law.deviation * mf_bonded_kinds[order]->scale, 2);
     return law;
 }
 
 void mf_fit_constraints_find(const struct fit_file *read, struct fit_constraints *constraints) {
     const struct molecules *molecules = &read->scene.molecules.molecules;
     constraints->count = 0;
-    for (enum topology_order order = 0; order < TOPOLOGY_DIHEDRAL; order++)
-        for (int g = 0; g < molecules->groups[order]; g++) {
+    for (int order = 0; order < BONDED_KINDS; order++)
+        for (int g = 0; mf_bonded_kinds[order]->narrow > 0 && g < molecules->groups[order]; g++) {
             const struct target_groups *groups = &read->files.groups[order];
             const struct molecules_group *group = &molecules->group[order][g];
             if (!mf_scene_groups_are_fitted(group) || !target_groups_have(groups, (size_t)g))
@@ -39,14 +38,13 @@ void mf_fit_constraints_find(const struct fit_file *read, struct fit_constraints
 
 static enum status put_law(const struct fit_constraint *constraint,
                            const struct fit_choice *choice) {
-    const bool bond = constraint->order == TOPOLOGY_BOND;
-    const struct field *fields = bond ? mf_bond_harmonic.fields : mf_angle_harmonic.fields;
+    const struct bonded_kind *kind = mf_bonded_kinds[constraint->order];
+    const struct bonded_law *law = kind->laws[0];
     char path[JSON_PATH_SIZE];
-    snprintf(path, sizeof path, "scene.%s.%s", mf_scene_group_keys[constraint->order],
-             constraint->name);
-    TRY(mf_fit_choice_give_text(choice->root, path, "law", mf_bond_harmonic.name));
-    TRY(mf_fit_choice_give(choice, path, fields, "k", constraint->k));
-    return mf_fit_choice_give(choice, path, fields, bond ? "length" : "angle",
+    snprintf(path, sizeof path, "scene.%s.%s", kind->plural, constraint->name);
+    TRY(mf_fit_choice_give_text(choice->root, path, "law", law->name));
+    TRY(mf_fit_choice_give(choice, path, law->fields, "k", constraint->k));
+    return mf_fit_choice_give(choice, path, law->fields, kind->is_length ? "length" : "angle",
                               constraint->moments.mean);
 }
 
@@ -68,7 +66,7 @@ void mf_fit_constraints_say(const struct fit_constraints *constraints, const str
     struct fit_choice choice = {.read = read, .said = choices};
     for (size_t n = 0; n < constraints->count; n++) {
         const struct fit_constraint *own = &constraints->of[n];
-        const bool bond = own->order == TOPOLOGY_BOND;
+        const bool bond = mf_bonded_kinds[own->order]->is_length;
         const double factor =
             bond ? mf_units_factor(mf_units_speaks(&read->scene.units) ? &read->scene.units : NULL,
                                    "lambda")
@@ -81,14 +79,14 @@ void mf_fit_constraints_say(const struct fit_constraints *constraints, const str
                 "%s \"%s\": a constraint, of a standard deviation of %.2g for a mean "
                 "of %.4g: a harmonic law of k = %s, which makes it %.2g, as narrow as "
                 "time steps can follow",
-                mf_topology_order_names[own->order], own->name, factor * own->moments.deviation,
+                mf_bonded_kinds[own->order]->name, own->name, factor * own->moments.deviation,
                 factor * own->moments.mean, k, factor * own->deviation);
         else
             mf_fit_choice_say(&choice,
                               "%s \"%s\": its target has only %zu bins with a p above %g of its "
                               "peak: a harmonic law of its width, k = %s; narrower bins would let "
                               "its potential be found",
-                              mf_topology_order_names[own->order], own->name, own->moments.seen,
+                              mf_bonded_kinds[own->order]->name, own->name, own->moments.seen,
                               mf_bonded_distribution_seen, k);
     }
 }

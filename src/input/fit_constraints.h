@@ -14,7 +14,7 @@
 enum { FIT_MOST_CONSTRAINTS = 2 * MOLECULES_MOST_GROUPS };
 
 struct fit_constraint {
-    enum topology_order order;
+    int order;
     char name[TOPOLOGY_NAME_SIZE];
     struct bonded_moments moments;
     double deviation; ///< of the law

@@ -56,15 +56,14 @@ static void find_well(const struct target_bonded *target, double *mean, double *
 }
 
 /// ω² of a group, by its target, or by its law if it has none.
-static double fastest_of(const struct fit_choice *c, enum topology_order order, size_t g,
-                         double length) {
+static double fastest_of(const struct fit_choice *c, int order, size_t g, double length) {
     const struct target_groups *groups = &c->read->files.groups[order];
     const struct bonded_curve *curve = &c->read->scene.molecules.molecules.group[order][g].curve;
     const double temperature = c->read->scene.setup.temperature;
     double mean, variance;
     if (target_groups_have(groups, g)) {
         find_well(&groups->member[g], &mean, &variance);
-        variance *= order == TOPOLOGY_BOND ? 1 : BONDED_RADIANS * BONDED_RADIANS;
+        variance *= mf_bonded_kinds[order]->scale * mf_bonded_kinds[order]->scale;
     } else {
         variance = mf_hybrid_step_variance(curve, order, temperature);
     }
@@ -73,13 +72,13 @@ static double fastest_of(const struct fit_choice *c, enum topology_order order, 
 
 static double shortest_bond(const struct fit_choice *c) {
     const struct molecules *molecules = &c->read->scene.molecules.molecules;
-    const struct target_groups *bonds = &c->read->files.groups[TOPOLOGY_BOND];
+    const struct target_groups *bonds = &c->read->files.groups[BONDED_BOND];
     double length = INFINITY, mean, variance;
-    for (size_t g = 0; g < (size_t)molecules->groups[TOPOLOGY_BOND]; g++) {
+    for (size_t g = 0; g < (size_t)molecules->groups[BONDED_BOND]; g++) {
         if (target_groups_have(bonds, g))
             find_well(&bonds->member[g], &mean, &variance);
         else
-            mean = mf_bonded_reach(&molecules->group[TOPOLOGY_BOND][g].curve,
+            mean = mf_bonded_reach(&molecules->group[BONDED_BOND][g].curve,
                                    c->read->scene.setup.temperature);
         length = fmin(length, mean);
     }
@@ -104,9 +103,9 @@ double mf_fit_defaults_stiff_step(const struct fit_choice *c) {
     const struct molecules *molecules = &c->read->scene.molecules.molecules;
     const double length = shortest_bond(c);
     double fastest = 0;
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+    for (int order = 0; order < BONDED_KINDS; order++)
         for (size_t g = 0; g < (size_t)molecules->groups[order]; g++)
-            fastest = fmax(fastest, fastest_of(c, (enum topology_order)order, g, length));
+            fastest = fmax(fastest, fastest_of(c, order, g, length));
     return integrator->mobility ? mf_fit_defaults_relaxing_step(c, c->mass * fastest, allowed)
                                 : sqrt(allowed / (mf_hybrid_step_wrong(integrator) * fastest));
 }

@@ -170,7 +170,7 @@ static enum status read_root(struct fit_file *fit, struct json_object *root,
 static void state_groups(struct fit_file *fit) {
     struct inverse_problem *problem = &fit->problem;
     const struct molecules *molecules = &fit->scene.molecules.molecules;
-    for (enum topology_order order = 0; order < TOPOLOGY_ORDERS; order++)
+    for (int order = 0; order < BONDED_KINDS; order++)
         for (int g = 0; g < molecules->groups[order]; g++) {
             const struct target_groups *groups = &fit->files.groups[order];
             if (!mf_scene_groups_are_fitted(&molecules->group[order][g]) ||
@@ -183,13 +183,13 @@ static void state_groups(struct fit_file *fit) {
 
 /// What is known of all groups of an order is compared, as nothing is found from it.
 static void compare_known(struct fit_file *fit) {
-    bool found[TOPOLOGY_ORDERS] = {false};
+    bool found[BONDED_KINDS] = {false};
     for (size_t g = 0; g < fit->problem.bonded; g++)
         found[fit->problem.group[g].order] = true;
     for (size_t n = 0; n < fit->numbers; n++)
         if (fit->number[n].place == INVERSE_OF_BONDED)
             found[inverse_order(fit->number[n].part)] = true;
-    for (enum topology_order order = 0; order < TOPOLOGY_ORDERS; order++)
+    for (int order = 0; order < BONDED_KINDS; order++)
         if (!found[order])
             fit->files.use[mf_bonded_distribution_kind(order)].fitted = 0;
 }

@@ -47,8 +47,8 @@ struct fit_file {
     struct target_files files;
     struct scene scene;
     struct fit_unknown unknown[UNKNOWNS];
-    struct bonded_shape shape[TOPOLOGY_ORDERS][MOLECULES_MOST_GROUPS]; ///< of groups to be found
-    struct inverse_number number[INVERSE_MOST_NUMBERS];                ///< that are to be found
+    struct bonded_shape shape[BONDED_KINDS][MOLECULES_MOST_GROUPS]; ///< of groups to be found
+    struct inverse_number number[INVERSE_MOST_NUMBERS];             ///< that are to be found
     size_t numbers;
     struct fit_core core;
     const struct inverse_method *method;

@@ -135,11 +135,11 @@ static void add_memory(struct entries *entries, const struct scene_memory *memor
 
 /// Laws of bonds, angles and dihedrals: "bonds.backbone.k".
 static void add_groups(struct entries *entries, const struct molecules *molecules) {
-    for (enum topology_order order = 0; order < TOPOLOGY_ORDERS; order++)
+    for (int order = 0; order < BONDED_KINDS; order++)
         for (int g = 0; g < molecules->groups[order]; g++) {
             const struct molecules_group *group = &molecules->group[order][g];
             char prefix[INVERSE_NUMBER_NAME_SIZE];
-            snprintf(prefix, sizeof prefix, "%s.%s.", mf_scene_group_keys[order], group->name);
+            snprintf(prefix, sizeof prefix, "%s.%s.", mf_bonded_kinds[order]->plural, group->name);
             add(entries, prefix, group->curve.law->fields, NULL,
                 &(struct entry){.place = INVERSE_OF_BONDED, .part = inverse_group(order, g)},
                 group->curve.parameters);
@@ -193,11 +193,11 @@ static void list(struct entries *entries, const struct scene *scene) {
 /// The group of a path that is an unknown curve, or NULL.
 static const char *sought_group(const struct scene *scene, const char *path) {
     const struct molecules *molecules = &scene->molecules.molecules;
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+    for (int order = 0; order < BONDED_KINDS; order++)
         for (int g = 0; g < molecules->groups[order]; g++) {
             const struct molecules_group *group = &molecules->group[order][g];
             char prefix[INVERSE_NUMBER_NAME_SIZE];
-            snprintf(prefix, sizeof prefix, "%s.%s.", mf_scene_group_keys[order], group->name);
+            snprintf(prefix, sizeof prefix, "%s.%s.", mf_bonded_kinds[order]->plural, group->name);
             if (mf_scene_groups_are_fitted(group) && strncmp(path, prefix, strlen(prefix)) == 0)
                 return group->name;
         }

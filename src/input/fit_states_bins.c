@@ -40,8 +40,9 @@ static enum status refuse_bins(const struct fit_file *fit, const struct fit_file
                                const char *file) {
     const struct bonded_unknown *unknown = &fit->problem.group[g];
     const struct bonded_bins *first = &unknown->bins, *second = &other->problem.group[g].bins;
-    const double unit =
-        unknown->order == TOPOLOGY_BOND ? mf_units_factor(&fit->scene.units, "lambda") : 1;
+    const double unit = mf_bonded_kinds[unknown->order]->is_length
+                            ? mf_units_factor(&fit->scene.units, "lambda")
+                            : 1;
     return mf_status_fail(
         STATUS_BAD_INPUT,
         "%s: states.%s: target.%s.%s has %zu bins of %.5g from %.5g, that of \"%s\" has %zu of "
@@ -56,7 +57,7 @@ static enum status refuse_bins(const struct fit_file *fit, const struct fit_file
 static enum status find_bins(struct fit_file *fit, size_t g, const char *file,
                              struct bonded_bins *all) {
     const struct bonded_bins *first = &fit->problem.group[g].bins;
-    const bool circle = fit->problem.group[g].order == TOPOLOGY_DIHEDRAL;
+    const bool circle = mf_bonded_kinds[fit->problem.group[g].order]->periodic;
     double begin = 0, end = (double)first->count;
     *all = *first;
     for (size_t s = 0; s < fit->others; s++) {

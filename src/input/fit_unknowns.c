@@ -7,6 +7,8 @@
 #include <math.h>
 #include <string.h>
 
+#define AND(NAME, kind, ...) ", \"" #kind "s\""
+
 /// Whether the scene knows the laws of molecules, and no target is left of which anything is found.
 static bool knows_all(const struct json_object *root, const struct json_object *target) {
     struct json_object own = *root; // looks, and asks for nothing
@@ -14,8 +16,8 @@ static bool knows_all(const struct json_object *root, const struct json_object *
     if (!mf_json_is_object(root, "scene") || mf_json_key(target, 0))
         return false;
     const struct json_object scene = mf_json_child(&own, "scene", false);
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
-        known = known || mf_json_is_object(&scene, mf_scene_group_keys[order]);
+    for (int order = 0; order < BONDED_KINDS; order++)
+        known = known || mf_json_is_object(&scene, mf_bonded_kinds[order]->plural);
     return known;
 }
 
@@ -23,7 +25,7 @@ static bool knows_all(const struct json_object *root, const struct json_object *
 static bool has_potential(struct json_object *root) {
     const struct json_object target = mf_json_child(root, "target", false);
     bool groups = knows_all(root, &target);
-    for (enum topology_order order = 0; order < TOPOLOGY_ORDERS; order++)
+    for (int order = 0; order < BONDED_KINDS; order++)
         groups = groups || mf_json_is_object(&target, mf_bonded_distribution_of(order)->name);
     return !groups || mf_json_is_member(&target, mf_targets_name(TARGET_RDF));
 }
@@ -44,12 +46,12 @@ int mf_fit_unknowns_left_out(struct json_object *root) {
 }
 
 /// A group is looked for, unless the scene knows its law.
-static void enter_group(struct scene_fitted *fitted, enum topology_order order, const char *name,
+static void enter_group(struct scene_fitted *fitted, int order, const char *name,
                         const struct json_object *known, struct json_object *from) {
     const bool has_law = mf_json_is_member(known, name);
     if (has_law && fitted->told)
         mf_json_fault(from, name, "it is to be found, and \"scene.%s\" has a law for it",
-                      mf_scene_group_keys[order]);
+                      mf_bonded_kinds[order]->plural);
     if (has_law || fitted->count[order] == MOLECULES_MOST_GROUPS)
         return;
     if (!mf_topology_is_name(name)) {
@@ -66,8 +68,8 @@ bool mf_fit_unknowns_name_groups(const struct json_object *root) {
     if (!mf_json_is_object(root, "unknowns"))
         return false;
     const struct json_object unknowns = mf_json_child(&own, "unknowns", false);
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
-        if (mf_json_is_member(&unknowns, mf_scene_group_keys[order]))
+    for (int order = 0; order < BONDED_KINDS; order++)
+        if (mf_json_is_member(&unknowns, mf_bonded_kinds[order]->plural))
             return true;
     return false;
 }
@@ -77,10 +79,11 @@ void mf_fit_unknowns_groups(struct json_object *root, struct json_object *scene,
     const bool told = mf_fit_unknowns_name_groups(root);
     struct json_object parent = mf_json_child(root, told ? "unknowns" : "target", false);
     *fitted = (struct scene_fitted){.told = told};
-    for (enum topology_order order = 0; order < TOPOLOGY_ORDERS; order++) {
-        const struct json_object known = mf_json_child(scene, mf_scene_group_keys[order], false);
-        const char *key =
-                       told ? mf_scene_group_keys[order] : mf_bonded_distribution_of(order)->name,
+    for (int order = 0; order < BONDED_KINDS; order++) {
+        const struct json_object known =
+            mf_json_child(scene, mf_bonded_kinds[order]->plural, false);
+        const char *key = told ? mf_bonded_kinds[order]->plural
+                               : mf_bonded_distribution_of(order)->name,
                    *name;
         if (!mf_json_is_object(&parent, key))
             continue;
@@ -92,12 +95,11 @@ void mf_fit_unknowns_groups(struct json_object *root, struct json_object *scene,
     }
 }
 
-static void read_shape(struct bonded_shape *shape, enum topology_order order,
-                       struct json_object *group) {
+static void read_shape(struct bonded_shape *shape, int order, struct json_object *group) {
     enum { COEFFICIENTS = 4, OF_CIRCLE = 6 };
     mf_json_fields(group, mf_inverse_group_fields, shape);
     if (shape->coefficients == 0)
-        shape->coefficients = order == TOPOLOGY_DIHEDRAL ? OF_CIRCLE : COEFFICIENTS;
+        shape->coefficients = mf_bonded_kinds[order]->periodic ? OF_CIRCLE : COEFFICIENTS;
     if (group->item)
         mf_json_finish(group);
 }
@@ -106,9 +108,9 @@ static void read_shape(struct bonded_shape *shape, enum topology_order order,
 static void read_groups(struct fit_file *fit, struct json_object *root,
                         struct json_object *unknowns) {
     const struct molecules *molecules = &fit->scene.molecules.molecules;
-    for (enum topology_order order = 0; order < TOPOLOGY_ORDERS; order++) {
+    for (int order = 0; order < BONDED_KINDS; order++) {
         const struct target_groups *targets = &fit->files.groups[order];
-        struct json_object groups = mf_json_child(unknowns, mf_scene_group_keys[order], false);
+        struct json_object groups = mf_json_child(unknowns, mf_bonded_kinds[order]->plural, false);
         for (int g = 0; g < molecules->groups[order]; g++) {
             const char *name = molecules->group[order][g].name;
             if (!mf_scene_groups_are_fitted(&molecules->group[order][g]))
@@ -268,8 +270,8 @@ enum status mf_fit_unknowns_read(struct fit_file *fit, struct json_object *root)
         if (wanted == 0 && !mf_json_has(&object, "numbers") &&
             mf_json_fault_count(root->document) == faults)
             mf_json_fault(root, "unknowns",
-                          "needs \"potential\", \"omega\", \"numbers\", or \"bonds\", "
-                          "\"angles\", \"dihedrals\"");
+                          "needs \"potential\", \"omega\", \"numbers\", or "
+                          "\"bonds\"" BONDED_LIST_BEYOND_BONDS(AND));
     } else {
         fit->unknown[UNKNOWN_POTENTIAL].wanted = has_potential(root);
     }
@@ -315,13 +317,13 @@ static void write_memory(const struct fit_file *fit, struct json_writer *writer)
 
 static void write_groups(const struct fit_file *fit, struct json_writer *writer) {
     const struct molecules *molecules = &fit->scene.molecules.molecules;
-    for (enum topology_order order = 0; order < TOPOLOGY_ORDERS; order++) {
+    for (int order = 0; order < BONDED_KINDS; order++) {
         bool begun = false;
         for (int g = 0; g < molecules->groups[order]; g++) {
             if (!mf_scene_groups_are_fitted(&molecules->group[order][g]))
                 continue;
             if (!begun)
-                mf_json_begin(writer, mf_scene_group_keys[order]);
+                mf_json_begin(writer, mf_bonded_kinds[order]->plural);
             begun = true;
             mf_json_begin(writer, molecules->group[order][g].name);
             mf_json_put_fields(writer, mf_inverse_group_fields, &fit->shape[order][g]);

@@ -31,13 +31,6 @@ const struct gromacs_function mf_gromacs_functions[] = {
     {.law = NULL},
 };
 
-#define OF_TABLE                                                                                   \
-    {"table", "k"}, {                                                                              \
-        GROMACS_PURE, GROMACS_PURE                                                                 \
-    }
-
-const struct gromacs_function mf_gromacs_tables[BONDED_KINDS] = {
-    {BONDED_BOND, 8, &mf_bonded_table_bond, OF_TABLE},
-    {BONDED_ANGLE, 8, &mf_bonded_table_angle, OF_TABLE},
-    {BONDED_DIHEDRAL, 8, &mf_bonded_table_dihedral, OF_TABLE},
-};
+#define TABLE(NAME, kind, ...)                                                                     \
+    {BONDED_##NAME, 8, &mf_##kind##_table, {"table", "k"}, {GROMACS_PURE, GROMACS_PURE}},
+const struct gromacs_function mf_gromacs_tables[BONDED_KINDS] = {BONDED_LIST(TABLE)};

@@ -3,13 +3,13 @@
 /// "Topology file", table of interactions) and the laws that they are.
 #pragma once
 
-#include "curves/bonded_law.h"
+#include "curves/bonded_kind.h"
 
 enum { GROMACS_MOST_PARAMETERS = 6 };
 enum gromacs_unit { GROMACS_PURE, GROMACS_LENGTH, GROMACS_ENERGY, GROMACS_BOND };
 
 struct gromacs_function {
-    enum bonded_kind kind;
+    int order;
     int number;
     const struct bonded_law *law;
     const char *parameter[GROMACS_MOST_PARAMETERS]; ///< in their order, by their names in a scene

@@ -40,9 +40,19 @@ struct topology_kind *mf_gromacs_last_kind(const struct gromacs_reading *reading
 
 static const struct gromacs_function *find_function(int order, int64_t number) {
     for (const struct gromacs_function *f = mf_gromacs_functions; f->law; f++)
-        if ((int)f->kind == order && f->number == number)
+        if (f->order == order && f->number == number)
             return f;
     return number == mf_gromacs_tables[order].number ? &mf_gromacs_tables[order] : NULL;
+}
+
+/// "1 (harmonic), 7 (fene), ": those that are laws of ours.
+static void list_functions(int order, char *text, size_t size) {
+    size_t length = 0;
+    text[0] = '\0';
+    for (const struct gromacs_function *f = mf_gromacs_functions; f->law; f++)
+        if (f->order == order && length < size)
+            length += (size_t)snprintf(text + length, size - length, "%d (%s), ", f->number,
+                                       f->law->name);
 }
 
 static int parameters_of(const struct gromacs_function *function) {
@@ -54,16 +64,14 @@ static int parameters_of(const struct gromacs_function *function) {
 
 static enum status read_function(const struct gromacs_line *line, int order, const char *word,
                                  const struct gromacs_function **function) {
-    static const char *const known[] = {
-        "1 (harmonic), 7 (FENE) and 8 (a table)", "1 (harmonic), 2 (G96) and 8 (a table)",
-        "1, 4, 9 (periodic), 3 (Ryckaert-Bellemans) and 8 (a table)"};
+    char known[160];
     int64_t number;
     *function = mf_gromacs_is_integer(word, 1, 100, &number) ? find_function(order, number) : NULL;
     if (*function)
         return STATUS_OK;
-    return mf_gromacs_fail(line, "function %.40s of a%s %s is not known, but %s", word,
-                           order == TOPOLOGY_ANGLE ? "n" : "", mf_topology_order_names[order],
-                           known[order]);
+    list_functions(order, known, sizeof known);
+    return mf_gromacs_fail(line, "function %.40s of %s %s is not known, but %s8 (table)", word,
+                           mf_bonded_kinds[order]->article, mf_bonded_kinds[order]->name, known);
 }
 
 /// Numbers behind the function: none, or those of it, perhaps twice as for free energies.
@@ -84,7 +92,7 @@ static enum status read_values(const struct gromacs_line *line, const struct gro
 
 enum status mf_gromacs_add_type(struct gromacs_reading *reading, const struct gromacs_line *line,
                                 const struct gromacs_words *words) {
-    const int order = reading->order, beads = topology_beads(order);
+    const int order = reading->order, beads = mf_bonded_kinds[order]->beads;
     struct gromacs_term_type *type = &reading->type[reading->types];
     const struct gromacs_function *function;
     if (reading->types == GROMACS_MOST_TYPES)
@@ -109,7 +117,7 @@ enum status mf_gromacs_add_type(struct gromacs_reading *reading, const struct gr
 static bool is_of(const struct gromacs_reading *reading, const struct topology_term *term,
                   const struct gromacs_term_type *type) {
     const struct topology_kind *kind = mf_gromacs_last_kind(reading);
-    const int beads = topology_beads(type->order);
+    const int beads = mf_bonded_kinds[type->order]->beads;
     bool forward = true, backward = true;
     for (int k = 0; k < beads; k++) {
         const char *name = reading->composition->name[kind->type[term->bead[k]]];
@@ -126,7 +134,7 @@ static enum status find_values(const struct gromacs_reading *reading,
     int found = 0;
     for (size_t k = 0; k < reading->types; k++) {
         const struct gromacs_term_type *type = &reading->type[k];
-        if (type->order != (int)function->kind || type->number != function->number ||
+        if (type->order != function->order || type->number != function->number ||
             type->words == 0 || !is_of(reading, term, type))
             continue;
         found++;
@@ -136,12 +144,12 @@ static enum status find_values(const struct gromacs_reading *reading,
         return mf_gromacs_fail(line,
                                "%d lines have parameters of the types of this %s, which GROMACS "
                                "would add up or choose from: write them with the term",
-                               found, mf_topology_order_names[function->kind]);
+                               found, mf_bonded_kinds[function->order]->name);
     if (found == 1)
         return STATUS_OK;
     return mf_gromacs_fail(line,
                            "the %s has no parameters, and there are none of its types and function",
-                           mf_topology_order_names[function->kind]);
+                           mf_bonded_kinds[function->order]->name);
 }
 
 // Groups ------------------------------------------------------------------------------------------
@@ -149,37 +157,25 @@ static enum status find_values(const struct gromacs_reading *reading,
 /// Set a parameter of a law, which must be in its range.
 static enum status set_number(const struct gromacs_line *line, struct bonded_curve *curve,
                               const char *name, double value) {
-    const struct field *field = curve->law->fields;
-    while (strcmp(field->name, name) != 0)
-        field++;
-    if (value < field->minimum || value > field->maximum ||
-        (field->type == FIELD_INTEGER && value != rint(value)))
-        return mf_gromacs_fail(line, "%s of the law \"%s\" cannot be %g", name, curve->law->name,
-                               value);
-    const int64_t integer = field->type == FIELD_INTEGER ? (int64_t)value : 0;
-    memcpy((char *)curve->parameters + field->offset,
-           field->type == FIELD_INTEGER ? (const void *)&integer : (const void *)&value,
-           sizeof value);
-    return STATUS_OK;
+    return mf_bonded_set_number(curve, name, value)
+               ? STATUS_OK
+               : mf_gromacs_fail(line, "%s of the law \"%s\" cannot be %g", name, curve->law->name,
+                                 value);
 }
 
 /// "A-B", of the types of a term; "A-B_2" if another group is called so.
 static void name_group(const struct gromacs_reading *reading, int order,
                        const struct topology_term *term, char name[TOPOLOGY_NAME_SIZE]) {
     const struct topology_kind *kind = mf_gromacs_last_kind(reading);
-    const struct molecules *molecules = reading->molecules;
     char plain[TOPOLOGY_NAME_SIZE - 4] = "";
-    for (int k = 0; k < topology_beads(order); k++) {
+    for (int k = 0; k < mf_bonded_kinds[order]->beads; k++) {
         const size_t length = strlen(plain);
         snprintf(plain + length, sizeof plain - length, "%s%s", k ? "-" : "",
                  reading->composition->name[kind->type[term->bead[k]]]);
     }
     snprintf(name, TOPOLOGY_NAME_SIZE, "%s", plain);
-    for (int g = 0, number = 2; g < molecules->groups[order]; g++)
-        if (strcmp(molecules->group[order][g].name, name) == 0) {
-            snprintf(name, TOPOLOGY_NAME_SIZE, "%s_%d", plain, number++);
-            g = -1; // from the first on
-        }
+    for (int number = 2; mf_molecules_group(reading->molecules, order, name); number++)
+        snprintf(name, TOPOLOGY_NAME_SIZE, "%s_%d", plain, number);
 }
 
 /// The law of a function with these numbers. Tables are told apart by their numbers alone.
@@ -206,7 +202,7 @@ static enum status make_law(const struct gromacs_reading *reading, const struct 
 static enum status find_group(struct gromacs_reading *reading, const struct gromacs_line *line,
                               const struct gromacs_function *function, const double *values,
                               struct topology_term *term) {
-    const int order = (int)function->kind;
+    const int order = function->order;
     struct molecules *molecules = reading->molecules;
     struct bonded_curve curve;
     enum status status = STATUS_OK;
@@ -220,7 +216,7 @@ static enum status find_group(struct gromacs_reading *reading, const struct grom
     }
     if (status == STATUS_OK && term->group == MOLECULES_MOST_GROUPS)
         status = mf_gromacs_fail(line, "there are more than %d groups of %ss of other parameters",
-                                 MOLECULES_MOST_GROUPS, mf_topology_order_names[order]);
+                                 MOLECULES_MOST_GROUPS, mf_bonded_kinds[order]->name);
     if (status != STATUS_OK || term->group < molecules->groups[order]) {
         mf_bonded_clear(&curve);
         return status;
@@ -236,7 +232,7 @@ static enum status find_group(struct gromacs_reading *reading, const struct grom
 
 enum status mf_gromacs_add_term(struct gromacs_reading *reading, const struct gromacs_line *line,
                                 const struct gromacs_words *words) {
-    const int order = reading->order, beads = topology_beads(order);
+    const int order = reading->order, beads = mf_bonded_kinds[order]->beads;
     struct topology_kind *kind = mf_gromacs_last_kind(reading);
     const struct gromacs_function *function;
     struct topology_term term = {.group = 0};
@@ -244,7 +240,7 @@ enum status mf_gromacs_add_term(struct gromacs_reading *reading, const struct gr
     int count;
     if (kind && kind->terms[order] == GROMACS_MOST_TERMS)
         return mf_gromacs_fail(line, "%s has more than %d %ss", kind->name, GROMACS_MOST_TERMS,
-                               mf_topology_order_names[order]);
+                               mf_bonded_kinds[order]->name);
     if (kind == NULL || words->count <= beads)
         return mf_gromacs_fail(line, "%d atoms of a moleculetype and a function are expected",
                                beads);

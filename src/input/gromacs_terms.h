@@ -12,7 +12,7 @@ enum { GROMACS_MOST_ATOMS = 20000, GROMACS_MOST_TERMS = 100000 }; ///< of a mole
 /// A line of [ bondtypes ] and the like.
 struct gromacs_term_type {
     int order, number; ///< of terms, of the function
-    char bead[TOPOLOGY_MOST_BEADS][GROMACS_WORD_SIZE];
+    char bead[BONDED_MOST_TERM_BEADS][GROMACS_WORD_SIZE];
     int words;
     double value[2 * GROMACS_MOST_PARAMETERS];
 };
@@ -25,7 +25,7 @@ struct gromacs_reading {
     int order;                      ///< of the section: of terms and their types
     struct gromacs_term_type *type; ///< shape [GROMACS_MOST_TYPES]
     size_t types;
-    size_t atom_room, term_room[TOPOLOGY_ORDERS]; ///< of the kind that is being read
+    size_t atom_room, term_room[BONDED_KINDS]; ///< of the kind that is being read
 };
 
 /// The words of a line.

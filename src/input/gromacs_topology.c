@@ -12,19 +12,16 @@
 
 enum section { TERMS, TERM_TYPES, MOLECULETYPE, ATOMS, MOLECULES, IGNORED, PAIRS, EXCLUSIONS };
 
+#define SECTIONS(NAME, kind, ...)                                                                  \
+    {#kind "s", TERMS, BONDED_##NAME}, {#kind "types", TERM_TYPES, BONDED_##NAME},
+
 /// The sections that are known. PAIRS are not taken, which is told.
 static const struct known {
     const char *name;
     enum section section;
     int order; ///< of terms and their types
 } sections[] = {
-    {"bonds", TERMS, TOPOLOGY_BOND},
-    {"angles", TERMS, TOPOLOGY_ANGLE},
-    {"dihedrals", TERMS, TOPOLOGY_DIHEDRAL},
-    {"bondtypes", TERM_TYPES, TOPOLOGY_BOND},
-    {"angletypes", TERM_TYPES, TOPOLOGY_ANGLE},
-    {"dihedraltypes", TERM_TYPES, TOPOLOGY_DIHEDRAL},
-    {"moleculetype", MOLECULETYPE, 0},
+    BONDED_LIST(SECTIONS){"moleculetype", MOLECULETYPE, 0},
     {"atoms", ATOMS, 0},
     {"molecules", MOLECULES, 0},
     {"exclusions", EXCLUSIONS, 0},
@@ -273,7 +270,7 @@ static void drop_groups(struct molecules *molecules, int order) {
 static enum status finish(struct gromacs_reading *reading, int known, const char *file) {
     drop_kinds(&reading->molecules->topology);
     drop_types(reading, known);
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+    for (int order = 0; order < BONDED_KINDS; order++)
         drop_groups(reading->molecules, order);
     return reading->molecules->topology.kinds > 0
                ? STATUS_OK

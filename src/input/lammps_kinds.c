@@ -21,8 +21,8 @@ struct finding {
     size_t *member; ///< atoms, molecule after molecule, ids growing in each
     size_t *begin;  ///< where those of a molecule begin; they end where the next atom's do
     int *kind;      ///< of a molecule; −1: of a single bead, or there is none of that atom
-    size_t *term_begin[TOPOLOGY_ORDERS]; ///< likewise of its terms
-    struct topology_term *term[TOPOLOGY_ORDERS];
+    size_t *term_begin[BONDED_KINDS]; ///< likewise of its terms
+    struct topology_term *term[BONDED_KINDS];
 };
 
 // Molecules ---------------------------------------------------------------------------------------
@@ -38,10 +38,10 @@ static void join_atoms(struct finding *finding) {
     int *root = finding->root;
     for (size_t atom = 0; atom < finding->atoms; atom++)
         root[atom] = (int)atom;
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+    for (int order = 0; order < BONDED_KINDS; order++)
         for (size_t n = 0; n < terms->terms[order]; n++) {
             const int *atom = terms->term[order][n].atom;
-            for (int k = 1; k < topology_beads(order); k++) {
+            for (int k = 1; k < mf_bonded_kinds[order]->beads; k++) {
                 const int a = find_root(root, atom[0]), b = find_root(root, atom[k]);
                 root[a > b ? a : b] = a > b ? b : a;
             }
@@ -66,7 +66,7 @@ static size_t beads_of(const struct finding *finding, size_t molecule) {
 
 static int compare_terms(const void *a, const void *b) {
     const struct topology_term *x = a, *y = b;
-    for (int k = 0; k < TOPOLOGY_MOST_BEADS; k++)
+    for (int k = 0; k < BONDED_MOST_TERM_BEADS; k++)
         if (x->bead[k] != y->bead[k])
             return x->bead[k] < y->bead[k] ? -1 : 1;
     return x->group < y->group ? -1 : x->group > y->group;
@@ -78,7 +78,7 @@ static enum status gather_terms(struct finding *finding, int order) {
     enum status status = STATUS_OK;
     const struct lammps_terms *terms = finding->source->terms;
     const size_t count = terms->terms[order];
-    const int beads = topology_beads(order);
+    const int beads = mf_bonded_kinds[order]->beads;
     size_t *next = NULL;
     NEW_ARRAY(finding->term_begin[order], finding->atoms + 1);
     NEW_ARRAY(finding->term[order], count);
@@ -145,7 +145,7 @@ static bool is_of(const struct finding *finding, size_t molecule,
         if (finding->type[finding->member[finding->begin[molecule] + (size_t)bead]] !=
             kind->type[bead])
             return false;
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++) {
+    for (int order = 0; order < BONDED_KINDS; order++) {
         const size_t *begin = finding->term_begin[order] + molecule;
         if (begin[1] - begin[0] != (size_t)kind->terms[order] ||
             (kind->terms[order] > 0 &&
@@ -175,7 +175,7 @@ static enum status add_kind(struct finding *finding, size_t molecule) {
     NEW_ARRAY(kind->type, beads);
     for (size_t bead = 0; bead < beads; bead++)
         kind->type[bead] = finding->type[finding->member[finding->begin[molecule] + bead]];
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++) {
+    for (int order = 0; order < BONDED_KINDS; order++) {
         const size_t *begin = finding->term_begin[order] + molecule;
         kind->terms[order] = (int)(begin[1] - begin[0]);
         NEW_ARRAY(kind->term[order], kind->terms[order]);
@@ -233,7 +233,7 @@ static void clear(struct finding *finding) {
     mf_memory_free(finding->member);
     mf_memory_free(finding->begin);
     mf_memory_free(finding->kind);
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++) {
+    for (int order = 0; order < BONDED_KINDS; order++) {
         mf_memory_free(finding->term_begin[order]);
         mf_memory_free(finding->term[order]);
     }
@@ -254,7 +254,7 @@ enum status mf_lammps_kinds_find(const struct lammps_kinds_source *source,
     NEW_ARRAY(finding.kind, atoms);
     join_atoms(&finding);
     gather_members(&finding);
-    for (int n = 0; n < TOPOLOGY_ORDERS; n++)
+    for (int n = 0; n < BONDED_KINDS; n++)
         CHECK(gather_terms(&finding, n));
     CHECK(find_types(&finding));
     CHECK(find_kinds(&finding));

@@ -8,7 +8,7 @@ struct lammps_kinds_source {
     const char *file;
     const struct structure *structure; ///< atoms in the order of ids
     const struct lammps_terms *terms;
-    const int *group[TOPOLOGY_ORDERS]; ///< of each type of terms
+    int *const *group; ///< shape [BONDED_KINDS][types]: of each type of terms
     int exclude;
 };
 

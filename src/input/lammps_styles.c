@@ -15,7 +15,7 @@ struct numbers {
 };
 
 struct style {
-    enum bonded_kind kind;
+    int order;
     const char *name;
     int least, most; ///< numbers
     const struct bonded_law *law;
@@ -26,52 +26,42 @@ struct style {
 
 // Numbers of laws ---------------------------------------------------------------------------------
 
-/// Set a parameter of a law; false if it is out of its range.
-static bool set(struct bonded_curve *curve, const char *name, double value) {
-    const struct field *field = curve->law->fields;
-    while (strcmp(field->name, name) != 0)
-        field++;
-    if (!(value >= field->minimum && value <= field->maximum) ||
-        (field->type == FIELD_INTEGER && value != rint(value)))
-        return false;
-    const int64_t integer = field->type == FIELD_INTEGER ? (int64_t)value : 0;
-    memcpy((char *)curve->parameters + field->offset,
-           field->type == FIELD_INTEGER ? (const void *)&integer : (const void *)&value,
-           sizeof value);
-    return true;
-}
-
 /// K (r − r_0)²: K is k/2.
 static bool fill_bond(struct bonded_curve *curve, const struct numbers *of) {
-    return set(curve, "k", 2 * of->number[0] * of->energy / (of->length * of->length)) &&
-           set(curve, "length", of->number[1] * of->length);
+    return mf_bonded_set_number(curve, "k",
+                                2 * of->number[0] * of->energy / (of->length * of->length)) &&
+           mf_bonded_set_number(curve, "length", of->number[1] * of->length);
 }
 
 static bool fill_fene(struct bonded_curve *curve, const struct numbers *of) {
-    return set(curve, "k", of->number[0] * of->energy / (of->length * of->length)) &&
-           set(curve, "longest", of->number[1] * of->length);
+    return mf_bonded_set_number(curve, "k",
+                                of->number[0] * of->energy / (of->length * of->length)) &&
+           mf_bonded_set_number(curve, "longest", of->number[1] * of->length);
 }
 
 /// K (θ − θ_0)² and K (cos θ − cos θ_0)².
 static bool fill_angle(struct bonded_curve *curve, const struct numbers *of) {
-    return set(curve, "k", 2 * of->number[0] * of->energy) && set(curve, "angle", of->number[1]);
+    return mf_bonded_set_number(curve, "k", 2 * of->number[0] * of->energy) &&
+           mf_bonded_set_number(curve, "angle", of->number[1]);
 }
 
 static bool fill_cosine(struct bonded_curve *curve, const struct numbers *of) {
-    return set(curve, "k", of->number[0] * of->energy);
+    return mf_bonded_set_number(curve, "k", of->number[0] * of->energy);
 }
 
 /// K [1 + cos(n φ − d)] with a weight of pairs four beads apart, which is to be 0.
 static bool fill_charmm(struct bonded_curve *curve, const struct numbers *of) {
-    return of->number[3] == 0 && set(curve, "k", of->number[0] * of->energy) &&
-           set(curve, "multiplicity", of->number[1]) && set(curve, "phase", of->number[2]);
+    return of->number[3] == 0 && mf_bonded_set_number(curve, "k", of->number[0] * of->energy) &&
+           mf_bonded_set_number(curve, "multiplicity", of->number[1]) &&
+           mf_bonded_set_number(curve, "phase", of->number[2]);
 }
 
 /// K [1 + d cos(n φ)], d = ±1.
 static bool fill_harmonic(struct bonded_curve *curve, const struct numbers *of) {
-    return fabs(of->number[1]) == 1 && set(curve, "k", of->number[0] * of->energy) &&
-           set(curve, "multiplicity", of->number[2]) &&
-           set(curve, "phase", of->number[1] > 0 ? 0 : 180);
+    return fabs(of->number[1]) == 1 &&
+           mf_bonded_set_number(curve, "k", of->number[0] * of->energy) &&
+           mf_bonded_set_number(curve, "multiplicity", of->number[2]) &&
+           mf_bonded_set_number(curve, "phase", of->number[1] > 0 ? 0 : 180);
 }
 
 /// Σ A_n (cos φ)^n: our angle is 0 at trans, so that odd powers change their sign.
@@ -79,7 +69,8 @@ static bool fill_powers(struct bonded_curve *curve, const double *a, int count, 
     static const char *const names[] = {"c0", "c1", "c2", "c3", "c4", "c5"};
     bool good = true;
     for (int n = 0; n < 6 && good; n++)
-        good = set(curve, names[n], n < count ? (n % 2 ? -a[n] : a[n]) * energy : 0);
+        good =
+            mf_bonded_set_number(curve, names[n], n < count ? (n % 2 ? -a[n] : a[n]) * energy : 0);
     return good;
 }
 
@@ -118,10 +109,10 @@ static const struct style styles[] = {
 };
 enum { STYLES = sizeof styles / sizeof *styles };
 
-static const struct style *find_style(enum bonded_kind kind, const char *name, char known[160]) {
+static const struct style *find_style(int order, const char *name, char known[160]) {
     known[0] = '\0';
     for (size_t k = 0; k < STYLES; k++) {
-        if (styles[k].kind != kind)
+        if (styles[k].order != order)
             continue;
         if (strcmp(styles[k].name, name) == 0)
             return &styles[k];
@@ -131,11 +122,11 @@ static const struct style *find_style(enum bonded_kind kind, const char *name, c
     return NULL;
 }
 
-enum status mf_lammps_style_create(struct bonded_curve *curve, enum bonded_kind kind,
-                                   const char *style, const double *number, int count,
-                                   double length, double energy, const char **note) {
+enum status mf_lammps_style_create(struct bonded_curve *curve, int order, const char *style,
+                                   const double *number, int count, double length, double energy,
+                                   const char **note) {
     char known[160];
-    const struct style *found = find_style(kind, style, known);
+    const struct style *found = find_style(order, style, known);
     if (found == NULL)
         return mf_status_fail(STATUS_BAD_INPUT, "style \"%.40s\" is not known, but %s", style,
                               known);

@@ -3,7 +3,7 @@
 /// bond_style, angle_style, dihedral_style).
 #pragma once
 
-#include "curves/bonded_law.h"
+#include "curves/bonded_kind.h"
 
 enum { LAMMPS_MOST_NUMBERS = 8 };
 
@@ -12,6 +12,6 @@ enum { LAMMPS_MOST_NUMBERS = 8 };
 /// @param[out] note  what is not taken, or NULL
 /// Fails: BAD_INPUT, without file and line, for a style that is not known, another count of
 /// numbers, or one that its law cannot have; NO_MEMORY. Tested: cli/test_lammps_topologies.
-enum status mf_lammps_style_create(struct bonded_curve *curve, enum bonded_kind kind,
-                                   const char *style, const double *number, int count,
-                                   double length, double energy, const char **note) MUST_USE;
+enum status mf_lammps_style_create(struct bonded_curve *curve, int order, const char *style,
+                                   const double *number, int count, double length, double energy,
+                                   const char **note) MUST_USE;

@@ -13,25 +13,22 @@ enum { MOST_WORDS = 16 };
 
 enum section { HEADER, TERMS, COEFFICIENTS, OTHER };
 
+/// LAMMPS begins the names of its sections with a capital letter.
+#define SECTIONS(NAME, kind, ...)                                                                  \
+    {#kind "s", TERMS, BONDED_##NAME}, {#kind " Coeffs", COEFFICIENTS, BONDED_##NAME},
+
 /// Sections of data files; of what is OTHER nothing is taken here.
 static const struct known {
     const char *name;
     enum section section;
     int order;
 } sections[] = {
-    {"Bonds", TERMS, TOPOLOGY_BOND},
-    {"Angles", TERMS, TOPOLOGY_ANGLE},
-    {"Dihedrals", TERMS, TOPOLOGY_DIHEDRAL},
-    {"Bond Coeffs", COEFFICIENTS, TOPOLOGY_BOND},
-    {"Angle Coeffs", COEFFICIENTS, TOPOLOGY_ANGLE},
-    {"Dihedral Coeffs", COEFFICIENTS, TOPOLOGY_DIHEDRAL},
-    {"Masses", OTHER, 0},
-    {"Atoms", OTHER, 0},
-    {"Velocities", OTHER, 0},
-    {"Pair Coeffs", OTHER, 0},
-    {"PairIJ Coeffs", OTHER, 0},
+    BONDED_LIST(SECTIONS){"masses", OTHER, 0},
+    {"atoms", OTHER, 0},
+    {"velocities", OTHER, 0},
+    {"pair Coeffs", OTHER, 0},
+    {"pairIJ Coeffs", OTHER, 0},
 };
-static const char *const plurals[TOPOLOGY_ORDERS] = {"bonds", "angles", "dihedrals"};
 
 struct reading {
     struct lammps_terms *terms;
@@ -40,8 +37,8 @@ struct reading {
     size_t line;
     const struct known *section;    ///< NULL: the header
     char style[TOPOLOGY_NAME_SIZE]; ///< of the section of coefficients, "" if it is not told
-    int64_t promised[TOPOLOGY_ORDERS];
-    size_t room[TOPOLOGY_ORDERS];
+    int64_t promised[BONDED_KINDS];
+    size_t room[BONDED_KINDS];
 };
 
 struct words {
@@ -90,13 +87,13 @@ static enum status read_header(struct reading *reading, const struct words *word
     for (size_t k = 0; k < sizeof not_ours / sizeof *not_ours; k++)
         if (is(words, 1, not_ours[k]) && number != 0)
             return FAIL(reading, "%s are not known", not_ours[k]);
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++) {
-        const bool types = is(words, 1, mf_topology_order_names[order]) && is(words, 2, "types");
-        if (!types && !is(words, 1, plurals[order]))
+    for (int order = 0; order < BONDED_KINDS; order++) {
+        const bool types = is(words, 1, mf_bonded_kinds[order]->name) && is(words, 2, "types");
+        if (!types && !is(words, 1, mf_bonded_kinds[order]->plural))
             continue;
         if (number < 0 || number > (types ? LAMMPS_MOST_COEFFICIENTS : INT32_MAX))
             return FAIL(reading, "%lld %s%s cannot be", (long long)number, types ? "types of " : "",
-                        plurals[order]);
+                        mf_bonded_kinds[order]->plural);
         *(types ? &reading->terms->types[order] : &reading->promised[order]) = number;
     }
     return STATUS_OK;
@@ -115,7 +112,8 @@ static enum status begin_section(struct reading *reading, const char *line,
     if (comment++ && mf_words_next(&comment, &style))
         mf_words_copy(&style, reading->style, sizeof reading->style);
     for (size_t k = 0; k < sizeof sections / sizeof *sections; k++)
-        if (strcmp(sections[k].name, name) == 0) {
+        if (name[0] == toupper((unsigned char)sections[k].name[0]) &&
+            strcmp(sections[k].name + 1, name + 1) == 0) {
             reading->section = &sections[k];
             return STATUS_OK;
         }
@@ -126,17 +124,17 @@ static enum status begin_section(struct reading *reading, const char *line,
 
 static enum status add_term(struct reading *reading, const struct words *words) {
     struct lammps_terms *terms = reading->terms;
-    const int order = reading->section->order, beads = topology_beads(order);
-    const char *name = mf_topology_order_names[order];
+    const int order = reading->section->order, beads = mf_bonded_kinds[order]->beads;
+    const char *name = mf_bonded_kinds[order]->name;
     struct lammps_term term = {.line = reading->line};
     int64_t number;
     if (words->count != 2 + beads)
         return FAIL(reading, "%d words, and a line of %s has %d: its number, its type and %d atoms",
-                    words->count, plurals[order], 2 + beads, beads);
+                    words->count, mf_bonded_kinds[order]->plural, 2 + beads, beads);
     if (!mf_words_integer(&words->word[1], &number) || number < 1 || number > terms->types[order])
-        return FAIL(reading, "\"%.*s\" is no type of a%s %s: there are 1 to %lld",
+        return FAIL(reading, "\"%.*s\" is no type of %s %s: there are 1 to %lld",
                     (int)words->word[1].length, words->word[1].begin,
-                    order == TOPOLOGY_ANGLE ? "n" : "", name, (long long)terms->types[order]);
+                    mf_bonded_kinds[order]->article, name, (long long)terms->types[order]);
     term.type = (int)number;
     for (int k = 0; k < beads; k++) {
         const struct word *word = &words->word[2 + k];
@@ -174,8 +172,8 @@ static enum status add_coefficient(struct reading *reading, const struct words *
     const int first = hybrid ? 2 : 1;
     int64_t type;
     if (reading->style[0] == '\0')
-        return FAIL(reading, "which style is it? Write \"%s # harmonic\", or what else it is",
-                    reading->section->name);
+        return FAIL(reading, "which style is it? Write \"%c%s # harmonic\", or what else it is",
+                    toupper((unsigned char)reading->section->name[0]), reading->section->name + 1);
     if (!mf_words_integer(&words->word[0], &type) || type < 1 || type > terms->types[order])
         return FAIL(reading, "here should stand a type from 1 to %lld and its numbers",
                     (long long)terms->types[order]);
@@ -199,7 +197,7 @@ static enum status add_coefficient(struct reading *reading, const struct words *
 static enum status make_coefficients(struct reading *reading) {
     enum status status = STATUS_OK;
     struct lammps_terms *terms = reading->terms;
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+    for (int order = 0; order < BONDED_KINDS; order++)
         if (terms->coefficient[order] == NULL)
             NEW_ARRAY(terms->coefficient[order], terms->types[order] + 1);
 done:
@@ -228,7 +226,7 @@ static enum status read_line(struct reading *reading, const char *line) {
 /// those of the same type.
 static int compare_terms(const void *a, const void *b) {
     const struct lammps_term *x = a, *y = b;
-    for (int k = 0; k < TOPOLOGY_MOST_BEADS; k++)
+    for (int k = 0; k < BONDED_MOST_TERM_BEADS; k++)
         if (x->atom[k] != y->atom[k])
             return x->atom[k] < y->atom[k] ? -1 : 1;
     if (x->type != y->type)
@@ -240,7 +238,7 @@ static enum status check_doubled(struct reading *reading, int order) {
     enum status status = STATUS_OK;
     const struct lammps_terms *terms = reading->terms;
     const size_t count = terms->terms[order];
-    const int beads = topology_beads(order);
+    const int beads = mf_bonded_kinds[order]->beads;
     struct lammps_term *sorted = NULL;
     NEW_ARRAY(sorted, count);
     for (size_t n = 0; n < count; n++) {
@@ -253,10 +251,10 @@ static enum status check_doubled(struct reading *reading, int order) {
     qsort(sorted, count, sizeof *sorted, compare_terms);
     for (size_t n = 1; n < count; n++) {
         const bool same = memcmp(sorted[n].atom, sorted[n - 1].atom, sizeof sorted[n].atom) == 0 &&
-                          (order == TOPOLOGY_BOND || sorted[n].type == sorted[n - 1].type);
+                          (order == BONDED_BOND || sorted[n].type == sorted[n - 1].type);
         reading->line = sorted[n].line;
         if (same)
-            CHECK(FAIL(reading, "the same %s as in line %zu", mf_topology_order_names[order],
+            CHECK(FAIL(reading, "the same %s as in line %zu", mf_bonded_kinds[order]->name,
                        sorted[n - 1].line));
     }
 done:
@@ -266,13 +264,13 @@ done:
 
 static enum status check_whole(struct reading *reading) {
     const struct lammps_terms *terms = reading->terms;
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++) {
+    for (int order = 0; order < BONDED_KINDS; order++) {
         if ((int64_t)terms->terms[order] != reading->promised[order])
             return mf_status_fail(STATUS_BAD_INPUT,
                                   "%s: \"%lld %s\" are said, and %zu are there: is it the whole "
                                   "file?",
                                   reading->file, (long long)reading->promised[order],
-                                  plurals[order], terms->terms[order]);
+                                  mf_bonded_kinds[order]->plural, terms->terms[order]);
         TRY(check_doubled(reading, order));
     }
     return STATUS_OK;
@@ -296,7 +294,7 @@ enum status mf_lammps_terms_read(struct lammps_terms *terms, const char *file, c
 }
 
 void mf_lammps_terms_clear(struct lammps_terms *terms) {
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++) {
+    for (int order = 0; order < BONDED_KINDS; order++) {
         mf_memory_free(terms->term[order]);
         mf_memory_free(terms->coefficient[order]);
     }

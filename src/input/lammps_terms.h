@@ -20,16 +20,17 @@ struct lammps_coefficient {
 
 /// A line of "Bonds" and the like.
 struct lammps_term {
-    int type;                      ///< from 1 on
-    int atom[TOPOLOGY_MOST_BEADS]; ///< by their places in the structure, whose order is that of ids
+    int type;                         ///< from 1 on
+    int atom[BONDED_MOST_TERM_BEADS]; ///< by their places in the structure, whose order is that of
+                                      ///< ids
     size_t line;
 };
 
 struct lammps_terms {
-    size_t terms[TOPOLOGY_ORDERS];
-    struct lammps_term *term[TOPOLOGY_ORDERS];
-    int64_t types[TOPOLOGY_ORDERS];
-    struct lammps_coefficient *coefficient[TOPOLOGY_ORDERS]; ///< shape [types + 1], by type
+    size_t terms[BONDED_KINDS];
+    struct lammps_term *term[BONDED_KINDS];
+    int64_t types[BONDED_KINDS];
+    struct lammps_coefficient *coefficient[BONDED_KINDS]; ///< shape [types + 1], by type
 };
 
 /// The units that the first line of a file tells, or "".

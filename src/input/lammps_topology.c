@@ -62,7 +62,7 @@ struct reading {
     const char *file;
     double length, energy; ///< the file's units in λ, k_B T_0
     struct lammps_terms terms;
-    int *group[TOPOLOGY_ORDERS]; ///< shape [types + 1]; −1: no term has the type
+    int *group[BONDED_KINDS]; ///< shape [types + 1]; −1: no term has the type
     char *note;
 };
 
@@ -83,15 +83,15 @@ static enum status find_group(struct reading *reading, int order, int type, size
         return mf_status_fail(STATUS_BAD_INPUT,
                               "%s:%zu: type %d of %ss has no coefficients here, and no law \"%d\" "
                               "in the scene's",
-                              reading->file, line, type, mf_topology_order_names[order], type);
+                              reading->file, line, type, mf_bonded_kinds[order]->name, type);
     if (g == MOLECULES_MOST_GROUPS)
         return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: there are more than %d types of %ss",
                               reading->file, line, MOLECULES_MOST_GROUPS,
-                              mf_topology_order_names[order]);
+                              mf_bonded_kinds[order]->name);
     struct molecules_group *group = &molecules->group[order][g];
-    const enum status status = mf_lammps_style_create(
-        &group->curve, (enum bonded_kind)order, coefficient->style, coefficient->number,
-        coefficient->count, reading->length, reading->energy, &note);
+    const enum status status =
+        mf_lammps_style_create(&group->curve, order, coefficient->style, coefficient->number,
+                               coefficient->count, reading->length, reading->energy, &note);
     if (status != STATUS_OK)
         return mf_status_prefix(status, "%s:%zu", reading->file, coefficient->line);
     memcpy(group->name, name, sizeof name);
@@ -103,7 +103,7 @@ static enum status find_group(struct reading *reading, int order, int type, size
 }
 
 static enum status find_groups(struct reading *reading) {
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+    for (int order = 0; order < BONDED_KINDS; order++)
         for (size_t n = 0; n < reading->terms.terms[order]; n++) {
             const struct lammps_term *term = &reading->terms.term[order][n];
             if (reading->group[order][term->type] < 0)
@@ -120,7 +120,7 @@ static enum status read_terms(struct reading *reading, const struct structure *s
     size_t length;
     CHECK(mf_text_file_read(reading->file, &text, &length));
     CHECK(mf_lammps_terms_read(&reading->terms, reading->file, text, length, structure));
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++) {
+    for (int order = 0; order < BONDED_KINDS; order++) {
         NEW_ARRAY(reading->group[order], reading->terms.types[order] + 1);
         for (int64_t type = 0; type <= reading->terms.types[order]; type++)
             reading->group[order][type] = -1;
@@ -131,7 +131,7 @@ done:
 }
 
 static void clear(struct reading *reading) {
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+    for (int order = 0; order < BONDED_KINDS; order++)
         mf_memory_free(reading->group[order]);
     mf_lammps_terms_clear(&reading->terms);
 }
@@ -139,14 +139,12 @@ static void clear(struct reading *reading) {
 static enum status find_kinds(const struct reading *reading, const struct structure *structure,
                               int exclude, struct topology *topology,
                               struct composition *composition, size_t **order) {
-    return mf_lammps_kinds_find(
-        &(struct lammps_kinds_source){
-            .file = reading->file,
-            .structure = structure,
-            .terms = &reading->terms,
-            .group = {reading->group[0], reading->group[1], reading->group[2]},
-            .exclude = exclude},
-        topology, composition, order);
+    return mf_lammps_kinds_find(&(struct lammps_kinds_source){.file = reading->file,
+                                                              .structure = structure,
+                                                              .terms = &reading->terms,
+                                                              .group = reading->group,
+                                                              .exclude = exclude},
+                                topology, composition, order);
 }
 
 enum status mf_lammps_topology_read(struct molecules *molecules, struct composition *composition,
@@ -200,7 +198,7 @@ enum status mf_lammps_topology_order(const char *file, const char *style,
     *order = NULL;
     TRY(mf_trajectory_open(&trajectory, file, &options));
     CHECK(read_terms(&reading, &trajectory.structure));
-    for (int n = 0; n < TOPOLOGY_ORDERS; n++)
+    for (int n = 0; n < BONDED_KINDS; n++)
         for (int64_t type = 0; type <= reading.terms.types[n]; type++)
             reading.group[n][type] = (int)type;
     CHECK(find_kinds(&reading, &trajectory.structure, 0, &own, &types, order));

@@ -82,10 +82,10 @@ void mf_scene_coordinates_check_bonds(const struct scene *scene, struct json_obj
     for (int k = 0; k < molecules->topology.kinds; k++) {
         const struct topology_kind *kind = &molecules->topology.kind[k];
         for (int64_t m = 0; m < kind->count; m++)
-            for (int n = 0; n < kind->terms[TOPOLOGY_BOND]; n++) {
-                const struct topology_term *term = &kind->term[TOPOLOGY_BOND][n];
+            for (int n = 0; n < kind->terms[BONDED_BOND]; n++) {
+                const struct topology_term *term = &kind->term[BONDED_BOND][n];
                 const struct bonded_curve *curve =
-                    &molecules->group[TOPOLOGY_BOND][term->group].curve;
+                    &molecules->group[BONDED_BOND][term->group].curve;
                 const uint32_t i = topology_id(kind, m, term->bead[0]);
                 const uint32_t j = topology_id(kind, m, term->bead[1]);
                 if (can_be(curve, length_of(scene, i, j), scene->setup.temperature))

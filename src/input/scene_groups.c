@@ -10,17 +10,15 @@
 
 #include <string.h>
 
-const char *const mf_scene_group_keys[TOPOLOGY_ORDERS] = {"bonds", "angles", "dihedrals"};
-
 /// Points of the law "table".
 static enum status load_points(struct bonded_curve *curve, int order, struct json_object *object,
                                const struct units *units) {
-    const char *const unit[2] = {order == TOPOLOGY_BOND ? "lambda" : "degrees", "k_B T_0"};
+    const char *const unit[2] = {mf_bonded_kinds[order]->unit, "k_B T_0"};
     const struct bonded_table *table = curve->parameters;
     double *q = NULL, *energy = NULL;
     size_t count = 0;
-    enum status status = mf_scene_read_columns(
-        table->file, unit, order == TOPOLOGY_DIHEDRAL ? -DBL_MAX : 0, units, &q, &energy, &count);
+    enum status status =
+        mf_scene_read_columns(table->file, unit, bonded_least(order), units, &q, &energy, &count);
     if (status != STATUS_OK)
         mf_json_fault(object, "file", "%s", mf_status_message());
     else if ((status = mf_bonded_table_set_points(curve, q, energy, count)) != STATUS_OK)
@@ -37,16 +35,14 @@ static enum status read_group(struct molecules *molecules, int order, struct jso
     struct json_object object = mf_json_child_of(groups, name, true, "law");
     if (object.item == NULL)
         return STATUS_OK;
-    TRY(mf_names_collect(mf_bonded_laws[order], NULL, &names));
+    TRY(mf_names_collect(mf_bonded_kinds[order]->laws, NULL, &names));
     const char *chosen = mf_json_choice(&object, "law", names, NULL);
     mf_memory_free(names);
     if (chosen == NULL)
         return STATUS_OK;
-    const struct bonded_law *law = mf_names_find(mf_bonded_laws[order], chosen);
+    const struct bonded_law *law = mf_names_find(mf_bonded_kinds[order]->laws, chosen);
     const size_t faults = mf_json_fault_count(object.document);
-    TRY(mf_bonded_create(&group->curve, law));
-    snprintf(group->name, sizeof group->name, "%s", name);
-    molecules->groups[order]++;
+    TRY(mf_molecules_add_group(molecules, order, name, law));
     mf_json_fields(&object, law->fields, group->curve.parameters);
     if (bonded_is_table(law) && mf_json_fault_count(object.document) == faults)
         TRY(load_points(&group->curve, order, &object, units));
@@ -62,25 +58,19 @@ bool mf_scene_groups_are_fitted(const struct molecules_group *group) {
 /// A table without points.
 static enum status add_fitted(struct molecules *molecules, int order, const char *name,
                               struct json_object *scene) {
-    static const struct bonded_law *const tables[TOPOLOGY_ORDERS] = {
-        &mf_bonded_table_bond, &mf_bonded_table_angle, &mf_bonded_table_dihedral};
-    struct molecules_group *group = &molecules->group[order][molecules->groups[order]];
     if (molecules->groups[order] >= MOLECULES_MOST_GROUPS) {
-        mf_json_fault(scene, mf_scene_group_keys[order], "there are more than %d groups",
+        mf_json_fault(scene, mf_bonded_kinds[order]->plural, "there are more than %d groups",
                       MOLECULES_MOST_GROUPS);
         return STATUS_OK;
     }
-    TRY(mf_bonded_create(&group->curve, tables[order]));
-    snprintf(group->name, sizeof group->name, "%s", name);
-    molecules->groups[order]++;
-    return STATUS_OK;
+    return mf_molecules_add_group(molecules, order, name, mf_bonded_kinds[order]->table);
 }
 
 /// Those that the scene says.
 static enum status read_known(struct molecules *molecules, int order, struct json_object *scene,
                               const struct units *units) {
     const char *name;
-    struct json_object groups = mf_json_child(scene, mf_scene_group_keys[order], false);
+    struct json_object groups = mf_json_child(scene, mf_bonded_kinds[order]->plural, false);
     if (groups.item == NULL)
         return STATUS_OK;
     for (size_t n = 0; (name = mf_json_key(&groups, n)); n++) {
@@ -111,10 +101,8 @@ enum status mf_scene_groups_read(struct molecules *molecules, int order, struct 
 /// Add a group without a law of its own: the first one, of strength 0.
 static enum status open_group(struct molecules *molecules, struct json_object *object, int order,
                               const char *name) {
-    struct molecules_group *group = &molecules->group[order][molecules->groups[order]];
-    for (int g = 0; g < molecules->groups[order]; g++)
-        if (strcmp(molecules->group[order][g].name, name) == 0)
-            return STATUS_OK;
+    if (mf_molecules_group(molecules, order, name))
+        return STATUS_OK;
     if (molecules->groups[order] == MOLECULES_MOST_GROUPS || !mf_topology_is_name(name)) {
         mf_json_fault(
             object, name,
@@ -122,18 +110,15 @@ static enum status open_group(struct molecules *molecules, struct json_object *o
             MOLECULES_MOST_GROUPS, TOPOLOGY_NAME_SIZE - 1);
         return STATUS_OK;
     }
-    TRY(mf_bonded_create(&group->curve, mf_bonded_laws[order][0]));
-    snprintf(group->name, sizeof group->name, "%s", name);
-    molecules->groups[order]++;
-    return STATUS_OK;
+    return mf_molecules_add_group(molecules, order, name, mf_bonded_kinds[order]->laws[0]);
 }
 
 enum status mf_scene_groups_open(struct molecules *molecules, struct json_object *kind) {
     struct json_object chain = mf_json_child(kind, "chain", false);
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++) {
-        struct json_object terms = mf_json_child(kind, mf_scene_group_keys[order], false);
+    for (int order = 0; order < BONDED_KINDS; order++) {
+        struct json_object terms = mf_json_child(kind, mf_bonded_kinds[order]->plural, false);
         const char *name =
-            chain.item ? mf_json_choice(&chain, mf_topology_order_names[order], NULL, "") : "";
+            chain.item ? mf_json_choice(&chain, mf_bonded_kinds[order]->name, NULL, "") : "";
         if (name && name[0])
             TRY(open_group(molecules, &chain, order, name));
         for (size_t n = 0; terms.item && (name = mf_json_key(&terms, n)); n++)
@@ -142,26 +127,25 @@ enum status mf_scene_groups_open(struct molecules *molecules, struct json_object
     return STATUS_OK;
 }
 
-/// A fault for each group that is fitted and not among those of the kinds.
-static void fault_unnamed(const struct scene_fitted *fitted, int order,
-                          const struct molecules *named) {
+/// A fault of a name that no molecule's terms have.
+static void fault_unused(struct json_object *object, const char *name, int order,
+                         const struct molecules *molecules) {
     const char *known[MOLECULES_MOST_GROUPS];
-    const size_t count = (size_t)named->groups[order];
-    struct json_object from = fitted->from[order];
+    const size_t count = (size_t)molecules->groups[order];
     char hint[1024];
     for (size_t g = 0; g < count; g++)
-        known[g] = named->group[order][g].name;
-    for (int n = 0; n < fitted->count[order]; n++) {
-        size_t g = 0;
-        while (g < count && strcmp(known[g], fitted->name[order][n]) != 0)
-            g++;
-        if (g < count)
-            continue;
-        mf_nearest_hint(fitted->name[order][n], known, count, hint, sizeof hint);
-        mf_json_fault(&from, fitted->name[order][n], "no molecule has such %s %s%s%s",
-                      order == TOPOLOGY_ANGLE ? "an" : "a", mf_topology_order_names[order],
-                      count > 0 ? "; " : "", count > 0 ? hint : "");
-    }
+        known[g] = molecules->group[order][g].name;
+    mf_nearest_hint(name, known, count, hint, sizeof hint);
+    mf_json_fault(object, name, "no molecule has such %s %s%s%s", mf_bonded_kinds[order]->article,
+                  mf_bonded_kinds[order]->name, count > 0 ? "; " : "", count > 0 ? hint : "");
+}
+
+/// One for each group that is fitted and not among those of the kinds.
+static void fault_unnamed(const struct scene_fitted *fitted, int order, struct molecules *named) {
+    struct json_object from = fitted->from[order];
+    for (int n = 0; n < fitted->count[order]; n++)
+        if (mf_molecules_group(named, order, fitted->name[order][n]) == NULL)
+            fault_unused(&from, fitted->name[order][n], order, named);
 }
 
 enum status mf_scene_groups_check_fitted(const struct scene_fitted *fitted,
@@ -178,7 +162,7 @@ enum status mf_scene_groups_check_fitted(const struct scene_fitted *fitted,
         struct json_object kind = mf_json_child(&kinds, name, false);
         CHECK(mf_scene_groups_open(&named, &kind));
     }
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+    for (int order = 0; order < BONDED_KINDS; order++)
         fault_unnamed(fitted, order, &named);
 done:
     mf_molecules_clear(&named);
@@ -186,23 +170,15 @@ done:
 }
 
 enum status mf_scene_groups_forget_tables(struct molecules *molecules) {
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+    for (int order = 0; order < BONDED_KINDS; order++)
         for (int g = 0; g < molecules->groups[order]; g++) {
             struct molecules_group *group = &molecules->group[order][g];
             if (!mf_scene_groups_are_fitted(group))
                 continue;
             mf_bonded_clear(&group->curve);
-            TRY(mf_bonded_create(&group->curve, mf_bonded_laws[order][0]));
+            TRY(mf_bonded_create(&group->curve, mf_bonded_kinds[order]->laws[0]));
         }
     return STATUS_OK;
-}
-
-static struct molecules_group *find_named(struct molecules *molecules, int order,
-                                          const char *name) {
-    for (int g = 0; g < molecules->groups[order]; g++)
-        if (strcmp(molecules->group[order][g].name, name) == 0)
-            return &molecules->group[order][g];
-    return NULL;
 }
 
 /// Whether a group of a topology takes the law that is told; else a fault if it must not be told.
@@ -212,35 +188,22 @@ static bool takes(const struct molecules_group *group, const struct molecules_gr
     if (mf_scene_groups_are_fitted(group) || (looked_for && fitted->told))
         return true;
     if (!looked_for) {
-        struct json_object laws = mf_json_child(scene, mf_scene_group_keys[order], false);
+        struct json_object laws = mf_json_child(scene, mf_bonded_kinds[order]->plural, false);
         mf_json_fault(&laws, told->name, "the topology of \"molecules\" has its law; leave it out");
     }
     return false;
 }
 
-/// A law of the scene for a group that there is not.
-static void fault_unused(const struct molecules_group *told, int order,
-                         const struct molecules *molecules, struct json_object *scene) {
-    struct json_object laws = mf_json_child(scene, mf_scene_group_keys[order], false);
-    const char *known[MOLECULES_MOST_GROUPS];
-    char hint[1024];
-    for (int g = 0; g < molecules->groups[order]; g++)
-        known[g] = molecules->group[order][g].name;
-    mf_nearest_hint(told->name, known, (size_t)molecules->groups[order], hint, sizeof hint);
-    mf_json_fault(&laws, told->name, "no molecule has such %s %s%s%s",
-                  order == TOPOLOGY_ANGLE ? "an" : "a", mf_topology_order_names[order],
-                  molecules->groups[order] ? "; " : "", molecules->groups[order] ? hint : "");
-}
-
 void mf_scene_groups_join(struct molecules *molecules, struct molecules *told,
                           const struct scene_fitted *fitted, struct json_object *scene) {
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++) {
+    for (int order = 0; order < BONDED_KINDS; order++) {
+        struct json_object laws = mf_json_child(scene, mf_bonded_kinds[order]->plural, false);
         bool known[MOLECULES_MOST_GROUPS] = {false};
         for (int n = 0; n < told->groups[order]; n++) {
             struct molecules_group *own = &told->group[order][n];
-            struct molecules_group *group = find_named(molecules, order, own->name);
+            struct molecules_group *group = mf_molecules_group(molecules, order, own->name);
             if (group == NULL && !mf_scene_groups_are_fitted(own))
-                fault_unused(own, order, molecules, scene);
+                fault_unused(&laws, own->name, order, molecules);
             if (group == NULL || !takes(group, own, fitted, order, scene))
                 continue;
             const struct bonded_curve curve = group->curve;
@@ -255,9 +218,9 @@ void mf_scene_groups_join(struct molecules *molecules, struct molecules *told,
                 mf_json_fault(scene, "molecules",
                               "the %s \"%s\" is a table in the topology, which is not read: "
                               "\"scene.%s\" or, of a fit, \"target.%s\" tells it by that name",
-                              mf_topology_order_names[order], molecules->group[order][g].name,
-                              mf_scene_group_keys[order],
-                              mf_bonded_distribution_of((enum topology_order)order)->name);
+                              mf_bonded_kinds[order]->name, molecules->group[order][g].name,
+                              mf_bonded_kinds[order]->plural,
+                              mf_bonded_distribution_of(order)->name);
     }
 }
 
@@ -268,7 +231,7 @@ void mf_scene_groups_write(const struct molecules *molecules, int order,
         known += !mf_scene_groups_are_fitted(&molecules->group[order][g]);
     if (known == 0)
         return;
-    mf_json_begin(writer, mf_scene_group_keys[order]);
+    mf_json_begin(writer, mf_bonded_kinds[order]->plural);
     for (int g = 0; g < molecules->groups[order]; g++) {
         const struct molecules_group *group = &molecules->group[order][g];
         if (mf_scene_groups_are_fitted(group))
@@ -283,7 +246,7 @@ void mf_scene_groups_write(const struct molecules *molecules, int order,
 
 void mf_scene_molecules_digest(const struct scene_molecules *molecules, uint64_t *digest) {
     const struct molecules *own = &molecules->molecules;
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+    for (int order = 0; order < BONDED_KINDS; order++)
         for (int g = 0; g < own->groups[order]; g++) {
             const struct bonded_curve *curve = &own->group[order][g].curve;
             const struct bonded_table *table = curve->parameters;

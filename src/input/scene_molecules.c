@@ -18,7 +18,7 @@ struct told {
 struct told_chain {
     char type[FIELD_TEXT_SIZE];
     int64_t length;
-    char group[TOPOLOGY_ORDERS][FIELD_TEXT_SIZE];
+    char group[BONDED_KINDS][FIELD_TEXT_SIZE];
 };
 
 #define MOLECULE(member) .offset = offsetof(struct told, member)
@@ -35,19 +35,18 @@ const struct field mf_scene_molecule_fields[] = {
 
 enum { MOLECULE_FIELDS = sizeof mf_scene_molecule_fields / sizeof *mf_scene_molecule_fields };
 
+#define CHAIN_GROUP(NAME, kind, ...)                                                               \
+    {#kind, FIELD_TEXT, CHAIN(group[BONDED_##NAME]), .unit = "",                                   \
+     .help = "group of all " #kind "s; none without"},
 #define CHAIN(member) .offset = offsetof(struct told_chain, member)
 const struct field mf_scene_chain_fields[] = {
     {"type", FIELD_TEXT, CHAIN(type), .unit = "",
      .help = "of all beads; a chain of several types has \"beads\": [\"A\", \"B\", …] for it"},
     {"length", FIELD_INTEGER, CHAIN(length), .initial = 0, .minimum = 2, .maximum = 10000,
      .unit = "", .help = "number of beads, with \"type\""},
-    {"bond", FIELD_TEXT, CHAIN(group[TOPOLOGY_BOND]), .required = true, .unit = "",
+    {"bond", FIELD_TEXT, CHAIN(group[BONDED_BOND]), .required = true, .unit = "",
      .help = "group of all bonds"},
-    {"angle", FIELD_TEXT, CHAIN(group[TOPOLOGY_ANGLE]), .unit = "",
-     .help = "group of all angles; none without"},
-    {"dihedral", FIELD_TEXT, CHAIN(group[TOPOLOGY_DIHEDRAL]), .unit = "",
-     .help = "group of all dihedrals; none without"},
-    FIELD_END,
+    BONDED_LIST_BEYOND_BONDS(CHAIN_GROUP) FIELD_END,
 };
 
 /// What is being read: a kind's view of the file and all that it may name.
@@ -57,7 +56,7 @@ struct reading {
     struct json_object object;
     struct topology_kind kind;
     struct scene_molecule told;
-    bool used[TOPOLOGY_ORDERS][MOLECULES_MOST_GROUPS];
+    bool used[BONDED_KINDS][MOLECULES_MOST_GROUPS];
     bool open; ///< groups are those that kinds name, and counts may be missing
     const struct scene_fitted *fitted; ///< or NULL
 };
@@ -81,13 +80,13 @@ static int find_group(struct reading *reading, struct json_object *object, const
     if (reading->fitted)
         mf_json_fault(object, key,
                       "\"%.60s\" has no law in \"scene.%s\" and is not in \"%s.%s\"%s%s", name,
-                      mf_scene_group_keys[order], reading->fitted->told ? "unknowns" : "target",
-                      reading->fitted->told ? mf_scene_group_keys[order]
+                      mf_bonded_kinds[order]->plural, reading->fitted->told ? "unknowns" : "target",
+                      reading->fitted->told ? mf_bonded_kinds[order]->plural
                                             : mf_bonded_distribution_of(order)->name,
                       molecules->groups[order] ? "; " : "", molecules->groups[order] ? hint : "");
     else
         mf_json_fault(object, key, "\"%.60s\" is no group of \"%s\"%s%s", name,
-                      mf_scene_group_keys[order], molecules->groups[order] ? "; " : "",
+                      mf_bonded_kinds[order]->plural, molecules->groups[order] ? "; " : "",
                       molecules->groups[order] ? hint : "");
     return -1;
 }
@@ -111,6 +110,13 @@ static int find_type(struct reading *reading, struct json_object *object, const 
         return composition->types++;
     }
     return -1;
+}
+
+static struct scene_molecule no_chain(void) {
+    struct scene_molecule told = {.is_chain = false};
+    for (int order = 0; order < BONDED_KINDS; order++)
+        told.group[order] = -1;
+    return told;
 }
 
 // Beads and terms ---------------------------------------------------------------------------------
@@ -156,26 +162,32 @@ done:
 /// The terms of a chain: all that follow each other.
 static enum status link_chain(struct topology_kind *kind, int order, int group) {
     enum status status = STATUS_OK;
-    const int beads = topology_beads(order);
-    kind->terms[order] = kind->beads >= beads ? kind->beads - beads + 1 : 0;
+    const struct bonded_kind *of = mf_bonded_kinds[order];
+    const int span = of->chain[of->beads - 1];
+    kind->terms[order] = span > 0 && kind->beads > span ? kind->beads - span : 0;
     NEW_ARRAY(kind->term[order], kind->terms[order]);
     for (int n = 0; n < kind->terms[order]; n++) {
         kind->term[order][n].group = group;
-        for (int k = 0; k < beads; k++)
-            kind->term[order][n].bead[k] = n + k;
+        for (int k = 0; k < of->beads; k++)
+            kind->term[order][n].bead[k] = n + of->chain[k];
     }
 done:
     return status;
 }
 
-/// Whether a chain is too short for the terms of an order, which is a fault.
+/// Whether a chain is too short for the terms of an order, or cannot have them, which is a fault.
 static bool is_too_short(const struct reading *reading, struct json_object *chain, int order) {
-    const int beads = reading->kind.beads, needed = topology_beads(order);
-    const char *name = mf_topology_order_names[order];
-    if (beads >= needed)
+    const struct bonded_kind *kind = mf_bonded_kinds[order];
+    const int beads = reading->kind.beads, needed = kind->chain[kind->beads - 1] + 1;
+    if (needed > 1 && beads >= needed)
         return false;
-    mf_json_fault(chain, name, "%s %s is of %d beads, and the chain has %d",
-                  order == TOPOLOGY_ANGLE ? "an" : "a", name, needed, beads);
+    if (needed == 1) {
+        mf_json_fault(chain, kind->name, "a chain has no %s: write its \"beads\" and \"%s\"",
+                      kind->plural, kind->plural);
+        return true;
+    }
+    mf_json_fault(chain, kind->name, "%s %s is of %d beads, and the chain has %d", kind->article,
+                  kind->name, needed, beads);
     return true;
 }
 
@@ -195,14 +207,13 @@ static enum status read_chain(struct reading *reading) {
     for (const char *const *key = (const char *const[]){"type", "length", NULL}; *key; key++)
         if (!reading->told.of_one_type && mf_json_has(&object, *key))
             mf_json_fault(&object, *key, "\"beads\" says it already; leave one of them out");
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++) {
+    for (int order = 0; order < BONDED_KINDS; order++) {
         const char *name = chain.group[order];
         if (name[0] && mf_json_fault_count(object.document) == faults &&
             is_too_short(reading, &object, order))
             break;
         reading->told.group[order] =
-            name[0] ? find_group(reading, &object, mf_topology_order_names[order], order, name)
-                    : -1;
+            name[0] ? find_group(reading, &object, mf_bonded_kinds[order]->name, order, name) : -1;
         if (reading->told.group[order] >= 0)
             TRY(link_chain(&reading->kind, order, reading->told.group[order]));
     }
@@ -216,8 +227,9 @@ static enum status read_terms(struct reading *reading, int order) {
     enum status status = STATUS_OK;
     const struct molecules *molecules = &reading->molecules->molecules;
     struct topology_kind *kind = &reading->kind;
-    struct json_object object = mf_json_child(&reading->object, mf_scene_group_keys[order], false);
-    const size_t beads = (size_t)topology_beads(order);
+    struct json_object object =
+        mf_json_child(&reading->object, mf_bonded_kinds[order]->plural, false);
+    const size_t beads = (size_t)mf_bonded_kinds[order]->beads;
     int *rows = NULL;
     size_t all = 0;
     for (int g = 0; g < molecules->groups[order]; g++)
@@ -246,11 +258,12 @@ done:
 
 // Kinds -------------------------------------------------------------------------------------------
 
-/// Number of the highest order of terms that there are: what "exclude" is without a number.
+/// How far the terms that there are reach: what "exclude" is without a number.
 static int reach_of(const struct topology_kind *kind) {
     int reach = 0;
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
-        reach = kind->terms[order] > 0 ? order + 1 : reach;
+    for (int order = 0; order < BONDED_KINDS; order++)
+        if (kind->terms[order] > 0 && mf_bonded_kinds[order]->reach > reach)
+            reach = mf_bonded_kinds[order]->reach;
     return reach;
 }
 
@@ -283,7 +296,7 @@ static enum status read_kind(struct reading *reading, struct json_object *molecu
     if (object->item == NULL)
         return STATUS_OK;
     reading->kind = (struct topology_kind){0};
-    reading->told = (struct scene_molecule){.group = {-1, -1, -1}};
+    reading->told = no_chain();
     struct field fields[MOLECULE_FIELDS];
     memcpy(fields, mf_scene_molecule_fields, sizeof fields);
     fields[0].required = !reading->open;
@@ -296,7 +309,7 @@ static enum status read_kind(struct reading *reading, struct json_object *molecu
         status = read_chain(reading);
     } else {
         status = read_beads(reading, object);
-        for (int order = 0; order < TOPOLOGY_ORDERS && status == STATUS_OK; order++)
+        for (int order = 0; order < BONDED_KINDS && status == STATUS_OK; order++)
             status = read_terms(reading, order);
     }
     reading->kind.exclude =
@@ -309,20 +322,20 @@ static enum status read_kind(struct reading *reading, struct json_object *molecu
 /// Groups that no molecule has.
 static void check_use(const struct reading *reading, struct json_object *scene) {
     const struct molecules *molecules = &reading->molecules->molecules;
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++) {
-        struct json_object groups = mf_json_child(scene, mf_scene_group_keys[order], false);
+    for (int order = 0; order < BONDED_KINDS; order++) {
+        struct json_object groups = mf_json_child(scene, mf_bonded_kinds[order]->plural, false);
         for (int g = 0; g < molecules->groups[order]; g++)
             if (!reading->used[order][g])
                 mf_json_fault(&groups, molecules->group[order][g].name,
-                              "no molecule has such %s %s", order == TOPOLOGY_ANGLE ? "an" : "a",
-                              mf_topology_order_names[order]);
+                              "no molecule has such %s %s", mf_bonded_kinds[order]->article,
+                              mf_bonded_kinds[order]->name);
     }
 }
 
 /// Groups of a scene that a file's terms have, beside those that the file brings along.
 static void find_used(struct reading *reading) {
     const struct topology *topology = &reading->molecules->molecules.topology;
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+    for (int order = 0; order < BONDED_KINDS; order++)
         for (int k = 0; k < topology->kinds; k++)
             for (int n = 0; n < topology->kind[k].terms[order]; n++)
                 reading->used[order][topology->kind[k].term[order][n].group] = true;
@@ -338,7 +351,7 @@ static enum status read_file(struct reading *reading, struct json_object *object
     if (mf_json_fault_count(object->document) > faults)
         return STATUS_OK;
     for (int k = 0; k < topology->kinds; k++) {
-        own->told[k] = (struct scene_molecule){.group = {-1, -1, -1}};
+        own->told[k] = no_chain();
         reading->kind = topology->kind[k]; // borrowed
         TRY(mf_scene_molecules_warn(reading->molecules, &reading->kind));
     }
@@ -380,7 +393,7 @@ enum status mf_scene_molecules_read(struct scene_molecules *molecules, struct js
     static const double most = 1e8;
     struct reading reading = {.molecules = molecules, .composition = composition, .fitted = fitted};
     const size_t faults = mf_json_fault_count(scene->document);
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+    for (int order = 0; order < BONDED_KINDS; order++)
         TRY(mf_scene_groups_read(&molecules->molecules, order, scene, fitted, units));
     if (fitted)
         TRY(mf_scene_groups_check_fitted(fitted, scene));

@@ -15,16 +15,15 @@ enum { SCENE_MOLECULES_WARNING_SIZE = 1024 };
 /// How a file tells of a kind, which is written so, too.
 struct scene_molecule {
     bool is_chain, of_one_type;
-    int group[TOPOLOGY_ORDERS]; ///< of a chain; −1: none
+    int group[BONDED_KINDS]; ///< of a chain; −1: none
 };
 
 /// Groups whose law a fit looks for, so that the scene does not say it.
 struct scene_fitted {
-    int count[TOPOLOGY_ORDERS];
-    char name[TOPOLOGY_ORDERS][MOLECULES_MOST_GROUPS][TOPOLOGY_NAME_SIZE];
-    bool told; ///< by "unknowns"; else what has a target is fitted
-    struct json_object
-        from[TOPOLOGY_ORDERS]; ///< the objects that name them, of those that there are
+    int count[BONDED_KINDS];
+    char name[BONDED_KINDS][MOLECULES_MOST_GROUPS][TOPOLOGY_NAME_SIZE];
+    bool told;                             ///< by "unknowns"; else what has a target is fitted
+    struct json_object from[BONDED_KINDS]; ///< the objects that name them, of those that there are
 };
 
 /// Owns the molecules; a scene's interactions borrow them. All zero: there are none.
@@ -41,9 +40,6 @@ struct scene_molecules {
 /// Fields of a kind, of its "chain", and of a topology's file.
 extern const struct field mf_scene_molecule_fields[], mf_scene_chain_fields[],
     mf_scene_file_fields[];
-
-/// Names of the objects of groups: "bonds", "angles", "dihedrals".
-extern const char *const mf_scene_group_keys[TOPOLOGY_ORDERS];
 
 /// Read groups and kinds from the members of `scene`, and number their beads.
 /// @param[in]     fitted       groups without a law, or NULL

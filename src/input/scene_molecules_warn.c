@@ -28,13 +28,13 @@ static void warn_of_terms(struct scene_molecules *molecules, const struct topolo
         return;
     mf_topology_name_term(term, order, name);
     warn(molecules, "molecules.%s: %s %s has no bond %d-%d", kind->name,
-         mf_topology_order_names[order], name, pair[0] + 1, pair[1] + 1);
+         mf_bonded_kinds[order]->name, name, pair[0] + 1, pair[1] + 1);
 }
 
 static void warn_of_fene(struct scene_molecules *molecules, const struct topology_kind *kind) {
-    for (int n = 0; n < kind->terms[TOPOLOGY_BOND] && kind->exclude > 0; n++) {
-        const int group = kind->term[TOPOLOGY_BOND][n].group;
-        if (molecules->molecules.group[TOPOLOGY_BOND][group].curve.law != &mf_bond_fene)
+    for (int n = 0; n < kind->terms[BONDED_BOND] && kind->exclude > 0; n++) {
+        const int group = kind->term[BONDED_BOND][n].group;
+        if (molecules->molecules.group[BONDED_BOND][group].curve.law != &mf_bond_fene)
             continue;
         warn(molecules,
              "molecules.%s: \"fene\" only pulls, and \"exclude\": %d takes the repulsion of "
@@ -66,8 +66,8 @@ void mf_scene_molecules_warn_of_box(struct scene_molecules *molecules, const str
     static const double seldom = 1e-5;
     const struct molecules *own = &molecules->molecules;
     const double half = 0.5 * mf_box_shortest(box);
-    for (int g = 0; g < own->groups[TOPOLOGY_BOND]; g++) {
-        const struct molecules_group *group = &own->group[TOPOLOGY_BOND][g];
+    for (int g = 0; g < own->groups[BONDED_BOND]; g++) {
+        const struct molecules_group *group = &own->group[BONDED_BOND][g];
         if (mf_scene_groups_are_fitted(group))
             continue;
         const double share =

@@ -23,9 +23,9 @@ static void write_chain(const struct molecules *molecules, const struct topology
     } else {
         write_beads(kind, composition, writer);
     }
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+    for (int order = 0; order < BONDED_KINDS; order++)
         if (told->group[order] >= 0)
-            mf_json_put_text(writer, mf_topology_order_names[order],
+            mf_json_put_text(writer, mf_bonded_kinds[order]->name,
                              molecules->group[order][told->group[order]].name);
     mf_json_end(writer);
 }
@@ -33,10 +33,10 @@ static void write_chain(const struct molecules *molecules, const struct topology
 /// The terms of an order by their groups, in the order in which they are there.
 static void write_terms(const struct molecules *molecules, const struct topology_kind *kind,
                         int order, struct json_writer *writer) {
-    const size_t beads = (size_t)topology_beads(order);
+    const size_t beads = (size_t)mf_bonded_kinds[order]->beads;
     int *rows = mf_memory_zeroed((size_t)kind->terms[order] * beads, sizeof *rows);
     if (kind->terms[order] > 0)
-        mf_json_begin(writer, mf_scene_group_keys[order]);
+        mf_json_begin(writer, mf_bonded_kinds[order]->plural);
     for (int g = 0; g < molecules->groups[order] && kind->terms[order] > 0 && rows; g++) {
         size_t count = 0;
         for (int n = 0; n < kind->terms[order]; n++)
@@ -67,7 +67,7 @@ void mf_scene_kinds_write(const struct scene_molecules *molecules,
             write_chain(own, kind, &molecules->told[k], composition, writer);
         else
             write_beads(kind, composition, writer);
-        for (int order = 0; order < TOPOLOGY_ORDERS && !molecules->told[k].is_chain; order++)
+        for (int order = 0; order < BONDED_KINDS && !molecules->told[k].is_chain; order++)
             write_terms(own, kind, order, writer);
         mf_json_end(writer);
     }
@@ -78,7 +78,7 @@ void mf_scene_molecules_write(const struct scene_molecules *molecules,
                               const struct composition *composition, struct json_writer *writer) {
     if (!scene_has_molecules(molecules))
         return;
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+    for (int order = 0; order < BONDED_KINDS; order++)
         mf_scene_groups_write(&molecules->molecules, order, writer);
     mf_scene_kinds_write(molecules, composition, 1, writer);
 }

@@ -81,11 +81,10 @@ static enum status find_columns(const struct target_bonded_parameters *p, const 
                                       table, p->file, error);
 }
 
-static enum status read_columns(const struct target_bonded_parameters *p, enum topology_order order,
+static enum status read_columns(const struct target_bonded_parameters *p, int order,
                                 const char *name, const struct units *units, struct rows *rows) {
     enum { USUAL = 2 };
-    const char *unit = order == TOPOLOGY_BOND ? "lambda" : "degrees",
-               *inverse = order == TOPOLOGY_BOND ? "1/lambda" : "1/degrees";
+    const char *unit = mf_bonded_kinds[order]->unit, *inverse = mf_bonded_kinds[order]->density;
     enum status status = STATUS_OK;
     struct data_table table = {0};
     int64_t value, error;
@@ -107,7 +106,7 @@ static enum status read_columns(const struct target_bonded_parameters *p, enum t
     }
     rows->has_errors = error > 0;
     const double last = rows->q[rows->count - 1];
-    if (order != TOPOLOGY_BOND && last < 7) // 2 pi, and no range of degrees
+    if (!mf_bonded_kinds[order]->is_length && last < 7) // 2 pi, and no range of degrees
         status = mf_status_fail(STATUS_BAD_INPUT,
                                 "%s: the angles end at %g, as if in radians; they are in degrees, "
                                 "but in files of \"format\": \"votca\"",
@@ -118,9 +117,10 @@ done:
 }
 
 /// From nm or radians.
-static enum status read_votca(const struct target_bonded_parameters *p, enum topology_order order,
+static enum status read_votca(const struct target_bonded_parameters *p, int order,
                               const struct units *units, struct rows *rows) {
-    const double unit = order == TOPOLOGY_BOND ? 1 / units->length : 1 / BONDED_RADIANS;
+    const struct bonded_kind *kind = mf_bonded_kinds[order];
+    const double unit = kind->is_length ? 1 / units->length : 1 / kind->scale;
     enum status status = STATUS_OK;
     struct votca_table table = {0};
     CHECK(mf_votca_read(&table, p->file));
@@ -132,7 +132,7 @@ static enum status read_votca(const struct target_bonded_parameters *p, enum top
         rows->line[k] = table.line[k];
     }
     rows->has_errors = table.has_error;
-    if (order != TOPOLOGY_BOND && table.x[table.rows - 1] > 7) // 2 pi
+    if (!kind->is_length && table.x[table.rows - 1] > 7) // 2 pi
         status = mf_status_fail(
             STATUS_BAD_INPUT, "%s: the angles end at %g, as if in degrees; VOTCA's are in radians",
             p->file, table.x[table.rows - 1]);
@@ -168,16 +168,15 @@ static enum status check_rows(const struct rows *rows, const char *file) {
     return STATUS_OK;
 }
 
-static enum status check_range(const struct rows *rows, enum topology_order order,
-                               const char *file) {
+static enum status check_range(const struct rows *rows, int order, const char *file) {
     const double width = width_of(rows), last = rows->q[rows->count - 1];
-    const double low = order == TOPOLOGY_DIHEDRAL ? -360 : 0;
-    const double high = order == TOPOLOGY_BOND ? INFINITY : order == TOPOLOGY_ANGLE ? 180 : 360;
+    const struct bonded_kind *kind = mf_bonded_kinds[order];
+    const double low = kind->periodic ? -360 : kind->low, high = kind->periodic ? 360 : kind->high;
     if (rows->q[0] >= low - 0.01 * width && last <= high + width)
         return STATUS_OK;
     return mf_status_fail(STATUS_BAD_INPUT, "%s: it goes from %g to %g, and %s from %g to %g", file,
-                          rows->q[0], last, order == TOPOLOGY_BOND ? "lengths are" : "angles are",
-                          low, high);
+                          rows->q[0], last, kind->is_length ? "lengths are" : "angles are", low,
+                          high);
 }
 
 static void rescale(struct rows *rows, double factor) {
@@ -253,7 +252,7 @@ static void trim(struct rows *rows) {
 
 /// σ² = c² p of counts: c² by fourth differences of −ln(p/J), whose variance is c² Σ b_j²/p_j,
 /// where p is above a twentieth of its peak; NaN if that does not tell.
-static enum status find_scatter(const struct rows *rows, enum topology_order order, int dimensions,
+static enum status find_scatter(const struct rows *rows, int order, int dimensions,
                                 const struct bonded_bins *bins, double *square) {
     enum { TAPS = 5, LEAST_DIFFERENCES = 8 };
     static const double taps[TAPS] = {1, -4, 6, -4, 1}, least = 0.05;
@@ -296,8 +295,8 @@ static void set_errors_of_unseen(struct rows *rows) {
 }
 
 /// What was not seen has the error of what was seen once.
-static enum status set_errors(struct target_bonded *target, struct rows *rows,
-                              enum topology_order order, int dimensions) {
+static enum status set_errors(struct target_bonded *target, struct rows *rows, int order,
+                              int dimensions) {
     double square, peak = 0;
     if (rows->has_errors) {
         set_errors_of_unseen(rows);
@@ -339,11 +338,11 @@ static void join(struct target_bonded *target, struct rows *rows, bool circle) {
     }
 }
 
-static enum status load(struct target_bonded *target, enum topology_order order, const char *name,
+static enum status load(struct target_bonded *target, int order, const char *name,
                         const struct units *units, int dimensions) {
     enum status status = STATUS_OK;
     const struct target_bonded_parameters *p = &target->parameters;
-    const bool circle = order == TOPOLOGY_DIHEDRAL;
+    const bool circle = mf_bonded_kinds[order]->periodic;
     struct rows rows = {0};
     CHECK(p->format == TARGET_RDF_VOTCA ? read_votca(p, order, units, &rows)
                                         : read_columns(p, order, name, units, &rows));
@@ -368,16 +367,16 @@ done:
     return status;
 }
 
-enum status mf_target_bonded_read(struct target_bonded *target, enum topology_order order,
-                                  const char *name, struct json_object *object,
-                                  const struct units *units, int dimensions) {
+enum status mf_target_bonded_read(struct target_bonded *target, int order, const char *name,
+                                  struct json_object *object, const struct units *units,
+                                  int dimensions) {
     const size_t faults = mf_json_fault_count(object->document);
     *target = (struct target_bonded){0};
     mf_json_fields(object, mf_target_bonded_fields, &target->parameters);
     mf_json_finish(object);
     if (mf_json_fault_count(object->document) > faults)
         return STATUS_OK;
-    if (target->parameters.format == TARGET_RDF_VOTCA && order == TOPOLOGY_BOND &&
+    if (target->parameters.format == TARGET_RDF_VOTCA && mf_bonded_kinds[order]->is_length &&
         !mf_units_known(units)) {
         mf_json_fault(object, "format",
                       "VOTCA's files are in nm: the scene needs \"units\" to convert them");

@@ -34,7 +34,7 @@ struct target_bonded {
 /// document and leave the target empty: bins, negative p, an integral that is off 1 by more than
 /// 1 %, angles in another unit. `units` are those of the scene, `dimensions` of space. Fails:
 /// NO_MEMORY. Tested: test_target_bonded.
-enum status mf_target_bonded_read(struct target_bonded *target, enum topology_order order,
-                                  const char *name, struct json_object *object,
-                                  const struct units *units, int dimensions) MUST_USE;
+enum status mf_target_bonded_read(struct target_bonded *target, int order, const char *name,
+                                  struct json_object *object, const struct units *units,
+                                  int dimensions) MUST_USE;
 void mf_target_bonded_clear(struct target_bonded *target);

@@ -45,9 +45,8 @@ static enum status read_settings(struct target_files *files, const struct observ
 
 /// p of each group, and what is to be measured for them.
 static enum status read_groups(struct target_files *files, const struct observable_kind *kind,
-                               enum topology_order order, struct json_object *object,
-                               const struct box *box, const struct molecules *molecules,
-                               const struct units *units) {
+                               int order, struct json_object *object, const struct box *box,
+                               const struct molecules *molecules, const struct units *units) {
     struct bonded_settings *settings = mf_memory_zeroed(1, sizeof *settings);
     if (settings == NULL)
         return STATUS_NO_MEMORY;
@@ -60,8 +59,8 @@ static enum status read_groups(struct target_files *files, const struct observab
     return STATUS_OK;
 }
 
-enum status mf_target_files_widen(struct target_files *files, enum topology_order order,
-                                  size_t group, const struct bonded_bins *bins) {
+enum status mf_target_files_widen(struct target_files *files, int order, size_t group,
+                                  const struct bonded_bins *bins) {
     const int place = mf_observable_kind(mf_bonded_distribution_kind(order)).place;
     struct bonded_settings *settings = files->settings[place];
     TRY(mf_target_groups_widen(&files->groups[order], group, bins));
@@ -88,8 +87,8 @@ static enum status read_kind(struct target_files *files, int number, struct json
                              const struct units *units) {
     const struct observable_kind kind = mf_observable_kind(number);
     const enum observable_form form = kind.target->form;
-    const enum topology_order order = mf_bonded_distribution_order(number);
-    if (order < TOPOLOGY_ORDERS)
+    const int order = mf_bonded_distribution_order(number);
+    if (order < BONDED_KINDS)
         return read_groups(files, &kind, order, object, box, molecules, units);
     if (kind.target->has_settings)
         TRY(read_settings(files, &kind, object));
@@ -166,7 +165,7 @@ void mf_target_files_clear(struct target_files *files) {
     mf_target_pairs_clear(&files->rdf);
     mf_target_pairs_clear(&files->apart);
     mf_target_etd_clear(&files->etd);
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+    for (int order = 0; order < BONDED_KINDS; order++)
         mf_target_groups_clear(&files->groups[order]);
     for (int kind = 0; kind < TARGETS; kind++)
         mf_target_curve_clear(&files->curve[kind]);
@@ -187,8 +186,8 @@ static void write_kind(const struct target_files *files, int number, struct json
     const enum observable_form form = kind.target->form;
     if (kind.target->has_settings)
         mf_json_put_fields(writer, kind.observable->fields, files->settings[kind.place]);
-    const enum topology_order order = mf_bonded_distribution_order(number);
-    if (order < TOPOLOGY_ORDERS)
+    const int order = mf_bonded_distribution_order(number);
+    if (order < BONDED_KINDS)
         mf_target_groups_write(&files->groups[order], writer);
     else if (number == TARGET_RDF)
         mf_target_pairs_write(&files->rdf, &files->composition, writer);
@@ -233,7 +232,7 @@ void mf_target_files_digest(const struct target_files *files, uint64_t *into) {
     digest(files->apart.error, target_pairs_values(&files->apart), into);
     digest(files->etd.survival, cells, into);
     digest(files->etd.error, cells, into);
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++) {
+    for (int order = 0; order < BONDED_KINDS; order++) {
         const struct target_groups *groups = &files->groups[order];
         digest(groups->value, groups->first[groups->groups], into);
         digest(groups->error, groups->first[groups->groups], into);
@@ -315,8 +314,8 @@ static struct target target_of(const struct target_files *files, int kind) {
     const struct target_curve *curve = &files->curve[kind];
     const struct target_number *number = &files->number[kind];
     const enum observable_form form = mf_observable_kind(kind).target->form;
-    const enum topology_order order = mf_bonded_distribution_order(kind);
-    if (order < TOPOLOGY_ORDERS)
+    const int order = mf_bonded_distribution_order(kind);
+    if (order < BONDED_KINDS)
         return (struct target){.count = files->groups[order].first[files->groups[order].groups],
                                .value = files->groups[order].value,
                                .error = files->groups[order].error,

@@ -21,7 +21,7 @@ struct target_files {
     struct target_pairs apart;          ///< of beads of different molecules
     struct normalisation normalisation; ///< by which g(r) of all that do not say theirs are divided
     struct target_etd etd;
-    struct target_groups groups[TOPOLOGY_ORDERS]; ///< of bonds, angles and dihedrals
+    struct target_groups groups[BONDED_KINDS]; ///< of bonds, angles and dihedrals
     struct target_kirkwood_buff kirkwood_buff;
     struct target_curve curve[TARGETS];   ///< of those that are curves
     struct target_number number[TARGETS]; ///< of those that are numbers
@@ -47,8 +47,8 @@ void mf_target_files_digest(const struct target_files *files, uint64_t *digest);
 
 /// As mf_target_groups_widen, of a group of bonds, angles or dihedrals; it is measured in these
 /// bins, too.
-enum status mf_target_files_widen(struct target_files *files, enum topology_order order,
-                                  size_t group, const struct bonded_bins *bins) MUST_USE;
+enum status mf_target_files_widen(struct target_files *files, int order, size_t group,
+                                  const struct bonded_bins *bins) MUST_USE;
 
 /// Divide g(r) by its normalisation: what the file says, else what mf_normalisation_find makes of
 /// the target in this box, and 1 of beads that are `joined` to molecules, of which it knows

@@ -20,9 +20,8 @@ static void fault_unknown(const struct target_groups *groups, struct json_object
         known[g] = groups->name[g];
     mf_nearest_hint(key, known, groups->groups, hint, sizeof hint);
     mf_json_fault(object, key, "no molecule has such %s %s%s%s",
-                  groups->order == TOPOLOGY_ANGLE ? "an" : "a",
-                  mf_topology_order_names[groups->order], groups->groups ? "; " : "",
-                  groups->groups ? hint : "");
+                  mf_bonded_kinds[groups->order]->article, mf_bonded_kinds[groups->order]->name,
+                  groups->groups ? "; " : "", groups->groups ? hint : "");
     mf_json_has(object, key);
 }
 
@@ -55,7 +54,7 @@ done:
     return status;
 }
 
-enum status mf_target_groups_read(struct target_groups *groups, enum topology_order order,
+enum status mf_target_groups_read(struct target_groups *groups, int order,
                                   struct json_object *object, const struct molecules *molecules,
                                   const struct units *units, int dimensions) {
     enum status status = STATUS_OK;

@@ -8,7 +8,7 @@
 
 /// By the numbers of the groups.
 struct target_groups {
-    enum topology_order order;
+    int order;
     size_t groups; ///< of the scene; 0: the target is not given
     char name[MOLECULES_MOST_GROUPS][TOPOLOGY_NAME_SIZE];
     struct target_bonded *member;            ///< shape [groups]
@@ -19,7 +19,7 @@ struct target_groups {
 
 /// Read the object of a kind; `molecules` are those of the scene, or NULL. Faults go to the
 /// document. Fails: NO_MEMORY.
-enum status mf_target_groups_read(struct target_groups *groups, enum topology_order order,
+enum status mf_target_groups_read(struct target_groups *groups, int order,
                                   struct json_object *object, const struct molecules *molecules,
                                   const struct units *units, int dimensions) MUST_USE;
 void mf_target_groups_clear(struct target_groups *groups);

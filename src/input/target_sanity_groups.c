@@ -40,8 +40,9 @@ static void tell_group(const struct target_groups *groups, size_t g, const struc
                  member->estimated_error,
                  member->assumed ? "is assumed there" : "there, from the scatter of the rows");
     double factor = 1;
-    const char *unit =
-        groups->order == TOPOLOGY_BOND ? mf_target_sanity_length(scene, &factor) : "degrees";
+    const char *unit = mf_bonded_kinds[groups->order]->is_length
+                           ? mf_target_sanity_length(scene, &factor)
+                           : "degrees";
     mf_target_sanity_say(listener,
                          "target %s.%s: %zu bins of %.4g from %.4g to %.4g %s, peak at %.4g%s",
                          mf_bonded_distribution_of(groups->order)->name, groups->name[g],
@@ -56,9 +57,9 @@ static void tell_group(const struct target_groups *groups, size_t g, const struc
 static void warn_of_lines(const struct target_files *files,
                           const struct target_sanity_listener *listener) {
     static const double straight = 170, many = 0.01;
-    const struct target_groups *angles = &files->groups[TOPOLOGY_ANGLE];
+    const struct target_groups *angles = &files->groups[BONDED_ANGLE];
     for (size_t g = 0;
-         files->given[mf_bonded_distribution_kind(TOPOLOGY_DIHEDRAL)] && g < angles->groups; g++) {
+         files->given[mf_bonded_distribution_kind(BONDED_DIHEDRAL)] && g < angles->groups; g++) {
         const struct target_bonded *member = &angles->member[g];
         double share = 0;
         for (size_t k = 0; k < member->bins.count; k++)
@@ -155,7 +156,7 @@ static void warn_of_tails(const struct target_files *files, const struct scene *
 
 void mf_target_sanity_tell_groups(const struct target_files *files, const struct scene *scene,
                                   const struct target_sanity_listener *listener) {
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+    for (int order = 0; order < BONDED_KINDS; order++)
         for (size_t g = 0; g < files->groups[order].groups; g++)
             tell_group(&files->groups[order], g, scene, listener);
     warn_of_lines(files, listener);

@@ -40,7 +40,7 @@ static double bond_virial(const struct inversion_state *state, size_t b) {
     for (size_t g = 0; g < grid->groups; g++) {
         const struct potential_group *group = &grid->group[g];
         const struct bonded_bins *bins = &group->own.unknown->bins;
-        if (group->own.unknown->order != TOPOLOGY_BOND || point < group->point ||
+        if (!mf_bonded_kinds[group->own.unknown->order]->is_length || point < group->point ||
             point >= group->point + group->own.points)
             continue;
         const size_t k = bin - group->bin;

@@ -105,7 +105,7 @@ static void enter_group(struct inversion_state *state, size_t g) {
     state->groups[g] = (struct sampler_group){unknown->order, unknown->group, unknown->bins};
     state->target.shape[state->grid.pairs + g] =
         (struct imc_shape){.bend = fmax(1, narrow * (double)own->known),
-                           .periodic = unknown->order == TOPOLOGY_DIHEDRAL};
+                           .periodic = mf_bonded_kinds[unknown->order]->periodic};
 }
 
 void mf_inversion_count_targets(struct inversion_state *state) {

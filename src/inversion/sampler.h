@@ -23,7 +23,7 @@ extern const char *const mf_sampler_kinds[];
 
 /// A group of bonds, angles or dihedrals that is counted, and its bins.
 struct sampler_group {
-    enum topology_order order;
+    int order;
     int group;
     struct bonded_bins bins;
 };

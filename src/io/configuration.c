@@ -17,7 +17,7 @@ static void list_types(const struct composition *composition, char text[TYPES_SI
 static size_t count_bonds(const struct topology *topology) {
     size_t bonds = 0;
     for (int k = 0; k < topology->kinds; k++)
-        bonds += (size_t)topology->kind[k].count * (size_t)topology->kind[k].terms[TOPOLOGY_BOND];
+        bonds += (size_t)topology->kind[k].count * (size_t)topology->kind[k].terms[BONDED_BOND];
     return bonds;
 }
 
@@ -27,8 +27,8 @@ static void list_bonds(const struct topology *topology, double *first, double *s
     for (int k = 0; k < topology->kinds; k++) {
         const struct topology_kind *kind = &topology->kind[k];
         for (int64_t m = 0; m < kind->count; m++)
-            for (int t = 0; t < kind->terms[TOPOLOGY_BOND]; t++, row++) {
-                const int *bead = kind->term[TOPOLOGY_BOND][t].bead;
+            for (int t = 0; t < kind->terms[BONDED_BOND]; t++, row++) {
+                const int *bead = kind->term[BONDED_BOND][t].bead;
                 first[row] = topology_id(kind, m, bead[0]) + 1.0;
                 second[row] = topology_id(kind, m, bead[1]) + 1.0;
             }

@@ -290,7 +290,7 @@ static bool can_be_met(const struct inverse_problem *problem) {
     for (int kind = 0; mf_targets_name(kind); kind++) {
         const bool of_pairs = kind == TARGET_RDF || kind == mf_rdf_intermolecular_kind() ||
                               kind == TARGET_PRESSURE || kind == mf_kirkwood_buff_kind();
-        const bool of_groups = mf_bonded_distribution_order(kind) < TOPOLOGY_ORDERS;
+        const bool of_groups = mf_bonded_distribution_order(kind) < BONDED_KINDS;
         if (targets_ask(targets, kind) &&
             !(of_pairs && problem->unknown[UNKNOWN_POTENTIAL].wanted) &&
             !(of_groups && problem->unknown[UNKNOWN_BONDED].wanted))

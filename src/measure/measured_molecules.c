@@ -11,10 +11,6 @@
 /// Edge of the box in which the nearest image of everything is itself [nm].
 static const double without_end = 1e9;
 
-/// Bonds, angles and dihedrals in their order, and sizes.
-static const char *const names[MEASURED_MOLECULES_MOST] = {"bond_lengths", "bond_angles",
-                                                           "dihedral_angles", "molecule_sizes"};
-
 // Preparing ---------------------------------------------------------------------------------------
 
 static enum status plan_walks(struct measured_molecules *measured) {
@@ -151,8 +147,8 @@ static void add_lengths(const struct measured_molecules *measured,
     const struct topology *topology = &measured->molecules->topology;
     for (int k = 0; k < topology->kinds; k++) {
         const struct topology_kind *kind = &topology->kind[k];
-        for (int n = 0; n < kind->terms[TOPOLOGY_BOND]; n++) {
-            const struct topology_term *term = &kind->term[TOPOLOGY_BOND][n];
+        for (int n = 0; n < kind->terms[BONDED_BOND]; n++) {
+            const struct topology_term *term = &kind->term[BONDED_BOND][n];
             struct lengths *group = &found[term->group];
             for (int64_t m = 0; m < kind->count; m++) {
                 int32_t place[2];
@@ -160,7 +156,7 @@ static void add_lengths(const struct measured_molecules *measured,
                 for (int bead = 0; bead < 2; bead++)
                     place[bead] =
                         (int32_t)measured->match.bead[topology_id(kind, m, term->bead[bead])];
-                mf_bonded_measure(TOPOLOGY_BOND, 1, place, &measured->shell->particles, &length);
+                mf_bonded_measure(BONDED_BOND, 1, place, &measured->shell->particles, &length);
                 group->sum += length;
                 group->count++;
             }
@@ -181,9 +177,9 @@ static void find_rest(struct measured_molecules *measured) {
     const struct molecules *molecules = measured->molecules;
     struct lengths found[MOLECULES_MOST_GROUPS] = {{0}};
     add_lengths(measured, found);
-    for (int g = 0; g < molecules->groups[TOPOLOGY_BOND]; g++)
+    for (int g = 0; g < molecules->groups[BONDED_BOND]; g++)
         if (found[g].count > 0)
-            rest_at(&molecules->group[TOPOLOGY_BOND][g].curve, found[g].sum / found[g].count);
+            rest_at(&molecules->group[BONDED_BOND][g].curve, found[g].sum / found[g].count);
 }
 
 static const struct observable *find_observable(const char *name) {
@@ -193,9 +189,9 @@ static const struct observable *find_observable(const char *name) {
     return mf_observables[k];
 }
 
-/// @param[in] order  of what is distributed, or TOPOLOGY_ORDERS
+/// @param[in] bins  of what is distributed, or 0
 static enum status add_observable(struct measured_molecules *measured,
-                                  const struct observable *observable, int order,
+                                  const struct observable *observable, int64_t bins,
                                   struct observable_use *use) {
     enum status status = STATUS_OK;
     const struct measure_plan plan = {.equilibration = -1, .samples = 0, .every = 1};
@@ -204,9 +200,8 @@ static enum status add_observable(struct measured_molecules *measured,
     use->settings = mf_memory_zeroed(1, observable->settings_size);
     CHECK(use->state && use->settings ? STATUS_OK : STATUS_NO_MEMORY);
     mf_fields_set_defaults(observable->fields, use->settings);
-    if (order < TOPOLOGY_ORDERS)
-        ((struct bonded_settings *)use->settings)->bins =
-            mf_bonded_distribution_fine((enum topology_order)order);
+    if (bins > 0)
+        ((struct bonded_settings *)use->settings)->bins = bins;
     CHECK(observable->begin(use->state, use->settings, measured->shell, &plan));
 done:
     return status;
@@ -220,14 +215,14 @@ enum status mf_measured_molecules_start(struct measured_molecules *measured,
     TRY(make_shell(measured, interval));
     place_beads(measured, beads);
     find_rest(measured);
-    for (int n = 0; n < MEASURED_MOLECULES_MOST; n++)
-        if (n >= TOPOLOGY_ORDERS || measured->molecules->groups[n] > 0)
-            TRY(add_observable(measured, find_observable(names[n]), n, use++));
-    return STATUS_OK;
+    for (int order = 0; order < BONDED_KINDS; order++)
+        if (measured->molecules->groups[order] > 0)
+            TRY(add_observable(measured, mf_bonded_distribution_of(order),
+                               mf_bonded_kinds[order]->fine, use++));
+    return add_observable(measured, find_observable("molecule_sizes"), 0, use);
 }
 
-static const struct observable_use *find_use(const struct measured_molecules *measured,
-                                             enum topology_order order) {
+static const struct observable_use *find_use(const struct measured_molecules *measured, int order) {
     const struct observable_use *use = measured->use;
     while (use->observable && use->observable != mf_bonded_distribution_of(order))
         use++;
@@ -235,16 +230,15 @@ static const struct observable_use *find_use(const struct measured_molecules *me
 }
 
 void mf_measured_molecules_end(struct measured_molecules *measured) {
-    for (enum topology_order order = 0; order < TOPOLOGY_ORDERS; order++) {
+    for (int order = 0; order < BONDED_KINDS; order++) {
         const struct observable_use *use = find_use(measured, order);
         if (use)
             mf_bonded_distribution_join(use->state);
     }
 }
 
-enum status mf_measured_molecules_moments(const struct measured_molecules *measured,
-                                          enum topology_order order, int group,
-                                          struct bonded_moments *moments) {
+enum status mf_measured_molecules_moments(const struct measured_molecules *measured, int order,
+                                          int group, struct bonded_moments *moments) {
     struct bonded_bins bins;
     double *counts = mf_bonded_distribution_counts(find_use(measured, order)->state, group, &bins);
     if (counts == NULL)

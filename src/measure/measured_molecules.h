@@ -15,7 +15,7 @@ struct measured_molecules_plan {
     const char *file;
 };
 
-enum { MEASURED_MOLECULES_MOST = 4 };
+enum { MEASURED_MOLECULES_MOST = (int)BONDED_KINDS + 1 };
 
 /// All zero: there are none.
 struct measured_molecules {
@@ -52,7 +52,6 @@ void mf_measured_molecules_end(struct measured_molecules *measured);
 
 /// How wide the distribution of a group is, of an order of which there are groups.
 /// Fails: NO_MEMORY.
-enum status mf_measured_molecules_moments(const struct measured_molecules *measured,
-                                          enum topology_order order, int group,
-                                          struct bonded_moments *moments) MUST_USE;
+enum status mf_measured_molecules_moments(const struct measured_molecules *measured, int order,
+                                          int group, struct bonded_moments *moments) MUST_USE;
 void mf_measured_molecules_clear(struct measured_molecules *measured);

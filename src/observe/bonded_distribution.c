@@ -24,29 +24,28 @@ static const struct field fields[] = {
     FIELD_END,
 };
 
-const struct observable *mf_bonded_distribution_of(enum topology_order order) {
-    static const struct observable *const of[TOPOLOGY_ORDERS] = {
-        &mf_bonded_lengths, &mf_bonded_angles, &mf_bonded_dihedrals};
+const struct observable *mf_bonded_distribution_of(int order) {
+#define OF(NAME, kind, ...) &mf_bonded_distribution_##kind,
+    static const struct observable *const of[] = {BONDED_LIST(OF)};
     return of[order];
 }
 
-enum topology_order mf_bonded_distribution_order(int kind) {
+int mf_bonded_distribution_order(int kind) {
     const struct observable *observable = mf_observable_kind(kind).observable;
-    for (enum topology_order order = 0; order < TOPOLOGY_ORDERS; order++)
+    for (int order = 0; order < BONDED_KINDS; order++)
         if (observable && observable == mf_bonded_distribution_of(order))
             return order;
-    return TOPOLOGY_ORDERS;
+    return BONDED_KINDS;
 }
 
-int mf_bonded_distribution_kind(enum topology_order order) {
+int mf_bonded_distribution_kind(int order) {
     int kind = 0;
     while (mf_bonded_distribution_order(kind) != order)
         kind++;
     return kind;
 }
 
-size_t mf_bonded_distribution_terms(const struct molecules *molecules, enum topology_order order,
-                                    int group) {
+size_t mf_bonded_distribution_terms(const struct molecules *molecules, int order, int group) {
     size_t terms = 0;
     for (int k = 0; k < molecules->topology.kinds; k++) {
         const struct topology_kind *kind = &molecules->topology.kind[k];
@@ -56,28 +55,20 @@ size_t mf_bonded_distribution_terms(const struct molecules *molecules, enum topo
     return terms;
 }
 
-double mf_bonded_distribution_jacobian(enum topology_order order, int dimensions,
-                                       const struct bonded_bins *bins, size_t bin) {
-    const double low = bins->low + (double)bin * bins->width, high = low + bins->width;
-    if (order == TOPOLOGY_DIHEDRAL)
-        return bins->width * BONDED_RADIANS;
-    const double from = fmax(0, low);
-    if (order == TOPOLOGY_BOND)
-        return dimensions == 3 ? (pow(high, 3) - pow(from, 3)) / 3
-                               : (high * high - from * from) / 2;
-    const double to = fmin(180, high);
-    return dimensions == 3 ? cos(from * BONDED_RADIANS) - cos(to * BONDED_RADIANS)
-                           : (to - from) * BONDED_RADIANS;
+double mf_bonded_distribution_jacobian(int order, int dimensions, const struct bonded_bins *bins,
+                                       size_t bin) {
+    return mf_bonded_kinds[order]->jacobian(dimensions, bins->low + (double)bin * bins->width,
+                                            bins->width);
 }
 
 // Sampling ----------------------------------------------------------------------------------------
 
-/// As far as the lengths of any group are likely to go: once in 10^8 a bond at rest at 0 goes on.
-static double longest_of(const struct molecules *molecules, double temperature) {
+/// As far as the lengths of any group are likely to go: once in 10^8 one at rest at 0 goes on.
+static double longest_of(const struct molecules *molecules, int order, double temperature) {
     static const double likely = 18;
     double longest = 0;
-    for (int g = 0; g < molecules->groups[TOPOLOGY_BOND]; g++) {
-        const struct bonded_curve *curve = &molecules->group[TOPOLOGY_BOND][g].curve;
+    for (int g = 0; g < molecules->groups[order]; g++) {
+        const struct bonded_curve *curve = &molecules->group[order][g].curve;
         const double rest = mf_bonded_rest(curve);
         longest = fmax(longest, rest > 0 ? fmin(mf_bonded_longest(curve), 2 * rest)
                                          : mf_bonded_reach(curve, likely * temperature));
@@ -85,23 +76,22 @@ static double longest_of(const struct molecules *molecules, double temperature) 
     return longest;
 }
 
-static struct bonded_bins choose_bins(const struct molecules *molecules, enum topology_order order,
-                                      int64_t count, double temperature) {
-    const double low = order == TOPOLOGY_DIHEDRAL ? -180 : 0;
-    const double high = order == TOPOLOGY_BOND ? longest_of(molecules, temperature) : 180;
-    return (struct bonded_bins){low, (high - low) / (double)count, (size_t)count};
+static struct bonded_bins choose_bins(const struct molecules *molecules, int order, int64_t count,
+                                      double temperature) {
+    const struct bonded_kind *kind = mf_bonded_kinds[order];
+    const double high = kind->is_length ? longest_of(molecules, order, temperature) : kind->high;
+    return (struct bonded_bins){kind->low, (high - kind->low) / (double)count, (size_t)count};
 }
 
-static enum status begin(struct bonded_state *s, enum topology_order order,
-                         const struct bonded_settings *settings,
+static enum status begin(struct bonded_state *s, int order, const struct bonded_settings *settings,
                          const struct simulation *simulation, const struct measure_plan *plan) {
     enum status status = STATUS_OK;
     const struct simulation_setup *setup = &simulation->setup;
     const struct molecules *molecules = mf_molecules_find(setup->interaction, setup->interactions);
     if (molecules == NULL || molecules->groups[order] == 0)
-        return mf_status_fail(STATUS_BAD_INPUT, "%s: the scene has no %ss",
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: the scene has no %s",
                               mf_bonded_distribution_of(order)->name,
-                              mf_topology_order_names[order]);
+                              mf_bonded_kinds[order]->plural);
     *s = (struct bonded_state){
         .molecules = molecules, .order = order, .dimensions = setup->box.dimensions};
     CHECK(mf_sample_blocks_init(&s->blocks, (size_t)plan->samples));
@@ -128,12 +118,12 @@ static void clear(void *state) {
 }
 
 /// The bin of q, or −1. The end of the circle may be rounded up.
-static int64_t find_bin(const struct bonded_bins *bins, enum topology_order order, double q) {
+static int64_t find_bin(const struct bonded_bins *bins, int order, double q) {
     double place = (q - bins->low) / bins->width;
-    if (order == TOPOLOGY_DIHEDRAL)
+    if (mf_bonded_kinds[order]->periodic)
         place -= 360 / bins->width * floor(place * bins->width / 360);
     const double count = (double)bins->count;
-    if (order != TOPOLOGY_BOND && place >= count && place < count * (1 + 1e-9))
+    if (!mf_bonded_kinds[order]->is_length && place >= count && place < count * (1 + 1e-9))
         return (int64_t)bins->count - 1;
     return place >= 0 && place < count ? (int64_t)place : -1;
 }
@@ -146,13 +136,13 @@ struct counting {
 };
 
 /// Count one term in all molecules of a kind.
-static void count_term(enum topology_order order, const struct bonded_bins *bins,
-                       const struct particles *particles, const struct topology_kind *kind,
-                       const struct topology_term *term, const struct counting *counting) {
-    const int beads = topology_beads(order);
-    const double unit = order == TOPOLOGY_BOND ? 1 : 1 / BONDED_RADIANS;
+static void count_term(int order, const struct bonded_bins *bins, const struct particles *particles,
+                       const struct topology_kind *kind, const struct topology_term *term,
+                       const struct counting *counting) {
+    const int beads = mf_bonded_kinds[order]->beads;
+    const double unit = 1 / mf_bonded_kinds[order]->scale;
     for (int64_t m = 0; m < kind->count; m += BONDED_BATCH) {
-        int32_t place[TOPOLOGY_MOST_BEADS * BONDED_BATCH];
+        int32_t place[BONDED_MOST_TERM_BEADS * BONDED_BATCH];
         double q[BONDED_BATCH];
         const int64_t left = kind->count - m;
         const size_t some = left < BONDED_BATCH ? (size_t)left : BONDED_BATCH;
@@ -174,7 +164,7 @@ static void count_term(enum topology_order order, const struct bonded_bins *bins
     }
 }
 
-static void count_group(const struct molecules *molecules, enum topology_order order, int group,
+static void count_group(const struct molecules *molecules, int order, int group,
                         const struct bonded_bins *bins, const struct particles *particles,
                         const struct counting *counting) {
     const struct topology *topology = &molecules->topology;
@@ -185,9 +175,9 @@ static void count_group(const struct molecules *molecules, enum topology_order o
                            &topology->kind[k].term[order][t], counting);
 }
 
-void mf_bonded_distribution_count(const struct molecules *molecules, enum topology_order order,
-                                  int group, const struct bonded_bins *bins,
-                                  const struct particles *particles, double *counts) {
+void mf_bonded_distribution_count(const struct molecules *molecules, int order, int group,
+                                  const struct bonded_bins *bins, const struct particles *particles,
+                                  double *counts) {
     count_group(molecules, order, group, bins, particles, &(struct counting){.all = counts});
 }
 
@@ -313,8 +303,6 @@ static enum status write_table(const struct bonded_state *s, const char *file,
                                const struct observable_results *results) {
     enum { MOST = 1 + COLUMNS * MOLECULES_MOST_GROUPS };
     static const char *const endings[COLUMNS] = {"", "_error", "_boltzmann"};
-    static const char *const heads[TOPOLOGY_ORDERS] = {"r[lambda]", "theta[degrees]",
-                                                       "phi[degrees]"};
     enum status status = STATUS_OK;
     const int groups = s->molecules->groups[s->order];
     const size_t bins = s->bins[0].count;
@@ -324,17 +312,15 @@ static enum status write_table(const struct bonded_state *s, const char *file,
     NEW_ARRAY(values, (1 + COLUMNS * (size_t)groups) * bins);
     for (size_t bin = 0; bin < bins; bin++)
         values[bin] = bonded_bins_centre(&s->bins[0], bin);
-    columns[0] = (struct data_column){heads[s->order], values, NULL};
+    columns[0] =
+        (struct data_column){mf_bonded_distribution_of(s->order)->targets->argument, values, NULL};
     for (int g = 0; g < groups; g++) {
         double *own = values + (1 + COLUMNS * (size_t)g) * bins;
         CHECK(find_columns(s, g, own));
         for (int c = 0; c < COLUMNS; c++) {
             const int n = 1 + COLUMNS * g + c;
             snprintf(names[n], sizeof names[n], "%s%s[%s]", s->molecules->group[s->order][g].name,
-                     endings[c],
-                     c == 2                      ? "1"
-                     : s->order == TOPOLOGY_BOND ? "1/lambda"
-                                                 : "1/degrees");
+                     endings[c], c == 2 ? "1" : mf_bonded_kinds[s->order]->density);
             columns[n] =
                 (struct data_column){names[n], own + (size_t)c * bins, c == 1 ? "%.3g" : "%.8g"};
         }
@@ -348,66 +334,57 @@ done:
 }
 
 /// Nanoseconds of a term and sample.
-static void explain(const struct simulation_setup *setup, enum topology_order order,
-                    const char *what, double every, struct stages *stages) {
-    static const double cost[TOPOLOGY_ORDERS] = {15, 40, 60};
+static void explain(const struct simulation_setup *setup, int order, const char *what, double every,
+                    struct stages *stages) {
     const struct molecules *molecules = mf_molecules_find(setup->interaction, setup->interactions);
-    double terms = 0;
-    for (int k = 0; molecules && k < molecules->topology.kinds; k++)
-        terms += (double)molecules->topology.kind[k].terms[order] *
-                 (double)molecules->topology.kind[k].count;
+    const double terms = molecules ? (double)mf_topology_terms(&molecules->topology, order) : 0;
     mf_stages_add(stages, what, true,
-                  cost[order] * terms / (every * fmax(1, (double)setup->placement.count)),
+                  mf_bonded_kinds[order]->cost * terms /
+                      (every * fmax(1, (double)setup->placement.count)),
                   "%.0f of them, one step in %.0f", terms, every);
 }
 
 // Records -----------------------------------------------------------------------------------------
 
-#define DISTRIBUTION(record, of, key, what, table, argument_, unit_)                               \
-    static enum status record##_begin(void *state, const void *settings,                           \
-                                      const struct simulation *simulation,                         \
-                                      const struct measure_plan *plan) {                           \
-        return begin(state, of, settings, simulation, plan);                                       \
+#define DISTRIBUTION(NAME, term, beads_, key, what, argument_, unit_)                              \
+    static enum status term##_begin(void *state, const void *settings,                             \
+                                    const struct simulation *simulation,                           \
+                                    const struct measure_plan *plan) {                             \
+        return begin(state, BONDED_##NAME, settings, simulation, plan);                            \
     }                                                                                              \
-    static enum status record##_write(const void *state,                                           \
-                                      const struct observable_results *results) {                  \
-        return write_table(state, table, results);                                                 \
+    static enum status term##_write(const void *state, const struct observable_results *results) { \
+        return write_table(state, #key ".tsv", results);                                           \
     }                                                                                              \
-    static void record##_explain(const void *settings, const struct simulation_setup *setup,       \
-                                 double every, struct stages *stages) {                            \
+    static void term##_explain(const void *settings, const struct simulation_setup *setup,         \
+                               double every, struct stages *stages) {                              \
         (void)settings;                                                                            \
-        explain(setup, of, what, every, stages);                                                   \
+        explain(setup, BONDED_##NAME, what, every, stages);                                        \
     }                                                                                              \
-    static const char *const record##_files[] = {table, NULL};                                     \
-    static const struct observable_target record##_targets[] = {                                   \
-        {.name = key,                                                                              \
+    static const char *const term##_files[] = {#key ".tsv", NULL};                                 \
+    static const struct observable_target term##_targets[] = {                                     \
+        {.name = #key,                                                                             \
          .summary = "p of the " what " of each group: {\"group\": {\"file\": ...}, ...}",          \
          .form = OBSERVABLE_OWN_FORM,                                                              \
          .argument = argument_,                                                                    \
          .unit = unit_},                                                                           \
         {0}};                                                                                      \
-    const struct observable record = {                                                             \
-        .name = key,                                                                               \
+    const struct observable mf_bonded_distribution_##term = {                                      \
+        .name = #key,                                                                              \
         .summary = "distribution of the " what " of each group",                                   \
         .fields = fields,                                                                          \
         .settings_size = sizeof(struct bonded_settings),                                           \
         .state_size = sizeof(struct bonded_state),                                                 \
-        .begin = record##_begin,                                                                   \
+        .begin = term##_begin,                                                                     \
         .clear = clear,                                                                            \
         .sample = sample,                                                                          \
         .spans = spans,                                                                            \
-        .write = record##_write,                                                                   \
-        .explain = record##_explain,                                                               \
+        .write = term##_write,                                                                     \
+        .explain = term##_explain,                                                                 \
         .stage = what,                                                                             \
-        .files = record##_files,                                                                   \
+        .files = term##_files,                                                                     \
         .figure = OBSERVABLE_FIGURE_OF_GROUPS,                                                     \
-        .targets = record##_targets,                                                               \
+        .targets = term##_targets,                                                                 \
         .result = result,                                                                          \
-    }
+    };
 
-DISTRIBUTION(mf_bonded_lengths, TOPOLOGY_BOND, "bond_lengths", "bond lengths", "bond_lengths.tsv",
-             "r[lambda]", "1/lambda");
-DISTRIBUTION(mf_bonded_angles, TOPOLOGY_ANGLE, "bond_angles", "bond angles", "bond_angles.tsv",
-             "theta[degrees]", "1/degrees");
-DISTRIBUTION(mf_bonded_dihedrals, TOPOLOGY_DIHEDRAL, "dihedral_angles", "dihedral angles",
-             "dihedral_angles.tsv", "phi[degrees]", "1/degrees");
+BONDED_LIST(DISTRIBUTION)

@@ -29,26 +29,25 @@ struct bonded_settings {
 };
 
 /// The observable of an order of terms, and the number of its target among all kinds.
-const struct observable *mf_bonded_distribution_of(enum topology_order order);
-int mf_bonded_distribution_kind(enum topology_order order);
+const struct observable *mf_bonded_distribution_of(int order);
+int mf_bonded_distribution_kind(int order);
 
-/// The order of terms that a kind of targets is about; TOPOLOGY_ORDERS if it is about none.
-enum topology_order mf_bonded_distribution_order(int kind);
+/// The order of terms that a kind of targets is about; BONDED_KINDS if it is about none.
+int mf_bonded_distribution_order(int kind);
 
 /// Terms of a group in all molecules.
-size_t mf_bonded_distribution_terms(const struct molecules *molecules, enum topology_order order,
-                                    int group);
+size_t mf_bonded_distribution_terms(const struct molecules *molecules, int order, int group);
 
 /// Add the terms of a group to the counts of the bins that they are in, shape [bins->count]. What
 /// is in no bin is not counted; dihedrals go round. The particles must be joined.
-void mf_bonded_distribution_count(const struct molecules *molecules, enum topology_order order,
-                                  int group, const struct bonded_bins *bins,
-                                  const struct particles *particles, double *counts);
+void mf_bonded_distribution_count(const struct molecules *molecules, int order, int group,
+                                  const struct bonded_bins *bins, const struct particles *particles,
+                                  double *counts);
 
 /// ∫ of the Jacobian over the part of a bin in which q can be [λ^d or rad]. Tested:
 /// test_bonded_distribution.
-double mf_bonded_distribution_jacobian(enum topology_order order, int dimensions,
-                                       const struct bonded_bins *bins, size_t bin);
+double mf_bonded_distribution_jacobian(int order, int dimensions, const struct bonded_bins *bins,
+                                       size_t bin);
 
 /// What p of a group says of its width.
 struct bonded_moments {
@@ -63,28 +62,30 @@ extern const double mf_bonded_distribution_seen;
 struct bonded_moments mf_bonded_distribution_moments(const struct bonded_bins *bins,
                                                      const double *p);
 
-/// The deviation below which a group is as good as constrained: a hundredth of a bond's mean
-/// length, a degree of an angle, none of a dihedral. An oscillation as narrow asks for time steps
-/// of a thousandth of the length at the thermal velocity, a twentieth of what pairs ask for, and no
-/// g(r) sees that a bond is narrower.
-double mf_bonded_distribution_narrow(enum topology_order order, double mean);
+/// The deviation below which a group is as good as constrained, by `narrow` of its kind: a
+/// hundredth of a bond's mean length, a degree of an angle, none of a dihedral. An oscillation as
+/// narrow asks for time steps of a thousandth of the length at the thermal velocity, a twentieth of
+/// what pairs ask for, and no g(r) sees that a bond is narrower.
+double mf_bonded_distribution_narrow(int order, double mean);
 
 /// Whether that is so, by what is measured.
-bool mf_bonded_distribution_is_constrained(enum topology_order order,
-                                           const struct bonded_moments *moments);
+bool mf_bonded_distribution_is_constrained(int order, const struct bonded_moments *moments);
 
-/// Of what is measured without knowing how wide it is: bins that are to be joined when all has been
-/// counted, by `mf_bonded_distribution_join`. They become as wide as the narrowest group and its
-/// counts ask for: its deviation has two where there are few counts and up to five where there are
-/// many, as many as D. W. Scott, Biometrika 66, 605 (1979), reckons, and the whole range has 100 at
-/// least. A group narrower than a constraint counts as that. Tested: test_measure_own_targets.
-int64_t mf_bonded_distribution_fine(enum topology_order order);
+/// Of what is measured without knowing how wide it is, in `fine` bins of its kind: they are to be
+/// joined when all has been counted, by `mf_bonded_distribution_join`. They become as wide as the
+/// narrowest group and its counts ask for: its deviation has two where there are few counts and up
+/// to five where there are many, as many as D. W. Scott, Biometrika 66, 605 (1979), reckons, and
+/// the whole range has 100 at least. A group narrower than a constraint counts as that. Tested:
+/// test_measure_own_targets.
 void mf_bonded_distribution_join(void *state);
 
 /// Counts of a group in its bins, shape [bins->count], the caller's to free; NULL: no memory.
 double *mf_bonded_distribution_counts(const void *state, int group, struct bonded_bins *bins);
 
-extern const struct observable mf_bonded_lengths, mf_bonded_angles, mf_bonded_dihedrals;
+#define BONDED_OBSERVABLE(NAME, kind, ...)                                                         \
+    extern const struct observable mf_bonded_distribution_##kind;
+BONDED_LIST(BONDED_OBSERVABLE)
+#undef BONDED_OBSERVABLE
 
 /// How many independent ones `bins` bins of a group from `first` on count as, by the scatter of the
 /// blocks of all states. Fails: NO_MEMORY.

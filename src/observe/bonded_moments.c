@@ -32,18 +32,11 @@ struct bonded_moments mf_bonded_distribution_moments(const struct bonded_bins *b
     return moments;
 }
 
-double mf_bonded_distribution_narrow(enum topology_order order, double mean) {
-    static const double of_length = 0.01, of_angle = 1;
-    return order == TOPOLOGY_BOND ? of_length * mean : order == TOPOLOGY_ANGLE ? of_angle : 0;
+double mf_bonded_distribution_narrow(int order, double mean) {
+    const struct bonded_kind *kind = mf_bonded_kinds[order];
+    return kind->is_length ? kind->narrow * mean : kind->narrow;
 }
 
-bool mf_bonded_distribution_is_constrained(enum topology_order order,
-                                           const struct bonded_moments *moments) {
+bool mf_bonded_distribution_is_constrained(int order, const struct bonded_moments *moments) {
     return moments->deviation < mf_bonded_distribution_narrow(order, moments->mean);
-}
-
-/// Numbers with many divisors.
-int64_t mf_bonded_distribution_fine(enum topology_order order) {
-    static const int64_t fine[TOPOLOGY_ORDERS] = {10000, 9000, 3600};
-    return fine[order];
 }

@@ -7,7 +7,7 @@
 
 struct bonded_state {
     const struct molecules *molecules;
-    enum topology_order order;
+    int order;
     int dimensions;
     struct sample_blocks blocks;
     struct bonded_bins bins[MOLECULES_MOST_GROUPS]; ///< of each group

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "observe/observable.h"
 
+#include "observe/bonded_distribution.h"
 #include "observe/flow_field.h"
 #include "observe/flow_profile.h"
 #include "observe/kirkwood_buff_observable.h"
@@ -10,8 +11,9 @@
 /// Of which nothing else knows.
 extern const struct observable mf_structure_factor, mf_snapshots, mf_polarity_observable;
 extern const struct observable mf_clusters, mf_local_density, mf_collisions;
-extern const struct observable mf_bonded_lengths, mf_bonded_angles, mf_bonded_dihedrals;
 extern const struct observable mf_molecule_sizes, mf_molecule_motion;
+
+#define BONDED(NAME, kind, ...) &mf_bonded_distribution_##kind,
 
 const struct observable *const mf_observables[] = {
     &mf_rdf_observable,
@@ -28,10 +30,7 @@ const struct observable *const mf_observables[] = {
     &mf_clusters,
     &mf_local_density,
     &mf_shear_viscosity,
-    &mf_bonded_lengths,
-    &mf_bonded_angles,
-    &mf_bonded_dihedrals,
-    &mf_molecule_sizes,
+    BONDED_LIST(BONDED) & mf_molecule_sizes,
     &mf_molecule_motion,
     &mf_rdf_intermolecular,
     &mf_kirkwood_buff_observable,

@@ -16,7 +16,7 @@ enum { FEWEST_BINS = BONDED_GRID_FEWEST_BINS };
 static const double chord = 2, least_rise = 10;
 
 static bool is_periodic(const struct bonded_grid *grid) {
-    return grid->unknown->order == TOPOLOGY_DIHEDRAL;
+    return mf_bonded_kinds[grid->unknown->order]->periodic;
 }
 
 static double largest_of(const struct bonded_grid *grid, const double *target) {
@@ -29,8 +29,8 @@ static double largest_of(const struct bonded_grid *grid, const double *target) {
 /// Whether q can be the centre of a bin.
 static bool is_possible(const struct bonded_grid *grid, double q) {
     static const double rounding = 1e-6;
-    return grid->unknown->order == TOPOLOGY_DIHEDRAL ||
-           (q > 0 && (grid->unknown->order == TOPOLOGY_BOND || q <= 180 * (1 + rounding)));
+    const struct bonded_kind *kind = mf_bonded_kinds[grid->unknown->order];
+    return kind->periodic || (q > kind->low && q <= kind->high * (1 + rounding));
 }
 
 /// The bins first … end − 1 from the first to the last that a target has seen.
@@ -97,7 +97,7 @@ enum status mf_bonded_grid_init(struct bonded_grid *grid, const struct inverse_p
                                 const struct bonded_unknown *unknown) {
     const struct molecules *molecules =
         mf_molecules_find(problem->scene.interaction, problem->scene.interactions);
-    const char *kind = mf_topology_order_names[unknown->order],
+    const char *kind = mf_bonded_kinds[unknown->order]->name,
                *name = molecules->group[unknown->order][unknown->group].name;
     *grid = (struct bonded_grid){
         .unknown = unknown,
@@ -253,14 +253,12 @@ void mf_bonded_grid_complete(const struct bonded_grid *grid, double *energy) {
 
 enum status mf_bonded_grid_curve(const struct bonded_grid *grid, const double *energy,
                                  struct bonded_curve *curve) {
-    static const struct bonded_law *const tables[TOPOLOGY_ORDERS] = {
-        &mf_bonded_table_bond, &mf_bonded_table_angle, &mf_bonded_table_dihedral};
     enum status status = STATUS_OK;
     double *q = NULL;
     NEW_ARRAY(q, grid->points);
     for (size_t k = 0; k < grid->points; k++)
         q[k] = mf_bonded_grid_place(grid, k);
-    CHECK(mf_bonded_create(curve, tables[grid->unknown->order]));
+    CHECK(mf_bonded_create(curve, mf_bonded_kinds[grid->unknown->order]->table));
     CHECK(mf_bonded_table_set_points(curve, q, energy, grid->points));
 done:
     mf_memory_free(q);

@@ -107,11 +107,11 @@ struct inverse_number {
 };
 
 /// The number of a group among those of all orders, and back.
-static inline int inverse_group(enum topology_order order, int group) {
+static inline int inverse_group(int order, int group) {
     return (int)order * (int)MOLECULES_MOST_GROUPS + group;
 }
-static inline enum topology_order inverse_order(int group) {
-    return (enum topology_order)(group / (int)MOLECULES_MOST_GROUPS);
+static inline int inverse_order(int group) {
+    return (group / (int)MOLECULES_MOST_GROUPS);
 }
 
 /// The curves of a law of the scene. Borrowed.
@@ -130,14 +130,14 @@ extern const struct field mf_inverse_group_fields[];
 
 /// A group of bonds, angles or dihedrals whose U(q) is to be found.
 struct bonded_unknown {
-    enum topology_order order;
+    int order;
     int group;               ///< among those of its order
     struct bonded_bins bins; ///< of its target
     size_t first;            ///< its first value in the target of its order
     struct bonded_shape shape;
 };
 
-enum { INVERSE_MOST_BONDED = (int)TOPOLOGY_ORDERS * (int)MOLECULES_MOST_GROUPS };
+enum { INVERSE_MOST_BONDED = (int)BONDED_KINDS * (int)MOLECULES_MOST_GROUPS };
 
 enum { INVERSE_MOST_STATES = 16 };
 

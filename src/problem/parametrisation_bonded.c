@@ -35,7 +35,7 @@ done:
 enum status mf_parametrisation_bonded_basis(const struct bonded_grid *grid, size_t count,
                                             double *basis) {
     const double whole = mf_bonded_grid_mean(grid) * (double)grid->known;
-    if (grid->unknown->order == TOPOLOGY_DIHEDRAL)
+    if (mf_bonded_kinds[grid->unknown->order]->periodic)
         fill_waves(grid, count, basis);
     else
         TRY(fill_splines(grid, count, basis));

@@ -236,7 +236,7 @@ void mf_potential_grid_complete(const struct potential_grid *grid, double *phi) 
 void mf_potential_grid_close(const struct potential_grid *grid, size_t group, double *values) {
     const struct potential_group *own = &grid->group[group];
     double *block = values + own->point;
-    if (own->own.unknown->order == TOPOLOGY_DIHEDRAL)
+    if (mf_bonded_kinds[own->own.unknown->order]->periodic)
         block[own->own.known] = block[0];
 }
 

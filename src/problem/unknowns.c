@@ -78,7 +78,7 @@ const char *mf_unknowns_heading(const struct unknowns *unknowns, enum unknown_ki
                                 size_t curve) {
     if (kind != UNKNOWN_BONDED)
         return "r[lambda]";
-    const enum topology_order order = unknowns->potential.group[curve].own.unknown->order;
+    const int order = unknowns->potential.group[curve].own.unknown->order;
     return mf_observable_kind(mf_bonded_distribution_kind(order)).target->argument;
 }
 
@@ -102,7 +102,7 @@ void mf_unknowns_curve_name(const struct unknowns *unknowns, enum unknown_kind k
         const struct molecules *molecules =
             mf_molecules_find(scene->interaction, scene->interactions);
         const struct bonded_unknown *group = unknowns->potential.group[curve].own.unknown;
-        snprintf(name, UNKNOWNS_NAME_SIZE, "%ss_%s", mf_topology_order_names[group->order],
+        snprintf(name, UNKNOWNS_NAME_SIZE, "%ss_%s", mf_bonded_kinds[group->order]->name,
                  molecules->group[group->order][group->group].name);
         return;
     }

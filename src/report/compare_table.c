@@ -57,6 +57,8 @@ struct column {
 };
 
 #define AT(member) offsetof(struct result_summary, member)
+#define BONDED(NAME, kind, beads, key, ...)                                                        \
+    {"rmse(" #kind "s)", false, AT(key##_rmse), NULL, AT(key##_rmse_error)},
 static const struct column columns[] = {
     {"method", true, AT(method), NULL, 0},
     {"status", true, AT(status), NULL, 0},
@@ -77,10 +79,7 @@ static const struct column columns[] = {
     {"rmse(D)", false, AT(diffusion_rmse), NULL, AT(diffusion_rmse_error)},
     {"rmse(p)", false, AT(pressure_rmse), NULL, AT(pressure_rmse_error)},
     {"rmse(S)", false, AT(structure_factor_rmse), NULL, AT(structure_factor_rmse_error)},
-    {"rmse(bonds)", false, AT(bond_lengths_rmse), NULL, AT(bond_lengths_rmse_error)},
-    {"rmse(angles)", false, AT(bond_angles_rmse), NULL, AT(bond_angles_rmse_error)},
-    {"rmse(dihedrals)", false, AT(dihedral_angles_rmse), NULL, AT(dihedral_angles_rmse_error)},
-    {"D", false, AT(diffusion), NULL, AT(diffusion_error)},
+    BONDED_LIST(BONDED){"D", false, AT(diffusion), NULL, AT(diffusion_error)},
     {"truth(phi)", false, AT(truth_rms), "%.3g", 0},
     {"truth(omega)", false, AT(omega_truth_rms), "%.3g", 0},
     {"T", false, AT(temperature), "%.3f", 0},

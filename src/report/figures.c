@@ -40,18 +40,14 @@ struct figure {
     enum parts parts;      ///< of the first table
 };
 
+#define DISTRIBUTION(NAME, kind, beads, key, ...) {#key, "groups", {#key ".tsv"}, "target", GROUPS},
+#define ENERGY(NAME, kind, ...) {#kind "s", "bonded", {#kind "s.tsv"}, "energy_error", GROUPS},
 static const struct figure figures[] = {
     {"rdf", "rdf", {"rdf.tsv"}, "target_error", PAIRS},
     {"intermolecular_rdf", "rdf", {"intermolecular_rdf.tsv"}, "target_error", PAIRS},
     {"intermolecular_rdf", "intermolecular_rdf", {"intermolecular_rdf.tsv"}, "g", PAIRS_TOGETHER},
-    {"bond_lengths", "groups", {"bond_lengths.tsv"}, "target", GROUPS},
-    {"bond_angles", "groups", {"bond_angles.tsv"}, "target", GROUPS},
-    {"dihedral_angles", "groups", {"dihedral_angles.tsv"}, "target", GROUPS},
-    {"potential", "potential", {"potential.tsv"}, "phi", PAIRS},
-    {"bonds", "bonded", {"bonds.tsv"}, "energy_error", GROUPS},
-    {"angles", "bonded", {"angles.tsv"}, "energy_error", GROUPS},
-    {"dihedrals", "bonded", {"dihedrals.tsv"}, "energy_error", GROUPS},
-    {"omega", "omega", {"omega.tsv"}, "omega_error", NO_PARTS},
+    BONDED_LIST(DISTRIBUTION){"potential", "potential", {"potential.tsv"}, "phi", PAIRS},
+    BONDED_LIST(ENERGY){"omega", "omega", {"omega.tsv"}, "omega_error", NO_PARTS},
     {"etd_cells", "etd_cells", {"etd_cells.tsv"}, "target", NO_PARTS},
     {"vacf", "vacf", {"vacf.tsv"}, "target", NO_PARTS},
     {"msd", "msd", {"msd.tsv"}, "target", NO_PARTS},

@@ -394,7 +394,7 @@ enum status mf_fit_output_observables(const struct fit_file *fit,
                           folder));
     if (files->given[TARGET_ETD])
         TRY(write_etd(fit, observed, folder));
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+    for (int order = 0; order < BONDED_KINDS; order++)
         for (size_t g = 0; g < files->groups[order].groups; g++)
             if (files->groups[order].member[g].bins.count > 0)
                 TRY(write_distribution(fit, &files->groups[order], g, observed, folder));

@@ -41,7 +41,7 @@ enum status mf_fit_reserve_observables(const struct fit_file *state, const char 
     TRY(reserve_pairs(folder, inside, state, mf_rdf_intermolecular_kind(), files->apart.pairs));
     if (files->given[TARGET_ETD])
         TRY(reserve(folder, inside, "etd_cells", "", ".tsv"));
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+    for (int order = 0; order < BONDED_KINDS; order++)
         TRY(reserve_groups(folder, inside, &files->groups[order]));
     for (int kind = 0; kind < TARGETS; kind++)
         if (files->curve[kind].points > 0)

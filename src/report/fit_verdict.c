@@ -137,7 +137,7 @@ bool mf_fit_verdict_contradicts(const struct verification *verification,
     if (targets_ask(fitted, mf_kirkwood_buff_kind()) &&
         contradicts_integrals(verification, noise_margin, units, reason))
         return true;
-    for (enum topology_order order = 0; order < TOPOLOGY_ORDERS; order++) {
+    for (int order = 0; order < BONDED_KINDS; order++) {
         const int kind = mf_bonded_distribution_kind(order);
         if (verify_agreement_holds(&agreement[kind]))
             continue;

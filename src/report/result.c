@@ -30,6 +30,7 @@ enum { PATH_SIZE = OUTPUT_PATH_SIZE + 64 };
 #define DISTANCE(kind, its_unit)                                                                   \
     NUMBER(kind##_rmse, its_unit), NUMBER(kind##_rmse_error, its_unit),                            \
         NUMBER(kind##_noise, its_unit)
+#define BONDED(NAME, kind, beads, key, what, argument, its_unit) DISTANCE(key, its_unit),
 #define MEAN(member, its_unit) NUMBER(member, its_unit), NUMBER(member##_error, its_unit)
 
 const struct field mf_result_summary_fields[] = {
@@ -49,10 +50,7 @@ const struct field mf_result_summary_fields[] = {
     DISTANCE(diffusion, "lambda^2/tau"),
     DISTANCE(pressure, "k_BT_0/lambda^d"),
     DISTANCE(intermolecular_rdf, "1"),
-    DISTANCE(bond_lengths, "1/lambda"),
-    DISTANCE(bond_angles, "1/degrees"),
-    DISTANCE(dihedral_angles, "1/degrees"),
-    DISTANCE(structure_factor, "1"),
+    BONDED_LIST(BONDED) DISTANCE(structure_factor, "1"),
     DISTANCE(kirkwood_buff, "lambda^d"),
     DISTANCE(polarity_correlation, "1"),
     DISTANCE(polar_order, "1"),

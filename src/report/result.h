@@ -4,6 +4,7 @@
 
 #include "base/fields.h"
 #include "base/status.h"
+#include "curves/bonded_kind.h"
 #include "io/units_scale.h"
 
 #include <stddef.h>
@@ -21,9 +22,9 @@ struct result_summary {
     double diffusion_rmse, diffusion_rmse_error, diffusion_noise;
     double pressure_rmse, pressure_rmse_error, pressure_noise;
     double intermolecular_rdf_rmse, intermolecular_rdf_rmse_error, intermolecular_rdf_noise;
-    double bond_lengths_rmse, bond_lengths_rmse_error, bond_lengths_noise;
-    double bond_angles_rmse, bond_angles_rmse_error, bond_angles_noise;
-    double dihedral_angles_rmse, dihedral_angles_rmse_error, dihedral_angles_noise;
+#define RESULT_BONDED(NAME, kind, beads, key, ...) double key##_rmse, key##_rmse_error, key##_noise;
+    BONDED_LIST(RESULT_BONDED)
+#undef RESULT_BONDED
     double structure_factor_rmse, structure_factor_rmse_error, structure_factor_noise;
     double kirkwood_buff_rmse, kirkwood_buff_rmse_error, kirkwood_buff_noise;
     double polarity_correlation_rmse, polarity_correlation_rmse_error, polarity_correlation_noise;

@@ -34,8 +34,8 @@ static int trace_rings(const struct topology_kind *kind, const int *parent, cons
                        int *start, int *bead, int *rings) {
     int beads = 0;
     *rings = 0;
-    for (int n = 0; n < kind->terms[TOPOLOGY_BOND]; n++) {
-        const int *pair = kind->term[TOPOLOGY_BOND][n].bead;
+    for (int n = 0; n < kind->terms[BONDED_BOND]; n++) {
+        const int *pair = kind->term[BONDED_BOND][n].bead;
         if (parent[pair[0]] == pair[1] || parent[pair[1]] == pair[0])
             continue;
         beads += trace_ring(parent, depth, pair[0], pair[1], bead ? bead + beads : NULL);

@@ -9,8 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char *const mf_topology_order_names[TOPOLOGY_ORDERS] = {"bond", "angle", "dihedral"};
-
 bool mf_topology_is_name(const char *name) {
     const size_t length = strlen(name);
     for (size_t k = 0; k < length; k++)
@@ -34,44 +32,44 @@ static bool are_same(const struct topology_term *a, const struct topology_term *
 void mf_topology_name_term(const struct topology_term *term, int order,
                            char text[TOPOLOGY_TERM_SIZE]) {
     size_t length = 0;
-    for (int k = 0; k < topology_beads(order); k++)
+    for (int k = 0; k < mf_bonded_kinds[order]->beads; k++)
         length += (size_t)snprintf(text + length, TOPOLOGY_TERM_SIZE - length, "%s%d", k ? "-" : "",
                                    term->bead[k] + 1);
 }
 
 static enum status check_beads(const struct topology_kind *kind, int order,
                                const struct topology_term *term, const char *name) {
-    const int beads = topology_beads(order);
+    const int beads = mf_bonded_kinds[order]->beads;
     for (int k = 0; k < beads; k++) {
         if (term->bead[k] < 0 || term->bead[k] >= kind->beads)
             return mf_status_fail(
                 STATUS_BAD_INPUT, "the %s %s has a bead %d, which is not there: beads are 1 to %d",
-                mf_topology_order_names[order], name, term->bead[k] + 1, kind->beads);
+                mf_bonded_kinds[order]->name, name, term->bead[k] + 1, kind->beads);
         for (int other = 0; other < k; other++)
             if (term->bead[other] == term->bead[k])
                 return mf_status_fail(STATUS_BAD_INPUT, "the %s %s has a bead twice",
-                                      mf_topology_order_names[order], name);
+                                      mf_bonded_kinds[order]->name, name);
     }
     return STATUS_OK;
 }
 
 enum status mf_topology_check_term(const struct topology_kind *kind, int order, int n) {
     const struct topology_term *term = &kind->term[order][n];
-    const int beads = topology_beads(order);
+    const int beads = mf_bonded_kinds[order]->beads;
     char name[TOPOLOGY_TERM_SIZE];
     mf_topology_name_term(term, order, name);
     TRY(check_beads(kind, order, term, name));
     for (int m = 0; m < n; m++) {
         const struct topology_term *other = &kind->term[order][m];
-        if (are_same(term, other, beads) && (order == TOPOLOGY_BOND || term->group == other->group))
+        if (are_same(term, other, beads) && (order == BONDED_BOND || term->group == other->group))
             return mf_status_fail(STATUS_BAD_INPUT, "the %s %s stands there twice",
-                                  mf_topology_order_names[order], name);
+                                  mf_bonded_kinds[order]->name, name);
     }
     return STATUS_OK;
 }
 
 enum status mf_topology_check(const struct topology_kind *kind) {
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+    for (int order = 0; order < BONDED_KINDS; order++)
         for (int n = 0; n < kind->terms[order]; n++)
             TRY(mf_topology_check_term(kind, order, n));
     return STATUS_OK;
@@ -79,23 +77,24 @@ enum status mf_topology_check(const struct topology_kind *kind) {
 
 static bool are_bonded(const struct topology_kind *kind, int a, int b) {
     const struct topology_term wanted = {.bead = {a, b}};
-    for (int n = 0; n < kind->terms[TOPOLOGY_BOND]; n++)
-        if (are_same(&kind->term[TOPOLOGY_BOND][n], &wanted, 2))
+    for (int n = 0; n < kind->terms[BONDED_BOND]; n++)
+        if (are_same(&kind->term[BONDED_BOND][n], &wanted, 2))
             return true;
     return false;
 }
 
 const struct topology_term *mf_topology_unbonded(const struct topology_kind *kind, int *order,
                                                  int pair[2]) {
-    for (*order = TOPOLOGY_ANGLE; *order < TOPOLOGY_ORDERS; ++*order)
-        for (int n = 0; n < kind->terms[*order]; n++) {
-            const struct topology_term *term = &kind->term[*order][n];
-            for (int k = 0; k + 1 < topology_beads(*order); k++) {
+    for (*order = 0; *order < BONDED_KINDS; ++*order) {
+        const struct bonded_kind *of = mf_bonded_kinds[*order];
+        for (int n = 0; n < kind->terms[*order]; n++)
+            for (int k = 0; k + 1 < of->beads; k++) {
+                const struct topology_term *term = &kind->term[*order][n];
                 memcpy(pair, term->bead + k, 2 * sizeof *pair);
-                if (!are_bonded(kind, pair[0], pair[1]))
+                if (of->chain[k + 1] == of->chain[k] + 1 && !are_bonded(kind, pair[0], pair[1]))
                     return term;
             }
-        }
+    }
     return NULL;
 }
 
@@ -103,8 +102,8 @@ const struct topology_term *mf_topology_unbonded(const struct topology_kind *kin
 
 enum status mf_topology_bonds(const struct topology_kind *kind, struct topology_bonds *bonds) {
     enum status status = STATUS_OK;
-    const int count = kind->terms[TOPOLOGY_BOND];
-    const struct topology_term *term = kind->term[TOPOLOGY_BOND];
+    const int count = kind->terms[BONDED_BOND];
+    const struct topology_term *term = kind->term[BONDED_BOND];
     NEW_ARRAY(bonds->start, kind->beads + 2);
     NEW_ARRAY(bonds->to, 2 * count);
     int *next = bonds->start + 1; // of each bead; they end as starts
@@ -326,8 +325,8 @@ void mf_topology_walk(const struct topology_kind *kind, int *order, int *parent)
         parent[bead] = -2; // not yet
     while (placed < kind->beads) {
         int next = -1, from = -1;
-        for (int n = 0; n < kind->terms[TOPOLOGY_BOND] && next < 0; n++) {
-            const int *pair = kind->term[TOPOLOGY_BOND][n].bead;
+        for (int n = 0; n < kind->terms[BONDED_BOND] && next < 0; n++) {
+            const int *pair = kind->term[BONDED_BOND][n].bead;
             for (int k = 0; k < 2 && next < 0; k++)
                 if (parent[pair[k]] > -2 && parent[pair[1 - k]] == -2) {
                     from = pair[k];
@@ -341,9 +340,16 @@ void mf_topology_walk(const struct topology_kind *kind, int *order, int *parent)
     }
 }
 
+size_t mf_topology_terms(const struct topology *topology, int order) {
+    size_t terms = 0;
+    for (int k = 0; k < topology->kinds; k++)
+        terms += (size_t)topology->kind[k].terms[order] * (size_t)topology->kind[k].count;
+    return terms;
+}
+
 void mf_topology_kind_clear(struct topology_kind *kind) {
     mf_memory_free(kind->type);
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+    for (int order = 0; order < BONDED_KINDS; order++)
         mf_memory_free(kind->term[order]);
     mf_memory_free(kind->id);
     mf_memory_free(kind->step);

@@ -4,34 +4,25 @@
 ///
 /// Kinds of molecules are repeated. The ids of their beads follow from the composition: the beads
 /// of a type stand molecule after molecule, kind after kind, single beads behind them, so that
-/// nothing is stored, sorted or saved. A term is a bond, an angle or a dihedral, of two, three or
-/// four beads, and belongs to a group, which has a law (forces/bonded.h).
+/// nothing is stored, sorted or saved. A term is a bond, an angle or a dihedral (the list of
+/// curves/bonded_kind.h), and belongs to a group, which has a law (forces/molecules.h).
 #pragma once
 
 #include "base/status.h"
+#include "curves/bonded_kind.h"
 #include "system/composition.h"
 
 #include <stddef.h>
 
-enum topology_order { TOPOLOGY_BOND, TOPOLOGY_ANGLE, TOPOLOGY_DIHEDRAL, TOPOLOGY_ORDERS };
 enum {
-    TOPOLOGY_MOST_BEADS = 4, ///< of a term
     TOPOLOGY_MOST_KINDS = 16,
     TOPOLOGY_MOST_EXCLUDE = 3,
     TOPOLOGY_NAME_SIZE = 32,
     TOPOLOGY_TERM_SIZE = 64, ///< of its beads as a text
 };
 
-/// Beads of a term: 2, 3 or 4.
-static inline int topology_beads(int order) {
-    return order + 2;
-}
-
-/// "bond", "angle", "dihedral".
-extern const char *const mf_topology_order_names[TOPOLOGY_ORDERS];
-
 struct topology_term {
-    int bead[TOPOLOGY_MOST_BEADS]; ///< of the molecule, from 0
+    int bead[BONDED_MOST_TERM_BEADS]; ///< of the molecule, from 0
     int group;
 };
 
@@ -42,8 +33,8 @@ struct topology_kind {
     int exclude;   ///< pairs of beads at most so many bonds apart do not act as pairs: 0 to 3
     int beads;
     int *type; ///< shape [beads], of the composition
-    int terms[TOPOLOGY_ORDERS];
-    struct topology_term *term[TOPOLOGY_ORDERS]; ///< shape [terms]
+    int terms[BONDED_KINDS];
+    struct topology_term *term[BONDED_KINDS]; ///< shape [terms]
     // Found by mf_topology_complete:
     int64_t first;   ///< number of its first molecule
     uint32_t *id;    ///< shape [beads], of the first molecule
@@ -80,7 +71,7 @@ enum status mf_topology_check(const struct topology_kind *kind) MUST_USE;
 /// The same of one term, and those of its order before it.
 enum status mf_topology_check_term(const struct topology_kind *kind, int order, int n) MUST_USE;
 
-/// The first angle or dihedral two neighbouring beads of which no bond joins, or NULL.
+/// The first term two beads of which follow each other in a chain and no bond joins, or NULL.
 /// @param[out] order  of the term
 /// @param[out] pair   the two beads, from 0
 const struct topology_term *mf_topology_unbonded(const struct topology_kind *kind, int *order,
@@ -111,6 +102,9 @@ enum status mf_topology_bonds(const struct topology_kind *kind,
 /// there is one. @param[out] order, parent  shape [beads]: the bead that is placed as number n; of
 /// each bead the one before it, or −1
 void mf_topology_walk(const struct topology_kind *kind, int *order, int *parent);
+
+/// Terms of an order in all molecules.
+size_t mf_topology_terms(const struct topology *topology, int order);
 
 /// Free a topology, complete or not; a zeroed one is fine.
 void mf_topology_clear(struct topology *topology);

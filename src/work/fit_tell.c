@@ -32,7 +32,7 @@ static void warn_of_step(const struct fit_file *fit,
     static const double coarse = 0.05, fine = 0.003;
     const struct simulation_setup *setup = &fit->scene.setup;
     const struct units *units = &fit->scene.units;
-    const struct target_groups *bonds = &fit->files.groups[TOPOLOGY_BOND];
+    const struct target_groups *bonds = &fit->files.groups[BONDED_BOND];
     const struct attributes_range masses = mf_attributes_span(&setup->attribute[ATTRIBUTES_MASS]);
     const double mass = masses.maximum > 0 ? masses.minimum : 1;
     const bool own = fit->verification.time_step > 0;

@@ -295,17 +295,14 @@ static void put_diffusion_target(const struct measure_result *result, struct jso
 
 /// "bond_lengths": {"backbone": {"file": "bond_lengths.tsv"}} and so on.
 static void put_groups(const struct measure_result *result, struct json_writer *writer) {
-    static const char *const keys[TOPOLOGY_ORDERS] = {"bond_lengths", "bond_angles",
-                                                      "dihedral_angles"};
     const struct molecules *const molecules = &result->kinds->molecules;
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++) {
-        char file[32];
-        snprintf(file, sizeof file, "%s.tsv", keys[order]);
+    for (int order = 0; order < BONDED_KINDS; order++) {
+        const struct observable *observable = mf_bonded_distribution_of(order);
         if (molecules->groups[order] > 0)
-            mf_json_begin(writer, keys[order]);
+            mf_json_begin(writer, observable->name);
         for (int g = 0; g < molecules->groups[order]; g++) {
             mf_json_begin(writer, molecules->group[order][g].name);
-            mf_json_put_text(writer, "file", file);
+            mf_json_put_text(writer, "file", observable->files[0]);
             mf_json_end(writer);
         }
         if (molecules->groups[order] > 0)

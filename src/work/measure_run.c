@@ -289,17 +289,17 @@ static void say_molecules(struct run *run, const struct measure_result *result) 
 /// Bonds and angles that a fit takes a law for.
 static enum status say_constraints(struct run *run) {
     const struct molecules *const molecules = run->measured.molecules.molecules;
-    for (enum topology_order order = 0; molecules && order < TOPOLOGY_DIHEDRAL; order++)
+    for (int order = 0; molecules && order < BONDED_KINDS; order++)
         for (int g = 0; g < molecules->groups[order]; g++) {
             struct bonded_moments found;
             TRY(mf_measured_molecules_moments(&run->measured.molecules, order, g, &found));
             if (!mf_bonded_distribution_is_constrained(order, &found))
                 continue;
-            const char *const unit = order == TOPOLOGY_BOND ? "nm" : "degrees";
+            const char *const unit = mf_bonded_kinds[order]->is_length ? "nm" : "degrees";
             mf_progress_say(&run->progress,
                             "%s \"%s\": a constraint, of a standard deviation of %.2g for a mean "
                             "of %.4g %s: fit takes a harmonic law for it, of %.2g %s",
-                            mf_topology_order_names[order], molecules->group[order][g].name,
+                            mf_bonded_kinds[order]->name, molecules->group[order][g].name,
                             found.deviation, found.mean, unit,
                             mf_bonded_distribution_narrow(order, found.mean), unit);
         }

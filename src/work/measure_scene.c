@@ -38,9 +38,9 @@ static enum status put_wide_box(const struct measure_result *result, struct json
     static const double bonds = 3;
     const struct molecules *const molecules = &result->kinds->molecules;
     double longest = 0, edge[3];
-    for (int g = 0; g < molecules->groups[TOPOLOGY_BOND]; g++) {
+    for (int g = 0; g < molecules->groups[BONDED_BOND]; g++) {
         struct bonded_moments found;
-        TRY(mf_measured_molecules_moments(&result->measured->molecules, TOPOLOGY_BOND, g, &found));
+        TRY(mf_measured_molecules_moments(&result->measured->molecules, BONDED_BOND, g, &found));
         longest = fmax(longest, found.mean);
     }
     const double beads = share_of_alone(result) * (double)result->mapping->beads;

@@ -94,7 +94,7 @@ static void make_result(struct temporary_folder *folder, bool with_tables) {
 struct ours {
     struct export_model model;
     struct simulation simulation;
-    double pairs, bonded[TOPOLOGY_ORDERS];
+    double pairs, bonded[BONDED_KINDS];
 };
 
 static double energy_of(const struct ours *ours, int order) {
@@ -105,9 +105,9 @@ static double energy_of(const struct ours *ours, int order) {
         for (int64_t m = 0; m < kind->count; m++)
             for (int n = 0; n < kind->terms[order]; n++) {
                 const struct topology_term *term = &kind->term[order][n];
-                int32_t place[TOPOLOGY_MOST_BEADS];
+                int32_t place[BONDED_MOST_TERM_BEADS];
                 double q, energy;
-                for (int bead = 0; bead < topology_beads(order); bead++)
+                for (int bead = 0; bead < mf_bonded_kinds[order]->beads; bead++)
                     place[bead] = (int32_t)ours->simulation.particles
                                       .place[topology_id(kind, m, term->bead[bead])];
                 mf_bonded_measure(order, 1, place, &ours->simulation.particles, &q);
@@ -128,7 +128,7 @@ static void find_ours(struct ours *ours) {
     assert_ok(mf_simulation_init(&ours->simulation, &ours->model.setup, &start));
     assert_ok(mf_simulation_compute_potential(&ours->simulation));
     ours->pairs = ours->simulation.sums.energy;
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++) {
+    for (int order = 0; order < BONDED_KINDS; order++) {
         ours->bonded[order] = energy_of(ours, order);
         ours->pairs -= ours->bonded[order];
     }
@@ -219,14 +219,14 @@ static void compare(struct temporary_folder *folder, bool with_tables, double pe
     const struct export_units units = mf_export_units(EXPORT_REAL, &ours.model.scene.units, false);
     const double force = compare_forces(&ours, export_units_force(&units));
     print_message("pairs %.9g %.9g", energy[0] / units.energy, ours.pairs);
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
-        print_message(", %ss %.9g %.9g", mf_topology_order_names[order],
+    for (int order = 0; order < BONDED_KINDS; order++)
+        print_message(", %ss %.9g %.9g", mf_bonded_kinds[order]->name,
                       energy[1 + order] / units.energy, ours.bonded[order]);
     print_message("; forces differ by %.2g at most\n", force);
     assert_true(fabs(energy[0] / units.energy - ours.pairs) < 1e-5 * (double)ours.model.count);
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+    for (int order = 0; order < BONDED_KINDS; order++)
         assert_true(fabs(energy[1 + order] / units.energy - ours.bonded[order]) <
-                    per_term * (double)mf_export_bonded_count(ours.model.molecules, order));
+                    per_term * (double)mf_topology_terms(&ours.model.molecules->topology, order));
     assert_true(force < force_bound);
     if (system("cd lammps && lmp -in in.mesofit -var steps 200 -var equilibration 100 >lmp.out "
                "2>&1") != 0)
@@ -256,15 +256,15 @@ static int order_of(const char *name) {
     static const struct {
         const char *name;
         int order;
-    } known[] = {{"Bond", TOPOLOGY_BOND},
-                 {"FENE Bonds", TOPOLOGY_BOND},
-                 {"Tab. Bonds", TOPOLOGY_BOND},
-                 {"Angle", TOPOLOGY_ANGLE},
-                 {"G96Angle", TOPOLOGY_ANGLE},
-                 {"Tab. Angles", TOPOLOGY_ANGLE},
-                 {"Proper Dih.", TOPOLOGY_DIHEDRAL},
-                 {"Ryckaert-Bell.", TOPOLOGY_DIHEDRAL},
-                 {"Tab. Dih.", TOPOLOGY_DIHEDRAL}};
+    } known[] = {{"Bond", BONDED_BOND},
+                 {"FENE Bonds", BONDED_BOND},
+                 {"Tab. Bonds", BONDED_BOND},
+                 {"Angle", BONDED_ANGLE},
+                 {"G96Angle", BONDED_ANGLE},
+                 {"Tab. Angles", BONDED_ANGLE},
+                 {"Proper Dih.", BONDED_DIHEDRAL},
+                 {"Ryckaert-Bell.", BONDED_DIHEDRAL},
+                 {"Tab. Dih.", BONDED_DIHEDRAL}};
     while (*name == ' ')
         name++;
     for (size_t k = 0; k < sizeof known / sizeof *known; k++)
@@ -275,7 +275,7 @@ static int order_of(const char *name) {
 }
 
 /// The first energies of md.log: lines of names and of numbers, fields of 15 letters.
-static void read_log(double energy[TOPOLOGY_ORDERS]) {
+static void read_log(double energy[BONDED_KINDS]) {
     FILE *stream = fopen("gromacs/md.log", "r");
     char names[256], values[256];
     assert_non_null(stream);
@@ -297,7 +297,7 @@ static void read_log(double energy[TOPOLOGY_ORDERS]) {
 static void compare_gromacs(struct temporary_folder *folder, bool with_tables, double per_term) {
     static struct run_program_result result;
     static struct ours ours;
-    double energy[TOPOLOGY_ORDERS] = {0};
+    double energy[BONDED_KINDS] = {0};
     skip_without("gmx");
     make_result(folder, with_tables);
     RUN_PROGRAM(&result, "export", "out", "--engine", "gromacs", "-o", "gromacs");
@@ -315,13 +315,13 @@ static void compare_gromacs(struct temporary_folder *folder, bool with_tables, d
     read_log(energy);
     const struct export_units units =
         mf_export_units(EXPORT_NANOMETRES, &ours.model.scene.units, true);
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
-        print_message("%ss %.7g %.7g ", mf_topology_order_names[order],
-                      energy[order] / units.energy, ours.bonded[order]);
+    for (int order = 0; order < BONDED_KINDS; order++)
+        print_message("%ss %.7g %.7g ", mf_bonded_kinds[order]->name, energy[order] / units.energy,
+                      ours.bonded[order]);
     print_message("\n");
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+    for (int order = 0; order < BONDED_KINDS; order++)
         assert_true(fabs(energy[order] / units.energy - ours.bonded[order]) <
-                    per_term * (double)mf_export_bonded_count(ours.model.molecules, order));
+                    per_term * (double)mf_topology_terms(&ours.model.molecules->topology, order));
     clear_ours(&ours);
 }
 

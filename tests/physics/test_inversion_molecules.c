@@ -44,8 +44,8 @@ static void make_chains(struct twin *twin) {
     const struct composition composition =
         molecules_topology(&twin->molecules.topology, molecules_chain(CHAINS, type, BEADS, 1, 2),
                            (struct topology_kind){0}, 1, NULL);
-    molecules_add_group(&twin->molecules, TOPOLOGY_BOND, &mf_bond_harmonic, bond_numbers);
-    molecules_add_group(&twin->molecules, TOPOLOGY_ANGLE, &mf_angle_harmonic, angle_numbers);
+    molecules_add_group(&twin->molecules, BONDED_BOND, &mf_bond_harmonic, bond_numbers);
+    molecules_add_group(&twin->molecules, BONDED_ANGLE, &mf_angle_harmonic, angle_numbers);
     fluid_groot_warren(&twin->fluid, CHAINS * BEADS, 0.004);
     mf_table_clear(&twin->fluid.potential);
     assert_ok(mf_table_init_potential(&twin->fluid.potential, &curve));
@@ -54,8 +54,8 @@ static void make_chains(struct twin *twin) {
 
 static void state_problem(struct twin *twin, uint64_t seed) {
     struct inverse_problem *problem = &twin->problem;
-    const int bond = mf_bonded_distribution_kind(TOPOLOGY_BOND);
-    const int angle = mf_bonded_distribution_kind(TOPOLOGY_ANGLE);
+    const int bond = mf_bonded_distribution_kind(BONDED_BOND);
+    const int angle = mf_bonded_distribution_kind(BONDED_ANGLE);
     static const double none[PAIR_BINS + BOND_BINS + ANGLE_BINS];
     *problem = (struct inverse_problem){.scene = twin->fluid.setup,
                                         .core_threshold = 1e-3,
@@ -87,8 +87,8 @@ static void measure(struct twin *twin) {
     problem->targets = problem->compared;
     problem->unknown[UNKNOWN_POTENTIAL].wanted = problem->unknown[UNKNOWN_BONDED].wanted = true;
     problem->bonded = 2;
-    problem->group[0] = (struct bonded_unknown){TOPOLOGY_BOND, 0, bond_bins, 0, {0}};
-    problem->group[1] = (struct bonded_unknown){TOPOLOGY_ANGLE, 0, angle_bins, 0, {0}};
+    problem->group[0] = (struct bonded_unknown){BONDED_BOND, 0, bond_bins, 0, {0}};
+    problem->group[1] = (struct bonded_unknown){BONDED_ANGLE, 0, angle_bins, 0, {0}};
 }
 
 static void make_twin(struct twin *twin, uint64_t seed) {
@@ -316,7 +316,7 @@ static void make_dimers(struct dimers *dimers) {
         molecules_topology(&dimers->molecules.topology, molecules_chain(CHAINS, type, 2, 0, 1),
                            (struct topology_kind){0}, 1, NULL);
     double sum = 0;
-    molecules_add_group(&dimers->molecules, TOPOLOGY_BOND, &mf_bonded_table_bond, NULL);
+    molecules_add_group(&dimers->molecules, BONDED_BOND, &mf_bond_table, NULL);
     fluid_groot_warren(&dimers->fluid, CHAINS * 2, 0.004);
     mf_table_clear(&dimers->fluid.potential);
     assert_ok(mf_table_init_potential(&dimers->fluid.potential, &curve));
@@ -330,7 +330,7 @@ static void make_dimers(struct dimers *dimers) {
         dimers->target[k] /= sum;
         dimers->error[k] = sqrt(dimers->target[k] / wide_bins.width / 20000);
     }
-    const int bond = mf_bonded_distribution_kind(TOPOLOGY_BOND);
+    const int bond = mf_bonded_distribution_kind(BONDED_BOND);
     dimers->problem = (struct inverse_problem){.scene = dimers->fluid.setup,
                                                .core_threshold = 1e-3,
                                                .core_stiffness = 2000,
@@ -338,7 +338,7 @@ static void make_dimers(struct dimers *dimers) {
                                                .threads = 2,
                                                .bonded = 1};
     dimers->problem.unknown[UNKNOWN_BONDED].wanted = true;
-    dimers->problem.group[0] = (struct bonded_unknown){TOPOLOGY_BOND, 0, wide_bins, 0, {0}};
+    dimers->problem.group[0] = (struct bonded_unknown){BONDED_BOND, 0, wide_bins, 0, {0}};
     dimers->bond.target[0] = wide_bins;
     dimers->problem.targets.target[bond] =
         (struct target){.count = BOND_BINS, .value = dimers->target, .error = dimers->error};

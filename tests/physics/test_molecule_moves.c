@@ -53,10 +53,10 @@ static double reject(struct draw *draw, double low, double high, int order) {
         const double q = low + (high - low) * uniform(draw);
         const int flat = draw->example->dimensions == 2;
         double energy, measure;
-        if (order == TOPOLOGY_BOND) {
+        if (order == BONDED_BOND) {
             energy = spring * pow(q - rest, 2) / 2;
             measure = pow(q / high, flat ? 1 : 2);
-        } else if (order == TOPOLOGY_ANGLE) {
+        } else if (order == BONDED_ANGLE) {
             energy = stiffness * pow(q - bent * M_PI / 180, 2) / 2;
             measure = sin(q);
         } else {
@@ -118,13 +118,13 @@ static void draw_molecule(struct draw *draw, double (*x)[3], const double (*star
                                   ? sqrt(pow(start[bead][0] - start[parent][0], 2) +
                                          pow(start[bead][1] - start[parent][1], 2) +
                                          pow(start[bead][2] - start[parent][2], 2))
-                                  : reject(draw, 0, 1.7, TOPOLOGY_BOND);
-        if (bead == 1 || e->star || e->highest < TOPOLOGY_ANGLE) {
+                                  : reject(draw, 0, 1.7, BONDED_BOND);
+        if (bead == 1 || e->star || e->highest < BONDED_ANGLE) {
             draw_direction(draw, u[bead]);
         } else {
-            const double theta = reject(draw, 0, M_PI, TOPOLOGY_ANGLE);
-            const bool twisted = bead > 2 && e->highest == TOPOLOGY_DIHEDRAL;
-            const double phi = twisted ? reject(draw, -M_PI, M_PI, TOPOLOGY_DIHEDRAL) : 0;
+            const double theta = reject(draw, 0, M_PI, BONDED_ANGLE);
+            const bool twisted = bead > 2 && e->highest == BONDED_DIHEDRAL;
+            const double phi = twisted ? reject(draw, -M_PI, M_PI, BONDED_DIHEDRAL) : 0;
             turn(draw, u[bead - 1], twisted ? u[bead - 2] : NULL, theta, phi, u[bead]);
         }
         for (int d = 0; d < 3; d++)
@@ -245,22 +245,22 @@ static struct composition make_molecules(struct molecules *molecules, const stru
     struct topology_kind kind =
         molecules_chain(e->molecules, type, e->beads, e->highest, e->exclude);
     if (e->ring || e->star) {
-        mf_memory_free(kind.term[TOPOLOGY_BOND]);
-        kind.term[TOPOLOGY_BOND] = mf_memory_zeroed(MOST_BEADS, sizeof(struct topology_term));
-        kind.terms[TOPOLOGY_BOND] = 0;
+        mf_memory_free(kind.term[BONDED_BOND]);
+        kind.term[BONDED_BOND] = mf_memory_zeroed(MOST_BEADS, sizeof(struct topology_term));
+        kind.terms[BONDED_BOND] = 0;
         for (int bead = 1; bead < e->beads; bead++)
-            add_term(&kind, TOPOLOGY_BOND, e->star ? 0 : bead - 1, bead);
+            add_term(&kind, BONDED_BOND, e->star ? 0 : bead - 1, bead);
         if (e->ring)
-            add_term(&kind, TOPOLOGY_BOND, 0, e->beads - 1);
+            add_term(&kind, BONDED_BOND, 0, e->beads - 1);
     }
     *molecules = (struct molecules){0};
     const struct composition composition =
         molecules_topology(&molecules->topology, kind, (struct topology_kind){0}, 1, NULL);
-    molecules_add_group(molecules, TOPOLOGY_BOND, &mf_bond_harmonic, bond);
-    if (e->highest >= TOPOLOGY_ANGLE)
-        molecules_add_group(molecules, TOPOLOGY_ANGLE, &mf_angle_harmonic, bend);
-    if (e->highest == TOPOLOGY_DIHEDRAL)
-        molecules_add_group(molecules, TOPOLOGY_DIHEDRAL, &mf_dihedral_periodic, twist);
+    molecules_add_group(molecules, BONDED_BOND, &mf_bond_harmonic, bond);
+    if (e->highest >= BONDED_ANGLE)
+        molecules_add_group(molecules, BONDED_ANGLE, &mf_angle_harmonic, bend);
+    if (e->highest == BONDED_DIHEDRAL)
+        molecules_add_group(molecules, BONDED_DIHEDRAL, &mf_dihedral_periodic, twist);
     return composition;
 }
 
@@ -360,7 +360,7 @@ static void test_each_move_alone_leaves_dumbbells_in_equilibrium(void **state) {
     for (int move = 0; move <= ALL_MOVES; move++) {
         static const char *const names[] = {"translate", "rotate", "pivot", "beads", "all"};
         const double edge = move == MOLECULE_PIVOT ? 4.2 : 3; // four times as long as what turns
-        check(&(struct example){names[move], 3, 2, 2, TOPOLOGY_BOND, .move = move, .edge = edge});
+        check(&(struct example){names[move], 3, 2, 2, BONDED_BOND, .move = move, .edge = edge});
     }
 }
 
@@ -373,12 +373,12 @@ static void test_moves_leave_flat_dumbbells_in_equilibrium(void **state) {
 
 static void test_moves_leave_chains_that_meet_themselves_in_equilibrium(void **state) {
     (void)state;
-    check(&(struct example){"chain, pivot", 3, 1, 5, TOPOLOGY_DIHEDRAL, .exclude = 1,
+    check(&(struct example){"chain, pivot", 3, 1, 5, BONDED_DIHEDRAL, .exclude = 1,
                             .move = MOLECULE_PIVOT, .edge = 12});
-    check(&(struct example){"chain, beads", 3, 1, 5, TOPOLOGY_DIHEDRAL, .exclude = 1,
+    check(&(struct example){"chain, beads", 3, 1, 5, BONDED_DIHEDRAL, .exclude = 1,
                             .move = BEADS_ALONE, .edge = 12});
-    check(&(struct example){"chain, all", 3, 1, 6, TOPOLOGY_DIHEDRAL, .exclude = 1,
-                            .move = ALL_MOVES, .edge = 12});
+    check(&(struct example){"chain, all", 3, 1, 6, BONDED_DIHEDRAL, .exclude = 1, .move = ALL_MOVES,
+                            .edge = 12});
 }
 
 static void test_moves_leave_stars_and_rings_in_equilibrium(void **state) {
@@ -402,10 +402,10 @@ static void test_bonds_that_tear_stay_whole_in_equilibrium(void **state) {
     struct molecules molecules = {0};
     struct metropolis metropolis;
     struct running_mean all = {0};
-    const struct composition composition = molecules_topology(
-        &molecules.topology, molecules_chain(DUMBBELLS, type, 2, TOPOLOGY_BOND, 1),
-        (struct topology_kind){0}, 1, NULL);
-    molecules_add_group(&molecules, TOPOLOGY_BOND, &mf_bond_fene, fene);
+    const struct composition composition =
+        molecules_topology(&molecules.topology, molecules_chain(DUMBBELLS, type, 2, BONDED_BOND, 1),
+                           (struct topology_kind){0}, 1, NULL);
+    molecules_add_group(&molecules, BONDED_BOND, &mf_bond_fene, fene);
     assert_ok(mf_metropolis_init(&metropolis, &box, &composition, NULL, temperature, 7));
     assert_ok(mf_metropolis_join(&metropolis, &molecules));
     assert_ok(mf_metropolis_equilibrate(&metropolis, 300));
@@ -419,7 +419,7 @@ static void test_bonds_that_tear_stay_whole_in_equilibrium(void **state) {
             for (int bead = 0; bead < 2; bead++)
                 place[bead] = (int32_t)metropolis.particles
                                   .place[topology_id(&molecules.topology.kind[0], m, bead)];
-            mf_bonded_measure(TOPOLOGY_BOND, 1, place, &metropolis.particles, &r);
+            mf_bonded_measure(BONDED_BOND, 1, place, &metropolis.particles, &r);
             assert_true(r < longest);
             sum += r * r / (longest * longest) / 100;
         }

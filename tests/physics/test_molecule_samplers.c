@@ -54,9 +54,9 @@ static void make_melt(struct melt *melt) {
     melt->composition =
         molecules_topology(&melt->molecules.topology, molecules_chain(CHAINS, type, BEADS, 2, 2),
                            (struct topology_kind){0}, 1, NULL);
-    molecules_add_group(&melt->molecules, TOPOLOGY_BOND, &mf_bond_harmonic, spring);
-    molecules_add_group(&melt->molecules, TOPOLOGY_ANGLE, &mf_angle_harmonic, bend);
-    molecules_add_group(&melt->molecules, TOPOLOGY_DIHEDRAL, &mf_dihedral_periodic, twist);
+    molecules_add_group(&melt->molecules, BONDED_BOND, &mf_bond_harmonic, spring);
+    molecules_add_group(&melt->molecules, BONDED_ANGLE, &mf_angle_harmonic, bend);
+    molecules_add_group(&melt->molecules, BONDED_DIHEDRAL, &mf_dihedral_periodic, twist);
     fluid_groot_warren(&melt->fluid, COUNT, 0.008);
     melt->fluid.setup.integrator = &mf_aboba;
     molecules_enter(&melt->fluid.setup, &melt->molecules, &melt->composition);
@@ -118,11 +118,11 @@ static void measure(const struct melt *melt, const struct particles *particles,
         for (int bead = 0; bead < BEADS; bead++)
             place[bead] = particles->place[topology_id(kind, m, bead)];
         sum[0][2] += gyration(particles, place) / CHAINS;
-        for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+        for (int order = 0; order < BONDED_KINDS; order++)
             for (int n = 0; n < kind->terms[order]; n++) {
-                int32_t of[TOPOLOGY_MOST_BEADS];
+                int32_t of[BONDED_MOST_TERM_BEADS];
                 double q;
-                for (int k = 0; k < topology_beads(order); k++)
+                for (int k = 0; k < mf_bonded_kinds[order]->beads; k++)
                     of[k] = (int32_t)place[kind->term[order][n].bead[k]];
                 mf_bonded_measure(order, 1, of, particles, &q);
                 count(1 + order, q, 1.0 / (CHAINS * kind->terms[order]), sum[1 + order]);

@@ -37,11 +37,11 @@ static void make_gas(struct gas *gas, int64_t count, int beads, int highest,
     const struct composition composition = molecules_topology(
         &gas->molecules.topology, molecules_chain(count, type, beads, highest, 0),
         (struct topology_kind){0}, 1, NULL);
-    molecules_add_group(&gas->molecules, TOPOLOGY_BOND, &mf_bond_harmonic, spring);
-    if (highest >= TOPOLOGY_ANGLE)
-        molecules_add_group(&gas->molecules, TOPOLOGY_ANGLE, &mf_angle_harmonic, bend);
-    if (highest >= TOPOLOGY_DIHEDRAL)
-        molecules_add_group(&gas->molecules, TOPOLOGY_DIHEDRAL, &mf_dihedral_periodic, twist);
+    molecules_add_group(&gas->molecules, BONDED_BOND, &mf_bond_harmonic, spring);
+    if (highest >= BONDED_ANGLE)
+        molecules_add_group(&gas->molecules, BONDED_ANGLE, &mf_angle_harmonic, bend);
+    if (highest >= BONDED_DIHEDRAL)
+        molecules_add_group(&gas->molecules, BONDED_DIHEDRAL, &mf_dihedral_periodic, twist);
     fluid_ideal_gas(&gas->fluid, 3, count * beads, time_step);
     gas->fluid.setup.integrator = integrator;
     gas->fluid.setup.integrator_parameters = parameters;
@@ -67,7 +67,7 @@ enum { BINS = 24, BEADS = 4 };
 static double weight(const struct bonded_curve *curve, int order, double q) {
     double energy;
     mf_bonded_value(curve, q, &energy, NULL);
-    return exp(-energy) * (order == TOPOLOGY_BOND ? q * q : order == TOPOLOGY_ANGLE ? sin(q) : 1);
+    return exp(-energy) * (order == BONDED_BOND ? q * q : order == BONDED_ANGLE ? sin(q) : 1);
 }
 
 /// ∫ of the weight by Simpson's rule.
@@ -84,8 +84,8 @@ static double integrate(const struct bonded_curve *curve, int order, double from
 
 /// Where bins are: a bond is beyond them once in 10^8 samples.
 static void find_range(int order, double *low, double *high) {
-    *low = order == TOPOLOGY_BOND ? 0.05 : order == TOPOLOGY_ANGLE ? 0 : -M_PI;
-    *high = order == TOPOLOGY_BOND ? 1.4 : M_PI;
+    *low = order == BONDED_BOND ? 0.05 : order == BONDED_ANGLE ? 0 : -M_PI;
+    *high = order == BONDED_BOND ? 1.4 : M_PI;
 }
 
 static void count_terms(const struct gas *gas, int order, double (*histogram)[BINS]) {
@@ -94,9 +94,9 @@ static void count_terms(const struct gas *gas, int order, double (*histogram)[BI
     find_range(order, &low, &high);
     for (int64_t m = 0; m < kind->count; m++)
         for (int n = 0; n < kind->terms[order]; n++) {
-            int32_t place[TOPOLOGY_MOST_BEADS];
+            int32_t place[BONDED_MOST_TERM_BEADS];
             double q;
-            for (int k = 0; k < topology_beads(order); k++)
+            for (int k = 0; k < mf_bonded_kinds[order]->beads; k++)
                 place[k] = (int32_t)gas->simulation.particles
                                .place[topology_id(kind, m, kind->term[order][n].bead[k])];
             mf_bonded_measure(order, 1, place, &gas->simulation.particles, &q);
@@ -114,8 +114,8 @@ static double largest_deviation(const struct gas *gas, int order, double (*histo
     const double all = samples * kind->terms[order];
     double low, high, largest = 0;
     find_range(order, &low, &high);
-    const double whole = integrate(curve, order, order == TOPOLOGY_BOND ? 0 : low,
-                                   order == TOPOLOGY_BOND ? 2 : high);
+    const double whole =
+        integrate(curve, order, order == BONDED_BOND ? 0 : low, order == BONDED_BOND ? 2 : high);
     for (int bin = 0; bin < BINS; bin++) {
         const double from = low + (high - low) * bin / BINS;
         const double exact =
@@ -136,20 +136,20 @@ static void check_distributions(const struct integrator *integrator, const void 
     enum { MOLECULES = 1000 };
     const int64_t molecules = length_is_long() ? MOLECULES : 500;
     const int samples = length_is_long() ? 200 : 60;
-    static double histogram[TOPOLOGY_ORDERS][MOLECULES][BINS];
+    static double histogram[BONDED_KINDS][MOLECULES][BINS];
     struct gas gas;
     memset(histogram, 0, sizeof histogram);
-    make_gas(&gas, molecules, BEADS, TOPOLOGY_DIHEDRAL, integrator, parameters, time_step);
+    make_gas(&gas, molecules, BEADS, BONDED_DIHEDRAL, integrator, parameters, time_step);
     assert_ok(mf_simulation_run(&gas.simulation, (uint64_t)(20 * every)));
     for (int n = 0; n < samples; n++) {
         assert_ok(mf_simulation_run(&gas.simulation, (uint64_t)every));
-        for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+        for (int order = 0; order < BONDED_KINDS; order++)
             count_terms(&gas, order, histogram[order]);
     }
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++) {
+    for (int order = 0; order < BONDED_KINDS; order++) {
         const double deviation = largest_deviation(&gas, order, histogram[order], samples);
         print_message("%s, %ss: largest deviation %.2f standard errors\n", integrator->name,
-                      mf_topology_order_names[order], deviation);
+                      mf_bonded_kinds[order]->name, deviation);
         assert_true(deviation < 4.5);
     }
     clear_gas(&gas);
@@ -205,9 +205,9 @@ static void test_freely_jointed_chains_have_exact_sizes(void **state) {
     struct running_mean ends = {0}, gyrations = {0};
     struct gas gas;
     double upper = 0, lower = 0;
-    make_gas(&gas, chains, LENGTH, TOPOLOGY_BOND, &mf_aboba, NULL, 0.01);
+    make_gas(&gas, chains, LENGTH, BONDED_BOND, &mf_aboba, NULL, 0.01);
     for (double r = 0.0005; r < 2; r += 0.001) {
-        const double w = weight(&gas.molecules.group[TOPOLOGY_BOND][0].curve, TOPOLOGY_BOND, r);
+        const double w = weight(&gas.molecules.group[BONDED_BOND][0].curve, BONDED_BOND, r);
         upper += r * r * w;
         lower += w;
     }
@@ -246,7 +246,7 @@ static void test_energy_of_molecules_is_kept_without_friction(void **state) {
         struct gas gas;
         const double time_step = n == 0 ? 0.004 : 0.002;
         struct running_mean first = {0}, last = {0};
-        make_gas(&gas, 200, BEADS, TOPOLOGY_DIHEDRAL, &mf_velocity_verlet, NULL, time_step);
+        make_gas(&gas, 200, BEADS, BONDED_DIHEDRAL, &mf_velocity_verlet, NULL, time_step);
         gas.simulation.wants = PAIR_FORCES_AND_SUMS;
         const int blocks = 400, each = n == 0 ? 10 : 20;
         assert_ok(mf_simulation_run(&gas.simulation, 200));
@@ -278,9 +278,9 @@ static void check_masses(double time_step, int64_t inner_steps) {
     struct simulation simulation;
     struct running_mean kinetic[2] = {{.count = 0}};
     const struct composition composition =
-        molecules_topology(&molecules.topology, molecules_chain(DIMERS, ab, 2, TOPOLOGY_BOND, 0),
+        molecules_topology(&molecules.topology, molecules_chain(DIMERS, ab, 2, BONDED_BOND, 0),
                            (struct topology_kind){0}, 2, NULL);
-    molecules_add_group(&molecules, TOPOLOGY_BOND, &mf_bond_harmonic, spring);
+    molecules_add_group(&molecules, BONDED_BOND, &mf_bond_harmonic, spring);
     fluid_groot_warren(&fluid, 2 * DIMERS, time_step);
     fluid.setup.omega = NULL;
     fluid.setup.integrator = &mf_velocity_verlet;
@@ -324,9 +324,9 @@ static void make_melt(struct gas *gas, int64_t chains, int length) {
     struct curve curve;
     gas->molecules = (struct molecules){0};
     const struct composition composition = molecules_topology(
-        &gas->molecules.topology, molecules_chain(chains, type, length, TOPOLOGY_BOND, 0),
+        &gas->molecules.topology, molecules_chain(chains, type, length, BONDED_BOND, 0),
         (struct topology_kind){0}, 1, NULL);
-    molecules_add_group(&gas->molecules, TOPOLOGY_BOND, &mf_bond_fene, fene);
+    molecules_add_group(&gas->molecules, BONDED_BOND, &mf_bond_fene, fene);
     fluid_groot_warren(&gas->fluid, chains * length, 0.005);
     mf_table_clear(&gas->fluid.potential);
     assert_ok(mf_curve_create(&curve, &mf_formula_lennard_jones));
@@ -370,7 +370,7 @@ static void test_melt_of_kremer_and_grest_has_its_bonds(void **state) {
                 const int32_t place[] = {(int32_t)particles->place[topology_id(kind, m, k)],
                                          (int32_t)particles->place[topology_id(kind, m, k + 1)]};
                 double length;
-                mf_bonded_measure(TOPOLOGY_BOND, 1, place, particles, &length);
+                mf_bonded_measure(BONDED_BOND, 1, place, particles, &length);
                 mf_statistics_add(&bond, length);
                 longest = fmax(longest, length);
             }

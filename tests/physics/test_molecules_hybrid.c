@@ -28,8 +28,8 @@ static struct composition make_chains(struct molecules *molecules) {
     const struct composition composition =
         molecules_topology(&molecules->topology, molecules_chain(CHAINS, type, BEADS, 1, 2),
                            (struct topology_kind){0}, 1, NULL);
-    molecules_add_group(molecules, TOPOLOGY_BOND, &mf_bond_harmonic, spring);
-    molecules_add_group(molecules, TOPOLOGY_ANGLE, &mf_angle_harmonic, bend);
+    molecules_add_group(molecules, BONDED_BOND, &mf_bond_harmonic, spring);
+    molecules_add_group(molecules, BONDED_ANGLE, &mf_angle_harmonic, bend);
     return composition;
 }
 
@@ -42,15 +42,15 @@ static void make_table(struct table *table, double a) {
 /// Part of the weight that is below a median-like place, by Simpson's rule.
 static double moment(int order, int power) {
     enum { HALVES = 4000 };
-    const double low = order == TOPOLOGY_BOND ? 0.3 : 0, high = order == TOPOLOGY_BOND ? 1.1 : M_PI;
+    const double low = order == BONDED_BOND ? 0.3 : 0, high = order == BONDED_BOND ? 1.1 : M_PI;
     double sum = 0, norm = 0;
     for (int k = 0; k <= 2 * HALVES; k++) {
         const double q = low + (high - low) * k / (2 * HALVES);
         const double factor = k == 0 || k == 2 * HALVES ? 1 : k % 2 ? 4 : 2;
-        const double away = order == TOPOLOGY_BOND ? q - 0.7 : q - 120 * BONDED_RADIANS;
-        const double energy = (order == TOPOLOGY_BOND ? 300 : 30) * away * away / 2;
+        const double away = order == BONDED_BOND ? q - 0.7 : q - 120 * BONDED_RADIANS;
+        const double energy = (order == BONDED_BOND ? 300 : 30) * away * away / 2;
         const double weight =
-            factor * exp(-energy / temperature) * (order == TOPOLOGY_BOND ? q * q : sin(q));
+            factor * exp(-energy / temperature) * (order == BONDED_BOND ? q * q : sin(q));
         sum += weight * pow(away, power);
         norm += weight;
     }
@@ -80,15 +80,14 @@ static void test_hybrid_samples_bonds_and_angles_exactly(void **state) {
         for (int sample = 0; sample < SAMPLES; sample++) {
             assert_ok(mf_hybrid_run(&hybrid, 4));
             for (int order = 0; order < ORDERS; order++) {
-                const struct bonded_bins bins = {0, (order == TOPOLOGY_BOND ? 1.2 : 180.0) / BINS,
+                const struct bonded_bins bins = {0, (order == BONDED_BOND ? 1.2 : 180.0) / BINS,
                                                  BINS};
                 memset(counts, 0, BINS * sizeof *counts);
                 mf_bonded_distribution_count(&molecules, order, 0, &bins,
                                              &hybrid.simulation.particles, counts);
                 for (size_t k = 0; k < BINS; k++) {
                     const double q = bonded_bins_centre(&bins, k);
-                    const double away =
-                        order == TOPOLOGY_BOND ? q - 0.7 : (q - 120) * BONDED_RADIANS;
+                    const double away = order == BONDED_BOND ? q - 0.7 : (q - 120) * BONDED_RADIANS;
                     all[order] += counts[k];
                     for (int power = 0; power < POWERS; power++)
                         sum[order][power] += counts[k] * pow(away, power + 1);

@@ -51,7 +51,7 @@ static void measure(const struct simulation_setup *setup, int64_t equilibration,
                     struct probe *probes, size_t count) {
     const struct measure_plan plan = {
         .equilibration = equilibration, .samples = BLOCKS * probes[0].each, .every = every};
-    struct observable_use uses[TOPOLOGY_ORDERS + 1] = {{NULL, NULL, NULL}};
+    struct observable_use uses[BONDED_KINDS + 1] = {{NULL, NULL, NULL}};
     struct simulation_setup by_moves = *setup;
     struct simulation simulation;
     double temperature;
@@ -87,13 +87,13 @@ static const double spring = 60, rest = 0.7, stiffness = 6, bent = 110, torsion 
 static const struct {
     double low, width;
     int bins;
-} ranges[TOPOLOGY_ORDERS] = {{0.4, 0.1, 6}, {60 * M_PI / 180, M_PI / 12, 6}, {-2.5, 0.7, 7}};
+} ranges[BONDED_KINDS] = {{0.4, 0.1, 6}, {60 * M_PI / 180, M_PI / 12, 6}, {-2.5, 0.7, 7}};
 
 /// exp(−U) with its measure, as the laws are written in books.
 static double density(int order, double q) {
-    if (order == TOPOLOGY_BOND)
+    if (order == BONDED_BOND)
         return q * q * exp(-spring * pow(q - rest, 2) / 2);
-    if (order == TOPOLOGY_ANGLE)
+    if (order == BONDED_ANGLE)
         return sin(q) * exp(-stiffness * pow(q - bent * M_PI / 180, 2) / 2);
     return exp(-torsion * (1 + cos(2 * q - phase * M_PI / 180)));
 }
@@ -107,9 +107,9 @@ static double integrate(int order, double low, double high) {
 }
 
 static void find_probabilities(int order, double *exact) {
-    const double all = order == TOPOLOGY_BOND    ? integrate(order, 0, 3)
-                       : order == TOPOLOGY_ANGLE ? integrate(order, 0, M_PI)
-                                                 : integrate(order, -M_PI, M_PI);
+    const double all = order == BONDED_BOND    ? integrate(order, 0, 3)
+                       : order == BONDED_ANGLE ? integrate(order, 0, M_PI)
+                                               : integrate(order, -M_PI, M_PI);
     for (int k = 0; k < ranges[order].bins; k++) {
         const double low = ranges[order].low + k * ranges[order].width;
         exact[k] = integrate(order, low, low + ranges[order].width) / all;
@@ -122,9 +122,9 @@ static void count_terms(const struct simulation *simulation, int order, double *
     const struct topology_kind *kind = &molecules->topology.kind[0];
     for (int64_t m = 0; m < CHAINS; m++)
         for (int n = 0; n < kind->terms[order]; n++) {
-            int32_t place[TOPOLOGY_MOST_BEADS];
+            int32_t place[BONDED_MOST_TERM_BEADS];
             double q;
-            for (int k = 0; k < topology_beads(order); k++)
+            for (int k = 0; k < mf_bonded_kinds[order]->beads; k++)
                 place[k] = (int32_t)simulation->particles
                                .place[topology_id(kind, m, kind->term[order][n].bead[k])];
             mf_bonded_measure(order, 1, place, &simulation->particles, &q);
@@ -135,15 +135,15 @@ static void count_terms(const struct simulation *simulation, int order, double *
 }
 
 static void count_bonds(const struct simulation *simulation, double *values) {
-    count_terms(simulation, TOPOLOGY_BOND, values);
+    count_terms(simulation, BONDED_BOND, values);
 }
 
 static void count_angles(const struct simulation *simulation, double *values) {
-    count_terms(simulation, TOPOLOGY_ANGLE, values);
+    count_terms(simulation, BONDED_ANGLE, values);
 }
 
 static void count_dihedrals(const struct simulation *simulation, double *values) {
-    count_terms(simulation, TOPOLOGY_DIHEDRAL, values);
+    count_terms(simulation, BONDED_DIHEDRAL, values);
 }
 
 static void test_free_chains_have_the_distributions_of_their_integrals(void **state) {
@@ -161,17 +161,17 @@ static void test_free_chains_have_the_distributions_of_their_integrals(void **st
     const struct composition composition =
         molecules_topology(&molecules.topology, molecules_chain(CHAINS, type, BEADS, 2, 2),
                            (struct topology_kind){0}, 1, NULL);
-    molecules_add_group(&molecules, TOPOLOGY_BOND, &mf_bond_harmonic, bond);
-    molecules_add_group(&molecules, TOPOLOGY_ANGLE, &mf_angle_harmonic, bend);
-    molecules_add_group(&molecules, TOPOLOGY_DIHEDRAL, &mf_dihedral_periodic, twist);
+    molecules_add_group(&molecules, BONDED_BOND, &mf_bond_harmonic, bond);
+    molecules_add_group(&molecules, BONDED_ANGLE, &mf_angle_harmonic, bend);
+    molecules_add_group(&molecules, BONDED_DIHEDRAL, &mf_dihedral_periodic, twist);
     fluid_ideal_gas(&fluid, 3, COUNT, 0.01);
     molecules_enter(&fluid.setup, &molecules, &composition);
-    struct probe probes[TOPOLOGY_ORDERS];
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+    struct probe probes[BONDED_KINDS];
+    for (int order = 0; order < BONDED_KINDS; order++)
         probes[order] =
             (struct probe){.look = look[order], .size = (size_t)ranges[order].bins, .each = 40};
-    measure(&fluid.setup, 600, 24, probes, TOPOLOGY_ORDERS);
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++) {
+    measure(&fluid.setup, 600, 24, probes, BONDED_KINDS);
+    for (int order = 0; order < BONDED_KINDS; order++) {
         double exact[MOST];
         find_probabilities(order, exact);
         compare(names[order], &probes[order], exact);

@@ -81,11 +81,10 @@ struct melt {
 static struct topology_kind make_kind(const struct plan *plan) {
     static const int type[MOST_BEADS] = {0};
     struct topology_kind kind = molecules_chain(plan->count, type, plan->beads, -1, 0);
-    kind.terms[TOPOLOGY_BOND] = plan->bonds;
-    kind.term[TOPOLOGY_BOND] =
-        mf_memory_zeroed((size_t)plan->bonds, sizeof *kind.term[TOPOLOGY_BOND]);
+    kind.terms[BONDED_BOND] = plan->bonds;
+    kind.term[BONDED_BOND] = mf_memory_zeroed((size_t)plan->bonds, sizeof *kind.term[BONDED_BOND]);
     for (int n = 0; n < plan->bonds; n++)
-        memcpy(kind.term[TOPOLOGY_BOND][n].bead, plan->bond[n], sizeof plan->bond[n]);
+        memcpy(kind.term[BONDED_BOND][n].bead, plan->bond[n], sizeof plan->bond[n]);
     return kind;
 }
 
@@ -96,7 +95,7 @@ static void make_melt(struct melt *melt, struct plan first, struct plan second, 
     melt->composition = molecules_topology(
         &melt->molecules.topology, make_kind(&melt->plan[0]),
         second.count > 0 ? make_kind(&melt->plan[1]) : (struct topology_kind){0}, 1, NULL);
-    molecules_add_group(&melt->molecules, TOPOLOGY_BOND, &mf_bond_harmonic, spring);
+    molecules_add_group(&melt->molecules, BONDED_BOND, &mf_bond_harmonic, spring);
     const int64_t count = mf_composition_particles(&melt->composition);
     fluid_lennard_jones(&melt->fluid, count, 0.002);
     struct simulation_setup *setup = &melt->fluid.setup;

@@ -16,7 +16,7 @@ struct topology_kind molecules_chain(int64_t count, const int *types, int beads,
         kind.terms[order] = beads - 1 - order;
         kind.term[order] = mf_memory_zeroed((size_t)kind.terms[order], sizeof *kind.term[order]);
         for (int n = 0; n < kind.terms[order]; n++)
-            for (int k = 0; k < topology_beads(order); k++)
+            for (int k = 0; k < mf_bonded_kinds[order]->beads; k++)
                 kind.term[order][n].bead[k] = n + k;
     }
     return kind;

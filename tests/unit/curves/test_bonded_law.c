@@ -126,8 +126,7 @@ static void test_tables_go_through_functions(void **state) {
     (void)state;
     enum { POINTS = 121 };
     double q[POINTS], energy[POINTS];
-    struct bonded_curve bond = make(&mf_bonded_table_bond),
-                        dihedral = make(&mf_bonded_table_dihedral);
+    struct bonded_curve bond = make(&mf_bond_table), dihedral = make(&mf_dihedral_table);
     for (int k = 0; k < POINTS; k++) {
         q[k] = 0.5 + 0.01 * k;
         energy[k] = 40 * pow(q[k] - 1, 2) - 10 * pow(q[k] - 1, 3);
@@ -158,8 +157,7 @@ static void test_tables_that_make_no_sense_are_refused(void **state) {
     (void)state;
     static const double q[] = {0, 60, 120, 180, 300}, energy[] = {0, 1, 2, 3, 0};
     static const double whole[] = {0, 60, 120, 180, 360}, jump[] = {0, 1, 2, 3, 1};
-    struct bonded_curve dihedral = make(&mf_bonded_table_dihedral),
-                        angle = make(&mf_bonded_table_angle);
+    struct bonded_curve dihedral = make(&mf_dihedral_table), angle = make(&mf_angle_table);
     assert_int_equal(mf_bonded_table_set_points(&dihedral, q, energy, 5), STATUS_BAD_INPUT);
     assert_string_equal(mf_status_message(), "a dihedral's table spans 360 degrees, not 300");
     assert_int_equal(mf_bonded_table_set_points(&dihedral, whole, jump, 5), STATUS_BAD_INPUT);

@@ -16,11 +16,11 @@ static const int type[MOST] = {0};
 /// A molecule of these bonds, two numbers each.
 static struct topology_kind make_graph(int beads, int bonds, const int (*pair)[2], int exclude) {
     struct topology_kind kind = molecules_chain(1, type, beads, -1, exclude);
-    kind.terms[TOPOLOGY_BOND] = bonds;
-    kind.term[TOPOLOGY_BOND] = mf_memory_zeroed((size_t)bonds, sizeof(struct topology_term));
+    kind.terms[BONDED_BOND] = bonds;
+    kind.term[BONDED_BOND] = mf_memory_zeroed((size_t)bonds, sizeof(struct topology_term));
     for (int n = 0; n < bonds; n++)
         for (int k = 0; k < 2; k++)
-            kind.term[TOPOLOGY_BOND][n].bead[k] = pair[n][k];
+            kind.term[BONDED_BOND][n].bead[k] = pair[n][k];
     return kind;
 }
 
@@ -103,9 +103,9 @@ static void test_what_bonds_do_not_join_has_no_arms(void **state) {
     // An angle between beads that are not bonded.
     static const int chain[][2] = {{0, 1}, {1, 2}, {2, 3}};
     struct topology_kind kind = make_graph(4, 3, chain, 1);
-    kind.terms[TOPOLOGY_ANGLE] = 1;
-    kind.term[TOPOLOGY_ANGLE] = mf_memory_zeroed(1, sizeof(struct topology_term));
-    *kind.term[TOPOLOGY_ANGLE] = (struct topology_term){.bead = {0, 2, 3}};
+    kind.terms[BONDED_ANGLE] = 1;
+    kind.term[BONDED_ANGLE] = mf_memory_zeroed(1, sizeof(struct topology_term));
+    *kind.term[BONDED_ANGLE] = (struct topology_term){.bead = {0, 2, 3}};
     plan_graph(&plan, &topology, kind);
     assert_true(plan.joined);
     assert_int_equal(plan.arms, 0);
@@ -117,14 +117,12 @@ static void test_terms_of_a_bead_stand_by_law(void **state) {
     (void)state;
     struct topology topology;
     struct molecule_plan plan;
-    struct topology_kind kind = molecules_chain(1, type, 5, TOPOLOGY_DIHEDRAL, 4);
-    kind.term[TOPOLOGY_BOND][1].group = 1;
+    struct topology_kind kind = molecules_chain(1, type, 5, BONDED_DIHEDRAL, 4);
+    kind.term[BONDED_BOND][1].group = 1;
     plan_graph(&plan, &topology, kind);
     // Bead 1: a bond of each group, two angles, two dihedrals.
-    static const int expected[][3] = {{TOPOLOGY_BOND, 0, 1},
-                                      {TOPOLOGY_BOND, 1, 1},
-                                      {TOPOLOGY_ANGLE, 0, 2},
-                                      {TOPOLOGY_DIHEDRAL, 0, 2}};
+    static const int expected[][3] = {
+        {BONDED_BOND, 0, 1}, {BONDED_BOND, 1, 1}, {BONDED_ANGLE, 0, 2}, {BONDED_DIHEDRAL, 0, 2}};
     assert_int_equal(plan.run_start[2] - plan.run_start[1], 4);
     for (int n = 0; n < 4; n++) {
         const struct molecule_run *run = &plan.run[plan.run_start[1] + n];
@@ -133,9 +131,9 @@ static void test_terms_of_a_bead_stand_by_law(void **state) {
         assert_int_equal(run->count, expected[n][2]);
         for (int t = 0; t < run->count; t++) {
             bool has = false;
-            for (int k = 0; k < topology_beads(run->order); k++)
-                has |=
-                    plan.term_bead[run->first + (size_t)(t * topology_beads(run->order) + k)] == 1;
+            for (int k = 0; k < mf_bonded_kinds[run->order]->beads; k++)
+                has |= plan.term_bead[run->first +
+                                      (size_t)(t * mf_bonded_kinds[run->order]->beads + k)] == 1;
             assert_true(has);
         }
     }
@@ -148,7 +146,7 @@ static void test_pairs_of_a_molecule_may_all_be_excluded(void **state) {
     for (int exclude = 1; exclude <= 2; exclude++) {
         struct topology topology;
         struct molecule_plan plan;
-        plan_graph(&plan, &topology, molecules_chain(1, type, 3, TOPOLOGY_BOND, exclude));
+        plan_graph(&plan, &topology, molecules_chain(1, type, 3, BONDED_BOND, exclude));
         assert_int_equal(plan.excluded, exclude == 2);
         mf_molecule_plan_clear(&plan);
         mf_topology_clear(&topology);

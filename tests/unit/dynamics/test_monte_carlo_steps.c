@@ -24,7 +24,7 @@ static void make_dimers(struct dimers *dimers) {
     const struct composition composition =
         molecules_topology(&dimers->molecules.topology, molecules_chain(DIMERS, type, 2, 0, 1),
                            (struct topology_kind){0}, 1, NULL);
-    molecules_add_group(&dimers->molecules, TOPOLOGY_BOND, &mf_bond_harmonic, bond);
+    molecules_add_group(&dimers->molecules, BONDED_BOND, &mf_bond_harmonic, bond);
     fluid_groot_warren(&dimers->fluid, COUNT, 0.01);
     molecules_enter(&dimers->fluid.setup, &dimers->molecules, &composition);
     dimers->fluid.setup.integrator = &mf_monte_carlo;

@@ -24,9 +24,9 @@ static void make_dimer(struct fluid *fluid, struct molecules *molecules,
                                            .velocity = {rest, rest, rest}};
     *molecules = (struct molecules){0};
     const struct composition composition =
-        molecules_topology(&molecules->topology, molecules_chain(1, type, 2, TOPOLOGY_BOND, 1),
+        molecules_topology(&molecules->topology, molecules_chain(1, type, 2, BONDED_BOND, 1),
                            (struct topology_kind){0}, 1, NULL);
-    molecules_add_group(molecules, TOPOLOGY_BOND, &mf_bond_harmonic, spring);
+    molecules_add_group(molecules, BONDED_BOND, &mf_bond_harmonic, spring);
     fluid_groot_warren(fluid, 2, 0.03);
     fluid->setup.omega = NULL;
     fluid->setup.integrator = integrator;

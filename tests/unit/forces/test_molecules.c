@@ -41,8 +41,8 @@ struct polymers {
 };
 
 static struct topology_kind make_chains(int64_t count, int beads, int exclude) {
-    struct topology_kind chain = molecules_chain(count, type, beads, TOPOLOGY_DIHEDRAL, exclude);
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+    struct topology_kind chain = molecules_chain(count, type, beads, BONDED_DIHEDRAL, exclude);
+    for (int order = 0; order < BONDED_KINDS; order++)
         for (int n = 0; n < chain.terms[order]; n++)
             chain.term[order][n].group = n % 2;
     return chain;
@@ -54,12 +54,12 @@ static void make_kinds(struct polymers *polymers, struct topology_kind first,
     polymers->molecules = (struct molecules){0};
     const struct composition composition = molecules_topology(&polymers->molecules.topology, first,
                                                               second, 2, (const int64_t[]){30, 20});
-    molecules_add_group(&polymers->molecules, TOPOLOGY_BOND, &mf_bond_harmonic, spring);
-    molecules_add_group(&polymers->molecules, TOPOLOGY_BOND, &mf_bond_fene, weak);
-    molecules_add_group(&polymers->molecules, TOPOLOGY_ANGLE, &mf_angle_harmonic, bend);
-    molecules_add_group(&polymers->molecules, TOPOLOGY_ANGLE, &mf_angle_cosine_squared, stiff);
-    molecules_add_group(&polymers->molecules, TOPOLOGY_DIHEDRAL, &mf_dihedral_periodic, twist);
-    molecules_add_group(&polymers->molecules, TOPOLOGY_DIHEDRAL, &mf_dihedral_ryckaert_bellemans,
+    molecules_add_group(&polymers->molecules, BONDED_BOND, &mf_bond_harmonic, spring);
+    molecules_add_group(&polymers->molecules, BONDED_BOND, &mf_bond_fene, weak);
+    molecules_add_group(&polymers->molecules, BONDED_ANGLE, &mf_angle_harmonic, bend);
+    molecules_add_group(&polymers->molecules, BONDED_ANGLE, &mf_angle_cosine_squared, stiff);
+    molecules_add_group(&polymers->molecules, BONDED_DIHEDRAL, &mf_dihedral_periodic, twist);
+    molecules_add_group(&polymers->molecules, BONDED_DIHEDRAL, &mf_dihedral_ryckaert_bellemans,
                         butane);
     fluid_groot_warren(&polymers->fluid, mf_composition_particles(&composition), 0.005);
     molecules_enter(&polymers->fluid.setup, &polymers->molecules, &composition);
@@ -103,10 +103,10 @@ static void cross(const double a[3], const double b[3], double c[3]) {
 static double slow_q(const struct simulation *simulation, int order, const uint32_t *id) {
     double u[3], v[3], w[3], a[3], b[3];
     from_to(simulation, id[0], id[1], u);
-    if (order == TOPOLOGY_BOND)
+    if (order == BONDED_BOND)
         return sqrt(dot(u, u));
     from_to(simulation, id[1], id[2], v);
-    if (order == TOPOLOGY_ANGLE)
+    if (order == BONDED_ANGLE)
         return acos(-dot(u, v) / sqrt(dot(u, u) * dot(v, v)));
     from_to(simulation, id[2], id[3], w);
     cross(u, v, a);
@@ -118,13 +118,13 @@ static double slow_q(const struct simulation *simulation, int order, const uint3
 static double slow_energy_of(const struct simulation *simulation, const struct molecules *molecules,
                              const struct topology_kind *kind) {
     double sum = 0;
-    for (int order = 0; order < TOPOLOGY_ORDERS; order++)
+    for (int order = 0; order < BONDED_KINDS; order++)
         for (int64_t m = 0; m < kind->count; m++)
             for (int n = 0; n < kind->terms[order]; n++) {
                 const struct topology_term *term = &kind->term[order][n];
-                uint32_t id[TOPOLOGY_MOST_BEADS];
+                uint32_t id[BONDED_MOST_TERM_BEADS];
                 double energy;
-                for (int k = 0; k < topology_beads(order); k++)
+                for (int k = 0; k < mf_bonded_kinds[order]->beads; k++)
                     id[k] = topology_id(kind, m, term->bead[k]);
                 mf_bonded_value(&molecules->group[order][term->group].curve,
                                 slow_q(simulation, order, id), &energy, NULL);
@@ -262,11 +262,11 @@ static void make_one(struct polymers *polymers, struct simulation *simulation,
     double position[3][4];
     polymers->molecules = (struct molecules){0};
     const struct composition composition = molecules_topology(
-        &polymers->molecules.topology, molecules_chain(1, types, 4, TOPOLOGY_DIHEDRAL, 3),
+        &polymers->molecules.topology, molecules_chain(1, types, 4, BONDED_DIHEDRAL, 3),
         (struct topology_kind){0}, 1, NULL);
-    molecules_add_group(&polymers->molecules, TOPOLOGY_BOND, &mf_bond_harmonic, spring);
-    molecules_add_group(&polymers->molecules, TOPOLOGY_ANGLE, &mf_angle_harmonic, bend);
-    molecules_add_group(&polymers->molecules, TOPOLOGY_DIHEDRAL, &mf_dihedral_periodic, twist);
+    molecules_add_group(&polymers->molecules, BONDED_BOND, &mf_bond_harmonic, spring);
+    molecules_add_group(&polymers->molecules, BONDED_ANGLE, &mf_angle_harmonic, bend);
+    molecules_add_group(&polymers->molecules, BONDED_DIHEDRAL, &mf_dihedral_periodic, twist);
     fluid_ideal_gas(&polymers->fluid, 3, 4, 0.005);
     polymers->fluid.setup.omega = NULL;
     polymers->fluid.setup.integrator = &mf_velocity_verlet;

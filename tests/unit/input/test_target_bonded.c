@@ -16,8 +16,8 @@
 static const struct units units = {.length = 0.5, .temperature = 300.68, .mass = 1e-26};
 
 /// Read `table` as the target of a group "b"; the status is that of the document.
-static enum status read(void **state, const char *table, const char *members,
-                        enum topology_order order, struct target_bonded *target) {
+static enum status read(void **state, const char *table, const char *members, int order,
+                        struct target_bonded *target) {
     char text[512];
     struct json_document *document;
     temporary_folder_write(*state, "p.tsv", table, strlen(table));
@@ -43,8 +43,8 @@ static char *normal(double low, double width, int rows, double mean, double sigm
     return text;
 }
 
-static void assert_refused(void **state, char *table, const char *members,
-                           enum topology_order order, const char *part) {
+static void assert_refused(void **state, char *table, const char *members, int order,
+                           const char *part) {
     struct target_bonded target;
     assert_fails(read(state, table, members, order, &target), STATUS_BAD_INPUT, part);
     assert_contains(mf_status_message(), "a.json: b.file: ");
@@ -58,7 +58,7 @@ static void assert_refused(void **state, char *table, const char *members,
 static void test_target_bonded_reads_lengths_of_votca(void **state) {
     struct target_bonded target;
     char *table = normal(0, 0.001, 300, 0.15, 0.005, 1, " i");
-    assert_ok(read(state, table, VOTCA, TOPOLOGY_BOND, &target));
+    assert_ok(read(state, table, VOTCA, BONDED_BOND, &target));
     // From nm: λ is 0.5 nm. What was not seen is left out, but for two bins.
     assert_close(target.bins.width, 0.002, 1e-12);
     size_t peak = 0;
@@ -82,8 +82,8 @@ static void test_target_bonded_reads_angles_in_radians_and_degrees(void **state)
     const double radian = 180 / M_PI;
     char *first = normal(0, 0.01, 315, 1.9, 0.05, 1, " i");
     char *second = normal(0, 0.01 * radian, 315, 1.9 * radian, 0.05 * radian, 1, "");
-    assert_ok(read(state, first, VOTCA, TOPOLOGY_ANGLE, &votca));
-    assert_ok(read(state, second, "", TOPOLOGY_ANGLE, &degrees));
+    assert_ok(read(state, first, VOTCA, BONDED_ANGLE, &votca));
+    assert_ok(read(state, second, "", BONDED_ANGLE, &degrees));
     assert_int_equal(votca.bins.count, degrees.bins.count);
     assert_close(votca.bins.low, degrees.bins.low, 1e-6);
     for (size_t k = 0; k < votca.bins.count; k++)
@@ -110,7 +110,7 @@ static void test_target_bonded_joins_the_ends_of_a_circle(void **state) {
             snprintf(table + strlen(table), 64, "%.8f %.10f i\n", phi,
                      k == 0 || k == ROWS - 1 ? p * cases[n].ends : p);
         }
-        assert_ok(read(state, table, VOTCA, TOPOLOGY_DIHEDRAL, &target));
+        assert_ok(read(state, table, VOTCA, BONDED_DIHEDRAL, &target));
         assert_int_equal(target.bins.count, ROWS - 1);
         assert_close(target.bins.width * (double)target.bins.count, 360, 1e-9);
         assert_close(bonded_bins_centre(&target.bins, 0), -180, 1e-4);
@@ -136,7 +136,7 @@ static void test_target_bonded_tells_the_errors_of_counts(void **state) {
     for (int k = 0; k < ROWS; k++)
         snprintf(table + strlen(table), 64, "%.8f %.10g\n", 1 + 0.01 * k,
                  counts[k] / (0.01 * COUNT));
-    assert_ok(read(state, table, "", TOPOLOGY_BOND, &target));
+    assert_ok(read(state, table, "", BONDED_BOND, &target));
     assert_false(target.assumed);
     const double peak = 4000; // counts: 40000/(4 sqrt(2 pi)) = 3989
     // Some 12 differences tell a variance within 40 %, an error within 20 %.
@@ -153,7 +153,7 @@ static void test_target_bonded_of_what_was_not_seen_has_the_error_of_one_count(v
     for (int k = 0; k < 10; k++)
         snprintf(table + strlen(table), 64, "%.2f\t%.6g\t%.6g\n", 1 + 0.1 * k, counts[k] / 10.0,
                  sqrt(counts[k]) / 10);
-    assert_ok(read(state, table, "", TOPOLOGY_BOND, &target));
+    assert_ok(read(state, table, "", BONDED_BOND, &target));
     assert_close(target.error[1], 0.1, 1e-5);
     assert_close(target.error[7], 0.1, 1e-5);
     assert_close(target.error[4], sqrt(0.5), 1e-5);
@@ -165,7 +165,7 @@ static void test_target_bonded_finds_columns_by_the_name_of_the_group(void **sta
     char table[2048] = "# r[lambda]\ta[1/lambda]\tb[1/lambda]\tb_error[1/lambda]\n";
     for (int k = 0; k < 10; k++)
         snprintf(table + strlen(table), 64, "%.2f\t7\t%.3f\t%.3f\n", 1 + 0.1 * k, 1.0, 0.01 * k);
-    assert_ok(read(state, table, "", TOPOLOGY_BOND, &target));
+    assert_ok(read(state, table, "", BONDED_BOND, &target));
     assert_close(target.value[3], 1, 1e-9);
     assert_close(target.error[3], 0.03, 1e-9);
     assert_close(target.estimated_error, 0, 0);
@@ -173,21 +173,21 @@ static void test_target_bonded_finds_columns_by_the_name_of_the_group(void **sta
 }
 
 static void test_target_bonded_refuses_nonsense(void **state) {
-    assert_refused(state, normal(0, 0.01, 300, 1.5, 0.05, 1.03, ""), "", TOPOLOGY_BOND,
+    assert_refused(state, normal(0, 0.01, 300, 1.5, 0.05, 1.03, ""), "", BONDED_BOND,
                    "the integral of p is 1.03, not 1");
-    assert_refused(state, normal(0, 0.01, 315, 1.9, 0.05, 1, ""), "", TOPOLOGY_ANGLE,
+    assert_refused(state, normal(0, 0.01, 315, 1.9, 0.05, 1, ""), "", BONDED_ANGLE,
                    "as if in radians");
-    assert_refused(state, strdup("0 0.9\n0 2.7\n0.1 4.5\n0.4 6.3\n"), "", TOPOLOGY_ANGLE,
+    assert_refused(state, strdup("0 0.9\n0 2.7\n0.1 4.5\n0.4 6.3\n"), "", BONDED_ANGLE,
                    "p.tsv:2: column 1: 0 does not grow from 0 in line 1 (are the columns");
-    assert_refused(state, normal(0, 1, 181, 110, 5, 1, " i"), VOTCA, TOPOLOGY_ANGLE,
+    assert_refused(state, normal(0, 1, 181, 110, 5, 1, " i"), VOTCA, BONDED_ANGLE,
                    "as if in degrees");
-    assert_refused(state, normal(0, 2, 181, 110, 5, 1, ""), "", TOPOLOGY_ANGLE,
+    assert_refused(state, normal(0, 2, 181, 110, 5, 1, ""), "", BONDED_ANGLE,
                    "it goes from 0 to 360, and angles are from 0 to 180");
-    assert_refused(state, normal(-1, 0.01, 300, 0.5, 0.05, 1, ""), "", TOPOLOGY_BOND,
+    assert_refused(state, normal(-1, 0.01, 300, 0.5, 0.05, 1, ""), "", BONDED_BOND,
                    "lengths are from 0");
-    assert_refused(state, normal(-90, 1, 181, 0, 20, 1, ""), "", TOPOLOGY_DIHEDRAL,
+    assert_refused(state, normal(-90, 1, 181, 0, 20, 1, ""), "", BONDED_DIHEDRAL,
                    "dihedrals go round");
-    assert_refused(state, normal(1, 0.1, 5, 1.2, 0.1, 1, ""), "", TOPOLOGY_BOND, "only 5 bins");
+    assert_refused(state, normal(1, 0.1, 5, 1.2, 0.1, 1, ""), "", BONDED_BOND, "only 5 bins");
 }
 
 int main(void) {

@@ -132,7 +132,7 @@ static void test_inversion_reason_is_a_target_that_is_off_as_a_whole(void **stat
 /// A section that is off is told by its χ², and groups that agree have neither g nor a ramp.
 static void test_inversion_reason_of_groups_is_the_one_that_is_off(void **state) {
     (void)state;
-    const int bond = mf_bonded_distribution_kind(TOPOLOGY_BOND);
+    const int bond = mf_bonded_distribution_kind(BONDED_BOND);
     struct fit fit;
     struct inversion *inversion = make_fit(&fit, 0, false);
     fit.problem.targets.target[TARGET_RDF].count = 0;

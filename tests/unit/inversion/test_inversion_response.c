@@ -55,12 +55,12 @@ static void make_twin(struct twin *twin, double *values, double *counts) {
     const struct composition composition =
         molecules_topology(&twin->molecules.topology, molecules_chain(20, types, 2, 1, 0),
                            (struct topology_kind){0}, 1, NULL);
-    molecules_add_group(&twin->molecules, TOPOLOGY_BOND, &mf_bond_harmonic, NULL);
+    molecules_add_group(&twin->molecules, BONDED_BOND, &mf_bond_harmonic, NULL);
     molecules_enter(&twin->problem.scene, &twin->molecules, &composition);
     for (size_t k = 0; k < BINS; k++)
         twin->target[k] = 1;
-    twin->problem.group[0] = (struct bonded_unknown){TOPOLOGY_BOND, 0, bins, 0, {0}};
-    twin->problem.targets.target[mf_bonded_distribution_kind(TOPOLOGY_BOND)] =
+    twin->problem.group[0] = (struct bonded_unknown){BONDED_BOND, 0, bins, 0, {0}};
+    twin->problem.targets.target[mf_bonded_distribution_kind(BONDED_BOND)] =
         (struct target){.count = BINS, .value = twin->target, .error = twin->error};
     struct bonded_grid *grid = &twin->group.own;
     assert_ok(mf_bonded_grid_init(grid, &twin->problem, &twin->problem.group[0]));

@@ -39,7 +39,7 @@ static double wells(double x) {
 static void make(struct scene *scene, double (*truth)(double), double peak) {
     *scene = (struct scene){.peak = peak, .problem.scene.temperature = 1.5};
     scene->problem.group[0] =
-        (struct bonded_unknown){TOPOLOGY_BOND, 0, {100, 0.01, BINS}, 0, {0}}; // r² is a constant
+        (struct bonded_unknown){BONDED_BOND, 0, {100, 0.01, BINS}, 0, {0}}; // r² is a constant
     scene->group.own = (struct bonded_grid){.unknown = scene->problem.group,
                                             .target = scene->p,
                                             .temperature = 1.5,
@@ -201,7 +201,7 @@ static void test_error_of_few_counts_is_that_of_those_expected(void **state) {
         .parameters = &parameters,
         .grid = {.known = THREE, .known_bin = bin, .seen = seen, .well_known = well_known},
         .verdict = {.sections = 1,
-                    .section[0] = {.kind = mf_bonded_distribution_kind(TOPOLOGY_BOND),
+                    .section[0] = {.kind = mf_bonded_distribution_kind(BONDED_BOND),
                                    .bins = THREE,
                                    .known_count = THREE,
                                    .peak = 100}},
@@ -216,7 +216,7 @@ static void test_error_of_few_counts_is_that_of_those_expected(void **state) {
     assert_close(variance[1], 9, 1e-9);
     assert_close(variance[2], 90, 1e-9);
     // (s² + s⁴/(2 e²))/n of the samples' own s² = 1e-12.
-    assert_close(made.verdict.distance[mf_bonded_distribution_kind(TOPOLOGY_BOND)].variance,
+    assert_close(made.verdict.distance[mf_bonded_distribution_kind(BONDED_BOND)].variance,
                  1e-12 / THREE, 1e-3 * 1e-12);
 }
 

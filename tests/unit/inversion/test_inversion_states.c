@@ -41,14 +41,14 @@ static void make_state(struct made *made, size_t s, double temperature) {
     static const struct bonded_bins bins = {0.2, 0.05, BINS};
     struct inversion_state *state = &made->state[s];
     struct inverse_problem *problem = &made->problem[s];
-    const int kind = mf_bonded_distribution_kind(TOPOLOGY_BOND);
+    const int kind = mf_bonded_distribution_kind(BONDED_BOND);
     *problem = (struct inverse_problem){
         .scene = {.temperature = temperature, .box = {.dimensions = 3, .length = {9, 9, 9}}},
         .state = made->problems,
         .states = STATES,
         .bonded = 1,
         .unknown[UNKNOWN_BONDED].wanted = true,
-        .group[0] = {TOPOLOGY_BOND, 0, bins, 0, {0}}};
+        .group[0] = {BONDED_BOND, 0, bins, 0, {0}}};
     problem->targets.target[kind] =
         (struct target){.count = BINS, .value = made->target[s], .error = made->none};
     molecules_enter(&problem->scene, &made->molecules, &made->composition);
@@ -95,7 +95,7 @@ static void make(struct made *made, const double factor[STATES]) {
     made->composition =
         molecules_topology(&made->molecules.topology, molecules_chain(20, types, 2, 1, 0),
                            (struct topology_kind){0}, 1, NULL);
-    molecules_add_group(&made->molecules, TOPOLOGY_BOND, &mf_bond_harmonic, NULL);
+    molecules_add_group(&made->molecules, BONDED_BOND, &mf_bond_harmonic, NULL);
     make_state(made, 0, 1);
     make_state(made, 1, 2);
     for (size_t s = 0; s < STATES; s++)

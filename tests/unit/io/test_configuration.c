@@ -23,8 +23,8 @@ static void test_bonds_are_rows_of_the_beads_by_type(void **state) {
     struct topology topology;
     struct data_table table;
     const struct composition composition = molecules_topology(
-        &topology, molecules_chain(2, abba, 4, TOPOLOGY_DIHEDRAL, 3),
-        molecules_chain(1, bc, 2, TOPOLOGY_BOND, 1), 3, (const int64_t[]){2, 0, 2});
+        &topology, molecules_chain(2, abba, 4, BONDED_DIHEDRAL, 3),
+        molecules_chain(1, bc, 2, BONDED_BOND, 1), 3, (const int64_t[]){2, 0, 2});
     snprintf(file, sizeof file, "%s", temporary_folder_write(folder, "places", "", 0));
     snprintf(bonds, sizeof bonds, "%s", temporary_folder_write(folder, "bonds", "", 0));
     assert_ok(

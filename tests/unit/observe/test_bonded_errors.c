@@ -29,12 +29,12 @@ static void chains_make(struct chains *chains) {
     static const struct molecules_number twist[] = {
         {"k", 1}, {"multiplicity", 2}, {"phase", 0}, {NULL, 0}};
     chains->molecules = (struct molecules){0};
-    struct topology_kind kind = molecules_chain(MOLECULES, type, 4, TOPOLOGY_DIHEDRAL, 0);
-    kind.terms[TOPOLOGY_ANGLE] = 0;
+    struct topology_kind kind = molecules_chain(MOLECULES, type, 4, BONDED_DIHEDRAL, 0);
+    kind.terms[BONDED_ANGLE] = 0;
     const struct composition composition =
         molecules_topology(&chains->molecules.topology, kind, (struct topology_kind){0}, 1, NULL);
-    molecules_add_group(&chains->molecules, TOPOLOGY_BOND, &mf_bond_harmonic, spring);
-    molecules_add_group(&chains->molecules, TOPOLOGY_DIHEDRAL, &mf_dihedral_periodic, twist);
+    molecules_add_group(&chains->molecules, BONDED_BOND, &mf_bond_harmonic, spring);
+    molecules_add_group(&chains->molecules, BONDED_DIHEDRAL, &mf_dihedral_periodic, twist);
     fluid_ideal_gas(&chains->fluid, 3, 4 * MOLECULES, 0.01);
     chains->fluid.setup.placement.kind = PLACEMENT_LATTICE;
     molecules_enter(&chains->fluid.setup, &chains->molecules, &composition);
@@ -84,7 +84,7 @@ static void sample_jumps(struct chains *chains, const struct observable *observa
 static double deviation_of_side(const void *state) {
     double value[2], error[2];
     const struct observable_values values = {.count = 2, .value = value, .error = error};
-    assert_ok(mf_bonded_dihedrals.result((const void *const[]){state}, 1, &values));
+    assert_ok(mf_bonded_distribution_dihedral.result((const void *const[]){state}, 1, &values));
     assert_close(value[0] + value[1], 1.0 / 180, 1e-12);
     return (value[0] - 0.5 / 180) / error[0];
 }
@@ -109,7 +109,8 @@ static const struct {
     const void *settings;
     double (*deviation)(const void *state);
 } measured[] = {
-    {&mf_bonded_dihedrals, &(const struct bonded_settings){.bins = 2}, deviation_of_side},
+    {&mf_bonded_distribution_dihedral, &(const struct bonded_settings){.bins = 2},
+     deviation_of_side},
     {&mf_molecule_sizes, &(const int64_t){10}, deviation_of_size},
 };
 

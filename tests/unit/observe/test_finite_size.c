@@ -132,7 +132,7 @@ static void make_trimers(struct topology *topology, struct composition *composit
     *composition =
         (struct composition){.types = single > 0 ? 3 : 2, .count = {2 * TRIMERS, TRIMERS, single}};
     *topology =
-        (struct topology){.kinds = 1, .kind = {molecules_chain(TRIMERS, aba, 3, TOPOLOGY_BOND, 2)}};
+        (struct topology){.kinds = 1, .kind = {molecules_chain(TRIMERS, aba, 3, BONDED_BOND, 2)}};
     assert_ok(mf_topology_complete(topology, composition));
 }
 

@@ -128,8 +128,8 @@ static void test_kirkwood_buff_waves_of_molecules_are_those_of_their_sites(void 
     static const int dimer[] = {0, 1}, trimer[] = {0, 0, 0};
     struct topology topology;
     const struct composition beads = molecules_topology(
-        &topology, molecules_chain(DIMERS, dimer, 2, TOPOLOGY_BOND, 1),
-        molecules_chain(TRIMERS, trimer, 3, TOPOLOGY_BOND, 1), 3, (const int64_t[]){0, 0, SINGLE});
+        &topology, molecules_chain(DIMERS, dimer, 2, BONDED_BOND, 1),
+        molecules_chain(TRIMERS, trimer, 3, BONDED_BOND, 1), 3, (const int64_t[]){0, 0, SINGLE});
     const size_t count = topology.particles;
     struct rng_sequence random = mf_rng_sequence_begin(11, RNG_PLACEMENT, 0, 0);
     struct running_mean mean[MOLECULE_PAIRS] = {0};
@@ -168,9 +168,9 @@ static void test_kirkwood_buff_waves_are_longer_than_the_molecules(void **state)
     const double edge = cbrt(ALL / density);
     const struct box large = {3, {edge, edge, edge}};
     struct topology chains, dimers;
-    molecules_topology(&chains, molecules_chain(10, types, CHAIN, TOPOLOGY_BOND, 1),
+    molecules_topology(&chains, molecules_chain(10, types, CHAIN, BONDED_BOND, 1),
                        (struct topology_kind){0}, 1, (const int64_t[]){ALL - 10 * CHAIN});
-    molecules_topology(&dimers, molecules_chain(10, types, 2, TOPOLOGY_BOND, 1),
+    molecules_topology(&dimers, molecules_chain(10, types, 2, BONDED_BOND, 1),
                        (struct topology_kind){0}, 1, (const int64_t[]){ALL - 10 * 2});
     const double free = mf_kirkwood_buff_waves_maximum(&large, ALL, ALL, NULL, 0);
     assert_true(free * size > 4);

@@ -23,23 +23,23 @@ struct twin {
 };
 
 /// p of a bin is proportional to exp(−U/k_B T) and to the Jacobian at its centre.
-static void make_twin(struct twin *twin, enum topology_order order, struct bonded_bins bins,
+static void make_twin(struct twin *twin, int order, struct bonded_bins bins,
                       double (*energy)(double)) {
     *twin = (struct twin){.problem = {.scene = {.temperature = temperature,
                                                 .box = {.dimensions = 3, .length = {9, 9, 9}}}}};
     const struct composition composition =
         molecules_topology(&twin->molecules.topology, molecules_chain(20, types, 4, 2, 0),
                            (struct topology_kind){0}, 1, NULL);
-    molecules_add_group(&twin->molecules, TOPOLOGY_BOND, &mf_bond_harmonic, NULL);
-    molecules_add_group(&twin->molecules, TOPOLOGY_ANGLE, &mf_angle_harmonic, NULL);
-    molecules_add_group(&twin->molecules, TOPOLOGY_DIHEDRAL, &mf_dihedral_periodic, NULL);
+    molecules_add_group(&twin->molecules, BONDED_BOND, &mf_bond_harmonic, NULL);
+    molecules_add_group(&twin->molecules, BONDED_ANGLE, &mf_angle_harmonic, NULL);
+    molecules_add_group(&twin->molecules, BONDED_DIHEDRAL, &mf_dihedral_periodic, NULL);
     molecules_enter(&twin->problem.scene, &twin->molecules, &composition);
     double sum = 0;
     for (size_t k = 0; k < bins.count; k++) {
         const double q = bonded_bins_centre(&bins, k);
-        const double jacobian = order == TOPOLOGY_BOND    ? q * q
-                                : order == TOPOLOGY_ANGLE ? sin(q * M_PI / 180)
-                                                          : 1;
+        const double jacobian = order == BONDED_BOND    ? q * q
+                                : order == BONDED_ANGLE ? sin(q * M_PI / 180)
+                                                        : 1;
         twin->target[k] = fmax(0, jacobian) * exp(-energy(q) / temperature);
         sum += bins.width * twin->target[k];
     }
@@ -99,7 +99,7 @@ static void test_bonded_grid_inverts_the_distribution_of_a_bond(void **state) {
     struct bonded_grid grid;
     struct bonded_curve curve = {0};
     double values[POINTS];
-    make_twin(&twin, TOPOLOGY_BOND, (struct bonded_bins){0.6, 0.4 / BINS, BINS}, bond_energy);
+    make_twin(&twin, BONDED_BOND, (struct bonded_bins){0.6, 0.4 / BINS, BINS}, bond_energy);
     begin(&twin, &grid, values, &curve);
     assert_law(&curve, bond_energy, 1, 0.66, 0.94, 2e-3);
     mf_bonded_clear(&curve);
@@ -113,7 +113,7 @@ static void test_bonded_grid_has_no_constant(void **state) {
     struct bonded_grid grid;
     struct bonded_curve curve = {0};
     double values[POINTS], shifted[POINTS] = {0}, least = INFINITY;
-    make_twin(&twin, TOPOLOGY_BOND, (struct bonded_bins){0.6, 0.4 / BINS, BINS}, bond_energy);
+    make_twin(&twin, BONDED_BOND, (struct bonded_bins){0.6, 0.4 / BINS, BINS}, bond_energy);
     begin(&twin, &grid, values, &curve);
     for (size_t k = grid.below; k < grid.below + grid.known; k++)
         shifted[k] = values[k] - 7;
@@ -135,7 +135,7 @@ static void test_bonded_grid_holds_what_leaves_the_target(void **state) {
     struct bonded_grid grid;
     struct bonded_curve curve = {0};
     double values[POINTS], before, energy;
-    make_twin(&twin, TOPOLOGY_BOND, (struct bonded_bins){0.6, 0.4 / BINS, BINS}, bond_energy);
+    make_twin(&twin, BONDED_BOND, (struct bonded_bins){0.6, 0.4 / BINS, BINS}, bond_energy);
     begin(&twin, &grid, values, &curve);
     const double last = mf_bonded_grid_place(&grid, grid.below + grid.known - 1);
     assert_true(last > 0.93 && last < 1);
@@ -161,7 +161,7 @@ static void test_bonded_grid_lets_an_angle_be_straight(void **state) {
     struct bonded_grid grid;
     struct bonded_curve curve = {0};
     double values[POINTS];
-    make_twin(&twin, TOPOLOGY_ANGLE, (struct bonded_bins){0, 180.0 / BINS, BINS}, angle_energy);
+    make_twin(&twin, BONDED_ANGLE, (struct bonded_bins){0, 180.0 / BINS, BINS}, angle_energy);
     begin(&twin, &grid, values, &curve);
     assert_law(&curve, angle_energy, M_PI / 180, 80, 180, 6e-3);
     mf_bonded_clear(&curve);
@@ -174,7 +174,7 @@ static void test_bonded_grid_closes_the_circle(void **state) {
     struct bonded_grid grid;
     struct bonded_curve curve = {0};
     double values[POINTS], low, high;
-    make_twin(&twin, TOPOLOGY_DIHEDRAL, (struct bonded_bins){-180, 360.0 / BINS, BINS},
+    make_twin(&twin, BONDED_DIHEDRAL, (struct bonded_bins){-180, 360.0 / BINS, BINS},
               dihedral_energy);
     begin(&twin, &grid, values, &curve);
     assert_law(&curve, dihedral_energy, M_PI / 180, -180, 180, 2e-3);
@@ -199,7 +199,7 @@ static double mean_over(const struct bonded_grid *grid, const double *values, do
         const double q = centre + grid->unknown->bins.width * ((k + 0.5) / PLACES - 0.5);
         double energy;
         mf_bonded_value(&curve, unit * q, &energy, NULL);
-        const bool inside = (q >= first && q <= last) || grid->unknown->order == TOPOLOGY_DIHEDRAL;
+        const bool inside = (q >= first && q <= last) || grid->unknown->order == BONDED_DIHEDRAL;
         sum += inside ? energy : 0;
         count += inside;
     }
@@ -208,7 +208,7 @@ static double mean_over(const struct bonded_grid *grid, const double *values, do
 }
 
 /// Of the points at an end, beside it and in the middle, against the curve that the engine reads.
-static void assert_means(enum topology_order order, struct bonded_bins bins, double unit,
+static void assert_means(int order, struct bonded_bins bins, double unit,
                          double (*energy)(double)) {
     enum { MOST = 60 };
     static struct twin twin;
@@ -222,7 +222,7 @@ static void assert_means(enum topology_order order, struct bonded_bins bins, dou
     for (size_t n = 0; n < sizeof points / sizeof *points; n++) {
         for (size_t k = 0; k < grid.points; k++)
             values[k] = k == grid.below + points[n];
-        if (order == TOPOLOGY_DIHEDRAL)
+        if (order == BONDED_DIHEDRAL)
             values[grid.known] = values[0];
         for (size_t a = 0; a < grid.known; a++)
             assert_close(means[a * grid.known + points[n]], mean_over(&grid, values, unit, a),
@@ -233,21 +233,20 @@ static void assert_means(enum topology_order order, struct bonded_bins bins, dou
 
 static void test_bonded_grid_means_are_those_of_the_curve(void **state) {
     (void)state;
-    assert_means(TOPOLOGY_BOND, (struct bonded_bins){0.6, 0.01, 40}, 1, bond_energy);
-    assert_means(TOPOLOGY_ANGLE, (struct bonded_bins){0, 4, 45}, M_PI / 180, angle_energy);
-    assert_means(TOPOLOGY_DIHEDRAL, (struct bonded_bins){-180, 10, 36}, M_PI / 180,
-                 dihedral_energy);
+    assert_means(BONDED_BOND, (struct bonded_bins){0.6, 0.01, 40}, 1, bond_energy);
+    assert_means(BONDED_ANGLE, (struct bonded_bins){0, 4, 45}, M_PI / 180, angle_energy);
+    assert_means(BONDED_DIHEDRAL, (struct bonded_bins){-180, 10, 36}, M_PI / 180, dihedral_energy);
 }
 
 static void test_bonded_grid_refuses_what_tells_nothing(void **state) {
     (void)state;
     static struct twin twin;
     struct bonded_grid grid;
-    make_twin(&twin, TOPOLOGY_BOND, (struct bonded_bins){0, 0.2, 10}, bond_energy);
+    make_twin(&twin, BONDED_BOND, (struct bonded_bins){0, 0.2, 10}, bond_energy);
     assert_fails(mf_bonded_grid_init(&grid, &twin.problem, &twin.problem.group[0]),
                  STATUS_BAD_INPUT, "has only 2 bins");
     clear_twin(&twin);
-    make_twin(&twin, TOPOLOGY_DIHEDRAL, (struct bonded_bins){-170, 2, 170}, dihedral_energy);
+    make_twin(&twin, BONDED_DIHEDRAL, (struct bonded_bins){-170, 2, 170}, dihedral_energy);
     assert_fails(mf_bonded_grid_init(&grid, &twin.problem, &twin.problem.group[0]),
                  STATUS_BAD_INPUT, "340 degrees, not 360");
     clear_twin(&twin);
@@ -260,7 +259,7 @@ static void test_potential_grid_has_groups_behind_the_pairs(void **state) {
     static struct twin twin;
     struct potential_grid grid;
     double g[PAIR_BINS];
-    make_twin(&twin, TOPOLOGY_ANGLE, (struct bonded_bins){0, 180.0 / BINS, BINS}, angle_energy);
+    make_twin(&twin, BONDED_ANGLE, (struct bonded_bins){0, 180.0 / BINS, BINS}, angle_energy);
     for (int k = 0; k < PAIR_BINS; k++)
         g[k] = k < 10 ? 0 : 1;
     twin.problem.targets.bins = (struct rdf_bins){0, 0.1, PAIR_BINS};
@@ -293,10 +292,10 @@ static void test_bins_of_two_states_are_those_of_both(void **state) {
     struct bonded_grid grid, own;
     double values[POINTS], alone[POINTS];
     (void)state;
-    make_twin(&cold, TOPOLOGY_BOND, bins, bond_energy);
+    make_twin(&cold, BONDED_BOND, bins, bond_energy);
     assert_ok(mf_bonded_grid_init(&own, &cold.problem, &cold.problem.group[0]));
     mf_bonded_grid_start(&own, alone);
-    make_twin(&hot, TOPOLOGY_BOND, bins, wide_bond_energy);
+    make_twin(&hot, BONDED_BOND, bins, wide_bond_energy);
     const struct inverse_problem *const both[] = {&cold.problem, &hot.problem};
     cold.problem.state = both;
     cold.problem.states = 2;

@@ -156,31 +156,31 @@ static void test_numbers_apply_changes_laws_of_bonds_and_angles(void **state) {
     double energy;
     molecules_topology(&molecules.topology, molecules_chain(2, types, 3, 1, 2),
                        (struct topology_kind){0}, 1, NULL);
-    molecules_add_group(&molecules, TOPOLOGY_BOND, &mf_bond_harmonic, bond);
-    molecules_add_group(&molecules, TOPOLOGY_ANGLE, &mf_angle_cosine_squared, angle);
-    molecules_add_group(&molecules, TOPOLOGY_ANGLE, &mf_angle_harmonic, angle);
+    molecules_add_group(&molecules, BONDED_BOND, &mf_bond_harmonic, bond);
+    molecules_add_group(&molecules, BONDED_ANGLE, &mf_angle_cosine_squared, angle);
+    molecules_add_group(&molecules, BONDED_ANGLE, &mf_angle_harmonic, angle);
     const size_t second = mf_angle_harmonic.fields[1].offset;
     const struct inverse_problem problem = {
         .numbers = 3,
-        .number = {{.place = INVERSE_OF_BONDED, .part = inverse_group(TOPOLOGY_BOND, 0)},
+        .number = {{.place = INVERSE_OF_BONDED, .part = inverse_group(BONDED_BOND, 0)},
                    {.place = INVERSE_OF_BONDED,
-                    .part = inverse_group(TOPOLOGY_ANGLE, 1),
+                    .part = inverse_group(BONDED_ANGLE, 1),
                     .offset = second},
                    {.place = INVERSE_OF_BONDED,
-                    .part = inverse_group(TOPOLOGY_BOND, 0),
+                    .part = inverse_group(BONDED_BOND, 0),
                     .offset = mf_bond_harmonic.fields[1].offset}},
         .scene = {.interaction = {{&mf_molecules, &molecules}}, .interactions = 1}};
     assert_ok(mf_numbers_apply(&problem, (const double[]){300, 120, 0.6}, &changed, &own));
     const struct molecules *found =
         mf_molecules_find(changed.scene.interaction, changed.scene.interactions);
-    mf_bonded_value(&found->group[TOPOLOGY_BOND][0].curve, 0.7, &energy, NULL);
+    mf_bonded_value(&found->group[BONDED_BOND][0].curve, 0.7, &energy, NULL);
     assert_close(energy, 0.5 * 300 * 0.1 * 0.1, 1e-12);
-    mf_bonded_value(&found->group[TOPOLOGY_ANGLE][1].curve, M_PI, &energy, NULL);
+    mf_bonded_value(&found->group[BONDED_ANGLE][1].curve, M_PI, &energy, NULL);
     assert_close(energy, 0.5 * 20 * M_PI * M_PI / 9, 1e-12);
     // No number belongs to it.
-    assert_ptr_equal(found->group[TOPOLOGY_ANGLE][0].curve.parameters,
-                     molecules.group[TOPOLOGY_ANGLE][0].curve.parameters);
-    mf_bonded_value(&molecules.group[TOPOLOGY_BOND][0].curve, 0.7, &energy, NULL);
+    assert_ptr_equal(found->group[BONDED_ANGLE][0].curve.parameters,
+                     molecules.group[BONDED_ANGLE][0].curve.parameters);
+    mf_bonded_value(&molecules.group[BONDED_BOND][0].curve, 0.7, &energy, NULL);
     assert_close(energy, 0.5 * 100 * 0.2 * 0.2, 1e-12);
     mf_numbers_own_clear(&own);
     mf_molecules_clear(&molecules);

@@ -22,21 +22,21 @@ static const int types[4] = {0};
 struct twin {
     struct molecules molecules;
     struct inverse_problem problem;
-    double g[PAIR_BINS], target[TOPOLOGY_ORDERS][BINS], error[TOPOLOGY_ORDERS][BINS];
+    double g[PAIR_BINS], target[BONDED_KINDS][BINS], error[BONDED_KINDS][BINS];
     struct unknowns unknowns;
 };
 
-static const struct bonded_bins bins[TOPOLOGY_ORDERS] = {
+static const struct bonded_bins bins[BONDED_KINDS] = {
     {0.5, 0.6 / BINS, BINS}, {60, 120.0 / BINS, BINS}, {-180, 360.0 / BINS, BINS}};
 
-static double true_energy(enum topology_order order, double q) {
-    return order == TOPOLOGY_BOND    ? 300 * pow(q - 0.8, 2) / 2
-           : order == TOPOLOGY_ANGLE ? 20 * pow((q - 115) * M_PI / 180, 2) / 2
-                                     : 1 + cos(3 * q * M_PI / 180);
+static double true_energy(int order, double q) {
+    return order == BONDED_BOND    ? 300 * pow(q - 0.8, 2) / 2
+           : order == BONDED_ANGLE ? 20 * pow((q - 115) * M_PI / 180, 2) / 2
+                                   : 1 + cos(3 * q * M_PI / 180);
 }
 
 /// p by the mean Jacobian of each bin, with errors as of so many counts.
-static void make_target(struct twin *twin, enum topology_order order) {
+static void make_target(struct twin *twin, int order) {
     double *p = twin->target[order], sum = 0;
     for (size_t k = 0; k < BINS; k++) {
         const double energy = true_energy(order, bonded_bins_centre(&bins[order], k));
@@ -59,9 +59,9 @@ static void make_twin(struct twin *twin) {
     const struct composition composition =
         molecules_topology(&twin->molecules.topology, molecules_chain(20, types, 4, 2, 3),
                            (struct topology_kind){0}, 1, NULL);
-    molecules_add_group(&twin->molecules, TOPOLOGY_BOND, &mf_bond_harmonic, NULL);
-    molecules_add_group(&twin->molecules, TOPOLOGY_ANGLE, &mf_angle_harmonic, NULL);
-    molecules_add_group(&twin->molecules, TOPOLOGY_DIHEDRAL, &mf_dihedral_periodic, NULL);
+    molecules_add_group(&twin->molecules, BONDED_BOND, &mf_bond_harmonic, NULL);
+    molecules_add_group(&twin->molecules, BONDED_ANGLE, &mf_angle_harmonic, NULL);
+    molecules_add_group(&twin->molecules, BONDED_DIHEDRAL, &mf_dihedral_periodic, NULL);
     molecules_enter(&problem->scene, &twin->molecules, &composition);
     for (size_t k = 0; k < PAIR_BINS; k++)
         twin->g[k] = k < 5 ? 0 : 1;
@@ -70,7 +70,7 @@ static void make_twin(struct twin *twin) {
     problem->unknown[UNKNOWN_POTENTIAL] =
         (struct unknown){true, {INVERSE_CURVE_BSPLINE, 7, -3, 3, 0, 0, {0}, 0}, {NULL}, NULL};
     problem->unknown[UNKNOWN_BONDED].wanted = true;
-    for (enum topology_order order = 0; order < TOPOLOGY_ORDERS; order++) {
+    for (int order = 0; order < BONDED_KINDS; order++) {
         make_target(twin, order);
         problem->group[problem->bonded++] =
             (struct bonded_unknown){order, 0, bins[order], 0, {4 + (int)order, 2 + (int)order}};
@@ -125,7 +125,7 @@ static void test_bonded_basis_makes_smooth_curves_without_a_constant(void **stat
     static struct twin twin;
     double basis[MOST], weight[BINS], values[BINS];
     make_twin(&twin);
-    for (size_t g = 0; g < TOPOLOGY_ORDERS; g++) {
+    for (size_t g = 0; g < BONDED_KINDS; g++) {
         const struct bonded_grid *grid = grid_of(&twin, g);
         const size_t own = (size_t)grid->unknown->shape.coefficients;
         const double middle = mf_bonded_grid_place(grid, grid->below + grid->known / 2);
@@ -140,9 +140,8 @@ static void test_bonded_basis_makes_smooth_curves_without_a_constant(void **stat
             const double q = mf_bonded_grid_place(grid, grid->below + k);
             const double x = (q - middle) / middle;
             weight[k] = 1;
-            values[k] = g < TOPOLOGY_DIHEDRAL
-                            ? 3 + 7 * x - 20 * x * x + 40 * x * x * x
-                            : 2 + sin(q * M_PI / 180) - 3 * cos(3 * q * M_PI / 180);
+            values[k] = g < BONDED_DIHEDRAL ? 3 + 7 * x - 20 * x * x + 40 * x * x * x
+                                            : 2 + sin(q * M_PI / 180) - 3 * cos(3 * q * M_PI / 180);
         }
         take_off(basis, own, weight, grid->known, values);
         for (size_t k = 0; k < grid->known; k++)
@@ -159,7 +158,7 @@ static void test_bonded_rough_is_the_noise_that_no_coefficients_make_up_for(void
     static struct twin twin;
     double basis[MOST], weight[BINS], rough[BINS];
     make_twin(&twin);
-    for (size_t g = 0; g < TOPOLOGY_ORDERS; g++) {
+    for (size_t g = 0; g < BONDED_KINDS; g++) {
         const struct bonded_grid *grid = grid_of(&twin, g);
         const size_t own = (size_t)grid->unknown->shape.coefficients;
         double squares[BINS] = {0};
@@ -251,8 +250,8 @@ static void test_parametrisation_laws_have_the_groups(void **state) {
         mf_molecules_find(laws.problem.scene.interaction, laws.problem.scene.interactions);
     const struct bonded_grid *bond = &p.unknowns.potential.group[0].own;
     for (size_t k = 0; k < bond->points; k++) {
-        mf_bonded_value(&found->group[TOPOLOGY_BOND][0].curve, mf_bonded_grid_place(bond, k),
-                        &energy, NULL);
+        mf_bonded_value(&found->group[BONDED_BOND][0].curve, mf_bonded_grid_place(bond, k), &energy,
+                        NULL);
         assert_close(energy, curve[k], 1e-3 * (1 + fabs(curve[k])));
     }
     mf_unknowns_laws_clear(&laws);

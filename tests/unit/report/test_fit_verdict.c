@@ -104,7 +104,7 @@ static void test_fit_verdict_names_friction_when_the_beads_are_cold(void **state
     struct verification cold = make(0.045, 1, 2);
     assert_says(&cold, "friction");
     cold.worst[TARGET_RDF].rms = 0;
-    cold.worst[mf_bonded_distribution_kind(TOPOLOGY_BOND)] =
+    cold.worst[mf_bonded_distribution_kind(BONDED_BOND)] =
         (struct target_distance){.rms = 3.4, .noise = 0.18};
     assert_says(&cold, "agree with bond_lengths, its verification is off by 3.4 (0.18 by "
                        "statistics) at T = 1, pressure 2: too little friction");

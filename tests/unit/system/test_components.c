@@ -14,8 +14,8 @@ static const int abb[] = {0, 1, 1}, bb[] = {1, 1};
 
 /// Two A-B-B, three B-B, no single A, one single B, four single C.
 static struct composition make(struct topology *topology) {
-    return molecules_topology(topology, molecules_chain(2, abb, 3, TOPOLOGY_BOND, 1),
-                              molecules_chain(3, bb, 2, TOPOLOGY_BOND, 1), 3,
+    return molecules_topology(topology, molecules_chain(2, abb, 3, BONDED_BOND, 1),
+                              molecules_chain(3, bb, 2, BONDED_BOND, 1), 3,
                               (const int64_t[]){0, 1, 4});
 }
 
@@ -48,7 +48,7 @@ static void test_one_kind_alone_needs_no_name(void **state) {
     struct topology topology;
     struct composition components;
     const struct composition beads = molecules_topology(
-        &topology, molecules_chain(4, bb, 2, TOPOLOGY_BOND, 1), (struct topology_kind){0}, 2, NULL);
+        &topology, molecules_chain(4, bb, 2, BONDED_BOND, 1), (struct topology_kind){0}, 2, NULL);
     snprintf(topology.kind[0].name, TOPOLOGY_NAME_SIZE, "a-name-of-many-characters");
     assert_ok(mf_components_find(&components, &beads, 8, &topology));
     assert_int_equal(components.types, 1);

@@ -16,8 +16,8 @@ static const int abba[] = {0, 1, 1, 0}, bc[] = {1, 2};
 
 /// Two A-B-B-A, one B-C, and single beads A and C: A is 0 to 5, B 6 to 10, C 11 to 13.
 static struct composition make(struct topology *topology, int exclude) {
-    return molecules_topology(topology, molecules_chain(2, abba, 4, TOPOLOGY_DIHEDRAL, exclude),
-                              molecules_chain(1, bc, 2, TOPOLOGY_BOND, exclude), 3,
+    return molecules_topology(topology, molecules_chain(2, abba, 4, BONDED_DIHEDRAL, exclude),
+                              molecules_chain(1, bc, 2, BONDED_BOND, exclude), 3,
                               (const int64_t[]){2, 0, 2});
 }
 
@@ -87,12 +87,12 @@ static void test_beads_within_so_many_bonds_exclude_each_other(void **state) {
 static void test_rings_exclude_each_bead_once(void **state) {
     (void)state;
     static const int type[] = {0, 0, 0, 0};
-    struct topology_kind ring = molecules_chain(1, type, 4, TOPOLOGY_BOND, 3);
-    mf_memory_free(ring.term[TOPOLOGY_BOND]);
-    ring.terms[TOPOLOGY_BOND] = 4;
-    ring.term[TOPOLOGY_BOND] = mf_memory_zeroed(4, sizeof(struct topology_term));
+    struct topology_kind ring = molecules_chain(1, type, 4, BONDED_BOND, 3);
+    mf_memory_free(ring.term[BONDED_BOND]);
+    ring.terms[BONDED_BOND] = 4;
+    ring.term[BONDED_BOND] = mf_memory_zeroed(4, sizeof(struct topology_term));
     for (int n = 0; n < 4; n++)
-        ring.term[TOPOLOGY_BOND][n] = (struct topology_term){.bead = {n, (n + 1) % 4}};
+        ring.term[BONDED_BOND][n] = (struct topology_term){.bead = {n, (n + 1) % 4}};
     assert_ok(mf_topology_check(&ring));
     struct topology topology;
     molecules_topology(&topology, ring, (struct topology_kind){0}, 1, NULL);
@@ -114,29 +114,29 @@ static void check_refused(struct topology_kind kind, const char *message) {
 
 static void test_terms_that_cannot_be_are_refused(void **state) {
     (void)state;
-    struct topology_kind kind = molecules_chain(1, abba, 4, TOPOLOGY_DIHEDRAL, 1);
+    struct topology_kind kind = molecules_chain(1, abba, 4, BONDED_DIHEDRAL, 1);
     assert_ok(mf_topology_check(&kind));
-    kind.term[TOPOLOGY_BOND][1].bead[1] = 4;
+    kind.term[BONDED_BOND][1].bead[1] = 4;
     check_refused(kind, "the bond 2-5 has a bead 5, which is not there: beads are 1 to 4");
-    kind = molecules_chain(1, abba, 4, TOPOLOGY_DIHEDRAL, 1);
-    kind.term[TOPOLOGY_BOND][2] = (struct topology_term){.bead = {1, 0}, .group = 7};
+    kind = molecules_chain(1, abba, 4, BONDED_DIHEDRAL, 1);
+    kind.term[BONDED_BOND][2] = (struct topology_term){.bead = {1, 0}, .group = 7};
     check_refused(kind, "the bond 2-1 stands there twice");
-    kind = molecules_chain(1, abba, 4, TOPOLOGY_DIHEDRAL, 1);
-    kind.term[TOPOLOGY_ANGLE][1] = (struct topology_term){.bead = {2, 1, 0}};
+    kind = molecules_chain(1, abba, 4, BONDED_DIHEDRAL, 1);
+    kind.term[BONDED_ANGLE][1] = (struct topology_term){.bead = {2, 1, 0}};
     check_refused(kind, "the angle 3-2-1 stands there twice");
-    kind = molecules_chain(1, abba, 4, TOPOLOGY_DIHEDRAL, 1);
-    kind.term[TOPOLOGY_DIHEDRAL][0].bead[3] = 0;
+    kind = molecules_chain(1, abba, 4, BONDED_DIHEDRAL, 1);
+    kind.term[BONDED_DIHEDRAL][0].bead[3] = 0;
     check_refused(kind, "the dihedral 1-2-3-1 has a bead twice");
 }
 
 static void test_a_term_without_its_bonds_is_found(void **state) {
     (void)state;
     int order, pair[2];
-    struct topology_kind kind = molecules_chain(1, abba, 4, TOPOLOGY_DIHEDRAL, 1);
+    struct topology_kind kind = molecules_chain(1, abba, 4, BONDED_DIHEDRAL, 1);
     assert_null(mf_topology_unbonded(&kind, &order, pair));
-    kind.terms[TOPOLOGY_BOND] = 2; // without the last
-    assert_ptr_equal(mf_topology_unbonded(&kind, &order, pair), &kind.term[TOPOLOGY_ANGLE][1]);
-    assert_int_equal(order, TOPOLOGY_ANGLE);
+    kind.terms[BONDED_BOND] = 2; // without the last
+    assert_ptr_equal(mf_topology_unbonded(&kind, &order, pair), &kind.term[BONDED_ANGLE][1]);
+    assert_int_equal(order, BONDED_ANGLE);
     assert_memory_equal(pair, ((const int[]){2, 3}), sizeof pair);
     mf_topology_kind_clear(&kind);
 }
@@ -145,15 +145,15 @@ static void test_a_term_without_its_bonds_is_found(void **state) {
 static void test_a_kind_in_pieces_is_found(void **state) {
     (void)state;
     int bead;
-    struct topology_kind kind = molecules_chain(1, abba, 4, TOPOLOGY_BOND, 1);
+    struct topology_kind kind = molecules_chain(1, abba, 4, BONDED_BOND, 1);
     assert_ok(mf_topology_apart(&kind, &bead));
     assert_int_equal(bead, -1);
-    kind.terms[TOPOLOGY_BOND] = 2;
-    kind.term[TOPOLOGY_BOND][1].bead[0] = 2;
-    kind.term[TOPOLOGY_BOND][1].bead[1] = 3;
+    kind.terms[BONDED_BOND] = 2;
+    kind.term[BONDED_BOND][1].bead[0] = 2;
+    kind.term[BONDED_BOND][1].bead[1] = 3;
     assert_ok(mf_topology_apart(&kind, &bead));
     assert_int_equal(bead, 2);
-    kind.term[TOPOLOGY_BOND][1].bead[0] = 1;
+    kind.term[BONDED_BOND][1].bead[0] = 1;
     assert_ok(mf_topology_apart(&kind, &bead));
     assert_int_equal(bead, 2);
     mf_topology_kind_clear(&kind);
@@ -199,7 +199,7 @@ static void test_excluded_pairs_are_on_no_list(void **state) {
     const char *const used = mf_simd_name();
     const struct box box = {3, {5, 5, 5}};
     struct topology topology;
-    molecules_topology(&topology, molecules_chain(CHAINS, type, BEADS, TOPOLOGY_BOND, 2),
+    molecules_topology(&topology, molecules_chain(CHAINS, type, BEADS, BONDED_BOND, 2),
                        (struct topology_kind){0}, 1, (const int64_t[]){SINGLE});
     for (int set = 0; set < 3; set++)
         for (int kind = NEIGHBOURS_HALF; kind <= NEIGHBOURS_FULL; kind++) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "curves/bonded_law.h"
+#include "curves/bonded_batch.h"
+#include "curves/bonded_table.h"
 
 #include <math.h>
 
@@ -100,4 +101,82 @@ const struct bonded_law mf_dihedral_periodic = {
     .size = sizeof(struct periodic),
     .evaluate = periodic_evaluate,
     .rest = periodic_rest,
+};
+
+BONDED_TABLE(mf_dihedral_table,
+             "columns phi in degrees, U: 360 of them; 0 is cis and 180 trans (IUPAC)",
+             "periodic cubic spline through the points of a file");
+
+// Geometry: F = r_0 − r_1, G = r_1 − r_2 and H = r_3 − r_2 ----------------------------------------
+//
+// A. Blondel and M. Karplus, J. Comput. Chem. 17, 1132 (1996): with A = F × G and B = H × G nothing
+// is divided by the sine of φ.
+
+SIMD_CLONES static void measure(struct bonded_batch *batch) {
+    for (int n = 0; n < batch->count; n++) {
+        double f[3], g[3], h[3], a[3], b[3], turn[3];
+        bonded_take(batch->arm[0], n, f);
+        bonded_take(batch->arm[1], n, g);
+        bonded_take(batch->arm[2], n, h);
+        bonded_cross(f, g, a);
+        bonded_cross(h, g, b);
+        bonded_cross(b, a, turn);
+        batch->q[n] = atan2(bonded_dot(turn, g), bonded_dot(a, b) * sqrt(bonded_dot(g, g)));
+    }
+}
+
+/// Their eq. 27.
+SIMD_CLONES static void push(struct bonded_batch *batch) {
+    static const double least = BONDED_NO_DIRECTION * BONDED_NO_DIRECTION;
+    for (int n = 0; n < batch->count; n++) {
+        double f[3], g[3], h[3], a[3], b[3];
+        bonded_take(batch->arm[0], n, f);
+        bonded_take(batch->arm[1], n, g);
+        bonded_take(batch->arm[2], n, h);
+        bonded_cross(f, g, a);
+        bonded_cross(h, g, b);
+        const double aa = bonded_dot(a, a), bb = bonded_dot(b, b), gg = bonded_dot(g, g);
+        const double length = sqrt(gg), slope = batch->slope[n];
+        const bool directed =
+            aa > least * bonded_dot(f, f) * gg && bb > least * bonded_dot(h, h) * gg;
+        const double fg = bonded_dot(f, g) / (aa * length), hg = bonded_dot(h, g) / (bb * length);
+        for (int d = 0; d < 3; d++) {
+            batch->arm[0][d][n] = directed ? slope * length / aa * a[d] : 0;
+            batch->arm[1][d][n] = directed ? slope * (hg * b[d] - fg * a[d]) : 0;
+            batch->arm[2][d][n] = directed ? -slope * length / bb * b[d] : 0;
+        }
+    }
+}
+
+static double jacobian(int dimensions, double low, double width) {
+    (void)dimensions;
+    (void)low;
+    return width * BONDED_RADIANS;
+}
+
+static const struct bonded_law *const laws[] = {&mf_dihedral_ryckaert_bellemans,
+                                                &mf_dihedral_periodic, &mf_dihedral_table, NULL};
+
+const struct bonded_kind mf_dihedral = {
+    .name = "dihedral",
+    .plural = "dihedrals",
+    .article = "a",
+    .beads = 4,
+    .reach = 3,
+    .chain = {0, 1, 2, 3},
+    .spatial = true,
+    .arms = 3,
+    .arm = {{0, 1}, {1, 2}, {3, 2}},
+    .measure = measure,
+    .push = push,
+    .jacobian = jacobian,
+    BONDED_ANGLES,
+    .low = -180,
+    .high = 180,
+    .periodic = true,
+    .laws = laws,
+    .table = &mf_dihedral_table,
+    .fine = 3600,
+    .cost = 60,
+    .common = true,
 };

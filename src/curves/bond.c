@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "base/simd.h"
-#include "curves/bonded_law.h"
+#include "curves/bonded_batch.h"
+#include "curves/bonded_table.h"
 
 #include <math.h>
 
@@ -112,4 +112,54 @@ const struct bonded_law mf_bond_fene = {
     .slopes = fene_slopes,
     .rest = fene_rest,
     .longest = fene_longest,
+};
+
+BONDED_TABLE(mf_bond_table, "columns r, U",
+             "cubic spline through the points of a file, straight lines beyond its ends");
+
+// Geometry ----------------------------------------------------------------------------------------
+
+SIMD_CLONES static void measure(struct bonded_batch *batch) {
+    const double *x = batch->arm[0][0], *y = batch->arm[0][1], *z = batch->arm[0][2];
+    for (int n = 0; n < batch->count; n++)
+        batch->q[n] = sqrt(x[n] * x[n] + y[n] * y[n] + z[n] * z[n]);
+}
+
+SIMD_CLONES static void push(struct bonded_batch *batch) {
+    for (int n = 0; n < batch->count; n++) {
+        const double pull = batch->q[n] > 0 ? -batch->slope[n] / batch->q[n] : 0;
+        for (int d = 0; d < 3; d++)
+            batch->arm[0][d][n] *= pull;
+    }
+}
+
+/// Of r^(d−1).
+static double jacobian(int dimensions, double low, double width) {
+    const double from = fmax(0, low), to = low + width;
+    return dimensions == 3 ? (pow(to, 3) - pow(from, 3)) / 3 : (to * to - from * from) / 2;
+}
+
+static const struct bonded_law *const laws[] = {&mf_bond_harmonic, &mf_bond_fene, &mf_bond_table,
+                                                NULL};
+
+const struct bonded_kind mf_bond = {
+    .name = "bond",
+    .plural = "bonds",
+    .article = "a",
+    .beads = 2,
+    .reach = 1,
+    .chain = {0, 1},
+    .arms = 1,
+    .arm = {{0, 1}},
+    .measure = measure,
+    .push = push,
+    .jacobian = jacobian,
+    BONDED_LENGTHS,
+    .high = INFINITY,
+    .laws = laws,
+    .table = &mf_bond_table,
+    .narrow = 0.01,
+    .fine = 10000,
+    .cost = 15,
+    .common = true,
 };
