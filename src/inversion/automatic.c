@@ -27,10 +27,9 @@ static bool in_basin(const struct inversion *inversion) {
     const struct inversion_progress *progress = &inversion->course.progress;
     const struct inversion_state *first = inversion->state;
     const bool start = isinf(progress->best.distance[TARGET_RDF].rms);
-    const double independent = first->response.samples / first->inefficiency;
     return mf_inversion_is_near(inversion) ||
            (!start && first->coarse.count == 0 &&
-            (double)first->grid.known < well_known * well_known * independent &&
+            (double)first->grid.known < well_known * well_known * first->response.independent &&
             inversion->verdict.distance[TARGET_RDF].rms < again * progress->failed_error);
 }
 

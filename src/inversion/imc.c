@@ -25,7 +25,7 @@ enum status mf_imc_response_variance(const struct inversion_state *state, double
     const size_t known = state->grid.known;
     const double *covariance = state->response.covariance;
     const double temperature = state->problem->scene.temperature;
-    const double independent = state->response.samples / state->inefficiency;
+    const double independent = state->response.independent;
     double squares = 0, *logarithms = NULL;
     NEW_ARRAY(logarithms, state->grid.points);
     mf_ibi_logarithms(state, logarithms);

@@ -281,7 +281,8 @@ void mf_inversion_basis_respond(struct inversion_basis *basis,
     const double now = state->replicas.counts.count;
     basis->independent = count_independent(basis, state);
     basis->pooled = basis->independent * fmax(1, state->pool.samples / now);
-    basis->samples = basis->independent * fmax(1, state->response.samples / now);
+    basis->samples =
+        basis->independent * fmax(1, state->response.independent * state->inefficiency / now);
 }
 
 void mf_inversion_basis_measure(struct inversion_basis *basis, const struct inversion_state *state,

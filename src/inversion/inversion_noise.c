@@ -12,7 +12,7 @@ static void fill_samples(const struct inversion_state *state, double *v) {
     const size_t known = state->grid.known;
     const bool *seen = state->grid.seen;
     const double *c = state->response.covariance;
-    const double independent = state->response.samples / state->inefficiency;
+    const double independent = state->response.independent;
     const double counts = independent / (independent + (double)known);
     for (size_t a = 0; a < known; a++)
         v[a * known + a] = fmax(0, state->variance[a] - mf_inversion_target_variance(state, a));

@@ -68,9 +68,10 @@ const double *mf_inversion_response_values(const struct inversion_state *state) 
     return state->response.values ? state->response.values : state->response.covariance;
 }
 
-/// The samples at the present potential that the C of before is worth. Of n samples, s of which are
-/// one independent, C of N bins has the relative variance N s/n as a matrix; and where g has
-/// changed by δ it is off by 2 δ, as a product of two counts is.
+/// The independent samples at the present potential that the C of before is worth. Of n of them C
+/// of N bins has the relative variance N/n as a matrix; and where g has changed by δ it is off by 2
+/// δ, as a product of two counts is. Samples as such would not do: how many make one independent is
+/// another number in each iteration, as is what lies between them.
 static double find_worth(const struct inversion_state *state) {
     const struct inversion_response *response = &state->response;
     const double known = (double)state->grid.known;
@@ -81,17 +82,16 @@ static double find_worth(const struct inversion_state *state) {
             (state->replicas.counts.mean[bin] - response->mean[a]) / state->target.ideal[bin], 2);
     }
     const double bias = 4 * squares / known;
-    return response->samples > 0
-               ? 1 / (1 / response->samples + bias / (known * state->inefficiency))
-               : 0;
+    return response->independent > 0 ? 1 / (1 / response->independent + bias / known) : 0;
 }
 
 void mf_inversion_response_add(struct inversion_state *state) {
     const struct potential_grid *grid = &state->grid;
     const struct comoments *counts = &state->replicas.counts;
     struct inversion_response *response = &state->response;
-    response->samples = find_worth(state) + counts->count;
-    const double share = counts->count / response->samples;
+    const double now = counts->count / state->inefficiency;
+    response->independent = find_worth(state) + now;
+    const double share = now / response->independent;
     for (size_t a = 0; a < grid->known; a++) {
         const size_t bin = grid->known_bin[a];
         for (size_t b = 0; b < grid->known; b++) {

@@ -21,7 +21,7 @@ struct inversion_response {
     double *means;      ///< M of each group, one after the other; NULL without groups
     double *values;     ///< the response, shape [known, known]; NULL without groups
     double *mean;       ///< of S in the samples that C is made of, shape [known]
-    double samples;     ///< that C is worth at the present potential; 0: nothing is kept
+    double independent; ///< samples that C is worth at the present potential; 0: nothing is kept
 };
 
 /// Fails: NO_MEMORY.

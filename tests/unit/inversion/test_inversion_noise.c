@@ -20,18 +20,18 @@ struct made {
 /// Two pair types whose target is exact; the samples scatter by 2 in each bin.
 static void make(struct made *made) {
     *made = (struct made){.known_of = {FIRST, KNOWN - FIRST}};
-    made->state =
-        (struct inversion_state){.problem = &made->problem,
-                                 .grid = {.known = KNOWN,
-                                          .known_bin = made->known_bin,
-                                          .known_of = made->known_of,
-                                          .blocks = 2,
-                                          .seen = made->seen},
-                                 .response = {.covariance = made->covariance, .samples = SAMPLES},
-                                 .replicas.counts = {.size = KNOWN, .mean = made->counts},
-                                 .inefficiency = 1,
-                                 .variance = made->variance,
-                                 .target = {.counts = made->counts, .error = made->error}};
+    made->state = (struct inversion_state){
+        .problem = &made->problem,
+        .grid = {.known = KNOWN,
+                 .known_bin = made->known_bin,
+                 .known_of = made->known_of,
+                 .blocks = 2,
+                 .seen = made->seen},
+        .response = {.covariance = made->covariance, .independent = SAMPLES},
+        .replicas.counts = {.size = KNOWN, .mean = made->counts},
+        .inefficiency = 1,
+        .variance = made->variance,
+        .target = {.counts = made->counts, .error = made->error}};
     for (size_t a = 0; a < KNOWN; a++) {
         made->known_bin[a] = a;
         made->seen[a] = a != UNSEEN;

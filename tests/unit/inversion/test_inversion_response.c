@@ -129,26 +129,46 @@ static void add_samples(struct inversion_state *state, double mean, double varia
     mf_inversion_response_add(state);
 }
 
+static void make_two_bins(struct inversion_state *state) {
+    static size_t bins_known[] = {0, 1};
+    static double ideal[] = {5, 5};
+    static const struct inverse_problem problem = {0};
+    *state = (struct inversion_state){.problem = &problem,
+                                      .grid = {.known = 2, .known_bin = bins_known},
+                                      .target.ideal = ideal,
+                                      .inefficiency = 1};
+    assert_ok(mf_inversion_response_init(state));
+}
+
 /// Samples of the same g add up; those of a g that is off by 1 in one of two bins are worth one:
 /// 1/(1/20 + (4/2)/2), where C of each has a relative variance of 2/n.
 static void test_inversion_response_forgets_what_has_changed(void **unused) {
     (void)unused;
-    size_t bins_known[] = {0, 1};
-    double ideal[] = {5, 5};
-    struct inverse_problem problem = {0};
-    struct inversion_state state = {.problem = &problem,
-                                    .grid = {.known = 2, .known_bin = bins_known},
-                                    .target.ideal = ideal,
-                                    .inefficiency = 1};
-    assert_ok(mf_inversion_response_init(&state));
+    struct inversion_state state;
+    make_two_bins(&state);
     add_samples(&state, 5, 1);
     assert_close(state.response.covariance[0], 1, 1e-12);
     add_samples(&state, 5, 3);
     assert_close(state.response.covariance[0], 2, 1e-12);
-    assert_close(state.response.samples, 20, 1e-12);
+    assert_close(state.response.independent, 20, 1e-12);
     add_samples(&state, 10, 8);
-    assert_close(state.response.samples, 10 + 1 / 1.05, 1e-12);
+    assert_close(state.response.independent, 10 + 1 / 1.05, 1e-12);
     assert_true(state.response.covariance[0] > 7.3 && state.response.covariance[0] < 8);
+    mf_inversion_response_clear(&state.response);
+}
+
+/// Ten samples too near to each other, worth two, and ten that are worth as many: together the mean
+/// of all twelve has the least variance.
+static void test_inversion_response_weighs_independent_samples(void **unused) {
+    (void)unused;
+    struct inversion_state state;
+    make_two_bins(&state);
+    state.inefficiency = 5;
+    add_samples(&state, 5, 7);
+    state.inefficiency = 1;
+    add_samples(&state, 5, 1);
+    assert_close(state.response.independent, 12, 1e-12);
+    assert_close(state.response.covariance[0], (2 * 7 + 10 * 1) / 12.0, 1e-12);
     mf_inversion_response_clear(&state.response);
 }
 
@@ -156,6 +176,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_inversion_response_tells_how_lengths_follow_their_values),
         cmocka_unit_test(test_inversion_response_forgets_what_has_changed),
+        cmocka_unit_test(test_inversion_response_weighs_independent_samples),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
