@@ -205,6 +205,26 @@ static double counts_of(double mean, double variance) {
     return mean > 0 ? mean * mean / fmax(variance, 0) : 0;
 }
 
+/// Counts of all states, and the sum of those over k_B T² of each.
+struct counted {
+    double counts, weighed;
+};
+
+/// A state's counts tell Φ/k_B T with its own T.
+static void count_state(struct counted *all, const struct inversion_state *state, double counts) {
+    all->counts += counts;
+    all->weighed += counts / pow(state->problem->scene.temperature, 2);
+}
+
+/// Error of Φ where so many were counted; where nobody counted any, that of the first state.
+static double error_of_counts(const struct inversion *inversion, const struct counted *all) {
+    if (isinf(all->counts))
+        return 0;
+    const double temperature =
+        all->counts > 0 ? sqrt(all->counts / all->weighed) : inversion->problem->scene.temperature;
+    return temperature * mf_inversion_band_of_counts(all->counts);
+}
+
 /// The variance of a group's target that is noise of each bin by itself grows with its counts as
 /// those of unlike bins do: its part of them, by the fourth differences of the bins, which see
 /// nothing of what neighbours have in common.
@@ -231,7 +251,7 @@ static double least_of_group(const struct inversion *inversion, size_t a) {
     const struct potential_grid *grid = inversion_grid(inversion);
     const size_t bin = grid->known_bin[a];
     size_t first = grid->pairs_known, end, group = 0;
-    double known = 0;
+    struct counted known = {0};
     while (a >= (end = first + grid->group[group].own.known)) {
         first = end;
         group++;
@@ -239,27 +259,29 @@ static double least_of_group(const struct inversion *inversion, size_t a) {
     for (size_t s = 0; s < inversion->states; s++) {
         const struct inversion_state *own = &inversion->state[s];
         const double counts = own->target.counts[bin];
-        known += counts_of(counts,
-                           pow(own->target.error[bin], 2) - counts * find_scatter(own, first, end));
+        count_state(&known, own,
+                    counts_of(counts, pow(own->target.error[bin], 2) -
+                                          counts * find_scatter(own, first, end)));
     }
-    return known > 0 ? inversion->problem->scene.temperature / sqrt(known) : 0;
+    return known.counts > 0 ? 1 / sqrt(known.weighed) : 0;
 }
 
 double mf_inversion_band_least(const struct inversion *inversion, size_t a) {
     const size_t bin = inversion_grid(inversion)->known_bin[a];
-    double asked = 0, seen = 0;
+    struct counted asked = {0}, seen = {0};
     if (inversion->state->basis.count > 0)
         return 0;
     if (a >= inversion_grid(inversion)->pairs_known)
         return least_of_group(inversion, a);
     for (size_t s = 0; s < inversion->states; s++) {
         const struct inversion_state *own = &inversion->state[s];
-        asked += counts_of(own->target.counts[bin], pow(own->target.error[bin], 2));
-        seen += counts_of(own->replicas.counts.mean[bin],
-                          own->variance[a] - mf_inversion_target_variance(own, a));
+        count_state(&asked, own,
+                    counts_of(own->target.counts[bin], pow(own->target.error[bin], 2)));
+        count_state(&seen, own,
+                    counts_of(own->replicas.counts.mean[bin],
+                              own->variance[a] - mf_inversion_target_variance(own, a)));
     }
-    return inversion->problem->scene.temperature *
-           hypot(mf_inversion_band_of_counts(asked), mf_inversion_band_of_counts(seen));
+    return hypot(error_of_counts(inversion, &asked), error_of_counts(inversion, &seen));
 }
 
 /// Standard errors, those of A, and those of Φ if A were known.

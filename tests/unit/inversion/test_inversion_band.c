@@ -237,7 +237,7 @@ static void test_inversion_band_of_counts_is_that_of_the_logarithm_of_their_mean
 
 /// Two states and one bin: by how many pairs were counted in each.
 struct counted {
-    struct inverse_problem problem;
+    struct inverse_problem problem, other;
     struct inversion_state state[2];
     struct inversion inversion;
     size_t bin;
@@ -249,9 +249,11 @@ static double least_error(struct counted *counted, const double target[2],
     static const double frames = 10;
     *counted = (struct counted){
         .problem.scene.temperature = temperature,
+        .other.scene.temperature = temperature,
         .inversion = {.problem = &counted->problem, .state = counted->state, .states = 2}};
     for (int s = 0; s < 2; s++) {
         struct inversion_state *state = &counted->state[s];
+        state->problem = s == 0 ? &counted->problem : &counted->other;
         counted->target[s] = target[s] / frames;
         counted->error[s] = sqrt(target[s]) / frames;
         counted->mean[s] = sampled[s] / frames;
@@ -286,6 +288,22 @@ static void test_inversion_band_of_few_counts_is_that_of_the_states_that_have_an
     assert_close(mf_inversion_band_least(&counted.inversion, 0), temperature * five, 1e-4);
 }
 
+/// Counts tell U/k_B T of the state that they are of: twice as hot, twice the error. Of many in
+/// both states the inverse squares of the errors add up.
+static void test_inversion_band_of_counts_goes_by_the_temperature_of_their_state(void **state) {
+    (void)state;
+    struct counted counted;
+    const double hot[2] = {0, 5}, both[2] = {1e6, 4e6}, five = scatter_of_logarithm(5);
+    least_error(&counted, hot, hot);
+    counted.other.scene.temperature = 2 * temperature;
+    assert_close(mf_inversion_band_least(&counted.inversion, 0),
+                 2 * temperature * hypot(five, five), 1e-4);
+    least_error(&counted, both, both);
+    counted.other.scene.temperature = 2 * temperature;
+    assert_close_relative(mf_inversion_band_least(&counted.inversion, 0),
+                          sqrt(2) * temperature / sqrt(1e6 + 4e6 / 4), 1e-4);
+}
+
 /// Bonds whose counts scatter as 100 of each bin do, and whose errors are those of 100 counts and
 /// 30 more that all have in common. Counts that alternate by d have fourth differences of 16 d, and
 /// those that scatter by 10 have such of 10 sqrt(70).
@@ -298,6 +316,7 @@ static void test_inversion_band_of_a_group_has_what_its_bins_err_in_common(void 
     struct inverse_problem problem = {.scene.temperature = temperature};
     struct potential_group group = {.own = {.known = BINS}};
     struct inversion_state state = {
+        .problem = &problem,
         .grid = {.groups = 1, .known = BINS, .known_bin = known_bin, .group = &group},
         .target = {.counts = counts, .error = error}};
     const struct inversion inversion = {.problem = &problem, .state = &state, .states = 1};
@@ -321,6 +340,7 @@ int main(void) {
         cmocka_unit_test(test_inversion_band_is_not_narrower_by_the_noise_of_counts),
         cmocka_unit_test(test_inversion_band_of_counts_is_that_of_the_logarithm_of_their_mean),
         cmocka_unit_test(test_inversion_band_of_few_counts_is_that_of_the_states_that_have_any),
+        cmocka_unit_test(test_inversion_band_of_counts_goes_by_the_temperature_of_their_state),
         cmocka_unit_test(test_inversion_band_of_a_group_has_what_its_bins_err_in_common),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
