@@ -14,6 +14,7 @@ enum status mf_inversion_response_init(struct inversion_state *state) {
     size_t size = 0;
     NEW_ARRAY(response->covariance, grid->known * grid->known);
     NEW_ARRAY(response->mean, grid->known);
+    NEW_ARRAY(response->phi, grid->known);
     if (grid->groups == 0)
         return STATUS_OK;
     for (size_t g = 0; g < grid->groups; g++)
@@ -34,6 +35,7 @@ void mf_inversion_response_clear(struct inversion_response *response) {
     mf_memory_free(response->means);
     mf_memory_free(response->values);
     mf_memory_free(response->mean);
+    mf_memory_free(response->phi);
     mf_memory_free(response->covariance);
     *response = (struct inversion_response){0};
 }
@@ -68,10 +70,36 @@ const double *mf_inversion_response_values(const struct inversion_state *state) 
     return state->response.values ? state->response.values : state->response.covariance;
 }
 
+/// How far the variance of S along the way from the potentials of C to the present one is another
+/// than C says: the square of its relative change, but for noise. Of n independent samples a
+/// variance has the relative variance 2/n.
+static double find_change_along_way(const struct inversion_state *state) {
+    const struct potential_grid *grid = &state->grid;
+    const struct inversion_response *response = &state->response;
+    const struct comoments *counts = &state->replicas.counts;
+    double before = 0, now = 0;
+    for (size_t a = 0; a < grid->known; a++)
+        for (size_t b = 0; b < grid->known; b++) {
+            const double way = (state->phi[grid->known_point[a]] - response->phi[a]) *
+                               (state->phi[grid->known_point[b]] - response->phi[b]);
+            before += way * response->covariance[a * grid->known + b];
+            now += way * mf_comoments_covariance(counts, grid->known_bin[a], grid->known_bin[b]);
+        }
+    if (!(before > 0 && now > 0))
+        return 0;
+    const double noise = 2 / response->independent + 2 * state->inefficiency / counts->count;
+    return fmax(0, pow(before / now - 1, 2) - noise);
+}
+
 /// The independent samples at the present potential that the C of before is worth. Of n of them C
-/// of N bins has the relative variance N/n as a matrix; and where g has changed by δ it is off by 2
-/// δ, as a product of two counts is. Samples as such would not do: how many make one independent is
-/// another number in each iteration, as is what lies between them.
+/// of N bins has the relative variance N/n as a matrix, and 2/n along one direction. Where g has
+/// changed by δ it is off by 2 δ, as a product of two counts is; and where a fit goes by what g
+/// hardly sees, C changes along its way though g does not: of a Yukawa fluid the variance along it
+/// fell to a third while g moved by 0.002. With that C of before the fit ended at a pressure of
+/// 11.3(2.2) instead of 19.0, without it at 15.4(5.3).
+///
+/// Samples as such would not do: how many make one independent is another number in each iteration,
+/// as is what lies between them.
 static double find_worth(const struct inversion_state *state) {
     const struct inversion_response *response = &state->response;
     const double known = (double)state->grid.known;
@@ -82,7 +110,9 @@ static double find_worth(const struct inversion_state *state) {
             (state->replicas.counts.mean[bin] - response->mean[a]) / state->target.ideal[bin], 2);
     }
     const double bias = 4 * squares / known;
-    return response->independent > 0 ? 1 / (1 / response->independent + bias / known) : 0;
+    return response->independent > 0
+               ? 1 / (1 / response->independent + bias / known + find_change_along_way(state) / 2)
+               : 0;
 }
 
 void mf_inversion_response_add(struct inversion_state *state) {
@@ -100,6 +130,8 @@ void mf_inversion_response_add(struct inversion_state *state) {
                 (1 - share) * *c + share * mf_comoments_covariance(counts, bin, grid->known_bin[b]);
         }
         response->mean[a] = (1 - share) * response->mean[a] + share * counts->mean[bin];
+        response->phi[a] =
+            (1 - share) * response->phi[a] + share * state->phi[grid->known_point[a]];
     }
     mf_inversion_response_find(state);
     mf_inversion_kirkwood_buff_respond(state, share);

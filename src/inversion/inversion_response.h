@@ -21,6 +21,7 @@ struct inversion_response {
     double *means;      ///< M of each group, one after the other; NULL without groups
     double *values;     ///< the response, shape [known, known]; NULL without groups
     double *mean;       ///< of S in the samples that C is made of, shape [known]
+    double *phi;        ///< the mean of their potentials in the known bins, shape [known]
     double independent; ///< samples that C is worth at the present potential; 0: nothing is kept
 };
 
@@ -28,11 +29,12 @@ struct inversion_response {
 enum status mf_inversion_response_init(struct inversion_state *state) MUST_USE;
 void mf_inversion_response_clear(struct inversion_response *response);
 
-/// Add the present samples to C, which keeps those before as far as it is the same. The noise of C
-/// leads from every direction into those that g sees best, so that little seen ones seem better
-/// known than they are and each step goes a part of their way: a third for soft beads with 1400
-/// samples and as many again in the target, where the pressure was still off by three of its errors
-/// when g had agreed. Tested: test_inversion_response.
+/// Add the present samples to C, which keeps those before as far as it is the same: by g, and by
+/// the variance of S along the way that the potential has gone since. The noise of C leads from
+/// every direction into those that g sees best, so that little seen ones seem better known than
+/// they are and each step goes a part of their way: a third for soft beads with 1400 samples and as
+/// many again in the target, where the pressure was still off by three of its errors when g had
+/// agreed. Tested: test_inversion_response.
 void mf_inversion_response_add(struct inversion_state *state);
 
 /// Fill the response from the present C. Tested: test_inversion_response.

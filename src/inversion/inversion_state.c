@@ -178,6 +178,7 @@ size_t mf_inversion_state_spans(struct inversion_state *state, struct memory_spa
     span[n++] = (struct memory_span){pool->phi, state->grid.points * sizeof(double)};
     span[n++] = (struct memory_span){&response->independent, sizeof response->independent};
     span[n++] = (struct memory_span){response->mean, bytes};
+    span[n++] = (struct memory_span){response->phi, bytes};
     span[n++] = (struct memory_span){response->covariance, known * bytes};
     if (state->kirkwood_buff.pairs > 0)
         span[n++] =

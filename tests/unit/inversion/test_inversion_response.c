@@ -132,11 +132,14 @@ static void add_samples(struct inversion_state *state, double mean, double varia
 static void make_two_bins(struct inversion_state *state) {
     static size_t bins_known[] = {0, 1};
     static double ideal[] = {5, 5};
+    static const double phi[] = {0, 0};
     static const struct inverse_problem problem = {0};
-    *state = (struct inversion_state){.problem = &problem,
-                                      .grid = {.known = 2, .known_bin = bins_known},
-                                      .target.ideal = ideal,
-                                      .inefficiency = 1};
+    *state = (struct inversion_state){
+        .problem = &problem,
+        .phi = phi,
+        .grid = {.known = 2, .known_bin = bins_known, .known_point = bins_known},
+        .target.ideal = ideal,
+        .inefficiency = 1};
     assert_ok(mf_inversion_response_init(state));
 }
 
@@ -172,11 +175,29 @@ static void test_inversion_response_weighs_independent_samples(void **unused) {
     mf_inversion_response_clear(&state.response);
 }
 
+/// g is as it was, but the variance is half of what it was along the way that the potential has
+/// gone: 1/1000 + (1² − 2/1000 − 2/10)/2.
+static void test_inversion_response_forgets_what_has_changed_along_the_way(void **unused) {
+    (void)unused;
+    static const double gone[] = {0.3, 0};
+    struct inversion_state state;
+    make_two_bins(&state);
+    state.inefficiency = 0.01;
+    add_samples(&state, 5, 2);
+    assert_close(state.response.independent, 1000, 1e-9);
+    state.inefficiency = 1;
+    state.phi = gone;
+    add_samples(&state, 5, 1);
+    assert_close(state.response.independent, 10 + 1 / (0.001 + (1 - 0.002 - 0.2) / 2), 1e-9);
+    mf_inversion_response_clear(&state.response);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_inversion_response_tells_how_lengths_follow_their_values),
         cmocka_unit_test(test_inversion_response_forgets_what_has_changed),
         cmocka_unit_test(test_inversion_response_weighs_independent_samples),
+        cmocka_unit_test(test_inversion_response_forgets_what_has_changed_along_the_way),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
