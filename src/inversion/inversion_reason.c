@@ -93,6 +93,21 @@ static void tell_gradient(const struct inversion *inversion, char reason[INVERSE
         tell_what_is_missing(inversion, reason);
 }
 
+static double square_of(const struct inversion_trail *trail, uint64_t iteration) {
+    const double *excess = trail->excess + iteration * trail->bins;
+    double sum = 0;
+    for (size_t bin = 0; bin < trail->bins; bin++)
+        sum += excess[bin] * excess[bin];
+    return sum;
+}
+
+/// Whether the second half of the iterations has not made the excess much smaller.
+static bool has_stopped(const struct inversion_trail *trail) {
+    static const double much = 0.5;
+    return trail->iterations < 2 || square_of(trail, trail->iterations - 1) >
+                                        much * square_of(trail, (trail->iterations - 1) / 2);
+}
+
 /// The first reason that applies.
 void mf_inversion_reason_tell(const struct inversion *inversion, char reason[INVERSE_REASON_SIZE]) {
     const struct inversion_progress *p = &inversion->course.progress;
@@ -113,7 +128,8 @@ void mf_inversion_reason_tell(const struct inversion *inversion, char reason[INV
     static const double most = 3; // standard deviations of what was known of a factor
     const double improved = rdf->rms / p->first_error;
     const bool explains = worst->rms < mf_inverse_noise_margin * worst->noise;
-    if (!agrees && explains && fabs(p->best.factor.missing) > most * p->best.factor.prior)
+    if (!agrees && explains && has_stopped(&inversion->trail) &&
+        fabs(p->best.factor.missing) > most * p->best.factor.prior)
         snprintf(reason, INVERSE_REASON_SIZE,
                  "g of the target is too %s as a whole by %.2g %%, which no short-ranged potential "
                  "makes, and which its \"particles\" or \"normalisation\" allow by %.2g %%; look "

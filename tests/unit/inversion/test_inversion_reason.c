@@ -125,6 +125,11 @@ static void test_inversion_reason_is_a_target_that_is_off_as_a_whole(void **stat
     worst->rms = 0.004;
     assert_says(inversion, "too small as a whole by 0.4 %");
     assert_says(inversion, "\"normalisation\" allow by 0.1 %");
+    double excess[] = {9, 9, 5, 2, 1};
+    inversion->trail = (struct inversion_trail){.bins = 1, .iterations = 5, .excess = excess};
+    assert_says(inversion, "after 30 iterations"); // it still improves
+    excess[4] = 4.9;
+    assert_says(inversion, "too small as a whole by 0.4 %");
     inversion->course.progress.best.factor.missing = -0.0029;
     assert_says(inversion, "after 30 iterations");
 }
