@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file What the server answers: a table of paths, one function each. docs/cluster-and-live.md lists them.
+/// @file What the server answers: a table of paths, one function each. docs/cluster-and-live.md
+/// lists them.
 #pragma once
 
 #include "live/live_server.h"

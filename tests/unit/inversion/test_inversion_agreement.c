@@ -118,9 +118,9 @@ static double mean_bound(uint32_t samples, uint32_t alike) {
     for (int trial = 0; trial < TRIALS; trial++) {
         assert_ok(mf_comoments_init(&moments, BINS));
         for (uint32_t n = 0; n < samples; n++) {
-            double value[BINS];
+            double value[BINS], last = 0;
             for (uint32_t k = 0; k < BINS; k++)
-                value[k] = k % alike == 0 ? 5 + gsl_ran_gaussian(rng, 1) : value[k - 1];
+                value[k] = last = k % alike == 0 ? 5 + gsl_ran_gaussian(rng, 1) : last;
             mf_comoments_add(&moments, value);
         }
         made.state.replicas.counts = moments;
