@@ -4,8 +4,8 @@
 // of it: by the hypernetted chain, or in two dimensions and of molecules Boltzmann inversion, of
 // groups with the response of few coefficients (inversion/inversion_coarse.h). A Newton step
 // converges at once near the solution and leads away from far off it (its basin; P. Deuflhard,
-// Newton Methods for Nonlinear Problems (2004), section 2.1): it is tried, with the other in
-// reserve, each time that the error has halved since it led away.
+// Newton Methods for Nonlinear Problems (2004), section 2.1): where the samples know C it is tried,
+// with the other in reserve, each time that the error has halved since it led away.
 #include "inversion/inversion_coarse.h"
 #include "inversion/inversion.h"
 #include "inversion/method_steps.h"

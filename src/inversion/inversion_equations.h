@@ -3,12 +3,12 @@
 ///
 /// Those of one state are its own as they stand, whose pressure is met as a constraint
 /// (mf_imc_solve). Of several states, or of one with integrals of Kirkwood and Buff, the rows B_s x
-/// = b_s of the states, each over its errors, and below each state's those of its pressure and its
-/// integrals, if they are asked for, stand one below the other. A QR decomposition leaves as many
-/// rows as unknowns, with the same least squares, so that the strength of the regularisation, the
-/// band and its ramp are found as of one state. A bin that a state has not seen has no row of that
-/// state. Birge's factor, by which the band widens the variances, is of g: the rows of the others
-/// are that much narrower before.
+/// = b_s of the states, each over the covariance of its excess, and below each state's those of its
+/// pressure and its integrals, if they are asked for, stand one below the other. A QR decomposition
+/// leaves as many rows as unknowns, with the same least squares, so that the strength of the
+/// regularisation, the band and its ramp are found as of one state. A bin that a state has not seen
+/// has no row of that state. Birge's factor, by which the band widens the variances, is of g: the
+/// rows of the others are that much narrower before.
 #pragma once
 
 #include "inversion/imc_solve.h"
