@@ -185,22 +185,98 @@ static double solve_at(struct workspace *w, double strength) {
     return misfit(w, w->x->data);
 }
 
+/// B R⁻¹ = U s Vᵀ, with D = Q R: what x leaves at any strength (L. Eldén, BIT 22, 487 (1982)).
+struct spectrum {
+    gsl_matrix *prior, *left, *right; ///< D and its factor, U, V
+    gsl_vector *s, *excess, *meet;    ///< s, Uᵀ b, Vᵀ R⁻ᵀ p
+    gsl_vector *scratch;
+};
+
+static void spectrum_free(struct spectrum *spectrum) {
+    gsl_matrix_free(spectrum->prior);
+    gsl_matrix_free(spectrum->left);
+    gsl_matrix_free(spectrum->right);
+    gsl_vector_free(spectrum->s);
+    gsl_vector_free(spectrum->excess);
+    gsl_vector_free(spectrum->meet);
+    gsl_vector_free(spectrum->scratch);
+}
+
+static enum status spectrum_allocate(struct spectrum *spectrum, size_t n) {
+    *spectrum = (struct spectrum){gsl_matrix_alloc(2 * n - 1, n),
+                                  gsl_matrix_alloc(n, n),
+                                  gsl_matrix_alloc(n, n),
+                                  gsl_vector_alloc(n),
+                                  gsl_vector_alloc(n),
+                                  gsl_vector_calloc(n),
+                                  gsl_vector_alloc(n)};
+    if (spectrum->prior && spectrum->left && spectrum->right && spectrum->s && spectrum->excess &&
+        spectrum->meet && spectrum->scratch)
+        return STATUS_OK;
+    return mf_status_fail(STATUS_NO_MEMORY, "no memory for %zu linear equations", n);
+}
+
+static void fill_spectrum(const struct workspace *w, struct spectrum *to) {
+    const size_t n = w->size;
+    gsl_matrix_const_view response = gsl_matrix_const_submatrix(w->rows, 0, 0, n, n);
+    gsl_matrix_const_view prior = gsl_matrix_const_submatrix(w->rows, n, 0, 2 * n - 1, n);
+    gsl_vector_const_view excess = gsl_vector_const_subvector(w->rhs, 0, n);
+    gsl_matrix_memcpy(to->left, &response.matrix);
+    gsl_matrix_memcpy(to->prior, &prior.matrix);
+    gsl_linalg_QR_decomp(to->prior, to->scratch);
+    gsl_matrix_const_view r = gsl_matrix_const_submatrix(to->prior, 0, 0, n, n);
+    gsl_blas_dtrsm(CblasRight, CblasUpper, CblasNoTrans, CblasNonUnit, 1, &r.matrix, to->left);
+    gsl_linalg_SV_decomp(to->left, to->right, to->s, to->scratch);
+    gsl_blas_dgemv(CblasTrans, 1, to->left, &excess.vector, 0, to->excess);
+    if (w->system->constraint == NULL)
+        return;
+    for (size_t k = 0; k < n; k++)
+        gsl_vector_set(to->scratch, k, w->system->constraint[k]);
+    gsl_blas_dtrsv(CblasUpper, CblasTrans, CblasNonUnit, &r.matrix, to->scratch);
+    gsl_blas_dgemv(CblasTrans, 1, to->right, to->scratch, 0, to->meet);
+}
+
+/// χ²/size of what is left at a strength, as solve_at finds it.
+static double misfit_at(const struct workspace *w, const struct spectrum *spectrum,
+                        double strength) {
+    double missing = w->system->constraint ? w->system->wanted : 0, response = 0, sum = 0;
+    for (size_t k = 0; k < w->size; k++) {
+        const double s = gsl_vector_get(spectrum->s, k), p = gsl_vector_get(spectrum->meet, k);
+        const double stiffness = s * s + strength;
+        missing -= p * s * gsl_vector_get(spectrum->excess, k) / stiffness;
+        response += p * p / stiffness;
+    }
+    const double share = response > 0 ? missing / response : 0;
+    for (size_t k = 0; k < w->size; k++) {
+        const double s = gsl_vector_get(spectrum->s, k), p = gsl_vector_get(spectrum->meet, k);
+        const double left = strength * gsl_vector_get(spectrum->excess, k) - share * s * p;
+        sum += pow(left / (s * s + strength), 2);
+    }
+    return sum / (double)w->size;
+}
+
 /// Largest strength whose misfit is within the noise, by bisection of its logarithm.
-static double find_strength(struct workspace *w) {
+static enum status find_strength(const struct workspace *w, double *strength) {
+    enum { ROUNDS = 40 };
+    enum status status = STATUS_OK;
     const size_t n = w->size;
     const double unit = square_rows(w->rows, 0, n) / square_rows(w->rows, n, 3 * n - 1);
-    // Many blocks are slow to solve, and a hundredth of a decade is enough.
-    const int rounds = w->system->shape ? 11 : 40;
+    struct spectrum spectrum = {0};
     double low = -12, high = 6;
-    const double wanted = discrepancy(solve_at(w, unit * pow(10, low)));
-    for (int k = 0; k < rounds; k++) {
+    CHECK(spectrum_allocate(&spectrum, n));
+    fill_spectrum(w, &spectrum);
+    const double wanted = discrepancy(misfit_at(w, &spectrum, unit * pow(10, low)));
+    for (int k = 0; k < ROUNDS; k++) {
         const double middle = 0.5 * (low + high);
-        if (solve_at(w, unit * pow(10, middle)) > wanted)
+        if (misfit_at(w, &spectrum, unit * pow(10, middle)) > wanted)
             high = middle;
         else
             low = middle;
     }
-    return unit * pow(10, low);
+    *strength = unit * pow(10, low);
+done:
+    spectrum_free(&spectrum);
+    return status;
 }
 
 /// Trace of the hat matrix B H⁻¹ Bᵀ: Σ_a |R⁻ᵀ B_a|².
@@ -227,7 +303,9 @@ enum status mf_imc_solve(const struct imc_system *system, double strength, doubl
     mf_imc_solve_rows(system, &response.matrix, &excess.vector);
     gsl_matrix_view prior = gsl_matrix_submatrix(w.rows, n, 0, 2 * n - 1, n);
     mf_imc_solve_prior(system, &prior.matrix);
-    solution->strength = strength > 0 ? strength : find_strength(&w);
+    solution->strength = strength;
+    if (!(strength > 0))
+        CHECK(find_strength(&w, &solution->strength));
     solution->misfit = solve_at(&w, solution->strength);
     solution->directions = count_directions(&w);
     for (size_t k = 0; k < n; k++)
