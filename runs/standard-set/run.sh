@@ -112,7 +112,7 @@ row() {
         awk '{ wall += $1; processor += $2 + $3 } END { print "wall", wall; print "processor", processor }' \
             "$folder/seconds"
         echo "code $(cat "$folder/code")"
-        sed -n 's/.*"temperature": *\([0-9.]*\).*/wanted \1/p' "$file" | tail -n 1
+        sed -n 's/.*"temperature":[[:space:]]*\([0-9.]*\).*/wanted \1/p' "$file" | tail -n 1
         echo "$truths"
         [ ! -e "$result/history.tsv" ] || grep -vc '^#' "$result/history.tsv" | sed 's/^/passed /'
         # The keys of the first level alone.
