@@ -28,7 +28,8 @@ enum rng_stream {
     RNG_BROWNIAN,      ///< kicks of an integrator without velocities; counters: step, particle id
     RNG_SOLVENT,       ///< of collision dynamics; counters: step, cell or number, what it is for
     RNG_PAIR_MEMORY,   ///< hidden variables of pairs; counters: step, smaller id, larger id
-    RNG_STATES         ///< seeds of the states of a fit: number of the state
+    RNG_STATES,        ///< seeds of the states of a fit: number of the state
+    RNG_EXCHANGE       ///< of beads of two types; counters: sweep, number
 };
 
 struct rng_block {

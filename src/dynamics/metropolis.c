@@ -4,6 +4,7 @@
 #include "base/interrupt.h"
 #include "base/memory.h"
 #include "base/rng.h"
+#include "dynamics/exchange.h"
 #include "dynamics/hybrid.h"
 #include "dynamics/move.h"
 #include "system/placement.h"
@@ -198,6 +199,7 @@ enum status mf_metropolis_move_beads(struct metropolis *metropolis) {
         place[particles->id[k]] = (uint32_t)k;
     for (size_t k = 0; k < particles->count; k++)
         try_move(metropolis, place[metropolis->order[k]]);
+    mf_exchange_pass(metropolis, place);
     return STATUS_OK;
 }
 

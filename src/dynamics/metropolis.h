@@ -26,6 +26,7 @@ struct metropolis {
     const atomic_bool *cancel; ///< stops the sweeps once it is set, or NULL; borrowed
     uint32_t sweep;            ///< sweeps so far: the counter of the random numbers
     uint64_t accepted, tried;  ///< moves of beads
+    uint32_t exchanges;        ///< tried in a sweep of a mixture (dynamics/exchange.h); 0 at first
 };
 
 /// How far a particle may go before the list of neighbours is looked after [λ].

@@ -8,6 +8,9 @@
 
 const char *const mf_sampler_kinds[] = {"monte-carlo", "dynamics", "auto", NULL};
 
+/// Beads of a mixture for each exchange that a sweep tries.
+enum { BEADS_BY_EXCHANGE = 50 };
+
 size_t mf_sampler_bins(const struct sampler_system *system) {
     size_t bins = (size_t)mf_composition_pairs(system->composition) * system->bins;
     for (size_t k = 0; k < system->groups; k++)
@@ -59,6 +62,9 @@ enum status mf_sampler_init(struct sampler *sampler, enum sampler_kind kind,
     CHECK(mf_metropolis_init(&sampler->chain, system->box, system->composition, system->potential,
                              system->temperature, system->seed));
     sampler->chain.cancel = system->cancel;
+    if (composition_is_mixed(system->composition) && system->molecules == NULL)
+        sampler->chain.exchanges =
+            1 + (uint32_t)mf_composition_particles(system->composition) / BEADS_BY_EXCHANGE;
     CHECK(mf_metropolis_join(&sampler->chain, system->molecules));
 done:
     if (status != STATUS_OK)
@@ -158,6 +164,34 @@ enum status mf_sampler_sample(struct sampler *sampler, uint64_t sweeps, double *
         mf_kirkwood_buff_waves_take(&sampler->kirkwood_buff, particles_of(sampler), 1,
                                     sum + SAMPLER_SUMS);
     return STATUS_OK;
+}
+
+/// Of a molecule that was made whole.
+static void count_excluded_of(const struct sampler *sampler, const struct composition *composition,
+                              const struct topology_kind *kind, double *counts) {
+    const struct pair_histogram *bins = &sampler->histogram;
+    const double(*place)[3] = (const double(*)[3])sampler->whole.place;
+    for (int bead = 0; bead < kind->beads; bead++)
+        for (int n = kind->near_start[bead]; n < kind->near_start[bead + 1]; n++) {
+            const int other = kind->near[n];
+            double square = 0;
+            for (int d = 0; d < 3; d++)
+                square += pow(place[other][d] - place[bead][d], 2);
+            const double bin = floor((sqrt(square) - bins->low) / bins->width);
+            const int pair = mf_composition_pair(composition, kind->type[bead], kind->type[other]);
+            if (bead < other && bin >= 0 && bin < (double)bins->bins)
+                counts[(size_t)pair * bins->bins + (size_t)bin]++;
+        }
+}
+
+void mf_sampler_count_excluded(struct sampler *sampler, const struct composition *composition,
+                               double *counts) {
+    const struct topology *topology = &sampler->molecules->topology;
+    for (int k = 0; k < topology->kinds; k++)
+        for (int64_t m = 0; m < topology->kind[k].count; m++) {
+            mf_whole_molecules_make(&sampler->whole, particles_of(sampler), k, m);
+            count_excluded_of(sampler, composition, &topology->kind[k], counts);
+        }
 }
 
 double mf_sampler_acceptance(const struct sampler *sampler) {
