@@ -1,45 +1,38 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Inverse Monte Carlo near its solution, and before that the steps that need no response, or little
-// of it: by the hypernetted chain, or in two dimensions and of molecules Boltzmann inversion, of
-// groups with the response of few coefficients (inversion/inversion_coarse.h). A Newton step
-// converges at once near the solution and leads away from far off it (its basin; P. Deuflhard,
-// Newton Methods for Nonlinear Problems (2004), section 2.1): where the samples know C it is tried,
-// with the other in reserve, each time that the error has halved since it led away.
+// of it: of one type of beads by the hypernetted chain, or in two dimensions Boltzmann inversion;
+// of several pair types and of groups with the response of few coefficients
+// (inversion/inversion_coarse.h). A Newton step converges at once near the solution and leads away
+// from far off it (its basin; P. Deuflhard, Newton Methods for Nonlinear Problems (2004), section
+// 2.1): where the samples know C it is tried, with the other in reserve, each time that the error
+// has halved since it led away; of groups only near their targets.
 #include "inversion/inversion_coarse.h"
 #include "inversion/inversion.h"
 #include "inversion/method_steps.h"
 
 #include <math.h>
+#include <string.h>
 
 /// Newton's steps are tried again where the error is this part of that at which they failed.
 static const double again = 0.5;
 
 static const char *const columns[] = {INVERSION_COLUMNS, "newton", "misfit[1]", "directions", NULL};
 
-/// What Newton's step leaves of what is off, by the noise of C: of N bins and n independent samples
-/// it is the root of N/n.
-static const double well_known = 1.0 / 3;
-
-/// Whether Newton's step is tried: near the noise, or where C is well known and it has not failed
-/// yet.
-static bool in_basin(const struct inversion *inversion) {
+/// Whether Newton's step is tried: near the noise, or where it has not failed yet.
+static bool may_be_in_basin(const struct inversion *inversion) {
     const struct inversion_progress *progress = &inversion->course.progress;
-    const struct inversion_state *first = inversion->state;
     const bool start = isinf(progress->best.distance[TARGET_RDF].rms);
     return mf_inversion_is_near(inversion) ||
-           (!start && first->coarse.count == 0 &&
-            (double)first->grid.known < well_known * well_known * first->response.independent &&
+           (!start && inversion_grid(inversion)->groups == 0 &&
             inversion->verdict.distance[TARGET_RDF].rms < again * progress->failed_error);
 }
 
 static enum status careful_step(struct inversion_state *state, double *step) {
-    const struct simulation_setup *scene = &state->problem->scene;
-    if (state->box.dimensions == 3 &&
-        mf_molecules_find(scene->interaction, scene->interactions) == NULL)
-        return mf_hnc_step(state, step);
     if (state->coarse.count > 0)
         return mf_inversion_coarse_step(state, step);
+    if (state->box.dimensions == 3)
+        return mf_hnc_step(state, step);
     mf_ibi_step(state, step);
     return STATUS_OK;
 }
@@ -47,7 +40,7 @@ static enum status careful_step(struct inversion_state *state, double *step) {
 static enum status newton_step(struct inversion *inversion, double *extra) {
     double newton[3] = {0};
     TRY(mf_imc_step(inversion, inversion->course.step, newton));
-    extra[0] = !mf_inversion_is_coarse(inversion);
+    extra[0] = newton[2] > 0;
     extra[1] = newton[1];
     extra[2] = newton[2];
     return STATUS_OK;
@@ -59,19 +52,26 @@ static enum status update(struct inversion *inversion, double *extra) {
     struct inversion_course *course = &inversion->course;
     if (inversion->states > 1)
         return newton_step(inversion, extra);
-    if (!in_basin(inversion))
+    if (!may_be_in_basin(inversion))
         return careful_step(inversion->state, course->step);
     TRY(careful_step(inversion->state, course->other_step));
-    course->has_other = true;
-    return newton_step(inversion, extra);
+    TRY(newton_step(inversion, extra));
+    course->has_other = mf_imc_is_known(inversion, extra[2]);
+    if (!course->has_other) {
+        extra[0] = 0;
+        memcpy(course->step, course->other_step,
+               inversion_grid(inversion)->points * sizeof *course->step);
+    }
+    return STATUS_OK;
 }
 
 const struct inverse_method mf_automatic = {
     .name = "auto",
-    .summary = "hypernetted-chain steps (Delbary et al. 2020; in 2-D and of molecules Boltzmann "
-               "inversion, Reith et al. 2003) until their linear response holds, or with groups "
-               "until the targets are near, then inverse Monte Carlo (Lyubartsev and Laaksonen "
-               "1995)",
+    .summary =
+        "hypernetted-chain steps (Delbary et al. 2020; in 2-D Boltzmann inversion, Reith et "
+        "al. 2003; of mixtures and molecules that with a low-rank response) until the response "
+        "is known, or with groups until the targets are near, then inverse Monte Carlo "
+        "(Lyubartsev and Laaksonen 1995)",
     .own = &(const struct inversion_rule){.update = update},
     .knows_molecules = true,
     .meets_integrals = true,

@@ -9,6 +9,7 @@
 // 451 (1985)) was tried: for water the noise of S at small q made every step but the first useless.
 #include "inversion/hnc_closure.h"
 #include "inversion/inversion.h"
+#include "inversion/inversion_inside.h"
 #include "inversion/method_steps.h"
 
 /// Structure factors below this are not trusted.
@@ -27,13 +28,12 @@ enum status mf_hnc_step(const struct inversion_state *state, double *step) {
         target[k] = mf_inversion_target_g(state, k);
         difference[k] = mf_inversion_g(state, k) - target[k];
     }
-    CHECK(mf_hnc_closure_slope(&state->problem->targets.bins, &state->box, &state->composition,
-                               target, difference, ridge, indirect));
-    mf_ibi_logarithms(state, step);
+    const struct hnc_liquid liquid = mf_inversion_liquid(state);
+    CHECK(mf_hnc_closure_slope(&liquid, target, difference, ridge, indirect));
+    mf_ibi_step(state, step);
     for (size_t n = 0; n < grid->known; n++)
         step[grid->known_point[n]] -=
             state->problem->scene.temperature * indirect[grid->known_bin[n]];
-    mf_inversion_pressure_add_ramp(state, step);
 done:
     mf_memory_free(target);
     mf_memory_free(difference);

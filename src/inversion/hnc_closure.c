@@ -29,16 +29,16 @@ static double transform(const struct rdf_bins *bins, const double *values, doubl
 
 /// Matrices over the types at one q: transforms times sqrt(ρ_a ρ_b).
 struct wave {
-    const struct composition *composition;
+    const struct hnc_liquid *liquid;
     double density[COMPOSITION_MOST_TYPES];
-    gsl_matrix *structure, *vectors; ///< S and its eigenvectors
+    gsl_matrix *matrix, *vectors; ///< S or Ω, which is lost, and its eigenvectors
     gsl_matrix *result, *scratch;
-    gsl_vector *values; ///< eigenvalues of S
+    gsl_vector *values; ///< its eigenvalues
     gsl_eigen_symmv_workspace *work;
 };
 
 static void wave_clear(struct wave *wave) {
-    gsl_matrix_free(wave->structure);
+    gsl_matrix_free(wave->matrix);
     gsl_matrix_free(wave->vectors);
     gsl_matrix_free(wave->result);
     gsl_matrix_free(wave->scratch);
@@ -46,19 +46,19 @@ static void wave_clear(struct wave *wave) {
     gsl_eigen_symmv_free(wave->work);
 }
 
-static enum status wave_init(struct wave *wave, const struct box *box,
-                             const struct composition *composition) {
+static enum status wave_init(struct wave *wave, const struct hnc_liquid *liquid) {
+    const struct composition *composition = liquid->composition;
     const size_t types = (size_t)composition->types;
-    *wave = (struct wave){.composition = composition,
-                          .structure = gsl_matrix_alloc(types, types),
+    *wave = (struct wave){.liquid = liquid,
+                          .matrix = gsl_matrix_alloc(types, types),
                           .vectors = gsl_matrix_alloc(types, types),
                           .result = gsl_matrix_alloc(types, types),
                           .scratch = gsl_matrix_alloc(types, types),
                           .values = gsl_vector_alloc(types),
                           .work = gsl_eigen_symmv_alloc(types)};
     for (size_t a = 0; a < types; a++)
-        wave->density[a] = (double)composition->count[a] / mf_box_volume(box);
-    if (wave->structure && wave->vectors && wave->result && wave->scratch && wave->values &&
+        wave->density[a] = (double)composition->count[a] / mf_box_volume(liquid->box);
+    if (wave->matrix && wave->vectors && wave->result && wave->scratch && wave->values &&
         wave->work)
         return STATUS_OK;
     return mf_status_fail(STATUS_NO_MEMORY, "no memory for the hypernetted chain");
@@ -66,20 +66,22 @@ static enum status wave_init(struct wave *wave, const struct box *box,
 
 /// Geometric mean of the densities of a pair type, and its types.
 static double pair_density(const struct wave *wave, int pair, int type[2]) {
-    mf_composition_pair_types(wave->composition, pair, type);
+    mf_composition_pair_types(wave->liquid->composition, pair, type);
     return sqrt(wave->density[type[0]] * wave->density[type[1]]);
 }
 
-/// Transforms of all pair types at q.
-static void fill_matrix(const struct wave *wave, const struct rdf_bins *bins, const double *values,
-                        double zero, double core, double q, gsl_matrix *matrix) {
-    for (int pair = 0; pair < mf_composition_pairs(wave->composition); pair++) {
+/// Add the transforms of all pair types at q to a matrix.
+static void add_transforms(const struct wave *wave, const double *values, double zero, double core,
+                           double q, gsl_matrix *matrix) {
+    const struct rdf_bins *bins = wave->liquid->bins;
+    for (int pair = 0; pair < mf_composition_pairs(wave->liquid->composition); pair++) {
         int type[2];
         const double density = pair_density(wave, pair, type);
         const double value =
             density * transform(bins, values + (size_t)pair * bins->count, zero, core, q);
-        gsl_matrix_set(matrix, (size_t)type[0], (size_t)type[1], value);
-        gsl_matrix_set(matrix, (size_t)type[1], (size_t)type[0], value);
+        *gsl_matrix_ptr(matrix, (size_t)type[0], (size_t)type[1]) += value;
+        if (type[0] != type[1])
+            *gsl_matrix_ptr(matrix, (size_t)type[1], (size_t)type[0]) += value;
     }
 }
 
@@ -91,27 +93,44 @@ static void rotate(const struct wave *wave, bool back) {
     gsl_blas_dgemm(CblasNoTrans, second, 1, wave->scratch, wave->vectors, 0, wave->result);
 }
 
-static void diagonalise(struct wave *wave, const struct rdf_bins *bins, const double *g, double q) {
-    fill_matrix(wave, bins, g, 1, -1, q, wave->structure);
-    for (size_t a = 0; a < wave->values->size; a++)
-        *gsl_matrix_ptr(wave->structure, a, a) += 1;
-    gsl_eigen_symmv(wave->structure, wave->values, wave->vectors, wave->work);
+/// Eigenvalues and eigenvectors of Ω, or of S, which has the pairs of g as well.
+static void diagonalise(struct wave *wave, const double *g, double q) {
+    gsl_matrix_set_identity(wave->matrix);
+    if (wave->liquid->inside)
+        add_transforms(wave, wave->liquid->inside, 0, 0, q, wave->matrix);
+    if (g)
+        add_transforms(wave, g, 1, -1, q, wave->matrix);
+    gsl_eigen_symmv(wave->matrix, wave->values, wave->vectors, wave->work);
 }
 
-/// h − c.
-static void find_indirect(struct wave *wave) {
-    gsl_matrix_set_zero(wave->result);
+/// result = (M − 1)² M⁻¹ of what was diagonalised, less the result before.
+static void take_from_indirect(struct wave *wave) {
+    rotate(wave, false);
     for (size_t i = 0; i < wave->values->size; i++) {
         const double s = gsl_vector_get(wave->values, i);
-        gsl_matrix_set(wave->result, i, i, (s - 1) * (s - 1) / fmax(s, least_structure));
+        for (size_t j = 0; j < wave->values->size; j++) {
+            double *value = gsl_matrix_ptr(wave->result, i, j);
+            *value = (i == j ? (s - 1) * (s - 1) / fmax(s, least_structure) : 0) - *value;
+        }
     }
     rotate(wave, true);
 }
 
+/// h − c.
+static void find_indirect(struct wave *wave, const double *g, double q) {
+    gsl_matrix_set_zero(wave->result);
+    diagonalise(wave, NULL, q);
+    take_from_indirect(wave);
+    diagonalise(wave, g, q);
+    take_from_indirect(wave);
+}
+
 /// Its change.
-static void find_slope(struct wave *wave, const struct rdf_bins *bins, const double *difference,
-                       double ridge, double q) {
-    fill_matrix(wave, bins, difference, 0, 0, q, wave->result);
+static void find_slope(struct wave *wave, const double *g, const double *difference, double ridge,
+                       double q) {
+    gsl_matrix_set_zero(wave->result);
+    add_transforms(wave, difference, 0, 0, q, wave->result);
+    diagonalise(wave, g, q);
     rotate(wave, false);
     for (size_t i = 0; i < wave->values->size; i++)
         for (size_t j = 0; j < wave->values->size; j++) {
@@ -124,9 +143,9 @@ static void find_slope(struct wave *wave, const struct rdf_bins *bins, const dou
 }
 
 /// Add a wave to all bins.
-static void add_wave(const struct wave *wave, const struct rdf_bins *bins, double q, double spacing,
-                     double *indirect) {
-    for (int pair = 0; pair < mf_composition_pairs(wave->composition); pair++) {
+static void add_wave(const struct wave *wave, double q, double spacing, double *indirect) {
+    const struct rdf_bins *bins = wave->liquid->bins;
+    for (int pair = 0; pair < mf_composition_pairs(wave->liquid->composition); pair++) {
         int type[2];
         const double density = pair_density(wave, pair, type);
         const double gamma =
@@ -139,41 +158,57 @@ static void add_wave(const struct wave *wave, const struct rdf_bins *bins, doubl
     }
 }
 
+/// Wave numbers, and how far they are from each other.
+static size_t count_waves(const struct rdf_bins *bins, double *spacing) {
+    *spacing = M_PI / (ranges * mf_rdf_bins_range(bins));
+    return (size_t)(M_PI / bins->width / *spacing);
+}
+
 /// h − c of g, or with a `difference` of g its change.
-static enum status solve(const struct rdf_bins *bins, const struct box *box,
-                         const struct composition *composition, const double *g,
-                         const double *difference, double ridge, double *indirect) {
+static enum status solve(const struct hnc_liquid *liquid, const double *g, const double *difference,
+                         double ridge, double *indirect) {
     enum status status = STATUS_OK;
     struct wave wave = {0};
-    if (box->dimensions != 3)
+    double spacing;
+    const size_t waves = count_waves(liquid->bins, &spacing);
+    if (liquid->box->dimensions != 3)
         return mf_status_fail(STATUS_BAD_INPUT, "the hypernetted chain is for three dimensions");
-    CHECK(wave_init(&wave, box, composition));
-    const double spacing = M_PI / (ranges * mf_rdf_bins_range(bins));
-    const size_t waves = (size_t)(M_PI / bins->width / spacing);
-    for (size_t k = 0; k < (size_t)mf_composition_pairs(composition) * bins->count; k++)
+    CHECK(wave_init(&wave, liquid));
+    for (size_t k = 0; k < (size_t)mf_composition_pairs(liquid->composition) * liquid->bins->count;
+         k++)
         indirect[k] = 0;
     for (size_t n = 1; n <= waves; n++) {
         const double q = (double)n * spacing;
-        diagonalise(&wave, bins, g, q);
         if (difference)
-            find_slope(&wave, bins, difference, ridge, q);
+            find_slope(&wave, g, difference, ridge, q);
         else
-            find_indirect(&wave);
-        add_wave(&wave, bins, q, spacing, indirect);
+            find_indirect(&wave, g, q);
+        add_wave(&wave, q, spacing, indirect);
     }
 done:
     wave_clear(&wave);
     return status;
 }
 
-enum status mf_hnc_closure(const struct rdf_bins *bins, const struct box *box,
-                           const struct composition *composition, const double *g,
-                           double *indirect) {
-    return solve(bins, box, composition, g, NULL, 0, indirect);
+enum status mf_hnc_closure(const struct hnc_liquid *liquid, const double *g, double *indirect) {
+    return solve(liquid, g, NULL, 0, indirect);
 }
 
-enum status mf_hnc_closure_slope(const struct rdf_bins *bins, const struct box *box,
-                                 const struct composition *composition, const double *g,
+enum status mf_hnc_closure_slope(const struct hnc_liquid *liquid, const double *g,
                                  const double *difference, double ridge, double *indirect) {
-    return solve(bins, box, composition, g, difference, ridge, indirect);
+    return solve(liquid, g, difference, ridge, indirect);
+}
+
+enum status mf_hnc_closure_least_inside(const struct hnc_liquid *liquid, double *least) {
+    struct wave wave = {0};
+    double spacing;
+    const size_t waves = count_waves(liquid->bins, &spacing);
+    const enum status status = wave_init(&wave, liquid);
+    *least = 1;
+    for (size_t n = 1; status == STATUS_OK && n <= waves; n++) {
+        diagonalise(&wave, NULL, (double)n * spacing);
+        *least = fmin(*least, gsl_vector_min(wave.values));
+    }
+    wave_clear(&wave);
+    return status;
 }

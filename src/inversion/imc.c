@@ -11,10 +11,20 @@
 static const char *const columns[] = {INVERSION_COLUMNS, "regularisation[1]", "misfit[1]",
                                       "directions", NULL};
 
-/// Near the noise a step that is as smooth as the noise allows is none at all, though g still asks
-/// for one along the ramp. There the step is the most probable one, with the prior of the band.
+/// What Newton's step leaves of what is off, by the noise of C: of n independent samples and a step
+/// in so many directions it is the root of their ratio.
+static const double well_known = 1.0 / 3;
+
+bool mf_imc_is_known(const struct inversion *inversion, double directions) {
+    return mf_inversion_is_near(inversion) ||
+           directions < well_known * well_known * inversion->state->response.independent;
+}
+
+/// A step that is as smooth as the noise allows leaves what is wide and far outside its own noise,
+/// as the ramp and the concentrations of a mixture, since it is few among many bins. Where C is
+/// known in all of them the step is the most probable one, with the prior of the band.
 static double choose_strength(struct inversion *inversion) {
-    if (!mf_inversion_is_near(inversion))
+    if (!mf_imc_is_known(inversion, (double)inversion_grid(inversion)->known))
         return 0; // by the noise
     inversion->course.most_probable = true;
     return mf_inversion_band_prior(inversion);
@@ -56,7 +66,7 @@ enum status mf_imc_step(struct inversion *inversion, double *step, double extra[
     const struct targets *targets = &inversion->problem->targets;
     const struct inversion_equations *equations = &inversion->equations;
     const size_t *point = first->grid.known_point;
-    struct imc_system system = first->coarse.count > 0 ? equations->of_response : equations->system;
+    struct imc_system system = first->grid.groups > 0 ? equations->of_response : equations->system;
     struct imc_solution solution;
     double *x = NULL;
     if (mf_inversion_is_coarse(inversion))

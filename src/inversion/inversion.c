@@ -141,6 +141,8 @@ static enum status advance(struct inversion *inversion, struct inverse_step *ste
 enum status mf_inversion_iterate(void *memory, struct inverse_step *step,
                                  const struct inverse_listener *listener) {
     struct inversion *inversion = memory;
+    if (inversion->course.progress.iteration == 0)
+        TRY(mf_inversion_start_of_molecules(inversion, listener));
     TRY(mf_inversion_observe(inversion, listener));
     TRY(mf_inversion_equations_fill(&inversion->equations,
                                     mf_inversion_band_birge(&inversion->verdict)));

@@ -128,6 +128,12 @@ bool mf_inversion_is_near(const struct inversion *inversion);
 /// Fails: NO_MEMORY. Tested: test_inversion_start.
 enum status mf_inversion_start(struct inversion_state *state, double *phi) MUST_USE;
 
+/// The same of molecules, whose structure by themselves is sampled first. Nothing changes for
+/// single beads, several states, and a start that the run file gives. Fails: as
+/// mf_inversion_inside_find.
+enum status mf_inversion_start_of_molecules(struct inversion *inversion,
+                                            const struct inverse_listener *listener) MUST_USE;
+
 /// The curve that an inversion of the problem begins with, shape [points of mf_unknowns_points]:
 /// that of the problem, or the hypernetted chain's, in two dimensions −k_B T ln g; and its virial
 /// pressure with the target's g: below 0 the curve may lead nowhere. Fails: NO_MEMORY; BAD_INPUT as

@@ -134,7 +134,7 @@ static enum status find_step(const struct inversion *inversion, const struct imc
     for (size_t a = 0; a < n; a++)
         step[a] = inversion->course.step[inversion_grid(inversion)->known_point[a]];
     if (inversion->state->basis.count > 0 ||
-        (inversion->state->coarse.count > 0 && inversion->course.most_probable))
+        (inversion_grid(inversion)->groups > 0 && inversion->course.most_probable))
         return STATUS_OK;
     response = gsl_matrix_alloc(n, n);
     excess = gsl_vector_alloc(n);

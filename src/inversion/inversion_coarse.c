@@ -20,7 +20,7 @@ enum status mf_inversion_coarse_init(struct inversion_state *state) {
 }
 
 bool mf_inversion_is_coarse(const struct inversion *inversion) {
-    return inversion->state->coarse.count > 0 && !mf_inversion_is_near(inversion);
+    return inversion->state->grid.groups > 0 && !mf_inversion_is_near(inversion);
 }
 
 /// Work space of one step, in coefficients.

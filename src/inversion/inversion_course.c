@@ -73,13 +73,33 @@ static enum status keep(struct inversion *inversion) {
     return mf_inversion_band_find(inversion);
 }
 
-/// Go back to the best, for its other step if it has one, or for half of its step.
-static void go_back(struct inversion_course *course, size_t points) {
+/// Which part of the way from the best to the present samples is nearest to the targets, each bin
+/// in its noise, if S changes evenly along it.
+static double find_nearest_part(const struct inversion *inversion) {
+    const struct inversion_state *first = inversion->state;
+    const double *now = first->replicas.counts.mean, *best = inversion->course.best.counts;
+    double along = 0, squares = 0;
+    for (size_t a = 0; a < first->grid.known; a++) {
+        const size_t bin = first->grid.known_bin[a];
+        const double change = now[bin] - best[bin];
+        if (!first->grid.seen[a])
+            continue;
+        along += change * (first->target.counts[bin] - best[bin]) / first->variance[a];
+        squares += change * change / first->variance[a];
+    }
+    return squares > 0 ? along / squares : 0;
+}
+
+/// Go back to the best, for its other step if it has one, or for a part of its step: that of which
+/// the samples tell, half at most and an eighth at least.
+static void go_back(struct inversion *inversion) {
+    struct inversion_course *course = &inversion->course;
     if (!course->progress.has_other) {
-        course->progress.damping *= 0.5;
+        course->progress.damping *= fmin(0.5, fmax(0.125, find_nearest_part(inversion)));
         return;
     }
-    memcpy(course->best.step, course->best.other_step, points * sizeof(double));
+    memcpy(course->best.step, course->best.other_step,
+           inversion_grid(inversion)->points * sizeof(double));
     course->progress.failed_error = course->progress.best.distance[TARGET_RDF].rms;
     course->progress.has_other = false;
     course->progress.damping = 1;
@@ -132,7 +152,7 @@ enum status mf_inversion_course_judge(struct inversion *inversion, bool *kept) {
     else if (progress->second_error == progress->first_error)
         progress->second_error = error;
     if (!*kept) {
-        go_back(&inversion->course, inversion_grid(inversion)->points);
+        go_back(inversion);
         return STATUS_OK;
     }
     if (!start)

@@ -35,8 +35,10 @@ const struct field mf_inversion_fields[] = {
      .help = "statistical error of g, rms over bins, at which an agreement is believed"},
     {"start", FIELD_CHOICE, MEMBER(start), .choices = starts, .initial = INVERSION_FROM_HNC,
      .unit = "",
-     .help = "without unknowns.potential.start: the hypernetted-chain inversion, and -k_B T ln g "
-             "where that leads nowhere or in two dimensions; mean-force: -k_B T ln g"},
+     .help =
+         "without unknowns.potential.start: the hypernetted-chain inversion, and -k_B T ln g "
+         "where that leads nowhere, in two dimensions, and of small molecules of several types; "
+         "mean-force: -k_B T ln g"},
     FIELD_END,
 };
 

@@ -40,7 +40,7 @@ static void rows_clear(struct inversion_rows *rows) {
 enum status mf_inversion_equations_init(struct inversion_equations *equations,
                                         const struct inversion_state *state, size_t states) {
     enum status status = STATUS_OK;
-    const bool groups = state->coarse.count > 0;
+    const bool groups = state->grid.groups > 0;
     equations->state = state;
     equations->states = states;
     equations->reduced = states > 1 || state->kirkwood_buff.pairs > 0;

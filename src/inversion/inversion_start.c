@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "inversion/inversion.h"
 
-#include "inversion/hnc_closure.h"
+#include "inversion/inversion_inside.h"
 
 #include <math.h>
 
@@ -23,9 +23,7 @@ static bool has_own(const struct inversion_state *state) {
 }
 
 static bool is_from_hnc(const struct inversion_state *state) {
-    const struct simulation_setup *scene = &state->problem->scene;
-    return !has_own(state) && state->box.dimensions == 3 &&
-           mf_molecules_find(scene->interaction, scene->interactions) == NULL &&
+    return !has_own(state) && mf_inversion_knows_inside(state) &&
            state->parameters->start == INVERSION_FROM_HNC;
 }
 
@@ -90,7 +88,8 @@ static enum status add_indirect(const struct inversion_state *state, double *phi
     NEW_ARRAY(indirect, state->bins);
     for (size_t k = 0; k < state->bins; k++)
         g[k] = mf_inversion_target_g(state, k);
-    CHECK(mf_hnc_closure(&problem->targets.bins, &state->box, &state->composition, g, indirect));
+    const struct hnc_liquid liquid = mf_inversion_liquid(state);
+    CHECK(mf_hnc_closure(&liquid, g, indirect));
     for (size_t n = 0; n < grid->known; n++)
         phi[grid->known_point[n]] += problem->scene.temperature * indirect[grid->known_bin[n]];
 done:
@@ -121,6 +120,16 @@ enum status mf_inversion_start(struct inversion_state *state, double *phi) {
     TRY(add_indirect(state, phi));
     TRY(smooth(state, phi));
     return restrict_to_basis(state, phi);
+}
+
+enum status mf_inversion_start_of_molecules(struct inversion *inversion,
+                                            const struct inverse_listener *listener) {
+    struct inversion_state *state = inversion->state;
+    double *phi = inversion->course.phi;
+    if (inversion->states > 1 || has_own(state) || state->parameters->start != INVERSION_FROM_HNC)
+        return STATUS_OK;
+    TRY(mf_inversion_inside_find(state, phi, listener));
+    return mf_inversion_start(state, phi);
 }
 
 /// rms of g* − 1.

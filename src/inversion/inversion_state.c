@@ -78,6 +78,7 @@ static enum status allocate(struct inversion_state *state) {
     NEW_ARRAY(state->pool.variance, known);
     NEW_ARRAY(state->pool.phi, state->grid.points);
     NEW_ARRAY(state->pressure.slope, known);
+    NEW_ARRAY(state->inside.g, state->grid.pairs * state->grid.bins);
     CHECK(mf_inversion_response_init(state));
     CHECK(mf_inversion_kirkwood_buff_init(state));
 done:
@@ -103,7 +104,7 @@ enum status mf_inversion_state_init(struct inversion_state *state,
                               "meet it; with \"fitted\": \"no\" it is compared with");
     if (coefficients)
         return mf_inversion_basis_init(&state->basis, &state->grid, coefficients);
-    return state->grid.groups > 0 ? mf_inversion_coarse_init(state) : STATUS_OK;
+    return state->grid.blocks > 1 ? mf_inversion_coarse_init(state) : STATUS_OK;
 }
 
 enum status mf_inversion_tabulate(struct inversion_state *state) {
@@ -160,7 +161,8 @@ void mf_inversion_state_clear(struct inversion_state *state) {
     double *arrays[] = {state->target.ideal,  state->target.unit,  state->target.counts,
                         state->target.error,  state->target.least, state->target.common,
                         state->excess,        state->variance,     state->pool.excess,
-                        state->pool.variance, state->pool.phi,     state->pressure.slope};
+                        state->pool.variance, state->pool.phi,     state->pressure.slope,
+                        state->inside.g};
     for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
         mf_memory_free(arrays[k]);
 }
@@ -180,6 +182,9 @@ size_t mf_inversion_state_spans(struct inversion_state *state, struct memory_spa
     span[n++] = (struct memory_span){response->mean, bytes};
     span[n++] = (struct memory_span){response->phi, bytes};
     span[n++] = (struct memory_span){response->covariance, known * bytes};
+    span[n++] = (struct memory_span){&state->inside.least, sizeof state->inside.least};
+    span[n++] = (struct memory_span){state->inside.g,
+                                     state->grid.pairs * state->grid.bins * sizeof(double)};
     if (state->kirkwood_buff.pairs > 0)
         span[n++] =
             (struct memory_span){state->kirkwood_buff.slope, state->kirkwood_buff.pairs * bytes};

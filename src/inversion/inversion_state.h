@@ -76,6 +76,10 @@ struct inversion_state {
     struct inversion_pressure pressure;
     struct inversion_kirkwood_buff kirkwood_buff;
     struct inversion_verdict verdict;
+    struct {
+        double *g;    ///< of the pairs that molecules exclude, shape [pairs, bins of a pair]
+        double least; ///< mf_hnc_closure_least_inside; 0: not known
+    } inside;         ///< molecules by themselves, inversion/inversion_inside.h
     struct inversion_basis basis;  ///< of methods that go by the gradient; else its count is 0
     struct inversion_basis coarse; ///< of steps far from the targets, of fits with groups
     double gradient;               ///< of coefficients in its noise, when it was measured last

@@ -4,6 +4,8 @@
 
 #include "base/status.h"
 
+#include <stdbool.h>
+
 struct inversion;
 struct inversion_state;
 
@@ -17,10 +19,14 @@ void mf_ibi_step(const struct inversion_state *state, double *step);
 /// The same with the slope of the hypernetted chain. Fails: NO_MEMORY.
 enum status mf_hnc_step(const struct inversion_state *state, double *step) MUST_USE;
 
-/// The regularised Newton step of the equations, or, with groups far from their targets, that of
-/// mf_inversion_coarse_step. `extra` are strength, misfit and directions. Sets `most_probable`.
-/// Fails: NO_MEMORY.
+/// The regularised Newton step of the equations, or, with groups whose C is not known well enough,
+/// that of mf_inversion_coarse_step. `extra` are strength, misfit and directions, of the latter 0.
+/// Sets `most_probable`. Fails: NO_MEMORY.
 enum status mf_imc_step(struct inversion *inversion, double *step, double extra[3]) MUST_USE;
+
+/// Whether C is known well enough for a Newton step in so many directions, or the targets are near.
+/// Tested: test_automatic.
+bool mf_imc_is_known(const struct inversion *inversion, double directions);
 
 /// The variances of what C predicts. C is itself sampled: of n independent samples C_ab has the
 /// variance (C_aa C_bb + C_ab²)/n (normal S), and so Σ_b C_ab x_b/k_B T has

@@ -12,6 +12,8 @@ static const double pi = 3.14159265358979323846;
 
 static const struct rdf_bins bins = {0, 0.02, BINS};
 static const struct box box = {.dimensions = 3, .length = {10, 10, 10}};
+static const struct composition one = {.types = 1, .count = {PARTICLES}};
+static const struct hnc_liquid liquid = {&bins, &box, &one, NULL};
 
 /// g = 1 − A exp(−r²), with ρ A π^{3/2} = 1/2; the density is 1.
 static double amplitude(void) {
@@ -32,8 +34,7 @@ static void test_hnc_closure_is_the_series_when_h_is_a_gaussian(void **state) {
     (void)state;
     double g[BINS], indirect[BINS];
     make_g(1, g);
-    assert_ok(mf_hnc_closure(&bins, &box, &(struct composition){.types = 1, .count = {PARTICLES}},
-                             g, indirect));
+    assert_ok(mf_hnc_closure(&liquid, g, indirect));
     for (size_t k = 0; k < BINS; k++) {
         // ρ ĥ²/(1 + ρ ĥ) as a geometric series; each term is a Gaussian again.
         const double r = mf_rdf_bins_centre(&bins, k);
@@ -53,18 +54,12 @@ static void test_hnc_closure_slope_is_that_of_the_closure(void **state) {
     make_g(1 - small, below);
     for (size_t k = 0; k < BINS; k++)
         difference[k] = above[k] - below[k];
-    assert_ok(mf_hnc_closure(&bins, &box, &(struct composition){.types = 1, .count = {PARTICLES}},
-                             above, more));
-    assert_ok(mf_hnc_closure(&bins, &box, &(struct composition){.types = 1, .count = {PARTICLES}},
-                             below, less));
-    assert_ok(mf_hnc_closure_slope(&bins, &box,
-                                   &(struct composition){.types = 1, .count = {PARTICLES}}, g,
-                                   difference, 0, slope));
+    assert_ok(mf_hnc_closure(&liquid, above, more));
+    assert_ok(mf_hnc_closure(&liquid, below, less));
+    assert_ok(mf_hnc_closure_slope(&liquid, g, difference, 0, slope));
     for (size_t k = 0; k < BINS; k++)
         assert_close(slope[k], more[k] - less[k], small * small * 1e-2);
-    assert_ok(mf_hnc_closure_slope(&bins, &box,
-                                   &(struct composition){.types = 1, .count = {PARTICLES}}, g,
-                                   difference, 1, slope));
+    assert_ok(mf_hnc_closure_slope(&liquid, g, difference, 1, slope));
     assert_true(fabs(slope[0] - (more[0] - less[0])) > 1e-7);
 }
 
@@ -72,8 +67,7 @@ static void test_hnc_closure_stays_finite_when_the_target_has_no_structure_facto
     (void)state;
     double g[BINS], indirect[BINS];
     make_g(3, g); // S(0) = −1/2
-    assert_ok(mf_hnc_closure(&bins, &box, &(struct composition){.types = 1, .count = {PARTICLES}},
-                             g, indirect));
+    assert_ok(mf_hnc_closure(&liquid, g, indirect));
     for (size_t k = 0; k < BINS; k++)
         assert_true(isfinite(indirect[k]));
 }
@@ -83,9 +77,7 @@ static void test_hnc_closure_refuses_two_dimensions(void **state) {
     static const struct box plane = {.dimensions = 2, .length = {10, 10, 1}};
     double g[BINS], indirect[BINS];
     make_g(1, g);
-    assert_fails(mf_hnc_closure(&bins, &plane,
-                                &(struct composition){.types = 1, .count = {PARTICLES}}, g,
-                                indirect),
+    assert_fails(mf_hnc_closure(&(struct hnc_liquid){&bins, &plane, &one, NULL}, g, indirect),
                  STATUS_BAD_INPUT, "three dimensions");
 }
 

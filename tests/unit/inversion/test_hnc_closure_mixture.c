@@ -20,6 +20,9 @@ static const struct box box = {.dimensions = 3, .length = {10, 10, 10}};
 static const struct composition thirds = {.types = 2, .count = {300, 700}, .name = {"A", "B"}};
 static const struct composition unequal = {.types = 2, .count = {250, 900}, .name = {"A", "B"}};
 
+static const struct hnc_liquid of_thirds = {&bins, &box, &thirds, NULL};
+static const struct hnc_liquid of_unequal = {&bins, &box, &unequal, NULL};
+
 /// h = −A exp(−(r/w)²) of A-A, A-B and B-B; the eigenvalues of S(0) are 0.43 and 0.92.
 static const double amplitude[PAIRS] = {0.12, 0.05, 0.08}, width[PAIRS] = {0.9, 1, 1.1};
 
@@ -40,10 +43,11 @@ static void test_hnc_closure_of_two_types_that_are_alike_is_that_of_one(void **s
         g[n] = 1 - 0.1 * exp(-r * r) * cos(3 * r);
         difference[n] = 0.01 * exp(-r * r) * sin(r);
     }
-    assert_ok(mf_hnc_closure(&bins, &box, &one, g, alone));
-    assert_ok(mf_hnc_closure(&bins, &box, &thirds, g, indirect));
-    assert_ok(mf_hnc_closure_slope(&bins, &box, &one, g, difference, 0.3, other));
-    assert_ok(mf_hnc_closure_slope(&bins, &box, &thirds, g, difference, 0.3, slope));
+    assert_ok(mf_hnc_closure(&(struct hnc_liquid){&bins, &box, &one, NULL}, g, alone));
+    assert_ok(mf_hnc_closure(&of_thirds, g, indirect));
+    assert_ok(mf_hnc_closure_slope(&(struct hnc_liquid){&bins, &box, &one, NULL}, g, difference,
+                                   0.3, other));
+    assert_ok(mf_hnc_closure_slope(&of_thirds, g, difference, 0.3, slope));
     assert_true(fabs(alone[0]) > 1e-3);
     for (size_t n = 0; n < PAIRS * BINS; n++) {
         assert_close(indirect[n], alone[n % BINS], 1e-13);
@@ -85,7 +89,7 @@ static void test_hnc_closure_is_the_inverse_by_hand_when_h_are_gaussians(void **
     (void)state;
     double g[PAIRS * BINS], indirect[PAIRS * BINS], largest = 0, size = 0;
     make_g(1, g);
-    assert_ok(mf_hnc_closure(&bins, &box, &unequal, g, indirect));
+    assert_ok(mf_hnc_closure(&of_unequal, g, indirect));
     for (size_t n = 0; n < PAIRS * BINS; n += 5) {
         const double exact = indirect_of(mf_rdf_bins_centre(&bins, n % BINS), (int)(n / BINS));
         largest = fmax(largest, fabs(indirect[n] - exact));
@@ -108,9 +112,9 @@ static void check_slope(size_t pair) {
         below[n] = g[n] - change;
         difference[n] = 2 * change;
     }
-    assert_ok(mf_hnc_closure(&bins, &box, &unequal, above, more));
-    assert_ok(mf_hnc_closure(&bins, &box, &unequal, below, less));
-    assert_ok(mf_hnc_closure_slope(&bins, &box, &unequal, g, difference, 0, slope));
+    assert_ok(mf_hnc_closure(&of_unequal, above, more));
+    assert_ok(mf_hnc_closure(&of_unequal, below, less));
+    assert_ok(mf_hnc_closure_slope(&of_unequal, g, difference, 0, slope));
     for (size_t n = 0; n < PAIRS * BINS; n++) {
         largest = fmax(largest, fabs(slope[n]));
         assert_close(slope[n], more[n] - less[n], small * small * 0.1);
@@ -128,7 +132,7 @@ static void test_hnc_closure_stays_finite_when_a_mixture_has_no_structure_factor
     (void)state;
     double g[PAIRS * BINS], indirect[PAIRS * BINS];
     make_g(4, g);
-    assert_ok(mf_hnc_closure(&bins, &box, &unequal, g, indirect));
+    assert_ok(mf_hnc_closure(&of_unequal, g, indirect));
     for (size_t n = 0; n < PAIRS * BINS; n++)
         assert_true(fabs(indirect[n]) < 10);
 }
