@@ -25,7 +25,7 @@ enum status mf_hnc_step(const struct inversion_state *state, double *step) MUST_
 enum status mf_imc_step(struct inversion *inversion, double *step, double extra[3]) MUST_USE;
 
 /// Whether C is known well enough for a Newton step in so many directions, or the targets are near.
-/// Tested: test_automatic.
+/// Tested: test_inversion_keeps.
 bool mf_imc_is_known(const struct inversion *inversion, double directions);
 
 /// The variances of what C predicts. C is itself sampled: of n independent samples C_ab has the

@@ -91,7 +91,7 @@ static void test_exchanges_share_out_places_as_boltzmanns_factor_says(void **sta
     for (unsigned way = 0; way < WAYS; way++) {
         const double share =
             __builtin_popcount(way) == 2 ? exp(-energy_of(way) / temperature) / sum : 0;
-        // Ten sweeps count as one independent: a hundred seeds are off by 3.4 errors at most.
+        // Ten sweeps, of two exchanges each, count as one independent; false alarm below 1e-5.
         const double error = sqrt(10 * share * (1 - share) / SWEEPS);
         print_message("%2u: %.4f, exactly %.4f\n", way, count[way] / SWEEPS, share);
         assert_true(fabs(count[way] / SWEEPS - share) <= 5 * error);

@@ -2,6 +2,7 @@
 //
 // Which potentials an inversion goes on from.
 #include "inversion/inversion.h"
+#include "inversion/method_steps.h"
 
 #include "shared/is_close.h"
 #include "shared/testing.h"
@@ -107,6 +108,47 @@ static void test_inversion_shortens_steps_that_go_too_far(void **state) {
         mf_inversion_relax(&inversion);
         assert_close(inversion.course.progress.damping, 0.75, 1e-12);
     }
+}
+
+/// Two bins whose S goes from 10 and 20 to 30 and 20 with a whole step: to be at 18 and 20 it is to
+/// go two fifths of it, a half of it to be at 25, and an eighth at least. The part that is 40 has
+/// a variance so large that it hardly counts.
+static void test_inversion_goes_back_for_the_part_of_which_its_samples_tell(void **state) {
+    (void)state;
+    static const struct { double target, damping; } cases[] = {{18, 0.4}, {25, 0.5}, {9, 0.125}};
+    for (int k = 0; k < 3; k++) {
+        struct fit fit;
+        struct inversion *inversion = begin(&fit, false);
+        size_t bin[] = {0, 1};
+        bool seen[] = {true, true}, kept;
+        double now[] = {30, 40}, best[] = {10, 20}, variance[] = {1, 1e12};
+        double target[] = {cases[k].target, 20};
+        fit.state.grid = (struct potential_grid){.known = 2, .known_bin = bin, .seen = seen};
+        fit.state.replicas.counts.mean = now;
+        fit.state.target.counts = target;
+        fit.state.variance = variance;
+        inversion->course.best.counts = best;
+        inversion->course.progress.damping = 1;
+        assert_true(keeps(inversion, 0.1, 0.01));
+        inversion->verdict.distance[TARGET_RDF].rms = 1;
+        assert_ok(mf_inversion_course_judge(inversion, &kept));
+        assert_false(kept);
+        assert_close(inversion->course.progress.damping, cases[k].damping, 1e-6);
+    }
+}
+
+/// With 900 independent samples less than 100 directions.
+static void test_inversion_knows_directions_by_its_samples(void **state) {
+    (void)state;
+    struct fit fit;
+    struct inversion *inversion = begin(&fit, false);
+    inversion->verdict.sections = 1;
+    inversion->verdict.section[0] = (struct inversion_section){.misfit = 100, .probable = 2};
+    fit.state.response.independent = 900;
+    assert_true(mf_imc_is_known(inversion, 99));
+    assert_false(mf_imc_is_known(inversion, 101));
+    inversion->verdict.section[0].misfit = 1; // near
+    assert_true(mf_imc_is_known(inversion, 101));
 }
 
 /// A state of one bin near its target, with 50 samples.
@@ -269,6 +311,8 @@ int main(void) {
         cmocka_unit_test(test_inversion_pool_of_coefficients_goes_by_their_gradient),
         cmocka_unit_test(test_inversion_ends_with_the_step_that_is_left_or_the_mean),
         cmocka_unit_test(test_inversion_shortens_steps_that_go_too_far),
+        cmocka_unit_test(test_inversion_goes_back_for_the_part_of_which_its_samples_tell),
+        cmocka_unit_test(test_inversion_knows_directions_by_its_samples),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
