@@ -5,7 +5,7 @@
 #include "app/completion.h"
 #include "app/reference.h"
 #include "base/nearest.h"
-#include "input/fit_file.h"
+#include "defaults/fit_file.h"
 #include "observe/kirkwood_buff_observable.h"
 #include "observe/measure.h"
 #include "observe/rdf_observable.h"

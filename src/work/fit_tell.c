@@ -3,7 +3,7 @@
 
 #include "dynamics/hybrid_step.h"
 #include "dynamics/respa.h"
-#include "input/fit_scales.h"
+#include "defaults/fit_scales.h"
 #include "observe/stages.h"
 #include "system/attributes.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // What `mesofit simulate` measures of pairs, from outside: escape times and the force covariance.
-#include "input/target_etd.h"
+#include "targets/target_etd.h"
 #include "shared/results.h"
 #include "shared/run_program.h"
 #include "shared/small_inputs.h"

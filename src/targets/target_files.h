@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file "target" of a run file: the measured observables that a fit is to reproduce.
+#pragma once
+
+#include "problem/targets.h"
+#include "inversion/normalisation.h"
+#include "io/json_write.h"
+#include "targets/target_curve.h"
+#include "targets/target_etd.h"
+#include "targets/target_groups.h"
+#include "targets/target_kirkwood_buff.h"
+#include "targets/target_pairs.h"
+
+extern const struct field mf_target_files_use_fields[];
+
+struct target_files {
+    bool given[TARGETS];
+    struct composition composition;     ///< of the scene
+    size_t pairs;                       ///< its pair types
+    struct target_pairs rdf;            ///< g(r) of all pairs
+    struct target_pairs apart;          ///< of beads of different molecules
+    struct normalisation normalisation; ///< by which g(r) of all that do not say theirs are divided
+    struct target_etd etd;
+    struct target_groups groups[BONDED_KINDS]; ///< of bonds, angles and dihedrals
+    struct target_kirkwood_buff kirkwood_buff;
+    struct target_curve curve[TARGETS];   ///< of those that are curves
+    struct target_number number[TARGETS]; ///< of those that are numbers
+    /// Of the observables whose targets say them, by their places in the list; else NULL.
+    void *settings[OBSERVABLES_MOST];
+    struct target_use {
+        double weight; ///< 0: by the errors
+        int fitted;    ///< 0: only compared with the result
+    } use[TARGETS];
+};
+
+/// Read the object "target" of a scene of this box, composition and molecules, or NULL; `units`
+/// convert VOTCA's tables. Faults go to the document. Fails: NO_MEMORY.
+enum status mf_target_files_read(struct target_files *files, struct json_object *root,
+                                 const struct box *box, const struct composition *composition,
+                                 const struct molecules *molecules,
+                                 const struct units *units) MUST_USE;
+void mf_target_files_clear(struct target_files *files);
+void mf_target_files_write(const struct target_files *files, struct json_writer *writer);
+
+/// Add what was read from files to the digest of a checkpoint.
+void mf_target_files_digest(const struct target_files *files, uint64_t *digest);
+
+/// As mf_target_groups_widen, of a group of bonds, angles or dihedrals; it is measured in these
+/// bins, too.
+enum status mf_target_files_widen(struct target_files *files, int order, size_t group,
+                                  const struct bonded_bins *bins) MUST_USE;
+
+/// Divide g(r) by its normalisation: what the file says, else what mf_normalisation_find makes of
+/// the target in this box, and 1 of beads that are `joined` to molecules, of which it knows
+/// nothing. If the file says some of a mixture's, the others are 1. That of different molecules is
+/// divided by what the file says alone. Also what is not known of it, for the fit. Fails:
+/// NO_MEMORY.
+enum status mf_target_files_normalise(struct target_files *files, const struct box *box,
+                                      bool joined) MUST_USE;
+
+/// The targets of the scene: those to be fitted, and all. With `moves`, D is among
+/// those to be compared even if no value is given, so that a result knows its own, if another
+/// target says in what window.
+void mf_target_files_targets(struct target_files *files, bool moves, struct targets *fitted,
+                             struct targets *compared);
+
+/// BAD_INPUT with the time steps that would do if an interval is not a whole number of steps.
+enum status mf_target_files_check_steps(const struct target_files *files,
+                                        double time_step) MUST_USE;

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "targets/target_pairs.h"
+
+#include "base/memory.h"
+#include "scene/pair_names.h"
+
+#include <math.h>
+#include <string.h>
+
+/// All end with the shortest; where they would have ended is kept.
+static void cut_to_shortest(struct target_pairs *target) {
+    size_t shortest = SIZE_MAX;
+    for (size_t pair = 0; pair < target->pairs; pair++) {
+        const size_t count = target->member[pair].bins.count;
+        shortest = count > 0 && count < shortest ? count : shortest;
+    }
+    for (size_t pair = 0; pair < target->pairs; pair++) {
+        struct rdf_bins *bins = &target->member[pair].bins;
+        target->ends[pair] = mf_rdf_bins_edge(bins, bins->count);
+        if (bins->count > shortest)
+            bins->count = shortest;
+    }
+}
+
+/// Pair types of which there is no pair have the bins of the others, and no g.
+static void fill_bins(struct target_pairs *target, const struct composition *composition) {
+    struct rdf_bins bins = {.count = 0};
+    for (size_t pair = 0; pair < target->pairs && bins.count == 0; pair++)
+        if (mf_composition_has_pairs(composition, (int)pair))
+            bins = target->member[pair].bins;
+    for (size_t pair = 0; pair < target->pairs; pair++)
+        if (!mf_composition_has_pairs(composition, (int)pair))
+            target->member[pair].bins = bins;
+}
+
+/// All pair types must have the bins of the first.
+static void check_bins(const struct target_pairs *target, const struct composition *composition,
+                       struct json_object *object) {
+    const struct rdf_bins *first = target_pairs_bins(target);
+    for (size_t pair = 1; pair < target->pairs; pair++) {
+        const struct rdf_bins *bins = &target->member[pair].bins;
+        char name[COMPOSITION_PAIR_NAME_SIZE], first_name[COMPOSITION_PAIR_NAME_SIZE];
+        mf_composition_pair_name(composition, (int)pair, name);
+        mf_composition_pair_name(composition, 0, first_name);
+        // A file that could not be read has its own fault.
+        if (first->count > 0 && bins->count > 0 &&
+            (bins->count != first->count || fabs(bins->width / first->width - 1) > 1e-6 ||
+             fabs(bins->low - first->low) > 1e-6 * first->width))
+            mf_json_fault(object, name, "must have the bins of \"%s\"", first_name);
+    }
+}
+
+/// g and errors of all pair types in the numbers of the scene, one behind the other, if all
+/// could be read.
+static enum status collect(struct target_pairs *target, const struct finite_size_fluid *fluid) {
+    enum status status = STATUS_OK;
+    const size_t bins = target_pairs_bins(target)->count;
+    for (size_t pair = 0; pair < target->pairs; pair++)
+        if (target->member[pair].bins.count != bins)
+            return STATUS_OK;
+    NEW_ARRAY(target->g, target->pairs * bins);
+    NEW_ARRAY(target->error, target->pairs * bins);
+    NEW_ARRAY(target->given, target->pairs * bins);
+    NEW_ARRAY(target->factor_error, target->pairs);
+    for (size_t pair = 0; pair < target->pairs; pair++)
+        if (mf_composition_has_pairs(fluid->composition, (int)pair))
+            mf_target_rdf_convert(&target->member[pair], fluid, (int)pair, target->g + pair * bins,
+                                  target->error + pair * bins);
+        else
+            for (size_t k = pair * bins; k < (pair + 1) * bins; k++)
+                target->g[k] = target->error[k] = NAN;
+    memcpy(target->given, target->g, target->pairs * bins * sizeof(double));
+done:
+    return status;
+}
+
+enum status mf_target_pairs_read(struct target_pairs *target, struct json_object *object,
+                                 const struct finite_size_fluid *fluid, const struct units *units) {
+    const struct composition *composition = fluid->composition;
+    *target = (struct target_pairs){0};
+    if (composition->types == 0)
+        return STATUS_OK; // a fault of the types is told, those of their pairs would mislead
+    target->pairs = (size_t)mf_composition_pairs(composition);
+    if (!composition_is_mixed(composition)) {
+        if (mf_pair_names_refuse(object, composition, "{\"file\": …}"))
+            return STATUS_OK;
+        TRY(mf_target_rdf_read(&target->member[0], object, units, fluid->box->dimensions));
+        return collect(target, fluid);
+    }
+    // The object remembers what it was asked for until it is finished.
+    char name[COMPOSITION_MOST_PAIRS][COMPOSITION_PAIR_NAME_SIZE];
+    const char *key[COMPOSITION_MOST_PAIRS];
+    const bool known = mf_pair_names_find(object, composition, key);
+    for (size_t pair = 0; pair < target->pairs; pair++) {
+        mf_composition_pair_name(composition, (int)pair, name[pair]);
+        if (!mf_composition_has_pairs(composition, (int)pair)) {
+            if (key[pair] && mf_json_has(object, key[pair]))
+                mf_json_fault(object, key[pair],
+                              "a single bead is of that type, and there is no such pair; leave it "
+                              "out");
+            continue;
+        }
+        // What is missing may be what a wrong name was to be.
+        struct json_object child = mf_json_child(object, key[pair] ? key[pair] : name[pair], known);
+        if (child.item)
+            TRY(mf_target_rdf_read(&target->member[pair], &child, units, fluid->box->dimensions));
+    }
+    mf_json_finish(object);
+    cut_to_shortest(target);
+    fill_bins(target, composition);
+    check_bins(target, composition, object);
+    return collect(target, fluid);
+}
+
+void mf_target_pairs_clear(struct target_pairs *target) {
+    for (size_t pair = 0; pair < target->pairs; pair++)
+        mf_target_rdf_clear(&target->member[pair]);
+    mf_memory_free(target->g);
+    mf_memory_free(target->error);
+    mf_memory_free(target->given);
+    mf_memory_free(target->factor_error);
+    *target = (struct target_pairs){0};
+}
+
+void mf_target_pairs_write(const struct target_pairs *target, const struct composition *composition,
+                           struct json_writer *writer) {
+    if (!composition_is_mixed(composition)) {
+        mf_json_put_fields(writer, mf_target_rdf_fields, &target->member[0].parameters);
+        return;
+    }
+    for (size_t pair = 0; pair < target->pairs; pair++) {
+        char name[COMPOSITION_PAIR_NAME_SIZE];
+        if (!mf_composition_has_pairs(composition, (int)pair))
+            continue;
+        mf_composition_pair_name(composition, (int)pair, name);
+        mf_json_begin(writer, name);
+        mf_json_put_fields(writer, mf_target_rdf_fields, &target->member[pair].parameters);
+        mf_json_end(writer);
+    }
+}
+
+void mf_target_pairs_divide(struct target_pairs *target, size_t pair, double factor) {
+    const size_t bins = target_pairs_bins(target)->count;
+    for (size_t n = pair * bins; n < (pair + 1) * bins; n++) {
+        target->g[n] /= factor;
+        target->error[n] /= factor;
+    }
+}
+
+size_t mf_target_pairs_normalise(struct target_pairs *target) {
+    size_t given = 0;
+    for (size_t pair = 0; pair < target->pairs; pair++) {
+        const double factor = target->member[pair].parameters.normalisation;
+        if (factor > 0)
+            mf_target_pairs_divide(target, pair, factor);
+        given += factor > 0;
+    }
+    return given;
+}

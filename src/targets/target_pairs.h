@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file A measured g(r), or in a mixture those of all pair types, {"A-A": {"file": …}, …}: of all
+/// pairs, or of beads of different molecules.
+#pragma once
+
+#include "targets/target_rdf.h"
+#include "io/json_write.h"
+#include "system/composition.h"
+
+struct target_pairs {
+    size_t pairs;                                     ///< pair types of the scene; 0: not given
+    struct target_rdf member[COMPOSITION_MOST_PAIRS]; ///< of each pair type, in the same bins
+    /// Of all, one behind the other, in the numbers of the scene: shape [pairs, bins].
+    double *g, *error;
+    double ends[COMPOSITION_MOST_PAIRS]; ///< where the file of each would end [λ]
+    double *given;                       ///< g before it was divided by its normalisation
+    double *factor_error;                ///< of that, shape [pairs]
+};
+
+static inline const struct rdf_bins *target_pairs_bins(const struct target_pairs *target) {
+    return &target->member[0].bins;
+}
+
+/// Values of all pair types; 0: the target is not given, or could not be read.
+static inline size_t target_pairs_values(const struct target_pairs *target) {
+    return target->pairs * target->member[0].bins.count;
+}
+
+/// Read the members of the object but those of struct target_use, which are read before. All pair
+/// types end with the shortest. Faults go to the document. Fails: NO_MEMORY. Tested:
+/// test_target_files, test_target_files_mixture.
+enum status mf_target_pairs_read(struct target_pairs *target, struct json_object *object,
+                                 const struct finite_size_fluid *fluid,
+                                 const struct units *units) MUST_USE;
+void mf_target_pairs_clear(struct target_pairs *target);
+void mf_target_pairs_write(const struct target_pairs *target, const struct composition *composition,
+                           struct json_writer *writer);
+
+/// Divide g and errors of a pair type.
+void mf_target_pairs_divide(struct target_pairs *target, size_t pair, double factor);
+
+/// Divide by what the file says, which is 1 where it says nothing. Returns how many pair types it
+/// says it of.
+size_t mf_target_pairs_normalise(struct target_pairs *target);
