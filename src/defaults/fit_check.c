@@ -286,12 +286,13 @@ enum status mf_fit_check(const struct fit_file *fit, const char *file) {
     TRY(check_intermolecular(fit, file));
     TRY(check_unknowns(fit, file));
     if (files->given[TARGET_RDF])
-        TRY(check_range(fit, file, "rdf", mf_rdf_bins_range(target_pairs_bins(&files->rdf))));
+        TRY(check_range(fit, file, "rdf",
+                        mf_rdf_bins_range(target_pairs_bins(target_files_rdf(files)))));
     if (files->given[mf_rdf_intermolecular_kind()])
         TRY(check_range(fit, file, "intermolecular_rdf",
-                        mf_rdf_bins_range(target_pairs_bins(&files->apart))));
+                        mf_rdf_bins_range(target_pairs_bins(target_files_apart(files)))));
     if (files->given[TARGET_ETD])
-        TRY(check_range(fit, file, "etd", files->etd.grid.r_maximum));
+        TRY(check_range(fit, file, "etd", target_files_etd(files)->grid.r_maximum));
     if (mf_targets_count(&fit->problem.targets) == 0)
         return mf_status_fail(STATUS_BAD_INPUT, "%s: target: nothing is to be fitted%s", file,
                               fit->constraints.count > 0

@@ -22,7 +22,7 @@ void mf_fit_constraints_find(const struct fit_file *read, struct fit_constraints
     constraints->count = 0;
     for (int order = 0; order < BONDED_KINDS; order++)
         for (int g = 0; mf_bonded_kinds[order]->narrow > 0 && g < molecules->groups[order]; g++) {
-            const struct target_groups *groups = &read->files.groups[order];
+            const struct target_groups *groups = target_files_groups(&read->files, order);
             const struct molecules_group *group = &molecules->group[order][g];
             if (!mf_scene_groups_are_fitted(group) || !target_groups_have(groups, (size_t)g))
                 continue;

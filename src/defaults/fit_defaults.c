@@ -88,8 +88,8 @@ static enum status give_to_pairs(struct fit_choice *c, const char *name, double 
 /// Whether the file says how wide the bins of any pair type are.
 static bool says_bins(const struct fit_choice *c) {
     bool says = false;
-    for (size_t pair = 0; pair < c->read->files.rdf.pairs; pair++)
-        says = says || c->read->files.rdf.member[pair].parameters.bin_width > 0;
+    for (size_t pair = 0; pair < target_files_rdf(&c->read->files)->pairs; pair++)
+        says = says || target_files_rdf(&c->read->files)->member[pair].parameters.bin_width > 0;
     return says;
 }
 
@@ -103,8 +103,8 @@ static enum status choose_bins(struct fit_choice *c, struct fit_scales_rdf *rdf)
         return STATUS_OK;
     size_t of = mf_fit_scales_joined(rdf, finest, coarsest);
     if (c->leader)
-        of = (size_t)fmax(1,
-                          round(target_pairs_bins(&c->leader->files.rdf)->width / rdf->bins.width));
+        of = (size_t)fmax(1, round(target_pairs_bins(target_files_rdf(&c->leader->files))->width /
+                                   rdf->bins.width));
     if (of < 2)
         return STATUS_OK;
     TRY(mf_fit_scales_rdf_join(rdf, of));
@@ -130,9 +130,10 @@ static double find_cutoff(const struct fit_choice *c, const char **why) {
     *why = "beyond, g differs from 1 by less than 0.03 or its noise, as it may without forces "
            "there";
     if (c->leader) {
-        const struct rdf_bins *bins = target_pairs_bins(&c->leader->files.rdf);
+        const struct rdf_bins *bins = target_pairs_bins(target_files_rdf(&c->leader->files));
         *why = "as the first state has it";
-        return last_row(bins, bins->count - 1, c->leader->files.rdf.member[0].joined);
+        return last_row(bins, bins->count - 1,
+                        target_files_rdf(&c->leader->files)->member[0].joined);
     }
     if (mf_fit_choice_lacks(c->root, "scene", "box"))
         return cutoff;
@@ -140,8 +141,8 @@ static double find_cutoff(const struct fit_choice *c, const char **why) {
                  last = floor((half - c->rdf->bins.low) / c->rdf->bins.width + 1e-9);
     if (last < 1)
         return cutoff;
-    const double within =
-        last_row(&c->rdf->bins, (size_t)last - 1, c->joined * c->read->files.rdf.member[0].joined);
+    const double within = last_row(&c->rdf->bins, (size_t)last - 1,
+                                   c->joined * target_files_rdf(&c->read->files)->member[0].joined);
     if (within >= cutoff || within < least_of_box * cutoff)
         return cutoff;
     *why = "half of the box";
@@ -173,14 +174,14 @@ static enum status choose_count(struct fit_choice *c) {
         !mf_fit_choice_lacks(c->root, "scene.particles", "types") ||
         !mf_fit_choice_lacks(c->root, "scene", "molecules"))
         return STATUS_OK;
-    const double range = fmax(c->range, c->read->files.etd.grid.r_maximum);
+    const double range = fmax(c->range, target_files_etd(&c->read->files)->grid.r_maximum);
     const double needed = c->density * pow(margin * range, c->dimensions);
     c->count = ceil(fmax(least, needed));
     mf_fit_choice_say(
         c, "%.0f particles: %s%s", c->count,
         c->count > least ? "the box is 2.2 times as wide as the range of the targets"
                          : "enough for the statistics, and the box is wider than twice the range",
-        c->read->files.rdf.member[0].parameters.particles > 0
+        target_files_rdf(&c->read->files)->member[0].parameters.particles > 0
             ? ""
             : "; g(r) is taken for that of as many, since its \"particles\" are not said");
     return mf_fit_choice_give(c, "scene.particles", mf_placement_count_fields, "count", c->count);
@@ -201,10 +202,11 @@ static double round_down(double value) {
 /// of the file.
 static double fit_interval(const struct fit_choice *c, double time_step) {
     const struct target_files *files = &c->read->files;
-    const double interval = files->given[TARGET_ETD]    ? files->etd.interval
-                            : files->given[TARGET_VACF] ? files->curve[TARGET_VACF].interval
-                            : files->given[TARGET_MSD]  ? files->curve[TARGET_MSD].interval
-                                                        : 0;
+    const double interval =
+        files->given[TARGET_ETD]    ? target_files_etd(files)->interval
+        : files->given[TARGET_VACF] ? target_files_curve(files, TARGET_VACF)->interval
+        : files->given[TARGET_MSD]  ? target_files_curve(files, TARGET_MSD)->interval
+                                    : 0;
     const double unit = mf_units_factor(&c->read->scene.units, "tau");
     return interval > 0 ? interval / ceil(interval / time_step - 1e-9)
                         : round_down(time_step * unit) / unit;
@@ -303,8 +305,9 @@ static enum status choose_omega(struct fit_choice *c) {
     if (!c->finds[UNKNOWN_OMEGA] || !mf_fit_choice_lacks(c->root, path, "cutoff") ||
         !mf_fit_choice_lacks(c->root, path, "maximum"))
         return STATUS_OK;
-    const double cutoff = fmin(
-        c->range, fmax(shells * c->scales.shell, beyond_etd * c->read->files.etd.grid.r_maximum));
+    const double cutoff =
+        fmin(c->range, fmax(shells * c->scales.shell,
+                            beyond_etd * target_files_etd(&c->read->files)->grid.r_maximum));
     const double sigma = moderate_friction(c, cutoff);
     char largest[FIT_CHOICE_TEXT_SIZE], from[FIT_CHOICE_TEXT_SIZE], to[FIT_CHOICE_TEXT_SIZE];
     mf_fit_choice_say(c, "omega: %d coefficients from 0 to %s, between r = %s and %s, %s",

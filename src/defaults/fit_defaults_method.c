@@ -57,7 +57,7 @@ static void find_well(const struct target_bonded *target, double *mean, double *
 
 /// ω² of a group, by its target, or by its law if it has none.
 static double fastest_of(const struct fit_choice *c, int order, size_t g, double length) {
-    const struct target_groups *groups = &c->read->files.groups[order];
+    const struct target_groups *groups = target_files_groups(&c->read->files, order);
     const struct bonded_curve *curve = &c->read->scene.molecules.molecules.group[order][g].curve;
     const double temperature = c->read->scene.setup.temperature;
     double mean, variance;
@@ -72,7 +72,7 @@ static double fastest_of(const struct fit_choice *c, int order, size_t g, double
 
 static double shortest_bond(const struct fit_choice *c) {
     const struct molecules *molecules = &c->read->scene.molecules.molecules;
-    const struct target_groups *bonds = &c->read->files.groups[BONDED_BOND];
+    const struct target_groups *bonds = target_files_groups(&c->read->files, BONDED_BOND);
     double length = INFINITY, mean, variance;
     for (size_t g = 0; g < (size_t)molecules->groups[BONDED_BOND]; g++) {
         if (target_groups_have(bonds, g))

@@ -148,10 +148,11 @@ static enum status read_root(struct fit_file *fit, struct json_object *root,
         mf_json_speak(root->document, &leader->scene.units);
     // Before what its units convert.
     TRY(read_scene(fit, root));
-    TRY(mf_target_files_read(
-        &fit->files, root, &fit->scene.setup.box, &fit->scene.setup.composition,
-        mf_molecules_find(fit->scene.setup.interaction, fit->scene.setup.interactions),
-        &fit->scene.units));
+    const struct simulation_setup *setup = &fit->scene.setup;
+    const struct target_scene about = {&setup->box, &setup->composition,
+                                       mf_molecules_find(setup->interaction, setup->interactions),
+                                       &fit->scene.units};
+    TRY(mf_target_files_read(&fit->files, root, &about));
     TRY(mf_fit_unknowns_read(fit, root));
     TRY(read_method(fit, root));
     struct json_object core = mf_json_child(root, "core", false);
@@ -172,7 +173,7 @@ static void state_groups(struct fit_file *fit) {
     const struct molecules *molecules = &fit->scene.molecules.molecules;
     for (int order = 0; order < BONDED_KINDS; order++)
         for (int g = 0; g < molecules->groups[order]; g++) {
-            const struct target_groups *groups = &fit->files.groups[order];
+            const struct target_groups *groups = target_files_groups(&fit->files, order);
             if (!mf_scene_groups_are_fitted(&molecules->group[order][g]) ||
                 (size_t)g >= groups->groups || groups->member[g].bins.count == 0)
                 continue;

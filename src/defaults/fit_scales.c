@@ -312,9 +312,9 @@ enum status mf_fit_scales_rdf_init(struct fit_scales_rdf *rdf, const struct targ
                                    .density =
                                        (double)setup->placement.count / mf_box_volume(&setup->box)};
     if (files->given[TARGET_RDF]) {
-        rdf->bins = *target_pairs_bins(&files->rdf);
-        rdf->g = files->rdf.g;
-        rdf->error = files->rdf.error;
+        rdf->bins = *target_pairs_bins(target_files_rdf(files));
+        rdf->g = target_files_rdf(files)->g;
+        rdf->error = target_files_rdf(files)->error;
     }
     return files->given[TARGET_RDF] || scene->potential.curves == 0 ? STATUS_OK
                                                                     : make_rdf(rdf, scene);

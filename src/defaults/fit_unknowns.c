@@ -109,7 +109,7 @@ static void read_groups(struct fit_file *fit, struct json_object *root,
                         struct json_object *unknowns) {
     const struct molecules *molecules = &fit->scene.molecules.molecules;
     for (int order = 0; order < BONDED_KINDS; order++) {
-        const struct target_groups *targets = &fit->files.groups[order];
+        const struct target_groups *targets = target_files_groups(&fit->files, order);
         struct json_object groups = mf_json_child(unknowns, mf_bonded_kinds[order]->plural, false);
         for (int g = 0; g < molecules->groups[order]; g++) {
             const char *name = molecules->group[order][g].name;

@@ -2,10 +2,9 @@
 #include "targets/target_curve.h"
 
 #include "base/memory.h"
-#include "targets/target_rdf.h"
 #include "io/data_table.h"
-
 #include "io/units_text.h"
+#include "targets/target_files.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -32,7 +31,7 @@
                  "called as the target with \"_error\", else 3 if there are so many columns"},     \
         FIELD_END
 
-const struct field mf_target_curve_time_fields[] = {
+static const struct field time_fields[] = {
     {"file", FIELD_FILE, CURVE(file), .required = true, .unit = "",
      .help = "values at equally spaced times from 0 on, in units of the scene"},
     {"time_column", FIELD_INTEGER, CURVE(x_column), .initial = 1, .minimum = 1, COLUMN,
@@ -40,7 +39,7 @@ const struct field mf_target_curve_time_fields[] = {
     VALUE_COLUMNS,
 };
 
-const struct field mf_target_curve_fields[] = {
+static const struct field x_fields[] = {
     {"file", FIELD_FILE, CURVE(file), .required = true, .unit = "",
      .help = "values at growing x, in units of the scene"},
     {"x_column", FIELD_INTEGER, CURVE(x_column), .initial = 1, .minimum = 1, COLUMN,
@@ -49,7 +48,7 @@ const struct field mf_target_curve_fields[] = {
 };
 
 #define NUMBER(name) .offset = offsetof(struct target_number, name)
-const struct field mf_target_curve_number_fields[TARGET_NUMBER_FIELDS] = {
+static const struct field number_fields[] = {
     {"value", FIELD_NUMBER, NUMBER(value), .required = true, .minimum = -DBL_MAX,
      .maximum = DBL_MAX, .unit = "its own", .help = "measured"},
     {"error", FIELD_NUMBER, NUMBER(error), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
@@ -57,7 +56,7 @@ const struct field mf_target_curve_number_fields[TARGET_NUMBER_FIELDS] = {
     FIELD_END,
 };
 
-const struct field mf_target_curve_diffusion_fields[] = {
+static const struct field diffusion_fields[] = {
     {"window", FIELD_NUMBER, NUMBER(window), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
      .unit = "tau",
      .help =
@@ -65,16 +64,6 @@ const struct field mf_target_curve_diffusion_fields[] = {
          "\"vacf\", \"msd\" or \"etd\" if they are given, else 1.6"},
     FIELD_END,
 };
-
-void mf_target_curve_number_fields_of(const char *unit, struct field fields[TARGET_NUMBER_FIELDS]) {
-    memcpy(fields, mf_target_curve_number_fields, sizeof mf_target_curve_number_fields);
-    for (int k = 0; fields[k].name; k++)
-        fields[k].unit = unit;
-}
-
-const struct field *mf_target_curve_fields_of(enum observable_form form) {
-    return form == OBSERVABLE_CURVE ? mf_target_curve_fields : mf_target_curve_time_fields;
-}
 
 static double cell(const struct data_table *table, size_t row, int64_t column) {
     return table->values[row * table->columns + (size_t)column - 1];
@@ -173,7 +162,8 @@ done:
 enum status mf_target_curve_read(struct target_curve *curve, const struct observable_target *about,
                                  struct json_object *object) {
     const size_t faults = mf_json_fault_count(object->document);
-    mf_json_fields(object, mf_target_curve_fields_of(about->form), &curve->parameters);
+    mf_json_fields(object, about->form == OBSERVABLE_CURVE ? x_fields : time_fields,
+                   &curve->parameters);
     mf_json_finish(object);
     if (mf_json_fault_count(object->document) > faults)
         return STATUS_OK;
@@ -195,13 +185,153 @@ void mf_target_curve_clear(struct target_curve *curve) {
     *curve = (struct target_curve){0};
 }
 
-enum status mf_target_curve_check_steps(const struct target_curve *curve, double time_step) {
-    const double steps = curve->interval / time_step, time = curve->time > 0 ? curve->time : 1;
-    if (!(curve->interval > 0) || (steps > 0.5 && fabs(steps / fmax(1, round(steps)) - 1) < 1e-3))
+/// Of the interval, for a whole number of steps: the length of a step makes no such difference.
+static const double step_tolerance = 1e-3;
+
+enum status mf_target_curve_check_steps(const char *file, double interval, double time,
+                                        double time_step) {
+    const double steps = interval / time_step, whole = rint(steps);
+    char above[64] = "";
+    if (whole >= 1 && fabs(whole / steps - 1) <= step_tolerance)
         return STATUS_OK;
-    return mf_status_fail(STATUS_BAD_INPUT,
-                          "%s: its interval %.6g is not a whole number of time steps of %g; %.6g "
-                          "would do",
-                          curve->parameters.file, time * curve->interval, time * time_step,
-                          time * curve->interval / fmax(1, ceil(steps)));
+    if (steps >= 1)
+        snprintf(above, sizeof above, " or %.6g", time * interval / floor(steps));
+    return mf_status_fail(
+        STATUS_BAD_INPUT,
+        "the times of %s are %.6g apart, %.4g time steps of %g: not a whole number, "
+        "as it would be with a time step of %.6g%s",
+        file, time * interval, steps, time * time_step, time * interval / ceil(steps), above);
 }
+
+// Curves ------------------------------------------------------------------------------------------
+
+static enum status read_curve(struct target_files *files, int kind, struct json_object *object,
+                              const struct target_scene *scene) {
+    (void)scene;
+    return mf_target_curve_read(files->own[kind], mf_observable_kind(kind).target, object);
+}
+
+static void clear_curve(void *own) {
+    mf_target_curve_clear(own);
+}
+
+/// A function of time is told at its own times, which are equal; any other at its x.
+static struct target curve_values(const struct target_files *files, int kind) {
+    const struct target_curve *curve = files->own[kind];
+    return (struct target){.count = curve->points,
+                           .value = curve->value,
+                           .error = curve->error,
+                           .x = curve->interval > 0 ? NULL : curve->x};
+}
+
+static bool curve_table(const struct target_files *files, int kind, size_t n,
+                        struct target_table *table) {
+    const struct observable_target *about = mf_observable_kind(kind).target;
+    const struct target_curve *curve = files->own[kind];
+    const bool of_time = about->form == OBSERVABLE_CURVE_OF_TIME;
+    *table = (struct target_table){.count = curve->points,
+                                   .places = 1,
+                                   .place = {about->argument},
+                                   .beside = of_time,
+                                   .values_beside = of_time};
+    snprintf(table->name, sizeof table->name, "%s", about->name);
+    return n == 0;
+}
+
+static void curve_place(const struct target_files *files, int kind,
+                        const struct target_table *table, size_t k, double at[2]) {
+    const struct target_curve *curve = files->own[kind];
+    (void)table;
+    at[0] = curve->interval > 0 ? (double)k * curve->interval : curve->x[k];
+}
+
+#define CURVE_RECORD                                                                               \
+    .chief = "file", .size = sizeof(struct target_curve), .read = read_curve,                      \
+    .clear = clear_curve, .values = curve_values, .table = curve_table, .place = curve_place
+
+const struct target_record mf_target_curve_of_time = {
+    .topic = "curve-target",
+    .summary = "a function of time, as \"vacf\" and \"msd\", with its file",
+    .fields = {time_fields, mf_target_files_use_fields},
+    .form = OBSERVABLE_CURVE_OF_TIME,
+    CURVE_RECORD,
+};
+
+const struct target_record mf_target_curve = {
+    .topic = "function-target",
+    .summary = "any other function, with its file and the settings of its observable",
+    .fields = {x_fields, mf_target_files_use_fields},
+    .form = OBSERVABLE_CURVE,
+    CURVE_RECORD,
+};
+
+// Numbers -----------------------------------------------------------------------------------------
+
+enum { NUMBER_FIELDS = sizeof number_fields / sizeof *number_fields };
+
+/// Fields of value and error, with the unit of the kind.
+static void number_fields_of(int kind, struct field fields[NUMBER_FIELDS]) {
+    memcpy(fields, number_fields, sizeof number_fields);
+    for (int k = 0; fields[k].name; k++)
+        fields[k].unit = mf_observable_kind(kind).target->unit;
+}
+
+static enum status read_number(struct target_files *files, int kind, struct json_object *object,
+                               const struct target_scene *scene) {
+    struct field fields[NUMBER_FIELDS];
+    (void)scene;
+    number_fields_of(kind, fields);
+    mf_json_fields(object, fields, files->own[kind]);
+    mf_json_finish(object);
+    return STATUS_OK;
+}
+
+static enum status read_diffusion(struct target_files *files, int kind, struct json_object *object,
+                                  const struct target_scene *scene) {
+    mf_json_fields(object, diffusion_fields, files->own[kind]);
+    return read_number(files, kind, object, scene);
+}
+
+static void write_number(const struct target_files *files, int kind, struct json_writer *writer) {
+    struct field fields[NUMBER_FIELDS];
+    number_fields_of(kind, fields);
+    mf_json_put_fields(writer, fields, files->own[kind]);
+}
+
+static void write_diffusion(const struct target_files *files, int kind,
+                            struct json_writer *writer) {
+    write_number(files, kind, writer);
+    mf_json_put_fields(writer, diffusion_fields, files->own[kind]);
+}
+
+static struct target number_values(const struct target_files *files, int kind) {
+    const struct target_number *number = files->own[kind];
+    return (struct target){.count = 1, .value = &number->value, .error = &number->error};
+}
+
+static bool is_diffusion(int kind) {
+    return kind == TARGET_DIFFUSION;
+}
+
+#define NUMBER_RECORD                                                                              \
+    .chief = "value", .form = OBSERVABLE_NUMBER, .size = sizeof(struct target_number),             \
+    .values = number_values
+
+const struct target_record mf_target_number = {
+    .topic = "number-target",
+    .summary = "a number, as \"pressure\"",
+    .fields = {number_fields, mf_target_files_use_fields},
+    .read = read_number,
+    .write = write_number,
+    NUMBER_RECORD,
+};
+
+const struct target_record mf_target_diffusion = {
+    .topic = "diffusion-target",
+    .summary = "\"diffusion\": D, which may have a window of its own",
+    .fields = {number_fields, diffusion_fields, mf_target_files_use_fields},
+    .takes = is_diffusion,
+    .read = read_diffusion,
+    .write = write_diffusion,
+    NUMBER_RECORD,
+};

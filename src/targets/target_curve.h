@@ -15,15 +15,9 @@ struct target_curve {
     } parameters;
     size_t points;             ///< 0: not given
     double interval;           ///< between times [τ]; 0: of a curve that is no function of time
-    double time;               ///< τ in the units of the file, for messages; 0: 1
+    double time;               ///< τ in the units of the file, for messages
     double *x, *value, *error; ///< shape [points]
 };
-
-/// Fields of target_curve_parameters: of a function of time, and of any other.
-extern const struct field mf_target_curve_time_fields[], mf_target_curve_fields[];
-
-/// Those of a form, OBSERVABLE_CURVE or OBSERVABLE_CURVE_OF_TIME.
-const struct field *mf_target_curve_fields_of(enum observable_form form);
 
 /// Read the members of {"file": …}: x grows from row to row; times begin at 0 and are equally
 /// spaced to the digits of the file. Faults (shape, times, negative errors, …) go to the document
@@ -33,8 +27,10 @@ enum status mf_target_curve_read(struct target_curve *curve, const struct observ
                                  struct json_object *object) MUST_USE;
 void mf_target_curve_clear(struct target_curve *curve);
 
-/// BAD_INPUT with the time steps that would do if the interval is not a whole number of steps.
-enum status mf_target_curve_check_steps(const struct target_curve *curve,
+/// BAD_INPUT with the time steps that would do if the interval between the times of a file [τ] is
+/// not a whole number of steps to 0.1 %: what moves is measured as often as it was.
+/// @param[in] time  τ in the units of the file, for messages
+enum status mf_target_curve_check_steps(const char *file, double interval, double time,
                                         double time_step) MUST_USE;
 
 /// A measured number: the pressure, or D.
@@ -42,10 +38,3 @@ struct target_number {
     double value, error;
     double window; ///< of D: the slope of the MSD over its second half; 0: of other targets [τ]
 };
-
-enum { TARGET_NUMBER_FIELDS = 3 };
-extern const struct field mf_target_curve_number_fields[TARGET_NUMBER_FIELDS];
-extern const struct field mf_target_curve_diffusion_fields[];
-
-/// Those of value and error, with the unit of the observable.
-void mf_target_curve_number_fields_of(const char *unit, struct field fields[TARGET_NUMBER_FIELDS]);

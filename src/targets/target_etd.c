@@ -3,6 +3,7 @@
 
 #include "base/memory.h"
 #include "io/data_table.h"
+#include "targets/target_files.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -10,7 +11,7 @@
 
 #define MEMBER(name) .offset = offsetof(struct target_etd_parameters, name)
 #define COLUMN .maximum = 1000, .unit = ""
-const struct field mf_target_etd_fields[] = {
+static const struct field etd_fields[] = {
     {"file", FIELD_FILE, MEMBER(file), .required = true, .unit = "",
      .help = "E(t, r_0): a time in each row, a bin of r_0 in each column, in units of the scene"},
     {"error_file", FIELD_FILE, MEMBER(error_file), .unit = "",
@@ -33,9 +34,6 @@ static const double time_tolerance = 0.01;
 
 /// Of E(0) = 1.
 static const double digits = 1e-6;
-
-/// Of the interval, for a whole number of steps: the length of a step makes no such difference.
-static const double step_tolerance = 1e-3;
 
 static double time_of(const struct data_table *table, const struct target_etd_parameters *p,
                       size_t row) {
@@ -194,7 +192,7 @@ static enum status load(struct target_etd *target, const struct units *units,
 enum status mf_target_etd_read(struct target_etd *target, struct json_object *object) {
     *target = (struct target_etd){0};
     const size_t faults = mf_json_fault_count(object->document);
-    mf_json_fields(object, mf_target_etd_fields, &target->parameters);
+    mf_json_fields(object, etd_fields, &target->parameters);
     mf_json_finish(object);
     if (mf_json_fault_count(object->document) > faults)
         return STATUS_OK;
@@ -218,19 +216,67 @@ void mf_target_etd_clear(struct target_etd *target) {
     *target = (struct target_etd){0};
 }
 
-enum status mf_target_etd_steps(const struct target_etd *target, double time_step, int64_t *every) {
-    const double steps = target->interval / time_step, whole = rint(steps);
-    if (whole >= 1 && fabs(whole / steps - 1) <= step_tolerance) {
-        *every = (int64_t)whole;
-        return STATUS_OK;
-    }
-    const double time = target->time > 0 ? target->time : 1, interval = time * target->interval;
-    char above[64] = "";
-    if (steps >= 1)
-        snprintf(above, sizeof above, " or %.6g", interval / floor(steps));
-    return mf_status_fail(
-        STATUS_BAD_INPUT,
-        "the times of %s are %.6g apart, %.4g time steps of %g: not a whole number, "
-        "as it would be with a time step of %.6g%s",
-        target->parameters.file, interval, steps, time * time_step, interval / ceil(steps), above);
+static enum status read(struct target_files *files, int kind, struct json_object *object,
+                        const struct target_scene *scene) {
+    (void)scene;
+    return mf_target_etd_read(files->own[kind], object);
 }
+
+static void clear(void *own) {
+    mf_target_etd_clear(own);
+}
+
+static size_t cells_of(const struct target_etd *target) {
+    return (size_t)(target->grid.times * target->grid.bins);
+}
+
+static struct target values(const struct target_files *files, int kind) {
+    const struct target_etd *target = files->own[kind];
+    return (struct target){.count = cells_of(target),
+                           .value = target->survival,
+                           .error = target->error,
+                           .columns = (size_t)target->grid.bins};
+}
+
+/// One row a cell; what is not known is nan.
+static bool find_table(const struct target_files *files, int kind, size_t n,
+                       struct target_table *table) {
+    *table = (struct target_table){.name = "etd_cells",
+                                   .count = cells_of(files->own[kind]),
+                                   .places = 2,
+                                   .place = {"time[tau]", "r0[lambda]"},
+                                   .beside = true,
+                                   .place_format = "%.6f",
+                                   .value_format = "%.6f"};
+    return n == 0;
+}
+
+static void find_place(const struct target_files *files, int kind, const struct target_table *table,
+                       size_t k, double at[2]) {
+    const struct target_etd *target = files->own[kind];
+    const struct etd_grid *grid = &target->grid;
+    const size_t bins = (size_t)grid->bins;
+    const double width = (grid->r_maximum - grid->r_minimum) / (double)bins;
+    (void)table;
+    at[0] = (double)(k / bins) * target->interval;
+    at[1] = grid->r_minimum + ((double)(k % bins) + 0.5) * width;
+}
+
+static bool takes(int kind) {
+    return kind == TARGET_ETD;
+}
+
+const struct target_record mf_target_etd = {
+    .topic = "etd-target",
+    .summary = "\"etd\": escape times of pairs",
+    .chief = "file",
+    .fields = {etd_fields, mf_target_files_use_fields},
+    .form = OBSERVABLE_OWN_FORM,
+    .takes = takes,
+    .size = sizeof(struct target_etd),
+    .read = read,
+    .clear = clear,
+    .values = values,
+    .table = find_table,
+    .place = find_place,
+};

@@ -12,13 +12,11 @@ struct target_etd_parameters {
     double r_minimum, r_maximum;                             ///< [λ]
 };
 
-extern const struct field mf_target_etd_fields[];
-
 struct target_etd {
     struct target_etd_parameters parameters;
     struct etd_grid grid;
     double interval;          ///< between times [τ]
-    double time;              ///< τ in the units of the file, for messages; 0: 1
+    double time;              ///< τ in the units of the file, for messages
     double *survival, *error; ///< shape [times, bins]; NaN: not known; error 0 without errors
     size_t left_out;          ///< cells that are not known
 };
@@ -32,10 +30,3 @@ struct target_etd {
 /// the target empty. Fails: NO_MEMORY. Tested: test_target_etd, test_simulate_pairs.
 enum status mf_target_etd_read(struct target_etd *target, struct json_object *object) MUST_USE;
 void mf_target_etd_clear(struct target_etd *target);
-
-/// Steps of length `time_step` [τ] between the target's times, for etd_plan.every: escapes between
-/// samples go unseen, so that a simulation must look as often as the measurement did.
-/// Fails: BAD_INPUT, with the nearest time steps that would do, if the interval is not a whole
-/// number of steps to 0.1 %. Tested: test_target_etd.
-enum status mf_target_etd_steps(const struct target_etd *target, double time_step,
-                                int64_t *every) MUST_USE;

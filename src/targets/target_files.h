@@ -2,29 +2,27 @@
 /// @file "target" of a run file: the measured observables that a fit is to reproduce.
 #pragma once
 
-#include "problem/targets.h"
 #include "inversion/normalisation.h"
-#include "io/json_write.h"
+#include "observe/kirkwood_buff_observable.h"
+#include "observe/rdf_observable.h"
 #include "targets/target_curve.h"
 #include "targets/target_etd.h"
 #include "targets/target_groups.h"
 #include "targets/target_kirkwood_buff.h"
 #include "targets/target_pairs.h"
+#include "targets/target_record.h"
 
 extern const struct field mf_target_files_use_fields[];
+
+/// All readers, NULL-terminated, and that of a kind.
+extern const struct target_record *const mf_target_records[];
+const struct target_record *mf_target_record(int kind);
 
 struct target_files {
     bool given[TARGETS];
     struct composition composition;     ///< of the scene
-    size_t pairs;                       ///< its pair types
-    struct target_pairs rdf;            ///< g(r) of all pairs
-    struct target_pairs apart;          ///< of beads of different molecules
     struct normalisation normalisation; ///< by which g(r) of all that do not say theirs are divided
-    struct target_etd etd;
-    struct target_groups groups[BONDED_KINDS]; ///< of bonds, angles and dihedrals
-    struct target_kirkwood_buff kirkwood_buff;
-    struct target_curve curve[TARGETS];   ///< of those that are curves
-    struct target_number number[TARGETS]; ///< of those that are numbers
+    void *own[TARGETS];                 ///< what the reader of each kind keeps
     /// Of the observables whose targets say them, by their places in the list; else NULL.
     void *settings[OBSERVABLES_MOST];
     struct target_use {
@@ -33,12 +31,40 @@ struct target_files {
     } use[TARGETS];
 };
 
-/// Read the object "target" of a scene of this box, composition and molecules, or NULL; `units`
-/// convert VOTCA's tables. Faults go to the document. Fails: NO_MEMORY.
+/// @name What was read of a kind, empty if it is not given
+static inline const struct target_pairs *target_files_rdf(const struct target_files *files) {
+    return files->own[TARGET_RDF];
+}
+
+/// g(r) of beads of different molecules.
+static inline const struct target_pairs *target_files_apart(const struct target_files *files) {
+    return files->own[mf_rdf_intermolecular_kind()];
+}
+
+static inline const struct target_etd *target_files_etd(const struct target_files *files) {
+    return files->own[TARGET_ETD];
+}
+
+/// Of bonds, angles or dihedrals.
+static inline const struct target_groups *target_files_groups(const struct target_files *files,
+                                                              int order) {
+    return files->own[mf_bonded_distribution_kind(order)];
+}
+
+static inline const struct target_kirkwood_buff *
+target_files_kirkwood_buff(const struct target_files *files) {
+    return files->own[mf_kirkwood_buff_kind()];
+}
+
+/// Of a kind that is a curve.
+static inline const struct target_curve *target_files_curve(const struct target_files *files,
+                                                            int kind) {
+    return files->own[kind];
+}
+
+/// Read the object "target" of a run file. Faults go to the document. Fails: NO_MEMORY.
 enum status mf_target_files_read(struct target_files *files, struct json_object *root,
-                                 const struct box *box, const struct composition *composition,
-                                 const struct molecules *molecules,
-                                 const struct units *units) MUST_USE;
+                                 const struct target_scene *scene) MUST_USE;
 void mf_target_files_clear(struct target_files *files);
 void mf_target_files_write(const struct target_files *files, struct json_writer *writer);
 
@@ -67,3 +93,7 @@ void mf_target_files_targets(struct target_files *files, bool moves, struct targ
 /// BAD_INPUT with the time steps that would do if an interval is not a whole number of steps.
 enum status mf_target_files_check_steps(const struct target_files *files,
                                         double time_step) MUST_USE;
+
+/// Table number n of those in which a fit shows a kind beside its result; false beyond the last.
+bool mf_target_files_table(const struct target_files *files, int kind, size_t n,
+                           struct target_table *table);

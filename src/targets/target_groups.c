@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "targets/target_groups.h"
+#include "targets/target_files.h"
 
 #include "base/memory.h"
 #include "base/nearest.h"
@@ -9,7 +9,10 @@
 
 /// Keys of the object that are no groups (struct target_use).
 static bool is_use(const char *key) {
-    return strcmp(key, "weight") == 0 || strcmp(key, "fitted") == 0;
+    bool is = false;
+    for (const struct field *field = mf_target_files_use_fields; field->name; field++)
+        is = is || strcmp(key, field->name) == 0;
+    return is;
 }
 
 static void fault_unknown(const struct target_groups *groups, struct json_object *object,
@@ -127,7 +130,34 @@ void mf_target_groups_clear(struct target_groups *groups) {
     *groups = (struct target_groups){0};
 }
 
-void mf_target_groups_write(const struct target_groups *groups, struct json_writer *writer) {
+struct bonded_settings mf_target_groups_settings(const struct target_groups *groups) {
+    struct bonded_settings settings = {.bins = 0};
+    for (size_t g = 0; g < groups->groups; g++)
+        settings.target[g] = groups->member[g].bins;
+    return settings;
+}
+
+static enum status read(struct target_files *files, int kind, struct json_object *object,
+                        const struct target_scene *scene) {
+    struct target_groups *groups = files->own[kind];
+    struct bonded_settings *settings = mf_memory_zeroed(1, sizeof *settings);
+    if (settings == NULL)
+        return STATUS_NO_MEMORY;
+    files->settings[mf_observable_kind(kind).place] = settings;
+    if (files->composition.types == 0)
+        return STATUS_OK; // a fault of the molecules is told, those of their groups would mislead
+    TRY(mf_target_groups_read(groups, mf_bonded_distribution_order(kind), object, scene->molecules,
+                              scene->units, scene->box->dimensions));
+    *settings = mf_target_groups_settings(groups);
+    return STATUS_OK;
+}
+
+static void clear(void *own) {
+    mf_target_groups_clear(own);
+}
+
+static void write(const struct target_files *files, int kind, struct json_writer *writer) {
+    const struct target_groups *groups = files->own[kind];
     for (size_t g = 0; g < groups->groups; g++) {
         if (groups->member[g].bins.count == 0)
             continue;
@@ -137,9 +167,58 @@ void mf_target_groups_write(const struct target_groups *groups, struct json_writ
     }
 }
 
-struct bonded_settings mf_target_groups_settings(const struct target_groups *groups) {
-    struct bonded_settings settings = {.bins = 0};
-    for (size_t g = 0; g < groups->groups; g++)
-        settings.target[g] = groups->member[g].bins;
-    return settings;
+static struct target values(const struct target_files *files, int kind) {
+    const struct target_groups *groups = files->own[kind];
+    return (struct target){.count = groups->first[groups->groups],
+                           .value = groups->value,
+                           .error = groups->error,
+                           .block = groups->block,
+                           .blocks = groups->blocks};
 }
+
+/// That of a group that is given: bond_lengths_backbone.tsv.
+static bool find_table(const struct target_files *files, int kind, size_t n,
+                       struct target_table *table) {
+    const struct observable_target *about = mf_observable_kind(kind).target;
+    const struct target_groups *groups = files->own[kind];
+    size_t g = 0;
+    for (size_t left = n + 1; g < groups->groups; g++)
+        if (target_groups_have(groups, g) && --left == 0)
+            break;
+    if (g == groups->groups)
+        return false;
+    *table = (struct target_table){.part = g,
+                                   .first = groups->first[g],
+                                   .count = groups->member[g].bins.count,
+                                   .places = 1,
+                                   .place = {about->argument}};
+    snprintf(table->name, sizeof table->name, "%s_%s", about->name, groups->name[g]);
+    return true;
+}
+
+static void find_place(const struct target_files *files, int kind, const struct target_table *table,
+                       size_t k, double at[2]) {
+    const struct target_groups *groups = files->own[kind];
+    at[0] = bonded_bins_centre(&groups->member[table->part].bins, k);
+}
+
+static bool takes(int kind) {
+    return mf_bonded_distribution_order(kind) < BONDED_KINDS;
+}
+
+const struct target_record mf_target_groups = {
+    .topic = "distribution-target",
+    .summary = "one group of \"bond_lengths\", \"bond_angles\" and \"dihedral_angles\", as "
+               "\"backbone\"",
+    .chief = "file",
+    .fields = {mf_target_bonded_fields},
+    .form = OBSERVABLE_OWN_FORM,
+    .takes = takes,
+    .size = sizeof(struct target_groups),
+    .read = read,
+    .clear = clear,
+    .write = write,
+    .values = values,
+    .table = find_table,
+    .place = find_place,
+};

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "targets/target_bonded.h"
-#include "io/json_write.h"
 #include "problem/targets.h"
 
 /// By the numbers of the groups.
@@ -23,7 +22,6 @@ enum status mf_target_groups_read(struct target_groups *groups, int order,
                                   struct json_object *object, const struct molecules *molecules,
                                   const struct units *units, int dimensions) MUST_USE;
 void mf_target_groups_clear(struct target_groups *groups);
-void mf_target_groups_write(const struct target_groups *groups, struct json_writer *writer);
 
 /// Give the target of a group these bins, of which its own are some. What it has not seen has p = 0
 /// and the error of its nearest bin. Fails: NO_MEMORY.

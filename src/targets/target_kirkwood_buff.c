@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "targets/target_kirkwood_buff.h"
+#include "targets/target_files.h"
 
 #include "scene/pair_names.h"
 
 #include <math.h>
 
 #define NUMBER(name) .offset = offsetof(struct target_kirkwood_buff_number, name)
-const struct field mf_target_kirkwood_buff_fields[] = {
+static const struct field number_fields[] = {
     {"value", FIELD_NUMBER, NUMBER(value), .required = true, .minimum = -DBL_MAX,
      .maximum = DBL_MAX, .unit = "lambda^d",
      .help = "integral of g - 1 over all space, of the open system; of a mixture in an object of "
@@ -19,7 +19,7 @@ const struct field mf_target_kirkwood_buff_fields[] = {
 
 static void read_number(struct target_kirkwood_buff *target, int pair, struct json_object *object) {
     struct target_kirkwood_buff_number number = {NAN, NAN};
-    mf_json_fields(object, mf_target_kirkwood_buff_fields, &number);
+    mf_json_fields(object, number_fields, &number);
     target->value[pair] = number.value;
     target->error[pair] = number.error;
 }
@@ -72,8 +72,15 @@ void mf_target_kirkwood_buff_read(struct target_kirkwood_buff *target, struct js
     mf_json_finish(object);
 }
 
-void mf_target_kirkwood_buff_write(const struct target_kirkwood_buff *target,
-                                   struct json_writer *writer) {
+static enum status read(struct target_files *files, int kind, struct json_object *object,
+                        const struct target_scene *scene) {
+    mf_target_kirkwood_buff_read(files->own[kind], object, &files->composition,
+                                 scene->molecules ? &scene->molecules->topology : NULL);
+    return STATUS_OK;
+}
+
+static void write(const struct target_files *files, int kind, struct json_writer *writer) {
+    const struct target_kirkwood_buff *target = files->own[kind];
     for (size_t pair = 0; pair < target->pairs; pair++) {
         const struct target_kirkwood_buff_number number = {target->value[pair],
                                                            target->error[pair]};
@@ -83,8 +90,31 @@ void mf_target_kirkwood_buff_write(const struct target_kirkwood_buff *target,
         mf_composition_pair_name(&target->components, (int)pair, name);
         if (target->pairs > 1)
             mf_json_begin(writer, name);
-        mf_json_put_fields(writer, mf_target_kirkwood_buff_fields, &number);
+        mf_json_put_fields(writer, number_fields, &number);
         if (target->pairs > 1)
             mf_json_end(writer);
     }
 }
+
+static struct target values(const struct target_files *files, int kind) {
+    const struct target_kirkwood_buff *target = files->own[kind];
+    return (struct target){.count = target->pairs, .value = target->value, .error = target->error};
+}
+
+static bool takes(int kind) {
+    return kind == mf_kirkwood_buff_kind();
+}
+
+const struct target_record mf_target_kirkwood_buff = {
+    .topic = "kirkwood_buff-target",
+    .summary = "\"kirkwood_buff\": Kirkwood and Buff's integrals, of a mixture by pairs of "
+               "components",
+    .chief = "value",
+    .fields = {number_fields, mf_kirkwood_buff_observable_fields, mf_target_files_use_fields},
+    .form = OBSERVABLE_OWN_FORM,
+    .takes = takes,
+    .size = sizeof(struct target_kirkwood_buff),
+    .read = read,
+    .write = write,
+    .values = values,
+};

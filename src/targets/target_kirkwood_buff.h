@@ -6,15 +6,12 @@
 
 #include "base/fields.h"
 #include "io/json.h"
-#include "io/json_write.h"
 #include "system/components.h"
 
 /// Of one pair [λ^d].
 struct target_kirkwood_buff_number {
     double value, error;
 };
-
-extern const struct field mf_target_kirkwood_buff_fields[];
 
 struct target_kirkwood_buff {
     struct composition components;
@@ -30,5 +27,3 @@ struct target_kirkwood_buff {
 void mf_target_kirkwood_buff_read(struct target_kirkwood_buff *target, struct json_object *object,
                                   const struct composition *composition,
                                   const struct topology *topology);
-void mf_target_kirkwood_buff_write(const struct target_kirkwood_buff *target,
-                                   struct json_writer *writer);

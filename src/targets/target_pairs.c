@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "targets/target_pairs.h"
+#include "targets/target_files.h"
 
 #include "base/memory.h"
 #include "scene/pair_names.h"
@@ -122,23 +122,6 @@ void mf_target_pairs_clear(struct target_pairs *target) {
     *target = (struct target_pairs){0};
 }
 
-void mf_target_pairs_write(const struct target_pairs *target, const struct composition *composition,
-                           struct json_writer *writer) {
-    if (!composition_is_mixed(composition)) {
-        mf_json_put_fields(writer, mf_target_rdf_fields, &target->member[0].parameters);
-        return;
-    }
-    for (size_t pair = 0; pair < target->pairs; pair++) {
-        char name[COMPOSITION_PAIR_NAME_SIZE];
-        if (!mf_composition_has_pairs(composition, (int)pair))
-            continue;
-        mf_composition_pair_name(composition, (int)pair, name);
-        mf_json_begin(writer, name);
-        mf_json_put_fields(writer, mf_target_rdf_fields, &target->member[pair].parameters);
-        mf_json_end(writer);
-    }
-}
-
 void mf_target_pairs_divide(struct target_pairs *target, size_t pair, double factor) {
     const size_t bins = target_pairs_bins(target)->count;
     for (size_t n = pair * bins; n < (pair + 1) * bins; n++) {
@@ -157,3 +140,111 @@ size_t mf_target_pairs_normalise(struct target_pairs *target) {
     }
     return given;
 }
+
+/// Of beads of different molecules: also the bins in which they are measured.
+static enum status read_apart(struct target_files *files, int kind) {
+    const size_t place = mf_observable_kind(kind).place;
+    struct rdf_settings *settings = mf_memory_zeroed(1, sizeof *settings);
+    if (settings == NULL)
+        return STATUS_NO_MEMORY;
+    *settings = (struct rdf_settings){.of_target = true,
+                                      .estimator = RDF_FORCE_NOT_USED,
+                                      .target = *target_pairs_bins(files->own[kind])};
+    files->settings[place] = settings;
+    return STATUS_OK;
+}
+
+static enum status read(struct target_files *files, int kind, struct json_object *object,
+                        const struct target_scene *scene) {
+    const bool apart = kind != TARGET_RDF;
+    const struct finite_size_fluid fluid = {
+        .box = scene->box,
+        .composition = &files->composition,
+        .topology = scene->molecules ? &scene->molecules->topology : NULL,
+        .apart = apart};
+    TRY(mf_target_pairs_read(files->own[kind], object, &fluid, scene->units));
+    return apart ? read_apart(files, kind) : STATUS_OK;
+}
+
+static void clear(void *own) {
+    mf_target_pairs_clear(own);
+}
+
+static void write(const struct target_files *files, int kind, struct json_writer *writer) {
+    const struct target_pairs *target = files->own[kind];
+    const struct composition *composition = &files->composition;
+    if (!composition_is_mixed(composition)) {
+        mf_json_put_fields(writer, mf_target_rdf_fields, &target->member[0].parameters);
+        return;
+    }
+    for (size_t pair = 0; pair < target->pairs; pair++) {
+        char name[COMPOSITION_PAIR_NAME_SIZE];
+        if (!mf_composition_has_pairs(composition, (int)pair))
+            continue;
+        mf_composition_pair_name(composition, (int)pair, name);
+        mf_json_begin(writer, name);
+        mf_json_put_fields(writer, mf_target_rdf_fields, &target->member[pair].parameters);
+        mf_json_end(writer);
+    }
+}
+
+static struct target values(const struct target_files *files, int kind) {
+    const struct target_pairs *target = files->own[kind];
+    return (struct target){.count = target_pairs_values(target),
+                           .value = target->g,
+                           .error = target->error,
+                           .factor_error = target->factor_error};
+}
+
+/// That of a pair type of which there are pairs: rdf_A-B.tsv. Beside it what the target was before
+/// it was divided by its normalisation, if that changed it.
+static bool find_table(const struct target_files *files, int kind, size_t n,
+                       struct target_table *table) {
+    const struct target_pairs *target = files->own[kind];
+    const size_t bins = target_pairs_bins(target)->count;
+    char name[COMPOSITION_PAIR_NAME_SIZE];
+    size_t pair = 0;
+    for (size_t left = n + 1; pair < target->pairs; pair++)
+        if (mf_composition_has_pairs(&files->composition, (int)pair) && --left == 0)
+            break;
+    if (pair == target->pairs)
+        return false;
+    *table = (struct target_table){.part = pair,
+                                   .first = pair * bins,
+                                   .count = bins,
+                                   .places = 1,
+                                   .place = {"r[lambda]"},
+                                   .beside = true};
+    if (memcmp(target->given + table->first, target->g + table->first, bins * sizeof(double)) != 0)
+        table->given = target->given + table->first;
+    mf_composition_pair_name(&files->composition, (int)pair, name);
+    snprintf(table->name, sizeof table->name, "%s%s%s", mf_targets_name(kind), name[0] ? "_" : "",
+             name);
+    return true;
+}
+
+static void find_place(const struct target_files *files, int kind, const struct target_table *table,
+                       size_t k, double at[2]) {
+    (void)table;
+    at[0] = mf_rdf_bins_centre(target_pairs_bins(files->own[kind]), k);
+}
+
+static bool takes(int kind) {
+    return kind == TARGET_RDF || kind == mf_rdf_intermolecular_kind();
+}
+
+const struct target_record mf_target_pairs = {
+    .topic = "rdf-target",
+    .summary = "\"rdf\" of a run file's \"target\": g(r)",
+    .chief = "file",
+    .fields = {mf_target_rdf_fields, mf_target_files_use_fields},
+    .form = OBSERVABLE_OWN_FORM,
+    .takes = takes,
+    .size = sizeof(struct target_pairs),
+    .read = read,
+    .clear = clear,
+    .write = write,
+    .values = values,
+    .table = find_table,
+    .place = find_place,
+};

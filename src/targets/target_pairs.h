@@ -4,7 +4,6 @@
 #pragma once
 
 #include "targets/target_rdf.h"
-#include "io/json_write.h"
 #include "system/composition.h"
 
 struct target_pairs {
@@ -33,8 +32,6 @@ enum status mf_target_pairs_read(struct target_pairs *target, struct json_object
                                  const struct finite_size_fluid *fluid,
                                  const struct units *units) MUST_USE;
 void mf_target_pairs_clear(struct target_pairs *target);
-void mf_target_pairs_write(const struct target_pairs *target, const struct composition *composition,
-                           struct json_writer *writer);
 
 /// Divide g and errors of a pair type.
 void mf_target_pairs_divide(struct target_pairs *target, size_t pair, double factor);

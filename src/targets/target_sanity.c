@@ -248,20 +248,22 @@ static enum status check_nonzero(const struct view *view, const char *file) {
 
 /// Of all g(r) one behind the other.
 static size_t views(const struct target_files *files) {
-    return files->rdf.pairs + files->apart.pairs;
+    return target_files_rdf(files)->pairs + target_files_apart(files)->pairs;
 }
 
 /// Of a single bead there are none.
 static bool has_pairs(const struct target_files *files, const struct scene *scene, size_t number) {
-    const size_t pair = number < files->rdf.pairs ? number : number - files->rdf.pairs;
+    const size_t pair =
+        number < target_files_rdf(files)->pairs ? number : number - target_files_rdf(files)->pairs;
     return mf_composition_has_pairs(&scene->setup.composition, (int)pair);
 }
 
 static struct view view_at(const struct target_files *files, const struct scene *scene,
                            size_t number) {
-    return number < files->rdf.pairs ? view_of(&files->rdf, TARGET_RDF, scene, number)
-                                     : view_of(&files->apart, mf_rdf_intermolecular_kind(), scene,
-                                               number - files->rdf.pairs);
+    return number < target_files_rdf(files)->pairs
+               ? view_of(target_files_rdf(files), TARGET_RDF, scene, number)
+               : view_of(target_files_apart(files), mf_rdf_intermolecular_kind(), scene,
+                         number - target_files_rdf(files)->pairs);
 }
 
 enum status mf_target_sanity_check(const struct target_files *files, const struct scene *scene,

@@ -33,15 +33,15 @@ enum status mf_target_sanity_check(const struct target_files *files, const struc
 /// Tell a line for each g(r) as it is given, where its errors and bins come from, warnings, and the
 /// normalisation if one was found.
 ///
-/// Warned of are: what is of two phases or of a crystal (targets/target_sanity_state.h); 1 + ρG below
-/// zero, but not with 1.03 g, so that the normalisation may be off;
-/// layers, a minimum below 0.95 and a second maximum, of fewer than four neighbours up to that
-/// maximum, as a liquid's g has at a density ten times too low (solutes in an implicit solvent look
-/// so, too, which is why it is no fault); ρ d³ < 0.01 with d where g exceeds 1/2, the density of a
-/// dilute gas; dihedrals of beads that may stand in a line; and without units a temperature above
-/// 50, which may be in kelvins; of molecules a mean g of all beads that ends more than 3 % and
-/// three times its scatter away from 1, or that of the only pair type of one kind of molecules that
-/// does so. Fails: NO_MEMORY. Tested: test_target_sanity.
+/// Warned of are: what is of two phases or of a crystal (targets/target_sanity_state.h); 1 + ρG
+/// below zero, but not with 1.03 g, so that the normalisation may be off; layers, a minimum below
+/// 0.95 and a second maximum, of fewer than four neighbours up to that maximum, as a liquid's g has
+/// at a density ten times too low (solutes in an implicit solvent look so, too, which is why it is
+/// no fault); ρ d³ < 0.01 with d where g exceeds 1/2, the density of a dilute gas; dihedrals of
+/// beads that may stand in a line; and without units a temperature above 50, which may be in
+/// kelvins; of molecules a mean g of all beads that ends more than 3 % and three times its scatter
+/// away from 1, or that of the only pair type of one kind of molecules that does so. Fails:
+/// NO_MEMORY. Tested: test_target_sanity.
 enum status mf_target_sanity_tell(const struct target_files *files, const struct scene *scene,
                                   const struct target_sanity_listener *listener) MUST_USE;
 

@@ -57,7 +57,7 @@ static void tell_group(const struct target_groups *groups, size_t g, const struc
 static void warn_of_lines(const struct target_files *files,
                           const struct target_sanity_listener *listener) {
     static const double straight = 170, many = 0.01;
-    const struct target_groups *angles = &files->groups[BONDED_ANGLE];
+    const struct target_groups *angles = target_files_groups(files, BONDED_ANGLE);
     for (size_t g = 0;
          files->given[mf_bonded_distribution_kind(BONDED_DIHEDRAL)] && g < angles->groups; g++) {
         const struct target_bonded *member = &angles->member[g];
@@ -86,7 +86,7 @@ static double longest(const struct topology *topology) {
 
 /// Over the last quarter of its range, g of a pair type, and its scatter from row to row.
 static struct target_tail tail_of(const struct target_files *files, size_t pair) {
-    const struct target_rdf *target = &files->rdf.member[pair];
+    const struct target_rdf *target = &target_files_rdf(files)->member[pair];
     const double given = target->parameters.normalisation, factor = given > 0 ? given : 1;
     return (struct target_tail){.mean = target->tail.mean / factor,
                                 .scatter = target->tail.scatter / factor};
@@ -107,13 +107,13 @@ static int find_odd_pair(const struct target_files *files, const struct topology
         topology->kinds == 1 && topology->kind[0].count == topology->molecules &&
         (size_t)topology->kind[0].count * (size_t)topology->kind[0].beads == topology->particles;
     int odd = -1, count = 0;
-    for (size_t pair = 0; pair < files->rdf.pairs; pair++)
+    for (size_t pair = 0; pair < target_files_rdf(files)->pairs; pair++)
         if (mf_composition_has_pairs(&files->composition, (int)pair) &&
             ends_beside_1(tail_of(files, pair), allowed)) {
             odd = (int)pair;
             count++;
         }
-    return one_kind && files->rdf.pairs > 1 && count == 1 ? odd : -1;
+    return one_kind && target_files_rdf(files)->pairs > 1 && count == 1 ? odd : -1;
 }
 
 /// The mean g of all beads has no reason to differ from 1 at its end, where that of a pair type
@@ -127,9 +127,9 @@ static void warn_of_tails(const struct target_files *files, const struct scene *
     const int odd = find_odd_pair(files, topology, most);
     struct target_tail mean = {0};
     double all = 0;
-    for (size_t pair = 0; pair < files->rdf.pairs; pair++)
+    for (size_t pair = 0; pair < target_files_rdf(files)->pairs; pair++)
         all += mf_composition_possible_pairs(composition, (int)pair);
-    for (size_t pair = 0; pair < files->rdf.pairs; pair++) {
+    for (size_t pair = 0; pair < target_files_rdf(files)->pairs; pair++) {
         const double part = mf_composition_possible_pairs(composition, (int)pair) / all;
         mean.mean += part * tail_of(files, pair).mean;
         mean.scatter += part * tail_of(files, pair).scatter;
@@ -157,8 +157,8 @@ static void warn_of_tails(const struct target_files *files, const struct scene *
 void mf_target_sanity_tell_groups(const struct target_files *files, const struct scene *scene,
                                   const struct target_sanity_listener *listener) {
     for (int order = 0; order < BONDED_KINDS; order++)
-        for (size_t g = 0; g < files->groups[order].groups; g++)
-            tell_group(&files->groups[order], g, scene, listener);
+        for (size_t g = 0; g < target_files_groups(files, order)->groups; g++)
+            tell_group(target_files_groups(files, order), g, scene, listener);
     warn_of_lines(files, listener);
     if (scene_has_molecules(&scene->molecules))
         warn_of_tails(files, scene, listener);

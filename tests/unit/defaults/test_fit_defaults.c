@@ -318,8 +318,8 @@ static void test_fit_defaults_find_omega_where_targets_move(void **state) {
     assert_true(fit.unknown[UNKNOWN_POTENTIAL].wanted && fit.unknown[UNKNOWN_OMEGA].wanted);
     const double steps = 0.07 / fit.scene.setup.time_step;
     assert_close(steps, round(steps), 1e-9);
-    assert_close(fit.files.etd.grid.r_minimum, 0.5, 1e-12);
-    assert_close(fit.files.etd.grid.r_maximum, 0.8, 1e-12);
+    assert_close(target_files_etd(&fit.files)->grid.r_minimum, 0.5, 1e-12);
+    assert_close(target_files_etd(&fit.files)->grid.r_maximum, 0.8, 1e-12);
     const struct unknown_parameters *omega = &fit.unknown[UNKNOWN_OMEGA].parameters;
     assert_true(omega->cutoff > 0.8 && omega->maximum > 0);
     mf_fit_file_clear(&fit);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "targets/target_curve.h"
 #include "targets/target_etd.h"
 #include "shared/is_close.h"
 #include "shared/temporary_folder.h"
@@ -48,6 +49,12 @@ static void assert_refused(void **state, const char *table, const char *errors, 
     mf_target_etd_clear(&target);
 }
 
+/// Whether what is measured at the target's times can be, with this time step.
+static enum status steps_of(const struct target_etd *target, double time_step) {
+    return mf_target_curve_check_steps(target->parameters.file, target->interval, target->time,
+                                       time_step);
+}
+
 static void test_target_etd_read_takes_times_and_bins_from_the_shape(void **state) {
     struct target_etd target;
     assert_ok(read_tables(state, good, good_errors, RANGE ERRORS, &target));
@@ -88,7 +95,6 @@ static void test_target_etd_read_leaves_out_what_is_not_known(void **state) {
 static void test_target_etd_read_takes_the_water_target(void **state) {
     char members[2000], folder[512];
     struct target_etd target;
-    int64_t every;
     assert_non_null(getcwd(folder, sizeof folder));
     snprintf(members, sizeof members,
              "\"file\": \"%s/targets/spc-water/spc298_etd_E.txt\", "
@@ -103,10 +109,8 @@ static void test_target_etd_read_takes_the_water_target(void **state) {
     // As the target's table of bins has it: bin 11 after 1 ps.
     assert_close(target.survival[50 * 100 + 10], 0.930266, 1e-6);
     assert_close(target.error[50 * 100 + 10], 0.000856, 1e-6);
-    assert_ok(mf_target_etd_steps(&target, 0.015949, &every));
-    assert_int_equal(every, 1);
-    assert_ok(mf_target_etd_steps(&target, 0.00797, &every));
-    assert_int_equal(every, 2);
+    assert_ok(steps_of(&target, 0.015949));
+    assert_ok(steps_of(&target, 0.00797));
     mf_target_etd_clear(&target);
 }
 
@@ -149,23 +153,17 @@ static void test_target_etd_read_refuses_errors_that_do_not_belong_to_it(void **
                    "s.tsv:2: time 0.11, but 0.1");
 }
 
-static void test_target_etd_steps_names_the_time_steps_that_would_do(void **state) {
+static void test_target_curve_check_steps_names_the_time_steps_that_would_do(void **state) {
     struct target_etd target;
-    int64_t every;
     assert_ok(read_tables(state, good, NULL, RANGE, &target));
-    assert_ok(mf_target_etd_steps(&target, 0.1, &every));
-    assert_int_equal(every, 1);
-    assert_ok(mf_target_etd_steps(&target, 0.10009, &every));
-    assert_int_equal(every, 1);
-    assert_ok(mf_target_etd_steps(&target, 0.02, &every));
-    assert_int_equal(every, 5);
-    assert_fails(mf_target_etd_steps(&target, 0.04, &every), STATUS_BAD_INPUT,
+    assert_ok(steps_of(&target, 0.1));
+    assert_ok(steps_of(&target, 0.10009));
+    assert_ok(steps_of(&target, 0.02));
+    assert_fails(steps_of(&target, 0.04), STATUS_BAD_INPUT,
                  "2.5 time steps of 0.04: not a whole number, as it would be with a time step of "
                  "0.0333333 or 0.05");
-    assert_fails(mf_target_etd_steps(&target, 0.1002, &every), STATUS_BAD_INPUT,
-                 "with a time step of 0.1");
-    assert_fails(mf_target_etd_steps(&target, 7, &every), STATUS_BAD_INPUT,
-                 "with a time step of 0.1");
+    assert_fails(steps_of(&target, 0.1002), STATUS_BAD_INPUT, "with a time step of 0.1");
+    assert_fails(steps_of(&target, 7), STATUS_BAD_INPUT, "with a time step of 0.1");
     mf_target_etd_clear(&target);
 }
 
@@ -180,7 +178,7 @@ int main(void) {
         TEST(test_target_etd_read_takes_the_water_target),
         TEST(test_target_etd_read_refuses_what_is_no_escape_time_distribution),
         TEST(test_target_etd_read_refuses_errors_that_do_not_belong_to_it),
-        TEST(test_target_etd_steps_names_the_time_steps_that_would_do),
+        TEST(test_target_curve_check_steps_names_the_time_steps_that_would_do),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

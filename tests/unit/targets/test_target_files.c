@@ -46,7 +46,9 @@ static enum status read(void **state, const char *members, struct target_files *
         mf_json_open(&document, temporary_folder_write(*state, "a.json", text, (size_t)length)));
     struct json_object root = mf_json_root(document);
     assert_ok(mf_target_files_read(
-        targets, &root, &box, &(struct composition){.types = 1, .count = {100}}, NULL, &units));
+        targets, &root,
+        &(struct target_scene){&box, &(struct composition){.types = 1, .count = {100}}, NULL,
+                               &units}));
     mf_json_finish(&root);
     return mf_json_close(document, STATUS_OK);
 }
@@ -98,7 +100,8 @@ static void test_targets_read_converts_integrals_of_kirkwood_and_buff(void **sta
         mf_json_open(&document, temporary_folder_write(*state, "a.json", text, strlen(text))));
     mf_json_speak(document, &spoken);
     struct json_object root = mf_json_root(document);
-    assert_ok(mf_target_files_read(&t, &root, &box, &binary, NULL, &spoken));
+    assert_ok(
+        mf_target_files_read(&t, &root, &(struct target_scene){&box, &binary, NULL, &spoken}));
     mf_json_finish(&root);
     assert_ok(mf_json_close(document, STATUS_OK));
     mf_target_files_targets(&t, false, &fitted, &compared);
@@ -128,7 +131,7 @@ static void test_targets_read_takes_all_kinds(void **state) {
     assert_int_equal(fitted.target[TARGET_ETD].count, 6);
     assert_close(fitted.target[TARGET_ETD].value[2], 0.9, 0);
     assert_true(isnan(fitted.target[TARGET_ETD].value[4]));
-    assert_int_equal(t.etd.left_out, 1);
+    assert_int_equal(target_files_etd(&t)->left_out, 1);
     assert_close(fitted.etd_interval, 0.1, 1e-12);
     assert_close(fitted.etd_origins, 1, 1e-12);
     assert_int_equal(fitted.target[TARGET_VACF].count, 3);
@@ -146,9 +149,9 @@ static void test_targets_read_takes_the_columns_of_a_curve(void **state) {
                    "\"vacf\": {\"file\": \"v.tsv\", \"time_column\": 2, \"value_column\": 4, "
                    "\"error_column\": 0}",
                    &t));
-    assert_close(t.curve[TARGET_VACF].interval, 0.5, 0);
-    assert_close(t.curve[TARGET_VACF].value[2], 1, 0);
-    assert_close(t.curve[TARGET_VACF].error[2], 0, 0);
+    assert_close(target_files_curve(&t, TARGET_VACF)->interval, 0.5, 0);
+    assert_close(target_files_curve(&t, TARGET_VACF)->value[2], 1, 0);
+    assert_close(target_files_curve(&t, TARGET_VACF)->error[2], 0, 0);
     mf_target_files_clear(&t);
 }
 
@@ -160,16 +163,16 @@ static void test_targets_read_finds_the_columns_of_a_curve_by_their_names(void *
         "vacf_error[lambda^2/tau^2]\n0 0 0 3 0.1\n0.5 1 0.2 2 0.3\n1 2 0.4 1 0.5\n");
     assert_ok(read(
         state, "\"vacf\": {\"file\": \"motion.tsv\"}, \"msd\": {\"file\": \"motion.tsv\"}", &t));
-    assert_close(t.curve[TARGET_VACF].value[1], 2, 0);
-    assert_close(t.curve[TARGET_VACF].error[2], 0.5, 0);
-    assert_close(t.curve[TARGET_MSD].value[1], 1, 0);
-    assert_close(t.curve[TARGET_MSD].error[2], 0.4, 0);
+    assert_close(target_files_curve(&t, TARGET_VACF)->value[1], 2, 0);
+    assert_close(target_files_curve(&t, TARGET_VACF)->error[2], 0.5, 0);
+    assert_close(target_files_curve(&t, TARGET_MSD)->value[1], 1, 0);
+    assert_close(target_files_curve(&t, TARGET_MSD)->error[2], 0.4, 0);
     mf_target_files_clear(&t);
     assert_ok(read(state,
                    "\"vacf\": {\"file\": \"motion.tsv\", \"value_column\": 2, \"error_column\": 0}",
                    &t));
-    assert_close(t.curve[TARGET_VACF].value[1], 1, 0);
-    assert_close(t.curve[TARGET_VACF].error[1], 0, 0);
+    assert_close(target_files_curve(&t, TARGET_VACF)->value[1], 1, 0);
+    assert_close(target_files_curve(&t, TARGET_VACF)->error[1], 0, 0);
     mf_target_files_clear(&t);
 }
 
@@ -234,9 +237,9 @@ static void test_targets_read_takes_curves_without_errors(void **state) {
     struct target_files t;
     put(state, "v.tsv", "t,vacf\n0,3\n0.1,2\n0.2,1\n");
     assert_ok(read(state, VACF, &t));
-    assert_int_equal(t.curve[TARGET_VACF].points, 3);
-    assert_close(t.curve[TARGET_VACF].value[1], 2, 0);
-    assert_close(t.curve[TARGET_VACF].error[1], 0, 0);
+    assert_int_equal(target_files_curve(&t, TARGET_VACF)->points, 3);
+    assert_close(target_files_curve(&t, TARGET_VACF)->value[1], 2, 0);
+    assert_close(target_files_curve(&t, TARGET_VACF)->error[1], 0, 0);
     mf_target_files_clear(&t);
     assert_refused(state, "\"vacf\": {\"file\": \"v.tsv\", \"error_column\": 3}",
                    "v.tsv:2: 2 columns, at least 3", "\"error_column\"; 0 if");
@@ -270,8 +273,8 @@ static void test_targets_check_steps_tells_the_time_step_that_would_do(void **st
     assert_ok(mf_target_files_check_steps(&t, 0.1));
     assert_ok(mf_target_files_check_steps(&t, 0.025));
     assert_fails(mf_target_files_check_steps(&t, 0.03), STATUS_BAD_INPUT, "v.tsv");
-    assert_contains(mf_status_message(), "0.025 would do");
-    assert_fails(mf_target_files_check_steps(&t, 0.15), STATUS_BAD_INPUT, "0.1 would do");
+    assert_contains(mf_status_message(), "a time step of 0.025 or 0.0333");
+    assert_fails(mf_target_files_check_steps(&t, 0.15), STATUS_BAD_INPUT, "a time step of 0.1");
     mf_target_files_clear(&t);
     assert_ok(read(state, ETD, &t));
     assert_fails(mf_target_files_check_steps(&t, 0.03), STATUS_BAD_INPUT,
@@ -285,16 +288,16 @@ static void test_targets_digest_knows_every_number(void **state) {
     write_tables(state);
     assert_ok(read(state, RDF ", " APART ", " ETD ", " VACF ", " MSD, &t));
     mf_target_files_digest(&t, &before);
-    double *const numbers[] = {t.rdf.g,
-                               t.rdf.error,
-                               t.apart.g,
-                               t.apart.error,
-                               t.etd.survival,
-                               t.etd.error,
-                               t.curve[TARGET_VACF].value,
-                               t.curve[TARGET_VACF].error,
-                               t.curve[TARGET_MSD].value,
-                               t.curve[TARGET_MSD].error};
+    double *const numbers[] = {target_files_rdf(&t)->g,
+                               target_files_rdf(&t)->error,
+                               target_files_apart(&t)->g,
+                               target_files_apart(&t)->error,
+                               target_files_etd(&t)->survival,
+                               target_files_etd(&t)->error,
+                               target_files_curve(&t, TARGET_VACF)->value,
+                               target_files_curve(&t, TARGET_VACF)->error,
+                               target_files_curve(&t, TARGET_MSD)->value,
+                               target_files_curve(&t, TARGET_MSD)->error};
     for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++) {
         const double good = numbers[k][2];
         numbers[k][2] = good + 1;

@@ -38,7 +38,8 @@ static enum status read_as(void **state, const char *name, const char *members,
     assert_ok(
         mf_json_open(&document, temporary_folder_write(*state, "a.json", text, (size_t)length)));
     struct json_object root = mf_json_root(document);
-    assert_ok(mf_target_files_read(targets, &root, &box, &binary, NULL, &units));
+    assert_ok(
+        mf_target_files_read(targets, &root, &(struct target_scene){&box, &binary, NULL, &units}));
     mf_json_finish(&root);
     return mf_json_close(document, STATUS_OK);
 }
@@ -86,8 +87,8 @@ static void test_targets_read_cuts_pairs_to_the_shortest(void **state) {
     assert_ok(read(state, AA ", \"B-A\": {\"file\": \"more.tsv\"}, " BB, &t));
     mf_target_files_targets(&t, false, &fitted, &compared);
     assert_int_equal(fitted.bins.count, 4);
-    assert_close(t.rdf.ends[0], 0.4, 1e-12);
-    assert_close(t.rdf.ends[1], 0.5, 1e-12);
+    assert_close(target_files_rdf(&t)->ends[0], 0.4, 1e-12);
+    assert_close(target_files_rdf(&t)->ends[1], 0.5, 1e-12);
     assert_int_equal(fitted.target[TARGET_RDF].count, 12);
     assert_close(fitted.target[TARGET_RDF].value[4 + 2], 1.25, 1e-12);
     mf_target_files_clear(&t);
@@ -132,7 +133,8 @@ static void test_targets_write_gives_a_mixture_back(void **state) {
     mf_json_writer_free(writer);
     assert_ok(mf_json_open(&document, path));
     struct json_object root = mf_json_root(document);
-    assert_ok(mf_target_files_read(&again, &root, &box, &binary, NULL, &units));
+    assert_ok(
+        mf_target_files_read(&again, &root, &(struct target_scene){&box, &binary, NULL, &units}));
     mf_json_finish(&root);
     assert_ok(mf_json_close(document, STATUS_OK));
     mf_target_files_targets(&again, false, &fitted, &compared);
@@ -188,10 +190,10 @@ static void test_targets_digest_knows_every_pair(void **state) {
     mf_target_files_digest(&t, &before);
     for (int n = 0; n < 3 * BINS; n++) {
         uint64_t after = 1;
-        t.rdf.g[n] += 1;
+        target_files_rdf(&t)->g[n] += 1;
         mf_target_files_digest(&t, &after);
         assert_true(after != before);
-        t.rdf.g[n] -= 1;
+        target_files_rdf(&t)->g[n] -= 1;
     }
     mf_target_files_clear(&t);
 }
