@@ -3,8 +3,7 @@
 
 #include "base/memory.h"
 #include "forces/bonded.h"
-#include "targets/target_rdf.h"
-#include "io/votca.h"
+#include "targets/target_rows.h"
 
 #include <math.h>
 #include <string.h>
@@ -24,7 +23,7 @@ const struct field mf_target_bonded_fields[] = {
     {"file", FIELD_FILE, MEMBER(file), .required = true, .unit = "",
      .help = "p at equally spaced bin centres, of lengths or of angles in degrees; its integral is "
              "1, and no Jacobian is taken out"},
-    {"format", FIELD_CHOICE, MEMBER(format), .choices = formats, .initial = TARGET_RDF_COLUMNS,
+    {"format", FIELD_CHOICE, MEMBER(format), .choices = formats, .initial = TARGET_ROWS_COLUMNS,
      .unit = "",
      .help =
          "votca: a .dist.tgt in nm or radians, by the scene's \"units\"; its columns are known"},
@@ -39,158 +38,99 @@ const struct field mf_target_bonded_fields[] = {
     FIELD_END,
 };
 
-/// Rows of a file in λ or degrees.
-struct rows {
-    size_t count;
-    double *q, *p, *error;
-    size_t *line;
-    bool has_errors;
-};
-
-static void rows_clear(struct rows *rows) {
-    mf_memory_free(rows->q);
-    mf_memory_free(rows->p);
-    mf_memory_free(rows->error);
-    mf_memory_free(rows->line);
-}
-
-static enum status rows_allocate(struct rows *rows, size_t count) {
-    enum status status = STATUS_OK;
-    rows->count = count;
-    NEW_ARRAY(rows->q, count);
-    NEW_ARRAY(rows->p, count);
-    NEW_ARRAY(rows->error, count);
-    NEW_ARRAY(rows->line, count);
-done:
-    return status;
-}
-
-// Reading -----------------------------------------------------------------------------------------
-
-/// The columns of p and of its errors: those of the file, or by name, or usual.
-static enum status find_columns(const struct target_bonded_parameters *p, const char *name,
-                                const struct data_table *table, int64_t *value, int64_t *error) {
-    enum { USUAL = 2 };
-    char error_name[TOPOLOGY_NAME_SIZE + 8];
-    snprintf(error_name, sizeof error_name, "%s_error", name);
-    const int64_t named = (int64_t)mf_data_table_find(table, name),
-                  error_named = (int64_t)mf_data_table_find(table, error_name);
-    *value = p->value_column > 0 ? p->value_column : named > 0 ? named : USUAL;
-    const bool by_name = p->error_column < 0 && error_named > 0;
-    return mf_target_rdf_error_column(by_name ? error_named : p->error_column, p->q_column, *value,
-                                      table, p->file, error);
-}
-
+/// In λ or degrees.
 static enum status read_columns(const struct target_bonded_parameters *p, int order,
-                                const char *name, const struct units *units, struct rows *rows) {
-    enum { USUAL = 2 };
-    const char *unit = mf_bonded_kinds[order]->unit, *inverse = mf_bonded_kinds[order]->density;
-    enum status status = STATUS_OK;
-    struct data_table table = {0};
-    int64_t value, error;
-    const int64_t least = p->value_column > USUAL ? p->value_column : USUAL;
-    CHECK(mf_data_table_read(&table, p->file, (size_t)(p->q_column > least ? p->q_column : least)));
-    CHECK(find_columns(p, name, &table, &value, &error));
-    CHECK(mf_data_table_check_increasing(&table, p->file, (size_t)p->q_column - 1, -INFINITY));
-    CHECK(mf_data_table_convert(&table, p->file, (size_t)p->q_column - 1, unit, units));
-    CHECK(mf_data_table_convert(&table, p->file, (size_t)value - 1, inverse, units));
-    if (error > 0)
-        CHECK(mf_data_table_convert(&table, p->file, (size_t)error - 1, inverse, units));
-    CHECK(rows_allocate(rows, table.rows));
-    for (size_t k = 0; k < table.rows; k++) {
-        const double *row = table.values + k * table.columns;
-        rows->q[k] = row[p->q_column - 1];
-        rows->p[k] = row[value - 1];
-        rows->error[k] = error > 0 && isfinite(row[error - 1]) ? row[error - 1] : 0;
-        rows->line[k] = table.line[k];
-    }
-    rows->has_errors = error > 0;
-    const double last = rows->q[rows->count - 1];
-    if (!mf_bonded_kinds[order]->is_length && last < 7) // 2 pi, and no range of degrees
-        status = mf_status_fail(STATUS_BAD_INPUT,
-                                "%s: the angles end at %g, as if in radians; they are in degrees, "
-                                "but in files of \"format\": \"votca\"",
-                                p->file, last);
-done:
-    mf_data_table_clear(&table);
-    return status;
+                                const char *name, const struct units *units,
+                                struct target_rows *rows) {
+    struct target_columns columns = {.file = p->file,
+                                     .name = name,
+                                     .x_unit = mf_bonded_kinds[order]->unit,
+                                     .y_unit = mf_bonded_kinds[order]->density,
+                                     .least = -INFINITY,
+                                     .x = p->q_column,
+                                     .y = p->value_column,
+                                     .error = p->error_column};
+    TRY(mf_target_rows_read(rows, &columns, units));
+    for (size_t k = 0; k < rows->count; k++)
+        rows->error[k] = isfinite(rows->error[k]) ? rows->error[k] : 0;
+    const double last = rows->x[rows->count - 1];
+    if (mf_bonded_kinds[order]->is_length || last >= 7) // 2 pi, and no range of degrees
+        return STATUS_OK;
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "%s: the angles end at %g, as if in radians; they are in degrees, "
+                          "but in files of \"format\": \"votca\"",
+                          p->file, last);
 }
 
 /// From nm or radians.
 static enum status read_votca(const struct target_bonded_parameters *p, int order,
-                              const struct units *units, struct rows *rows) {
+                              const struct units *units, struct target_rows *rows) {
     const struct bonded_kind *kind = mf_bonded_kinds[order];
     const double unit = kind->is_length ? 1 / units->length : 1 / kind->scale;
-    enum status status = STATUS_OK;
-    struct votca_table table = {0};
-    CHECK(mf_votca_read(&table, p->file));
-    CHECK(rows_allocate(rows, table.rows));
-    for (size_t k = 0; k < table.rows; k++) {
-        rows->q[k] = unit * table.x[k];
-        rows->p[k] = table.y[k] / unit;
-        rows->error[k] = table.error[k] / unit;
-        rows->line[k] = table.line[k];
+    TRY(mf_target_rows_read_votca(rows, p->file));
+    const double last = rows->x[rows->count - 1];
+    for (size_t k = 0; k < rows->count; k++) {
+        rows->x[k] *= unit;
+        rows->y[k] /= unit;
+        rows->error[k] /= unit;
     }
-    rows->has_errors = table.has_error;
-    if (!kind->is_length && table.x[table.rows - 1] > 7) // 2 pi
-        status = mf_status_fail(
-            STATUS_BAD_INPUT, "%s: the angles end at %g, as if in degrees; VOTCA's are in radians",
-            p->file, table.x[table.rows - 1]);
-done:
-    mf_votca_clear(&table);
-    return status;
+    if (kind->is_length || last <= 7) // 2 pi
+        return STATUS_OK;
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "%s: the angles end at %g, as if in degrees; VOTCA's are in radians",
+                          p->file, last);
 }
 
 // Checks ------------------------------------------------------------------------------------------
 
-static double width_of(const struct rows *rows) {
-    return (rows->q[rows->count - 1] - rows->q[0]) / (double)(rows->count - 1);
+static double width_of(const struct target_rows *rows) {
+    return (rows->x[rows->count - 1] - rows->x[0]) / (double)(rows->count - 1);
 }
 
-static enum status check_rows(const struct rows *rows, const char *file) {
+static enum status check_rows(const struct target_rows *rows, const char *file) {
     if (rows->count < FEWEST_ROWS)
         return mf_status_fail(STATUS_BAD_INPUT, "%s: only %zu bins; at least %d are needed", file,
                               rows->count, FEWEST_ROWS);
     const double width = width_of(rows);
     for (size_t k = 0; k < rows->count; k++) {
-        const double step = k > 0 ? rows->q[k] - rows->q[k - 1] : width;
+        const double step = k > 0 ? rows->x[k] - rows->x[k - 1] : width;
         if (!(fabs(step / width - 1) < 0.05))
             return mf_status_fail(
                 STATUS_BAD_INPUT,
                 "%s:%zu: the bins are not equally spaced: this step is %.3g times the mean one; "
                 "count them anew in equal bins",
                 file, rows->line[k], step / width);
-        if (!(rows->p[k] >= 0 && rows->error[k] >= 0 && isfinite(rows->p[k] + rows->error[k])))
+        if (!(rows->y[k] >= 0 && rows->error[k] >= 0 && isfinite(rows->y[k] + rows->error[k])))
             return mf_status_fail(STATUS_BAD_INPUT,
                                   "%s:%zu: p = %g with an error of %g is no distribution", file,
-                                  rows->line[k], rows->p[k], rows->error[k]);
+                                  rows->line[k], rows->y[k], rows->error[k]);
     }
     return STATUS_OK;
 }
 
-static enum status check_range(const struct rows *rows, int order, const char *file) {
-    const double width = width_of(rows), last = rows->q[rows->count - 1];
+static enum status check_range(const struct target_rows *rows, int order, const char *file) {
+    const double width = width_of(rows), last = rows->x[rows->count - 1];
     const struct bonded_kind *kind = mf_bonded_kinds[order];
     const double low = kind->periodic ? -360 : kind->low, high = kind->periodic ? 360 : kind->high;
-    if (rows->q[0] >= low - 0.01 * width && last <= high + width)
+    if (rows->x[0] >= low - 0.01 * width && last <= high + width)
         return STATUS_OK;
     return mf_status_fail(STATUS_BAD_INPUT, "%s: it goes from %g to %g, and %s from %g to %g", file,
-                          rows->q[0], last, kind->is_length ? "lengths are" : "angles are", low,
+                          rows->x[0], last, kind->is_length ? "lengths are" : "angles are", low,
                           high);
 }
 
-static void rescale(struct rows *rows, double factor) {
+static void rescale(struct target_rows *rows, double factor) {
     for (size_t k = 0; k < rows->count; k++) {
-        rows->p[k] *= factor;
+        rows->y[k] *= factor;
         rows->error[k] *= factor;
     }
 }
 
 /// Divide by the integral, which is 1 up to rounding.
-static enum status normalise(struct rows *rows, const char *file) {
+static enum status normalise(struct target_rows *rows, const char *file) {
     double sum = 0;
     for (size_t k = 0; k < rows->count; k++)
-        sum += rows->p[k] * width_of(rows);
+        sum += rows->y[k] * width_of(rows);
     if (!(fabs(sum - 1) <= normalised))
         return mf_status_fail(STATUS_BAD_INPUT,
                               "%s: the integral of p is %.4g, not 1: a distribution is normalised, "
@@ -204,24 +144,24 @@ static enum status normalise(struct rows *rows, const char *file) {
 
 /// Whether the first and the last row of a circle are halves of one bin, and not the same bin
 /// twice, by what is between the rows beside them.
-static bool has_half_ends(const struct rows *rows) {
+static bool has_half_ends(const struct target_rows *rows) {
     const size_t last = rows->count - 1;
-    const double beside = 0.5 * (rows->p[1] + rows->p[last - 1]);
-    const double here = rows->p[0] + rows->p[last];
+    const double beside = 0.5 * (rows->y[1] + rows->y[last - 1]);
+    const double here = rows->y[0] + rows->y[last];
     return fabs(here - beside) <= fabs(0.5 * here - beside);
 }
 
 /// The first and the last row of a circle may be halves of one bin, or the same bin twice.
-static enum status close_circle(struct rows *rows, double *width, const char *file) {
+static enum status close_circle(struct target_rows *rows, double *width, const char *file) {
     const size_t last = rows->count - 1;
     const double bins = 360 / *width;
     if (fabs((double)last - bins) < 0.5) {
         if (has_half_ends(rows)) {
-            rows->p[0] += rows->p[last];
+            rows->y[0] += rows->y[last];
             rows->error[0] = hypot(rows->error[0], rows->error[last]);
         } else {
-            rows->p[0] = 0.5 * (rows->p[0] + rows->p[last]);
-            rescale(rows, 1 / (1 - rows->p[last] * *width));
+            rows->y[0] = 0.5 * (rows->y[0] + rows->y[last]);
+            rescale(rows, 1 / (1 - rows->y[last] * *width));
         }
         rows->count--;
     } else if (fabs((double)rows->count - bins) >= 0.5) {
@@ -235,24 +175,24 @@ static enum status close_circle(struct rows *rows, double *width, const char *fi
 }
 
 /// Leave out what was never seen, but for two rows at each end.
-static void trim(struct rows *rows) {
+static void trim(struct target_rows *rows) {
     enum { LEFT = 2 };
     size_t first = 0, end = rows->count;
-    while (first + 1 < end && rows->p[first] == 0)
+    while (first + 1 < end && rows->y[first] == 0)
         first++;
-    while (end > first + 1 && rows->p[end - 1] == 0)
+    while (end > first + 1 && rows->y[end - 1] == 0)
         end--;
     first = first > LEFT ? first - LEFT : 0;
     end = end + LEFT < rows->count ? end + LEFT : rows->count;
     rows->count = end - first;
-    memmove(rows->q, rows->q + first, rows->count * sizeof *rows->q);
-    memmove(rows->p, rows->p + first, rows->count * sizeof *rows->p);
+    memmove(rows->x, rows->x + first, rows->count * sizeof *rows->x);
+    memmove(rows->y, rows->y + first, rows->count * sizeof *rows->y);
     memmove(rows->error, rows->error + first, rows->count * sizeof *rows->error);
 }
 
 /// σ² = c² p of counts: c² by fourth differences of −ln(p/J), whose variance is c² Σ b_j²/p_j,
 /// where p is above a twentieth of its peak; NaN if that does not tell.
-static enum status find_scatter(const struct rows *rows, int order, int dimensions,
+static enum status find_scatter(const struct target_rows *rows, int order, int dimensions,
                                 const struct bonded_bins *bins, double *square) {
     enum { TAPS = 5, LEAST_DIFFERENCES = 8 };
     static const double taps[TAPS] = {1, -4, 6, -4, 1}, least = 0.05;
@@ -262,11 +202,11 @@ static enum status find_scatter(const struct rows *rows, int order, int dimensio
     *square = NAN;
     NEW_ARRAY(all, rows->count);
     for (size_t k = 0; k < rows->count; k++)
-        peak = fmax(peak, rows->p[k]);
+        peak = fmax(peak, rows->y[k]);
     for (size_t k = 0; k + TAPS <= rows->count; k++) {
         double difference = 0, variance = 0, lowest = INFINITY;
         for (size_t j = 0; j < TAPS; j++) {
-            const double p = rows->p[k + j];
+            const double p = rows->y[k + j];
             const double jacobian = mf_bonded_distribution_jacobian(order, dimensions, bins, k + j);
             lowest = fmin(lowest, p);
             difference += taps[j] * log(p / jacobian);
@@ -284,18 +224,18 @@ done:
 
 /// Errors that a file gives are the scatter of counts, which is 0 where nothing was seen. That of
 /// one count is the least of all.
-static void set_errors_of_unseen(struct rows *rows) {
+static void set_errors_of_unseen(struct target_rows *rows) {
     double once = INFINITY;
     for (size_t k = 0; k < rows->count; k++)
-        if (rows->p[k] > 0 && rows->error[k] > 0)
+        if (rows->y[k] > 0 && rows->error[k] > 0)
             once = fmin(once, rows->error[k]);
     for (size_t k = 0; k < rows->count && isfinite(once); k++)
-        if (rows->p[k] == 0 && rows->error[k] == 0)
+        if (rows->y[k] == 0 && rows->error[k] == 0)
             rows->error[k] = once;
 }
 
 /// What was not seen has the error of what was seen once.
-static enum status set_errors(struct target_bonded *target, struct rows *rows, int order,
+static enum status set_errors(struct target_bonded *target, struct target_rows *rows, int order,
                               int dimensions) {
     double square, peak = 0;
     if (rows->has_errors) {
@@ -303,20 +243,20 @@ static enum status set_errors(struct target_bonded *target, struct rows *rows, i
         return STATUS_OK;
     }
     for (size_t k = 0; k < rows->count; k++)
-        peak = fmax(peak, rows->p[k]);
+        peak = fmax(peak, rows->y[k]);
     TRY(find_scatter(rows, order, dimensions, &target->bins, &square));
     target->assumed = !(square > 0);
     if (target->assumed)
         square = assumed_error * assumed_error * peak;
     for (size_t k = 0; k < rows->count; k++)
-        rows->error[k] = sqrt(square * fmax(rows->p[k], square));
+        rows->error[k] = sqrt(square * fmax(rows->y[k], square));
     target->estimated_error = sqrt(square / peak);
     return STATUS_OK;
 }
 
 /// Join rows to bins, if there are many. A rest at the end is dropped; of a circle there is none,
 /// and rows whose number has no such divisor stay as they are.
-static void join(struct target_bonded *target, struct rows *rows, bool circle) {
+static void join(struct target_bonded *target, struct target_rows *rows, bool circle) {
     enum { COARSEST = 2 };
     const size_t least = (rows->count + MOST_BINS - 1) / MOST_BINS;
     size_t of = least;
@@ -330,10 +270,10 @@ static void join(struct target_bonded *target, struct rows *rows, bool circle) {
     for (size_t n = 0; n < target->bins.count; n++) {
         double p = 0, squares = 0;
         for (size_t k = n * of; k < (n + 1) * of; k++) {
-            p += rows->p[k] / (double)of;
+            p += rows->y[k] / (double)of;
             squares += pow(rows->error[k] / (double)of, 2);
         }
-        rows->p[n] = p;
+        rows->y[n] = p;
         rows->error[n] = sqrt(squares);
     }
 }
@@ -343,9 +283,9 @@ static enum status load(struct target_bonded *target, int order, const char *nam
     enum status status = STATUS_OK;
     const struct target_bonded_parameters *p = &target->parameters;
     const bool circle = mf_bonded_kinds[order]->periodic;
-    struct rows rows = {0};
-    CHECK(p->format == TARGET_RDF_VOTCA ? read_votca(p, order, units, &rows)
-                                        : read_columns(p, order, name, units, &rows));
+    struct target_rows rows = {0};
+    CHECK(p->format == TARGET_ROWS_VOTCA ? read_votca(p, order, units, &rows)
+                                         : read_columns(p, order, name, units, &rows));
     CHECK(check_rows(&rows, p->file));
     CHECK(check_range(&rows, order, p->file));
     CHECK(normalise(&rows, p->file));
@@ -354,16 +294,16 @@ static enum status load(struct target_bonded *target, int order, const char *nam
         CHECK(close_circle(&rows, &width, p->file));
     else
         trim(&rows);
-    target->bins = (struct bonded_bins){rows.q[0] - 0.5 * width, width, rows.count};
+    target->bins = (struct bonded_bins){rows.x[0] - 0.5 * width, width, rows.count};
     CHECK(set_errors(target, &rows, order, dimensions));
     join(target, &rows, circle);
-    target->value = rows.p;
+    target->value = rows.y;
     target->error = rows.error;
-    rows.p = rows.error = NULL;
+    rows.y = rows.error = NULL;
 done:
     if (status != STATUS_OK)
         target->bins = (struct bonded_bins){0};
-    rows_clear(&rows);
+    mf_target_rows_clear(&rows);
     return status;
 }
 
@@ -376,18 +316,13 @@ enum status mf_target_bonded_read(struct target_bonded *target, int order, const
     mf_json_finish(object);
     if (mf_json_fault_count(object->document) > faults)
         return STATUS_OK;
-    if (target->parameters.format == TARGET_RDF_VOTCA && mf_bonded_kinds[order]->is_length &&
+    if (target->parameters.format == TARGET_ROWS_VOTCA && mf_bonded_kinds[order]->is_length &&
         !mf_units_known(units)) {
         mf_json_fault(object, "format",
                       "VOTCA's files are in nm: the scene needs \"units\" to convert them");
         return STATUS_OK;
     }
-    const enum status status = load(target, order, name, units, dimensions);
-    if (status == STATUS_NO_MEMORY)
-        return status;
-    if (status != STATUS_OK)
-        mf_json_fault(object, "file", "%s", mf_status_message());
-    return STATUS_OK;
+    return mf_target_rows_fault(object, "file", load(target, order, name, units, dimensions));
 }
 
 void mf_target_bonded_clear(struct target_bonded *target) {

@@ -14,7 +14,7 @@
 
 struct target_bonded_parameters {
     char file[FIELD_TEXT_SIZE];
-    int format;                                   ///< TARGET_RDF_COLUMNS, TARGET_RDF_VOTCA
+    int format;                                   ///< TARGET_ROWS_COLUMNS, TARGET_ROWS_VOTCA
     int64_t q_column, value_column, error_column; ///< as of struct target_curve_parameters
 };
 

@@ -2,9 +2,9 @@
 #include "targets/target_curve.h"
 
 #include "base/memory.h"
-#include "io/data_table.h"
 #include "io/units_text.h"
 #include "targets/target_files.h"
+#include "targets/target_rows.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -65,124 +65,78 @@ static const struct field diffusion_fields[] = {
     FIELD_END,
 };
 
-static double cell(const struct data_table *table, size_t row, int64_t column) {
-    return table->values[row * table->columns + (size_t)column - 1];
-}
-
 /// Times must be 0, h, 2h, … to the digits of the file.
-static enum status check_times(const struct target_curve *curve, const struct data_table *table) {
-    const struct target_curve_parameters *p = &curve->parameters;
-    for (size_t k = 0; k < table->rows; k++)
-        if (fabs(cell(table, k, p->x_column) - (double)k * curve->interval) >
-            0.01 * curve->interval)
+static enum status find_interval(struct target_curve *curve, const struct target_rows *rows) {
+    const char *file = curve->parameters.file;
+    curve->interval = rows->x[rows->count - 1] / (double)(rows->count - 1);
+    for (size_t k = 0; k < rows->count; k++)
+        if (fabs(rows->x[k] - (double)k * curve->interval) > 0.01 * curve->interval)
             return mf_status_fail(STATUS_BAD_INPUT,
                                   "%s:%zu: the times are not equally spaced from 0: keep rows at "
                                   "0, h, 2 h and so on",
-                                  p->file, table->line[k]);
+                                  file, rows->line[k]);
     return STATUS_OK;
 }
 
-/// Check the column of x, and find the interval of times.
-static enum status check_points(struct target_curve *curve, enum observable_form form,
-                                const struct data_table *table) {
+static enum status check_values(const struct target_rows *rows,
+                                const struct target_columns *columns) {
+    for (size_t k = 0; k < rows->count; k++) {
+        const bool known = isfinite(rows->y[k]);
+        if (!known || !(rows->error[k] >= 0))
+            return mf_status_fail(
+                STATUS_BAD_INPUT, "%s:%zu: column %lld: %g is not a %s", columns->file,
+                rows->line[k], (long long)(known ? columns->error : columns->y),
+                known ? rows->error[k] : rows->y[k], known ? "standard error" : "finite number");
+    }
+    return STATUS_OK;
+}
+
+static enum status load(struct target_curve *curve, const struct observable_target *about,
+                        const struct units *units, struct target_rows *rows) {
     const struct target_curve_parameters *p = &curve->parameters;
-    const bool of_time = form == OBSERVABLE_CURVE_OF_TIME;
-    if (of_time && table->rows < 3)
-        return mf_status_fail(STATUS_BAD_INPUT, "%s: only %zu times", p->file, table->rows);
-    TRY(mf_data_table_check_increasing(table, p->file, (size_t)p->x_column - 1,
-                                       of_time ? 0 : -DBL_MAX));
-    if (!of_time)
-        return STATUS_OK;
-    curve->interval = cell(table, table->rows - 1, p->x_column) / (double)(table->rows - 1);
-    return check_times(curve, table);
-}
-
-/// Columns that the file does not number are found by their names, as in tables that `mesofit
-/// simulate` writes.
-static enum status read_table(const struct target_curve_parameters *p, const char *name,
-                              struct data_table *table, int64_t *value, int64_t *error) {
-    enum { USUAL = 2 };
-    char error_name[64];
-    const int64_t least = p->value_column > 0 ? p->value_column : USUAL;
-    TRY(mf_data_table_read(table, p->file, (size_t)(p->x_column > least ? p->x_column : least)));
-    snprintf(error_name, sizeof error_name, "%s_error", name);
-    const int64_t named = (int64_t)mf_data_table_find(table, name),
-                  error_named = (int64_t)mf_data_table_find(table, error_name);
-    *value = p->value_column > 0 ? p->value_column : named > 0 ? named : USUAL;
-    const bool by_name = p->error_column < 0 && error_named > 0;
-    return mf_target_rdf_error_column(by_name ? error_named : p->error_column, p->x_column, *value,
-                                      table, p->file, error);
-}
-
-/// The columns that are read, in reduced units.
-static enum status convert(const struct target_curve_parameters *p,
-                           const struct observable_target *about, int64_t value_column,
-                           int64_t error_column, const struct units *units,
-                           struct data_table *table) {
+    const bool of_time = about->form == OBSERVABLE_CURVE_OF_TIME;
     char argument[UNITS_NAME_SIZE];
     size_t length;
     const char *unit = mf_units_text_in_brackets(about->argument, &length);
     snprintf(argument, sizeof argument, "%.*s", (int)length, unit);
-    TRY(mf_data_table_convert(table, p->file, (size_t)p->x_column - 1, argument, units));
-    TRY(mf_data_table_convert(table, p->file, (size_t)value_column - 1, about->unit, units));
-    return error_column > 0
-               ? mf_data_table_convert(table, p->file, (size_t)error_column - 1, about->unit, units)
-               : STATUS_OK;
+    struct target_columns columns = {.file = p->file,
+                                     .name = about->name,
+                                     .x_unit = argument,
+                                     .y_unit = about->unit,
+                                     .least = of_time ? 0 : -DBL_MAX,
+                                     .x = p->x_column,
+                                     .y = p->value_column,
+                                     .error = p->error_column};
+    TRY(mf_target_rows_read(rows, &columns, units));
+    if (of_time && rows->count < 3)
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: only %zu times", p->file, rows->count);
+    if (of_time)
+        TRY(find_interval(curve, rows));
+    return check_values(rows, &columns);
 }
 
-static enum status load(struct target_curve *curve, const struct observable_target *about,
-                        const struct units *units, struct data_table *table) {
-    enum status status = STATUS_OK;
-    const struct target_curve_parameters *p = &curve->parameters;
-    int64_t value_column, error_column;
-    CHECK(read_table(p, about->name, table, &value_column, &error_column));
-    CHECK(convert(p, about, value_column, error_column, units, table));
-    CHECK(check_points(curve, about->form, table));
-    NEW_ARRAY(curve->x, table->rows);
-    NEW_ARRAY(curve->value, table->rows);
-    NEW_ARRAY(curve->error, table->rows);
-    for (size_t k = 0; k < table->rows; k++) {
-        curve->x[k] = cell(table, k, p->x_column);
-        curve->value[k] = cell(table, k, value_column);
-        curve->error[k] = error_column ? cell(table, k, error_column) : 0;
-        const bool known = isfinite(curve->value[k]);
-        if (known && curve->error[k] >= 0)
-            continue;
-        status = mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: column %lld: %g is not a %s", p->file,
-                                table->line[k], (long long)(known ? error_column : value_column),
-                                known ? curve->error[k] : curve->value[k],
-                                known ? "standard error" : "finite number");
-        goto done;
-    }
-    curve->points = table->rows;
-done:
-    return status;
-}
-
-enum status mf_target_curve_read(struct target_curve *curve, const struct observable_target *about,
-                                 struct json_object *object) {
+static enum status read_curve(struct target_files *files, int kind, struct json_object *object,
+                              const struct target_scene *scene) {
+    struct target_curve *curve = files->own[kind];
+    const struct observable_target *about = mf_observable_kind(kind).target;
     const size_t faults = mf_json_fault_count(object->document);
-    mf_json_fields(object, about->form == OBSERVABLE_CURVE ? x_fields : time_fields,
-                   &curve->parameters);
+    (void)scene;
+    mf_json_fields(object, mf_target_record(kind)->fields[0], &curve->parameters);
     mf_json_finish(object);
     if (mf_json_fault_count(object->document) > faults)
         return STATUS_OK;
     curve->time = mf_json_factor(object, "tau");
-    struct data_table table = {0};
-    const enum status status = load(curve, about, mf_json_units(object), &table);
-    mf_data_table_clear(&table);
-    if (status == STATUS_NO_MEMORY)
-        return status;
-    if (status != STATUS_OK)
-        mf_json_fault(object, "file", "%s", mf_status_message());
-    return STATUS_OK;
-}
-
-void mf_target_curve_clear(struct target_curve *curve) {
-    mf_memory_free(curve->x);
-    mf_memory_free(curve->value);
-    mf_memory_free(curve->error);
-    *curve = (struct target_curve){0};
+    struct target_rows rows = {0};
+    const enum status status = load(curve, about, mf_json_units(object), &rows);
+    if (status == STATUS_OK) {
+        curve->points = rows.count;
+        curve->x = rows.x;
+        curve->value = rows.y;
+        curve->error = rows.error;
+        rows.x = rows.y = rows.error = NULL;
+    }
+    mf_target_rows_clear(&rows);
+    return mf_target_rows_fault(object, "file", status);
 }
 
 /// Of the interval, for a whole number of steps: the length of a step makes no such difference.
@@ -205,14 +159,11 @@ enum status mf_target_curve_check_steps(const char *file, double interval, doubl
 
 // Curves ------------------------------------------------------------------------------------------
 
-static enum status read_curve(struct target_files *files, int kind, struct json_object *object,
-                              const struct target_scene *scene) {
-    (void)scene;
-    return mf_target_curve_read(files->own[kind], mf_observable_kind(kind).target, object);
-}
-
 static void clear_curve(void *own) {
-    mf_target_curve_clear(own);
+    struct target_curve *curve = own;
+    mf_memory_free(curve->x);
+    mf_memory_free(curve->value);
+    mf_memory_free(curve->error);
 }
 
 /// A function of time is told at its own times, which are equal; any other at its x.

@@ -6,6 +6,8 @@
 #include "io/json.h"
 #include "observe/observable.h"
 
+/// x grows from row to row; times begin at 0 and are equally spaced to the digits of the file.
+/// Tested: test_target_files.
 struct target_curve {
     struct target_curve_parameters {
         char file[FIELD_TEXT_SIZE];
@@ -18,14 +20,6 @@ struct target_curve {
     double time;               ///< τ in the units of the file, for messages
     double *x, *value, *error; ///< shape [points]
 };
-
-/// Read the members of {"file": …}: x grows from row to row; times begin at 0 and are equally
-/// spaced to the digits of the file. Faults (shape, times, negative errors, …) go to the document
-/// and leave the target empty. Columns may be found by the target's name. Fails: NO_MEMORY. Tested:
-/// test_target_files.
-enum status mf_target_curve_read(struct target_curve *curve, const struct observable_target *about,
-                                 struct json_object *object) MUST_USE;
-void mf_target_curve_clear(struct target_curve *curve);
 
 /// BAD_INPUT with the time steps that would do if the interval between the times of a file [τ] is
 /// not a whole number of steps to 0.1 %: what moves is measured as often as it was.

@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "io/data_table.h"
 #include "targets/target_files.h"
+#include "targets/target_rows.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -201,13 +202,9 @@ enum status mf_target_etd_read(struct target_etd *target, struct json_object *ob
     const enum status status = load(target, mf_json_units(object), &table, &errors);
     mf_data_table_clear(&table);
     mf_data_table_clear(&errors);
-    if (status == STATUS_OK)
-        return STATUS_OK;
-    mf_target_etd_clear(target);
-    if (status == STATUS_NO_MEMORY)
-        return status;
-    mf_json_fault(object, NULL, "%s", mf_status_message());
-    return STATUS_OK;
+    if (status != STATUS_OK)
+        mf_target_etd_clear(target);
+    return mf_target_rows_fault(object, NULL, status);
 }
 
 void mf_target_etd_clear(struct target_etd *target) {

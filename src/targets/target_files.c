@@ -58,16 +58,6 @@ static enum status read_settings(struct target_files *files, const struct observ
     return STATUS_OK;
 }
 
-enum status mf_target_files_widen(struct target_files *files, int order, size_t group,
-                                  const struct bonded_bins *bins) {
-    const int kind = mf_bonded_distribution_kind(order);
-    struct target_groups *groups = files->own[kind];
-    struct bonded_settings *settings = files->settings[mf_observable_kind(kind).place];
-    TRY(mf_target_groups_widen(groups, group, bins));
-    *settings = mf_target_groups_settings(groups);
-    return STATUS_OK;
-}
-
 /// A window of D's own beside a curve that has another.
 static void check_window(const struct target_files *files, struct json_object *object) {
     const struct target_number *diffusion = files->own[TARGET_DIFFUSION];
@@ -184,45 +174,6 @@ static void set_motion(const struct target_files *files, struct targets *targets
     } else if (diffusion->window > 0) {
         targets->motion_interval = diffusion->window / DEFAULT_LAGS;
     }
-}
-
-/// What is not known of the factor of a pair type: nothing where the file says it, or of how many
-/// particles g is, by whose pairs it is normalised then; the error of one that was found; else that
-/// of one particle more or less, as by N for N − 1.
-static double find_factor_error(const struct target_files *files, int pair) {
-    const struct target_rdf_parameters *p = &target_files_rdf(files)->member[pair].parameters;
-    int type[2];
-    if (p->normalisation > 0 || p->particles > 0 ||
-        !mf_composition_has_pairs(&files->composition, pair))
-        return 0;
-    if (files->normalisation.found)
-        return files->normalisation.error;
-    mf_composition_pair_types(&files->composition, pair, type);
-    return 1 / (double)(files->composition.count[type[0]] > files->composition.count[type[1]]
-                            ? files->composition.count[type[0]]
-                            : files->composition.count[type[1]]);
-}
-
-enum status mf_target_files_normalise(struct target_files *files, const struct box *box,
-                                      bool joined) {
-    struct target_pairs *rdf = files->own[TARGET_RDF];
-    double width = 0;
-    files->normalisation = (struct normalisation){.factor = 1};
-    mf_target_pairs_normalise(files->own[mf_rdf_intermolecular_kind()]);
-    const size_t given = mf_target_pairs_normalise(rdf);
-    if (!files->given[TARGET_RDF])
-        return STATUS_OK;
-    for (size_t pair = 0; pair < rdf->pairs; pair++)
-        width = fmax(width, rdf->member[pair].parameters.normalisation_error);
-    // What all together say tells nothing of a part of them.
-    if (given == 0 && !joined)
-        TRY(mf_normalisation_find(target_pairs_bins(rdf), box, &files->composition, rdf->g,
-                                  rdf->error, width, &files->normalisation));
-    for (size_t pair = 0; pair < rdf->pairs; pair++) {
-        mf_target_pairs_divide(rdf, pair, files->normalisation.factor);
-        rdf->factor_error[pair] = find_factor_error(files, (int)pair);
-    }
-    return STATUS_OK;
 }
 
 void mf_target_files_targets(struct target_files *files, bool moves, struct targets *fitted,

@@ -71,8 +71,9 @@ void mf_target_files_write(const struct target_files *files, struct json_writer 
 /// Add what was read from files to the digest of a checkpoint.
 void mf_target_files_digest(const struct target_files *files, uint64_t *digest);
 
-/// As mf_target_groups_widen, of a group of bonds, angles or dihedrals; it is measured in these
-/// bins, too.
+/// Give the target of a group of bonds, angles or dihedrals these bins, of which its own are some,
+/// and measure it in them. What it has not seen has p = 0 and the error of its nearest bin. Fails:
+/// NO_MEMORY.
 enum status mf_target_files_widen(struct target_files *files, int order, size_t group,
                                   const struct bonded_bins *bins) MUST_USE;
 

@@ -57,44 +57,20 @@ done:
     return status;
 }
 
-enum status mf_target_groups_read(struct target_groups *groups, int order,
-                                  struct json_object *object, const struct molecules *molecules,
-                                  const struct units *units, int dimensions) {
-    enum status status = STATUS_OK;
-    const char *key;
-    *groups = (struct target_groups){.order = order};
-    groups->groups = molecules ? (size_t)molecules->groups[order] : 0;
-    NEW_ARRAY(groups->member, groups->groups);
-    for (size_t g = 0; g < groups->groups; g++) {
-        if (is_use(molecules->group[order][g].name))
-            mf_json_fault(object, molecules->group[order][g].name,
-                          "is a setting of the target, and a group of the scene is called so: give "
-                          "the group another name");
-        memcpy(groups->name[g], molecules->group[order][g].name, sizeof groups->name[g]);
-    }
-    for (size_t n = 0; (key = mf_json_key(object, n)); n++) {
-        size_t g = 0;
-        while (g < groups->groups && strcmp(groups->name[g], key) != 0)
-            g++;
-        if (is_use(key))
-            continue;
-        if (g == groups->groups) {
-            fault_unknown(groups, object, key);
-            continue;
-        }
-        struct json_object child = mf_json_child_of(object, key, true, "file");
-        if (child.item)
-            CHECK(mf_target_bonded_read(&groups->member[g], order, key, &child, units, dimensions));
-    }
-    mf_json_finish(object);
-    CHECK(collect(groups));
-done:
-    return status;
+/// What the observable is to measure for them.
+static struct bonded_settings settings_of(const struct target_groups *groups) {
+    struct bonded_settings settings = {.bins = 0};
+    for (size_t g = 0; g < groups->groups; g++)
+        settings.target[g] = groups->member[g].bins;
+    return settings;
 }
 
-enum status mf_target_groups_widen(struct target_groups *groups, size_t group,
-                                   const struct bonded_bins *bins) {
+enum status mf_target_files_widen(struct target_files *files, int order, size_t group,
+                                  const struct bonded_bins *bins) {
     enum status status = STATUS_OK;
+    const int kind = mf_bonded_distribution_kind(order);
+    struct target_groups *groups = files->own[kind];
+    struct bonded_settings *settings = files->settings[mf_observable_kind(kind).place];
     struct target_bonded *member = &groups->member[group];
     const size_t before = (size_t)lround((member->bins.low - bins->low) / bins->width);
     const size_t last = member->bins.count - 1;
@@ -113,47 +89,74 @@ enum status mf_target_groups_widen(struct target_groups *groups, size_t group,
     member->value = value;
     member->error = error;
     member->bins = *bins;
-    return collect(groups);
+    TRY(collect(groups));
+    *settings = settings_of(groups);
+    return STATUS_OK;
 done:
     mf_memory_free(value);
     mf_memory_free(error);
     return status;
 }
 
-void mf_target_groups_clear(struct target_groups *groups) {
-    for (size_t g = 0; g < groups->groups; g++)
-        mf_target_bonded_clear(&groups->member[g]);
-    mf_memory_free(groups->member);
-    mf_memory_free(groups->value);
-    mf_memory_free(groups->error);
-    mf_memory_free(groups->block);
-    *groups = (struct target_groups){0};
-}
-
-struct bonded_settings mf_target_groups_settings(const struct target_groups *groups) {
-    struct bonded_settings settings = {.bins = 0};
-    for (size_t g = 0; g < groups->groups; g++)
-        settings.target[g] = groups->member[g].bins;
-    return settings;
+/// By the numbers of the scene's groups.
+static enum status allocate(struct target_groups *groups, struct json_object *object,
+                            const struct molecules *molecules) {
+    enum status status = STATUS_OK;
+    const int order = groups->order;
+    groups->groups = molecules ? (size_t)molecules->groups[order] : 0;
+    NEW_ARRAY(groups->member, groups->groups);
+    for (size_t g = 0; g < groups->groups; g++) {
+        if (is_use(molecules->group[order][g].name))
+            mf_json_fault(object, molecules->group[order][g].name,
+                          "is a setting of the target, and a group of the scene is called so: give "
+                          "the group another name");
+        memcpy(groups->name[g], molecules->group[order][g].name, sizeof groups->name[g]);
+    }
+done:
+    return status;
 }
 
 static enum status read(struct target_files *files, int kind, struct json_object *object,
                         const struct target_scene *scene) {
     struct target_groups *groups = files->own[kind];
     struct bonded_settings *settings = mf_memory_zeroed(1, sizeof *settings);
+    const char *key;
     if (settings == NULL)
         return STATUS_NO_MEMORY;
     files->settings[mf_observable_kind(kind).place] = settings;
     if (files->composition.types == 0)
         return STATUS_OK; // a fault of the molecules is told, those of their groups would mislead
-    TRY(mf_target_groups_read(groups, mf_bonded_distribution_order(kind), object, scene->molecules,
-                              scene->units, scene->box->dimensions));
-    *settings = mf_target_groups_settings(groups);
+    groups->order = mf_bonded_distribution_order(kind);
+    TRY(allocate(groups, object, scene->molecules));
+    for (size_t n = 0; (key = mf_json_key(object, n)); n++) {
+        size_t g = 0;
+        while (g < groups->groups && strcmp(groups->name[g], key) != 0)
+            g++;
+        if (is_use(key))
+            continue;
+        if (g == groups->groups) {
+            fault_unknown(groups, object, key);
+            continue;
+        }
+        struct json_object child = mf_json_child_of(object, key, true, "file");
+        if (child.item)
+            TRY(mf_target_bonded_read(&groups->member[g], groups->order, key, &child, scene->units,
+                                      scene->box->dimensions));
+    }
+    mf_json_finish(object);
+    TRY(collect(groups));
+    *settings = settings_of(groups);
     return STATUS_OK;
 }
 
 static void clear(void *own) {
-    mf_target_groups_clear(own);
+    struct target_groups *groups = own;
+    for (size_t g = 0; g < groups->groups; g++)
+        mf_target_bonded_clear(&groups->member[g]);
+    mf_memory_free(groups->member);
+    mf_memory_free(groups->value);
+    mf_memory_free(groups->error);
+    mf_memory_free(groups->block);
 }
 
 static void write(const struct target_files *files, int kind, struct json_writer *writer) {

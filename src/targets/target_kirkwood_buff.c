@@ -5,6 +5,11 @@
 
 #include <math.h>
 
+/// Of one pair [λ^d].
+struct target_kirkwood_buff_number {
+    double value, error;
+};
+
 #define NUMBER(name) .offset = offsetof(struct target_kirkwood_buff_number, name)
 static const struct field number_fields[] = {
     {"value", FIELD_NUMBER, NUMBER(value), .required = true, .minimum = -DBL_MAX,
@@ -24,31 +29,33 @@ static void read_number(struct target_kirkwood_buff *target, int pair, struct js
     target->error[pair] = number.error;
 }
 
-void mf_target_kirkwood_buff_read(struct target_kirkwood_buff *target, struct json_object *object,
-                                  const struct composition *composition,
-                                  const struct topology *topology) {
+/// Faults, as a pair that is not there or no error, go to the document.
+static enum status read(struct target_files *files, int kind, struct json_object *object,
+                        const struct target_scene *scene) {
+    struct target_kirkwood_buff *target = files->own[kind];
+    const struct composition *composition = &files->composition;
+    const struct topology *topology = scene->molecules ? &scene->molecules->topology : NULL;
     const struct composition *components = &target->components;
     char name[COMPOSITION_MOST_PAIRS]
              [COMPOSITION_PAIR_NAME_SIZE]; // remembered until it is finished
     const char *key[COMPOSITION_MOST_PAIRS];
     size_t named = 0;
-    *target = (struct target_kirkwood_buff){0};
     if (composition->types == 0)
-        return; // a fault of the types is told, those of their pairs would mislead
+        return STATUS_OK; // a fault of the types is told, those of their pairs would mislead
     if (mf_components_find(&target->components, composition,
                            (size_t)mf_composition_particles(composition), topology) != STATUS_OK) {
         mf_json_fault(object, NULL, "%s", mf_status_message());
-        return;
+        return STATUS_OK;
     }
     target->pairs = (size_t)mf_composition_pairs(components);
     for (size_t pair = 0; pair < target->pairs; pair++)
         target->value[pair] = target->error[pair] = NAN;
     if (!composition_is_mixed(components)) {
         if (mf_pair_names_refuse(object, components, "{\"value\": …, \"error\": …}"))
-            return;
+            return STATUS_OK;
         read_number(target, 0, object);
         mf_json_finish(object);
-        return;
+        return STATUS_OK;
     }
     const bool known = mf_pair_names_find(object, components, key);
     for (size_t pair = 0; pair < target->pairs; pair++) {
@@ -67,15 +74,9 @@ void mf_target_kirkwood_buff_read(struct target_kirkwood_buff *target, struct js
                       "names no pair of the scene's components, as {\"%s-%s\": {\"value\": "
                       "0.1, \"error\": 0.01}}",
                       components->name[0], components->name[1]);
-        return;
+        return STATUS_OK;
     }
     mf_json_finish(object);
-}
-
-static enum status read(struct target_files *files, int kind, struct json_object *object,
-                        const struct target_scene *scene) {
-    mf_target_kirkwood_buff_read(files->own[kind], object, &files->composition,
-                                 scene->molecules ? &scene->molecules->topology : NULL);
     return STATUS_OK;
 }
 

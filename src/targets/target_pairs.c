@@ -74,10 +74,10 @@ done:
     return status;
 }
 
-enum status mf_target_pairs_read(struct target_pairs *target, struct json_object *object,
-                                 const struct finite_size_fluid *fluid, const struct units *units) {
+/// All pair types end with the shortest. Faults go to the document.
+static enum status read_pairs(struct target_pairs *target, struct json_object *object,
+                              const struct finite_size_fluid *fluid, const struct units *units) {
     const struct composition *composition = fluid->composition;
-    *target = (struct target_pairs){0};
     if (composition->types == 0)
         return STATUS_OK; // a fault of the types is told, those of their pairs would mislead
     target->pairs = (size_t)mf_composition_pairs(composition);
@@ -112,17 +112,8 @@ enum status mf_target_pairs_read(struct target_pairs *target, struct json_object
     return collect(target, fluid);
 }
 
-void mf_target_pairs_clear(struct target_pairs *target) {
-    for (size_t pair = 0; pair < target->pairs; pair++)
-        mf_target_rdf_clear(&target->member[pair]);
-    mf_memory_free(target->g);
-    mf_memory_free(target->error);
-    mf_memory_free(target->given);
-    mf_memory_free(target->factor_error);
-    *target = (struct target_pairs){0};
-}
-
-void mf_target_pairs_divide(struct target_pairs *target, size_t pair, double factor) {
+/// Divide g and errors of a pair type.
+static void divide(struct target_pairs *target, size_t pair, double factor) {
     const size_t bins = target_pairs_bins(target)->count;
     for (size_t n = pair * bins; n < (pair + 1) * bins; n++) {
         target->g[n] /= factor;
@@ -130,15 +121,56 @@ void mf_target_pairs_divide(struct target_pairs *target, size_t pair, double fac
     }
 }
 
-size_t mf_target_pairs_normalise(struct target_pairs *target) {
+/// Divide by what the file says, which is 1 where it says nothing. Returns how many pair types it
+/// says it of.
+static size_t normalise(struct target_pairs *target) {
     size_t given = 0;
     for (size_t pair = 0; pair < target->pairs; pair++) {
         const double factor = target->member[pair].parameters.normalisation;
         if (factor > 0)
-            mf_target_pairs_divide(target, pair, factor);
+            divide(target, pair, factor);
         given += factor > 0;
     }
     return given;
+}
+
+/// What is not known of the factor of a pair type: nothing where the file says it, or of how many
+/// particles g is, by whose pairs it is normalised then; the error of one that was found; else that
+/// of one particle more or less, as by N for N − 1.
+static double find_factor_error(const struct target_files *files, int pair) {
+    const struct target_rdf_parameters *p = &target_files_rdf(files)->member[pair].parameters;
+    int type[2];
+    if (p->normalisation > 0 || p->particles > 0 ||
+        !mf_composition_has_pairs(&files->composition, pair))
+        return 0;
+    if (files->normalisation.found)
+        return files->normalisation.error;
+    mf_composition_pair_types(&files->composition, pair, type);
+    return 1 / (double)(files->composition.count[type[0]] > files->composition.count[type[1]]
+                            ? files->composition.count[type[0]]
+                            : files->composition.count[type[1]]);
+}
+
+enum status mf_target_files_normalise(struct target_files *files, const struct box *box,
+                                      bool joined) {
+    struct target_pairs *rdf = files->own[TARGET_RDF];
+    double width = 0;
+    files->normalisation = (struct normalisation){.factor = 1};
+    normalise(files->own[mf_rdf_intermolecular_kind()]);
+    const size_t given = normalise(rdf);
+    if (!files->given[TARGET_RDF])
+        return STATUS_OK;
+    for (size_t pair = 0; pair < rdf->pairs; pair++)
+        width = fmax(width, rdf->member[pair].parameters.normalisation_error);
+    // What all together say tells nothing of a part of them.
+    if (given == 0 && !joined)
+        TRY(mf_normalisation_find(target_pairs_bins(rdf), box, &files->composition, rdf->g,
+                                  rdf->error, width, &files->normalisation));
+    for (size_t pair = 0; pair < rdf->pairs; pair++) {
+        divide(rdf, pair, files->normalisation.factor);
+        rdf->factor_error[pair] = find_factor_error(files, (int)pair);
+    }
+    return STATUS_OK;
 }
 
 /// Of beads of different molecules: also the bins in which they are measured.
@@ -162,12 +194,18 @@ static enum status read(struct target_files *files, int kind, struct json_object
         .composition = &files->composition,
         .topology = scene->molecules ? &scene->molecules->topology : NULL,
         .apart = apart};
-    TRY(mf_target_pairs_read(files->own[kind], object, &fluid, scene->units));
+    TRY(read_pairs(files->own[kind], object, &fluid, scene->units));
     return apart ? read_apart(files, kind) : STATUS_OK;
 }
 
 static void clear(void *own) {
-    mf_target_pairs_clear(own);
+    struct target_pairs *target = own;
+    for (size_t pair = 0; pair < target->pairs; pair++)
+        mf_target_rdf_clear(&target->member[pair]);
+    mf_memory_free(target->g);
+    mf_memory_free(target->error);
+    mf_memory_free(target->given);
+    mf_memory_free(target->factor_error);
 }
 
 static void write(const struct target_files *files, int kind, struct json_writer *writer) {

@@ -6,6 +6,7 @@
 #include "targets/target_rdf.h"
 #include "system/composition.h"
 
+/// Tested: test_target_files, test_target_files_mixture.
 struct target_pairs {
     size_t pairs;                                     ///< pair types of the scene; 0: not given
     struct target_rdf member[COMPOSITION_MOST_PAIRS]; ///< of each pair type, in the same bins
@@ -24,18 +25,3 @@ static inline const struct rdf_bins *target_pairs_bins(const struct target_pairs
 static inline size_t target_pairs_values(const struct target_pairs *target) {
     return target->pairs * target->member[0].bins.count;
 }
-
-/// Read the members of the object but those of struct target_use, which are read before. All pair
-/// types end with the shortest. Faults go to the document. Fails: NO_MEMORY. Tested:
-/// test_target_files, test_target_files_mixture.
-enum status mf_target_pairs_read(struct target_pairs *target, struct json_object *object,
-                                 const struct finite_size_fluid *fluid,
-                                 const struct units *units) MUST_USE;
-void mf_target_pairs_clear(struct target_pairs *target);
-
-/// Divide g and errors of a pair type.
-void mf_target_pairs_divide(struct target_pairs *target, size_t pair, double factor);
-
-/// Divide by what the file says, which is 1 where it says nothing. Returns how many pair types it
-/// says it of.
-size_t mf_target_pairs_normalise(struct target_pairs *target);

@@ -2,8 +2,6 @@
 #include "targets/target_rdf.h"
 
 #include "base/memory.h"
-#include "io/data_table.h"
-#include "io/votca.h"
 
 #include <math.h>
 #include <string.h>
@@ -23,7 +21,7 @@ const struct field mf_target_rdf_fields[] = {
     {"file", FIELD_FILE, MEMBER(file), .required = true, .unit = "",
      .help = "g(r) at the centres of equal bins, or at any growing r as a digitised figure has it, "
              "in units of the scene"},
-    {"format", FIELD_CHOICE, MEMBER(format), .choices = formats, .initial = TARGET_RDF_COLUMNS,
+    {"format", FIELD_CHOICE, MEMBER(format), .choices = formats, .initial = TARGET_ROWS_COLUMNS,
      .unit = "",
      .help = "votca: a .dist.tgt in nm, by the scene's \"units\"; its columns are known"},
     {"cutoff", FIELD_NUMBER, MEMBER(cutoff), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
@@ -60,37 +58,6 @@ const struct field mf_target_rdf_fields[] = {
     FIELD_END,
 };
 
-static double cell(const struct data_table *table, size_t row, int64_t column) {
-    return table->values[row * table->columns + (size_t)column - 1];
-}
-
-/// Whether a column has any number: nothing but nan stands for errors that are not known.
-static bool is_known(const struct data_table *table, int64_t column) {
-    bool known = false;
-    for (size_t k = 0; k < table->rows; k++)
-        known = known || isfinite(cell(table, k, column));
-    return known;
-}
-
-enum status mf_target_rdf_error_column(int64_t asked, int64_t first, int64_t second,
-                                       const struct data_table *table, const char *file,
-                                       int64_t *column) {
-    enum { USUAL = 3 };
-    const int64_t columns = (int64_t)table->columns;
-    *column = asked;
-    if (asked > columns)
-        return mf_status_fail(
-            STATUS_BAD_INPUT,
-            "%s:%zu: %zu columns, at least %lld are needed for \"error_column\"; 0 if "
-            "the file has no errors",
-            file, table->line[0], table->columns, (long long)asked);
-    if (asked < 0)
-        *column = columns < USUAL || first == USUAL || second == USUAL ? 0 : USUAL;
-    if (*column > 0 && !is_known(table, *column))
-        *column = 0;
-    return STATUS_OK;
-}
-
 /// Errors are small beside g, and they do not add up; those of a column that is called so may be of
 /// a short measurement.
 static enum status check_errors(const struct target_rdf_parameters *p,
@@ -104,8 +71,8 @@ static enum status check_errors(const struct target_rdf_parameters *p,
                                   "%s:%zu: column %lld: \"nan\" is not a finite number", p->file,
                                   rows->line[k], (long long)column);
         grows = grows && (k == 0 || rows->error[k] >= rows->error[k - 1]);
-        seen += rows->g[k] > structure;
-        large += rows->g[k] > structure && rows->error[k] > largest_share * rows->g[k];
+        seen += rows->y[k] > structure;
+        large += rows->y[k] > structure && rows->error[k] > largest_share * rows->y[k];
     }
     if (!named && (grows || 2 * large > seen))
         return mf_status_fail(STATUS_BAD_INPUT,
@@ -118,72 +85,46 @@ static enum status check_errors(const struct target_rdf_parameters *p,
 }
 
 static enum status read_columns(const struct target_rdf_parameters *p, const struct units *units,
-                                struct target_rows *rows, bool *has_errors) {
-    enum status status = STATUS_OK;
-    struct data_table table = {0};
-    int64_t error_column;
-    CHECK(mf_data_table_read(&table, p->file,
-                             (size_t)(p->r_column > p->g_column ? p->r_column : p->g_column)));
-    CHECK(mf_target_rdf_error_column(p->error_column, p->r_column, p->g_column, &table, p->file,
-                                     &error_column));
-    CHECK(mf_data_table_check_increasing(&table, p->file, (size_t)p->r_column - 1, 0));
-    CHECK(mf_data_table_convert(&table, p->file, (size_t)p->r_column - 1, "lambda", units));
-    CHECK(mf_target_rows_allocate(rows, table.rows));
-    for (size_t k = 0; k < table.rows; k++) {
-        rows->r[k] = cell(&table, k, p->r_column);
-        rows->g[k] = cell(&table, k, p->g_column);
-        rows->error[k] = error_column ? cell(&table, k, error_column) : 0;
-        rows->line[k] = table.line[k];
-    }
-    *has_errors = error_column > 0;
-    if (*has_errors)
-        status = check_errors(p, rows, error_column,
-                              error_column == (int64_t)mf_data_table_find(&table, "g_error"));
-done:
-    mf_data_table_clear(&table);
-    return status;
+                                struct target_rows *rows) {
+    struct target_columns columns = {.file = p->file,
+                                     .x_unit = "lambda",
+                                     .x = p->r_column,
+                                     .y = p->g_column,
+                                     .error = p->error_column,
+                                     .usual_error = "g_error"};
+    TRY(mf_target_rows_read(rows, &columns, units));
+    return rows->has_errors ? check_errors(p, rows, columns.error, columns.is_usual_error)
+                            : STATUS_OK;
 }
 
 /// From nm.
 static enum status read_votca(const struct target_rdf_parameters *p, const struct units *units,
-                              struct target_rows *rows, bool *has_errors) {
-    enum status status = STATUS_OK;
-    struct votca_table table = {0};
-    CHECK(mf_votca_read(&table, p->file));
-    CHECK(mf_target_rows_allocate(rows, table.rows));
-    for (size_t k = 0; k < table.rows; k++) {
-        rows->r[k] = table.x[k] / units->length;
-        rows->g[k] = table.y[k];
-        rows->error[k] = table.error[k];
-        rows->line[k] = table.line[k];
-    }
-    *has_errors = table.has_error;
+                              struct target_rows *rows) {
+    TRY(mf_target_rows_read_votca(rows, p->file));
+    for (size_t k = 0; k < rows->count; k++)
+        rows->x[k] /= units->length;
     for (size_t k = 1; k < rows->count; k++)
-        if (!(rows->r[k] > rows->r[k - 1])) {
-            status = mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: column 1 does not grow", p->file,
-                                    rows->line[k]);
-            goto done;
-        }
-done:
-    mf_votca_clear(&table);
-    return status;
+        if (!(rows->x[k] > rows->x[k - 1]))
+            return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: column 1 does not grow", p->file,
+                                  rows->line[k]);
+    return STATUS_OK;
 }
 
 /// Leave out what lies beyond the cutoff.
 static void cut(const struct target_rdf_parameters *p, struct target_rows *rows) {
     // One part in 10^9 forgives a rounded cutoff.
-    while (p->cutoff > 0 && rows->count > 0 && rows->r[rows->count - 1] > p->cutoff * (1 + 1e-9))
+    while (p->cutoff > 0 && rows->count > 0 && rows->x[rows->count - 1] > p->cutoff * (1 + 1e-9))
         rows->count--;
 }
 
 /// VOTCA and gmx rdf have their bins about multiples of the width. The one about r = 0 is half a
 /// bin: it is left out if it is empty, and the bins begin where it ends.
 static void leave_out_half_bin(struct target_rows *rows) {
-    if (rows->count < 2 || rows->r[0] != 0 || rows->g[0] != 0)
+    if (rows->count < 2 || rows->x[0] != 0 || rows->y[0] != 0)
         return;
     rows->count--;
-    memmove(rows->r, rows->r + 1, rows->count * sizeof *rows->r);
-    memmove(rows->g, rows->g + 1, rows->count * sizeof *rows->g);
+    memmove(rows->x, rows->x + 1, rows->count * sizeof *rows->x);
+    memmove(rows->y, rows->y + 1, rows->count * sizeof *rows->y);
     memmove(rows->error, rows->error + 1, rows->count * sizeof *rows->error);
     memmove(rows->line, rows->line + 1, rows->count * sizeof *rows->line);
 }
@@ -195,8 +136,8 @@ static enum status find_bins(const struct target_rows *rows, const char *file,
     if (rows->count < FEWEST_ROWS)
         return mf_status_fail(STATUS_BAD_INPUT, "%s: only %zu bins; a g(r) needs at least %d", file,
                               rows->count, FEWEST_ROWS);
-    const double first = rows->r[0];
-    const double width = (rows->r[rows->count - 1] - first) / (double)(rows->count - 1);
+    const double first = rows->x[0];
+    const double width = (rows->x[rows->count - 1] - first) / (double)(rows->count - 1);
     // First edges come out as 0 but for the file's rounding.
     const double low = first - 0.5 * width;
     if (low < -0.01 * width)
@@ -215,49 +156,49 @@ static enum status check_values(struct target_rdf *target, struct target_rows *r
     const char *file = target->parameters.file;
     double peak = 0;
     for (size_t k = 0; k < rows->count; k++)
-        peak = fmax(peak, rows->g[k]);
+        peak = fmax(peak, rows->y[k]);
     for (size_t k = 0; k < rows->count; k++) {
         if (rows->error[k] < 0)
             return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: a negative error of g, %g", file,
                                   rows->line[k], rows->error[k]);
-        if (rows->g[k] >= 0)
+        if (rows->y[k] >= 0)
             continue;
-        if (-rows->g[k] > fmax(slightly * peak, standard_errors * rows->error[k]))
+        if (-rows->y[k] > fmax(slightly * peak, standard_errors * rows->error[k]))
             return mf_status_fail(
                 STATUS_BAD_INPUT,
                 "%s:%zu: a negative g, %g: a potential, or another column than g?", file,
-                rows->line[k], rows->g[k]);
+                rows->line[k], rows->y[k]);
         target->negative++;
-        target->least = fmin(target->least, rows->g[k]);
-        rows->g[k] = 0;
+        target->least = fmin(target->least, rows->y[k]);
+        rows->y[k] = 0;
     }
     return STATUS_OK;
 }
 
 /// Rows that are not equally spaced, read at r that are.
-static enum status resample(struct target_rdf *target, struct target_rows *rows, bool *has_errors) {
+static enum status resample(struct target_rdf *target, struct target_rows *rows) {
     if (!mf_target_resample_is_needed(rows))
         return STATUS_OK;
-    TRY(mf_target_resample(rows, target->parameters.file, *has_errors, assumed_error,
+    TRY(mf_target_resample(rows, target->parameters.file, rows->has_errors, assumed_error,
                            &target->resampling));
-    *has_errors = true;
+    rows->has_errors = true;
     return STATUS_OK;
 }
 
 /// Join the rows to bins; errors that the file does not give come from the scatter of the rows, or,
 /// where that cannot be told, are those that are assumed of the bins.
-static enum status join(struct target_rdf *target, struct target_rows *rows, bool has_errors) {
+static enum status join(struct target_rdf *target, struct target_rows *rows) {
     double scatter = NAN;
-    if (!has_errors)
+    if (!rows->has_errors)
         TRY(mf_target_rows_scatter(rows, &scatter));
     if (!isnan(scatter))
         mf_target_rows_set_errors(rows, scatter);
     if (target->joined > 1)
         mf_target_rows_join(rows, target->joined);
-    target->assumed = !has_errors && isnan(scatter);
+    target->assumed = !rows->has_errors && isnan(scatter);
     if (target->assumed)
         mf_target_rows_set_errors(rows, assumed_error);
-    if (!has_errors)
+    if (!rows->has_errors)
         target->estimated_error =
             target->assumed ? assumed_error : scatter / sqrt((double)target->joined);
     return STATUS_OK;
@@ -275,21 +216,20 @@ static enum status load(struct target_rdf *target, const struct units *units, in
     const struct target_rdf_parameters *p = &target->parameters;
     struct target_rows rows = {.dimensions = dimensions};
     struct rdf_bins bins;
-    bool has_errors = false;
-    CHECK(p->format == TARGET_RDF_VOTCA ? read_votca(p, units, &rows, &has_errors)
-                                        : read_columns(p, units, &rows, &has_errors));
+    CHECK(p->format == TARGET_ROWS_VOTCA ? read_votca(p, units, &rows)
+                                         : read_columns(p, units, &rows));
     leave_out_half_bin(&rows);
     target->tail = mf_target_rows_tail(&rows);
     cut(p, &rows);
     CHECK(check_values(target, &rows));
-    CHECK(resample(target, &rows, &has_errors));
+    CHECK(resample(target, &rows));
     CHECK(find_bins(&rows, p->file, &bins));
     target->joined = rows_of_a_bin(p, &bins);
-    CHECK(join(target, &rows, has_errors));
+    CHECK(join(target, &rows));
     CHECK(find_bins(&rows, p->file, &target->bins));
-    target->g = rows.g;
+    target->g = rows.y;
     target->error = rows.error;
-    rows.g = rows.error = NULL;
+    rows.y = rows.error = NULL;
 done:
     mf_target_rows_clear(&rows);
     return status;
@@ -303,16 +243,11 @@ enum status mf_target_rdf_read(struct target_rdf *target, struct json_object *ob
     mf_json_finish(object);
     if (mf_json_fault_count(object->document) > faults)
         return STATUS_OK;
-    if (target->parameters.format == TARGET_RDF_VOTCA && !mf_units_known(units)) {
+    if (target->parameters.format == TARGET_ROWS_VOTCA && !mf_units_known(units)) {
         mf_json_fault(object, "format", "VOTCA's nm need \"units\" in the scene");
         return STATUS_OK;
     }
-    const enum status status = load(target, units, dimensions);
-    if (status == STATUS_NO_MEMORY)
-        return status;
-    if (status != STATUS_OK)
-        mf_json_fault(object, "file", "%s", mf_status_message());
-    return STATUS_OK;
+    return mf_target_rows_fault(object, "file", load(target, units, dimensions));
 }
 
 /// Of N_a (N_a − 1) in N_a², in the system that was measured.
@@ -329,7 +264,7 @@ void mf_target_rdf_convert(const struct target_rdf *target, const struct finite_
     const double to = (double)mf_composition_particles(fluid->composition);
     const double from = p->particles > 0 ? (double)p->particles : to;
     const double votca =
-        p->format == TARGET_RDF_VOTCA ? 1 / possible_share(fluid->composition, pair, from) : 1;
+        p->format == TARGET_ROWS_VOTCA ? 1 / possible_share(fluid->composition, pair, from) : 1;
     for (size_t k = 0; k < target->bins.count; k++) {
         g[k] = votca * target->g[k];
         error[k] = votca * target->error[k];

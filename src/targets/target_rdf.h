@@ -2,19 +2,15 @@
 /// @file A measured RDF to be matched.
 #pragma once
 
-#include "io/data_table.h"
 #include "io/json.h"
 #include "observe/finite_size.h"
 #include "targets/target_resample.h"
 #include "io/units.h"
 
-/// Of the file: columns in units of the scene, or a .dist.tgt of VOTCA.
-enum { TARGET_RDF_COLUMNS, TARGET_RDF_VOTCA };
-
 /// "rdf" among the targets of a run file.
 struct target_rdf_parameters {
     char file[FIELD_TEXT_SIZE];
-    int format;                               ///< TARGET_RDF_…
+    int format;                               ///< TARGET_ROWS_…
     double cutoff;                            ///< bins beyond are left out; 0: none [λ]
     int64_t r_column, g_column, error_column; ///< from 1; error_column 0: none, −1: 3 or none
     double bin_width;  ///< of bins that rows are joined to; 0: by itself [λ]
@@ -44,14 +40,6 @@ struct target_rdf {
 /// Fails: NO_MEMORY. Tested: test_target_rdf.
 enum status mf_target_rdf_read(struct target_rdf *target, struct json_object *object,
                                const struct units *units, int dimensions) MUST_USE;
-
-/// The column with the errors of a table whose values stand in the columns `first` and `second`.
-/// @param[in]  asked   in the run file; −1: 3 if there are so many columns, else none
-/// @param[out] column  from 1; 0: there is none, or it is nan in all rows
-/// Fails: BAD_INPUT if the table has fewer columns than `asked`.
-enum status mf_target_rdf_error_column(int64_t asked, int64_t first, int64_t second,
-                                       const struct data_table *table, const char *file,
-                                       int64_t *column) MUST_USE;
 
 /// g and its errors in the numbers of the scene, by mf_finite_size_factor_of. VOTCA's g of like
 /// pairs is normalised by N_a², and needs 1/(1 − 1/N_a) with the N_a that was measured.

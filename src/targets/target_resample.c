@@ -10,14 +10,14 @@
 enum { CUBIC = 4, NEXT = CUBIC + 1, AROUND = 6 };
 
 static double mean_step(const struct target_rows *rows) {
-    return (rows->r[rows->count - 1] - rows->r[0]) / (double)(rows->count - 1);
+    return (rows->x[rows->count - 1] - rows->x[0]) / (double)(rows->count - 1);
 }
 
 bool mf_target_resample_is_needed(const struct target_rows *rows) {
     static const double rounding = 0.01;
     bool needed = false;
     for (size_t k = 1; k < rows->count; k++)
-        needed = needed || fabs((rows->r[k] - rows->r[k - 1]) / mean_step(rows) - 1) > rounding;
+        needed = needed || fabs((rows->x[k] - rows->x[k - 1]) / mean_step(rows) - 1) > rounding;
     return needed && rows->count >= NEXT;
 }
 
@@ -28,7 +28,7 @@ static void find_weights(const struct target_rows *rows, const size_t *point, si
         weight[i] = 1;
         for (size_t j = 0; j < count; j++)
             if (j != i)
-                weight[i] *= (x - rows->r[point[j]]) / (rows->r[point[i]] - rows->r[point[j]]);
+                weight[i] *= (x - rows->x[point[j]]) / (rows->x[point[i]] - rows->x[point[j]]);
     }
 }
 
@@ -36,7 +36,7 @@ static double sum_of(const struct target_rows *rows, const size_t *point, const 
                      size_t count) {
     double sum = 0;
     for (size_t i = 0; i < count; i++)
-        sum += weight[i] * rows->g[point[i]];
+        sum += weight[i] * rows->y[point[i]];
     return sum;
 }
 
@@ -49,7 +49,7 @@ struct difference {
 
 static double slope_of(const struct target_rows *rows, size_t k) {
     const size_t low = k > 0 ? k - 1 : 0, high = k + 1 < rows->count ? k + 1 : k;
-    return (rows->g[high] - rows->g[low]) / (rows->r[high] - rows->r[low]);
+    return (rows->y[high] - rows->y[low]) / (rows->x[high] - rows->x[low]);
 }
 
 /// Of all points where g is not in its core; returns how many there are.
@@ -59,14 +59,14 @@ static size_t find_differences(const struct target_rows *rows, struct difference
     for (size_t k = 3; k + 3 < rows->count; k++) {
         const size_t point[AROUND] = {k - 3, k - 2, k - 1, k + 1, k + 2, k + 3};
         double weight[AROUND], variance = 1, steep = pow(slope_of(rows, k), 2);
-        find_weights(rows, point, AROUND, rows->r[k], weight);
+        find_weights(rows, point, AROUND, rows->x[k], weight);
         for (size_t i = 0; i < AROUND; i++) {
             variance += weight[i] * weight[i];
             steep += pow(weight[i] * slope_of(rows, point[i]), 2);
         }
-        if (rows->g[k - 3] > least_g && rows->g[k] > least_g)
+        if (rows->y[k - 3] > least_g && rows->y[k] > least_g)
             difference[count++] = (struct difference){
-                pow(rows->g[k] - sum_of(rows, point, weight, AROUND), 2) / variance,
+                pow(rows->y[k] - sum_of(rows, point, weight, AROUND), 2) / variance,
                 steep / variance};
     }
     return count;
@@ -144,7 +144,7 @@ done:
 /// The last point at or before x, but for the last of all.
 static size_t find_point(const struct target_rows *rows, double x) {
     size_t k = 0;
-    while (k + 2 < rows->count && rows->r[k + 1] <= x)
+    while (k + 2 < rows->count && rows->x[k + 1] <= x)
         k++;
     return k;
 }
@@ -153,7 +153,7 @@ static size_t find_point(const struct target_rows *rows, double x) {
 /// each side in turn, the nearer side first.
 static void choose_points(const struct target_rows *rows, double x, size_t point[NEXT]) {
     size_t low = find_point(rows, x), high = low + 1, found = 0;
-    bool left = x - rows->r[low] < rows->r[high] - x;
+    bool left = x - rows->x[low] < rows->x[high] - x;
     point[found++] = low;
     point[found++] = high;
     while (found < NEXT) {
@@ -177,14 +177,14 @@ static struct reading read_at(const struct target_rows *rows, double x, double w
     find_weights(rows, point, CUBIC, x, cubic);
     find_weights(rows, point, NEXT, x, next);
     const size_t low = point[0], high = point[1];
-    const double gap = rows->r[high] - rows->r[low];
-    const double share = fmin(1, fmax(0, (x - rows->r[low]) / gap));
+    const double gap = rows->x[high] - rows->x[low];
+    const double share = fmin(1, fmax(0, (x - rows->x[low]) / gap));
     struct reading reading = {.g = sum_of(rows, point, cubic, CUBIC)};
     reading.error =
         ((1 - share) * rows->error[low] + share * rows->error[high]) * sqrt(fmax(1, gap / width));
     reading.interpolation = fabs(sum_of(rows, point, next, NEXT) - reading.g);
     // In the core, and where a cubic swings below 0.
-    if (reading.g <= 0 || (rows->g[low] == 0 && rows->g[high] == 0))
+    if (reading.g <= 0 || (rows->y[low] == 0 && rows->y[high] == 0))
         reading = (struct reading){0};
     return reading;
 }
@@ -196,14 +196,14 @@ static void merge_close(struct target_rows *rows) {
     size_t merged = 0;
     for (size_t k = 0, next; k < rows->count; k = next) {
         double r = 0, g = 0, squares = 0;
-        for (next = k; next < rows->count && rows->r[next] - rows->r[k] <= apart; next++) {
-            r += rows->r[next];
-            g += rows->g[next];
+        for (next = k; next < rows->count && rows->x[next] - rows->x[k] <= apart; next++) {
+            r += rows->x[next];
+            g += rows->y[next];
             squares += rows->error[next] * rows->error[next];
         }
         const double points = (double)(next - k);
-        rows->r[merged] = r / points;
-        rows->g[merged] = g / points;
+        rows->x[merged] = r / points;
+        rows->y[merged] = g / points;
         rows->error[merged] = sqrt(squares) / points;
         rows->line[merged++] = rows->line[k];
     }
@@ -215,8 +215,8 @@ static void merge_close(struct target_rows *rows) {
 static enum status check_gaps(const struct target_rows *rows, const char *file) {
     static const double widest = 4;
     for (size_t k = 1; k < rows->count; k++) {
-        const double steps = (rows->r[k] - rows->r[k - 1]) / mean_step(rows);
-        if (steps > widest && rows->g[k] + rows->g[k - 1] > 0)
+        const double steps = (rows->x[k] - rows->x[k - 1]) / mean_step(rows);
+        if (steps > widest && rows->y[k] + rows->y[k - 1] > 0)
             return mf_status_fail(STATUS_BAD_INPUT,
                                   "%s:%zu: a gap in r of %.2g mean steps: add rows in it, or end "
                                   "the target before it by \"cutoff\"",
@@ -232,11 +232,11 @@ static struct target_grid {
     size_t count;
 } find_grid(const struct target_rows *rows) {
     static const double beyond = 0.1, rounding = 0.01;
-    const double width = mean_step(rows), begin = rows->r[0] - beyond * width,
-                 end = rows->r[rows->count - 1] + beyond * width;
+    const double width = mean_step(rows), begin = rows->x[0] - beyond * width,
+                 end = rows->x[rows->count - 1] + beyond * width;
     double offset = 0;
     for (size_t k = 0; k < rows->count; k++)
-        offset += (rows->r[k] - (double)k * width) / (double)rows->count;
+        offset += (rows->x[k] - (double)k * width) / (double)rows->count;
     double first = offset - width * floor((offset - begin) / width);
     first += first < (0.5 - rounding) * width ? width : 0;
     return (struct target_grid){first, width, 1 + (size_t)floor((end - first) / width)};
@@ -246,8 +246,8 @@ static void describe(const struct target_rows *rows, struct target_resampling *d
     done->points = rows->count;
     done->shortest = INFINITY;
     for (size_t k = 1; k < rows->count; k++) {
-        done->shortest = fmin(done->shortest, rows->r[k] - rows->r[k - 1]);
-        done->longest = fmax(done->longest, rows->r[k] - rows->r[k - 1]);
+        done->shortest = fmin(done->shortest, rows->x[k] - rows->x[k - 1]);
+        done->longest = fmax(done->longest, rows->x[k] - rows->x[k - 1]);
     }
 }
 
@@ -271,8 +271,8 @@ enum status mf_target_resample(struct target_rows *rows, const char *file, bool 
     for (size_t k = 0; k < grid.count; k++) {
         const double r = grid.first + (double)k * grid.width;
         const struct reading at = read_at(rows, r, grid.width);
-        equal.r[k] = r;
-        equal.g[k] = at.g;
+        equal.x[k] = r;
+        equal.y[k] = at.g;
         equal.error[k] = hypot(at.error, at.interpolation);
         equal.line[k] = rows->line[find_point(rows, r)];
         if (at.interpolation > done->interpolation) {

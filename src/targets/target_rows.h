@@ -1,22 +1,50 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file The rows of a measured g(r): how far they grow, joined to wider bins, errors from scatter.
+/// @file The rows of a measured curve, as a file has them; of a g(r) also how far they grow, joined
+/// to wider bins, errors from scatter.
 #pragma once
 
 #include "base/status.h"
+#include "io/json.h"
 
-#include <stdbool.h>
-#include <stddef.h>
+/// Of the file: columns in units of the scene, or a .dist.tgt of VOTCA.
+enum { TARGET_ROWS_COLUMNS, TARGET_ROWS_VOTCA };
 
-/// Rows at the centres of equal bins, in units of the scene.
+/// Values y at x, r and g of a g(r), in units of the scene.
 struct target_rows {
     size_t count;
     int dimensions; ///< of space, for the volumes of shells
-    double *r, *g, *error;
+    double *x, *y, *error;
     size_t *line; ///< in the file, for messages
+    bool has_errors;
 };
 
 enum status mf_target_rows_allocate(struct target_rows *rows, size_t count) MUST_USE;
 void mf_target_rows_clear(struct target_rows *rows);
+
+/// Where in a file rows stand, columns counted from 1, and what is found there.
+struct target_columns {
+    const char *file;
+    const char *name;            ///< columns may be called so, and "name_error"; NULL: not by name
+    const char *x_unit, *y_unit; ///< reduced; NULL: numbers that have none
+    double least;                ///< of x
+    int64_t x, y;                ///< y 0: that of the name, or 2
+    int64_t error; ///< 0: none; −1: that of the name, or 3, or none; a column of nan is none
+    const char *usual_error; ///< what programs call a column of errors
+    bool is_usual_error;     ///< found: it is called so
+};
+
+/// Read rows whose x grows. The numbers of errors are as they are, be they nan. `columns` are those
+/// that were found. Fails: BAD_INPUT, IO, NO_MEMORY.
+enum status mf_target_rows_read(struct target_rows *rows, struct target_columns *columns,
+                                const struct units *units) MUST_USE;
+
+/// Read a table of VOTCA, in its units. Fails: BAD_INPUT, IO, NO_MEMORY.
+enum status mf_target_rows_read_votca(struct target_rows *rows, const char *file) MUST_USE;
+
+/// Make a fault of an object of a failure to read what its `key` names, or of it all if that is
+/// NULL. Fails: NO_MEMORY.
+enum status mf_target_rows_fault(struct json_object *object, const char *key,
+                                 enum status status) MUST_USE;
 
 /// How g ends.
 struct target_tail {

@@ -123,7 +123,7 @@ static void print_demixing(const struct view *view, char *text, size_t size) {
 static enum status check_tail(const struct view *view, const char *file) {
     const struct target_tail *tail = &view->target->tail;
     const struct target_rdf_parameters *p = &view->target->parameters;
-    const bool votca = p->format == TARGET_RDF_VOTCA;
+    const bool votca = p->format == TARGET_ROWS_VOTCA;
     const double away = fabs(tail->mean - 1);
     if (away <= fmax(far_from_1, 2 * tail->scatter) && !(tail->grows && away > far_from_1))
         return STATUS_OK;

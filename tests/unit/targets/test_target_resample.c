@@ -31,8 +31,8 @@ static void fill(struct target_rows *rows, double noise, uint32_t draw) {
     for (rows->count = 0; r < end && rows->count < MOST; rows->count++) {
         const size_t k = rows->count;
         const double g = liquid(r);
-        rows->r[k] = r;
-        rows->g[k] = g > 0.01 ? fmax(0, g + noise * normal(2 * draw, k)) : 0;
+        rows->x[k] = r;
+        rows->y[k] = g > 0.01 ? fmax(0, g + noise * normal(2 * draw, k)) : 0;
         rows->line[k] = k + 1;
         r += step * (1 + 0.5 * tanh(normal(2 * draw + 1, k)));
     }
@@ -43,11 +43,11 @@ static void test_target_resample_is_needed_when_steps_differ(void **state) {
     struct target_rows rows = {.dimensions = 3};
     assert_ok(mf_target_rows_allocate(&rows, 8));
     for (size_t k = 0; k < rows.count; k++)
-        rows.r[k] = 0.1 * (double)k + 0.05;
+        rows.x[k] = 0.1 * (double)k + 0.05;
     assert_false(mf_target_resample_is_needed(&rows));
-    rows.r[3] += 0.0005; // rounding
+    rows.x[3] += 0.0005; // rounding
     assert_false(mf_target_resample_is_needed(&rows));
-    rows.r[3] += 0.004;
+    rows.x[3] += 0.004;
     assert_true(mf_target_resample_is_needed(&rows));
     mf_target_rows_clear(&rows);
 }
@@ -64,9 +64,9 @@ static void test_target_resample_gives_the_curve_back(void **state) {
     assert_true(done.shortest < 0.7 * step && done.longest > 1.3 * step);
     assert_in_range(rows.count, points - 2, points + 1);
     for (size_t k = 0; k < rows.count; k++) {
-        assert_close(rows.g[k], liquid(rows.r[k]), 0.006 + rows.error[k]);
+        assert_close(rows.y[k], liquid(rows.x[k]), 0.006 + rows.error[k]);
         if (k > 0)
-            assert_close(rows.r[k] - rows.r[k - 1], rows.r[1] - rows.r[0], 1e-9);
+            assert_close(rows.x[k] - rows.x[k - 1], rows.x[1] - rows.x[0], 1e-9);
     }
     mf_target_rows_clear(&rows);
 }
@@ -85,8 +85,8 @@ static void test_target_resample_knows_how_noisy_it_is(void **state) {
         assert_ok(mf_target_resample(&rows, "g.csv", false, 0.002, &done));
         found += done.error / noise / DRAWS;
         for (size_t k = 0; k < rows.count; k++)
-            if (rows.g[k] > 0.3) {
-                square += pow((rows.g[k] - liquid(rows.r[k])) / rows.error[k], 2);
+            if (rows.y[k] > 0.3) {
+                square += pow((rows.y[k] - liquid(rows.x[k])) / rows.error[k], 2);
                 count++;
             }
         mf_target_rows_clear(&rows);
@@ -107,13 +107,13 @@ static void test_target_resample_knows_noise_in_r(void **state) {
         struct target_resampling done;
         fill(&rows, noise, draw);
         for (size_t k = 0; k < rows.count; k++)
-            rows.r[k] += noise_in_r * normal(100 + draw, k);
+            rows.x[k] += noise_in_r * normal(100 + draw, k);
         assert_ok(mf_target_resample(&rows, "g.csv", false, 0.002, &done));
         found += done.error / noise / DRAWS;
         found_in_r += done.error_in_r / noise_in_r / DRAWS;
         for (size_t k = 0; k < rows.count; k++)
-            if (rows.g[k] > 0.3) {
-                square += pow((rows.g[k] - liquid(rows.r[k])) / rows.error[k], 2);
+            if (rows.y[k] > 0.3) {
+                square += pow((rows.y[k] - liquid(rows.x[k])) / rows.error[k], 2);
                 count++;
             }
         mf_target_rows_clear(&rows);
@@ -133,18 +133,18 @@ static void test_target_resample_makes_no_information(void **state) {
     fill(&rows, 0.02, 3);
     size_t kept = 0;
     for (size_t k = 0; k < rows.count; k++) // every third point from 3 on
-        if (rows.r[k] < 3 || k % 3 == 0) {
-            rows.r[kept] = rows.r[k];
-            rows.g[kept++] = rows.g[k];
+        if (rows.x[k] < 3 || k % 3 == 0) {
+            rows.x[kept] = rows.x[k];
+            rows.y[kept++] = rows.y[k];
         }
     rows.count = kept;
     size_t points = 0;
     for (size_t k = 0; k < kept; k++)
-        points += rows.r[k] > 3.2;
+        points += rows.x[k] > 3.2;
     assert_ok(mf_target_resample(&rows, "g.csv", false, 0.002, &done));
     double information = 0, bins = 0;
     for (size_t k = 0; k < rows.count; k++)
-        if (rows.r[k] > 3.2) {
+        if (rows.x[k] > 3.2) {
             information += pow(done.error / rows.error[k], 2);
             bins++;
         }
@@ -164,7 +164,7 @@ static void test_target_resample_keeps_errors_that_are_given(void **state) {
     assert_ok(mf_target_resample(&rows, "g.csv", true, 0.002, &done));
     assert_close(done.error, 0, 0);
     for (size_t k = 0; k < rows.count; k++)
-        if (rows.g[k] > 0.3)
+        if (rows.y[k] > 0.3)
             assert_true(rows.error[k] >= 0.0499 && rows.error[k] < 0.07);
     mf_target_rows_clear(&rows);
 }
@@ -176,8 +176,8 @@ static void test_target_resample_names_the_line_behind_a_gap(void **state) {
     fill(&rows, 0, 5);
     const size_t line = 60;
     for (size_t k = line - 1; k + 8 < rows.count; k++) {
-        rows.r[k] = rows.r[k + 8];
-        rows.g[k] = rows.g[k + 8];
+        rows.x[k] = rows.x[k + 8];
+        rows.y[k] = rows.y[k + 8];
     }
     rows.count -= 8;
     assert_fails(mf_target_resample(&rows, "g.csv", false, 0.002, &done), STATUS_BAD_INPUT,
@@ -193,17 +193,17 @@ static void test_target_resample_takes_points_that_nearly_coincide(void **state)
     struct target_resampling done;
     fill(&rows, 0, 6);
     for (size_t k = 40; k < 44; k++) {
-        rows.r[k] = rows.r[40] + 1e-7 * (double)(k - 40);
-        rows.g[k] = rows.g[40] + 0.01 * ((double)(k - 40) - 1.5);
+        rows.x[k] = rows.x[40] + 1e-7 * (double)(k - 40);
+        rows.y[k] = rows.y[40] + 0.01 * ((double)(k - 40) - 1.5);
     }
     assert_ok(mf_target_resample(&rows, "g.csv", false, 0.002, &done));
     for (size_t k = 0; k < rows.count; k++)
-        assert_close(rows.g[k], liquid(rows.r[k]), 0.03);
+        assert_close(rows.y[k], liquid(rows.x[k]), 0.03);
     mf_target_rows_clear(&rows);
     fill(&rows, 0, 7);
     rows.count = 6;
     for (size_t k = 0; k < 6; k++)
-        rows.r[k] = k < 5 ? 1 + 1e-9 * (double)k : 2;
+        rows.x[k] = k < 5 ? 1 + 1e-9 * (double)k : 2;
     assert_fails(mf_target_resample(&rows, "g.csv", false, 0.002, &done), STATUS_BAD_INPUT,
                  "g.csv: only 2 points at different r");
     mf_target_rows_clear(&rows);

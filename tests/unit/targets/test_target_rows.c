@@ -32,8 +32,8 @@ static void take(const struct known *from, struct target_rows *rows) {
     assert_ok(mf_target_rows_allocate(rows, table.rows));
     for (size_t k = 0; k < table.rows; k++) {
         const double *row = table.values + k * table.columns;
-        rows->r[k] = row[from->r];
-        rows->g[k] = row[from->g];
+        rows->x[k] = row[from->r];
+        rows->y[k] = row[from->g];
         rows->error[k] = row[from->error];
     }
     mf_data_table_clear(&table);
@@ -41,11 +41,11 @@ static void take(const struct known *from, struct target_rows *rows) {
 
 /// The errors in the table, as they would be at g = 1 in the last bin: their mean over the bins.
 static double quoted(const struct target_rows *rows) {
-    const double last = rows->r[rows->count - 1];
+    const double last = rows->x[rows->count - 1];
     double sum = 0, count = 0;
     for (size_t k = 0; k < rows->count; k++)
-        if (rows->g[k] > 0.2) {
-            sum += rows->error[k] * rows->r[k] / last / sqrt(rows->g[k]);
+        if (rows->y[k] > 0.2) {
+            sum += rows->error[k] * rows->x[k] / last / sqrt(rows->y[k]);
             count++;
         }
     return sum / count;
@@ -68,10 +68,10 @@ static void test_target_rows_scatter_is_near_the_errors_from_blocks(void **state
 
 /// The variance of g in a bin, for the c of an error of 1 in the last.
 static double share(const struct target_rows *rows, size_t k) {
-    const double low = rows->r[k] - 0.5 * (rows->r[1] - rows->r[0]),
-                 width = rows->r[1] - rows->r[0];
-    const double last = rows->r[rows->count - 1] - 0.5 * width;
-    return rows->g[k] * (pow(last + width, 3) - pow(last, 3)) / (pow(low + width, 3) - pow(low, 3));
+    const double low = rows->x[k] - 0.5 * (rows->x[1] - rows->x[0]),
+                 width = rows->x[1] - rows->x[0];
+    const double last = rows->x[rows->count - 1] - 0.5 * width;
+    return rows->y[k] * (pow(last + width, 3) - pow(last, 3)) / (pow(low + width, 3) - pow(low, 3));
 }
 
 /// Add noise of a known size, much larger than the table's own: as counted pairs have it.
@@ -79,7 +79,7 @@ static void add_noise(struct target_rows *rows, double error, uint32_t draw) {
     for (size_t k = 0; k < rows->count; k++) {
         double normal[4];
         mf_rng_normal4(mf_rng_philox(11, RNG_PLACEMENT, draw, (uint32_t)k, 0), normal);
-        rows->g[k] = fmax(0, rows->g[k] + error * sqrt(share(rows, k)) * normal[0]);
+        rows->y[k] = fmax(0, rows->y[k] + error * sqrt(share(rows, k)) * normal[0]);
     }
 }
 
@@ -116,7 +116,7 @@ static void test_target_rows_set_errors_have_the_shape_of_those_from_blocks(void
     memcpy(blocks, rows.error, rows.count * sizeof *blocks);
     mf_target_rows_set_errors(&rows, quoted(&rows));
     for (size_t k = 0; k < rows.count; k++)
-        if (rows.g[k] > 0.2) {
+        if (rows.y[k] > 0.2) {
             logarithms += pow(log(rows.error[k] / blocks[k]), 2);
             count++;
         }
@@ -133,12 +133,12 @@ static void test_target_rows_scatter_is_unknown_when_there_is_none(void **state)
     double error;
     assert_ok(mf_target_rows_allocate(&rows, 20));
     for (size_t k = 0; k < rows.count; k++) {
-        rows.r[k] = 0.1 * (double)k + 0.05;
-        rows.g[k] = 1;
+        rows.x[k] = 0.1 * (double)k + 0.05;
+        rows.y[k] = 1;
     }
     assert_ok(mf_target_rows_scatter(&rows, &error));
     assert_true(isnan(error));
-    rows.g[7] = 1.1;
+    rows.y[7] = 1.1;
     rows.count = 15; // 11 differences
     assert_ok(mf_target_rows_scatter(&rows, &error));
     assert_true(isnan(error));
@@ -152,8 +152,8 @@ static void test_target_rows_scatter_of_an_exact_table_is_unknown(void **state) 
     double error;
     assert_ok(mf_target_rows_allocate(&rows, 100));
     for (size_t k = 0; k < rows.count; k++) {
-        rows.r[k] = 0.05 * (double)k + 0.025;
-        rows.g[k] = 1e-8 * round(1e8 * (1 + 0.5 * sin(rows.r[k])));
+        rows.x[k] = 0.05 * (double)k + 0.025;
+        rows.y[k] = 1e-8 * round(1e8 * (1 + 0.5 * sin(rows.x[k])));
     }
     assert_ok(mf_target_rows_scatter(&rows, &error));
     assert_true(isnan(error));
@@ -165,14 +165,14 @@ static void test_target_rows_tail_tells_oscillations_from_what_grows(void **stat
     struct target_rows rows = {.dimensions = 3};
     assert_ok(mf_target_rows_allocate(&rows, 8));
     for (size_t k = 0; k < rows.count; k++) {
-        rows.r[k] = 0.1 * (double)k + 0.05;
-        rows.g[k] = k < 6 ? (double)k : 7 + 0.5 * (double)(k - 6);
+        rows.x[k] = 0.1 * (double)k + 0.05;
+        rows.y[k] = k < 6 ? (double)k : 7 + 0.5 * (double)(k - 6);
     }
     struct target_tail tail = mf_target_rows_tail(&rows);
     assert_close(tail.mean, 7.25, 1e-12);
     assert_close(tail.scatter, 0.25, 1e-12);
     assert_true(tail.grows);
-    rows.g[3] = 1;
+    rows.y[3] = 1;
     assert_false(mf_target_rows_tail(&rows).grows);
     mf_target_rows_clear(&rows);
 }
