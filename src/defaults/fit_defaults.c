@@ -46,21 +46,6 @@ bool mf_fit_defaults_wanted(const struct json_object *root) {
             mf_fit_choice_lacks(root, "scene", "time_step") || lacks_verification(root));
 }
 
-enum status mf_fit_defaults_make_readable(struct json_object *root) {
-    enum { ANY_COUNT = 1000 };
-    if (!lacks_method(root))
-        return STATUS_OK;
-    TRY(mf_fit_choice_give_text(root, "method", "name", mf_automatic.name));
-    if (mf_fit_choice_lacks(root, "scene", "density") ||
-        !mf_fit_choice_lacks(root, "scene.particles", "types") ||
-        !mf_fit_choice_lacks(root, "scene", "molecules"))
-        return STATUS_OK;
-    const struct fit_file reduced = {0};
-    const struct fit_choice choice = {.read = &reduced, .root = root};
-    return mf_fit_choice_give(&choice, "scene.particles", mf_placement_count_fields, "count",
-                              ANY_COUNT);
-}
-
 // The choices -------------------------------------------------------------------------------------
 
 /// Give a key of the target g(r), of a mixture those of each pair type that do not say it.

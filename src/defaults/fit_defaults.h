@@ -15,12 +15,8 @@
 /// Whether the root of a run file leaves something of that to the program.
 bool mf_fit_defaults_wanted(const struct json_object *root);
 
-/// Put in what must stand in a run file before it can be read at all.
-/// Fails: NO_MEMORY.
-enum status mf_fit_defaults_make_readable(struct json_object *root) MUST_USE;
-
 /// Put in what is chosen, and keep a line of each choice with its reason.
-/// @param[in]  read    the same file, made readable and read
+/// @param[in]  read    the same file
 /// @param[in]  leader  the first state, whose range of g(r) the others have; NULL without
 /// @param[in]  root    of the file as it stands
 /// Fails: NO_MEMORY. Tested: test_fit_defaults, test_default_fits.

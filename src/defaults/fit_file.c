@@ -78,9 +78,9 @@ static void refuse_removed(const struct inverse_method *method, struct json_obje
             mf_json_retired(object, removed[k].key, removed[k].now, removed[k].reason);
 }
 
-static enum status read_method(struct fit_file *fit, struct json_object *root) {
+static enum status read_method(struct fit_file *fit, struct json_object *root, bool required) {
     const char **names;
-    struct json_object object = mf_json_child_of(root, "method", true, "name");
+    struct json_object object = mf_json_child_of(root, "method", required, "name");
     if (object.item == NULL)
         return STATUS_OK;
     if (mf_json_refuse_choice(&object, "name", "joint-imc",
@@ -125,13 +125,15 @@ static void refuse_foreign(struct json_object *scene, int unknown) {
 }
 
 /// The scene leaves out what "unknowns" names.
-static enum status read_scene(struct fit_file *fit, struct json_object *root) {
+static enum status read_scene(struct fit_file *fit, struct json_object *root, bool chosen) {
     struct json_object scene = mf_json_child(root, "scene", true);
     if (scene.item == NULL)
         return STATUS_OK;
     struct scene_fitted fitted;
     const int unknown = mf_fit_unknowns_left_out(root);
     mf_fit_unknowns_groups(root, &scene, &fitted);
+    fitted.count_follows =
+        !chosen && !mf_json_is_member(root, "method") && mf_json_is_member(&scene, "density");
     TRY(mf_scene_read(&fit->scene, &scene, unknown, &fitted));
     refuse_foreign(&scene, unknown);
     mf_json_finish(&scene);
@@ -139,22 +141,23 @@ static enum status read_scene(struct fit_file *fit, struct json_object *root) {
 }
 
 /// @param[in] leader  the first of several states, whose units all have; NULL of itself
+/// @param[in] chosen  what may be left to the program has been put in
 static enum status read_root(struct fit_file *fit, struct json_object *root,
-                             const struct fit_file *leader) {
+                             const struct fit_file *leader, bool chosen) {
     mf_json_fields(root, mf_heading_fields, &fit->heading);
     struct json_object scene = mf_json_child(root, "scene", false);
     mf_units_speak(root, &scene);
     if (leader && mf_units_speaks(&leader->scene.units))
         mf_json_speak(root->document, &leader->scene.units);
     // Before what its units convert.
-    TRY(read_scene(fit, root));
+    TRY(read_scene(fit, root, chosen));
     const struct simulation_setup *setup = &fit->scene.setup;
     const struct target_scene about = {&setup->box, &setup->composition,
                                        mf_molecules_find(setup->interaction, setup->interactions),
                                        &fit->scene.units};
     TRY(mf_target_files_read(&fit->files, root, &about));
     TRY(mf_fit_unknowns_read(fit, root));
-    TRY(read_method(fit, root));
+    TRY(read_method(fit, root, chosen));
     struct json_object core = mf_json_child(root, "core", false);
     mf_json_fields(&core, mf_fit_core_fields, &fit->core);
     if (core.item)
@@ -237,67 +240,61 @@ struct reading {
     size_t state;
     const struct fit_file *leader; ///< the first state, in whose units and range the others are
     size_t states;                 ///< found; 0: the file has no states
-    bool wants_choices;            ///< found: it leaves something to the program
-    bool names_groups;             ///< found: it says itself which groups are to be found
+    struct json_document *document;
 };
 
-/// Laws for the groups that are constraints, then choices for what the file leaves out, both by an
-/// earlier reading of it.
-static enum status complete(struct fit_file *fit, const struct reading *reading,
-                            const struct fit_file *earlier, bool choose, struct json_object *root) {
-    if (earlier) {
-        TRY(mf_fit_constraints_put(&fit->constraints, earlier, root));
-        mf_fit_constraints_say(&fit->constraints, earlier, &fit->choices);
-    }
-    if (choose)
-        return mf_fit_defaults_choose(earlier, reading->leader, root, &fit->choices);
-    return reading->wants_choices ? mf_fit_defaults_make_readable(root) : STATUS_OK;
-}
-
-/// @param[in] earlier  reading of the same file, or NULL
-/// @param[in] choose   what the file leaves out; else it is made readable without
-static enum status read_document(struct fit_file *fit, struct reading *reading,
-                                 const struct fit_file *earlier, bool choose) {
-    struct json_document *document;
-    TRY(mf_json_open(&document, reading->file));
-    enum status status =
-        mf_fit_states_take(document, reading->file, reading->state, fit->name, &reading->states);
-    struct json_object root = mf_json_root(document);
-    if (status == STATUS_OK)
-        status = mf_heading_check_run(&root, reading->file);
-    reading->wants_choices = mf_fit_defaults_wanted(&root);
-    reading->names_groups = mf_fit_unknowns_name_groups(&root);
-    if (status == STATUS_OK)
-        status = complete(fit, reading, earlier, choose, &root);
-    if (status == STATUS_OK)
-        status = mf_json_collect_files(document, &fit->inputs);
-    if (status == STATUS_OK)
-        status = read_root(fit, &root, reading->leader);
-    return mf_json_close(document, status);
-}
-
-/// Read the file anew, in the place of an earlier reading.
-static enum status read_again(struct fit_file *fit, struct reading *reading, bool choose) {
-    struct fit_file earlier = *fit;
-    *fit = (struct fit_file){.constraints = earlier.constraints};
-    const enum status status = read_document(fit, reading, &earlier, choose);
-    mf_fit_file_clear(&earlier);
-    TRY(status);
+/// What the document says, which must be read whole, as what was chosen for it.
+static enum status read_whole(struct fit_file *fit, const struct reading *reading, bool chosen) {
+    struct json_object root = mf_json_root(reading->document);
+    mf_json_speak(reading->document, &(struct units){0});
+    TRY(mf_json_collect_files(reading->document, &fit->inputs));
+    TRY(read_root(fit, &root, reading->leader, chosen));
     state_problem(fit, reading->options);
     return STATUS_OK;
 }
 
-static enum status parse_state(struct fit_file *fit, struct reading *reading) {
-    *fit = (struct fit_file){0};
-    TRY(read_document(fit, reading, NULL, false));
-    state_problem(fit, reading->options);
+/// Read the document once more, with what was put into it for what it lacks.
+static enum status read_again(struct fit_file *fit, const struct reading *reading, bool chosen) {
+    struct fit_file kept = {.constraints = fit->constraints, .choices = fit->choices};
+    memcpy(kept.name, fit->name, sizeof kept.name);
+    mf_fit_file_clear(fit);
+    *fit = kept;
+    return read_whole(fit, reading, chosen);
+}
+
+/// Laws for the groups that are constraints.
+static enum status put_constraints(struct fit_file *fit, const struct reading *reading) {
+    struct json_object root = mf_json_root(reading->document);
     if (reading->leader)
         fit->constraints = reading->leader->constraints; // laws are of all states
-    else if (!reading->names_groups)
+    else if (!mf_fit_unknowns_name_groups(&root))
         mf_fit_constraints_find(fit, &fit->constraints);
-    if (fit->constraints.count > 0)
-        TRY(read_again(fit, reading, false));
-    return reading->wants_choices ? read_again(fit, reading, true) : STATUS_OK;
+    if (fit->constraints.count == 0)
+        return STATUS_OK;
+    TRY(mf_fit_constraints_put(&fit->constraints, fit, &root));
+    mf_fit_constraints_say(&fit->constraints, fit, &fit->choices);
+    return read_again(fit, reading, false);
+}
+
+static enum status read_state(struct fit_file *fit, struct reading *reading) {
+    struct json_document *document = reading->document;
+    TRY(mf_fit_states_take(document, reading->file, reading->state, fit->name, &reading->states));
+    struct json_object root = mf_json_root(document);
+    TRY(mf_heading_check_run(&root, reading->file));
+    const bool chooses = mf_fit_defaults_wanted(&root);
+    TRY(read_whole(fit, reading, !chooses));
+    if (mf_json_fault_count(document) == 0)
+        TRY(put_constraints(fit, reading));
+    if (!chooses || mf_json_fault_count(document) > 0)
+        return STATUS_OK;
+    TRY(mf_fit_defaults_choose(fit, reading->leader, &root, &fit->choices));
+    return read_again(fit, reading, true);
+}
+
+static enum status parse_state(struct fit_file *fit, struct reading *reading) {
+    *fit = (struct fit_file){0};
+    TRY(mf_json_open(&reading->document, reading->file));
+    return mf_json_close(reading->document, read_state(fit, reading));
 }
 
 /// The states behind the first. What they read is read by the run.
@@ -308,7 +305,7 @@ static enum status parse_others(struct fit_file *fit, const struct reading *firs
     NEW_ARRAY(fit->other, first->states - 1);
     while (fit->others < first->states - 1) {
         struct fit_file *other = &fit->other[fit->others++];
-        struct reading reading = {first->file, first->options, fit->others, fit, 0, false, false};
+        struct reading reading = {first->file, first->options, fit->others, fit, 0, NULL};
         CHECK(mf_fit_states_mark(other, parse_state(other, &reading)));
         for (size_t k = 0; k < other->inputs.count; k++)
             CHECK(mf_input_files_add(&fit->inputs, other->inputs.file[k].name));
@@ -319,7 +316,7 @@ done:
 
 enum status mf_fit_file_parse(struct fit_file *fit, const char *file,
                               const struct run_options *options) {
-    struct reading reading = {file, options, 0, NULL, 0, false, false};
+    struct reading reading = {file, options, 0, NULL, 0, NULL};
     TRY(mf_fit_states_mark(fit, parse_state(fit, &reading)));
     TRY(parse_others(fit, &reading));
     TRY(mf_fit_states_widen(fit, file));

@@ -22,7 +22,8 @@ struct scene_molecule {
 struct scene_fitted {
     int count[BONDED_KINDS];
     char name[BONDED_KINDS][MOLECULES_MOST_GROUPS][TOPOLOGY_NAME_SIZE];
-    bool told;                             ///< by "unknowns"; else what has a target is fitted
+    bool told;          ///< by "unknowns"; else what has a target is fitted
+    bool count_follows; ///< a count of beads that the scene does not say is chosen later
     struct json_object from[BONDED_KINDS]; ///< the objects that name them, of those that there are
 };
 

@@ -116,8 +116,13 @@ done:
     return status;
 }
 
-static void read_count(struct scene *scene, struct json_object *particles) {
-    mf_json_fields(particles, mf_placement_count_fields, &scene->setup.placement);
+/// @param[in] follows  whether a count that is missing is chosen later, from what any has
+static void read_count(struct scene *scene, struct json_object *particles, bool follows) {
+    enum { ANY_COUNT = 1000 };
+    if (follows && !mf_json_has(particles, "count"))
+        scene->setup.placement.count = ANY_COUNT;
+    else
+        mf_json_fields(particles, mf_placement_count_fields, &scene->setup.placement);
     scene->setup.composition = mf_composition_of_one(scene->setup.placement.count);
 }
 
@@ -180,7 +185,7 @@ static enum status read_beads(struct scene *scene, struct json_object *object,
     else if (typed)
         read_types(scene, particles, beside);
     else if (!beside)
-        read_count(scene, particles);
+        read_count(scene, particles, fitted && fitted->count_follows);
     TRY(mf_scene_molecules_read(&scene->molecules, object, fitted, composition, &scene->units));
     if (scene_has_molecules(&scene->molecules))
         scene->setup.placement.count = mf_composition_particles(composition);
@@ -191,7 +196,7 @@ static enum status read_beads(struct scene *scene, struct json_object *object,
 
 enum status mf_scene_particles_read(struct scene *scene, struct json_object *object,
                                     const struct scene_fitted *fitted) {
-    const bool required = !mf_json_has(object, "molecules");
+    const bool required = !mf_json_has(object, "molecules") && !(fitted && fitted->count_follows);
     struct json_object particles = mf_json_child(object, "particles", required);
     struct placement *placement = &scene->setup.placement;
     TRY(read_beads(scene, object, fitted, &particles));
