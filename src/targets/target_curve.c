@@ -260,10 +260,6 @@ static struct target number_values(const struct target_files *files, int kind) {
     return (struct target){.count = 1, .value = &number->value, .error = &number->error};
 }
 
-static bool is_diffusion(int kind) {
-    return kind == TARGET_DIFFUSION;
-}
-
 #define NUMBER_RECORD                                                                              \
     .chief = "value", .form = OBSERVABLE_NUMBER, .size = sizeof(struct target_number),             \
     .values = number_values
@@ -281,7 +277,7 @@ const struct target_record mf_target_diffusion = {
     .topic = "diffusion-target",
     .summary = "\"diffusion\": D, which may have a window of its own",
     .fields = {number_fields, diffusion_fields, mf_target_files_use_fields},
-    .takes = is_diffusion,
+    .kinds = {"diffusion"},
     .read = read_diffusion,
     .write = write_diffusion,
     NUMBER_RECORD,

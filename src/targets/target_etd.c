@@ -259,17 +259,13 @@ static void find_place(const struct target_files *files, int kind, const struct 
     at[1] = grid->r_minimum + ((double)(k % bins) + 0.5) * width;
 }
 
-static bool takes(int kind) {
-    return kind == TARGET_ETD;
-}
-
 const struct target_record mf_target_etd = {
     .topic = "etd-target",
     .summary = "\"etd\": escape times of pairs",
     .chief = "file",
     .fields = {etd_fields, mf_target_files_use_fields},
     .form = OBSERVABLE_OWN_FORM,
-    .takes = takes,
+    .kinds = {"etd"},
     .size = sizeof(struct target_etd),
     .read = read,
     .clear = clear,

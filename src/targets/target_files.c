@@ -3,6 +3,7 @@
 
 #include "base/digest.h"
 #include "base/memory.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -24,6 +25,11 @@ const struct field mf_target_files_use_fields[] = {
     FIELD_END,
 };
 
+/// Of which nothing else knows.
+extern const struct target_record mf_target_pairs, mf_target_etd, mf_target_groups;
+extern const struct target_record mf_target_curve_of_time, mf_target_curve, mf_target_number;
+extern const struct target_record mf_target_kirkwood_buff, mf_target_diffusion;
+
 /// In the order of `mesofit describe`.
 const struct target_record *const mf_target_records[] = {
     &mf_target_pairs,         &mf_target_etd,       &mf_target_groups,
@@ -31,15 +37,24 @@ const struct target_record *const mf_target_records[] = {
     &mf_target_kirkwood_buff, &mf_target_diffusion, NULL,
 };
 
+/// Whether a record names a kind.
+static bool names(const struct target_record *record, const char *kind) {
+    size_t k = 0;
+    while (record->kinds[k] && strcmp(record->kinds[k], kind) != 0)
+        k++;
+    return record->kinds[k] != NULL;
+}
+
 const struct target_record *mf_target_record(int kind) {
-    const enum observable_form form = mf_observable_kind(kind).target->form;
-    const struct target_record *found = NULL;
+    const struct observable_target *about = mf_observable_kind(kind).target;
+    const struct target_record *of_form = NULL;
     for (size_t k = 0; mf_target_records[k]; k++) {
-        const struct target_record *record = mf_target_records[k];
-        if (record->form == form && (record->takes ? record->takes(kind) : found == NULL))
-            found = record;
+        if (names(mf_target_records[k], about->name))
+            return mf_target_records[k];
+        if (mf_target_records[k]->form == about->form && mf_target_records[k]->kinds[0] == NULL)
+            of_form = mf_target_records[k];
     }
-    return found;
+    return of_form;
 }
 
 /// Settings that stand beside the values. Two targets of one observable must say the same.

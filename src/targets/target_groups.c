@@ -205,9 +205,7 @@ static void find_place(const struct target_files *files, int kind, const struct 
     at[0] = bonded_bins_centre(&groups->member[table->part].bins, k);
 }
 
-static bool takes(int kind) {
-    return mf_bonded_distribution_order(kind) < BONDED_KINDS;
-}
+#define KEY(NAME, kind, beads, key, ...) #key,
 
 const struct target_record mf_target_groups = {
     .topic = "distribution-target",
@@ -216,7 +214,7 @@ const struct target_record mf_target_groups = {
     .chief = "file",
     .fields = {mf_target_bonded_fields},
     .form = OBSERVABLE_OWN_FORM,
-    .takes = takes,
+    .kinds = {BONDED_LIST(KEY)},
     .size = sizeof(struct target_groups),
     .read = read,
     .clear = clear,

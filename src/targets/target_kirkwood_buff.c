@@ -102,10 +102,6 @@ static struct target values(const struct target_files *files, int kind) {
     return (struct target){.count = target->pairs, .value = target->value, .error = target->error};
 }
 
-static bool takes(int kind) {
-    return kind == mf_kirkwood_buff_kind();
-}
-
 const struct target_record mf_target_kirkwood_buff = {
     .topic = "kirkwood_buff-target",
     .summary = "\"kirkwood_buff\": Kirkwood and Buff's integrals, of a mixture by pairs of "
@@ -113,7 +109,7 @@ const struct target_record mf_target_kirkwood_buff = {
     .chief = "value",
     .fields = {number_fields, mf_kirkwood_buff_observable_fields, mf_target_files_use_fields},
     .form = OBSERVABLE_OWN_FORM,
-    .takes = takes,
+    .kinds = {"kirkwood_buff"},
     .size = sizeof(struct target_kirkwood_buff),
     .read = read,
     .write = write,

@@ -267,17 +267,13 @@ static void find_place(const struct target_files *files, int kind, const struct 
     at[0] = mf_rdf_bins_centre(target_pairs_bins(files->own[kind]), k);
 }
 
-static bool takes(int kind) {
-    return kind == TARGET_RDF || kind == mf_rdf_intermolecular_kind();
-}
-
 const struct target_record mf_target_pairs = {
     .topic = "rdf-target",
     .summary = "\"rdf\" of a run file's \"target\": g(r)",
     .chief = "file",
     .fields = {mf_target_rdf_fields, mf_target_files_use_fields},
     .form = OBSERVABLE_OWN_FORM,
-    .takes = takes,
+    .kinds = {"rdf", "intermolecular_rdf"},
     .size = sizeof(struct target_pairs),
     .read = read,
     .clear = clear,

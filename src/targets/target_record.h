@@ -37,7 +37,7 @@ struct target_record {
     const char *chief;             ///< the key that may be all that somebody writes
     const struct field *fields[4]; ///< of its object, for `describe`; NULL-terminated
     enum observable_form form;     ///< of the kinds that it reads
-    bool (*takes)(int kind);       ///< which of these; NULL: all that no other takes
+    const char *kinds[8];          ///< which of these by their names; none: all that no other names
     size_t size;                   ///< of what it keeps of a kind, zeroed before
 
     /// Read the object of a target, whose struct target_use and settings are read before. Faults go
@@ -54,7 +54,3 @@ struct target_record {
     void (*place)(const struct target_files *files, int kind, const struct target_table *table,
                   size_t k, double at[2]);
 };
-
-extern const struct target_record mf_target_pairs, mf_target_etd, mf_target_groups;
-extern const struct target_record mf_target_curve_of_time, mf_target_curve, mf_target_number;
-extern const struct target_record mf_target_kirkwood_buff, mf_target_diffusion;

@@ -2,6 +2,7 @@
 //
 // What `mesofit simulate` measures of pairs, from outside: escape times and the force covariance.
 #include "targets/target_etd.h"
+#include "shared/is_close.h"
 #include "shared/results.h"
 #include "shared/run_program.h"
 #include "shared/small_inputs.h"
