@@ -8,7 +8,6 @@
 #include "defaults/fit_check.h"
 #include "defaults/fit_defaults.h"
 #include "defaults/fit_states.h"
-#include "defaults/fit_states_bins.h"
 #include "defaults/fit_unknowns.h"
 
 #include <math.h>

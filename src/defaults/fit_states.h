@@ -32,3 +32,8 @@ enum status mf_fit_states_normalise(struct fit_file *fit) MUST_USE;
 
 /// Begin the message of a failure with the state that it is about. Returns `status`.
 enum status mf_fit_states_mark(const struct fit_file *fit, enum status status);
+
+/// Give the targets of each group that is to be found the bins of all states: what one state has
+/// not seen has p = 0 there. Fails: BAD_INPUT if the states do not look for the same groups, or
+/// their bins do not meet; NO_MEMORY.
+enum status mf_fit_states_widen(struct fit_file *fit, const char *file) MUST_USE;
