@@ -61,6 +61,43 @@ static void write_tables(void **state) {
     put(state, "m.tsv", msd);
 }
 
+/// Whatever an observable supplies as a target can be read, kept and fitted.
+static void test_target_record_of_every_kind_is_whole(void **state) {
+    (void)state;
+    for (int kind = 0; mf_targets_name(kind); kind++) {
+        const struct target_record *record = mf_target_record(kind);
+        assert_non_null(record);
+        assert_true(record->size > 0 && record->read && record->values && record->fields[0]);
+        assert_true(record->form == mf_observable_kind(kind).target->form);
+        assert_true((record->table == NULL) == (record->place == NULL));
+    }
+}
+
+/// What a fit shows beside its result are all values of a target, each once.
+static void test_target_files_table_holds_every_value_once(void **state) {
+    struct target_files t;
+    struct target_table table;
+    struct targets fitted, compared;
+    write_tables(state);
+    assert_ok(read(state, RDF ", " APART ", " ETD ", " VACF ", " NUMBERS, &t));
+    mf_target_files_targets(&t, false, &fitted, &compared);
+    for (int kind = 0; mf_targets_name(kind); kind++) {
+        size_t values = 0;
+        for (size_t n = 0; mf_target_files_table(&t, kind, n, &table); n++) {
+            double at[2];
+            assert_int_equal(table.first, values);
+            values += table.count;
+            mf_target_record(kind)->place(&t, kind, &table, table.count - 1, at);
+            assert_true(at[table.places - 1] > 0);
+        }
+        if (mf_target_record(kind)->table)
+            assert_int_equal(values, compared.target[kind].count);
+    }
+    assert_false(mf_target_files_table(&t, TARGET_PRESSURE, 0, &table));
+    assert_false(mf_target_files_table(&t, TARGET_MSD, 0, &table)); // not given
+    mf_target_files_clear(&t);
+}
+
 /// The file has other bins than that of all pairs: what measures it is told.
 static void test_targets_read_gives_the_structure_between_molecules_its_own_bins(void **state) {
     static const double wanted[] = {0.2, 1.2, 1.1, 1, 1}, errors[] = {0.1, 0.2, 0.1, 0.1, 0.2};
@@ -315,6 +352,8 @@ static void test_targets_digest_knows_every_number(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(test_targets_read_takes_all_kinds),
+        TEST(test_target_record_of_every_kind_is_whole),
+        TEST(test_target_files_table_holds_every_value_once),
         TEST(test_targets_read_gives_the_structure_between_molecules_its_own_bins),
         TEST(test_targets_read_converts_integrals_of_kirkwood_and_buff),
         TEST(test_targets_read_takes_the_columns_of_a_curve),
