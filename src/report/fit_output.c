@@ -311,6 +311,7 @@ enum status mf_fit_output_observables(const struct fit_file *fit,
     struct target_table table;
     for (int kind = 0; mf_targets_name(kind); kind++)
         for (size_t n = 0; mf_target_files_table(&fit->files, kind, n, &table); n++)
-            TRY(write_table(fit, kind, &table, &verification->observed, folder));
+            if (table.count > 0)
+                TRY(write_table(fit, kind, &table, &verification->observed, folder));
     return write_configuration(fit, verification, folder);
 }

@@ -17,7 +17,8 @@ enum status mf_fit_reserve_observables(const struct fit_file *state, const char 
     struct target_table table;
     for (int kind = 0; mf_targets_name(kind); kind++)
         for (size_t n = 0; mf_target_files_table(&state->files, kind, n, &table); n++)
-            TRY(reserve(folder, inside, table.name, ".tsv"));
+            if (table.count > 0)
+                TRY(reserve(folder, inside, table.name, ".tsv"));
     return reserve(folder, inside, CONFIGURATION_FILE, "");
 }
 

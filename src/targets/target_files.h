@@ -95,6 +95,6 @@ void mf_target_files_targets(struct target_files *files, bool moves, struct targ
 enum status mf_target_files_check_steps(const struct target_files *files,
                                         double time_step) MUST_USE;
 
-/// Table number n of those in which a fit shows a kind beside its result; false beyond the last.
+/// The table in which a fit shows part n of a kind beside its result; false beyond the last.
 bool mf_target_files_table(const struct target_files *files, int kind, size_t n,
                            struct target_table *table);

@@ -179,16 +179,12 @@ static struct target values(const struct target_files *files, int kind) {
                            .blocks = groups->blocks};
 }
 
-/// That of a group that is given: bond_lengths_backbone.tsv.
-static bool find_table(const struct target_files *files, int kind, size_t n,
+/// bond_lengths_backbone.tsv.
+static bool find_table(const struct target_files *files, int kind, size_t g,
                        struct target_table *table) {
     const struct observable_target *about = mf_observable_kind(kind).target;
     const struct target_groups *groups = files->own[kind];
-    size_t g = 0;
-    for (size_t left = n + 1; g < groups->groups; g++)
-        if (target_groups_have(groups, g) && --left == 0)
-            break;
-    if (g == groups->groups)
+    if (g >= groups->groups)
         return false;
     *table = (struct target_table){.part = g,
                                    .first = groups->first[g],

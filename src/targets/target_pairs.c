@@ -234,25 +234,22 @@ static struct target values(const struct target_files *files, int kind) {
                            .factor_error = target->factor_error};
 }
 
-/// That of a pair type of which there are pairs: rdf_A-B.tsv. Beside it what the target was before
-/// it was divided by its normalisation, if that changed it.
-static bool find_table(const struct target_files *files, int kind, size_t n,
+/// rdf_A-B.tsv. Beside g what it was before it was divided by its normalisation, if that changed
+/// it.
+static bool find_table(const struct target_files *files, int kind, size_t pair,
                        struct target_table *table) {
     const struct target_pairs *target = files->own[kind];
     const size_t bins = target_pairs_bins(target)->count;
     char name[COMPOSITION_PAIR_NAME_SIZE];
-    size_t pair = 0;
-    for (size_t left = n + 1; pair < target->pairs; pair++)
-        if (mf_composition_has_pairs(&files->composition, (int)pair) && --left == 0)
-            break;
-    if (pair == target->pairs)
+    if (pair >= target->pairs)
         return false;
-    *table = (struct target_table){.part = pair,
-                                   .first = pair * bins,
-                                   .count = bins,
-                                   .places = 1,
-                                   .place = {"r[lambda]"},
-                                   .beside = true};
+    *table = (struct target_table){
+        .part = pair,
+        .first = pair * bins,
+        .count = mf_composition_has_pairs(&files->composition, (int)pair) ? bins : 0,
+        .places = 1,
+        .place = {"r[lambda]"},
+        .beside = true};
     if (memcmp(target->given + table->first, target->g + table->first, bins * sizeof(double)) != 0)
         table->given = target->given + table->first;
     mf_composition_pair_name(&files->composition, (int)pair, name);

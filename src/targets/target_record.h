@@ -24,7 +24,7 @@ struct target_scene {
 struct target_table {
     char name[128];                          ///< of its file, without ".tsv"
     size_t part;                             ///< number of the pair type or group
-    size_t first, count;                     ///< its values among those of the target
+    size_t first, count;                     ///< its values among those of the target; 0: none
     size_t places;                           ///< columns of where they are
     const char *place[2];                    ///< "r[lambda]"
     bool beside, values_beside;              ///< which of them have physical units beside
@@ -49,7 +49,7 @@ struct target_record {
     void (*write)(const struct target_files *files, int kind, struct json_writer *writer);
     /// Values and errors, as a fit takes them.
     struct target (*values)(const struct target_files *files, int kind);
-    /// Table number n, false beyond the last; and where its value number k is. NULL: none.
+    /// Table of part n, false beyond the last; and where its value number k is. NULL: none.
     bool (*table)(const struct target_files *files, int kind, size_t n, struct target_table *table);
     void (*place)(const struct target_files *files, int kind, const struct target_table *table,
                   size_t k, double at[2]);
