@@ -246,32 +246,27 @@ static enum status check_nonzero(const struct view *view, const char *file) {
         view->name, view->target->parameters.file, (long long)view->target->parameters.g_column);
 }
 
-/// Of all g(r) one behind the other.
-static size_t views(const struct target_files *files) {
-    return target_files_rdf(files)->pairs + target_files_apart(files)->pairs;
-}
+/// g(r) of all pairs, then of different molecules.
+enum { MOST_VIEWS = 2 * COMPOSITION_MOST_PAIRS };
 
-/// Of a single bead there are none.
-static bool has_pairs(const struct target_files *files, const struct scene *scene, size_t number) {
-    const size_t pair =
-        number < target_files_rdf(files)->pairs ? number : number - target_files_rdf(files)->pairs;
-    return mf_composition_has_pairs(&scene->setup.composition, (int)pair);
-}
-
-static struct view view_at(const struct target_files *files, const struct scene *scene,
-                           size_t number) {
-    return number < target_files_rdf(files)->pairs
-               ? view_of(target_files_rdf(files), TARGET_RDF, scene, number)
-               : view_of(target_files_apart(files), mf_rdf_intermolecular_kind(), scene,
-                         number - target_files_rdf(files)->pairs);
+/// False where there is none: of a target that is not given, and of a single bead.
+static bool find_view(const struct target_files *files, const struct scene *scene, size_t n,
+                      struct view *view) {
+    const int kind = n < COMPOSITION_MOST_PAIRS ? TARGET_RDF : mf_rdf_intermolecular_kind();
+    const struct target_pairs *all = files->own[kind];
+    const size_t pair = n % COMPOSITION_MOST_PAIRS;
+    if (pair >= all->pairs || !mf_composition_has_pairs(&scene->setup.composition, (int)pair))
+        return false;
+    *view = view_of(all, kind, scene, pair);
+    return true;
 }
 
 enum status mf_target_sanity_check(const struct target_files *files, const struct scene *scene,
                                    const char *file) {
-    for (size_t n = 0; n < views(files); n++) {
-        if (!has_pairs(files, scene, n))
+    struct view view;
+    for (size_t n = 0; n < MOST_VIEWS; n++) {
+        if (!find_view(files, scene, n, &view))
             continue;
-        const struct view view = view_at(files, scene, n);
         TRY(check_nonzero(&view, file));
         TRY(check_tail(&view, file));
         if (scene_has_molecules(&scene->molecules))
@@ -430,10 +425,10 @@ static void tell_normalisation(const struct normalisation *n,
 
 enum status mf_target_sanity_tell(const struct target_files *files, const struct scene *scene,
                                   const struct target_sanity_listener *listener) {
-    for (size_t n = 0; n < views(files); n++) {
-        if (!has_pairs(files, scene, n))
+    struct view view;
+    for (size_t n = 0; n < MOST_VIEWS; n++) {
+        if (!find_view(files, scene, n, &view))
             continue;
-        const struct view view = view_at(files, scene, n);
         tell_view(&view, listener);
         tell_origin(&view, listener);
         if (scene_has_molecules(&scene->molecules))
