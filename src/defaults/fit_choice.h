@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file What is known while the program chooses what a run file leaves out (defaults/fit_defaults.h),
-/// and how it puts a choice into the document.
+/// @file What is known while the program chooses what a run file leaves out
+/// (defaults/fit_defaults.h), and how it puts a choice into the document.
 ///
 /// Paths are of objects, "scene.particles"; what a file has at a path and key is never replaced.
 #pragma once
