@@ -207,7 +207,8 @@ asan:
 	$(ASAN) check-sanitized
 
 # Fuzzing. The readers belong to a few layers, which clang builds anew; the rest is as it always is.
-FUZZED  = $(filter src/base/% src/curves/% src/io/% src/input/% src/trajectory/%,$(SOURCES)) src/system/composition.c \
+FUZZED  = $(filter $(addprefix src/,base/% curves/% io/% topologies/% scene/% targets/% defaults/% trajectory/%),$(SOURCES)) \
+          src/system/composition.c \
           tests/fuzz/fuzz_readers.c
 READERS = build/fuzz/readers
 MUTATE  = build/fuzz/mutate

@@ -5,7 +5,7 @@
 #include "app/completion.h"
 #include "app/reference.h"
 #include "base/nearest.h"
-#include "input/fit_file.h"
+#include "defaults/fit_file.h"
 #include "observe/kirkwood_buff_observable.h"
 #include "observe/measure.h"
 #include "observe/rdf_observable.h"
@@ -169,36 +169,10 @@ static const struct topic fixed_topics[] = {
      {mf_mapping_plan_fields}},
     {"files", "bead", "one of \"beads\" of a map", {mf_mapping_plan_bead_fields}},
     {"target", "target", "\"target\" of a run file", {NULL}},
-    {"target",
-     "rdf-target",
-     "\"rdf\" of a run file's \"target\": g(r)",
-     {mf_target_rdf_fields, mf_target_files_use_fields}},
-    {"target",
-     "etd-target",
-     "\"etd\": escape times of pairs",
-     {mf_target_etd_fields, mf_target_files_use_fields}},
-    {"target",
-     "distribution-target",
-     "one group of \"bond_lengths\", \"bond_angles\" and \"dihedral_angles\", as \"backbone\"",
-     {mf_target_bonded_fields}},
-    {"target",
-     "curve-target",
-     "a function of time, as \"vacf\" and \"msd\", with its file",
-     {mf_target_curve_time_fields, mf_target_files_use_fields}},
-    {"target",
-     "function-target",
-     "any other function, with its file and the settings of its observable",
-     {mf_target_curve_fields, mf_target_files_use_fields}},
-    {"target",
-     "number-target",
-     "a number, as \"diffusion\" and \"pressure\"",
-     {mf_target_curve_number_fields, mf_target_files_use_fields}},
-    {"target",
-     "kirkwood_buff-target",
-     "\"kirkwood_buff\": Kirkwood and Buff's integrals, of a mixture by pairs of components",
-     {mf_target_kirkwood_buff_fields, mf_kirkwood_buff_observable_fields,
-      mf_target_files_use_fields}},
-    {"target", "diffusion-target", "\"diffusion\" besides", {mf_target_curve_diffusion_fields}},
+};
+
+/// Behind those of the readers of targets.
+static const struct topic unknown_topics[] = {
     {"unknowns", "unknowns", "\"unknowns\" of a run file", {NULL}},
     {"unknowns",
      "group",
@@ -218,6 +192,14 @@ static const struct topic fixed_topics[] = {
      {mf_inverse_fixed_fields}},
 };
 
+static size_t add_target_topics(struct topic *topics, size_t n) {
+    for (const struct target_record *const *record = mf_target_records; *record; record++) {
+        topics[n] = (struct topic){"target", (*record)->topic, (*record)->summary, {NULL}};
+        memcpy(topics[n++].tables, (*record)->fields, sizeof(*record)->fields);
+    }
+    return n;
+}
+
 static size_t add_curves(struct topic *topics, size_t n, const char *group,
                          const struct curve_family *const *list) {
     for (; *list; list++)
@@ -228,6 +210,9 @@ static size_t add_curves(struct topic *topics, size_t n, const char *group,
 size_t mf_describe_topics(struct topic topics[DESCRIBE_MOST_TOPICS]) {
     size_t n = sizeof fixed_topics / sizeof *fixed_topics;
     memcpy(topics, fixed_topics, sizeof fixed_topics);
+    n = add_target_topics(topics, n);
+    memcpy(topics + n, unknown_topics, sizeof unknown_topics);
+    n += sizeof unknown_topics / sizeof *unknown_topics;
     for (size_t k = 0; mf_observables[k]; k++)
         if (mf_observables[k]->fields)
             topics[n++] = (struct topic){"observables",
@@ -285,20 +270,10 @@ static size_t add_observables(struct topic_object *objects, size_t n) {
 
 /// The objects of a run file's "target", and of what form each is.
 static size_t add_targets(struct topic_object *objects, size_t n) {
-    static const char *const forms[] = {[OBSERVABLE_NUMBER] = "number",
-                                        [OBSERVABLE_CURVE] = "function",
-                                        [OBSERVABLE_CURVE_OF_TIME] = "curve"};
     struct observable_kind found;
     for (int kind = 0; (found = mf_observable_kind(kind)).observable; kind++) {
-        const struct observable_target *target = found.target;
-        char topic[sizeof objects->topic];
-        const bool of_groups = mf_bonded_distribution_order(kind) < BONDED_KINDS;
-        snprintf(topic, sizeof topic, "%s-target",
-                 of_groups                              ? "distribution"
-                 : kind == mf_rdf_intermolecular_kind() ? mf_targets_name(TARGET_RDF)
-                 : target->form == OBSERVABLE_OWN_FORM  ? target->name
-                                                        : forms[target->form]);
-        n = add_object(objects, n, target->name, target->summary, topic);
+        n = add_object(objects, n, found.target->name, found.target->summary,
+                       mf_target_record(kind)->topic);
     }
     return n;
 }

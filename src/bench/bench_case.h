@@ -7,7 +7,7 @@
 #pragma once
 
 #include "report/run_folder.h"
-#include "input/scene.h"
+#include "scene/scene.h"
 
 enum {
     BENCH_REPEATS = 5,

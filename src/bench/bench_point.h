@@ -4,7 +4,7 @@
 
 #include "observe/measure.h"
 #include "observe/rdf.h"
-#include "input/scene.h"
+#include "scene/scene.h"
 
 enum { BENCH_METHOD_SIZE = 32 };
 

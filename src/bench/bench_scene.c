@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/bench_case.h"
-#include "input/heading.h"
+#include "scene/heading.h"
 
 #include <stdio.h>
 #include <string.h>

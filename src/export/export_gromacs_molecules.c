@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Laws that GROMACS has are those of input/gromacs_functions.h, the others its function 8. Tables
-// are cubics between rows of value and −derivative, of angles in degrees.
+// Laws that GROMACS has are those of topologies/gromacs_functions.h, the others its function 8.
+// Tables are cubics between rows of value and −derivative, of angles in degrees.
 #include "export/export_gromacs_molecules.h"
 
-#include "input/gromacs_functions.h"
+#include "topologies/gromacs_functions.h"
 
 #include <math.h>
 

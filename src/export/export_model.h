@@ -5,7 +5,7 @@
 /// engine.
 #pragma once
 
-#include "input/scene.h"
+#include "scene/scene.h"
 #include "io/output.h"
 #include "problem/numbers.h"
 

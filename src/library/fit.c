@@ -2,8 +2,8 @@
 #include "mesofit/fit.h"
 
 #include "base/memory.h"
-#include "input/fit_base.h"
-#include "input/fit_check.h"
+#include "defaults/fit_base.h"
+#include "defaults/fit_check.h"
 #include "library/fit.h"
 #include "library/fit_text.h"
 #include "library/guard.h"

@@ -2,7 +2,7 @@
 /// @file What stands behind a fit of the library.
 #pragma once
 
-#include "input/fit_file.h"
+#include "defaults/fit_file.h"
 #include "mesofit/fit.h"
 #include "problem/parametrisation.h"
 

@@ -2,7 +2,7 @@
 /// @file A scene of the caller's, written as the text of a scene file.
 #pragma once
 
-#include "input/scene.h"
+#include "scene/scene.h"
 #include "mesofit/simulation.h"
 
 #include <stdio.h>

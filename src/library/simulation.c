@@ -3,8 +3,8 @@
 
 #include "base/memory.h"
 #include "dynamics/own_force.h"
-#include "input/heading.h"
-#include "input/scene.h"
+#include "scene/heading.h"
+#include "scene/scene.h"
 #include "library/guard.h"
 #include "library/lend.h"
 #include "library/scene_text.h"

@@ -2,7 +2,7 @@
 /// @file `mesofit live`, and --live of other commands: runs beside a server for one page.
 #pragma once
 
-#include "input/run_options.h"
+#include "scene/run_options.h"
 #include "base/status.h"
 
 #include <stdbool.h>

@@ -11,7 +11,7 @@
 
 // What is measured --------------------------------------------------------------------------------
 
-/// Steps in an interval, which input/fit_file has found to be whole if a target says it.
+/// Steps in an interval, which defaults/fit_file has found to be whole if a target says it.
 static int64_t steps_of(double interval, double time_step) {
     const int64_t steps = llround(interval / time_step);
     return steps > 0 ? steps : 1;

@@ -194,7 +194,9 @@ static void convert_table(struct result_table *table, const char *header, const 
 /// Make the numbers of a folder those of other units.
 static void convert(struct compared *fit, const struct units *to) {
     struct result_summary *summary = &fit->result.summary;
-    for (const struct field *field = mf_result_summary_fields; field->name; field++)
+    const struct field *field;
+    struct result_field room;
+    for (size_t n = 0; (field = mf_result_summary_field(n, &room)); n++)
         if (field->type == FIELD_NUMBER) {
             char *member = (char *)summary + field->offset;
             double value;

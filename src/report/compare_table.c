@@ -54,43 +54,55 @@ struct column {
     size_t value;       ///< offset in struct result_summary
     const char *format; ///< NULL: with the error
     size_t error;       ///< offset in struct result_summary
+    const char *target; ///< offsets are in struct result_distance of that one; NULL: none
 };
 
 #define AT(member) offsetof(struct result_summary, member)
-#define BONDED(NAME, kind, beads, key, ...)                                                        \
-    {"rmse(" #kind "s)", false, AT(key##_rmse), NULL, AT(key##_rmse_error)},
+#define OF(member) offsetof(struct result_distance, member)
+#define RMSE(symbol, target)                                                                       \
+    { "rmse(" symbol ")", false, OF(rmse), NULL, OF(rmse_error), target }
+#define NOISE(title, target)                                                                       \
+    { title, false, OF(noise), "%.2g", 0, target }
+#define BONDED(NAME, kind, beads, key, ...) RMSE(#kind "s", #key),
 static const struct column columns[] = {
-    {"method", true, AT(method), NULL, 0},
-    {"status", true, AT(status), NULL, 0},
-    {"threads", false, AT(threads), "%.0f", 0},
-    {"iterations", false, AT(iterations), "%.0f", 0},
-    {"simulations", false, AT(evaluations), "%.0f", 0},
-    {"steps", false, AT(engine_steps), "%.0f", 0},
-    {"time/s", false, AT(seconds), "%.1f", 0},
-    {"error/noise", false, AT(error_over_noise), "%.2f", 0},
-    {"worst", true, AT(worst), NULL, 0},
-    {"rmse(g)", false, AT(rdf_rmse), NULL, AT(rdf_rmse_error)},
-    {"noise", false, AT(rdf_noise), "%.2g", 0},
-    {"rmse(g_inter)", false, AT(intermolecular_rdf_rmse), NULL, AT(intermolecular_rdf_rmse_error)},
-    {"rmse(E)", false, AT(etd_rmse), NULL, AT(etd_rmse_error)},
-    {"noise(E)", false, AT(etd_noise), "%.2g", 0},
-    {"rmse(VACF)", false, AT(vacf_rmse), NULL, AT(vacf_rmse_error)},
-    {"rmse(MSD)", false, AT(msd_rmse), NULL, AT(msd_rmse_error)},
-    {"rmse(D)", false, AT(diffusion_rmse), NULL, AT(diffusion_rmse_error)},
-    {"rmse(p)", false, AT(pressure_rmse), NULL, AT(pressure_rmse_error)},
-    {"rmse(S)", false, AT(structure_factor_rmse), NULL, AT(structure_factor_rmse_error)},
-    BONDED_LIST(BONDED){"D", false, AT(diffusion), NULL, AT(diffusion_error)},
-    {"truth(phi)", false, AT(truth_rms), "%.3g", 0},
-    {"truth(omega)", false, AT(omega_truth_rms), "%.3g", 0},
-    {"T", false, AT(temperature), "%.3f", 0},
-    {"T_conf", false, AT(temperature_configurational), "%.3f", 0},
-    {"p", false, AT(pressure), "%.4g", 0},
+    {"method", true, AT(method), NULL, 0, NULL},
+    {"status", true, AT(status), NULL, 0, NULL},
+    {"threads", false, AT(threads), "%.0f", 0, NULL},
+    {"iterations", false, AT(iterations), "%.0f", 0, NULL},
+    {"simulations", false, AT(evaluations), "%.0f", 0, NULL},
+    {"steps", false, AT(engine_steps), "%.0f", 0, NULL},
+    {"time/s", false, AT(seconds), "%.1f", 0, NULL},
+    {"error/noise", false, AT(error_over_noise), "%.2f", 0, NULL},
+    {"worst", true, AT(worst), NULL, 0, NULL},
+    RMSE("g", "rdf"),
+    NOISE("noise", "rdf"),
+    RMSE("g_inter", "intermolecular_rdf"),
+    RMSE("E", "etd"),
+    NOISE("noise(E)", "etd"),
+    RMSE("VACF", "vacf"),
+    RMSE("MSD", "msd"),
+    RMSE("D", "diffusion"),
+    RMSE("p", "pressure"),
+    RMSE("S", "structure_factor"),
+    BONDED_LIST(BONDED){"D", false, AT(diffusion), NULL, AT(diffusion_error), NULL},
+    {"truth(phi)", false, AT(truth_rms), "%.3g", 0, NULL},
+    {"truth(omega)", false, AT(omega_truth_rms), "%.3g", 0, NULL},
+    {"T", false, AT(temperature), "%.3f", 0, NULL},
+    {"T_conf", false, AT(temperature_configurational), "%.3f", 0, NULL},
+    {"p", false, AT(pressure), "%.4g", 0, NULL},
 };
 enum { COLUMN_COUNT = sizeof columns / sizeof columns[0] };
 
-static double number_at(const struct result_summary *summary, size_t offset) {
+static const void *of_target(const struct result_summary *summary, const char *target) {
+    int kind = 0;
+    while (strcmp(mf_targets_name(kind), target) != 0)
+        kind++;
+    return &summary->distance[kind];
+}
+
+static double number_at(const void *of, size_t offset) {
     double value;
-    memcpy(&value, (const char *)summary + offset, sizeof value);
+    memcpy(&value, (const char *)of + offset, sizeof value);
     return value;
 }
 
@@ -100,11 +112,14 @@ static void fill_cell(char *cell, const struct column *column,
         print_text(cell, (const char *)summary + column->value);
         return;
     }
-    const double value = number_at(summary, column->value);
+    const void *of = column->target ? of_target(summary, column->target) : summary;
+    const double value = number_at(of, column->value);
     if (column->format == NULL)
-        print_with_error(cell, value, number_at(summary, column->error));
+        print_with_error(cell, value, number_at(of, column->error));
     else
-        print_number(cell, column->value == AT(seconds) && value >= 100 ? "%.0f" : column->format,
+        print_number(cell,
+                     of == summary && column->value == AT(seconds) && value >= 100 ? "%.0f"
+                                                                                   : column->format,
                      value);
 }
 
@@ -112,8 +127,9 @@ static void fill_cell(char *cell, const struct column *column,
 static bool is_shown(const struct column *column, const struct compared *fits, size_t count) {
     for (size_t k = 0; k < count; k++) {
         const struct result_summary *summary = &fits[k].result.summary;
-        if (column->is_text ? ((const char *)summary)[column->value] != '\0'
-                            : isfinite(number_at(summary, column->value)))
+        const void *of = column->target ? of_target(summary, column->target) : summary;
+        if (column->is_text ? ((const char *)of)[column->value] != '\0'
+                            : isfinite(number_at(of, column->value)))
             return true;
     }
     return false;
@@ -222,13 +238,15 @@ enum status mf_compare_table_write(const char *out, const struct compared *fits,
     char file[PATH_SIZE], headers[MOST_NUMBERS][HEADER_SIZE], *comment = NULL;
     struct data_column written[MOST_NUMBERS] = {{.name = "index[1]"}};
     const struct units units = fits[0].result.summary.units;
+    const struct field *field;
+    struct result_field room;
     double *values = NULL;
     size_t used = 1;
     NEW_ARRAY(values, MOST_NUMBERS * count);
     for (size_t k = 0; k < count; k++)
         values[k] = (double)k;
     written[0].values = values;
-    for (const struct field *field = mf_result_summary_fields; field->name; field++) {
+    for (size_t n = 0; (field = mf_result_summary_field(n, &room)); n++) {
         if (used == MOST_NUMBERS || !fill_numbers(values + used * count, field, fits, count))
             continue;
         char reduced[HEADER_SIZE];

@@ -4,7 +4,6 @@
 #include "base/memory.h"
 #include "io/configuration.h"
 #include "io/votca.h"
-#include "observe/rdf_observable.h"
 
 #include <math.h>
 
@@ -189,169 +188,95 @@ enum status mf_fit_output_curves(const struct fit_file *fit, const struct unknow
     return STATUS_OK;
 }
 
-/// g(r) of a pair type, of the target number `kind`: rdf.tsv, or rdf_A-B.tsv in a mixture.
-static enum status write_rdf(const struct fit_file *fit, const struct target_pairs *target,
-                             int kind, const struct observed *observed, size_t pair,
-                             const struct run_folder *folder) {
-    enum status status = STATUS_OK;
-    const struct rdf_bins *bins = target_pairs_bins(target);
-    const struct units *units = &fit->scene.units;
-    const size_t first = pair * bins->count;
-    double *r = NULL, *nanometres = NULL;
-    char path[OUTPUT_PATH_SIZE];
-    NEW_ARRAY(r, bins->count);
-    for (size_t k = 0; k < bins->count; k++)
-        r[k] = mf_rdf_bins_centre(bins, k);
-    nanometres = mf_units_column(r, bins->count, units->length);
-    CHECK(nanometres ? STATUS_OK : STATUS_NO_MEMORY);
-    struct data_column columns[7] = {{"r[lambda]", r, NULL},
-                                     {"target[1]", target->g + first, "%.8g"},
-                                     {"target_error[1]", target->error + first, "%.3g"},
-                                     {"result[1]", observed->value[kind] + first, "%.8g"},
-                                     {"result_error[1]", observed->error[kind] + first, "%.3g"}};
-    size_t count = 5;
-    if (mf_units_beside(units))
-        columns[count++] = (struct data_column){"r[nm]", nanometres, NULL};
-    // What the target was before it was divided by its normalisation.
-    if (memcmp(target->given + first, target->g + first, bins->count * sizeof(double)) != 0)
-        columns[count++] = (struct data_column){"given[1]", target->given + first, "%.8g"};
-    mf_rdf_observable_file(folder->path, mf_targets_name(kind), &fit->files.composition, (int)pair,
-                           path);
-    CHECK(mf_data_table_write_in(path, &fit->scene.units, NULL, columns, count, bins->count));
-done:
-    mf_memory_free(r);
-    mf_memory_free(nanometres);
-    return status;
-}
+enum { PLACES = 2, VALUES = 4, MOST_COLUMNS = 2 * (PLACES + VALUES) + 1 };
 
-/// One row a cell: time, r_0, target, result; what is not known is nan.
-static enum status write_etd(const struct fit_file *fit, const struct observed *observed,
-                             const struct run_folder *folder) {
-    enum status status = STATUS_OK;
-    const struct target_etd *target = &fit->files.etd;
-    const size_t bins = (size_t)target->grid.bins, cells = (size_t)target->grid.times * bins;
-    const double width = (target->grid.r_maximum - target->grid.r_minimum) / (double)bins;
-    const struct units *units = &fit->scene.units;
-    double *time = NULL, *r = NULL, *picoseconds = NULL, *nanometres = NULL;
-    char path[OUTPUT_PATH_SIZE];
-    NEW_ARRAY(time, cells);
-    NEW_ARRAY(r, cells);
-    for (size_t k = 0; k < cells; k++) {
-        time[k] = (double)(k / bins) * target->interval;
-        r[k] = target->grid.r_minimum + ((double)(k % bins) + 0.5) * width;
-    }
-    const bool known = mf_units_beside(units);
-    picoseconds = mf_units_column(time, cells, known ? mf_units_time_ps(units) : 0);
-    nanometres = mf_units_column(r, cells, units->length);
-    CHECK(picoseconds && nanometres ? STATUS_OK : STATUS_NO_MEMORY);
-    const struct data_column columns[] = {{"time[tau]", time, "%.6f"},
-                                          {"r0[lambda]", r, "%.6f"},
-                                          {"target[1]", target->survival, "%.6f"},
-                                          {"target_error[1]", target->error, "%.3g"},
-                                          {"result[1]", observed->value[TARGET_ETD], "%.6f"},
-                                          {"result_error[1]", observed->error[TARGET_ETD], "%.3g"},
-                                          {"time[ps]", picoseconds, "%.6g"},
-                                          {"r0[nm]", nanometres, "%.6g"}};
-    mf_run_folder_file(folder, "etd_cells.tsv", path);
-    CHECK(mf_data_table_write_in(path, &fit->scene.units, NULL, columns, known ? 8 : 6, cells));
-done:
-    mf_memory_free(time);
-    mf_memory_free(r);
-    mf_memory_free(picoseconds);
-    mf_memory_free(nanometres);
-    return status;
-}
-
-/// What the columns of a curve's table are called in nm and ps, of which `factor` makes reduced
-/// units; 0: it has none of them.
-struct physical_unit {
-    const char *columns[4];
-    double factor;
+/// Columns of a table in reduced units, and what is made for them.
+struct columns {
+    size_t count;
+    struct data_column column[MOST_COLUMNS];
+    char name[MOST_COLUMNS][64];
+    double *own[MOST_COLUMNS]; ///< NULL: the values are somebody else's
 };
 
-static struct physical_unit physical_unit(enum target_kind kind, const struct units *units) {
-    const double nm2 = units->length * units->length;
-    if (!mf_units_beside(units) || (kind != TARGET_MSD && kind != TARGET_VACF))
-        return (struct physical_unit){0};
-    if (kind == TARGET_MSD)
-        return (struct physical_unit){
-            {"target[nm^2]", "target_error[nm^2]", "result[nm^2]", "result_error[nm^2]"}, nm2};
-    const double ps = mf_units_time_ps(units);
-    return (struct physical_unit){{"target[nm^2/ps^2]", "target_error[nm^2/ps^2]",
-                                   "result[nm^2/ps^2]", "result_error[nm^2/ps^2]"},
-                                  nm2 / (ps * ps)};
+static void add_column(struct columns *columns, const char *name, const double *values,
+                       const char *format) {
+    snprintf(columns->name[columns->count], sizeof *columns->name, "%s", name);
+    columns->column[columns->count] =
+        (struct data_column){columns->name[columns->count], values, format};
+    columns->count++;
 }
 
-/// A curve beside its target: x, target, result, each with its error; VACF and MSD also in nm, ps.
-static enum status write_curve(const struct fit_file *fit, enum target_kind kind,
-                               const struct observed *observed, const struct run_folder *folder) {
-    enum status status = STATUS_OK;
-    static const char *const words[4] = {"target", "target_error", "result", "result_error"};
-    const struct observable_target *about = mf_observable_kind(kind).target;
-    const struct target_curve *target = &fit->files.curve[kind];
-    const struct physical_unit unit = physical_unit(kind, &fit->scene.units);
-    const double *const values[4] = {target->value, target->error, observed->value[kind],
-                                     observed->error[kind]};
-    double *x = NULL, *picoseconds = NULL, *physical[4] = {NULL};
-    char path[OUTPUT_PATH_SIZE], name[64], names[4][64];
-    struct data_column columns[10];
-    NEW_ARRAY(x, target->points);
-    for (size_t k = 0; k < target->points; k++)
-        x[k] = target->interval > 0 ? (double)k * target->interval : target->x[k];
-    picoseconds = mf_units_column(x, target->points,
-                                  unit.factor > 0 ? mf_units_time_ps(&fit->scene.units) : 0);
-    CHECK(picoseconds ? STATUS_OK : STATUS_NO_MEMORY);
-    columns[0] = (struct data_column){about->argument, x, NULL};
-    columns[5] = (struct data_column){"time[ps]", picoseconds, NULL};
-    for (int k = 0; k < 4; k++) {
-        const char *format = k % 2 ? "%.3g" : "%.8g";
-        physical[k] = mf_units_column(values[k], target->points, unit.factor);
-        CHECK(physical[k] ? STATUS_OK : STATUS_NO_MEMORY);
-        snprintf(names[k], sizeof names[k], "%s[%s]", words[k], about->unit);
-        columns[1 + k] = (struct data_column){names[k], values[k], format};
-        columns[6 + k] = (struct data_column){unit.columns[k], physical[k], format};
+/// The columns from `first` to `end` in nm and ps, beside those in reduced units.
+static enum status add_beside(struct columns *columns, size_t first, size_t end,
+                              const struct units *units, size_t rows, const char *format) {
+    struct units physical = *units;
+    physical.system = UNITS_NM_PS;
+    for (size_t n = first; n < end; n++) {
+        const struct data_column *from = &columns->column[n];
+        char name[sizeof *columns->name];
+        const double factor = mf_data_table_translate(&physical, from->name, name, sizeof name);
+        double *values = mf_units_column(from->values, rows, factor);
+        if (values == NULL)
+            return STATUS_NO_MEMORY;
+        columns->own[columns->count] = values;
+        add_column(columns, name, values, format ? format : from->format);
     }
-    snprintf(name, sizeof name, "%s.tsv", about->name);
-    mf_run_folder_file(folder, name, path);
-    CHECK(mf_data_table_write_in(path, &fit->scene.units, NULL, columns, unit.factor > 0 ? 10 : 5,
-                                 target->points));
+    return STATUS_OK;
+}
+
+/// Where the values are.
+static enum status add_places(struct columns *columns, const struct target_files *files, int kind,
+                              const struct target_table *table) {
+    enum status status = STATUS_OK;
+    for (size_t n = 0; n < table->places; n++) {
+        NEW_ARRAY(columns->own[n], table->count);
+        for (size_t k = 0; k < table->count; k++) {
+            double at[PLACES];
+            mf_target_record(kind)->place(files, kind, table, k, at);
+            columns->own[n][k] = at[n];
+        }
+        add_column(columns, table->place[n], columns->own[n], table->place_format);
+    }
 done:
-    mf_memory_free(x);
-    mf_memory_free(picoseconds);
-    for (int k = 0; k < 4; k++)
-        mf_memory_free(physical[k]);
     return status;
 }
 
-/// p of a group beside its target: bond_lengths_backbone.tsv.
-static enum status write_distribution(const struct fit_file *fit,
-                                      const struct target_groups *groups, size_t g,
-                                      const struct observed *observed,
-                                      const struct run_folder *folder) {
+/// A table of a target beside the result, each with its error, as rdf_A-B.tsv.
+static enum status write_table(const struct fit_file *fit, int kind,
+                               const struct target_table *table, const struct observed *observed,
+                               const struct run_folder *folder) {
+    static const char *const words[VALUES] = {"target", "target_error", "result", "result_error"};
     enum status status = STATUS_OK;
-    static const char *const words[4] = {"target", "target_error", "result", "result_error"};
-    const int kind = mf_bonded_distribution_kind(groups->order);
-    const struct observable_target *about = mf_observable_kind(kind).target;
-    const struct bonded_bins *bins = &groups->member[g].bins;
-    const size_t first = groups->first[g];
-    const double *const values[4] = {groups->value + first, groups->error + first,
-                                     observed->value[kind] + first, observed->error[kind] + first};
-    double *q = NULL;
-    char path[OUTPUT_PATH_SIZE], name[128], names[4][64];
-    struct data_column columns[5];
-    NEW_ARRAY(q, bins->count);
-    for (size_t k = 0; k < bins->count; k++)
-        q[k] = bonded_bins_centre(bins, k);
-    columns[0] = (struct data_column){about->argument, q, NULL};
-    for (int k = 0; k < 4; k++) {
-        snprintf(names[k], sizeof names[k], "%s[%s]", words[k], about->unit);
-        columns[1 + k] = (struct data_column){names[k], values[k], k % 2 ? "%.3g" : "%.8g"};
+    const struct target *target = &fit->problem.compared.target[kind];
+    const char *unit = mf_observable_kind(kind).target->unit;
+    const double *const values[VALUES] = {target->value, target->error, observed->value[kind],
+                                          observed->error[kind]};
+    const bool beside = table->beside && mf_units_beside(&fit->scene.units);
+    struct columns columns = {.count = 0};
+    char path[OUTPUT_PATH_SIZE], name[64], file[8 + sizeof table->name];
+    CHECK(add_places(&columns, &fit->files, kind, table));
+    for (int k = 0; k < VALUES; k++) {
+        snprintf(name, sizeof name, "%s[%s]", words[k], unit ? unit : "1");
+        add_column(&columns, name, values[k] + table->first,
+                   k % 2                 ? "%.3g"
+                   : table->value_format ? table->value_format
+                                         : "%.8g");
     }
-    snprintf(name, sizeof name, "%s_%s.tsv", about->name, groups->name[g]);
-    mf_run_folder_file(folder, name, path);
-    CHECK(mf_data_table_write_in(path, &fit->scene.units, NULL, columns, 5, bins->count));
+    if (beside)
+        CHECK(add_beside(&columns, 0, table->places, &fit->scene.units, table->count,
+                         table->place_format ? "%.6g" : NULL));
+    if (beside && table->values_beside)
+        CHECK(add_beside(&columns, table->places, table->places + VALUES, &fit->scene.units,
+                         table->count, NULL));
+    if (table->given)
+        add_column(&columns, "given[1]", table->given, "%.8g");
+    snprintf(file, sizeof file, "%s.tsv", table->name);
+    mf_run_folder_file(folder, file, path);
+    CHECK(mf_data_table_write_in(path, &fit->scene.units, NULL, columns.column, columns.count,
+                                 table->count));
 done:
-    mf_memory_free(q);
+    for (size_t n = 0; n < MOST_COLUMNS; n++)
+        mf_memory_free(columns.own[n]);
     return status;
 }
 
@@ -383,23 +308,10 @@ static enum status write_configuration(const struct fit_file *fit,
 enum status mf_fit_output_observables(const struct fit_file *fit,
                                       const struct verification *verification,
                                       const struct run_folder *folder) {
-    const struct target_files *files = &fit->files;
-    const struct observed *observed = &verification->observed;
-    for (size_t pair = 0; pair < files->rdf.pairs; pair++)
-        if (mf_composition_has_pairs(&files->composition, (int)pair))
-            TRY(write_rdf(fit, &files->rdf, TARGET_RDF, observed, pair, folder));
-    for (size_t pair = 0; pair < files->apart.pairs; pair++)
-        if (mf_composition_has_pairs(&files->composition, (int)pair))
-            TRY(write_rdf(fit, &files->apart, mf_rdf_intermolecular_kind(), observed, pair,
-                          folder));
-    if (files->given[TARGET_ETD])
-        TRY(write_etd(fit, observed, folder));
-    for (int order = 0; order < BONDED_KINDS; order++)
-        for (size_t g = 0; g < files->groups[order].groups; g++)
-            if (files->groups[order].member[g].bins.count > 0)
-                TRY(write_distribution(fit, &files->groups[order], g, observed, folder));
-    for (int kind = 0; kind < TARGETS; kind++)
-        if (files->curve[kind].points > 0)
-            TRY(write_curve(fit, kind, observed, folder));
+    struct target_table table;
+    for (int kind = 0; mf_targets_name(kind); kind++)
+        for (size_t n = 0; mf_target_files_table(&fit->files, kind, n, &table); n++)
+            if (table.count > 0)
+                TRY(write_table(fit, kind, &table, &verification->observed, folder));
     return write_configuration(fit, verification, folder);
 }

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "problem/unknowns.h"
-#include "input/fit_file.h"
+#include "defaults/fit_file.h"
 #include "report/run_folder.h"
 
 /// The result of a fit so far.

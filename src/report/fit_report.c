@@ -176,7 +176,8 @@ static void say_integrals(struct progress *to, const struct fit_file *fit,
         char found[NUMBER_TEXT_SIZE], wanted[NUMBER_TEXT_SIZE];
         if (isnan(target->value[pair]))
             continue;
-        mf_composition_pair_name(&fit->files.kirkwood_buff.components, (int)pair, name);
+        mf_composition_pair_name(&target_files_kirkwood_buff(&fit->files)->components, (int)pair,
+                                 name);
         mf_number_text(factor * v->observed.value[kind][pair],
                        factor * v->observed.error[kind][pair], found);
         mf_number_text(factor * target->value[pair], factor * target->error[pair], wanted);

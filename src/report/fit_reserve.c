@@ -2,51 +2,24 @@
 #include "report/fit_reserve.h"
 
 #include "io/configuration.h"
-#include "observe/rdf_observable.h"
 
 #include <stdio.h>
 
 static enum status reserve(struct run_folder *folder, const char *inside, const char *name,
-                           const char *of, const char *ending) {
+                           const char *ending) {
     char whole[OUTPUT_PATH_SIZE];
-    snprintf(whole, sizeof whole, "%.3000s%.200s%s%.200s%s", inside, name, of[0] ? "_" : "", of,
-             ending);
+    snprintf(whole, sizeof whole, "%.3000s%.200s%s", inside, name, ending);
     return mf_run_folder_reserve(folder, whole);
-}
-
-static enum status reserve_pairs(struct run_folder *folder, const char *inside,
-                                 const struct fit_file *state, int kind, size_t pairs) {
-    for (size_t pair = 0; pair < pairs; pair++) {
-        char of[COMPOSITION_PAIR_NAME_SIZE];
-        mf_composition_pair_name(&state->files.composition, (int)pair, of);
-        TRY(reserve(folder, inside, mf_targets_name(kind), of, ".tsv"));
-    }
-    return STATUS_OK;
-}
-
-static enum status reserve_groups(struct run_folder *folder, const char *inside,
-                                  const struct target_groups *groups) {
-    for (size_t g = 0; g < groups->groups; g++) {
-        const char *name = mf_targets_name(mf_bonded_distribution_kind(groups->order));
-        if (groups->member[g].bins.count > 0)
-            TRY(reserve(folder, inside, name, groups->name[g], ".tsv"));
-    }
-    return STATUS_OK;
 }
 
 enum status mf_fit_reserve_observables(const struct fit_file *state, const char *inside,
                                        struct run_folder *folder) {
-    const struct target_files *files = &state->files;
-    TRY(reserve_pairs(folder, inside, state, TARGET_RDF, files->rdf.pairs));
-    TRY(reserve_pairs(folder, inside, state, mf_rdf_intermolecular_kind(), files->apart.pairs));
-    if (files->given[TARGET_ETD])
-        TRY(reserve(folder, inside, "etd_cells", "", ".tsv"));
-    for (int order = 0; order < BONDED_KINDS; order++)
-        TRY(reserve_groups(folder, inside, &files->groups[order]));
-    for (int kind = 0; kind < TARGETS; kind++)
-        if (files->curve[kind].points > 0)
-            TRY(reserve(folder, inside, mf_targets_name(kind), "", ".tsv"));
-    return reserve(folder, inside, CONFIGURATION_FILE, "", "");
+    struct target_table table;
+    for (int kind = 0; mf_targets_name(kind); kind++)
+        for (size_t n = 0; mf_target_files_table(&state->files, kind, n, &table); n++)
+            if (table.count > 0)
+                TRY(reserve(folder, inside, table.name, ".tsv"));
+    return reserve(folder, inside, CONFIGURATION_FILE, "");
 }
 
 enum status mf_fit_reserve_curves(const struct fit_file *fit, const struct unknowns *unknowns,
@@ -65,7 +38,7 @@ enum status mf_fit_reserve_curves(const struct fit_file *fit, const struct unkno
             mf_unknowns_curve_name(unknowns, kind, curve, name);
             const bool votca = kind == UNKNOWN_POTENTIAL && mf_units_known(&fit->scene.units);
             for (int k = 0; k < (votca ? 3 : 2); k++)
-                TRY(reserve(folder, "", name, "", endings[k]));
+                TRY(reserve(folder, "", name, endings[k]));
         }
     return STATUS_OK;
 }

@@ -2,7 +2,7 @@
 /// @file The names of what a fit writes, refused at its start and not after hours of work.
 #pragma once
 
-#include "input/fit_file.h"
+#include "defaults/fit_file.h"
 #include "problem/unknowns.h"
 #include "report/run_folder.h"
 

@@ -45,7 +45,7 @@ static double omega_truth(const struct fit_file *fit, const struct unknowns *unk
         const double truth = mf_curve_value(mf_scene_law_curve(&fit->unknown[kind].truth, 0), r);
         largest = fmax(largest, truth);
         // Closer pairs than the target follows do not exist.
-        if (fit->files.given[TARGET_ETD] && r < fit->files.etd.grid.r_minimum)
+        if (fit->files.given[TARGET_ETD] && r < target_files_etd(&fit->files)->grid.r_minimum)
             continue;
         squares += (omega[k] - truth) * (omega[k] - truth);
         count += 1;
@@ -244,7 +244,7 @@ static void put_truth(struct json_writer *writer, const struct fit_file *fit,
 /// What the targets g(r) were divided by. In a mixture those that the file states are left out.
 static void put_normalisation(struct json_writer *writer, const struct fit_file *fit) {
     const struct normalisation *found = &fit->files.normalisation;
-    const double given = fit->files.rdf.member[0].parameters.normalisation;
+    const double given = target_files_rdf(&fit->files)->member[0].parameters.normalisation;
     const bool mixed = composition_is_mixed(&fit->scene.setup.composition);
     if (!fit->files.given[TARGET_RDF])
         return;
@@ -256,7 +256,7 @@ static void put_normalisation(struct json_writer *writer, const struct fit_file 
 static void put_integrals(struct json_writer *writer, const struct fit_file *fit,
                           const struct verification *v) {
     const int kind = mf_kirkwood_buff_kind();
-    const struct composition *components = &fit->files.kirkwood_buff.components;
+    const struct composition *components = &target_files_kirkwood_buff(&fit->files)->components;
     const struct target *target = &fit->problem.compared.target[kind];
     for (size_t pair = 0; pair < target->count; pair++) {
         mf_kirkwood_buff_put(writer, "target_kirkwood_buff", components, pair, target->value[pair],
@@ -270,14 +270,15 @@ static void put_integrals(struct json_writer *writer, const struct fit_file *fit
 static void put_compressibility(struct json_writer *writer, const struct fit_file *fit,
                                 const struct verification *v) {
     const struct box *box = &fit->scene.setup.box;
-    const struct rdf_bins *bins = target_pairs_bins(&fit->files.rdf);
+    const struct rdf_bins *bins = target_pairs_bins(target_files_rdf(&fit->files));
     const size_t count = (size_t)fit->scene.setup.placement.count;
     if (!fit->files.given[TARGET_RDF] || box->dimensions != 3 ||
         composition_is_mixed(&fit->scene.setup.composition) ||
         scene_has_molecules(&fit->scene.molecules))
         return;
     const struct kirkwood_buff target =
-        mf_kirkwood_buff_integrate(bins, fit->files.rdf.g, fit->files.rdf.error, box, count, 0);
+        mf_kirkwood_buff_integrate(bins, target_files_rdf(&fit->files)->g,
+                                   target_files_rdf(&fit->files)->error, box, count, 0);
     const struct kirkwood_buff found = mf_kirkwood_buff_integrate(
         bins, v->observed.value[TARGET_RDF], v->observed.error[TARGET_RDF], box, count, 0);
     put_quantity(writer, "target_kirkwood_buff", "lambda^d", target.integral);
@@ -379,7 +380,8 @@ enum status mf_fit_output_summary(const struct fit_file *fit, const struct unkno
     put_parameters(writer, fit, result);
     put_start(writer, unknowns, result);
     if (fit->files.given[TARGET_ETD])
-        mf_json_put_number(writer, "etd_cells_left_out", (double)fit->files.etd.left_out);
+        mf_json_put_number(writer, "etd_cells_left_out",
+                           (double)target_files_etd(&fit->files)->left_out);
     mf_json_put_number(writer, "seed", (double)fit->heading.seed);
     mf_json_put_text(writer, "version", MESOFIT_VERSION);
     mf_run_folder_file(folder, "summary.json", path);

@@ -27,13 +27,10 @@ enum { PATH_SIZE = OUTPUT_PATH_SIZE + 64 };
         .initial = NAN, .minimum = -DBL_MAX, .maximum = DBL_MAX, .unit = its_unit                  \
     }
 
-#define DISTANCE(kind, its_unit)                                                                   \
-    NUMBER(kind##_rmse, its_unit), NUMBER(kind##_rmse_error, its_unit),                            \
-        NUMBER(kind##_noise, its_unit)
-#define BONDED(NAME, kind, beads, key, what, argument, its_unit) DISTANCE(key, its_unit),
 #define MEAN(member, its_unit) NUMBER(member, its_unit), NUMBER(member##_error, its_unit)
 
-const struct field mf_result_summary_fields[] = {
+/// Distances from targets stand behind the first nine.
+static const struct field own_fields[] = {
     TEXT(status),
     TEXT(method),
     TEXT(version),
@@ -43,20 +40,6 @@ const struct field mf_result_summary_fields[] = {
     NUMBER(evaluations, "1"),
     NUMBER(engine_steps, "1"),
     NUMBER(error_over_noise, "1"),
-    DISTANCE(rdf, "1"),
-    DISTANCE(etd, "1"),
-    DISTANCE(vacf, "lambda^2/tau^2"),
-    DISTANCE(msd, "lambda^2"),
-    DISTANCE(diffusion, "lambda^2/tau"),
-    DISTANCE(pressure, "k_BT_0/lambda^d"),
-    DISTANCE(intermolecular_rdf, "1"),
-    BONDED_LIST(BONDED) DISTANCE(structure_factor, "1"),
-    DISTANCE(kirkwood_buff, "lambda^d"),
-    DISTANCE(polarity_correlation, "1"),
-    DISTANCE(polar_order, "1"),
-    DISTANCE(viscosity, "1"),
-    DISTANCE(schmidt_number, "1"),
-    DISTANCE(shear_viscosity, "k_BT_0.tau/lambda^3"),
     MEAN(diffusion, "lambda^2/tau"),
     NUMBER(diffusion_cm2_per_s, "cm^2/s"),
     NUMBER(diffusion_error_cm2_per_s, "cm^2/s"),
@@ -78,6 +61,47 @@ const struct field mf_result_summary_fields[] = {
     FIELD_END,
 };
 
+/// A unit as headings have it, without blanks: "k_BT_0.tau/lambda^3".
+static void write_unit(const char *unit, char text[UNITS_NAME_SIZE]) {
+    size_t length = 0;
+    for (const char *at = unit; *at && length + 1 < UNITS_NAME_SIZE; at++)
+        if (*at != ' ')
+            text[length++] = *at;
+        else if (strncmp(at + 1, "T_0", 3) != 0)
+            text[length++] = '.';
+    text[length] = '\0';
+}
+
+const struct field *mf_result_summary_field(size_t n, struct result_field *room) {
+    static const struct field of_target[] = {
+        {.name = "rmse", .offset = offsetof(struct result_distance, rmse)},
+        {.name = "rmse_error", .offset = offsetof(struct result_distance, rmse_error)},
+        {.name = "noise", .offset = offsetof(struct result_distance, noise)},
+    };
+    enum { BEFORE = 9, OF_TARGET = 3, FIELDS = sizeof own_fields / sizeof *own_fields - 1 };
+    size_t kinds = 0;
+    while (mf_targets_name((int)kinds))
+        kinds++;
+    if (n < BEFORE)
+        return &own_fields[n];
+    if (n >= BEFORE + OF_TARGET * kinds)
+        return n - OF_TARGET * kinds < FIELDS ? &own_fields[n - OF_TARGET * kinds] : NULL;
+    const size_t kind = (n - BEFORE) / OF_TARGET;
+    const struct field *of = &of_target[(n - BEFORE) % OF_TARGET];
+    const struct observable_kind about = mf_observable_kind((int)kind);
+    snprintf(room->name, sizeof room->name, "%s_%s", about.target->name, of->name);
+    write_unit(about.target->unit ? about.target->unit : "1", room->unit);
+    room->field = (struct field){.name = room->name,
+                                 .type = FIELD_NUMBER,
+                                 .offset = offsetof(struct result_summary, distance) +
+                                           kind * sizeof(struct result_distance) + of->offset,
+                                 .initial = NAN,
+                                 .minimum = -DBL_MAX,
+                                 .maximum = DBL_MAX,
+                                 .unit = room->unit};
+    return &room->field;
+}
+
 /// Say what is wrong with the folder before a reader complains of a file in it.
 static enum status check_folder(const char *folder, const char *summary) {
     struct stat about;
@@ -92,12 +116,12 @@ static enum status check_folder(const char *folder, const char *summary) {
 }
 
 /// True if the result was compared with any target.
-static bool has_distance(struct json_object *root) {
+static bool has_distance(const struct json_object *root) {
     char key[64];
     bool found = false;
     for (int kind = 0; mf_targets_name(kind); kind++) {
         snprintf(key, sizeof key, "%s_rmse", mf_targets_name(kind));
-        found = mf_json_has(root, key) || found;
+        found = found || mf_json_is_member(root, key);
     }
     return found;
 }
@@ -209,12 +233,21 @@ static void read_units(struct json_object *root, struct units *units) {
     units->mass = scale.mass * UNITS_ATOMIC_MASS;
 }
 
+static void read_fields(const struct json_object *root, struct result_summary *summary) {
+    const struct field *field;
+    struct result_field room;
+    for (size_t n = 0; (field = mf_result_summary_field(n, &room)); n++) {
+        struct json_object own = *root; // asked for this alone
+        mf_json_fields(&own, (const struct field[]){*field, FIELD_END}, summary);
+    }
+}
+
 /// Keys that are not in the table are left alone: a later version may write more.
 static enum status read_summary(struct result_summary *summary, const char *file) {
     struct json_document *document;
     TRY(mf_json_open(&document, file));
     struct json_object root = mf_json_root(document);
-    mf_json_fields(&root, mf_result_summary_fields, summary);
+    read_fields(&root, summary);
     read_length_unit(&root, summary);
     read_units(&root, &summary->units);
     read_old_truth(&root, summary);

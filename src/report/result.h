@@ -4,8 +4,8 @@
 
 #include "base/fields.h"
 #include "base/status.h"
-#include "curves/bonded_kind.h"
 #include "io/units_scale.h"
+#include "problem/targets.h"
 
 #include <stddef.h>
 
@@ -15,23 +15,9 @@ struct result_summary {
     double seconds, threads, iterations, evaluations, engine_steps;
     double error_over_noise; ///< of all targets: see report/result_distance.h
     char worst[64];          ///< the target that is farthest off by its noise, and how far
-    double rdf_rmse, rdf_rmse_error, rdf_noise;
-    double etd_rmse, etd_rmse_error, etd_noise;
-    double vacf_rmse, vacf_rmse_error, vacf_noise;
-    double msd_rmse, msd_rmse_error, msd_noise;
-    double diffusion_rmse, diffusion_rmse_error, diffusion_noise;
-    double pressure_rmse, pressure_rmse_error, pressure_noise;
-    double intermolecular_rdf_rmse, intermolecular_rdf_rmse_error, intermolecular_rdf_noise;
-#define RESULT_BONDED(NAME, kind, beads, key, ...) double key##_rmse, key##_rmse_error, key##_noise;
-    BONDED_LIST(RESULT_BONDED)
-#undef RESULT_BONDED
-    double structure_factor_rmse, structure_factor_rmse_error, structure_factor_noise;
-    double kirkwood_buff_rmse, kirkwood_buff_rmse_error, kirkwood_buff_noise;
-    double polarity_correlation_rmse, polarity_correlation_rmse_error, polarity_correlation_noise;
-    double polar_order_rmse, polar_order_rmse_error, polar_order_noise;
-    double viscosity_rmse, viscosity_rmse_error, viscosity_noise;
-    double schmidt_number_rmse, schmidt_number_rmse_error, schmidt_number_noise;
-    double shear_viscosity_rmse, shear_viscosity_rmse_error, shear_viscosity_noise;
+    struct result_distance {
+        double rmse, rmse_error, noise;
+    } distance[TARGETS]; ///< from each kind of targets
     double diffusion, diffusion_error, diffusion_cm2_per_s, diffusion_error_cm2_per_s;
     double truth_rms, truth_ramp, truth_rms_without_ramp; ///< of a potential
     double omega_truth_rms;                               ///< of a friction weight
@@ -46,7 +32,13 @@ struct result_summary {
     struct units units;    ///< in which all of them are; no scale: unknown
 };
 
-extern const struct field mf_result_summary_fields[];
+/// Number or text n of summary.json, which may be made in `room`; NULL beyond the last. Distances
+/// are called "rdf_rmse", "rdf_rmse_error", "rdf_noise", and so on for every kind of targets.
+struct result_field {
+    char name[64], unit[UNITS_NAME_SIZE];
+    struct field field;
+};
+const struct field *mf_result_summary_field(size_t n, struct result_field *room);
 
 /// Some columns of a table; no rows if there is no such table. Unlike a measurement, a result may
 /// hold nan: not known.

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "base/status.h"
-#include "input/run_options.h"
+#include "scene/run_options.h"
 #include "io/input.h"
 #include "io/json_write.h"
 #include "io/own_files.h"

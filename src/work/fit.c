@@ -5,7 +5,7 @@
 #include "base/parallel.h"
 #include "base/ranks.h"
 #include "base/visible.h"
-#include "input/fit_states.h"
+#include "defaults/fit_states.h"
 #include "io/checkpoint_pace.h"
 #include "report/fit_closing.h"
 #include "report/fit_output.h"

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/memory.h"
-#include "input/fit_scales.h"
+#include "defaults/fit_scales.h"
 #include "inversion/inversion.h"
 #include "observe/stages.h"
 #include "problem/unknowns.h"
 #include "work/explain.h"
 #include "work/fit.h"
-#include "input/fit_states.h"
+#include "defaults/fit_states.h"
 #include "work/fit_tasks.h"
 #include "work/fit_tell.h"
 

@@ -2,7 +2,7 @@
 /// @file What the ranks of a fit (base/ranks.h) must have in common.
 #pragma once
 
-#include "input/fit_file.h"
+#include "defaults/fit_file.h"
 #include "problem/unknowns.h"
 
 /// Digest of what was read and of how this processor computes: ranks that differ here would keep

@@ -3,7 +3,7 @@
 
 #include "dynamics/hybrid_step.h"
 #include "dynamics/respa.h"
-#include "input/fit_scales.h"
+#include "defaults/fit_scales.h"
 #include "observe/stages.h"
 #include "system/attributes.h"
 
@@ -32,7 +32,7 @@ static void warn_of_step(const struct fit_file *fit,
     static const double coarse = 0.05, fine = 0.003;
     const struct simulation_setup *setup = &fit->scene.setup;
     const struct units *units = &fit->scene.units;
-    const struct target_groups *bonds = &fit->files.groups[BONDED_BOND];
+    const struct target_groups *bonds = target_files_groups(&fit->files, BONDED_BOND);
     const struct attributes_range masses = mf_attributes_span(&setup->attribute[ATTRIBUTES_MASS]);
     const double mass = masses.maximum > 0 ? masses.minimum : 1;
     const bool own = fit->verification.time_step > 0;
@@ -95,7 +95,7 @@ enum status mf_fit_tell_state(const struct fit_file *fit,
 }
 
 static enum status tell_state(struct progress *to, const struct fit_file *fit) {
-    const struct target_etd *etd = &fit->files.etd;
+    const struct target_etd *etd = target_files_etd(&fit->files);
     const char *warning = mf_scene_warning(&fit->scene);
     if (fit->name[0])
         mf_progress_say(to, "state \"%s\":", fit->name);

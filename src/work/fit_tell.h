@@ -2,8 +2,8 @@
 /// @file What a fit says before it begins, and inside its iterations.
 #pragma once
 
-#include "input/fit_file.h"
-#include "input/target_sanity.h"
+#include "defaults/fit_file.h"
+#include "targets/target_sanity.h"
 #include "report/progress.h"
 
 enum { FIT_TELL_SIZE = 160 };

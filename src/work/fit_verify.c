@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "work/fit_verify.h"
 
-#include "input/fit_states.h"
+#include "defaults/fit_states.h"
 #include "problem/unknowns.h"
 #include "report/fit_output.h"
 #include "report/fit_reserve.h"

@@ -2,7 +2,7 @@
 /// @file Each state of a fit is verified, and its tables written.
 #pragma once
 
-#include "input/fit_file.h"
+#include "defaults/fit_file.h"
 #include "problem/verify.h"
 #include "report/run_folder.h"
 

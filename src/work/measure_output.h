@@ -2,7 +2,7 @@
 /// @file The folder of a measurement: a target for `mesofit fit`.
 #pragma once
 
-#include "input/scene_molecules.h"
+#include "scene/scene_molecules.h"
 #include "io/json_write.h"
 #include "work/measure_run.h"
 

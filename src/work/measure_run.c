@@ -2,7 +2,7 @@
 #include "work/measure_run.h"
 
 #include "base/number_text.h"
-#include "input/molecules_file.h"
+#include "scene/molecules_file.h"
 #include "io/units.h"
 #include "report/progress.h"
 #include "work/measure_output.h"

@@ -2,8 +2,8 @@
 #include "work/simulate.h"
 
 #include "base/memory.h"
-#include "input/heading.h"
-#include "input/scene.h"
+#include "scene/heading.h"
+#include "scene/scene.h"
 #include "io/checkpoint.h"
 #include "io/checkpoint_pace.h"
 #include "mesofit.h"

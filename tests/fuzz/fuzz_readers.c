@@ -6,7 +6,7 @@
 #include "io/data_table.h"
 #include "io/votca.h"
 #include "io/checkpoint.h"
-#include "input/fit_file.h"
+#include "defaults/fit_file.h"
 #include "report/result.h"
 #include "trajectory/mapping.h"
 #include "trajectory/trajectory.h"

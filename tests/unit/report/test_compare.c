@@ -129,10 +129,12 @@ static void test_numbers_are_those_of_the_summary(void **state) {
     mf_data_table_clear(&table);
 }
 
-static const struct field *summary_field(const char *target, const char *ending) {
+static const struct field *summary_field(const char *target, const char *ending,
+                                         struct result_field *room) {
     char name[FIELD_TEXT_SIZE];
+    const struct field *field;
     snprintf(name, sizeof name, "%s%s", target, ending);
-    for (const struct field *field = mf_result_summary_fields; field->name; field++)
+    for (size_t n = 0; (field = mf_result_summary_field(n, room)); n++)
         if (strcmp(field->name, name) == 0)
             return field;
     fail_msg("%s is not compared", name);
@@ -148,11 +150,13 @@ static void test_distances_from_all_targets_are_known(void **state) {
                                 .length = 0.7,
                                 .temperature = 310,
                                 .mass = 5e-26};
+    struct result_field room;
     for (int kind = 0; mf_targets_name(kind); kind++) {
         const char *own = mf_observable_kind(kind).target->unit, *unit = own ? own : "1";
         for (size_t k = 0; k < sizeof endings / sizeof endings[0]; k++)
             assert_close_relative(
-                mf_units_factor(&units, summary_field(mf_targets_name(kind), endings[k])->unit) /
+                mf_units_factor(&units,
+                                summary_field(mf_targets_name(kind), endings[k], &room)->unit) /
                     mf_units_factor(&units, unit),
                 1, 1e-12);
     }

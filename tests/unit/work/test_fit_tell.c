@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The words of an iteration's progress, and what is said of the targets of molecules.
-#include "input/fit_states.h"
+#include "defaults/fit_states.h"
 #include "shared/propane.h"
 #include "shared/small_inputs.h"
 #include "shared/testing.h"

@@ -2,8 +2,8 @@
 //
 // Checkpoints of simulations with all that can be measured: they hold what was sampled and not what
 // will be, and who goes on from one has the same bits.
-#include "input/heading.h"
-#include "input/scene.h"
+#include "scene/heading.h"
+#include "scene/scene.h"
 #include "io/checkpoint.h"
 #include "shared/small_inputs.h"
 #include "shared/temporary_folder.h"

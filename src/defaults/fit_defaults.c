@@ -1,0 +1,430 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "defaults/fit_defaults.h"
+
+#include "defaults/fit_choice.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static bool lacks_method(const struct json_object *root) {
+    return mf_fit_choice_lacks(root, "", "method");
+}
+
+/// A part of it is enough.
+static bool lacks_verification(const struct json_object *root) {
+    static const char *const keys[] = {"replicas", "equilibration", "every", "samples"};
+    bool lacks = false;
+    for (size_t k = 0; k < sizeof keys / sizeof *keys; k++)
+        lacks = lacks || mf_fit_choice_lacks(root, "verification", keys[k]);
+    return lacks;
+}
+
+/// Before a fit a time step can be chosen for its target alone: the verification takes it as a
+/// first one.
+static enum status choose_shorter_steps(struct fit_choice *c) {
+    static const char *const path = "verification", *const key = "shorten_time_step";
+    const bool given = !mf_fit_choice_lacks(c->root, "scene", "time_step") ||
+                       !mf_fit_choice_lacks(c->root, path, "time_step") ||
+                       !mf_fit_choice_lacks(c->root, path, key);
+    return given || !mf_verify_step_can_shorten(&c->read->scene.setup)
+               ? STATUS_OK
+               : mf_fit_choice_give_text(c->root, path, key, "yes");
+}
+
+/// Whether nothing would hold the temperature.
+static bool lacks_friction(const struct json_object *root) {
+    return mf_fit_choice_lacks(root, "scene", "dissipative") &&
+           mf_fit_choice_lacks(root, "scene", "dissipative_transverse") &&
+           mf_fit_choice_lacks(root, "scene", "dynamics") &&
+           mf_fit_choice_lacks(root, "scene", "memory");
+}
+
+bool mf_fit_defaults_wanted(const struct json_object *root) {
+    return root->item &&
+           (lacks_method(root) || lacks_friction(root) ||
+            mf_fit_choice_lacks(root, "scene", "time_step") || lacks_verification(root));
+}
+
+// The choices -------------------------------------------------------------------------------------
+
+/// Give a key of the target g(r), of a mixture those of each pair type that do not say it.
+static enum status give_to_pairs(struct fit_choice *c, const char *name, double value,
+                                 bool *given) {
+    const struct composition *composition = c->rdf->composition;
+    const char *key;
+    struct json_object rdf = mf_fit_choice_object(c->root, "target.rdf");
+    *given = false;
+    for (size_t n = 0; (key = mf_json_key(&rdf, n)); n++) {
+        char path[JSON_PATH_SIZE] = "target.rdf";
+        if (composition_is_mixed(composition) && mf_composition_find_pair(composition, key) < 0)
+            continue;
+        if (composition_is_mixed(composition))
+            snprintf(path, sizeof path, "target.rdf.%.64s", key);
+        if (!mf_fit_choice_lacks(c->root, path, name))
+            continue;
+        TRY(mf_fit_choice_give(c, path, mf_target_rdf_fields, name, value));
+        *given = true;
+        rdf = mf_fit_choice_object(c->root, "target.rdf");
+    }
+    return STATUS_OK;
+}
+
+/// Whether the file says how wide the bins of any pair type are.
+static bool says_bins(const struct fit_choice *c) {
+    bool says = false;
+    for (size_t pair = 0; pair < target_files_rdf(&c->read->files)->pairs; pair++)
+        says = says || target_files_rdf(&c->read->files)->member[pair].parameters.bin_width > 0;
+    return says;
+}
+
+/// Rows finer than what g tells apart are joined: to those of the first state, if there are more.
+static enum status choose_bins(struct fit_choice *c, struct fit_scales_rdf *rdf) {
+    static const double finest = 0.001, coarsest = 0.004;
+    const struct target_files *files = &c->read->files;
+    char text[FIT_CHOICE_TEXT_SIZE];
+    bool given;
+    if (!files->given[TARGET_RDF] || !c->read->unknown[UNKNOWN_POTENTIAL].wanted || says_bins(c))
+        return STATUS_OK;
+    size_t of = mf_fit_scales_joined(rdf, finest, coarsest);
+    if (c->leader)
+        of = (size_t)fmax(1, round(target_pairs_bins(target_files_rdf(&c->leader->files))->width /
+                                   rdf->bins.width));
+    if (of < 2)
+        return STATUS_OK;
+    TRY(mf_fit_scales_rdf_join(rdf, of));
+    c->joined = of;
+    TRY(give_to_pairs(c, "bin_width", rdf->bins.width, &given));
+    mf_fit_choice_say(c, "bins of %s: %s", mf_fit_choice_text(c, "lambda", rdf->bins.width, text),
+                      c->leader ? "as the first state has them"
+                                : "as wide as they can be with g between them within its noise");
+    return STATUS_OK;
+}
+
+/// Centre of the last row of a bin of so many rows: where a cutoff leaves all of the bin.
+static double last_row(const struct rdf_bins *bins, size_t bin, size_t rows) {
+    return mf_rdf_bins_centre(bins, bin) + 0.5 * bins->width * (1 - 1 / (double)rows);
+}
+
+/// Centre of the last row that is used: where g is seen to differ from 1, and all of the bin within
+/// half of a box that is given and not much too small.
+static double find_cutoff(const struct fit_choice *c, const char **why) {
+    static const double least_of_box = 0.8;
+    const double whole = c->scales.range - 0.5 * c->rdf->bins.width;
+    double cutoff = fmin(whole, fmax(c->scales.seen, 2 * c->scales.neighbour));
+    *why = "beyond, g differs from 1 by less than 0.03 or its noise, as it may without forces "
+           "there";
+    if (c->leader) {
+        const struct rdf_bins *bins = target_pairs_bins(target_files_rdf(&c->leader->files));
+        *why = "as the first state has it";
+        return last_row(bins, bins->count - 1,
+                        target_files_rdf(&c->leader->files)->member[0].joined);
+    }
+    if (mf_fit_choice_lacks(c->root, "scene", "box"))
+        return cutoff;
+    const double half = 0.5 * mf_box_shortest(&c->read->scene.setup.box),
+                 last = floor((half - c->rdf->bins.low) / c->rdf->bins.width + 1e-9);
+    if (last < 1)
+        return cutoff;
+    const double within = last_row(&c->rdf->bins, (size_t)last - 1,
+                                   c->joined * target_files_rdf(&c->read->files)->member[0].joined);
+    if (within >= cutoff || within < least_of_box * cutoff)
+        return cutoff;
+    *why = "half of the box";
+    return within;
+}
+
+static enum status choose_cutoff(struct fit_choice *c) {
+    static const double worth = 0.9;
+    const char *why;
+    char text[FIT_CHOICE_TEXT_SIZE];
+    bool given;
+    const double cutoff = find_cutoff(c, &why);
+    const bool forced = c->leader || strcmp(why, "half of the box") == 0;
+    if (!c->finds[UNKNOWN_POTENTIAL] || (cutoff > worth * c->range && !forced))
+        return STATUS_OK;
+    TRY(give_to_pairs(c, "cutoff", cutoff, &given));
+    if (given)
+        c->range = cutoff + 0.5 * c->rdf->bins.width;
+    if (c->range < c->scales.range)
+        mf_fit_choice_say(c, "cutoff %s: %s", mf_fit_choice_text(c, "lambda", cutoff, text), why);
+    return STATUS_OK;
+}
+
+/// A box that is somewhat wider than twice what is looked at, with a thousand beads at least.
+static enum status choose_count(struct fit_choice *c) {
+    static const double least = 1000, margin = 2.2;
+    if (mf_fit_choice_lacks(c->root, "scene", "density") ||
+        !mf_fit_choice_lacks(c->root, "scene.particles", "count") ||
+        !mf_fit_choice_lacks(c->root, "scene.particles", "types") ||
+        !mf_fit_choice_lacks(c->root, "scene", "molecules"))
+        return STATUS_OK;
+    const double range = fmax(c->range, target_files_etd(&c->read->files)->grid.r_maximum);
+    const double needed = c->density * pow(margin * range, c->dimensions);
+    c->count = ceil(fmax(least, needed));
+    mf_fit_choice_say(
+        c, "%.0f particles: %s%s", c->count,
+        c->count > least ? "the box is 2.2 times as wide as the range of the targets"
+                         : "enough for the statistics, and the box is wider than twice the range",
+        target_files_rdf(&c->read->files)->member[0].parameters.particles > 0
+            ? ""
+            : "; g(r) is taken for that of as many, since its \"particles\" are not said");
+    return mf_fit_choice_give(c, "scene.particles", mf_placement_count_fields, "count", c->count);
+}
+
+/// The next lower of 1, 1.2, 1.5, 2, … times a power of 10.
+static double round_down(double value) {
+    static const double steps[] = {1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8};
+    const double power = pow(10, floor(log10(value) + 1e-9));
+    double rounded = power;
+    for (size_t k = 0; k < sizeof steps / sizeof *steps; k++)
+        if (steps[k] * power <= value * (1 + 1e-9))
+            rounded = steps[k] * power;
+    return rounded;
+}
+
+/// A whole fraction of the interval of targets at times, if there are any; else round in the units
+/// of the file.
+static double fit_interval(const struct fit_choice *c, double time_step) {
+    const struct target_files *files = &c->read->files;
+    const double interval =
+        files->given[TARGET_ETD]    ? target_files_etd(files)->interval
+        : files->given[TARGET_VACF] ? target_files_curve(files, TARGET_VACF)->interval
+        : files->given[TARGET_MSD]  ? target_files_curve(files, TARGET_MSD)->interval
+                                    : 0;
+    const double unit = mf_units_factor(&c->read->scene.units, "tau");
+    return interval > 0 ? interval / ceil(interval / time_step - 1e-9)
+                        : round_down(time_step * unit) / unit;
+}
+
+/// Integrators of Verlet's kind give an oscillator of angular frequency Ω the configurational
+/// temperature T/(1 − (Ω Δt)²/4). Two beads oscillate with Ω² = 2 Φ''/m, and Φ is at most as steep
+/// as −k_B T ln g where pairs come near. What flies free moves a fiftieth of the way to its
+/// neighbours; without velocities it takes as long as the square of that of the time in which it
+/// diffuses there.
+static enum status choose_time_step(struct fit_choice *c) {
+    static const double allowed = 0.01, way = 0.02;
+    const bool flies = c->read->scene.setup.integrator->mobility == NULL;
+    const double stiff = mf_fit_defaults_stiff_step(c);
+    const double free = fmin((flies ? way : way * way) * c->crossing, stiff);
+    const double curvature_of_pair = 2 * c->scales.curvature;
+    const double bound = flies ? sqrt(4 * allowed * c->mass / curvature_of_pair)
+                               : mf_fit_defaults_relaxing_step(c, curvature_of_pair, allowed);
+    if (!mf_fit_choice_lacks(c->root, "scene", "time_step")) {
+        c->time_step = c->read->scene.setup.time_step;
+        return STATUS_OK;
+    }
+    c->time_step = fit_interval(c, fmin(free, bound));
+    char step[FIT_CHOICE_TEXT_SIZE], curvature[FIT_CHOICE_TEXT_SIZE], at[FIT_CHOICE_TEXT_SIZE];
+    mf_fit_choice_text(c, "tau", c->time_step, step);
+    mf_fit_choice_text(c, "k_B T_0/lambda^2", c->scales.curvature, curvature);
+    mf_fit_choice_text(c, "lambda", c->scales.curvature_at, at);
+    if (bound < free)
+        mf_fit_choice_say(c,
+                          "time step %s: the curvature of -k_B T ln g is up to %s, at %s, and the "
+                          "configurational temperature is to be right within 1 %%",
+                          step, curvature, at);
+    else if (free == stiff)
+        mf_fit_choice_say(c,
+                          "time step %s: the distributions of bonds and angles are to be right "
+                          "within 0.3 %% of their variance",
+                          step);
+    else
+        mf_fit_choice_say(c, "time step %s: beads move a fiftieth of the way to their neighbours",
+                          step);
+    return mf_fit_choice_give(c, "scene", mf_scene_fields, "time_step", c->time_step);
+}
+
+/// In the core, where no pair is seen, the potential goes on bending up more than it does where
+/// pairs come near, so that none is lost there.
+static enum status choose_core(struct fit_choice *c) {
+    static const double steeper = 1.5, least = 2000;
+    const double temperature = c->read->scene.setup.temperature;
+    const double stiffness =
+        fmax(steeper * c->scales.curvature, least * temperature / pow(c->scales.neighbour, 2));
+    return c->finds[UNKNOWN_POTENTIAL]
+               ? mf_fit_choice_give(c, "core", mf_fit_core_fields, "stiffness", stiffness)
+               : STATUS_OK;
+}
+
+/// Whether something is to be fitted that friction decides.
+static bool fits_motion(const struct target_files *files) {
+    bool fits = false;
+    for (int kind = TARGET_ETD; kind <= TARGET_DIFFUSION; kind++)
+        fits = fits || (files->given[kind] && files->use[kind].fitted);
+    return fits;
+}
+
+/// The potential, and ω if what is to be fitted moves and no friction is given.
+static enum status choose_unknowns(struct fit_choice *c) {
+    static const char *const path = "unknowns";
+    const bool moves = fits_motion(&c->read->files) &&
+                       mf_fit_choice_lacks(c->root, "scene", "dissipative") &&
+                       mf_fit_choice_lacks(c->root, "scene", "conservative");
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        c->finds[kind] = c->read->unknown[kind].wanted;
+    if (!mf_fit_choice_lacks(c->root, "", path) || !moves)
+        return STATUS_OK;
+    c->finds[UNKNOWN_OMEGA] = true;
+    mf_fit_choice_say(
+        c, "unknowns: the potential and, since targets that move are to be fitted, omega");
+    TRY(mf_fit_choice_give_empty(c->root, "unknowns.potential"));
+    return mf_fit_choice_give_empty(c->root, "unknowns.omega");
+}
+
+/// σ of ω = σ (1 − r/cutoff) with which a bead loses its velocity in the time in which it would
+/// reach its neighbours. In a gas collisions are rare, and no pair may lose more than a tenth of
+/// its velocity a step.
+static double moderate_friction(const struct fit_choice *c, double cutoff) {
+    static const double strongest = 0.1;
+    const double rate = mf_fit_scales_friction(c->rdf, cutoff) / c->mass;
+    return sqrt(fmin(1 / (rate * c->crossing), strongest * c->mass / c->time_step));
+}
+
+/// ω as a spline from where pairs begin to the end of the second shell, up to several times the
+/// friction that would be chosen of its own.
+static enum status choose_omega(struct fit_choice *c) {
+    static const char *const path = "unknowns.omega";
+    static const double shells = 2, beyond_etd = 1.3, most = 6;
+    enum { COEFFICIENTS = 8 };
+    if (!c->finds[UNKNOWN_OMEGA] || !mf_fit_choice_lacks(c->root, path, "cutoff") ||
+        !mf_fit_choice_lacks(c->root, path, "maximum"))
+        return STATUS_OK;
+    const double cutoff =
+        fmin(c->range, fmax(shells * c->scales.shell,
+                            beyond_etd * target_files_etd(&c->read->files)->grid.r_maximum));
+    const double sigma = moderate_friction(c, cutoff);
+    char largest[FIT_CHOICE_TEXT_SIZE], from[FIT_CHOICE_TEXT_SIZE], to[FIT_CHOICE_TEXT_SIZE];
+    mf_fit_choice_say(c, "omega: %d coefficients from 0 to %s, between r = %s and %s, %s",
+                      COEFFICIENTS, mf_fit_choice_text(c, "sqrt(mu/tau)", most * sigma, largest),
+                      mf_fit_choice_text(c, "lambda", c->scales.core, from),
+                      mf_fit_choice_text(c, "lambda", cutoff, to),
+                      "about the end of the second shell");
+    TRY(mf_fit_choice_give(c, path, mf_inverse_omega_fields, "cutoff", cutoff));
+    TRY(mf_fit_choice_give(c, path, mf_inverse_omega_fields, "inner_cutoff", c->scales.core));
+    TRY(mf_fit_choice_give(c, path, mf_inverse_omega_fields, "maximum", most * sigma));
+    TRY(mf_fit_choice_give(c, path, mf_inverse_omega_fields, "coefficients", COEFFICIENTS));
+    TRY(mf_fit_choice_give_text(c->root, path, "curve", "bspline"));
+    return mf_fit_choice_give_omega(c, "unknowns.omega.start", sigma, cutoff);
+}
+
+/// Friction of any kind, along or across pairs.
+static bool finds_friction(const struct fit_choice *c) {
+    bool finds = false;
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        finds = finds || (unknown_is_omega(kind) && c->finds[kind]);
+    return finds;
+}
+
+/// It holds the temperature against what the integrator heats, and leaves g(r) as it is.
+static enum status choose_friction(struct fit_choice *c) {
+    if (finds_friction(c) || !lacks_friction(c->root))
+        return STATUS_OK;
+    const double cutoff = c->scales.shell, sigma = moderate_friction(c, cutoff);
+    const double time = c->mass / (mf_fit_scales_friction(c->rdf, cutoff) * sigma * sigma);
+    char size[FIT_CHOICE_TEXT_SIZE], end[FIT_CHOICE_TEXT_SIZE], memory[FIT_CHOICE_TEXT_SIZE];
+    mf_fit_choice_say(c,
+                      "friction omega = %s times 1 - r/(%s): up to the end of the first shell, and "
+                      "a bead forgets its velocity in %s",
+                      mf_fit_choice_text(c, "sqrt(mu/tau)", sigma, size),
+                      mf_fit_choice_text(c, "lambda", cutoff, end),
+                      mf_fit_choice_text(c, "tau", time, memory));
+    return mf_fit_choice_give_omega(c, "scene.dissipative", sigma, cutoff);
+}
+
+static enum status choose_all(struct fit_choice *c) {
+    static enum status (*const steps[])(struct fit_choice *) = {
+        choose_unknowns,
+        choose_core,
+        choose_cutoff,
+        choose_count,
+        choose_time_step,
+        choose_omega,
+        choose_friction,
+        mf_fit_defaults_method,
+        mf_fit_defaults_verification,
+    };
+    for (size_t k = 0; k < sizeof steps / sizeof *steps; k++)
+        TRY(steps[k](c));
+    return STATUS_OK;
+}
+
+/// Beside a method that the file gives: without friction nothing would hold the temperature.
+/// Molecules have many pairs, and are long on their way.
+static enum status choose_simulation(struct fit_choice *c) {
+    const bool joined = scene_has_molecules(&c->read->scene.molecules);
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        c->finds[kind] = c->read->unknown[kind].wanted;
+    if (joined)
+        TRY(choose_cutoff(c));
+    TRY(choose_time_step(c));
+    TRY(choose_friction(c));
+    return joined ? mf_fit_defaults_verification(c) : STATUS_OK;
+}
+
+/// Molecules without pairs do not see each other: nothing but their bonds, angles and dihedrals is
+/// to be found, and what holds their temperature is Monte Carlo.
+static enum status choose_without_pairs(struct fit_choice *c) {
+    enum { EQUILIBRATION = 2000, SAMPLES = 200, EVERY = 20 };
+    static const char *const path = "verification";
+    mf_fit_choice_say(
+        c,
+        "method \"%s\": it finds the potentials of bonds, angles and dihedrals from "
+        "their distributions; without \"target.rdf\" and \"scene.conservative\" beads "
+        "do not act as pairs",
+        mf_automatic.name);
+    TRY(mf_fit_choice_give_text(c->root, "method", "name", mf_automatic.name));
+    if (lacks_friction(c->root)) {
+        mf_fit_choice_say(c,
+                          "dynamics \"%s\" of the verification: nothing else holds the "
+                          "temperature of molecules alone",
+                          mf_monte_carlo.name);
+        TRY(mf_fit_choice_give_text(c->root, "scene.dynamics", "integrator", mf_monte_carlo.name));
+    }
+    TRY(mf_fit_choice_give(c, path, mf_verify_fields, "equilibration", EQUILIBRATION));
+    TRY(mf_fit_choice_give(c, path, mf_verify_fields, "samples", SAMPLES));
+    return mf_fit_choice_give(c, path, mf_verify_fields, "every", EVERY);
+}
+
+static double find_crossing(const struct fit_choice *c, const struct simulation_setup *setup) {
+    const double way = c->scales.neighbour;
+    return setup->integrator->mobility
+               ? way * way / (2 * setup->temperature * setup->integrator->mobility(setup))
+               : way * sqrt(c->mass / setup->temperature);
+}
+
+enum status mf_fit_defaults_choose(const struct fit_file *read, const struct fit_file *leader,
+                                   struct json_object *root, struct fit_choices *choices) {
+    const struct simulation_setup *setup = &read->scene.setup;
+    const struct attributes_range masses = mf_attributes_span(&setup->attribute[ATTRIBUTES_MASS]);
+    enum status status = STATUS_OK;
+    struct fit_scales_rdf rdf = {0};
+    struct fit_choice c = {.read = read,
+                           .leader = leader,
+                           .root = root,
+                           .said = choices,
+                           .rdf = &rdf,
+                           .joined = 1,
+                           .dimensions = setup->box.dimensions,
+                           .count = (double)setup->placement.count};
+    CHECK(choose_shorter_steps(&c));
+    CHECK(mf_fit_scales_rdf_init(&rdf, &read->files, &read->scene));
+    if (rdf.bins.count == 0) { // there are no pairs to choose by
+        status = lacks_method(root) && read->problem.bonded + read->constraints.count > 0
+                     ? choose_without_pairs(&c)
+                     : status;
+        goto done;
+    }
+    c.density = rdf.density;
+    if (lacks_method(root))
+        CHECK(choose_bins(&c, &rdf));
+    c.scales = mf_fit_scales_find(&rdf, setup->temperature, fit_scales_little);
+    c.mass = masses.maximum > 0 ? masses.minimum : 1;
+    c.crossing = find_crossing(&c, setup);
+    c.range = c.scales.range;
+    c.precision = mf_fit_defaults_precision(&c);
+    CHECK(lacks_method(root) ? choose_all(&c) : choose_simulation(&c));
+done:
+    mf_fit_scales_rdf_clear(&rdf);
+    return status;
+}

@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// How long, how exactly and by what method a fit works that its run file leaves to the program.
+#include "dynamics/hybrid_step.h"
+#include "defaults/fit_choice.h"
+#include "inversion/inversion.h"
+
+#include <math.h>
+#include <string.h>
+
+/// By how much larger the noise of g of all pair types is, rms, than that of g of all beads in the
+/// same samples: of few beads there are few pairs.
+static double find_rarity(const struct composition *composition) {
+    double all = 0, sum = 0, pairs = 0;
+    for (int pair = 0; pair < mf_composition_pairs(composition); pair++)
+        all += mf_composition_possible_pairs(composition, pair);
+    for (int pair = 0; pair < mf_composition_pairs(composition); pair++) {
+        const double own = mf_composition_possible_pairs(composition, pair);
+        sum += own > 0 ? all / own : 0;
+        pairs += own > 0;
+    }
+    return pairs > 0 ? sqrt(sum / pairs) : 1;
+}
+
+double mf_fit_defaults_precision(const struct fit_choice *c) {
+    // Molecules move slowly: a third of the noise would take ten times as long.
+    const double alike = scene_has_molecules(&c->read->scene.molecules) ? 0.003 : 0.001;
+    const double least = alike * find_rarity(c->rdf->composition);
+    static const double most = 0.004;
+    // More samples than that would make the error of the result smaller by an eighth at most.
+    static const double part_of_target = 0.5;
+    return fmax(part_of_target * c->scales.noise, fmin(most, fmax(least, c->scales.noise)));
+}
+
+/// A system that is large enough for the range.
+static double choose_particles(const struct fit_choice *c) {
+    static const double least = 700, margin = 2.15, distortion = 0.05;
+    const double wanted = ceil(fmax(least, c->density * pow(margin * c->range, c->dimensions)));
+    return (double)mf_composition_least_particles(c->rdf->composition, (int64_t)wanted, distortion);
+}
+
+/// Mean and variance of a target's q, from its peak on as far as it is above half of that, as of a
+/// normal distribution: the stiffest well of several.
+static void find_well(const struct target_bonded *target, double *mean, double *variance) {
+    const struct bonded_bins *bins = &target->bins;
+    size_t peak = 0, low, high;
+    for (size_t k = 0; k < bins->count; k++)
+        peak = target->value[k] > target->value[peak] ? k : peak;
+    for (low = peak; low > 0 && target->value[low] > 0.5 * target->value[peak]; low--) {
+    }
+    for (high = peak; high + 1 < bins->count && target->value[high] > 0.5 * target->value[peak];
+         high++) {
+    }
+    *mean = bonded_bins_centre(bins, peak);
+    *variance = pow((double)(high - low) * bins->width, 2) / (8 * log(2));
+}
+
+/// ω² of a group, by its target, or by its law if it has none.
+static double fastest_of(const struct fit_choice *c, int order, size_t g, double length) {
+    const struct target_groups *groups = target_files_groups(&c->read->files, order);
+    const struct bonded_curve *curve = &c->read->scene.molecules.molecules.group[order][g].curve;
+    const double temperature = c->read->scene.setup.temperature;
+    double mean, variance;
+    if (target_groups_have(groups, g)) {
+        find_well(&groups->member[g], &mean, &variance);
+        variance *= mf_bonded_kinds[order]->scale * mf_bonded_kinds[order]->scale;
+    } else {
+        variance = mf_hybrid_step_variance(curve, order, temperature);
+    }
+    return mf_hybrid_step_squared_frequency(order, variance, length, temperature) / c->mass;
+}
+
+static double shortest_bond(const struct fit_choice *c) {
+    const struct molecules *molecules = &c->read->scene.molecules.molecules;
+    const struct target_groups *bonds = target_files_groups(&c->read->files, BONDED_BOND);
+    double length = INFINITY, mean, variance;
+    for (size_t g = 0; g < (size_t)molecules->groups[BONDED_BOND]; g++) {
+        if (target_groups_have(bonds, g))
+            find_well(&bonds->member[g], &mean, &variance);
+        else
+            mean = mf_bonded_reach(&molecules->group[BONDED_BOND][g].curve,
+                                   c->read->scene.setup.temperature);
+        length = fmin(length, mean);
+    }
+    return length;
+}
+
+double mf_fit_defaults_relaxing_step(const struct fit_choice *c, double curvature, double allowed) {
+    // With x = Δt Φ''/γ Euler's steps give a variance of T/(Φ'' (1 − x/2)); those of "brownian" the
+    // exact one, and a liquid of Lennard-Jones beads the temperature 1.002(4) with x up to 0.8.
+    static const double share_of_exact = 0.4;
+    const struct simulation_setup *setup = &c->read->scene.setup;
+    const double share = setup->integrator == &mf_brownian ? share_of_exact : 2 * allowed;
+    return share / (curvature * setup->integrator->mobility(setup));
+}
+
+double mf_fit_defaults_stiff_step(const struct fit_choice *c) {
+    static const double allowed = 0.003;
+    // Friction is chosen later, and then aboba is the default.
+    const struct integrator *integrator = mf_fit_choice_lacks(c->root, "scene", "dynamics")
+                                              ? &mf_aboba
+                                              : c->read->scene.setup.integrator;
+    const struct molecules *molecules = &c->read->scene.molecules.molecules;
+    const double length = shortest_bond(c);
+    double fastest = 0;
+    for (int order = 0; order < BONDED_KINDS; order++)
+        for (size_t g = 0; g < (size_t)molecules->groups[order]; g++)
+            fastest = fmax(fastest, fastest_of(c, order, g, length));
+    return integrator->mobility ? mf_fit_defaults_relaxing_step(c, c->mass * fastest, allowed)
+                                : sqrt(allowed / (mf_hybrid_step_wrong(integrator) * fastest));
+}
+
+/// How candidates for ω are simulated: from the last configuration, as long as their targets look.
+static enum status choose_rounds(struct fit_choice *c, const struct field *fields) {
+    static const double equilibration = 0.7, apart = 0.1, windows = 1.5, least = 40;
+    enum target_kind longest;
+    const double window =
+        (double)mf_measurement_window(&c->read->problem.compared, c->time_step, &longest);
+    const double free = round(apart * c->crossing / c->time_step);
+    const double every = fmax(1, fmin(free, window > 0 ? floor(windows * window / least) : free));
+    TRY(mf_fit_choice_give(c, "method", fields, "equilibration",
+                           fmax(50, ceil(equilibration * c->crossing / c->time_step))));
+    TRY(mf_fit_choice_give(c, "method", fields, "every", every));
+    TRY(mf_fit_choice_give(c, "method", fields, "samples",
+                           fmax(least, ceil(windows * window / every))));
+    TRY(mf_fit_choice_give(c, "method", fields, "precision", 0.1));
+    TRY(mf_fit_choice_give(c, "method", fields, "temperature_tolerance", 0.3));
+    return mf_fit_choice_give_text(c->root, "method", "warm_start", "yes");
+}
+
+/// The table of a method that has a field of that name.
+static const struct field *fields_with(const struct inverse_method *method, const char *name) {
+    for (const struct inverse_table *table = method->tables; table->fields; table++)
+        for (const struct field *field = table->fields; field->name; field++)
+            if (strcmp(field->name, name) == 0)
+                return table->fields;
+    return NULL;
+}
+
+enum status mf_fit_defaults_method(struct fit_choice *c) {
+    const bool simulates = c->finds[UNKNOWN_OMEGA] || c->read->numbers > 0;
+    const bool both = simulates && c->finds[UNKNOWN_POTENTIAL] && c->read->numbers == 0;
+    const struct inverse_method *method = both               ? &mf_successive
+                                          : simulates        ? &mf_gauss_newton
+                                          : c->read->name[0] ? &mf_imc
+                                                             : &mf_automatic;
+    const double particles = choose_particles(c);
+    TRY(mf_fit_choice_give_text(c->root, "method", "name", method->name));
+    if (both || !simulates) {
+        const char *of[2] = {both ? "potential_particles" : "particles",
+                             both ? "potential_precision" : "precision"};
+        // States of other densities have other particles in a box of that width.
+        const bool joined = scene_has_molecules(&c->read->scene.molecules) || c->read->name[0];
+        mf_fit_choice_say(
+            c,
+            "method \"%s\": it finds the potential from g(r) by samples of %.0f particles, until "
+            "their g is known within %.2g; the target's is within %.2g",
+            method->name, joined ? c->count : particles, c->precision, c->scales.noise);
+        if (!joined)
+            TRY(mf_fit_choice_give(c, "method", fields_with(method, of[0]), of[0], particles));
+        TRY(mf_fit_choice_give(c, "method", fields_with(method, of[1]), of[1], c->precision));
+    }
+    if (!simulates)
+        return STATUS_OK;
+    mf_fit_choice_say(c, "method \"%s\": it finds %s from simulations as long as the targets look",
+                      method->name, c->finds[UNKNOWN_OMEGA] ? "omega" : "what is unknown");
+    return choose_rounds(c, fields_with(method, "equilibration"));
+}
+
+/// How many samples of each replica make the noise of g such a part of what the errors of target
+/// and method make. With half of it the rms of g − g* is known within a tenth.
+static double samples_for_rdf(const struct fit_choice *c, double replicas, double part) {
+    static const double inefficiency = 2;
+    const double wanted = part * hypot(c->scales.noise, c->precision);
+    const double noise =
+        mf_fit_scales_noise_of_sample(c->rdf, &c->read->scene.setup.box, c->count, c->range);
+    return inefficiency * pow(noise / wanted, 2) / replicas;
+}
+
+/// How many samples of each replica, so many crossings apart, tell the temperature within a third
+/// of a per cent: a bead forgets its velocity in one.
+static double samples_for_temperature(const struct fit_choice *c, double replicas, double apart) {
+    static const double wanted = 1.0 / 300;
+    const double degrees = c->read->scene.setup.box.dimensions * c->count;
+    return 2 / (degrees * wanted * wanted) / (fmin(1, apart) * replicas);
+}
+
+/// As exact as is wanted where that costs little; else as exact as is needed, if that may be paid.
+static double what_pays(double wanted, double needed, double little, double most) {
+    return fmin(wanted, fmax(little, fmin(needed, most)));
+}
+
+/// What the file says of the verification, or what is chosen.
+static double given_or(const struct fit_choice *c, const char *key, int64_t given, double chosen) {
+    return mf_fit_choice_lacks(c->root, "verification", key) ? chosen : (double)given;
+}
+
+enum status mf_fit_defaults_verification(struct fit_choice *c) {
+    static const double apart = 0.1, equilibration = 10, least = 50, windows = 20;
+    static const double most_moves = 3e8, few_moves = 1e8, exact = 0.5, enough = 1;
+    const char *path = "verification";
+    enum target_kind longest;
+    const struct verify_parameters *read = &c->read->verification;
+    const double time_step = read->time_step > 0 ? read->time_step : c->time_step;
+    const double replicas = given_or(c, "replicas", read->replicas, 4);
+    const double every =
+        given_or(c, "every", read->plan.every, fmax(1, round(apart * c->crossing / time_step)));
+    const double begin = fmax(1000, ceil(equilibration * c->crossing / time_step));
+    const double window =
+        (double)mf_measurement_window(&c->read->problem.compared, time_step, &longest);
+    const double sample = replicas * c->count * every;
+    const double looks = windows * window / every;
+    const bool counted = c->read->files.given[TARGET_RDF];
+    const double counts = counted ? samples_for_rdf(c, replicas, exact) : 0;
+    const double wanted = fmax(counts, fmax(least, looks));
+    const double needed =
+        fmax(counted ? samples_for_rdf(c, replicas, enough) : wanted,
+             fmax(looks, samples_for_temperature(c, replicas, every * time_step / c->crossing)));
+    const double can = what_pays(wanted, needed, few_moves / sample, most_moves / sample);
+    const double samples = ceil(fmax(can, fmax(least, window / every)));
+    const char *why = wanted > samples && needed > samples ? "as many as a few minutes allow"
+                      : wanted > samples ? "so that the noise of g is no more than that of target "
+                                           "and method, and T known within a third of a per cent"
+                      : counts == wanted ? "so that the difference of g is known within a tenth "
+                                           "of it"
+                      : looks == wanted  ? "20 times as long as the targets look"
+                                         : "the least of which errors can be told";
+    if (mf_fit_choice_lacks(c->root, path, "samples"))
+        mf_fit_choice_say(c, "verification: %.0f simulations of %.0f samples, %s", replicas,
+                          samples, why);
+    TRY(mf_fit_choice_give(c, path, mf_verify_fields, "replicas", replicas));
+    TRY(mf_fit_choice_give(c, path, mf_verify_fields, "equilibration", begin));
+    TRY(mf_fit_choice_give(c, path, mf_verify_fields, "every", every));
+    return mf_fit_choice_give(c, path, mf_verify_fields, "samples", samples);
+}

@@ -1,0 +1,417 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "defaults/fit_file.h"
+
+#include "base/digest.h"
+#include "base/memory.h"
+#include "base/names.h"
+#include "defaults/fit_base.h"
+#include "defaults/fit_check.h"
+#include "defaults/fit_defaults.h"
+#include "defaults/fit_states.h"
+#include "defaults/fit_unknowns.h"
+
+#include <math.h>
+#include <string.h>
+
+#define MEMBER(name) .offset = offsetof(struct fit_core, name)
+const struct field mf_fit_core_fields[] = {
+    {"threshold", FIELD_NUMBER, MEMBER(threshold), .initial = 1e-3, .minimum = 0, .maximum = 1,
+     .unit = "",
+     .help = "bins near r = 0 in which the target is below this, or below two of its standard "
+             "errors, are the core"},
+    {"stiffness", FIELD_NUMBER, MEMBER(stiffness), .initial = 2000, .minimum = 0,
+     .maximum = DBL_MAX, .unit = "k_B T_0/lambda^2",
+     .help = "curvature of the potential in the core"},
+    FIELD_END,
+};
+
+NAMED_RECORD(struct inverse_method);
+
+/// Where forces from outside act, g(r) does not follow from those of pairs; partial g(r) do not
+/// follow from the force on a bead of either type.
+static void check_estimator(const struct fit_file *fit, struct json_object *method) {
+    if (fit->method->sampling == NULL || !fit->method->sampling(fit->method_parameters).rdf_force)
+        return;
+    if (composition_is_mixed(&fit->scene.setup.composition))
+        mf_json_fault(method, "estimator",
+                      "\"force\" is not for mixtures; \"histogram\" counts their partial g(r)");
+    if (fit->scene.setup.interactions > 0)
+        mf_json_fault(method, "estimator",
+                      "\"force\" knows the forces of pairs alone, not \"interactions\"");
+}
+
+static bool knows(const struct inverse_method *method, const char *key) {
+    for (const struct inverse_table *table = method->tables; table->fields; table++)
+        for (const struct field *field = table->fields; field->name; field++)
+            if (strcmp(field->name, key) == 0)
+                return true;
+    return false;
+}
+
+/// What files of earlier versions may say.
+static void refuse_removed(const struct inverse_method *method, struct json_object *object) {
+    static const char usual[] = "what was its default is taken always; leave it out";
+    static const struct {
+        const char *key, *now, *reason; ///< what is always so now
+    } removed[] = {
+        {"asynchronous", "no", "candidates are measured by rounds alone; leave it out"},
+        {"regularisation", "noise", "the step is as smooth as the noise asks; leave it out"},
+        {"strength", "0", "it is chosen from the noise; leave it out"},
+        {"islands", "1", "all of a population breed with all; leave it out"},
+        {"migration", "5", "all of a population breed with all; leave it out"},
+        {"common_noise", "no", "each candidate has random numbers of its own; leave it out"},
+        {"restarts", "0", "leave it out, and begin again with another \"seed\""},
+        {"remeasurements", "2", usual},
+        {"mutated_genes", "0.1", usual},
+        {"additive", "0.1", usual},
+        {"crossover", "0.9", usual},
+        {"crossover_exponent", "15", usual},
+        {"mutation", "1", usual},
+        {"remeasured", "0.25", usual},
+        {"depth", "7", usual},
+        {"damping", "1", usual},
+        {"ridge", "0.35", usual},
+    };
+    for (size_t k = 0; k < sizeof removed / sizeof *removed; k++)
+        if (!knows(method, removed[k].key))
+            mf_json_retired(object, removed[k].key, removed[k].now, removed[k].reason);
+}
+
+static enum status read_method(struct fit_file *fit, struct json_object *root, bool required) {
+    const char **names;
+    struct json_object object = mf_json_child_of(root, "method", required, "name");
+    if (object.item == NULL)
+        return STATUS_OK;
+    if (mf_json_refuse_choice(&object, "name", "joint-imc",
+                              "write \"imc\", which fits one state or several"))
+        return STATUS_OK;
+    TRY(mf_names_collect(mf_inverse_methods, NULL, &names));
+    const char *name = mf_json_choice(&object, "name", names, NULL);
+    mf_memory_free(names);
+    if (name == NULL)
+        return STATUS_OK;
+    fit->method = mf_names_find(mf_inverse_methods, name);
+    fit->method_parameters = mf_memory_zeroed(1, fit->method->parameters_size);
+    if (fit->method_parameters == NULL)
+        return STATUS_NO_MEMORY;
+    for (const struct inverse_table *table = fit->method->tables; table->fields; table++)
+        mf_json_fields(&object, table->fields, (char *)fit->method_parameters + table->offset);
+    check_estimator(fit, &object);
+    refuse_removed(fit->method, &object);
+    mf_json_finish(&object);
+    return STATUS_OK;
+}
+
+/// What stands in scene files, but not in the scene of a fit.
+static void refuse_foreign(struct json_object *scene, int unknown) {
+    if (unknown & SCENE_FITS_POTENTIAL)
+        mf_json_refuse(
+            scene, "conservative",
+            "it is to be found; \"start\" in \"unknowns.potential\" takes a law to begin "
+            "with");
+    if (unknown & SCENE_FITS_OMEGA)
+        mf_json_refuse(
+            scene, "dissipative",
+            "it is to be found; \"start\" in \"unknowns.omega\" takes a law to begin with");
+    if (unknown & SCENE_FITS_TRANSVERSE)
+        mf_json_refuse(scene, "dissipative_transverse",
+                       "it is to be found; \"start\" in \"unknowns.omega_transverse\" takes a law "
+                       "to begin with");
+    mf_json_refuse(scene, "seed", "it stands at the top of a run file");
+    mf_json_refuse(scene, "measure", "\"method\" and \"verification\" say when a fit samples");
+    for (size_t k = 0; mf_observables[k]; k++)
+        mf_json_refuse(scene, mf_observables[k]->name, "a fit measures what its \"target\" names");
+}
+
+/// The scene leaves out what "unknowns" names.
+static enum status read_scene(struct fit_file *fit, struct json_object *root, bool chosen) {
+    struct json_object scene = mf_json_child(root, "scene", true);
+    if (scene.item == NULL)
+        return STATUS_OK;
+    struct scene_fitted fitted;
+    const int unknown = mf_fit_unknowns_left_out(root);
+    mf_fit_unknowns_groups(root, &scene, &fitted);
+    fitted.count_follows =
+        !chosen && !mf_json_is_member(root, "method") && mf_json_is_member(&scene, "density");
+    TRY(mf_scene_read(&fit->scene, &scene, unknown, &fitted));
+    refuse_foreign(&scene, unknown);
+    mf_json_finish(&scene);
+    return STATUS_OK;
+}
+
+/// @param[in] leader  the first of several states, whose units all have; NULL of itself
+/// @param[in] chosen  what may be left to the program has been put in
+static enum status read_root(struct fit_file *fit, struct json_object *root,
+                             const struct fit_file *leader, bool chosen) {
+    mf_json_fields(root, mf_heading_fields, &fit->heading);
+    struct json_object scene = mf_json_child(root, "scene", false);
+    mf_units_speak(root, &scene);
+    if (leader && mf_units_speaks(&leader->scene.units))
+        mf_json_speak(root->document, &leader->scene.units);
+    // Before what its units convert.
+    TRY(read_scene(fit, root, chosen));
+    const struct simulation_setup *setup = &fit->scene.setup;
+    const struct target_scene about = {&setup->box, &setup->composition,
+                                       mf_molecules_find(setup->interaction, setup->interactions),
+                                       &fit->scene.units};
+    TRY(mf_target_files_read(&fit->files, root, &about));
+    TRY(mf_fit_unknowns_read(fit, root));
+    TRY(read_method(fit, root, chosen));
+    struct json_object core = mf_json_child(root, "core", false);
+    mf_json_fields(&core, mf_fit_core_fields, &fit->core);
+    if (core.item)
+        mf_json_finish(&core);
+    struct json_object verification = mf_json_child(root, "verification", false);
+    mf_json_fields(&verification, mf_verify_fields, &fit->verification);
+    if (verification.item)
+        mf_json_finish(&verification);
+    mf_json_finish(root);
+    return STATUS_OK;
+}
+
+/// The groups that are to be found and have a target, in the order of their targets.
+static void state_groups(struct fit_file *fit) {
+    struct inverse_problem *problem = &fit->problem;
+    const struct molecules *molecules = &fit->scene.molecules.molecules;
+    for (int order = 0; order < BONDED_KINDS; order++)
+        for (int g = 0; g < molecules->groups[order]; g++) {
+            const struct target_groups *groups = target_files_groups(&fit->files, order);
+            if (!mf_scene_groups_are_fitted(&molecules->group[order][g]) ||
+                (size_t)g >= groups->groups || groups->member[g].bins.count == 0)
+                continue;
+            problem->group[problem->bonded++] = (struct bonded_unknown){
+                order, g, groups->member[g].bins, groups->first[g], fit->shape[order][g]};
+        }
+}
+
+/// What is known of all groups of an order is compared, as nothing is found from it.
+static void compare_known(struct fit_file *fit) {
+    bool found[BONDED_KINDS] = {false};
+    for (size_t g = 0; g < fit->problem.bonded; g++)
+        found[fit->problem.group[g].order] = true;
+    for (size_t n = 0; n < fit->numbers; n++)
+        if (fit->number[n].place == INVERSE_OF_BONDED)
+            found[inverse_order(fit->number[n].part)] = true;
+    for (int order = 0; order < BONDED_KINDS; order++)
+        if (!found[order])
+            fit->files.use[mf_bonded_distribution_kind(order)].fitted = 0;
+}
+
+static void state_problem(struct fit_file *fit, const struct run_options *options) {
+    struct inverse_problem *problem = &fit->problem;
+    if (options->has_seed)
+        fit->heading.seed = options->seed;
+    *problem = (struct inverse_problem){
+        .scene = fit->scene.setup,
+        .core_threshold = fit->core.threshold,
+        .core_stiffness = fit->core.stiffness,
+        .seed = fit->heading.seed,
+        .threads = options->threads,
+    };
+    problem->numbers = fit->numbers;
+    memcpy(problem->number, fit->number, sizeof problem->number);
+    for (int place = 0; place < UNKNOWN_BONDED; place++) {
+        const struct scene_law *law = mf_fit_numbers_law(&fit->scene, place);
+        problem->law[place] = (struct inverse_law){law->curves, law->curve};
+    }
+    for (int kind = 0; kind < UNKNOWNS; kind++) {
+        const struct fit_unknown *from = &fit->unknown[kind];
+        struct unknown *unknown = &problem->unknown[kind];
+        unknown->wanted = from->wanted;
+        unknown->parameters = from->parameters;
+        for (int pair = 0; pair < mf_composition_pairs(&problem->scene.composition); pair++)
+            unknown->start[pair] = mf_scene_law_curve(&from->start, pair);
+    }
+    for (int m = 0; m < fit->scene.memory.modes; m++)
+        problem->mode[m] = fit->scene.memory.name[m];
+    state_groups(fit);
+    compare_known(fit);
+    const size_t others = mf_inverse_unknown_count(problem) -
+                          problem->unknown[UNKNOWN_POTENTIAL].wanted -
+                          problem->unknown[UNKNOWN_BONDED].wanted;
+    mf_target_files_targets(&fit->files, others > 0, &problem->targets, &problem->compared);
+}
+
+/// Which state of which file is read.
+struct reading {
+    const char *file;
+    const struct run_options *options;
+    size_t state;
+    const struct fit_file *leader; ///< the first state, in whose units and range the others are
+    size_t states;                 ///< found; 0: the file has no states
+    struct json_document *document;
+};
+
+/// What the document says, which must be read whole, as what was chosen for it.
+static enum status read_whole(struct fit_file *fit, const struct reading *reading, bool chosen) {
+    struct json_object root = mf_json_root(reading->document);
+    mf_json_speak(reading->document, &(struct units){0});
+    TRY(mf_json_collect_files(reading->document, &fit->inputs));
+    TRY(read_root(fit, &root, reading->leader, chosen));
+    state_problem(fit, reading->options);
+    return STATUS_OK;
+}
+
+/// Read the document once more, with what was put into it for what it lacks.
+static enum status read_again(struct fit_file *fit, const struct reading *reading, bool chosen) {
+    struct fit_file kept = {.constraints = fit->constraints, .choices = fit->choices};
+    memcpy(kept.name, fit->name, sizeof kept.name);
+    mf_fit_file_clear(fit);
+    *fit = kept;
+    return read_whole(fit, reading, chosen);
+}
+
+/// Laws for the groups that are constraints.
+static enum status put_constraints(struct fit_file *fit, const struct reading *reading) {
+    struct json_object root = mf_json_root(reading->document);
+    if (reading->leader)
+        fit->constraints = reading->leader->constraints; // laws are of all states
+    else if (!mf_fit_unknowns_name_groups(&root))
+        mf_fit_constraints_find(fit, &fit->constraints);
+    if (fit->constraints.count == 0)
+        return STATUS_OK;
+    TRY(mf_fit_constraints_put(&fit->constraints, fit, &root));
+    mf_fit_constraints_say(&fit->constraints, fit, &fit->choices);
+    return read_again(fit, reading, false);
+}
+
+static enum status read_state(struct fit_file *fit, struct reading *reading) {
+    struct json_document *document = reading->document;
+    TRY(mf_fit_states_take(document, reading->file, reading->state, fit->name, &reading->states));
+    struct json_object root = mf_json_root(document);
+    TRY(mf_heading_check_run(&root, reading->file));
+    const bool chooses = mf_fit_defaults_wanted(&root);
+    TRY(read_whole(fit, reading, !chooses));
+    if (mf_json_fault_count(document) == 0)
+        TRY(put_constraints(fit, reading));
+    if (!chooses || mf_json_fault_count(document) > 0)
+        return STATUS_OK;
+    TRY(mf_fit_defaults_choose(fit, reading->leader, &root, &fit->choices));
+    return read_again(fit, reading, true);
+}
+
+static enum status parse_state(struct fit_file *fit, struct reading *reading) {
+    *fit = (struct fit_file){0};
+    TRY(mf_json_open(&reading->document, reading->file));
+    return mf_json_close(reading->document, read_state(fit, reading));
+}
+
+/// The states behind the first. What they read is read by the run.
+static enum status parse_others(struct fit_file *fit, const struct reading *first) {
+    enum status status = STATUS_OK;
+    if (first->states < 2)
+        return STATUS_OK;
+    NEW_ARRAY(fit->other, first->states - 1);
+    while (fit->others < first->states - 1) {
+        struct fit_file *other = &fit->other[fit->others++];
+        struct reading reading = {first->file, first->options, fit->others, fit, 0, NULL};
+        CHECK(mf_fit_states_mark(other, parse_state(other, &reading)));
+        for (size_t k = 0; k < other->inputs.count; k++)
+            CHECK(mf_input_files_add(&fit->inputs, other->inputs.file[k].name));
+    }
+done:
+    return status;
+}
+
+enum status mf_fit_file_parse(struct fit_file *fit, const char *file,
+                              const struct run_options *options) {
+    struct reading reading = {file, options, 0, NULL, 0, NULL};
+    TRY(mf_fit_states_mark(fit, parse_state(fit, &reading)));
+    TRY(parse_others(fit, &reading));
+    TRY(mf_fit_states_widen(fit, file));
+    for (size_t s = 0; fit->others > 0 && s < mf_fit_states_count(fit); s++)
+        state_problem(mf_fit_states_at(fit, s), options);
+    mf_fit_states_link(fit);
+    return STATUS_OK;
+}
+
+enum status mf_fit_file_read(struct fit_file *fit, const char *file,
+                             const struct run_options *options) {
+    TRY(mf_fit_file_parse(fit, file, options));
+    TRY(mf_fit_states_check(fit, file));
+    for (size_t s = 0; s < mf_fit_states_count(fit); s++) {
+        struct fit_file *state = mf_fit_states_at(fit, s);
+        TRY(mf_fit_states_mark(state, mf_fit_check(state, file)));
+    }
+    return mf_fit_base_find(fit);
+}
+
+void mf_fit_file_clear(struct fit_file *fit) {
+    mf_target_files_clear(&fit->files);
+    mf_scene_clear(&fit->scene);
+    for (int kind = 0; kind < UNKNOWNS; kind++) {
+        mf_scene_law_clear(&fit->unknown[kind].start);
+        mf_scene_law_clear(&fit->unknown[kind].truth);
+        mf_memory_free(fit->unknown[kind].base);
+    }
+    mf_memory_free(fit->method_parameters);
+    mf_input_files_clear(&fit->inputs);
+    for (size_t s = 0; s < fit->others; s++)
+        mf_fit_file_clear(&fit->other[s]);
+    mf_memory_free(fit->other);
+    *fit = (struct fit_file){0};
+}
+
+static void write_verification(const struct fit_file *fit, struct json_writer *writer) {
+    mf_json_begin(writer, "verification");
+    mf_json_put_fields(writer, mf_verify_fields, &fit->verification);
+    mf_json_end(writer);
+}
+
+/// What is measured, and of what.
+static void write_state(const struct fit_file *fit, struct json_writer *writer) {
+    mf_target_files_write(&fit->files, writer);
+    mf_json_begin(writer, "scene");
+    mf_scene_write(&fit->scene, writer);
+    mf_json_end(writer);
+    write_verification(fit, writer);
+}
+
+static void write_states(const struct fit_file *fit, struct json_writer *writer) {
+    mf_json_begin(writer, "states");
+    for (size_t s = 0; s < mf_fit_states_count(fit); s++) {
+        const struct fit_file *state = s == 0 ? fit : &fit->other[s - 1];
+        mf_json_begin(writer, state->name);
+        write_state(state, writer);
+        mf_json_end(writer);
+    }
+    mf_json_end(writer);
+}
+
+void mf_fit_file_write(const struct fit_file *fit, struct json_writer *writer) {
+    mf_json_put_fields(writer, mf_heading_fields, &fit->heading);
+    mf_units_write(&fit->scene.units, writer);
+    if (fit->name[0])
+        write_states(fit, writer);
+    else
+        write_state(fit, writer);
+    mf_fit_unknowns_write(fit, writer);
+    mf_json_begin(writer, "method");
+    mf_json_put_text(writer, "name", fit->method->name);
+    for (const struct inverse_table *table = fit->method->tables; table->fields; table++)
+        mf_json_put_fields(writer, table->fields,
+                           (const char *)fit->method_parameters + table->offset);
+    mf_json_end(writer);
+    mf_json_begin(writer, "core");
+    mf_json_put_fields(writer, mf_fit_core_fields, &fit->core);
+    mf_json_end(writer);
+}
+
+static void digest_curve(const struct curve *curve, uint64_t *digest) {
+    enum { POINTS = 1000 };
+    for (int k = 0; k < POINTS; k++) {
+        const double value = mf_curve_value(curve, mf_curve_cutoff(curve) * k / POINTS);
+        mf_digest_add(digest, &value, sizeof value);
+    }
+}
+
+void mf_fit_file_digest(const struct fit_file *fit, uint64_t *digest) {
+    mf_target_files_digest(&fit->files, digest);
+    mf_scene_digest(&fit->scene, digest);
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        for (int pair = 0; pair < COMPOSITION_MOST_PAIRS; pair++)
+            if (fit->problem.unknown[kind].start[pair])
+                digest_curve(fit->problem.unknown[kind].start[pair], digest);
+    for (size_t s = 0; s < fit->others; s++)
+        mf_fit_file_digest(&fit->other[s], digest);
+}

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file "numbers" of "unknowns": scalars of the scene by their paths.
+#pragma once
+
+#include "scene/scene.h"
+#include "problem/numbers.h"
+
+/// Read {"dissipative.sigma": {"minimum": 1, "maximum": 10}, …} of the object "unknowns". A path is
+/// that of a key in the scene: any number there that can change from simulation to simulation.
+/// Faults go to the document: paths that the scene does not know (with the nearest), what is no
+/// number, what cannot change, and ranges that are none. Fails: NO_MEMORY. Tested:
+/// test_fit_numbers.
+enum status mf_fit_numbers_read(struct json_object *unknowns, const struct scene *scene,
+                                struct inverse_number number[INVERSE_MOST_NUMBERS],
+                                size_t *count) MUST_USE;
+
+/// A law of the scene by its place.
+const struct scene_law *mf_fit_numbers_law(const struct scene *scene, enum inverse_place place);
+
+/// Write them back, with the values that they begin with.
+void mf_fit_numbers_write(const struct inverse_number *number, size_t count,
+                          struct json_writer *writer);

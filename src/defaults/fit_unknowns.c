@@ -1,0 +1,345 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "defaults/fit_unknowns.h"
+
+#include "base/own_words.h"
+#include "defaults/fit_base.h"
+
+#include <math.h>
+#include <string.h>
+
+#define AND(NAME, kind, ...) ", \"" #kind "s\""
+
+/// Whether the scene knows the laws of molecules, and no target is left of which anything is found.
+static bool knows_all(const struct json_object *root, const struct json_object *target) {
+    struct json_object own = *root; // looks, and asks for nothing
+    bool known = false;
+    if (!mf_json_is_object(root, "scene") || mf_json_key(target, 0))
+        return false;
+    const struct json_object scene = mf_json_child(&own, "scene", false);
+    for (int order = 0; order < BONDED_KINDS; order++)
+        known = known || mf_json_is_object(&scene, mf_bonded_kinds[order]->plural);
+    return known;
+}
+
+/// Without "unknowns": what has a target is unknown, and g(r) always if nothing else is.
+static bool has_potential(struct json_object *root) {
+    const struct json_object target = mf_json_child(root, "target", false);
+    bool groups = knows_all(root, &target);
+    for (int order = 0; order < BONDED_KINDS; order++)
+        groups = groups || mf_json_is_object(&target, mf_bonded_distribution_of(order)->name);
+    return !groups || mf_json_is_member(&target, mf_targets_name(TARGET_RDF));
+}
+
+int mf_fit_unknowns_left_out(struct json_object *root) {
+    static const int part[UNKNOWNS] = {[UNKNOWN_POTENTIAL] = SCENE_FITS_POTENTIAL,
+                                       [UNKNOWN_OMEGA] = SCENE_FITS_OMEGA,
+                                       [UNKNOWN_MEMORY] = SCENE_FITS_MEMORY,
+                                       [UNKNOWN_TRANSVERSE] = SCENE_FITS_TRANSVERSE};
+    int all = 0;
+    if (!mf_json_has(root, "unknowns"))
+        return has_potential(root) ? SCENE_FITS_POTENTIAL : SCENE_FITS_NOTHING;
+    const struct json_object unknowns = mf_json_child(root, "unknowns", false);
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        if (part[kind] && mf_json_is_object(&unknowns, mf_inverse_unknown_names[kind]))
+            all |= part[kind];
+    return all;
+}
+
+/// A group is looked for, unless the scene knows its law.
+static void enter_group(struct scene_fitted *fitted, int order, const char *name,
+                        const struct json_object *known, struct json_object *from) {
+    const bool has_law = mf_json_is_member(known, name);
+    if (has_law && fitted->told)
+        mf_json_fault(from, name, "it is to be found, and \"scene.%s\" has a law for it",
+                      mf_bonded_kinds[order]->plural);
+    if (has_law || fitted->count[order] == MOLECULES_MOST_GROUPS)
+        return;
+    if (!mf_topology_is_name(name)) {
+        mf_json_fault(from, name,
+                      "a group is called by up to %d letters, digits, _ and -, " OWN_WORDS,
+                      TOPOLOGY_NAME_SIZE - 1);
+        return;
+    }
+    strcpy(fitted->name[order][fitted->count[order]++], name);
+}
+
+bool mf_fit_unknowns_name_groups(const struct json_object *root) {
+    struct json_object own = *root; // looks, and asks for nothing
+    if (!mf_json_is_object(root, "unknowns"))
+        return false;
+    const struct json_object unknowns = mf_json_child(&own, "unknowns", false);
+    for (int order = 0; order < BONDED_KINDS; order++)
+        if (mf_json_is_member(&unknowns, mf_bonded_kinds[order]->plural))
+            return true;
+    return false;
+}
+
+void mf_fit_unknowns_groups(struct json_object *root, struct json_object *scene,
+                            struct scene_fitted *fitted) {
+    const bool told = mf_fit_unknowns_name_groups(root);
+    struct json_object parent = mf_json_child(root, told ? "unknowns" : "target", false);
+    *fitted = (struct scene_fitted){.told = told};
+    for (int order = 0; order < BONDED_KINDS; order++) {
+        const struct json_object known =
+            mf_json_child(scene, mf_bonded_kinds[order]->plural, false);
+        const char *key = told ? mf_bonded_kinds[order]->plural
+                               : mf_bonded_distribution_of(order)->name,
+                   *name;
+        if (!mf_json_is_object(&parent, key))
+            continue;
+        struct json_object *from = &fitted->from[order];
+        *from = mf_json_child(&parent, key, false);
+        for (size_t n = 0; (name = mf_json_key(from, n)); n++)
+            if (told || (strcmp(name, "weight") != 0 && strcmp(name, "fitted") != 0))
+                enter_group(fitted, order, name, &known, from);
+    }
+}
+
+static void read_shape(struct bonded_shape *shape, int order, struct json_object *group) {
+    enum { COEFFICIENTS = 4, OF_CIRCLE = 6 };
+    mf_json_fields(group, mf_inverse_group_fields, shape);
+    if (shape->coefficients == 0)
+        shape->coefficients = mf_bonded_kinds[order]->periodic ? OF_CIRCLE : COEFFICIENTS;
+    if (group->item)
+        mf_json_finish(group);
+}
+
+/// "bonds": {"backbone": {"coefficients": 6}}: each needs a target.
+static void read_groups(struct fit_file *fit, struct json_object *root,
+                        struct json_object *unknowns) {
+    const struct molecules *molecules = &fit->scene.molecules.molecules;
+    for (int order = 0; order < BONDED_KINDS; order++) {
+        const struct target_groups *targets = target_files_groups(&fit->files, order);
+        struct json_object groups = mf_json_child(unknowns, mf_bonded_kinds[order]->plural, false);
+        for (int g = 0; g < molecules->groups[order]; g++) {
+            const char *name = molecules->group[order][g].name;
+            if (!mf_scene_groups_are_fitted(&molecules->group[order][g]))
+                continue;
+            fit->unknown[UNKNOWN_BONDED].wanted = true;
+            struct json_object group = mf_json_child(&groups, name, false);
+            read_shape(&fit->shape[order][g], order, &group);
+            if (mf_json_fault_count(root->document) == 0 &&
+                ((size_t)g >= targets->groups || targets->member[g].bins.count == 0))
+                mf_json_fault(&groups, name, "there is no \"target.%s.%s\" to find it from",
+                              mf_bonded_distribution_of(order)->name, name);
+        }
+        if (groups.item)
+            mf_json_finish(&groups);
+    }
+}
+
+static const struct field *unknown_fields(enum unknown_kind kind) {
+    return kind == UNKNOWN_POTENTIAL ? mf_inverse_potential_fields : mf_inverse_omega_fields;
+}
+
+/// Coefficients of a curve if the file does not say how many.
+static const int64_t coefficients_of_curve[] = {[INVERSE_CURVE_BEZIER] = 100,
+                                                [INVERSE_CURVE_BSPLINE] = 12,
+                                                [INVERSE_CURVE_POWER] = INVERSE_PARAMETERS};
+
+/// "fixed": {"exponent": 1}, what is not to be found of a formula.
+static void read_fixed(struct unknown_parameters *p, struct json_object *object) {
+    struct json_object fixed = mf_json_child(object, "fixed", false);
+    mf_json_fields(&fixed, mf_inverse_fixed_fields, p->fixed);
+    if (fixed.item == NULL)
+        return;
+    mf_json_finish(&fixed);
+    if (p->shape != INVERSE_CURVE_POWER)
+        mf_json_fault(object, "fixed", "only \"curve\": \"power\" has parameters to hold fixed");
+    else if (mf_inverse_free_parameters(p->fixed) == 0)
+        mf_json_fault(object, "fixed",
+                      "with all of its parameters fixed nothing is left to be found");
+    const double inner = p->fixed[INVERSE_INNER_CUTOFF];
+    const double length = mf_json_factor(object, "lambda");
+    if (inner < p->inner_cutoff || inner >= p->cutoff)
+        mf_json_fault(&fixed, "inner_cutoff",
+                      "%g is not between the friction weight's cutoffs, %g and %g", length * inner,
+                      length * p->inner_cutoff, length * p->cutoff);
+}
+
+/// Coefficients of a formula are its parameters that are not fixed.
+static void check_coefficients(struct unknown_parameters *p, struct json_object *object) {
+    const int parameters = mf_inverse_free_parameters(p->fixed);
+    if (p->shape != INVERSE_CURVE_POWER || parameters == 0)
+        return;
+    if (p->coefficients == 0)
+        p->coefficients = parameters;
+    else if (p->coefficients != parameters)
+        mf_json_fault(object, "coefficients",
+                      "the curve \"power\" has %d: sigma, exponent, inner cutoff, less those that "
+                      "\"fixed\" holds",
+                      parameters);
+}
+
+static enum status read_unknown(struct fit_unknown *unknown, enum unknown_kind kind,
+                                struct json_object *object, const struct composition *composition,
+                                const struct units *units) {
+    const struct curve_family *const *laws =
+        kind == UNKNOWN_POTENTIAL ? mf_curve_potentials : mf_curve_omegas;
+    mf_json_fields(object, unknown_fields(kind), &unknown->parameters);
+    struct unknown_parameters *p = &unknown->parameters;
+    const double length = mf_json_factor(object, "lambda");
+    const double unit =
+        mf_json_factor(object, kind == UNKNOWN_POTENTIAL ? "k_B T_0" : "sqrt(mu/tau)");
+    mf_fields_set_defaults(mf_inverse_fixed_fields, p->fixed);
+    if (unknown_is_omega(kind))
+        read_fixed(p, object);
+    if (kind != UNKNOWN_OMEGA && p->shape == INVERSE_CURVE_POWER)
+        mf_json_fault(object, "curve",
+                      "\"power\" is for \"unknowns.omega\"; here the scene has the law, and "
+                      "\"numbers\" its parameters");
+    check_coefficients(p, object);
+    if (p->coefficients == 0)
+        p->coefficients = coefficients_of_curve[p->shape];
+    if (object->item == NULL) {
+        mf_fit_base_check(unknown, object);
+        return STATUS_OK;
+    }
+    mf_json_renamed(object, "genes", "coefficients");
+    mf_json_retired(object, "spacing", "even", "coefficients are spread evenly; leave it out");
+    TRY(mf_scene_law_read(&unknown->start, object, "start", laws, composition, units));
+    mf_fit_base_check(unknown, object);
+    if (p->maximum <= p->minimum)
+        mf_json_fault(object, "maximum", "%g is not above the minimum %g", unit * p->maximum,
+                      unit * p->minimum);
+    if (unknown_is_omega(kind) && p->cutoff <= p->inner_cutoff)
+        mf_json_fault(object, "cutoff", "%g is not above the inner cutoff %g", length * p->cutoff,
+                      length * p->inner_cutoff);
+    TRY(mf_scene_law_read(&unknown->truth, object, "truth", laws, composition, units));
+    mf_json_finish(object);
+    return STATUS_OK;
+}
+
+/// Those with an object of their own; a mode of memory stands in "memory" under its name.
+static const enum unknown_kind alone[] = {UNKNOWN_POTENTIAL, UNKNOWN_OMEGA, UNKNOWN_TRANSVERSE};
+enum { ALONE = sizeof alone / sizeof *alone };
+
+/// The scene says the friction weight of a mode, or the fit finds it.
+static void check_modes(const struct fit_file *fit, struct json_object *memory) {
+    for (int m = 0; m < fit->scene.memory.modes; m++) {
+        const bool wanted = fit->unknown[UNKNOWN_MEMORY + m].wanted;
+        const bool known = fit->scene.memory.omega[m].curves > 0;
+        if (wanted && known)
+            mf_json_fault(memory, fit->scene.memory.name[m],
+                          "it is to be found, and \"scene.memory.%s\" has an \"omega\"; \"start\" "
+                          "takes a law to begin with",
+                          fit->scene.memory.name[m]);
+        if (!wanted && !known)
+            mf_json_fault(memory, fit->scene.memory.name[m],
+                          "is missing, and \"scene.memory.%s\" has no \"omega\"",
+                          fit->scene.memory.name[m]);
+    }
+}
+
+/// A potential for each pair type, one friction weight for all.
+static enum status read_curve(struct fit_file *fit, struct json_object *parent, const char *name,
+                              enum unknown_kind kind) {
+    const struct composition alike = mf_composition_of_one(fit->scene.setup.placement.count);
+    struct json_object child = mf_json_child(parent, name, false);
+    fit->unknown[kind].wanted = child.item != NULL;
+    return read_unknown(&fit->unknown[kind], kind, &child,
+                        unknown_is_omega(kind) ? &alike : &fit->scene.setup.composition,
+                        &fit->scene.units);
+}
+
+static enum status read_curves(struct fit_file *fit, struct json_object *unknowns) {
+    for (size_t k = 0; k < ALONE; k++)
+        TRY(read_curve(fit, unknowns, mf_inverse_unknown_names[alone[k]], alone[k]));
+    struct json_object memory = mf_json_child(unknowns, "memory", false);
+    for (int m = 0; m < fit->scene.memory.modes; m++)
+        TRY(read_curve(fit, &memory, fit->scene.memory.name[m], UNKNOWN_MEMORY + m));
+    if (memory.item == NULL)
+        return STATUS_OK;
+    check_modes(fit, &memory);
+    mf_json_finish(&memory);
+    return STATUS_OK;
+}
+
+enum status mf_fit_unknowns_read(struct fit_file *fit, struct json_object *root) {
+    struct json_object object = mf_json_child(root, "unknowns", false);
+    size_t wanted = 0;
+    TRY(read_curves(fit, &object));
+    TRY(mf_fit_numbers_read(&object, &fit->scene, fit->number, &fit->numbers));
+    read_groups(fit, root, &object);
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        wanted += fit->unknown[kind].wanted;
+    if (object.item) {
+        const size_t faults = mf_json_fault_count(root->document);
+        mf_json_renamed(&object, "weight", mf_inverse_unknown_names[UNKNOWN_OMEGA]);
+        mf_json_finish(&object);
+        if (wanted == 0 && !mf_json_has(&object, "numbers") &&
+            mf_json_fault_count(root->document) == faults)
+            mf_json_fault(root, "unknowns",
+                          "needs \"potential\", \"omega\", \"numbers\", or "
+                          "\"bonds\"" BONDED_LIST_BEYOND_BONDS(AND));
+    } else {
+        fit->unknown[UNKNOWN_POTENTIAL].wanted = has_potential(root);
+    }
+    return STATUS_OK;
+}
+
+static void write_fixed(const struct unknown_parameters *p, struct json_writer *writer) {
+    if (mf_inverse_free_parameters(p->fixed) == INVERSE_PARAMETERS)
+        return;
+    mf_json_begin(writer, "fixed");
+    for (int k = 0; k < INVERSE_PARAMETERS; k++)
+        if (!isnan(p->fixed[k]))
+            mf_json_put_quantity(writer, mf_inverse_fixed_fields[k].name,
+                                 mf_inverse_fixed_fields[k].unit, p->fixed[k]);
+    mf_json_end(writer);
+}
+
+static void write_unknown(const struct fit_file *fit, int kind, const char *name,
+                          struct json_writer *writer) {
+    const struct fit_unknown *unknown = &fit->unknown[kind];
+    if (!unknown->wanted)
+        return;
+    mf_json_begin(writer, name);
+    mf_json_put_fields(writer, unknown_fields(kind), &unknown->parameters);
+    write_fixed(&unknown->parameters, writer);
+    mf_scene_law_write(&unknown->start, &fit->scene.setup.composition, writer, "start");
+    mf_scene_law_write(&unknown->truth, &fit->scene.setup.composition, writer, "truth");
+    mf_json_end(writer);
+}
+
+/// The modes that are to be found.
+static void write_memory(const struct fit_file *fit, struct json_writer *writer) {
+    bool any = false;
+    for (int m = 0; m < fit->scene.memory.modes; m++)
+        any = any || fit->unknown[UNKNOWN_MEMORY + m].wanted;
+    if (!any)
+        return;
+    mf_json_begin(writer, "memory");
+    for (int m = 0; m < fit->scene.memory.modes; m++)
+        write_unknown(fit, UNKNOWN_MEMORY + m, fit->scene.memory.name[m], writer);
+    mf_json_end(writer);
+}
+
+static void write_groups(const struct fit_file *fit, struct json_writer *writer) {
+    const struct molecules *molecules = &fit->scene.molecules.molecules;
+    for (int order = 0; order < BONDED_KINDS; order++) {
+        bool begun = false;
+        for (int g = 0; g < molecules->groups[order]; g++) {
+            if (!mf_scene_groups_are_fitted(&molecules->group[order][g]))
+                continue;
+            if (!begun)
+                mf_json_begin(writer, mf_bonded_kinds[order]->plural);
+            begun = true;
+            mf_json_begin(writer, molecules->group[order][g].name);
+            mf_json_put_fields(writer, mf_inverse_group_fields, &fit->shape[order][g]);
+            mf_json_end(writer);
+        }
+        if (begun)
+            mf_json_end(writer);
+    }
+}
+
+void mf_fit_unknowns_write(const struct fit_file *fit, struct json_writer *writer) {
+    mf_json_begin(writer, "unknowns");
+    for (size_t k = 0; k < ALONE; k++)
+        write_unknown(fit, alone[k], mf_inverse_unknown_names[alone[k]], writer);
+    write_memory(fit, writer);
+    write_groups(fit, writer);
+    mf_fit_numbers_write(fit->number, fit->numbers, writer);
+    mf_json_end(writer);
+}

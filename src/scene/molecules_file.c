@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/molecules_file.h"
+
+#include "topologies/gromacs_topology.h"
+#include "topologies/lammps_topology.h"
+#include "io/json.h"
+
+#include <string.h>
+
+/// "particles": {"types": {"W": 400}}: single beads, whose types come first.
+static void read_types(struct json_object *root, struct composition *types) {
+    const char *name;
+    if (!mf_json_is_object(root, "particles"))
+        return;
+    struct json_object particles = mf_json_child(root, "particles", false);
+    if (!mf_json_is_object(&particles, "types"))
+        return;
+    struct json_object object = mf_json_child(&particles, "types", false);
+    for (size_t n = 0; (name = mf_json_key(&object, n)) && n < COMPOSITION_MOST_TYPES; n++)
+        if (mf_composition_is_name(name))
+            strcpy(types->name[types->types++], name);
+}
+
+static bool is_topology(const char *file) {
+    const char *end = strrchr(file, '.');
+    return end && (strcmp(end, ".top") == 0 || strcmp(end, ".itp") == 0);
+}
+
+/// A topology of GROMACS, in nm.
+static enum status read_topology(struct scene_molecules *molecules, struct composition *types,
+                                 const char *file) {
+    static const struct units nanometres = {0};
+    struct gromacs_note note;
+    enum status status =
+        mf_gromacs_topology_read(&molecules->molecules, types, file, &nanometres, &note);
+    if (status == STATUS_OK)
+        status = mf_scene_groups_forget_tables(&molecules->molecules);
+    if (status != STATUS_OK)
+        mf_scene_molecules_clear(molecules);
+    return status;
+}
+
+enum status mf_molecules_file_read(struct scene_molecules *molecules, struct composition *types,
+                                   const char *file) {
+    struct json_document *document;
+    *molecules = (struct scene_molecules){0};
+    *types = (struct composition){0};
+    if (mf_lammps_topology_is(file))
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: a data file of LAMMPS does not say in which order a trajectory "
+                              "has its molecules: name a JSON file or a topology of GROMACS",
+                              file);
+    if (is_topology(file))
+        return read_topology(molecules, types, file);
+    TRY(mf_json_open(&document, file));
+    struct json_object root = mf_json_root(document);
+    read_types(&root, types);
+    const enum status status =
+        mf_json_close(document, mf_scene_kinds_read(molecules, &root, types));
+    if (status == STATUS_OK && !scene_has_molecules(molecules))
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: molecules: there are none", file);
+    if (status != STATUS_OK)
+        mf_scene_molecules_clear(molecules);
+    return status;
+}

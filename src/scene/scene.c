@@ -1,0 +1,404 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/scene.h"
+
+#include "base/digest.h"
+#include "base/memory.h"
+#include "base/names.h"
+#include "scene/scene_particles.h"
+
+#include <math.h>
+
+/// The members of a scene that stand at its top.
+struct top {
+    int64_t dimensions;
+    double box[3];
+    double temperature, time_step, skin, temperature_limit;
+    int precision;
+};
+
+static const char *const precisions[] = {"mixed", "double", NULL}; // enum pair_precision
+
+/// Positions are known to 2^-32 of the box: 2e-4 lambda in the largest.
+#define LARGEST_BOX 1e6
+
+#define MEMBER(name) .offset = offsetof(struct top, name)
+const struct field mf_scene_fields[] = {
+    {"dimensions", FIELD_INTEGER, MEMBER(dimensions), .initial = 3, .minimum = 2, .maximum = 3,
+     .unit = "", .help = "of space"},
+    {"box", FIELD_LENGTHS, MEMBER(box), .minimum = FIELD_ABOVE_ZERO, .maximum = LARGEST_BOX,
+     .unit = "lambda", .help = "edges of the periodic box, unless \"density\" is given"},
+    {"temperature", FIELD_NUMBER, MEMBER(temperature), .initial = 1, .minimum = 0,
+     .maximum = DBL_MAX, .unit = "T_0",
+     .help = "of the first velocities and of the noise; 0 for dynamics without velocities alone"},
+    {"time_step", FIELD_NUMBER, MEMBER(time_step), .initial = 0.01, .minimum = FIELD_ABOVE_ZERO,
+     .maximum = DBL_MAX, .unit = "tau", .help = "of the integrator; \"monte-carlo\" has no time"},
+    {"skin", FIELD_NUMBER, MEMBER(skin), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
+     .unit = "lambda",
+     .help = "of the neighbour list: changes speed, not results; 0: the program chooses"},
+    {"temperature_limit", FIELD_NUMBER, MEMBER(temperature_limit), .initial = 20, .minimum = 1,
+     .maximum = DBL_MAX, .unit = "",
+     .help = "a kinetic temperature above this multiple of the "
+             "temperature ends the simulation as unstable"},
+    {"precision", FIELD_CHOICE, MEMBER(precision), .choices = precisions, .initial = PAIR_MIXED,
+     .unit = "",
+     .help = "of the arithmetic of a pair; positions, velocities and sums are in double always"},
+    FIELD_END,
+};
+
+const struct field mf_scene_density_fields[] = {
+    {"density", FIELD_NUMBER, .offset = offsetof(struct scene, density), .initial = 0,
+     .minimum = FIELD_ABOVE_ZERO, .maximum = DBL_MAX, .unit = "1/lambda^d",
+     .help = "beads in a unit of volume, of all types: in the place of \"box\" it makes one with "
+             "edges that are alike"},
+    FIELD_END,
+};
+
+/// A box, or the density that makes it once the beads are counted.
+static void check_box(struct scene *scene, struct json_object *object, const struct top *top) {
+    const bool has_box = mf_json_has(object, "box");
+    mf_json_fields(object, mf_scene_density_fields, scene);
+    if (has_box == mf_json_has(object, "density"))
+        mf_json_fault(object, has_box ? "density" : "box", "%s",
+                      has_box ? "\"box\" is given, and says it already"
+                              : "missing: it or \"density\" is required");
+    if (top->box[0] > 0 && (top->box[2] > 0) != (top->dimensions == 3))
+        mf_json_fault(object, "box",
+                      "has %d edges, but the scene has %d dimensions; \"dimensions\" says how many",
+                      top->box[2] > 0 ? 3 : 2, (int)top->dimensions);
+}
+
+static void check_omega(const struct scene *scene, struct json_object *object) {
+    const struct table *table = &scene->omega.table;
+    for (int row = 0; row < table->curves * (TABLE_INTERVALS + 1); row++)
+        if (table->coefficient[2 * row] < 0) {
+            const int pair = row / (TABLE_INTERVALS + 1), k = row % (TABLE_INTERVALS + 1);
+            mf_json_fault(object, "dissipative", "omega is negative at r = %g",
+                          mf_json_factor(object, "lambda") * k /
+                              mf_table_inverse_spacing(table, pair));
+            return;
+        }
+}
+
+static void read_top(struct scene *scene, struct json_object *object) {
+    struct top top;
+    mf_json_fields(object, mf_scene_fields, &top);
+    struct simulation_setup *setup = &scene->setup;
+    setup->box.dimensions = (int)top.dimensions;
+    for (int d = 0; d < 3; d++)
+        setup->box.length[d] = d < top.dimensions ? top.box[d] : 1;
+    check_box(scene, object, &top);
+    setup->temperature = top.temperature;
+    setup->time_step = top.time_step;
+    setup->skin = top.skin;
+    setup->temperature_limit = top.temperature_limit;
+    setup->precision = top.precision;
+    setup->threads = 1;
+}
+
+NAMED_RECORD(struct integrator);
+
+static void fault_lonely(const struct scene *scene, struct json_object *object) {
+    struct json_object particles = mf_json_child(object, "particles", false);
+    if (particles.item && mf_json_has(&particles, "count") &&
+        mf_json_fault_count(object->document) == 0)
+        mf_json_fault(&particles, "count", "%lld is out of range; allowed: 2 to 1e+08",
+                      (long long)scene->setup.placement.count);
+}
+
+/// Orientations are of the plane, and of those whom somebody turns; a file may bring them along.
+static void check_orientation(const struct scene *scene, struct json_object *object) {
+    const struct attributes_source *source = &scene->setup.attribute[ATTRIBUTES_ORIENTATION];
+    const struct integrator *integrator = scene->setup.integrator;
+    if (source->ranges == 0)
+        return;
+    if (scene->setup.box.dimensions != 2)
+        mf_json_fault(object, "particles.orientation",
+                      "orientations are of two dimensions, not %d; leave it out",
+                      scene->setup.box.dimensions);
+    else if (integrator->orientation_mobility == NULL && source->column == NULL)
+        mf_json_fault(object, "particles.orientation",
+                      "%s turns no orientations; leave it out, or use \"%s\"", integrator->name,
+                      mf_brownian.name);
+}
+
+/// Moves of Monte Carlo know pairs and molecules, in the precision of single moves.
+static void check_moves(const struct scene *scene, struct json_object *object) {
+    const struct simulation_setup *setup = &scene->setup;
+    for (int k = 0; k < setup->interactions; k++) {
+        const struct interaction *kind = setup->interaction[k].kind;
+        char key[64];
+        snprintf(key, sizeof key, "interactions.%s", kind->name);
+        if (kind != &mf_molecules)
+            mf_json_fault(
+                object, key,
+                "\"%s\" moves by the energy of pairs and molecules alone; leave it out, or "
+                "take another integrator",
+                setup->integrator->name);
+    }
+    if (setup->precision == PAIR_DOUBLE)
+        mf_json_fault(object, "precision",
+                      "\"%s\" computes its moves in mixed precision; leave it out",
+                      setup->integrator->name);
+}
+
+/// Masses of 1 are the unit; particles are not told of them where these would not be read, or cost
+/// time in a sweep of the friction.
+static void check_masses(struct scene *scene, struct json_object *object, bool remembers) {
+    const struct integrator *integrator = scene->setup.integrator;
+    struct attributes_source *mass = &scene->setup.attribute[ATTRIBUTES_MASS];
+    if (attributes_are(mass, 1) && (!integrator->masses || integrator->friction))
+        mass->ranges = 0;
+    else if (mass->ranges > 0 && !integrator->masses)
+        mf_json_fault(
+            object, "particles.mass",
+            "%s moves particles of mass 1 only; \"aboba\" and \"dpd-verlet\" move others, "
+            "and without \"dissipative\" \"velocity-verlet\"",
+            integrator->name);
+    else if (mass->ranges > 0 && remembers)
+        mf_json_fault(object, "particles.mass",
+                      "friction that remembers, or acts across pairs, is of particles of mass 1");
+}
+
+static enum status read_dynamics(struct scene *scene, struct json_object *object, int unknown) {
+    const char **names;
+    TRY(mf_names_collect(mf_integrator_list, NULL, &names));
+    struct json_object dynamics = mf_json_child_of(object, "dynamics", false, "integrator");
+    const bool remembers =
+        pair_memory_acts(&scene->setup.memory) || (unknown & SCENE_FITS_TRANSVERSE);
+    const bool dissipative = scene->omega.curves > 0 || (unknown & SCENE_FITS_OMEGA) || remembers;
+    const char *name = dissipative ? mf_aboba.name : mf_velocity_verlet.name;
+    if (dynamics.item)
+        name = mf_json_choice(&dynamics, "integrator", names, name);
+    mf_memory_free(names);
+    if (name == NULL)
+        return STATUS_OK;
+    const struct integrator *integrator = mf_names_find(mf_integrator_list, name);
+    scene->setup.integrator = integrator;
+    if (integrator->parameters_size > 0) {
+        scene->integrator_parameters = mf_memory_zeroed(1, integrator->parameters_size);
+        if (scene->integrator_parameters == NULL)
+            return STATUS_NO_MEMORY;
+    }
+    mf_json_fields(&dynamics, integrator->fields, scene->integrator_parameters);
+    scene->setup.integrator_parameters = scene->integrator_parameters;
+    if (dynamics.item)
+        mf_json_finish(&dynamics);
+    if (scene->setup.temperature == 0 && integrator->mobility == NULL)
+        mf_json_fault(object, "temperature", "0 is for dynamics without velocities, as \"%s\"",
+                      mf_brownian.name);
+    const struct interaction *oriented = mf_simulation_oriented(&scene->setup);
+    if (oriented && scene->setup.box.dimensions == 2 && integrator->orientation_mobility == NULL)
+        mf_json_fault(object, "dynamics",
+                      "%s turns no orientations, which \"%s\" is about; use \"%s\"",
+                      integrator->name, oriented->name, mf_brownian.name);
+    if (scene->setup.placement.count < 2 && integrator->companions == NULL)
+        fault_lonely(scene, object);
+    if (unknown && integrator->events)
+        mf_json_fault(object, "dynamics",
+                      "%s moves hard particles, which have no forces that could be found",
+                      integrator->name);
+    else if (dissipative && !integrator->dissipative)
+        mf_json_fault(object, "dynamics",
+                      integrator->samples
+                          ? "%s knows no friction, and needs none: leave \"dissipative\" out"
+                          : "%s knows no friction; use \"aboba\" with \"dissipative\"",
+                      integrator->name);
+    else if (remembers && !integrator->remembers)
+        mf_json_fault(object, "dynamics", "%s knows no \"%s\"; use \"aboba\"", integrator->name,
+                      scene->memory.modes > 0 ? "memory" : "dissipative_transverse");
+    if (integrator->samples)
+        check_moves(scene, object);
+    check_orientation(scene, object);
+    check_masses(scene, object, remembers);
+    return STATUS_OK;
+}
+
+double mf_scene_mass_density(const struct scene *scene) {
+    const double metres = scene->units.length * 1e-9;
+    const struct simulation_setup *setup = &scene->setup;
+    const double masses = mf_attributes_sum(&setup->attribute[ATTRIBUTES_MASS], 1,
+                                            &setup->composition, setup->placement.count);
+    const double kilograms = masses * scene->units.mass;
+    return 1e-3 * kilograms / (mf_box_volume(&scene->setup.box) * pow(metres, 3));
+}
+
+/// Hardly a multiple of T_0, often a number of kelvins.
+static const double hottest = 50;
+
+bool mf_scene_is_hot(const struct scene *scene, char line[SCENE_LINE_SIZE]) {
+    snprintf(line, SCENE_LINE_SIZE,
+             "temperature: %g in units of k_B T_0, which is 1 as a rule; kelvins belong into "
+             "\"units\"",
+             scene->setup.temperature);
+    return scene->setup.temperature > hottest && !mf_units_known(&scene->units) &&
+           scene->setup.attribute[ATTRIBUTES_MASS].ranges == 0;
+}
+
+/// In a reduced file masses of beads are in μ: one that is μ in u was told twice, and a bead would
+/// have its square.
+static void check_mass_told_twice(const struct scene *scene, struct json_object *object) {
+    static const double alike = 0.01, light = 1.1;
+    const struct attributes_range masses =
+        mf_attributes_span(&scene->setup.attribute[ATTRIBUTES_MASS]);
+    const double unit = scene->units.mass / UNITS_ATOMIC_MASS;
+    if (masses.maximum > light && fabs(masses.maximum / unit - 1) < alike)
+        mf_json_fault(object, "particles.mass",
+                      "%g is in units of mu, and \"mass\" of \"units\" makes mu %.6g u: a bead "
+                      "would have %.6g u; leave one of them out, or let mu be another mass",
+                      masses.maximum, unit, masses.maximum * unit);
+}
+
+/// Masses that are not in kg and temperatures that are in K.
+static void check_units(const struct scene *scene, struct json_object *object) {
+    static const double densest = 30; // g/cm³: no matter is denser
+    static const double atomic_mass = 1e-3 / UNITS_AVOGADRO;
+    const struct simulation_setup *setup = &scene->setup;
+    const double mass = scene->units.mass;
+    if (!mf_units_known(&scene->units) || mf_json_fault_count(object->document) > 0)
+        return;
+    const bool reduced = !mf_units_speaks(&scene->units);
+    struct json_object units = {0};
+    if (reduced)
+        units = mf_json_child(object, "units", false);
+    if (reduced && setup->temperature > hottest)
+        mf_json_fault(object, "temperature",
+                      "%g is in units of T_0, %g K in \"units\": it would be %g K; 1 is T_0",
+                      setup->temperature, scene->units.temperature,
+                      setup->temperature * scene->units.temperature);
+    if (reduced)
+        check_mass_told_twice(scene, object);
+    const double density = setup->box.dimensions == 3 ? mf_scene_mass_density(scene) : 0;
+    if (density > densest && !reduced)
+        mf_json_fault(object, "box",
+                      "%g u a bead make %.3g g/cm^3: the mass, the box or the number of particles "
+                      "is wrong",
+                      mass / UNITS_ATOMIC_MASS, density);
+    else if (density > densest && mass >= 1)
+        mf_json_fault(&units, "mass", "it is in kg: %g u would be %.6g", mass, mass * atomic_mass);
+    else if (density > densest)
+        mf_json_fault(
+            &units, "mass",
+            "%g kg a bead, 1 u being %.6g, make %.3g g/cm^3: the mass, the unit of length, the "
+            "box or the number of particles is wrong",
+            mass, atomic_mass, density);
+}
+
+/// Molecules act, if there are any and the box is large enough for them.
+static void enter_molecules(struct scene *scene, struct json_object *object) {
+    const struct molecules *molecules = &scene->molecules.molecules;
+    struct simulation_setup *setup = &scene->setup;
+    if (!scene_has_molecules(&scene->molecules))
+        return;
+    if (mf_json_fault_count(object->document) == 0) {
+        if (mf_molecules_check(molecules, &setup->box) != STATUS_OK)
+            mf_json_fault(object, NULL, "%s", mf_status_message());
+        else
+            mf_scene_molecules_warn_of_box(&scene->molecules, &setup->box, setup->temperature);
+    }
+    setup->interaction[setup->interactions++] =
+        (struct interaction_choice){&mf_molecules, molecules};
+}
+
+/// Friction, of pairs whose potential is known.
+static bool finds_friction_alone(int unknown) {
+    return unknown && !(unknown & SCENE_FITS_POTENTIAL);
+}
+
+enum status mf_scene_read(struct scene *scene, struct json_object *object, int unknown,
+                          const struct scene_fitted *fitted) {
+    *scene = (struct scene){.unknown = unknown};
+    mf_units_read(&scene->units, object);
+    read_top(scene, object);
+    TRY(mf_scene_particles_read(scene, object, fitted));
+    check_units(scene, object);
+    if (finds_friction_alone(unknown)) // between what particles, a fit would ask in vain
+        mf_json_child(object, "conservative", true);
+    if (!(unknown & SCENE_FITS_POTENTIAL)) {
+        TRY(mf_scene_law_read(&scene->potential, object, "conservative", mf_curve_potentials,
+                              &scene->setup.composition, &scene->units));
+        TRY(mf_scene_law_tabulate(&scene->potential, mf_table_init_potential));
+    }
+    if (!(unknown & SCENE_FITS_OMEGA)) {
+        TRY(mf_scene_law_read(&scene->omega, object, "dissipative", mf_curve_omegas,
+                              &scene->setup.composition, &scene->units));
+        TRY(mf_scene_law_tabulate(&scene->omega, mf_table_init_omega));
+        check_omega(scene, object);
+    }
+    TRY(mf_scene_memory_read(&scene->memory, object, &scene->setup.composition, &scene->units,
+                             unknown & SCENE_FITS_MEMORY));
+    scene->setup.memory = mf_scene_memory_law(&scene->memory);
+    TRY(mf_scene_interactions_read(&scene->interactions, object, &scene->setup));
+    enter_molecules(scene, object);
+    TRY(read_dynamics(scene, object, unknown));
+    scene->setup.potential = scene->potential.curves ? &scene->potential.table : NULL;
+    scene->setup.omega = scene->omega.curves ? &scene->omega.table : NULL;
+    return STATUS_OK;
+}
+
+void mf_scene_clear(struct scene *scene) {
+    mf_scene_law_clear(&scene->potential);
+    mf_scene_law_clear(&scene->omega);
+    mf_scene_memory_clear(&scene->memory);
+    mf_memory_free(scene->start_values);
+    mf_memory_free(scene->integrator_parameters);
+    mf_scene_interactions_clear(&scene->interactions);
+    mf_scene_molecules_clear(&scene->molecules);
+    *scene = (struct scene){0};
+}
+
+const char *mf_scene_warning(const struct scene *scene) {
+    const struct integrator *integrator = scene->setup.integrator;
+    const char *own = integrator->warning ? integrator->warning(&scene->setup) : NULL;
+    if (own)
+        return own;
+    if (scene->molecules.warning[0])
+        return scene->molecules.warning;
+    if (mf_pair_memory_is_coarse(&scene->setup.memory, scene->setup.time_step))
+        return "\"time_step\" is too long for \"memory\": beyond half of a \"time\" or of "
+               "1/\"frequency\", or where a pair's friction is strong, what acts is another "
+               "friction; a tenth of both follows it, and a short memory is \"dissipative\"";
+    if (simulation_holds_temperature(&scene->setup) || integrator->events ||
+        (scene->unknown & ~SCENE_FITS_POTENTIAL))
+        return NULL;
+    return "nothing holds the temperature: without \"dissipative\", friction and noise, a "
+           "simulation "
+           "conserves its energy, and its temperature drifts";
+}
+
+void mf_scene_write(const struct scene *scene, struct json_writer *writer) {
+    const struct simulation_setup *setup = &scene->setup;
+    struct top top = {.dimensions = setup->box.dimensions,
+                      .temperature = setup->temperature,
+                      .time_step = setup->time_step,
+                      .skin = setup->skin,
+                      .temperature_limit = setup->temperature_limit,
+                      .precision = setup->precision};
+    for (int d = 0; d < setup->box.dimensions; d++)
+        top.box[d] = setup->box.length[d];
+    mf_json_put_fields(writer, mf_scene_fields, &top);
+    mf_scene_particles_write(scene, writer);
+    mf_scene_molecules_write(&scene->molecules, &setup->composition, writer);
+    if (scene->potential.curves || finds_friction_alone(scene->unknown))
+        mf_scene_law_write(&scene->potential, &setup->composition, writer, "conservative");
+    if (scene->omega.curves)
+        mf_scene_law_write(&scene->omega, &setup->composition, writer, "dissipative");
+    mf_scene_memory_write(&scene->memory, &setup->composition, writer);
+    mf_scene_interactions_write(&scene->interactions, writer);
+    mf_json_begin(writer, "dynamics");
+    mf_json_put_text(writer, "integrator", setup->integrator->name);
+    mf_json_put_fields(writer, setup->integrator->fields, setup->integrator_parameters);
+    mf_json_end(writer);
+    if (mf_units_beside(&scene->units)) {
+        mf_json_begin(writer, "units");
+        mf_json_put_fields(writer, mf_units_fields, &scene->units);
+        mf_json_end(writer);
+    }
+}
+
+void mf_scene_digest(const struct scene *scene, uint64_t *digest) {
+    mf_scene_law_digest(&scene->potential, digest);
+    mf_scene_law_digest(&scene->omega, digest);
+    mf_scene_memory_digest(&scene->memory, digest);
+    mf_scene_molecules_digest(&scene->molecules, digest);
+    mf_scene_particles_digest(scene, digest);
+}

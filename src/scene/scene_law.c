@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/scene_law.h"
+
+#include "base/digest.h"
+#include "base/memory.h"
+#include "base/names.h"
+#include "curves/sampled.h"
+#include "scene/pair_names.h"
+#include "io/data_table.h"
+#include "io/votca.h"
+
+#include <string.h>
+
+// One curve ---------------------------------------------------------------------------------------
+
+enum status mf_scene_read_columns(const char *file, const char *const unit[2], double least,
+                                  const struct units *units, double **x, double **value,
+                                  size_t *count) {
+    struct data_table table = {0};
+    enum status status = STATUS_OK;
+    CHECK(mf_data_table_read(&table, file, 2));
+    CHECK(mf_data_table_check_increasing(&table, file, 0, least));
+    CHECK(mf_data_table_convert(&table, file, 0, unit[0], units));
+    CHECK(mf_data_table_convert(&table, file, 1, unit[1], units));
+    NEW_ARRAY(*x, table.rows);
+    NEW_ARRAY(*value, table.rows);
+    for (size_t k = 0; k < table.rows; k++) {
+        (*x)[k] = table.values[k * table.columns];
+        (*value)[k] = table.values[k * table.columns + 1];
+    }
+    *count = table.rows;
+done:
+    mf_data_table_clear(&table);
+    return status;
+}
+
+/// VOTCA's points, from nm and kJ/mol.
+static enum status read_votca(const char *file, const struct units *units, double **r,
+                              double **value, size_t *count) {
+    struct votca_table table = {0};
+    enum status status = STATUS_OK;
+    CHECK(mf_votca_read(&table, file));
+    NEW_ARRAY(*r, table.rows);
+    NEW_ARRAY(*value, table.rows);
+    for (size_t k = 0; k < table.rows; k++) {
+        if (table.x[k] < 0) {
+            status = mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: r = %g is negative", file,
+                                    table.line[k], table.x[k]);
+            goto done;
+        }
+        (*r)[k] = table.x[k] / units->length;
+        (*value)[k] = table.y[k] / mf_units_energy_kj_per_mol(units);
+    }
+    *count = table.rows;
+done:
+    mf_votca_clear(&table);
+    return status;
+}
+
+/// Points of a table file for a curve of the law "table".
+static enum status load_points(struct curve *curve, const char *unit, struct json_object *object,
+                               const struct units *units) {
+    struct sampled_parameters *parameters = curve->parameters;
+    double *r = NULL, *value = NULL;
+    size_t count = 0;
+    enum status status = STATUS_OK;
+    if (parameters->format == SAMPLED_VOTCA && !mf_units_known(units)) {
+        mf_json_fault(object, "format", "VOTCA's nm and kJ/mol need \"units\" in the scene");
+        return STATUS_OK;
+    }
+    status = parameters->format == SAMPLED_VOTCA
+                 ? read_votca(parameters->file, units, &r, &value, &count)
+                 : mf_scene_read_columns(parameters->file, (const char *[]){"lambda", unit}, 0,
+                                         units, &r, &value, &count);
+    if (status != STATUS_OK)
+        mf_json_fault(object, "file", "%s", mf_status_message());
+    else if (mf_sampled_set_points(curve, r, value, count) != STATUS_OK)
+        mf_json_fault(object, "file", "%s: %s", parameters->file, mf_status_message());
+    mf_memory_free(r);
+    mf_memory_free(value);
+    return status == STATUS_NO_MEMORY ? status : STATUS_OK;
+}
+
+/// A table that could not be loaded has no points, and parameters may not go together: forget the
+/// curve, the fault is recorded.
+static bool is_usable(const struct curve *curve) {
+    if (curve_is_sampled(curve->family))
+        return ((const struct sampled_parameters *)curve->parameters)->spline != NULL;
+    return mf_curve_check(curve) == STATUS_OK;
+}
+
+enum status mf_scene_read_curve(struct curve *curve, struct json_object *parent, const char *key,
+                                const struct curve_family *const *list, const struct units *units) {
+    const char **names;
+    const char *unit = list == mf_curve_potentials ? "k_B T_0" : "sqrt(mu/tau)";
+    struct json_object object = mf_json_child_of(parent, key, false, "law");
+    if (object.item == NULL)
+        return STATUS_OK;
+    TRY(mf_names_collect(list, "none", &names));
+    const char *law = mf_json_choice(&object, "law", names, NULL);
+    mf_memory_free(names);
+    const struct curve_family *family = law ? mf_curve_find(list, law) : NULL;
+    if (family) {
+        const size_t faults = mf_json_fault_count(object.document);
+        TRY(mf_curve_create(curve, family));
+        mf_json_fields(&object, family->fields, curve->parameters);
+        if (curve_is_sampled(family) && mf_json_fault_count(object.document) == faults)
+            TRY(load_points(curve, unit, &object, units));
+        mf_curve_scale(curve, mf_units_factor(units, "lambda"), mf_units_factor(units, unit));
+        if (mf_json_fault_count(object.document) == faults && mf_curve_check(curve) != STATUS_OK)
+            mf_json_fault(&object, NULL, "%s", mf_status_message());
+        if (!is_usable(curve))
+            mf_curve_clear(curve);
+    }
+    if (law)
+        mf_json_finish(&object);
+    return STATUS_OK;
+}
+
+void mf_scene_write_curve(const struct curve *curve, struct json_writer *writer, const char *key) {
+    mf_json_begin(writer, key);
+    mf_json_put_text(writer, "law", curve->family ? curve->family->name : "none");
+    if (curve->family)
+        mf_json_put_fields(writer, curve->family->fields, curve->parameters);
+    mf_json_end(writer);
+}
+
+// A curve for all pairs, or one for each pair type ------------------------------------------------
+
+/// {"A-A": {"law": …}, "A-B": {"law": …}, …}, each pair type once, in any order.
+static enum status read_pairs(struct scene_law *law, struct json_object *object,
+                              const struct curve_family *const *list,
+                              const struct composition *composition, const struct units *units) {
+    char name[COMPOSITION_MOST_PAIRS][COMPOSITION_PAIR_NAME_SIZE];
+    const char *key[COMPOSITION_MOST_PAIRS];
+    const bool known = mf_pair_names_find(object, composition, key);
+    for (int pair = 0; pair < mf_composition_pairs(composition); pair++) {
+        mf_composition_pair_name(composition, pair, name[pair]);
+        if (key[pair])
+            TRY(mf_scene_read_curve(&law->curve[pair], object, key[pair], list, units));
+        else if (!mf_json_has(object, name[pair]) && known)
+            mf_json_fault(object, name[pair],
+                          "missing: an object is required; \"law\": \"none\" is one");
+        if (law->curve[pair].family)
+            law->curves = mf_composition_pairs(composition);
+    }
+    mf_json_finish(object);
+    return STATUS_OK;
+}
+
+enum status mf_scene_law_read(struct scene_law *law, struct json_object *parent, const char *key,
+                              const struct curve_family *const *list,
+                              const struct composition *composition, const struct units *units) {
+    if (composition->types == 0) {
+        mf_json_has(parent,
+                    key); // the fault is one of the types: those of their pairs would mislead
+        return STATUS_OK;
+    }
+    if (composition_is_mixed(composition)) {
+        struct json_object object = mf_json_child_of(parent, key, false, "law");
+        if (object.item == NULL)
+            return STATUS_OK;
+        if (!mf_json_has(&object, "law"))
+            return read_pairs(law, &object, list, composition, units);
+    }
+    struct json_object only = mf_json_child_of(parent, key, false, "law");
+    const char *pair = mf_json_key(&only, 0);
+    if (pair && strchr(pair, '-') && !mf_json_has(&only, "law")) {
+        mf_json_fault(&only, pair,
+                      "pairs are named in mixtures alone, and there is one type: write "
+                      "\"%s\": {\"law\": …}",
+                      key);
+        return STATUS_OK;
+    }
+    TRY(mf_scene_read_curve(&law->curve[0], parent, key, list, units));
+    law->curves = law->curve[0].family != NULL;
+    return STATUS_OK;
+}
+
+enum status mf_scene_law_tabulate(struct scene_law *law, scene_law_table *tabulate) {
+    struct table part[COMPOSITION_MOST_PAIRS] = {{0}};
+    enum status status = STATUS_OK;
+    if (law->curves <= 1)
+        return law->curves ? tabulate(&law->table, &law->curve[0]) : STATUS_OK;
+    for (int pair = 0; pair < law->curves; pair++)
+        if (law->curve[pair].family)
+            CHECK(tabulate(&part[pair], &law->curve[pair]));
+    CHECK(mf_table_stack(&law->table, part, law->curves));
+done:
+    for (int pair = 0; pair < law->curves; pair++)
+        mf_table_clear(&part[pair]);
+    return status;
+}
+
+const struct curve *mf_scene_law_curve(const struct scene_law *law, int pair) {
+    const struct curve *curve = &law->curve[law->curves > 1 ? pair : 0];
+    return curve->family ? curve : NULL;
+}
+
+void mf_scene_law_clear(struct scene_law *law) {
+    for (int pair = 0; pair < COMPOSITION_MOST_PAIRS; pair++)
+        mf_curve_clear(&law->curve[pair]);
+    mf_table_clear(&law->table);
+}
+
+void mf_scene_law_write(const struct scene_law *law, const struct composition *composition,
+                        struct json_writer *writer, const char *key) {
+    if (law->curves <= 1) {
+        mf_scene_write_curve(&law->curve[0], writer, key);
+        return;
+    }
+    mf_json_begin(writer, key);
+    for (int pair = 0; pair < law->curves; pair++) {
+        char name[COMPOSITION_PAIR_NAME_SIZE];
+        mf_composition_pair_name(composition, pair, name);
+        mf_scene_write_curve(&law->curve[pair], writer, name);
+    }
+    mf_json_end(writer);
+}
+
+void mf_scene_law_digest(const struct scene_law *law, uint64_t *digest) {
+    const struct table *table = &law->table;
+    const size_t rows = (size_t)table->curves * (TABLE_INTERVALS + 1);
+    mf_digest_add(digest, table->coefficient, rows * (size_t)table->terms * sizeof(double));
+}

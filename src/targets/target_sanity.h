@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file A look at the targets of g(r) and at the scene's density before a fit.
+///
+/// What no fluid does is refused: a g that does not end near 1, beads that no packing holds, number
+/// fluctuations below zero. What a fluid hardly does is a warning. Told are the numbers by which a
+/// person sees a wrong column, unit of length or number of beads at once.
+#pragma once
+
+#include "scene/scene.h"
+#include "targets/target_files.h"
+
+/// Takes one line at a time, without its end.
+struct target_sanity_listener {
+    void (*say)(void *context, const char *line);
+    void *context;
+};
+
+/// Refuse what cannot be, for g(r) of each pair type, converted to the scene's number of beads.
+///
+/// It must not be 0 everywhere. Its mean over the last quarter of the file must be within 0.25 of
+/// 1, or within twice the scatter that oscillations make there. Pairs of one type must have ρ d³ ≤
+/// √2 (in two dimensions ρ d² ≤ 2/√3), the closest packing of beads no two of which are nearer than
+/// d, up to where g stays below 0.01. In three dimensions they must have 1 + ρG ≥ 0, the variance
+/// of their number over its mean in a large volume (J. G. Kirkwood and F. P. Buff, J. Chem. Phys.
+/// 19, 774 (1951)): refused is what stays below zero by three standard errors up to any range from
+/// half of the target's on, and with 1.03 g, too. In a mixture a fault of the mean or of 1 + ρG
+/// asks for demixing if the integrals G of two types are above 0 for pairs of one type and below 0
+/// for pairs of two. Fails: BAD_INPUT with `file`, the key and the likely reason; NO_MEMORY.
+/// Tested: test_target_sanity.
+enum status mf_target_sanity_check(const struct target_files *files, const struct scene *scene,
+                                   const char *file) MUST_USE;
+
+/// Tell a line for each g(r) as it is given, where its errors and bins come from, warnings, and the
+/// normalisation if one was found.
+///
+/// Warned of are: what is of two phases or of a crystal (targets/target_sanity_state.h); 1 + ρG
+/// below zero, but not with 1.03 g, so that the normalisation may be off; layers, a minimum below
+/// 0.95 and a second maximum, of fewer than four neighbours up to that maximum, as a liquid's g has
+/// at a density ten times too low (solutes in an implicit solvent look so, too, which is why it is
+/// no fault); ρ d³ < 0.01 with d where g exceeds 1/2, the density of a dilute gas; dihedrals of
+/// beads that may stand in a line; and without units a temperature above 50, which may be in
+/// kelvins; of molecules a mean g of all beads that ends more than 3 % and three times its scatter
+/// away from 1, or that of the only pair type of one kind of molecules that does so. Fails:
+/// NO_MEMORY. Tested: test_target_sanity.
+enum status mf_target_sanity_tell(const struct target_files *files, const struct scene *scene,
+                                  const struct target_sanity_listener *listener) MUST_USE;
+
+/// The same of bonds, angles and dihedrals: a line a group, and warnings of angles that may be
+/// straight, and of g(r) of molecules that does not end near 1.
+void mf_target_sanity_tell_groups(const struct target_files *files, const struct scene *scene,
+                                  const struct target_sanity_listener *listener);
+
+/// Tell what was made of a table of g(r) without equal bins, or with a g slightly below 0.
+void mf_target_sanity_tell_reading(const struct target_rdf *target, const char *name,
+                                   const struct scene *scene,
+                                   const struct target_sanity_listener *listener);
+
+/// Say a line.
+void mf_target_sanity_say(const struct target_sanity_listener *listener, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+/// The unit of length in which a person is told of targets, and λ in it.
+const char *mf_target_sanity_length(const struct scene *scene, double *length);

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// A look at the targets of bonds, angles and dihedrals, and at g(r) of molecules.
+#include "targets/target_sanity.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+
+void mf_target_sanity_say(const struct target_sanity_listener *listener, const char *format, ...) {
+    char line[512];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(line, sizeof line, format, arguments);
+    va_end(arguments);
+    listener->say(listener->context, line);
+}
+
+/// What lengths are told in.
+const char *mf_target_sanity_length(const struct scene *scene, double *length) {
+    const struct units *units = &scene->units;
+    static const char *const names[] = {"nm", "nm", "angstrom"};
+    *length = mf_units_beside(units) ? units->length : mf_units_factor(units, "lambda");
+    return mf_units_known(units) ? names[units->system] : "lambda";
+}
+
+/// "target bond_lengths.backbone: 34 bins of 0.001 from 0.1505 to 0.1835, peak 84 at 0.169; …".
+static void tell_group(const struct target_groups *groups, size_t g, const struct scene *scene,
+                       const struct target_sanity_listener *listener) {
+    const struct target_bonded *member = &groups->member[g];
+    const struct bonded_bins *bins = &member->bins;
+    size_t peak = 0;
+    char errors[128] = "";
+    if (bins->count == 0)
+        return;
+    for (size_t k = 0; k < bins->count; k++)
+        peak = member->value[k] > member->value[peak] ? k : peak;
+    if (member->estimated_error > 0)
+        snprintf(errors, sizeof errors, "; no errors given: %.2g of the peak %s",
+                 member->estimated_error,
+                 member->assumed ? "is assumed there" : "there, from the scatter of the rows");
+    double factor = 1;
+    const char *unit = mf_bonded_kinds[groups->order]->is_length
+                           ? mf_target_sanity_length(scene, &factor)
+                           : "degrees";
+    mf_target_sanity_say(listener,
+                         "target %s.%s: %zu bins of %.4g from %.4g to %.4g %s, peak at %.4g%s",
+                         mf_bonded_distribution_of(groups->order)->name, groups->name[g],
+                         bins->count, factor * bins->width, factor * bins->low,
+                         factor * (bins->low + (double)bins->count * bins->width), unit,
+                         factor * bonded_bins_centre(bins, peak), errors);
+}
+
+/// Three beads in a line have no plane: next to it the forces of a dihedral are without bound, and
+/// no time step follows them. Octane in four beads, of angles up to 180 degrees, was at 317 K for
+/// 298 K.
+static void warn_of_lines(const struct target_files *files,
+                          const struct target_sanity_listener *listener) {
+    static const double straight = 170, many = 0.01;
+    const struct target_groups *angles = target_files_groups(files, BONDED_ANGLE);
+    for (size_t g = 0;
+         files->given[mf_bonded_distribution_kind(BONDED_DIHEDRAL)] && g < angles->groups; g++) {
+        const struct target_bonded *member = &angles->member[g];
+        double share = 0;
+        for (size_t k = 0; k < member->bins.count; k++)
+            if (bonded_bins_centre(&member->bins, k) > straight)
+                share += member->value[k] * member->bins.width;
+        if (share > many)
+            mf_target_sanity_say(
+                listener,
+                "mesofit: warning: target.dihedral_angles: %.0f %% of the angles \"%s\" are within "
+                "10 degrees of a straight line, where the force of a dihedral has no bound: "
+                "simulations with it are too hot. Leave the dihedrals out, and write "
+                "\"exclude\": 3 into the molecule if g(r) was counted with them",
+                100 * share, angles->name[g]);
+    }
+}
+
+/// Beads of the longest molecule: so many of all are not counted around a bead at most.
+static double longest(const struct topology *topology) {
+    int beads = 0;
+    for (int k = 0; k < topology->kinds; k++)
+        beads = topology->kind[k].beads > beads ? topology->kind[k].beads : beads;
+    return beads;
+}
+
+/// Over the last quarter of its range, g of a pair type, and its scatter from row to row.
+static struct target_tail tail_of(const struct target_files *files, size_t pair) {
+    const struct target_rdf *target = &target_files_rdf(files)->member[pair];
+    const double given = target->parameters.normalisation, factor = given > 0 ? given : 1;
+    return (struct target_tail){.mean = target->tail.mean / factor,
+                                .scatter = target->tail.scatter / factor};
+}
+
+/// Whether g does not end at 1, by more than `allowed` and by more than chance.
+static bool ends_beside_1(struct target_tail tail, double allowed) {
+    static const double deviations = 3;
+    const double away = fabs(tail.mean - 1);
+    return away > allowed && away > deviations * tail.scatter;
+}
+
+/// The only pair type whose g does not end at 1, where all others do, or −1: types of one kind of
+/// molecules that gather change the g of all pairs.
+static int find_odd_pair(const struct target_files *files, const struct topology *topology,
+                         double allowed) {
+    const bool one_kind =
+        topology->kinds == 1 && topology->kind[0].count == topology->molecules &&
+        (size_t)topology->kind[0].count * (size_t)topology->kind[0].beads == topology->particles;
+    int odd = -1, count = 0;
+    for (size_t pair = 0; pair < target_files_rdf(files)->pairs; pair++)
+        if (mf_composition_has_pairs(&files->composition, (int)pair) &&
+            ends_beside_1(tail_of(files, pair), allowed)) {
+            odd = (int)pair;
+            count++;
+        }
+    return one_kind && target_files_rdf(files)->pairs > 1 && count == 1 ? odd : -1;
+}
+
+/// The mean g of all beads has no reason to differ from 1 at its end, where that of a pair type
+/// may: types gather. Molecules have no theory that finds its factor (inversion/normalisation).
+static void warn_of_tails(const struct target_files *files, const struct scene *scene,
+                          const struct target_sanity_listener *listener) {
+    static const double allowed = 0.03;
+    const struct composition *composition = &files->composition;
+    const struct topology *topology = &scene->molecules.molecules.topology;
+    const double most = allowed + longest(topology) / (double)mf_composition_particles(composition);
+    const int odd = find_odd_pair(files, topology, most);
+    struct target_tail mean = {0};
+    double all = 0;
+    for (size_t pair = 0; pair < target_files_rdf(files)->pairs; pair++)
+        all += mf_composition_possible_pairs(composition, (int)pair);
+    for (size_t pair = 0; pair < target_files_rdf(files)->pairs; pair++) {
+        const double part = mf_composition_possible_pairs(composition, (int)pair) / all;
+        mean.mean += part * tail_of(files, pair).mean;
+        mean.scatter += part * tail_of(files, pair).scatter;
+    }
+    if (odd >= 0) {
+        const struct target_tail tail = tail_of(files, (size_t)odd);
+        char name[COMPOSITION_PAIR_NAME_SIZE];
+        mf_composition_pair_name(composition, odd, name);
+        mf_target_sanity_say(
+            listener,
+            "mesofit: warning: target.rdf.%s: over the last quarter of its range g is %.3f(%.0f), "
+            "not 1, which the other pair types have there: is it over another number of pairs than "
+            "these? A fit of molecules does not mend it; \"normalisation\" divides by a factor",
+            name, tail.mean, ceil(1e3 * tail.scatter));
+    } else if (all > 0 && ends_beside_1(mean, most)) {
+        mf_target_sanity_say(
+            listener,
+            "mesofit: warning: target.rdf: over the last quarter of its range g of all beads is "
+            "%.3f(%.0f), not 1: is its volume or number of beads another than the scene's? A fit "
+            "of molecules does not mend it; \"normalisation\" of each pair divides by a factor",
+            mean.mean, ceil(1e3 * mean.scatter));
+    }
+}
+
+void mf_target_sanity_tell_groups(const struct target_files *files, const struct scene *scene,
+                                  const struct target_sanity_listener *listener) {
+    for (int order = 0; order < BONDED_KINDS; order++)
+        for (size_t g = 0; g < target_files_groups(files, order)->groups; g++)
+            tell_group(target_files_groups(files, order), g, scene, listener);
+    warn_of_lines(files, listener);
+    if (scene_has_molecules(&scene->molecules))
+        warn_of_tails(files, scene, listener);
+}

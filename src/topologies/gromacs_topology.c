@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "topologies/gromacs_topology.h"
+
+#include "base/memory.h"
+#include "base/own_words.h"
+#include "topologies/gromacs_terms.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum section { TERMS, TERM_TYPES, MOLECULETYPE, ATOMS, MOLECULES, IGNORED, PAIRS, EXCLUSIONS };
+
+#define SECTIONS(NAME, kind, ...)                                                                  \
+    {#kind "s", TERMS, BONDED_##NAME}, {#kind "types", TERM_TYPES, BONDED_##NAME},
+
+/// The sections that are known. PAIRS are not taken, which is told.
+static const struct known {
+    const char *name;
+    enum section section;
+    int order; ///< of terms and their types
+} sections[] = {
+    BONDED_LIST(SECTIONS){"moleculetype", MOLECULETYPE, 0},
+    {"atoms", ATOMS, 0},
+    {"molecules", MOLECULES, 0},
+    {"exclusions", EXCLUSIONS, 0},
+    {"defaults", IGNORED, 0},
+    {"atomtypes", IGNORED, 0},
+    {"system", IGNORED, 0},
+    {"nonbond_params", PAIRS, 0},
+    {"pairtypes", PAIRS, 0},
+    {"pairs", PAIRS, 0},
+};
+
+struct reading {
+    struct gromacs_reading terms;
+    const struct known *section; ///< NULL: none has begun
+};
+
+static struct gromacs_words split(struct gromacs_line *line) {
+    struct gromacs_words words = {.count = 0};
+    char *rest = NULL;
+    for (char *word = strtok_r(line->text, " \t", &rest); word && words.count < GROMACS_MOST_WORDS;
+         word = strtok_r(NULL, " \t", &rest))
+        words.word[words.count++] = word;
+    return words;
+}
+
+// Kinds and atoms ---------------------------------------------------------------------------------
+
+/// A name of a moleculetype, whose other letters than ours become _.
+static bool copy_name(const char *word, char name[TOPOLOGY_NAME_SIZE]) {
+    snprintf(name, TOPOLOGY_NAME_SIZE, "%s", word);
+    for (char *letter = name; *letter; letter++)
+        if (!isalnum((unsigned char)*letter) && *letter != '-')
+            *letter = '_';
+    return strlen(word) < TOPOLOGY_NAME_SIZE;
+}
+
+static int find_kind(const struct topology *topology, const char *name) {
+    int k = 0;
+    while (k < topology->kinds && strcmp(topology->kind[k].name, name) != 0)
+        k++;
+    return k;
+}
+
+static enum status begin_kind(struct gromacs_reading *reading, const struct gromacs_line *line,
+                              const struct gromacs_words *words) {
+    struct topology *topology = &reading->molecules->topology;
+    struct topology_kind *kind = &topology->kind[topology->kinds];
+    int64_t exclude = 0;
+    char name[TOPOLOGY_NAME_SIZE];
+    if (words->count < 2 || !copy_name(words->word[0], name))
+        return mf_gromacs_fail(line, "a moleculetype has a name of up to %d letters, and nrexcl",
+                               TOPOLOGY_NAME_SIZE - 1);
+    if (mf_own_words_has(name))
+        return mf_gromacs_fail(line, "\"%.40s\": a moleculetype has a name of its own, " OWN_WORDS,
+                               name);
+    if (!mf_gromacs_is_integer(words->word[1], 0, TOPOLOGY_MOST_EXCLUDE, &exclude))
+        return mf_gromacs_fail(line, "nrexcl is 0 to %d, not %.40s", TOPOLOGY_MOST_EXCLUDE,
+                               words->word[1]);
+    if (topology->kinds == TOPOLOGY_MOST_KINDS)
+        return mf_gromacs_fail(line, "there are more than %d moleculetypes", TOPOLOGY_MOST_KINDS);
+    if (find_kind(topology, name) < topology->kinds)
+        return mf_gromacs_fail(line, "moleculetype %s stands there twice", name);
+    *kind = (struct topology_kind){.exclude = (int)exclude};
+    memcpy(kind->name, name, sizeof name);
+    topology->kinds++;
+    reading->atom_room = 0;
+    memset(reading->term_room, 0, sizeof reading->term_room);
+    return STATUS_OK;
+}
+
+static enum status find_type(struct gromacs_reading *reading, const struct gromacs_line *line,
+                             const char *name, int *type) {
+    struct composition *composition = reading->composition;
+    for (*type = 0; *type < composition->types; ++*type)
+        if (strcmp(composition->name[*type], name) == 0)
+            return STATUS_OK;
+    if (!mf_composition_is_name(name))
+        return mf_gromacs_fail(
+            line, "\"%.40s\": a type is called by up to %d letters, digits and _, " OWN_WORDS, name,
+            COMPOSITION_NAME_SIZE - 1);
+    if (composition->types == COMPOSITION_MOST_TYPES)
+        return mf_gromacs_fail(line, "\"%s\" would be a type more than %d", name,
+                               COMPOSITION_MOST_TYPES);
+    strcpy(composition->name[composition->types++], name);
+    return STATUS_OK;
+}
+
+static void note(struct gromacs_reading *reading, const struct gromacs_line *line,
+                 const char *what) {
+    if (reading->note->text[0] == '\0')
+        snprintf(reading->note->text, sizeof reading->note->text,
+                 "%.120s:%zu: %s not taken; \"conservative\" is what pairs have", line->file,
+                 line->number, what);
+}
+
+static enum status add_atom(struct gromacs_reading *reading, const struct gromacs_line *line,
+                            const struct gromacs_words *words) {
+    struct topology_kind *kind = mf_gromacs_last_kind(reading);
+    int64_t number;
+    if (kind && kind->beads == GROMACS_MOST_ATOMS)
+        return mf_gromacs_fail(line, "%s has more than %d atoms", kind->name, GROMACS_MOST_ATOMS);
+    if (kind == NULL)
+        return mf_gromacs_fail(line, "atoms without a moleculetype");
+    if (words->count < 2 ||
+        !mf_gromacs_is_integer(words->word[0], kind->beads + 1, kind->beads + 1, &number))
+        return mf_gromacs_fail(line, "the next atom has number %d, and a type", kind->beads + 1);
+    TRY(mf_gromacs_reserve((void **)&kind->type, (size_t)kind->beads, &reading->atom_room,
+                           sizeof *kind->type));
+    TRY(find_type(reading, line, words->word[1], &kind->type[kind->beads]));
+    kind->beads++;
+    if (words->count > 6 && strtod(words->word[6], NULL) != 0)
+        note(reading, line, "charges are");
+    return STATUS_OK;
+}
+
+// Counts ------------------------------------------------------------------------------------------
+
+/// [ molecules ]: kinds of which there are none go, and counts of one name add up.
+static enum status add_count(struct gromacs_reading *reading, const struct gromacs_line *line,
+                             const struct gromacs_words *words) {
+    struct topology *topology = &reading->molecules->topology;
+    int64_t count;
+    char name[TOPOLOGY_NAME_SIZE];
+    if (words->count != 2 || !mf_gromacs_is_integer(words->word[1], 0, 100000000, &count))
+        return mf_gromacs_fail(line, "a moleculetype and how many there are (to 1e8) are expected");
+    copy_name(words->word[0], name);
+    const int k = find_kind(topology, name);
+    if (k == topology->kinds)
+        return mf_gromacs_fail(line, "there is no moleculetype %.40s", words->word[0]);
+    if (topology->kind[k].beads == 0)
+        return mf_gromacs_fail(line, "moleculetype %.40s has no atoms", words->word[0]);
+    for (int behind = k; behind < topology->kinds && count > 0; behind++)
+        reading->note->scattered |= topology->kind[behind].count > 0;
+    topology->kind[k].count += count;
+    return STATUS_OK;
+}
+
+// Lines -------------------------------------------------------------------------------------------
+
+static enum status begin_section(struct reading *reading, struct gromacs_line *line) {
+    char name[GROMACS_WORD_SIZE] = "";
+    if (sscanf(line->text, "[ %31[a-z_A-Z0-9] ]", name) != 1 || strchr(line->text, ']') == NULL)
+        return mf_gromacs_fail(line, "a section is \"[ name ]\"");
+    for (size_t k = 0; k < sizeof sections / sizeof *sections; k++)
+        if (strcmp(sections[k].name, name) == 0) {
+            reading->section = &sections[k];
+            reading->terms.order = sections[k].order;
+            return STATUS_OK;
+        }
+    return mf_gromacs_fail(line, "[ %s ] is not known", name);
+}
+
+static enum status take(void *context, struct gromacs_line *line) {
+    struct reading *own = context;
+    struct gromacs_reading *reading = &own->terms;
+    if (line->text[0] == '[')
+        return begin_section(own, line);
+    if (own->section == NULL)
+        return mf_gromacs_fail(line, "a topology begins with a section, as \"[ defaults ]\"");
+    const struct gromacs_words words = split(line);
+    switch (own->section->section) {
+    case TERMS:
+        return mf_gromacs_add_term(reading, line, &words);
+    case TERM_TYPES:
+        return mf_gromacs_add_type(reading, line, &words);
+    case MOLECULETYPE:
+        return begin_kind(reading, line, &words);
+    case ATOMS:
+        return add_atom(reading, line, &words);
+    case MOLECULES:
+        return add_count(reading, line, &words);
+    case EXCLUSIONS:
+        return mf_gromacs_fail(line, "[ exclusions ]: what is excluded is said by nrexcl alone");
+    case PAIRS:
+        note(reading, line, "parameters of pairs are");
+        return STATUS_OK;
+    case IGNORED:
+        break;
+    }
+    return STATUS_OK;
+}
+
+// What nobody has ---------------------------------------------------------------------------------
+
+static void drop_kinds(struct topology *topology) {
+    int left = 0;
+    for (int k = 0; k < topology->kinds; k++) {
+        struct topology_kind kind = topology->kind[k];
+        topology->kind[k] = (struct topology_kind){0};
+        if (kind.count == 0)
+            mf_topology_kind_clear(&kind);
+        else
+            topology->kind[left++] = kind;
+    }
+    topology->kinds = left;
+}
+
+/// Count the beads of each type. Types behind the first `known` go if they have none.
+static void drop_types(struct gromacs_reading *reading, int known) {
+    struct composition *composition = reading->composition;
+    struct topology *topology = &reading->molecules->topology;
+    int number[COMPOSITION_MOST_TYPES] = {0}, left = known;
+    for (int k = 0; k < topology->kinds; k++)
+        for (int bead = 0; bead < topology->kind[k].beads; bead++)
+            composition->count[topology->kind[k].type[bead]] += topology->kind[k].count;
+    for (int type = 0; type < composition->types; type++) {
+        number[type] = type < known ? type : left;
+        if (type < known || composition->count[type] == 0)
+            continue;
+        composition->count[left] = composition->count[type];
+        memmove(composition->name[left++], composition->name[type], COMPOSITION_NAME_SIZE);
+    }
+    for (int type = left; type < composition->types; type++)
+        composition->count[type] = 0;
+    composition->types = left;
+    for (int k = 0; k < topology->kinds; k++)
+        for (int bead = 0; bead < topology->kind[k].beads; bead++)
+            topology->kind[k].type[bead] = number[topology->kind[k].type[bead]];
+}
+
+static void drop_groups(struct molecules *molecules, int order) {
+    struct topology *topology = &molecules->topology;
+    bool used[MOLECULES_MOST_GROUPS] = {false};
+    int number[MOLECULES_MOST_GROUPS] = {0}, left = 0;
+    for (int k = 0; k < topology->kinds; k++)
+        for (int n = 0; n < topology->kind[k].terms[order]; n++)
+            used[topology->kind[k].term[order][n].group] = true;
+    for (int g = 0; g < molecules->groups[order]; g++) {
+        struct molecules_group group = molecules->group[order][g];
+        number[g] = left;
+        molecules->group[order][g] = (struct molecules_group){{0}, {0}};
+        if (used[g])
+            molecules->group[order][left++] = group;
+        else
+            mf_bonded_clear(&group.curve);
+    }
+    molecules->groups[order] = left;
+    for (int k = 0; k < topology->kinds; k++)
+        for (int n = 0; n < topology->kind[k].terms[order]; n++) {
+            struct topology_term *term = &topology->kind[k].term[order][n];
+            term->group = number[term->group];
+        }
+}
+
+/// Moleculetypes of which there are none go, and what only they had.
+static enum status finish(struct gromacs_reading *reading, int known, const char *file) {
+    drop_kinds(&reading->molecules->topology);
+    drop_types(reading, known);
+    for (int order = 0; order < BONDED_KINDS; order++)
+        drop_groups(reading->molecules, order);
+    return reading->molecules->topology.kinds > 0
+               ? STATUS_OK
+               : mf_status_fail(STATUS_BAD_INPUT, "%s: [ molecules ] has none", file);
+}
+
+enum status mf_gromacs_topology_read(struct molecules *molecules, struct composition *composition,
+                                     const char *file, const struct units *units,
+                                     struct gromacs_note *told) {
+    enum status status = STATUS_OK;
+    struct reading own = {.section = NULL};
+    own.terms = (struct gromacs_reading){
+        .molecules = molecules,
+        .composition = composition,
+        .length = mf_units_known(units) ? units->length : 1,
+        .energy = mf_units_known(units) ? mf_units_energy_kj_per_mol(units) : 1,
+        .note = told};
+    const int known = composition->types;
+    *told = (struct gromacs_note){.text = ""};
+    NEW_ARRAY(own.terms.type, GROMACS_MOST_TYPES);
+    CHECK(mf_gromacs_text_read(file, take, &own));
+    CHECK(finish(&own.terms, known, file));
+done:
+    mf_memory_free(own.terms.type);
+    return status;
+}

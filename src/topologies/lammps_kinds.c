@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "topologies/lammps_kinds.h"
+
+#include "base/memory.h"
+#include "topologies/lammps_topology.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/// A molecule is called by its first atom, the one of the lowest id. All of shape [atoms], or one
+/// more.
+struct finding {
+    const struct lammps_kinds_source *source;
+    struct topology *topology;
+    struct composition *composition;
+    size_t atoms;
+    int *root;      ///< the molecule of an atom
+    int *local;     ///< its number in that
+    int *type;      ///< of the composition
+    size_t *member; ///< atoms, molecule after molecule, ids growing in each
+    size_t *begin;  ///< where those of a molecule begin; they end where the next atom's do
+    int *kind;      ///< of a molecule; −1: of a single bead, or there is none of that atom
+    size_t *term_begin[BONDED_KINDS]; ///< likewise of its terms
+    struct topology_term *term[BONDED_KINDS];
+};
+
+// Molecules ---------------------------------------------------------------------------------------
+
+static int find_root(int *root, int atom) {
+    while (root[atom] != atom)
+        atom = root[atom] = root[root[atom]];
+    return atom;
+}
+
+static void join_atoms(struct finding *finding) {
+    const struct lammps_terms *terms = finding->source->terms;
+    int *root = finding->root;
+    for (size_t atom = 0; atom < finding->atoms; atom++)
+        root[atom] = (int)atom;
+    for (int order = 0; order < BONDED_KINDS; order++)
+        for (size_t n = 0; n < terms->terms[order]; n++) {
+            const int *atom = terms->term[order][n].atom;
+            for (int k = 1; k < mf_bonded_kinds[order]->beads; k++) {
+                const int a = find_root(root, atom[0]), b = find_root(root, atom[k]);
+                root[a > b ? a : b] = a > b ? b : a;
+            }
+        }
+    for (size_t atom = 0; atom < finding->atoms; atom++)
+        root[atom] = find_root(root, (int)atom);
+}
+
+static void gather_members(struct finding *finding) {
+    size_t *begin = finding->begin;
+    for (size_t atom = 0; atom < finding->atoms; atom++)
+        finding->local[atom] = (int)begin[finding->root[atom] + 1]++;
+    for (size_t atom = 0; atom < finding->atoms; atom++)
+        begin[atom + 1] += begin[atom];
+    for (size_t atom = 0; atom < finding->atoms; atom++)
+        finding->member[begin[finding->root[atom]] + (size_t)finding->local[atom]] = atom;
+}
+
+static size_t beads_of(const struct finding *finding, size_t molecule) {
+    return finding->begin[molecule + 1] - finding->begin[molecule];
+}
+
+static int compare_terms(const void *a, const void *b) {
+    const struct topology_term *x = a, *y = b;
+    for (int k = 0; k < BONDED_MOST_TERM_BEADS; k++)
+        if (x->bead[k] != y->bead[k])
+            return x->bead[k] < y->bead[k] ? -1 : 1;
+    return x->group < y->group ? -1 : x->group > y->group;
+}
+
+/// Terms of a molecule name its beads, from the smaller end, in an order that is the same for
+/// molecules that are alike.
+static enum status gather_terms(struct finding *finding, int order) {
+    enum status status = STATUS_OK;
+    const struct lammps_terms *terms = finding->source->terms;
+    const size_t count = terms->terms[order];
+    const int beads = mf_bonded_kinds[order]->beads;
+    size_t *next = NULL;
+    NEW_ARRAY(finding->term_begin[order], finding->atoms + 1);
+    NEW_ARRAY(finding->term[order], count);
+    NEW_ARRAY(next, finding->atoms);
+    size_t *begin = finding->term_begin[order];
+    for (size_t n = 0; n < count; n++)
+        begin[finding->root[terms->term[order][n].atom[0]] + 1]++;
+    for (size_t atom = 0; atom < finding->atoms; atom++) {
+        next[atom] = begin[atom];
+        begin[atom + 1] += begin[atom];
+    }
+    for (size_t n = 0; n < count; n++) {
+        const struct lammps_term *from = &terms->term[order][n];
+        const bool turned = from->atom[0] > from->atom[beads - 1];
+        struct topology_term *to = &finding->term[order][next[finding->root[from->atom[0]]]++];
+        to->group = finding->source->group[order][from->type];
+        for (int k = 0; k < beads; k++)
+            to->bead[k] = finding->local[from->atom[turned ? beads - 1 - k : k]];
+    }
+    for (size_t atom = 0; atom < finding->atoms; atom++)
+        if (begin[atom + 1] > begin[atom])
+            qsort(finding->term[order] + begin[atom], begin[atom + 1] - begin[atom],
+                  sizeof **finding->term, compare_terms);
+done:
+    mf_memory_free(next);
+    return status;
+}
+
+// Types -------------------------------------------------------------------------------------------
+
+static enum status find_type(struct finding *finding, size_t atom) {
+    struct composition *composition = finding->composition;
+    char name[32];
+    int type = 0;
+    snprintf(name, sizeof name, "%lld", (long long)finding->source->structure->atom[atom].type);
+    while (type < composition->types && strcmp(composition->name[type], name) != 0)
+        type++;
+    if (type == COMPOSITION_MOST_TYPES)
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: atoms are of more than %d types",
+                              finding->source->file, COMPOSITION_MOST_TYPES);
+    if (type == composition->types)
+        snprintf(composition->name[composition->types++], COMPOSITION_NAME_SIZE, "%.15s", name);
+    finding->type[atom] = type;
+    composition->count[type]++;
+    return STATUS_OK;
+}
+
+/// Types of single beads come first, as in a scene.
+static enum status find_types(struct finding *finding) {
+    for (int joined = 0; joined < 2; joined++)
+        for (size_t atom = 0; atom < finding->atoms; atom++)
+            if ((beads_of(finding, (size_t)finding->root[atom]) > 1) == (joined > 0))
+                TRY(find_type(finding, atom));
+    return STATUS_OK;
+}
+
+// Kinds -------------------------------------------------------------------------------------------
+
+static bool is_of(const struct finding *finding, size_t molecule,
+                  const struct topology_kind *kind) {
+    if (beads_of(finding, molecule) != (size_t)kind->beads)
+        return false;
+    for (int bead = 0; bead < kind->beads; bead++)
+        if (finding->type[finding->member[finding->begin[molecule] + (size_t)bead]] !=
+            kind->type[bead])
+            return false;
+    for (int order = 0; order < BONDED_KINDS; order++) {
+        const size_t *begin = finding->term_begin[order] + molecule;
+        if (begin[1] - begin[0] != (size_t)kind->terms[order] ||
+            (kind->terms[order] > 0 &&
+             memcmp(finding->term[order] + begin[0], kind->term[order],
+                    (size_t)kind->terms[order] * sizeof *kind->term[order]) != 0))
+            return false;
+    }
+    return true;
+}
+
+static enum status add_kind(struct finding *finding, size_t molecule) {
+    enum status status = STATUS_OK;
+    struct topology *topology = finding->topology;
+    const size_t beads = beads_of(finding, molecule);
+    const long long id = (long long)finding->source->structure->atom[molecule].id;
+    if (topology->kinds == TOPOLOGY_MOST_KINDS)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: the molecule of atom %lld is a kind more than %d",
+                              finding->source->file, id, TOPOLOGY_MOST_KINDS);
+    if (beads > LAMMPS_MOST_ATOMS)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: the molecule of atom %lld has %zu atoms; the most are %d",
+                              finding->source->file, id, beads, LAMMPS_MOST_ATOMS);
+    struct topology_kind *kind = &topology->kind[topology->kinds++];
+    *kind = (struct topology_kind){.exclude = finding->source->exclude, .beads = (int)beads};
+    snprintf(kind->name, sizeof kind->name, "molecule-%d", topology->kinds);
+    NEW_ARRAY(kind->type, beads);
+    for (size_t bead = 0; bead < beads; bead++)
+        kind->type[bead] = finding->type[finding->member[finding->begin[molecule] + bead]];
+    for (int order = 0; order < BONDED_KINDS; order++) {
+        const size_t *begin = finding->term_begin[order] + molecule;
+        kind->terms[order] = (int)(begin[1] - begin[0]);
+        NEW_ARRAY(kind->term[order], kind->terms[order]);
+        if (kind->terms[order] > 0)
+            memcpy(kind->term[order], finding->term[order] + begin[0],
+                   (size_t)kind->terms[order] * sizeof *kind->term[order]);
+    }
+done:
+    return status;
+}
+
+static enum status find_kinds(struct finding *finding) {
+    struct topology *topology = finding->topology;
+    const int first = topology->kinds;
+    for (size_t molecule = 0; molecule < finding->atoms; molecule++) {
+        int k = first;
+        finding->kind[molecule] = -1;
+        if (beads_of(finding, molecule) < 2)
+            continue;
+        while (k < topology->kinds && !is_of(finding, molecule, &topology->kind[k]))
+            k++;
+        if (k == topology->kinds)
+            TRY(add_kind(finding, molecule));
+        topology->kind[k].count++;
+        finding->kind[molecule] = k;
+    }
+    return topology->kinds > first ? STATUS_OK
+                                   : mf_status_fail(STATUS_BAD_INPUT, "%s: no bond joins any atoms",
+                                                    finding->source->file);
+}
+
+// Order -------------------------------------------------------------------------------------------
+
+static enum status find_order(const struct finding *finding, size_t **order) {
+    enum status status = STATUS_OK;
+    size_t next = 0;
+    NEW_ARRAY(*order, finding->atoms);
+    for (int k = 0; k < finding->topology->kinds; k++)
+        for (size_t molecule = 0; molecule < finding->atoms; molecule++)
+            for (size_t n = finding->begin[molecule];
+                 finding->kind[molecule] == k && n < finding->begin[molecule + 1]; n++)
+                (*order)[next++] = finding->member[n];
+    for (int type = 0; type < finding->composition->types; type++)
+        for (size_t atom = 0; atom < finding->atoms; atom++)
+            if (finding->type[atom] == type && beads_of(finding, (size_t)finding->root[atom]) == 1)
+                (*order)[next++] = atom;
+done:
+    return status;
+}
+
+static void clear(struct finding *finding) {
+    mf_memory_free(finding->root);
+    mf_memory_free(finding->local);
+    mf_memory_free(finding->type);
+    mf_memory_free(finding->member);
+    mf_memory_free(finding->begin);
+    mf_memory_free(finding->kind);
+    for (int order = 0; order < BONDED_KINDS; order++) {
+        mf_memory_free(finding->term_begin[order]);
+        mf_memory_free(finding->term[order]);
+    }
+}
+
+enum status mf_lammps_kinds_find(const struct lammps_kinds_source *source,
+                                 struct topology *topology, struct composition *composition,
+                                 size_t **order) {
+    enum status status = STATUS_OK;
+    const size_t atoms = source->structure->atoms;
+    struct finding finding = {
+        .source = source, .topology = topology, .composition = composition, .atoms = atoms};
+    NEW_ARRAY(finding.root, atoms);
+    NEW_ARRAY(finding.local, atoms);
+    NEW_ARRAY(finding.type, atoms);
+    NEW_ARRAY(finding.member, atoms);
+    NEW_ARRAY(finding.begin, atoms + 1);
+    NEW_ARRAY(finding.kind, atoms);
+    join_atoms(&finding);
+    gather_members(&finding);
+    for (int n = 0; n < BONDED_KINDS; n++)
+        CHECK(gather_terms(&finding, n));
+    CHECK(find_types(&finding));
+    CHECK(find_kinds(&finding));
+    CHECK(find_order(&finding, order));
+done:
+    clear(&finding);
+    return status;
+}

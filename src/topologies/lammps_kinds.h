@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file The molecules of a data file of LAMMPS: what terms join, and which of them are alike.
+#pragma once
+
+#include "topologies/lammps_terms.h"
+
+struct lammps_kinds_source {
+    const char *file;
+    const struct structure *structure; ///< atoms in the order of ids
+    const struct lammps_terms *terms;
+    int *const *group; ///< shape [BONDED_KINDS][types]: of each type of terms
+    int exclude;
+};
+
+/// Add kinds to a topology, and types and counts of all atoms to a composition, as
+/// mf_lammps_topology_read says. In a time that grows as n log n, times the number of kinds.
+/// @param[out] order  shape [atoms], to be freed
+/// Fails: BAD_INPUT for too many kinds, types or atoms of a molecule; NO_MEMORY.
+enum status mf_lammps_kinds_find(const struct lammps_kinds_source *source,
+                                 struct topology *topology, struct composition *composition,
+                                 size_t **order) MUST_USE;

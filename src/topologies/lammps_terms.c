@@ -1,0 +1,302 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "topologies/lammps_terms.h"
+
+#include "base/memory.h"
+#include "trajectory/words.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_WORDS = 16 };
+
+enum section { HEADER, TERMS, COEFFICIENTS, OTHER };
+
+/// LAMMPS begins the names of its sections with a capital letter.
+#define SECTIONS(NAME, kind, ...)                                                                  \
+    {#kind "s", TERMS, BONDED_##NAME}, {#kind " Coeffs", COEFFICIENTS, BONDED_##NAME},
+
+/// Sections of data files; of what is OTHER nothing is taken here.
+static const struct known {
+    const char *name;
+    enum section section;
+    int order;
+} sections[] = {
+    BONDED_LIST(SECTIONS){"masses", OTHER, 0},
+    {"atoms", OTHER, 0},
+    {"velocities", OTHER, 0},
+    {"pair Coeffs", OTHER, 0},
+    {"pairIJ Coeffs", OTHER, 0},
+};
+
+struct reading {
+    struct lammps_terms *terms;
+    const struct structure *structure;
+    const char *file;
+    size_t line;
+    const struct known *section;    ///< NULL: the header
+    char style[TOPOLOGY_NAME_SIZE]; ///< of the section of coefficients, "" if it is not told
+    int64_t promised[BONDED_KINDS];
+    size_t room[BONDED_KINDS];
+};
+
+struct words {
+    struct word word[MOST_WORDS];
+    int count; ///< all of them, of which MOST_WORDS are kept
+};
+
+static void split(const char *line, struct words *words) {
+    struct word next;
+    words->count = 0;
+    while (mf_words_next(&line, &next) && next.begin[0] != '#') {
+        if (words->count < MOST_WORDS)
+            words->word[words->count] = next;
+        words->count++;
+    }
+}
+
+#define FAIL(reading, ...)                                                                         \
+    mf_status_prefix(mf_status_fail(STATUS_BAD_INPUT, __VA_ARGS__), "%s:%zu", (reading)->file,     \
+                     (reading)->line)
+
+// Header ------------------------------------------------------------------------------------------
+
+static bool is(const struct words *words, int k, const char *text) {
+    return k < words->count && mf_words_same(&words->word[k], text);
+}
+
+void mf_lammps_terms_units(const char *text, char units[TOPOLOGY_NAME_SIZE]) {
+    static const char key[] = "units = ";
+    char title[512];
+    units[0] = '\0';
+    snprintf(title, sizeof title, "%.*s", (int)strcspn(text, "\n"), text);
+    const char *at = strstr(title, key);
+    if (at)
+        snprintf(units, TOPOLOGY_NAME_SIZE, "%.*s", (int)strcspn(at + strlen(key), " ,\t\r"),
+                 at + strlen(key));
+}
+
+/// "12 bonds", "2 bond types"; what we do not know must not be there.
+static enum status read_header(struct reading *reading, const struct words *words) {
+    static const char *const not_ours[] = {"impropers", "ellipsoids", "lines", "triangles",
+                                           "bodies"};
+    int64_t number;
+    if (words->count < 2 || !mf_words_integer(&words->word[0], &number))
+        return STATUS_OK; // bounds, which the trajectory's reader checks
+    for (size_t k = 0; k < sizeof not_ours / sizeof *not_ours; k++)
+        if (is(words, 1, not_ours[k]) && number != 0)
+            return FAIL(reading, "%s are not known", not_ours[k]);
+    for (int order = 0; order < BONDED_KINDS; order++) {
+        const bool types = is(words, 1, mf_bonded_kinds[order]->name) && is(words, 2, "types");
+        if (!types && !is(words, 1, mf_bonded_kinds[order]->plural))
+            continue;
+        if (number < 0 || number > (types ? LAMMPS_MOST_COEFFICIENTS : INT32_MAX))
+            return FAIL(reading, "%lld %s%s cannot be", (long long)number, types ? "types of " : "",
+                        mf_bonded_kinds[order]->plural);
+        *(types ? &reading->terms->types[order] : &reading->promised[order]) = number;
+    }
+    return STATUS_OK;
+}
+
+/// A line that begins with a letter, with the style in its comment.
+static enum status begin_section(struct reading *reading, const char *line,
+                                 const struct words *words) {
+    char name[TOPOLOGY_NAME_SIZE];
+    const struct word *last = &words->word[words->count <= MOST_WORDS ? words->count - 1 : 0];
+    snprintf(name, sizeof name, "%.*s", (int)(last->begin + last->length - words->word[0].begin),
+             words->word[0].begin);
+    const char *comment = strchr(line, '#');
+    struct word style;
+    reading->style[0] = '\0';
+    if (comment++ && mf_words_next(&comment, &style))
+        mf_words_copy(&style, reading->style, sizeof reading->style);
+    for (size_t k = 0; k < sizeof sections / sizeof *sections; k++)
+        if (name[0] == toupper((unsigned char)sections[k].name[0]) &&
+            strcmp(sections[k].name + 1, name + 1) == 0) {
+            reading->section = &sections[k];
+            return STATUS_OK;
+        }
+    return FAIL(reading, "the section \"%s\" is not known", name);
+}
+
+// Sections ----------------------------------------------------------------------------------------
+
+static enum status add_term(struct reading *reading, const struct words *words) {
+    struct lammps_terms *terms = reading->terms;
+    const int order = reading->section->order, beads = mf_bonded_kinds[order]->beads;
+    const char *name = mf_bonded_kinds[order]->name;
+    struct lammps_term term = {.line = reading->line};
+    int64_t number;
+    if (words->count != 2 + beads)
+        return FAIL(reading, "%d words, and a line of %s has %d: its number, its type and %d atoms",
+                    words->count, mf_bonded_kinds[order]->plural, 2 + beads, beads);
+    if (!mf_words_integer(&words->word[1], &number) || number < 1 || number > terms->types[order])
+        return FAIL(reading, "\"%.*s\" is no type of %s %s: there are 1 to %lld",
+                    (int)words->word[1].length, words->word[1].begin,
+                    mf_bonded_kinds[order]->article, name, (long long)terms->types[order]);
+    term.type = (int)number;
+    for (int k = 0; k < beads; k++) {
+        const struct word *word = &words->word[2 + k];
+        const size_t atom = mf_words_integer(word, &number)
+                                ? mf_structure_find(reading->structure, number)
+                                : reading->structure->atoms;
+        if (atom == reading->structure->atoms)
+            return FAIL(reading, "there is no atom %.*s",
+                        (int)(word->length < 40 ? word->length : 40), word->begin);
+        term.atom[k] = (int)atom;
+        for (int other = 0; other < k; other++)
+            if (term.atom[other] == term.atom[k])
+                return FAIL(reading, "the %s has an atom twice", name);
+    }
+    if (terms->terms[order] == reading->room[order]) {
+        const size_t room = 2 * reading->room[order] + 64;
+        struct lammps_term *grown = mf_memory_uncleared(room, sizeof *grown);
+        if (grown == NULL)
+            return STATUS_NO_MEMORY;
+        if (terms->terms[order] > 0)
+            memcpy(grown, terms->term[order], terms->terms[order] * sizeof *grown);
+        mf_memory_free(terms->term[order]);
+        terms->term[order] = grown;
+        reading->room[order] = room;
+    }
+    terms->term[order][terms->terms[order]++] = term;
+    return STATUS_OK;
+}
+
+/// "1 30.0 1.5", in a section of several styles "1 harmonic 30.0 1.5".
+static enum status add_coefficient(struct reading *reading, const struct words *words) {
+    const int order = reading->section->order;
+    struct lammps_terms *terms = reading->terms;
+    const bool hybrid = strcmp(reading->style, "hybrid") == 0;
+    const int first = hybrid ? 2 : 1;
+    int64_t type;
+    if (reading->style[0] == '\0')
+        return FAIL(reading, "which style is it? Write \"%c%s # harmonic\", or what else it is",
+                    toupper((unsigned char)reading->section->name[0]), reading->section->name + 1);
+    if (!mf_words_integer(&words->word[0], &type) || type < 1 || type > terms->types[order])
+        return FAIL(reading, "here should stand a type from 1 to %lld and its numbers",
+                    (long long)terms->types[order]);
+    struct lammps_coefficient *own = &terms->coefficient[order][type];
+    if (own->line > 0)
+        return FAIL(reading, "type %lld stands there twice", (long long)type);
+    *own = (struct lammps_coefficient){.line = reading->line, .count = words->count - first};
+    if (own->count < 0 || own->count > LAMMPS_MOST_NUMBERS)
+        return FAIL(reading, "%d numbers are none of a style that is known", own->count);
+    if (!hybrid)
+        memcpy(own->style, reading->style, sizeof own->style);
+    else if (!mf_words_copy(&words->word[1], own->style, sizeof own->style))
+        return FAIL(reading, "the style's name is too long");
+    for (int n = 0; n < own->count; n++)
+        if (!mf_words_number(&words->word[first + n], &own->number[n]))
+            return FAIL(reading, "\"%.*s\" is no number", (int)(words->word[first + n].length % 40),
+                        words->word[first + n].begin);
+    return STATUS_OK;
+}
+
+static enum status make_coefficients(struct reading *reading) {
+    enum status status = STATUS_OK;
+    struct lammps_terms *terms = reading->terms;
+    for (int order = 0; order < BONDED_KINDS; order++)
+        if (terms->coefficient[order] == NULL)
+            NEW_ARRAY(terms->coefficient[order], terms->types[order] + 1);
+done:
+    return status;
+}
+
+static enum status read_line(struct reading *reading, const char *line) {
+    struct words words;
+    split(line, &words);
+    if (words.count == 0)
+        return STATUS_OK;
+    if (isalpha((unsigned char)words.word[0].begin[0])) {
+        TRY(make_coefficients(reading)); // the header is over
+        return begin_section(reading, line, &words);
+    }
+    if (reading->section == NULL)
+        return read_header(reading, &words);
+    if (reading->section->section == TERMS)
+        return add_term(reading, &words);
+    return reading->section->section == COEFFICIENTS ? add_coefficient(reading, &words) : STATUS_OK;
+}
+
+// The whole ---------------------------------------------------------------------------------------
+
+/// Terms of the same atoms follow each other, in either direction, and among angles and dihedrals
+/// those of the same type.
+static int compare_terms(const void *a, const void *b) {
+    const struct lammps_term *x = a, *y = b;
+    for (int k = 0; k < BONDED_MOST_TERM_BEADS; k++)
+        if (x->atom[k] != y->atom[k])
+            return x->atom[k] < y->atom[k] ? -1 : 1;
+    if (x->type != y->type)
+        return x->type < y->type ? -1 : 1;
+    return x->line < y->line ? -1 : x->line > y->line;
+}
+
+static enum status check_doubled(struct reading *reading, int order) {
+    enum status status = STATUS_OK;
+    const struct lammps_terms *terms = reading->terms;
+    const size_t count = terms->terms[order];
+    const int beads = mf_bonded_kinds[order]->beads;
+    struct lammps_term *sorted = NULL;
+    NEW_ARRAY(sorted, count);
+    for (size_t n = 0; n < count; n++) {
+        const struct lammps_term *from = &terms->term[order][n];
+        const bool turned = from->atom[0] > from->atom[beads - 1];
+        sorted[n] = *from;
+        for (int k = 0; k < beads && turned; k++)
+            sorted[n].atom[k] = from->atom[beads - 1 - k];
+    }
+    qsort(sorted, count, sizeof *sorted, compare_terms);
+    for (size_t n = 1; n < count; n++) {
+        const bool same = memcmp(sorted[n].atom, sorted[n - 1].atom, sizeof sorted[n].atom) == 0 &&
+                          (order == BONDED_BOND || sorted[n].type == sorted[n - 1].type);
+        reading->line = sorted[n].line;
+        if (same)
+            CHECK(FAIL(reading, "the same %s as in line %zu", mf_bonded_kinds[order]->name,
+                       sorted[n - 1].line));
+    }
+done:
+    mf_memory_free(sorted);
+    return status;
+}
+
+static enum status check_whole(struct reading *reading) {
+    const struct lammps_terms *terms = reading->terms;
+    for (int order = 0; order < BONDED_KINDS; order++) {
+        if ((int64_t)terms->terms[order] != reading->promised[order])
+            return mf_status_fail(STATUS_BAD_INPUT,
+                                  "%s: \"%lld %s\" are said, and %zu are there: is it the whole "
+                                  "file?",
+                                  reading->file, (long long)reading->promised[order],
+                                  mf_bonded_kinds[order]->plural, terms->terms[order]);
+        TRY(check_doubled(reading, order));
+    }
+    return STATUS_OK;
+}
+
+enum status mf_lammps_terms_read(struct lammps_terms *terms, const char *file, char *text,
+                                 size_t length, const struct structure *structure) {
+    struct reading reading = {.terms = terms, .structure = structure, .file = file};
+    *terms = (struct lammps_terms){.terms = {0}};
+    for (char *line = text; line < text + length;) {
+        const size_t size = strcspn(line, "\n");
+        line[size] = '\0';
+        if (size > 0 && line[size - 1] == '\r')
+            line[size - 1] = '\0';
+        if (reading.line++ > 0) // the title says nothing
+            TRY(read_line(&reading, line));
+        line += size + 1;
+    }
+    TRY(make_coefficients(&reading));
+    return check_whole(&reading);
+}
+
+void mf_lammps_terms_clear(struct lammps_terms *terms) {
+    for (int order = 0; order < BONDED_KINDS; order++) {
+        mf_memory_free(terms->term[order]);
+        mf_memory_free(terms->coefficient[order]);
+    }
+    *terms = (struct lammps_terms){.terms = {0}};
+}

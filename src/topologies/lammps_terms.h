@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file What a data file of LAMMPS says of bonds, angles and dihedrals (manual, read_data): its
+/// sections as they stand there. Atoms are read by trajectory/lammps_data.h.
+#pragma once
+
+#include "base/status.h"
+#include "topologies/lammps_styles.h"
+#include "system/topology.h"
+#include "trajectory/structure.h"
+
+enum { LAMMPS_MOST_COEFFICIENTS = 1000 }; ///< types of bonds, of angles, of dihedrals
+
+/// A line of "Bond Coeffs" and the like.
+struct lammps_coefficient {
+    size_t line; ///< 0: there is none
+    char style[TOPOLOGY_NAME_SIZE];
+    int count;
+    double number[LAMMPS_MOST_NUMBERS];
+};
+
+/// A line of "Bonds" and the like.
+struct lammps_term {
+    int type;                         ///< from 1 on
+    int atom[BONDED_MOST_TERM_BEADS]; ///< by their places in the structure, whose order is that of
+                                      ///< ids
+    size_t line;
+};
+
+struct lammps_terms {
+    size_t terms[BONDED_KINDS];
+    struct lammps_term *term[BONDED_KINDS];
+    int64_t types[BONDED_KINDS];
+    struct lammps_coefficient *coefficient[BONDED_KINDS]; ///< shape [types + 1], by type
+};
+
+/// The units that the first line of a file tells, or "".
+void mf_lammps_terms_units(const char *text, char units[TOPOLOGY_NAME_SIZE]);
+
+/// Read all sections of a text, in which lines are then ended by NUL. Must be cleared, also after a
+/// failure. In a time that grows as n log n.
+/// Fails: BAD_INPUT with file and line for a section or an item of the header that is not known,
+/// lines that are no terms, an atom that is not there, a term that stands there twice, other
+/// numbers of them than the header says; NO_MEMORY.
+enum status mf_lammps_terms_read(struct lammps_terms *terms, const char *file, char *text,
+                                 size_t length, const struct structure *structure) MUST_USE;
+void mf_lammps_terms_clear(struct lammps_terms *terms);

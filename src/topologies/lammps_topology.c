@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "topologies/lammps_topology.h"
+
+#include "base/memory.h"
+#include "topologies/lammps_kinds.h"
+#include "io/text_file.h"
+#include "trajectory/trajectory.h"
+
+#include <stdio.h>
+#include <string.h>
+
+bool mf_lammps_topology_is(const char *file) {
+    const char *slash = strrchr(file, '/'), *name = slash ? slash + 1 : file;
+    const char *dot = strrchr(name, '.');
+    return (dot && strcmp(dot, ".data") == 0) || strncmp(name, "data.", 5) == 0;
+}
+
+// Units -------------------------------------------------------------------------------------------
+
+/// A unit of length and of energy of LAMMPS (manual, units): Å, and kcal/mol or eV.
+static const struct scale {
+    const char *name;
+    double length, energy; ///< [nm], [kJ/mol]
+} scales[] = {{"real", 0.1, 4.184}, {"metal", 0.1, 96.48533212331002}, {"lj", 1, 1}};
+enum { SCALES = sizeof scales / sizeof *scales, LJ = SCALES - 1 };
+
+static const struct scale *find_scale(const char *name) {
+    for (size_t k = 0; k < SCALES; k++)
+        if (strcmp(scales[k].name, name) == 0)
+            return &scales[k];
+    return NULL;
+}
+
+enum status mf_lammps_topology_units(const char *file, const char *told, const struct units *units,
+                                     const char **style) {
+    char *text, title[TOPOLOGY_NAME_SIZE];
+    size_t length;
+    const bool known = mf_units_known(units);
+    TRY(mf_text_file_read(file, &text, &length));
+    mf_lammps_terms_units(text, title);
+    mf_memory_free(text);
+    if (title[0] && told[0] && strcmp(title, told) != 0)
+        return mf_status_fail(STATUS_BAD_INPUT, "%s:1: says that its units are \"%s\"", file,
+                              title);
+    const char *name = told[0] ? told : title[0] ? title : known ? "real" : "lj";
+    const struct scale *scale = find_scale(name);
+    if (scale == NULL)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s:1: units \"%s\" are not known, but real, metal and lj", file,
+                              name);
+    if (scale == &scales[LJ] && known)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: units of \"lj\" are for a scene without \"units\"", file);
+    *style = scale->name;
+    return STATUS_OK;
+}
+
+// Groups ------------------------------------------------------------------------------------------
+
+struct reading {
+    struct molecules *molecules;
+    const char *file;
+    double length, energy; ///< the file's units in λ, k_B T_0
+    struct lammps_terms terms;
+    int *group[BONDED_KINDS]; ///< shape [types + 1]; −1: no term has the type
+    char *note;
+};
+
+/// The group of a type of terms: the scene's of that name, or a new one with its coefficients.
+static enum status find_group(struct reading *reading, int order, int type, size_t line) {
+    struct molecules *molecules = reading->molecules;
+    const struct lammps_coefficient *coefficient = &reading->terms.coefficient[order][type];
+    char name[TOPOLOGY_NAME_SIZE];
+    const char *note = NULL;
+    int g = 0;
+    snprintf(name, sizeof name, "%d", type);
+    while (g < molecules->groups[order] && strcmp(molecules->group[order][g].name, name) != 0)
+        g++;
+    reading->group[order][type] = g;
+    if (g < molecules->groups[order])
+        return STATUS_OK;
+    if (coefficient->line == 0)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s:%zu: type %d of %ss has no coefficients here, and no law \"%d\" "
+                              "in the scene's",
+                              reading->file, line, type, mf_bonded_kinds[order]->name, type);
+    if (g == MOLECULES_MOST_GROUPS)
+        return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: there are more than %d types of %ss",
+                              reading->file, line, MOLECULES_MOST_GROUPS,
+                              mf_bonded_kinds[order]->name);
+    struct molecules_group *group = &molecules->group[order][g];
+    const enum status status =
+        mf_lammps_style_create(&group->curve, order, coefficient->style, coefficient->number,
+                               coefficient->count, reading->length, reading->energy, &note);
+    if (status != STATUS_OK)
+        return mf_status_prefix(status, "%s:%zu", reading->file, coefficient->line);
+    memcpy(group->name, name, sizeof name);
+    molecules->groups[order]++;
+    if (note && reading->note[0] == '\0')
+        snprintf(reading->note, LAMMPS_NOTE_SIZE, "%.100s:%zu: %s", reading->file,
+                 coefficient->line, note);
+    return STATUS_OK;
+}
+
+static enum status find_groups(struct reading *reading) {
+    for (int order = 0; order < BONDED_KINDS; order++)
+        for (size_t n = 0; n < reading->terms.terms[order]; n++) {
+            const struct lammps_term *term = &reading->terms.term[order][n];
+            if (reading->group[order][term->type] < 0)
+                TRY(find_group(reading, order, term->type, term->line));
+        }
+    return STATUS_OK;
+}
+
+// The file ----------------------------------------------------------------------------------------
+
+static enum status read_terms(struct reading *reading, const struct structure *structure) {
+    enum status status = STATUS_OK;
+    char *text = NULL;
+    size_t length;
+    CHECK(mf_text_file_read(reading->file, &text, &length));
+    CHECK(mf_lammps_terms_read(&reading->terms, reading->file, text, length, structure));
+    for (int order = 0; order < BONDED_KINDS; order++) {
+        NEW_ARRAY(reading->group[order], reading->terms.types[order] + 1);
+        for (int64_t type = 0; type <= reading->terms.types[order]; type++)
+            reading->group[order][type] = -1;
+    }
+done:
+    mf_memory_free(text);
+    return status;
+}
+
+static void clear(struct reading *reading) {
+    for (int order = 0; order < BONDED_KINDS; order++)
+        mf_memory_free(reading->group[order]);
+    mf_lammps_terms_clear(&reading->terms);
+}
+
+static enum status find_kinds(const struct reading *reading, const struct structure *structure,
+                              int exclude, struct topology *topology,
+                              struct composition *composition, size_t **order) {
+    return mf_lammps_kinds_find(&(struct lammps_kinds_source){.file = reading->file,
+                                                              .structure = structure,
+                                                              .terms = &reading->terms,
+                                                              .group = reading->group,
+                                                              .exclude = exclude},
+                                topology, composition, order);
+}
+
+enum status mf_lammps_topology_read(struct molecules *molecules, struct composition *composition,
+                                    const char *file, const struct units *units, const char *style,
+                                    int exclude, size_t **order, char note[LAMMPS_NOTE_SIZE]) {
+    enum status status = STATUS_OK;
+    const struct trajectory_options options = {.units = style};
+    const struct scale *scale = find_scale(style);
+    const bool known = mf_units_known(units);
+    struct reading reading = {.molecules = molecules,
+                              .file = file,
+                              .length = scale->length / (known ? units->length : 1),
+                              .energy =
+                                  scale->energy / (known ? mf_units_energy_kj_per_mol(units) : 1),
+                              .note = note};
+    struct trajectory trajectory;
+    note[0] = '\0';
+    *order = NULL;
+    TRY(mf_trajectory_open(&trajectory, file, &options));
+    CHECK(read_terms(&reading, &trajectory.structure));
+    CHECK(find_groups(&reading));
+    CHECK(find_kinds(&reading, &trajectory.structure, exclude, &molecules->topology, composition,
+                     order));
+done:
+    clear(&reading);
+    mf_trajectory_close(&trajectory);
+    return status;
+}
+
+/// Whether two kinds are as many molecules of the same types with as many terms.
+static bool are_alike(const struct topology_kind *a, const struct composition *of_a,
+                      const struct topology_kind *b, const struct composition *of_b) {
+    if (a->count != b->count || a->beads != b->beads ||
+        memcmp(a->terms, b->terms, sizeof a->terms) != 0)
+        return false;
+    for (int bead = 0; bead < a->beads; bead++)
+        if (strcmp(of_a->name[a->type[bead]], of_b->name[b->type[bead]]) != 0)
+            return false;
+    return true;
+}
+
+enum status mf_lammps_topology_order(const char *file, const char *style,
+                                     const struct topology *topology,
+                                     const struct composition *composition, size_t **order) {
+    enum status status = STATUS_OK;
+    const struct trajectory_options options = {.units = style};
+    struct reading reading = {.file = file};
+    struct trajectory trajectory;
+    struct topology own = {0};
+    struct composition types = {0};
+    *order = NULL;
+    TRY(mf_trajectory_open(&trajectory, file, &options));
+    CHECK(read_terms(&reading, &trajectory.structure));
+    for (int n = 0; n < BONDED_KINDS; n++)
+        for (int64_t type = 0; type <= reading.terms.types[n]; type++)
+            reading.group[n][type] = (int)type;
+    CHECK(find_kinds(&reading, &trajectory.structure, 0, &own, &types, order));
+    bool same = own.kinds == topology->kinds;
+    for (int k = 0; k < own.kinds && same; k++)
+        same = are_alike(&own.kind[k], &types, &topology->kind[k], composition);
+    if (!same)
+        status =
+            mf_status_fail(STATUS_BAD_INPUT, "%s: its molecules are not those of the scene", file);
+done:
+    mf_topology_clear(&own);
+    clear(&reading);
+    mf_trajectory_close(&trajectory);
+    return status;
+}

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// g(r) whose state is known: an ideal gas, correlations of Ornstein and Zernike about a critical
+// point, and a crystal of face-centred cubes whose beads tremble.
+#include "targets/target_sanity_state.h"
+#include "shared/testing.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { BINS = 250, BEADS = 4000 };
+
+static double g[BINS], error[BINS];
+static const struct rdf_bins bins = {.width = 0.02, .count = BINS};
+
+static struct target_state make_state(struct box *box, double density) {
+    const double edge = cbrt(BEADS / density);
+    *box = (struct box){3, {edge, edge, edge}};
+    for (int k = 0; k < BINS; k++)
+        error[k] = 1e-3;
+    return (struct target_state){&bins, g, error, box, BEADS, 1};
+}
+
+/// g = 1 + A exp(−r/ξ)/r has 1 + ρG = 1 + 4π ρ A ξ², of which a range of 7 ξ shows nine tenths.
+static void test_target_state_tells_fluctuations_of_many_beads(void **state) {
+    (void)state;
+    const double density = 0.3, reach = 0.7;
+    char line[TARGET_STATE_LINE];
+    struct box box;
+    struct target_state look = make_state(&box, density);
+    static const double compressibility[] = {1, 1.5, 6};
+    for (int n = 0; n < 3; n++) {
+        const double a = (compressibility[n] - 1) / (4 * acos(-1) * density * reach * reach);
+        for (int k = 0; k < BINS; k++) {
+            const double r = mf_rdf_bins_centre(&bins, (size_t)k);
+            g[k] = 1 + a * exp(-r / reach) / r;
+        }
+        assert_int_equal(mf_target_state_print(&look, line), n == 2);
+    }
+    assert_contains(line, "1 + rho G = 5.4");
+    assert_null(strstr(line, "g ends"));
+    look.tail = 1.08;
+    assert_true(mf_target_state_print(&look, line));
+    assert_contains(line, "and g ends at 1.080");
+    // Noise as large as what is said is no evidence.
+    for (int k = 0; k < BINS; k++)
+        error[k] = 1;
+    assert_false(mf_target_state_print(&look, line));
+}
+
+/// Neighbours of a face-centred cube, whose edge has two of the density's four beads, with normal
+/// displacements of a Lindemann ratio: the relative one is σ.
+static void make_crystal(double density, double sigma) {
+    const double edge = cbrt(4 / density);
+    for (int k = 0; k < BINS; k++)
+        g[k] = 0;
+    for (int x = -12; x <= 12; x++)
+        for (int y = -12; y <= 12; y++)
+            for (int z = -12; z <= 12; z++) {
+                const double far = 0.5 * edge * sqrt((double)(x * x + y * y + z * z));
+                if ((x + y + z) % 2 || far == 0)
+                    continue;
+                for (int k = 0; k < BINS; k++) {
+                    const double r = mf_rdf_bins_centre(&bins, (size_t)k);
+                    g[k] += exp(-0.5 * pow((r - far) / sigma, 2)) /
+                            (sigma * sqrt(2 * acos(-1)) * 4 * acos(-1) * r * r * density);
+                }
+            }
+}
+
+static void test_target_state_tells_a_crystal(void **state) {
+    (void)state;
+    char line[TARGET_STATE_LINE];
+    struct box box;
+    const struct target_state look = make_state(&box, 1.05);
+    // Near melting: rms displacements are 0.13 of the distance of neighbours, 1.1 (Lindemann), and
+    // the relative one along a line is √(2/3) of that.
+    make_crystal(1.05, 0.12);
+    assert_true(mf_target_state_print(&look, line));
+    assert_contains(line, "of a crystal?");
+    make_crystal(1.05, 0.2); // its peak is 2.5
+    assert_false(mf_target_state_print(&look, line));
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_target_state_tells_fluctuations_of_many_beads),
+        cmocka_unit_test(test_target_state_tells_a_crystal),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
