@@ -24,11 +24,12 @@ static double find_rarity(const struct composition *composition) {
 
 double mf_fit_defaults_precision(const struct fit_choice *c) {
     // Molecules move slowly: a third of the noise would take ten times as long.
-    const double alike = scene_has_molecules(&c->read->scene.molecules) ? 0.003 : 0.001;
-    const double least = alike * find_rarity(c->rdf->composition);
+    const bool slow = scene_has_molecules(&c->read->scene.molecules);
+    const double least = (slow ? 0.003 : 0.001) * find_rarity(c->rdf->composition);
     static const double most = 0.004;
-    // More samples than that would make the error of the result smaller by an eighth at most.
-    static const double part_of_target = 0.5;
+    // Of single beads more samples than that would make the error of the result smaller by an
+    // eighth at most.
+    const double part_of_target = slow ? 1 : 0.5;
     return fmax(part_of_target * c->scales.noise, fmin(most, fmax(least, c->scales.noise)));
 }
 
