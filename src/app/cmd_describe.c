@@ -93,7 +93,9 @@ static const struct inner scene_objects[] = {
      "\"velocity-verlet\"",
      "dynamics"},
     {"units", "of a scene in reduced units: physical ones for the results beside", "scale"},
-    {"measure", "when to sample; this and observables in a scene file only", "measure"},
+    {"measure",
+     "when to sample; in a scene file only, as the observables below, which are measured if given",
+     "measure"},
     {NULL, NULL, NULL},
 };
 
@@ -225,6 +227,33 @@ static size_t add_curves(struct topic *topics, size_t n, const char *group,
     return n;
 }
 
+/// Tables that several methods share, by their names there.
+static const struct {
+    const char *name, *summary;
+} shared[] = {
+    {"inversions", "what inversions simulate: auto, imc, ibi, hnc, relative-entropy"},
+    {"candidates", "how methods that search simulate a candidate"},
+    {"searches", "what genetic, cma-es and nlopt have in common"},
+};
+
+static const struct field *find_shared(const char *name) {
+    for (size_t k = 0; mf_inverse_methods[k]; k++)
+        for (const struct inverse_table *table = mf_inverse_methods[k]->tables; table->fields;
+             table++)
+            if (table->shared && strcmp(table->shared, name) == 0)
+                return table->fields;
+    return NULL;
+}
+
+static size_t add_shared(struct topic *topics, size_t n) {
+    topics[n++] = (struct topic){
+        "shared", "weights", "what all targets have in common", {mf_target_files_use_fields}};
+    for (size_t k = 0; k < sizeof shared / sizeof *shared; k++)
+        topics[n++] = (struct topic){
+            "shared", shared[k].name, shared[k].summary, {find_shared(shared[k].name)}};
+    return n;
+}
+
 size_t mf_describe_topics(struct topic topics[DESCRIBE_MOST_TOPICS]) {
     size_t n = sizeof fixed_topics / sizeof *fixed_topics;
     memcpy(topics, fixed_topics, sizeof fixed_topics);
@@ -252,6 +281,7 @@ size_t mf_describe_topics(struct topic topics[DESCRIBE_MOST_TOPICS]) {
                                      mf_integrator_list[k]->name,
                                      mf_integrator_list[k]->summary,
                                      {mf_integrator_list[k]->fields}};
+    n = add_shared(topics, n);
     for (size_t k = 0; mf_inverse_methods[k]; k++) {
         const struct inverse_method *method = mf_inverse_methods[k];
         topics[n] = (struct topic){"method", method->name, method->summary, {NULL}};
@@ -276,7 +306,7 @@ static size_t add_observables(struct topic_object *objects, size_t n) {
         const struct observable *observable = mf_observables[k];
         char help[sizeof objects->help];
         snprintf(help, sizeof help, "%s%s", observable->summary,
-                 observable->always ? "" : "; measured if it is there");
+                 observable->always ? "; always measured" : "");
         if (observable->fields)
             n = add_object(objects, n, observable->name, help, observable->name);
     }
@@ -314,6 +344,14 @@ size_t mf_describe_objects(const char *topic, struct topic_object objects[DESCRI
     if (strcmp(topic, "target") == 0)
         n = add_targets(objects, n);
     return n;
+}
+
+const struct topic *mf_describe_home(const struct topic *topics, size_t count,
+                                     const struct field *table) {
+    for (size_t k = 0; k < count; k++)
+        if (topics[k].tables[0] == table && topics[k].tables[1] == NULL)
+            return &topics[k];
+    return NULL;
 }
 
 static void print_index(const struct topic *topics, size_t count) {

@@ -75,10 +75,11 @@ const struct inverse_method mf_relative_entropy = {
                "(2008)",
     .own = &(const struct inversion_rule){.update = update, .coefficients = coefficients},
     .parameters_size = sizeof(struct relative_entropy_parameters),
-    .tables = (const struct inverse_table[]){INVERSION_TABLE,
-                                             {own_fields,
-                                              offsetof(struct relative_entropy_parameters, size)},
-                                             {NULL, 0}},
+    .tables =
+        (const struct inverse_table[]){
+            INVERSION_TABLE,
+            {own_fields, offsetof(struct relative_entropy_parameters, size), NULL},
+            {NULL, 0, NULL}},
     .knows_molecules = true,
     .restricted = true,
     .columns = columns,

@@ -354,11 +354,12 @@ const struct inverse_method mf_formulas = {
     .name = "formulas",
     .summary = "a formula of r by genetic programming; J. R. Koza (1992)",
     .kind = INVERSE_MATCHING,
-    .tables = (const struct inverse_table[]){{mf_programming_fields,
-                                              offsetof(struct formulas_parameters, programming)},
-                                             {own_fields, 0},
-                                             {mf_population_fields, 0},
-                                             {NULL, 0}},
+    .tables =
+        (const struct inverse_table[]){
+            {mf_programming_fields, offsetof(struct formulas_parameters, programming), NULL},
+            {own_fields, 0, NULL},
+            {mf_population_fields, 0, "candidates"},
+            {NULL, 0, NULL}},
     .parameters_size = sizeof(struct formulas_parameters),
     .state_size = sizeof(struct formulas_state),
     .finds_potential = true,

@@ -386,9 +386,10 @@ const struct inverse_method mf_gauss_newton = {
     .summary = "linear models of all observables in a trust region; J. Nocedal and S. J. Wright "
                "(2006)",
     .kind = INVERSE_MATCHING,
-    .tables =
-        (const struct inverse_table[]){
-            {own_fields, 0}, {mf_population_fields, 0}, {mf_population_round_fields, 0}, {NULL, 0}},
+    .tables = (const struct inverse_table[]){{own_fields, 0, NULL},
+                                             {mf_population_fields, 0, "candidates"},
+                                             {mf_population_round_fields, 0, NULL},
+                                             {NULL, 0, NULL}},
     .parameters_size = sizeof(struct parameters),
     .state_size = sizeof(struct state),
     .finds_potential = true,

@@ -346,12 +346,13 @@ static enum status write(const void *memory, const struct inverse_folder *folder
         .kind = INVERSE_MATCHING,                                                                  \
         .own = &(const struct driven){&mf_##record##_optimiser,                                    \
                                       offsetof(struct record##_settings, optimiser)},              \
-        .tables = (const struct inverse_table[]){{mf_##record##_fields,                            \
-                                                  offsetof(struct record##_settings, optimiser)},  \
-                                                 {mf_population_fields, 0},                        \
-                                                 {mf_population_round_fields, 0},                  \
-                                                 {own_fields, 0},                                  \
-                                                 {NULL, 0}},                                       \
+        .tables =                                                                                  \
+            (const struct inverse_table[]){                                                        \
+                {mf_##record##_fields, offsetof(struct record##_settings, optimiser), NULL},       \
+                {mf_population_fields, 0, "candidates"},                                           \
+                {mf_population_round_fields, 0, NULL},                                             \
+                {own_fields, 0, "searches"},                                                       \
+                {NULL, 0, NULL}},                                                                  \
         .parameters_size = sizeof(struct record##_settings),                                       \
         .state_size = sizeof(struct state),                                                        \
         .finds_potential = true,                                                                   \

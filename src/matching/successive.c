@@ -353,9 +353,10 @@ const struct inverse_method mf_successive = {
     .summary = "the potential from g(r) by auto, then omega from what moves by gauss-newton, with "
                "that potential; g(r) does not depend on omega (Espanol and Warren 1995)",
     .kind = INVERSE_MATCHING,
-    .tables =
-        (const struct inverse_table[]){
-            {own_fields, 0}, {mf_population_fields, 0}, {mf_population_round_fields, 0}, {NULL, 0}},
+    .tables = (const struct inverse_table[]){{own_fields, 0, NULL},
+                                             {mf_population_fields, 0, "candidates"},
+                                             {mf_population_round_fields, 0, NULL},
+                                             {NULL, 0, NULL}},
     .parameters_size = sizeof(struct parameters),
     .state_size = sizeof(struct state),
     .finds_potential = true,
