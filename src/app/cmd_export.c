@@ -7,10 +7,10 @@ enum { ENGINE, BANDS, PROJECT, TO };
 
 static const struct command_option options[] = {
     [ENGINE] = {"--engine", "lammps|hoomd|espresso|openmm|gromacs|dl_poly|votca",
-                "program that is to run the result"},
-    [BANDS] = {"--bands", NULL, "also the potential less and plus one standard error"},
+                "program that will run the result"},
+    [BANDS] = {"--bands", NULL, "also the potential minus and plus one standard error"},
     [PROJECT] = {"--project", NULL,
-                 "the nearest friction that the engine has; simulates what that costs"},
+                 "the nearest friction that the engine has; the deviation is simulated"},
     [TO] = {"-o", "DIR", "folder for its files (default: the engine's name, here)"},
     {NULL, NULL, NULL},
 };

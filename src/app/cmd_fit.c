@@ -20,12 +20,12 @@ enum { EXPLAIN, RANKS, TARGET, DENSITY, TEMPERATURE, LIVE };
 enum { MOST_RANKS = 100000 };
 
 static const struct command_option options[] = {
-    [EXPLAIN] = {"--explain", NULL, "print what a step will pay for and why; run nothing"},
-    [RANKS] = {"--ranks", "N", "with --explain: how much faster N processes of an MPI job will be"},
-    [TARGET] = {"--target", "DIR", "fit DIR/target.json, or with the next two DIR/rdf.tsv alone"},
-    [DENSITY] = {"--density", "NUMBER", "beads in a unit of volume, which target.json lacks"},
+    [EXPLAIN] = {"--explain", NULL, "print what will be done and what a step costs; run nothing"},
+    [RANKS] = {"--ranks", "N", "with --explain: speed-up of N processes of an MPI job"},
+    [TARGET] = {"--target", "DIR", "folder of target.json; with the next two rdf.tsv is enough"},
+    [DENSITY] = {"--density", "NUMBER", "number density of the beads, without target.json"},
     [TEMPERATURE] = {"--temperature", "NUMBER",
-                     "of the target, which target.json lacks; 1 without target.json"},
+                     "temperature of the target, without target.json; else 1"},
     [LIVE] = CMD_LIVE_OPTION,
     {NULL, NULL, NULL},
 };

@@ -198,15 +198,18 @@ static void print_field(FILE *stream, const struct look *look, const struct fiel
                   field->type == FIELD_CHOICE || strcmp(fallback, "none") != 0 ? fallback : ""});
 }
 
-/// The place of a topic's section, or where there is none of a group's chapter.
+static const struct topic *find_topic(const struct topic *topics, size_t count, const char *name) {
+    for (size_t k = 0; k < count; k++)
+        if (strcmp(topics[k].name, name) == 0)
+            return &topics[k];
+    return NULL;
+}
 
+/// The place of a topic's section, or where there is none of a group's chapter.
 static void refer(char *text, size_t size, const struct look *look, const char *name,
                   const struct topic *topics, size_t count) {
     char place[64];
-    bool section = false;
-    for (size_t k = 0; k < count; k++)
-        section = section || strcmp(topics[k].name, name) == 0;
-    snprintf(place, sizeof place, "%s%s", section ? "" : "keys-", name);
+    snprintf(place, sizeof place, "%s%s", find_topic(topics, count, name) ? "" : "keys-", name);
     snprintf(text, size, look->link, name, place);
 }
 
@@ -230,9 +233,12 @@ static void print_keys(FILE *stream, const struct look *look, const struct topic
     if (object_count > 0 && !begun)
         look->titles(stream, key_titles);
     for (size_t k = 0; k < object_count; k++) {
+        const struct topic *inner = find_topic(topics, count, objects[k].topic);
+        const bool repeats = inner && strcmp(inner->summary, objects[k].help) == 0;
         refer(place, sizeof place, look, objects[k].topic, topics, count);
-        look->row(stream, key_titles,
-                  (const char *const[CELLS]){objects[k].key, objects[k].help, place, ""});
+        look->row(
+            stream, key_titles,
+            (const char *const[CELLS]){objects[k].key, repeats ? "" : objects[k].help, place, ""});
     }
 }
 
@@ -272,26 +278,21 @@ static void print_body(FILE *stream, const struct look *look, const struct topic
                        size_t count) {
     print_commands(stream, look);
     look->heading(stream, 1, "Files");
-    look->paragraph(stream, "Run files, for `mesofit fit`, and scene files, for `mesofit "
-                            "simulate`, are strict JSON. A run file begins with \"run\" below, a "
-                            "scene file with \"scene\"; what is an object has a section of its "
-                            "own. The groups \"conservative\" and \"dissipative\" are laws, "
-                            "chosen by {\"law\": …}; \"dynamics\" are integrators, chosen by "
-                            "{\"integrator\": …}; \"method\" are methods, chosen by "
-                            "{\"name\": …}. {\"law\": \"none\"} is no law at all. "
-                            "Units are written as reduced ones: energy k_B T_0, length "
-                            "lambda, mass mu, time tau = lambda sqrt(mu/(k_B T_0)). With "
-                            "\"units\" at its top, all numbers of a file are in nm, ps, u, kJ/mol, "
-                            "K and bar, or angstrom, fs, g/mol, kcal/mol, K and atm, of the same "
-                            "kind.");
+    look->paragraph(
+        stream,
+        "Run files (`mesofit fit`, section \"run\") and scene files (`mesofit simulate`, section "
+        "\"scene\") are strict JSON. Laws of \"conservative\" and \"dissipative\" are chosen by "
+        "{\"law\": …}, {\"law\": \"none\"} for none, \"dynamics\" by {\"integrator\": …}, "
+        "\"method\" by {\"name\": …}. Units here are the reduced ones: energy k_B T_0, length "
+        "lambda, mass mu, time tau = lambda sqrt(mu/(k_B T_0)). With \"units\" at its top a file "
+        "is in nm, ps, u, kJ/mol, K and bar, or in angstrom, fs, g/mol, kcal/mol, K and atm.");
     print_topics(stream, look, topics, count);
 }
 
 void mf_reference_print_markdown(FILE *stream, const struct topic *topics, size_t count) {
-    fprintf(stream, "# Reference\n\nThis page is made by `make docs` from what `mesofit describe "
-                    "--format markdown` prints; the man page\n`mesofit(1)` says the same. What "
-                    "runs leave in their folders, every table and every key of\n`summary.json`, "
-                    "is told in [files.md](files.md#results).\n");
+    fprintf(stream, "# Reference\n\nThis page is made by `make docs`; the man page `mesofit(1)` "
+                    "has the same text, `mesofit describe TOPIC`\nall keys of a section. The files "
+                    "that runs write are in [files.md](files.md#results).\n");
     print_body(stream, &markdown, topics, count);
 }
 

@@ -35,10 +35,10 @@ static const struct field fields[] = {
      .unit = "", .help = "columns r, value"},
     {"format", FIELD_CHOICE, .offset = offsetof(struct sampled_parameters, format),
      .choices = formats, .initial = SAMPLED_COLUMNS, .unit = "",
-     .help = "votca: a .pot in nm and kJ/mol, by the scene's \"units\""},
+     .help = "votca: a .pot in nm and kJ/mol; the scene needs \"units\""},
     {"cutoff", FIELD_NUMBER, .offset = offsetof(struct sampled_parameters, cutoff), .initial = 0,
      .minimum = 0, .maximum = DBL_MAX, .unit = "lambda",
-     .help = "distance beyond which the value is 0; 0 means the table's last r"},
+     .help = "distance beyond which it is 0; 0: the last r"},
     FIELD_END,
 };
 
@@ -54,7 +54,7 @@ const struct curve_family mf_sampled_family = {
 
 const struct curve_family mf_sampled_omega_family = {
     .name = "table",
-    .summary = "straight pieces between the points of a file, as omega.tsv; 0 before the first",
+    .summary = "linear interpolation of the points of a file, as omega.tsv; 0 before the first",
     .fields = fields,
     .size = sizeof(struct sampled_parameters),
     .value = omega_value,

@@ -138,7 +138,7 @@ static const char *const walls[] = {"none", "x", "y", "xy", "z", "xz", "yz", "xy
 
 static const struct field fields[] = {
     {"walls", FIELD_CHOICE, offsetof(struct event_driven_parameters, walls), .choices = walls,
-     .unit = "", .help = "axes with reflecting walls at both ends; the others are periodic"},
+     .unit = "", .help = "axes with reflecting walls at both ends; others are periodic"},
     FIELD_END,
 };
 

@@ -18,8 +18,7 @@
 const struct field mf_fit_core_fields[] = {
     {"threshold", FIELD_NUMBER, MEMBER(threshold), .initial = 1e-3, .minimum = 0, .maximum = 1,
      .unit = "",
-     .help = "bins near r = 0 in which the target is below this, or below two of its standard "
-             "errors, are the core"},
+     .help = "g, if larger than two standard errors, below which bins near r = 0 are the core"},
     {"stiffness", FIELD_NUMBER, MEMBER(stiffness), .initial = 2000, .minimum = 0,
      .maximum = DBL_MAX, .unit = "k_B T_0/lambda^2",
      .help = "curvature of the potential in the core"},

@@ -24,32 +24,30 @@ static const char *const precisions[] = {"mixed", "double", NULL}; // enum pair_
 #define MEMBER(name) .offset = offsetof(struct top, name)
 const struct field mf_scene_fields[] = {
     {"dimensions", FIELD_INTEGER, MEMBER(dimensions), .initial = 3, .minimum = 2, .maximum = 3,
-     .unit = "", .help = "of space"},
+     .unit = "", .help = "number of dimensions"},
     {"box", FIELD_LENGTHS, MEMBER(box), .minimum = FIELD_ABOVE_ZERO, .maximum = LARGEST_BOX,
-     .unit = "lambda", .help = "edges of the periodic box, unless \"density\" is given"},
+     .unit = "lambda", .help = "edges of the periodic box"},
     {"temperature", FIELD_NUMBER, MEMBER(temperature), .initial = 1, .minimum = 0,
      .maximum = DBL_MAX, .unit = "T_0",
-     .help = "of the first velocities and of the noise; 0 for dynamics without velocities alone"},
+     .help = "temperature; 0 only for dynamics without velocities"},
     {"time_step", FIELD_NUMBER, MEMBER(time_step), .initial = 0.01, .minimum = FIELD_ABOVE_ZERO,
-     .maximum = DBL_MAX, .unit = "tau", .help = "of the integrator; \"monte-carlo\" has no time"},
+     .maximum = DBL_MAX, .unit = "tau",
+     .help = "time step of the integrator; unused by \"monte-carlo\""},
     {"skin", FIELD_NUMBER, MEMBER(skin), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
      .unit = "lambda",
-     .help = "of the neighbour list: changes speed, not results; 0: the program chooses"},
+     .help = "skin of the neighbour list (affects speed only); 0: chosen by the program"},
     {"temperature_limit", FIELD_NUMBER, MEMBER(temperature_limit), .initial = 20, .minimum = 1,
      .maximum = DBL_MAX, .unit = "",
-     .help = "a kinetic temperature above this multiple of the "
-             "temperature ends the simulation as unstable"},
+     .help = "kinetic temperature, in units of the temperature, above which a run is unstable"},
     {"precision", FIELD_CHOICE, MEMBER(precision), .choices = precisions, .initial = PAIR_MIXED,
-     .unit = "",
-     .help = "of the arithmetic of a pair; positions, velocities and sums are in double always"},
+     .unit = "", .help = "precision of pair forces"},
     FIELD_END,
 };
 
 const struct field mf_scene_density_fields[] = {
     {"density", FIELD_NUMBER, .offset = offsetof(struct scene, density), .initial = 0,
      .minimum = FIELD_ABOVE_ZERO, .maximum = DBL_MAX, .unit = "1/lambda^d",
-     .help = "beads in a unit of volume, of all types: in the place of \"box\" it makes one with "
-             "edges that are alike"},
+     .help = "number density of all beads, for a box of equal edges instead of \"box\""},
     FIELD_END,
 };
 

@@ -10,7 +10,7 @@ static void read_range(struct json_object *parent, const char *key, const struct
     for (int k = 0; k < 2; k++) {
         fields[k].required = true;
         fields[k].initial = 0;
-        fields[k].help = "of a particle";
+        fields[k].help = "mass of a particle";
     }
     fields[0].offset = offsetof(struct attributes_range, minimum);
     fields[1].offset = offsetof(struct attributes_range, maximum);

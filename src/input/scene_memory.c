@@ -6,10 +6,9 @@
 #define MEMBER(name) .offset = offsetof(struct scene_memory_mode, name)
 const struct field mf_scene_memory_fields[] = {
     {"time", FIELD_NUMBER, MEMBER(time), .required = true, .minimum = FIELD_ABOVE_ZERO,
-     .maximum = DBL_MAX, .unit = "tau", .help = "for which a pair remembers: decay of the kernel"},
+     .maximum = DBL_MAX, .unit = "tau", .help = "decay time of the memory kernel"},
     {"frequency", FIELD_NUMBER, MEMBER(frequency), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
-     .unit = "1/tau",
-     .help = "angular frequency (radians) with which the kernel oscillates; 0: it does not"},
+     .unit = "1/tau", .help = "angular frequency of the kernel; 0: no oscillation"},
     FIELD_END,
 };
 

@@ -27,9 +27,8 @@ const struct field mf_scene_molecule_fields[] = {
      .unit = "", .help = "number of molecules of this kind"},
     {"exclude", FIELD_INTEGER, MOLECULE(exclude), .initial = AS_FAR_AS_TERMS,
      .minimum = AS_FAR_AS_TERMS, .maximum = TOPOLOGY_MOST_EXCLUDE, .unit = "",
-     .help = "pairs of beads at most so many bonds apart have no pair potential and no friction; "
-             "-1: as far as the terms of the molecule reach, 1 with bonds alone, 2 with angles, 3 "
-             "with dihedrals, as VOTCA does"},
+     .help = "largest number of bonds between beads without pair interactions; -1: 1, 2 with "
+             "angles, 3 with dihedrals, as in VOTCA"},
     FIELD_END,
 };
 
@@ -41,7 +40,8 @@ enum { MOLECULE_FIELDS = sizeof mf_scene_molecule_fields / sizeof *mf_scene_mole
 #define CHAIN(member) .offset = offsetof(struct told_chain, member)
 const struct field mf_scene_chain_fields[] = {
     {"type", FIELD_TEXT, CHAIN(type), .unit = "",
-     .help = "of all beads; a chain of several types has \"beads\": [\"A\", \"B\", …] for it"},
+     .help =
+         "type of all beads; a chain of several types has \"beads\": [\"A\", \"B\", …] instead"},
     {"length", FIELD_INTEGER, CHAIN(length), .initial = 0, .minimum = 2, .maximum = 10000,
      .unit = "", .help = "number of beads, with \"type\""},
     {"bond", FIELD_TEXT, CHAIN(group[BONDED_BOND]), .required = true, .unit = "",

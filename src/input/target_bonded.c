@@ -22,20 +22,17 @@ static const char *const formats[] = {"columns", "votca", NULL};
 #define COLUMN .maximum = 1000, .unit = ""
 const struct field mf_target_bonded_fields[] = {
     {"file", FIELD_FILE, MEMBER(file), .required = true, .unit = "",
-     .help = "p at equally spaced bin centres, of lengths or of angles in degrees; its integral is "
-             "1, and no Jacobian is taken out"},
+     .help = "p at equally spaced bin centres (angles in degrees), normalised, not divided by the "
+             "Jacobian"},
     {"format", FIELD_CHOICE, MEMBER(format), .choices = formats, .initial = TARGET_RDF_COLUMNS,
-     .unit = "",
-     .help =
-         "votca: a .dist.tgt in nm or radians, by the scene's \"units\"; its columns are known"},
+     .unit = "", .help = "votca: a .dist.tgt in nm or radians; the scene needs \"units\""},
     {"q_column", FIELD_INTEGER, MEMBER(q_column), .initial = 1, .minimum = 1, COLUMN,
-     .help = "number of the column with the bin centres, from 1"},
+     .help = "column of the bin centres, from 1"},
     {"value_column", FIELD_INTEGER, MEMBER(value_column), .initial = 0, .minimum = 0, COLUMN,
-     .help = "number of the column with p; 0: that with the group's name, or 2"},
+     .help = "column of p; 0: that named as the group, or 2"},
     {"error_column", FIELD_INTEGER, MEMBER(error_column), .initial = -1, .minimum = -1, COLUMN,
-     .help = "number of the column with the standard error of p; 0: none, they are estimated from "
-             "the scatter of neighbouring bins; -1: that with the group's name and _error, or 3, "
-             "or none"},
+     .help = "column of the standard error; 0: estimated from the scatter of bins; -1: that named "
+             "as the group with \"_error\", or 3, else 0"},
     FIELD_END,
 };
 

@@ -12,19 +12,19 @@
 #define COLUMN .maximum = 1000, .unit = ""
 const struct field mf_target_etd_fields[] = {
     {"file", FIELD_FILE, MEMBER(file), .required = true, .unit = "",
-     .help = "E(t, r_0): a time in each row, a bin of r_0 in each column, in units of the scene"},
+     .help = "E(t, r_0): a row for each time, a column for each bin of r_0, in units of the scene"},
     {"error_file", FIELD_FILE, MEMBER(error_file), .unit = "",
-     .help = "the standard errors of E, a table of the same shape"},
+     .help = "table of the standard errors of E, same shape"},
     {"time_column", FIELD_INTEGER, MEMBER(time_column), .initial = 1, .minimum = 1, COLUMN,
-     .help = "number of the column with the times, from 1"},
+     .help = "column of the times, from 1"},
     {"first_column", FIELD_INTEGER, MEMBER(first_column), .initial = 2, .minimum = 2, COLUMN,
-     .help = "number of the column with the first bin, after that of the times; all others follow"},
+     .help = "column of the first bin, after the times; the others follow"},
     {"r_minimum", FIELD_NUMBER, MEMBER(r_minimum), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
-     .unit = "lambda", .help = "where the first bin begins"},
+     .unit = "lambda", .help = "lower edge of the first bin"},
     {"r_maximum", FIELD_NUMBER, MEMBER(r_maximum), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
      .unit = "lambda",
-     .help = "where the last one ends, and where a pair has escaped; 0: both by the names of the "
-             "columns, \"E(r0=0.51)\", which tell the middle of each bin"},
+     .help = "upper edge of the last bin, at which a pair has escaped; 0: edges from column names "
+             "as \"E(r0=0.51)\""},
     FIELD_END,
 };
 

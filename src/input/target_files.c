@@ -20,8 +20,7 @@ enum { DEFAULT_LAGS = 50 };
 static const char *const no_or_yes[] = {"no", "yes", NULL};
 const struct field mf_target_files_use_fields[] = {
     {"weight", FIELD_NUMBER, USE(weight), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
-     .unit = "",
-     .help = "of its error beside those of other files; 0: one over its statistical error"},
+     .unit = "", .help = "weight of this target; 0: one over its statistical error"},
     {"fitted", FIELD_CHOICE, USE(fitted), .choices = no_or_yes, .initial = 1, .unit = "",
      .help = "no: only compared with the result"},
     FIELD_END,

@@ -9,11 +9,10 @@
 const struct field mf_target_kirkwood_buff_fields[] = {
     {"value", FIELD_NUMBER, NUMBER(value), .required = true, .minimum = -DBL_MAX,
      .maximum = DBL_MAX, .unit = "lambda^d",
-     .help = "integral of g - 1 over all space, of the open system; of a mixture in an object of "
-             "each pair of components (kinds of molecules, types of single beads) that is to be "
-             "met, as \"A-B\""},
+     .help = "integral of g - 1 over all space, of the open system; in a mixture an object for "
+             "each pair of components, as \"A-B\""},
     {"error", FIELD_NUMBER, NUMBER(error), .required = true, .minimum = FIELD_ABOVE_ZERO,
-     .maximum = DBL_MAX, .unit = "lambda^d", .help = "its standard error"},
+     .maximum = DBL_MAX, .unit = "lambda^d", .help = "standard error"},
     FIELD_END,
 };
 

@@ -8,12 +8,12 @@
 #define MEMBER(name) .offset = offsetof(struct units, name)
 const struct field mf_units_fields[] = {
     {"length", FIELD_NUMBER, MEMBER(length), .required = true, .minimum = FIELD_ABOVE_ZERO,
-     .maximum = DBL_MAX, .unit = "nm", .help = "the unit of length, lambda"},
+     .maximum = DBL_MAX, .unit = "nm", .help = "unit of length, lambda"},
     {"temperature", FIELD_NUMBER, MEMBER(temperature), .required = true,
      .minimum = FIELD_ABOVE_ZERO, .maximum = DBL_MAX, .unit = "K",
      .help = "T_0, which makes k_B T_0 the unit of energy"},
     {"mass", FIELD_NUMBER, MEMBER(mass), .required = true, .minimum = FIELD_ABOVE_ZERO,
-     .maximum = DBL_MAX, .unit = "kg", .help = "of a particle"},
+     .maximum = DBL_MAX, .unit = "kg", .help = "mass of a particle"},
     FIELD_END,
 };
 
@@ -27,14 +27,13 @@ struct system {
 #define SCALE .initial = NAN, .minimum = FIELD_ABOVE_ZERO, .maximum = DBL_MAX
 const struct field mf_units_system_fields[] = {
     {"system", FIELD_CHOICE, SYSTEM(kind), .choices = mf_units_systems + 1, .unit = "",
-     .help = "of all numbers of the file, its tables and its results: nm, ps, u, kJ/mol, K, bar; "
-             "or angstrom, fs, g/mol, kcal/mol, K, atm"},
+     .help = "units of the file, its tables and results"},
     {"length", FIELD_NUMBER, SYSTEM(length), SCALE, .unit = "nm or angstrom",
-     .help = "lambda; without it lambda^3, in two dimensions lambda^2, holds three beads"},
+     .help = "lambda; default: three beads in lambda^d"},
     {"temperature", FIELD_NUMBER, SYSTEM(temperature), SCALE, .unit = "K",
-     .help = "T_0; without it that of the scene"},
+     .help = "T_0; default: the scene's temperature"},
     {"mass", FIELD_NUMBER, SYSTEM(mass), SCALE, .unit = "u",
-     .help = "mu; without it the mean mass of the scene's beads, or 1 if it says none"},
+     .help = "mu; default: mean mass of the scene's beads, or 1"},
     FIELD_END,
 };
 

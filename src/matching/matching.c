@@ -68,18 +68,14 @@ static const char *const surrogates[] = {"no", "yes", "join", NULL};
 static const struct field own_fields[] = {
     {"racing", FIELD_NUMBER, MEMBER(population.evaluate.racing), .initial = 0, .minimum = 0,
      .maximum = 100, .unit = "standard errors",
-     .help = "by which a running error must be hopeless for its simulation to stop; 0: never"},
+     .help = "significance at which a losing simulation is stopped; 0: never"},
     {"checks", FIELD_INTEGER, MEMBER(checks), .initial = 2, .minimum = 1,
-     .maximum = POPULATION_MOST, .unit = "",
-     .help = "fresh measurements of what is thought best, before it is believed"},
+     .maximum = POPULATION_MOST, .unit = "", .help = "repeated measurements of an apparent best"},
     {"check_length", FIELD_INTEGER, MEMBER(check_length), .initial = 1, .minimum = 1,
-     .maximum = 1000, .unit = "",
-     .help = "of their simulations, in those of a round: a liquid may boil after a while only"},
+     .maximum = 1000, .unit = "", .help = "length of these simulations, in units of a round's"},
     {"surrogate", FIELD_CHOICE, MEMBER(surrogate), .choices = surrogates, .initial = TRIED,
      .unit = "",
-     .help =
-         "whether to try what a linear model of all simulations thinks best, too; join: and let "
-         "it join the genetic population"},
+     .help = "try the optimum of a linear model, too; join: add it to the genetic population"},
     FIELD_END,
 };
 

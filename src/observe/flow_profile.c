@@ -40,7 +40,7 @@ struct profile {
 
 static const struct field fields[] = {
     {"bins", FIELD_INTEGER, offsetof(struct settings, bins), .initial = 0, .minimum = 0,
-     .maximum = 1e5, .unit = "", .help = "along y; 0: as many as cells"},
+     .maximum = 1e5, .unit = "", .help = "number of bins along y; 0: one a cell"},
     FIELD_END,
 };
 
@@ -393,14 +393,14 @@ static const struct observable_target targets[] = {
      .summary = "kinematic viscosity of a solvent that is driven",
      .form = OBSERVABLE_NUMBER},
     {.name = "schmidt_number",
-     .summary = "viscosity over the diffusion coefficient of the beads in a wave",
+     .summary = "viscosity over diffusion coefficient of the beads in a wave",
      .form = OBSERVABLE_NUMBER},
     {.name = NULL}};
 static const char *const files[] = {"flow_profile.tsv", NULL};
 
 const struct observable mf_flow_profile = {
     .name = "flow_profile",
-    .summary = "velocity of the solvent between plates or in a wave, its viscosity",
+    .summary = "velocity and viscosity of the solvent between plates or in a wave",
     .of_time = true,
     .of_solvent = true,
     .fields = fields,

@@ -11,12 +11,12 @@
 #define MEMBER(name) .offset = offsetof(struct rdf_settings, name)
 static const struct field fields[] = {
     {"range", FIELD_NUMBER, MEMBER(range), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
-     .unit = "lambda", .help = "of g(r); 0 means the cutoff of the forces, if there are any"},
+     .unit = "lambda", .help = "range of g(r); 0: the cutoff of the forces"},
     {"bins", FIELD_INTEGER, MEMBER(bins), .initial = 100, .minimum = 1, .maximum = 100000,
-     .unit = "", .help = "of g(r)"},
+     .unit = "", .help = "number of bins"},
     {"estimator", FIELD_CHOICE, MEMBER(estimator), .choices = mf_rdf_force_estimators,
      .initial = RDF_FORCE_NOT_USED, .unit = "",
-     .help = "of g(r): force is worth twice the samples, but a large time step puts it off"},
+     .help = "estimator of g(r); force: less noise, biased by a large time step"},
     FIELD_END,
 };
 
@@ -320,9 +320,9 @@ static void explain_apart(const void *settings, const struct simulation_setup *s
 
 static const struct field apart_fields[] = {
     {"range", FIELD_NUMBER, MEMBER(range), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
-     .unit = "lambda", .help = "of g(r); 0 means the cutoff of the forces, if there are any"},
+     .unit = "lambda", .help = "range of g(r); 0: the cutoff of the forces"},
     {"bins", FIELD_INTEGER, MEMBER(bins), .initial = 100, .minimum = 1, .maximum = 100000,
-     .unit = "", .help = "of g(r)"},
+     .unit = "", .help = "number of bins"},
     FIELD_END,
 };
 
@@ -337,7 +337,7 @@ static const char *const apart_files[] = {"intermolecular_rdf.tsv", "intermolecu
 
 const struct observable mf_rdf_intermolecular = {
     .name = "intermolecular_rdf",
-    .summary = "g(r) of beads of different molecules alone, normalised as that of all",
+    .summary = "g(r) of beads of different molecules, normalised as that of all",
     .fields = apart_fields,
     .settings_size = sizeof(struct rdf_settings),
     .state_size = sizeof(struct rdf_observed),

@@ -42,13 +42,9 @@ struct viscosity {
 
 static const struct field fields[] = {
     {"every", FIELD_INTEGER, offsetof(struct settings, every), .initial = 5, .minimum = 1,
-     .maximum = 1e9, .unit = "steps",
-     .help = "interval of the momentum transfer, in which all steps count, or between samples of a "
-             "wave"},
+     .maximum = 1e9, .unit = "steps", .help = "averaging interval of the momentum transfer"},
     {"lags", FIELD_INTEGER, offsetof(struct settings, lags), .initial = 200, .minimum = 8,
-     .maximum = 1e5, .unit = "samples",
-     .help = "the longest window of the Green-Kubo integral; the program takes one that is long "
-             "enough, and says if none is"},
+     .maximum = 1e5, .unit = "samples", .help = "longest window of the Green-Kubo integral"},
     FIELD_END,
 };
 
@@ -426,7 +422,7 @@ static const char *const files[] = {"shear_viscosity.tsv", NULL};
 
 const struct observable mf_shear_viscosity = {
     .name = "shear_viscosity",
-    .summary = "shear viscosity by Green and Kubo, or of the flow that \"shear-wave\" drives",
+    .summary = "shear viscosity by Green and Kubo, or from the flow that \"shear-wave\" drives",
     .of_time = true,
     .fields = fields,
     .settings_size = sizeof(struct settings),

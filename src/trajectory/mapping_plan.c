@@ -13,27 +13,26 @@ struct rest {
     int rest;
 };
 
-const struct field mf_mapping_plan_fields[] = {
-    {"rest", FIELD_CHOICE, offsetof(struct rest, rest), .choices = rests, .unit = "",
-     .help = "atoms that no bead names are a fault, or are left out"},
-    FIELD_END};
+const struct field mf_mapping_plan_fields[] = {{"rest", FIELD_CHOICE, offsetof(struct rest, rest),
+                                                .choices = rests, .unit = "",
+                                                .help = "treatment of atoms in no bead"},
+                                               FIELD_END};
 
 #define OFFSET(member) offsetof(struct mapping_entry, member)
 const struct field mf_mapping_plan_bead_fields[] = {
-    {"type", FIELD_TEXT, OFFSET(type), .unit = "",
-     .help = "type of the bead; by default the name under which it stands in \"beads\""},
+    {"type", FIELD_TEXT, OFFSET(type), .unit = "", .help = "type of the bead; default: its name"},
     {"residue", FIELD_TEXT, OFFSET(residue), .unit = "",
-     .help = "name of the residue; by default any residue or molecule"},
+     .help = "name of the residue; default: any residue or molecule"},
     {"atoms", FIELD_TEXT, OFFSET(atoms), .unit = "",
-     .help = "names of its atoms, blanks between; by default all of the residue"},
+     .help = "names of its atoms, separated by blanks; default: all of the residue"},
     {"first", FIELD_INTEGER, OFFSET(first), .minimum = 1, .maximum = FIELD_LARGEST_INTEGER,
-     .unit = "", .help = "instead of names: the first of the atoms, counted from 1"},
+     .unit = "", .help = "instead of names: first atom, counted from 1"},
     {"last", FIELD_INTEGER, OFFSET(last), .minimum = 1, .maximum = FIELD_LARGEST_INTEGER,
-     .unit = "", .help = "the last of the atoms"},
+     .unit = "", .help = "last atom"},
     {"size", FIELD_INTEGER, OFFSET(size), .minimum = 1, .maximum = FIELD_LARGEST_INTEGER,
-     .unit = "", .help = "atoms a bead, one behind the other; by default all are one bead"},
+     .unit = "", .help = "consecutive atoms in a bead; default: all"},
     {"centre", FIELD_CHOICE, OFFSET(centre), .choices = centres, .unit = "",
-     .help = "where a bead is: the centre of mass of its atoms, or of geometry"},
+     .help = "position of a bead: centre of mass or of geometry"},
     FIELD_END};
 #undef OFFSET
 
