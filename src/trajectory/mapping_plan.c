@@ -45,12 +45,12 @@ static void check_entry(struct json_object *object, const struct mapping_entry *
     else if (range && !(entry->first && entry->last >= entry->first))
         mf_json_fault(object, NULL, "a range goes from \"first\" to \"last\"");
     else if (entry->size && (entry->last - entry->first + 1) % entry->size != 0)
-        mf_json_fault(object, "size", "%lld atoms are no whole number of beads of %lld",
+        mf_json_fault(object, "size", "%lld atoms are not a whole number of beads of %lld",
                       (long long)(entry->last - entry->first + 1), (long long)entry->size);
     if (entry->atoms[0] && mf_words_count(entry->atoms) == 0)
         mf_json_fault(object, "atoms", "names no atom");
     if (strlen(entry->type) >= STRUCTURE_NAME)
-        mf_json_fault(object, "type", "is longer than %d letters", STRUCTURE_NAME - 1);
+        mf_json_fault(object, "type", "is longer than %d characters", STRUCTURE_NAME - 1);
 }
 
 static enum status read_beads(struct mapping_plan *plan, struct json_object *root) {
@@ -101,7 +101,7 @@ static void read_masses(struct mapping_plan *plan, struct json_object *root) {
         if (mf_words_copy(&word, mass->name, STRUCTURE_NAME))
             plan->masses++;
         else
-            mf_json_fault(&masses, name, "no atom has a name of more than %d letters",
+            mf_json_fault(&masses, name, "no atom has a name of more than %d characters",
                           STRUCTURE_NAME - 1);
     }
 }
@@ -125,7 +125,7 @@ enum status mf_mapping_plan_read(struct mapping_plan *plan, const char *file) {
 }
 
 enum status mf_mapping_plan_default(struct mapping_plan *plan) {
-    *plan = (struct mapping_plan){.file = "one bead a residue", .entries = 1};
+    *plan = (struct mapping_plan){.file = "one bead per residue", .entries = 1};
     plan->entry = mf_memory_zeroed(1, sizeof *plan->entry);
     return plan->entry ? STATUS_OK : STATUS_NO_MEMORY;
 }
