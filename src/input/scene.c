@@ -57,11 +57,11 @@ static void check_box(struct scene *scene, struct json_object *object, const str
     mf_json_fields(object, mf_scene_density_fields, scene);
     if (has_box == mf_json_has(object, "density"))
         mf_json_fault(object, has_box ? "density" : "box", "%s",
-                      has_box ? "\"box\" is given, and says it already"
+                      has_box ? "\"box\" is given, too; leave one of them out"
                               : "missing: it or \"density\" is required");
     if (top->box[0] > 0 && (top->box[2] > 0) != (top->dimensions == 3))
         mf_json_fault(object, "box",
-                      "has %d edges, but the scene has %d dimensions; \"dimensions\" says how many",
+                      "has %d edges, but the scene has %d dimensions; \"dimensions\" sets them",
                       top->box[2] > 0 ? 3 : 2, (int)top->dimensions);
 }
 
@@ -154,7 +154,7 @@ static void check_masses(struct scene *scene, struct json_object *object, bool r
             integrator->name);
     else if (mass->ranges > 0 && remembers)
         mf_json_fault(object, "particles.mass",
-                      "friction that remembers, or acts across pairs, is of particles of mass 1");
+                      "friction with memory or perpendicular to pairs needs particles of mass 1");
 }
 
 static enum status read_dynamics(struct scene *scene, struct json_object *object, int unknown) {
@@ -198,11 +198,12 @@ static enum status read_dynamics(struct scene *scene, struct json_object *object
     else if (dissipative && !integrator->dissipative)
         mf_json_fault(object, "dynamics",
                       integrator->samples
-                          ? "%s knows no friction, and needs none: leave \"dissipative\" out"
-                          : "%s knows no friction; use \"aboba\" with \"dissipative\"",
+                          ? "%s has no friction: leave \"dissipative\" out"
+                          : "%s has no friction; use \"aboba\" with \"dissipative\"",
                       integrator->name);
     else if (remembers && !integrator->remembers)
-        mf_json_fault(object, "dynamics", "%s knows no \"%s\"; use \"aboba\"", integrator->name,
+        mf_json_fault(object, "dynamics", "%s does not integrate \"%s\"; use \"aboba\"",
+                      integrator->name,
                       scene->memory.modes > 0 ? "memory" : "dissipative_transverse");
     if (integrator->samples)
         check_moves(scene, object);
@@ -225,8 +226,7 @@ static const double hottest = 50;
 
 bool mf_scene_is_hot(const struct scene *scene, char line[SCENE_LINE_SIZE]) {
     snprintf(line, SCENE_LINE_SIZE,
-             "temperature: %g in units of k_B T_0, which is 1 as a rule; kelvins belong into "
-             "\"units\"",
+             "temperature: %g in units of k_B T_0, usually 1; give kelvins in \"units\"",
              scene->setup.temperature);
     return scene->setup.temperature > hottest && !mf_units_known(&scene->units) &&
            scene->setup.attribute[ATTRIBUTES_MASS].ranges == 0;
@@ -242,7 +242,7 @@ static void check_mass_told_twice(const struct scene *scene, struct json_object 
     if (masses.maximum > light && fabs(masses.maximum / unit - 1) < alike)
         mf_json_fault(object, "particles.mass",
                       "%g is in units of mu, and \"mass\" of \"units\" makes mu %.6g u: a bead "
-                      "would have %.6g u; leave one of them out, or let mu be another mass",
+                      "would have %.6g u; leave one of them out, or choose another mu",
                       masses.maximum, unit, masses.maximum * unit);
 }
 

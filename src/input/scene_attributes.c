@@ -136,7 +136,7 @@ void mf_scene_attributes_column(struct scene *scene, struct json_object *particl
     const struct field *kind = &mf_attributes_fields[number];
     struct attributes_source *source = &scene->setup.attribute[number];
     if (source->ranges > 0)
-        mf_json_fault(particles, kind->name, "stands in %s, too", file);
+        mf_json_fault(particles, kind->name, "is given in %s, too", file);
     *source = (struct attributes_source){
         .ranges = 1, .range = {{values[0], values[0]}}, .column = values};
     for (size_t row = 0; row < table->rows; row++) {

@@ -41,7 +41,7 @@ static enum status read_mode(struct scene_memory *memory, struct json_object *ob
         !is_plain(name)) {
         mf_json_fault(
             object, name,
-            "there are at most %d modes, called by up to %d letters, digits, - and _, " OWN_WORDS,
+            "expected at most %d modes with names of up to %d letters, digits, - and _, " OWN_WORDS,
             PAIR_MEMORY_MOST_MODES, SCENE_MEMORY_NAME_SIZE - 1);
         return STATUS_OK;
     }

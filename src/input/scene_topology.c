@@ -34,7 +34,7 @@ static enum status read_top(struct scene_molecules *own, struct json_object *obj
     own->molecules = (struct molecules){0};
     for (const char *const *key = (const char *const[]){"exclude", "units", NULL}; *key; key++)
         if (mf_json_has(object, *key))
-            mf_json_fault(object, *key, "a topology of GROMACS says it itself");
+            mf_json_fault(object, *key, "a GROMACS topology defines it; leave it out");
     TRY(mf_gromacs_topology_read(&own->molecules, composition, told->file, units, &note));
     snprintf(own->warning, sizeof own->warning, "%s", note.text);
     own->scattered = note.scattered;

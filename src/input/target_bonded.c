@@ -152,14 +152,13 @@ static enum status check_rows(const struct rows *rows, const char *file) {
     for (size_t k = 0; k < rows->count; k++) {
         const double step = k > 0 ? rows->q[k] - rows->q[k - 1] : width;
         if (!(fabs(step / width - 1) < 0.05))
-            return mf_status_fail(
-                STATUS_BAD_INPUT,
-                "%s:%zu: the bins are not equally spaced: this step is %.3g times the mean one; "
-                "count them anew in equal bins",
-                file, rows->line[k], step / width);
+            return mf_status_fail(STATUS_BAD_INPUT,
+                                  "%s:%zu: the bins are not equally spaced: this step is %.3g "
+                                  "times the mean one; use equal bins",
+                                  file, rows->line[k], step / width);
         if (!(rows->p[k] >= 0 && rows->error[k] >= 0 && isfinite(rows->p[k] + rows->error[k])))
             return mf_status_fail(STATUS_BAD_INPUT,
-                                  "%s:%zu: p = %g with an error of %g is no distribution", file,
+                                  "%s:%zu: p = %g with an error of %g is not a distribution", file,
                                   rows->line[k], rows->p[k], rows->error[k]);
     }
     return STATUS_OK;
@@ -190,8 +189,8 @@ static enum status normalise(struct rows *rows, const char *file) {
         sum += rows->p[k] * width_of(rows);
     if (!(fabs(sum - 1) <= normalised))
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "%s: the integral of p is %.4g, not 1: a distribution is normalised, "
-                              "and has its Jacobian in it",
+                              "%s: the integral of p is %.4g, not 1: expected a normalised "
+                              "distribution, not divided by the Jacobian",
                               file, sum);
     rescale(rows, 1 / sum);
     return STATUS_OK;
@@ -223,8 +222,7 @@ static enum status close_circle(struct rows *rows, double *width, const char *fi
         rows->count--;
     } else if (fabs((double)rows->count - bins) >= 0.5) {
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "%s: dihedrals go round, from -180 to 180 degrees, and its bins over "
-                              "%g",
+                              "%s: expected dihedrals from -180 to 180 degrees, found bins over %g",
                               file, (double)rows->count * *width);
     }
     *width = 360 / (double)rows->count;

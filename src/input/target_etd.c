@@ -44,7 +44,7 @@ static double time_of(const struct data_table *table, const struct target_etd_pa
 
 static enum status check_columns(const struct target_etd_parameters *p) {
     if (p->time_column >= p->first_column)
-        return mf_status_fail(STATUS_BAD_INPUT, "first_column %lld is not behind time_column %lld",
+        return mf_status_fail(STATUS_BAD_INPUT, "first_column %lld is not after time_column %lld",
                               (long long)p->first_column, (long long)p->time_column);
     return STATUS_OK;
 }
@@ -94,7 +94,7 @@ static enum status read_table(struct data_table *table, const char *file,
                 return mf_status_fail(
                     STATUS_BAD_INPUT, "%s:%zu: column %zu: %g is not %s%s", file, table->line[row],
                     column + 1, value, largest == 1 ? "from 0 to 1" : "a standard error",
-                    column == before ? ": \"first_column\" tells where E begins" : "");
+                    column == before ? ": \"first_column\" is the first column of E" : "");
         }
     return STATUS_OK;
 }
@@ -145,7 +145,7 @@ static enum status take_values(struct target_etd *target, const struct data_tabl
             target->left_out += !known;
         }
     if (target->left_out == table->rows * bins)
-        status = mf_status_fail(STATUS_BAD_INPUT, "%s: nothing but nan", p->file);
+        status = mf_status_fail(STATUS_BAD_INPUT, "%s: all values are nan", p->file);
 done:
     return status;
 }
@@ -164,8 +164,8 @@ static enum status find_bins(struct target_etd_parameters *p, const struct data_
     }
     if (names != bins || bins < 2 || !(last > first))
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "%s: r_maximum: missing, and the %zu columns are not called "
-                              "\"E(r0=…)\" with growing r0",
+                              "%s: r_maximum: missing, and the %zu columns have no names "
+                              "\"E(r0=…)\" with increasing r0",
                               p->file, bins);
     const double factor = mf_units_factor(units, "lambda");
     const double width = (last - first) / (double)(bins - 1) / factor;

@@ -36,7 +36,7 @@ static enum status read_settings(struct target_files *files, const struct observ
     mf_json_fields(object, observable->fields, settings);
     void **kept = &files->settings[kind->place];
     if (*kept && memcmp(*kept, settings, observable->settings_size) != 0)
-        mf_json_fault(object, kind->target->name, "must have the settings of the target before it");
+        mf_json_fault(object, kind->target->name, "must have the settings of the previous target");
     mf_memory_free(*kept);
     *kept = settings;
     return STATUS_OK;
@@ -122,9 +122,8 @@ static void check_window(const struct target_files *files, struct json_object *o
     if (files->number[TARGET_DIFFUSION].window > 0 &&
         (files->curve[TARGET_VACF].points > 0 || files->curve[TARGET_MSD].points > 0 ||
          files->given[TARGET_ETD]))
-        mf_json_fault(
-            object, "diffusion",
-            "has a \"window\" of its own beside \"vacf\", \"msd\" or \"etd\", which say it");
+        mf_json_fault(object, "diffusion",
+                      "\"window\" is set by \"vacf\", \"msd\" or \"etd\"; leave it out");
 }
 
 /// VACF and MSD come from the same samples.

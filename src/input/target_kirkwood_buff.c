@@ -63,7 +63,7 @@ void mf_target_kirkwood_buff_read(struct target_kirkwood_buff *target, struct js
     }
     if (named == 0 && known) {
         mf_json_fault(object, NULL,
-                      "names no pair of the scene's components, as {\"%s-%s\": {\"value\": "
+                      "expected pairs of the scene's components, such as {\"%s-%s\": {\"value\": "
                       "0.1, \"error\": 0.01}}",
                       components->name[0], components->name[1]);
         return;

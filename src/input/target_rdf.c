@@ -100,10 +100,10 @@ static enum status check_errors(const struct target_rdf_parameters *p,
     }
     if (!named && (grows || 2 * large > seen))
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "%s: column %lld cannot be the standard error of g: it %s; "
-                              "\"error_column\" names another, or 0 for none",
+                              "%s: column %lld cannot be the standard error of g: it %s; set "
+                              "\"error_column\" to another, or to 0",
                               p->file, (long long)column,
-                              grows ? "grows from row to row, as a number of neighbours does"
+                              grows ? "increases from row to row, as a number of neighbours does"
                                     : "is as large as g");
     return STATUS_OK;
 }
@@ -151,7 +151,7 @@ static enum status read_votca(const struct target_rdf_parameters *p, const struc
     *has_errors = table.has_error;
     for (size_t k = 1; k < rows->count; k++)
         if (!(rows->r[k] > rows->r[k - 1])) {
-            status = mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: column 1 does not grow", p->file,
+            status = mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: column 1 does not increase", p->file,
                                     rows->line[k]);
             goto done;
         }

@@ -361,7 +361,7 @@ static enum status claim(struct own_files *own, const char *name) {
     struct own_entry *entry;
     TRY(check_place(own));
     if (!mf_own_list_takes(name))
-        return mf_status_fail(STATUS_BAD_INPUT, "%s: no file can have the name \"%s\"", own->folder,
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: not a valid file name: \"%s\"", own->folder,
                               name);
     TRY(find_entry(own, name, &entry));
     if (entry && entry->claimed)

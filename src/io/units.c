@@ -95,7 +95,7 @@ static void complete(struct system *system, struct json_object *scene) {
             mf_json_fault(scene, "temperature",
                           is_number ? "0 K makes no unit of energy; \"temperature\" of \"units\" "
                                       "gives another"
-                                    : "missing: a number is required (K)");
+                                    : "missing: expected a number (K)");
         system->temperature = 300;
     }
 }
@@ -123,8 +123,7 @@ void mf_units_speak(struct json_object *root, struct json_object *scene) {
         if (root->item != scene->item && mf_json_is_object(root, "units") &&
             mf_json_has(root, "units"))
             mf_json_fault(root, "units",
-                          "\"system\" is missing; without it, it stands in "
-                          "\"scene\"");
+                          "\"system\" is missing; units without it belong into \"scene\"");
         return;
     }
     const size_t faults = mf_json_fault_count(root->document);
@@ -150,7 +149,7 @@ void mf_units_read(struct units *units, struct json_object *scene) {
     *units = *mf_json_units(scene);
     if (mf_units_speaks(units) || (is_root && !mf_json_is_object(scene, "units"))) {
         if (!is_root)
-            mf_json_refuse(scene, "units", "the file's stand at its top");
+            mf_json_refuse(scene, "units", "the file's units are at its top; leave them out");
         return;
     }
     struct json_object object = mf_json_child(scene, "units", false);

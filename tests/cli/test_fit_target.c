@@ -82,7 +82,7 @@ static void test_fit_target_tells_what_goes_together(void **state) {
     make_target(*state, shortest);
     RUN_PROGRAM(&result, "fit", "--target", "target", "--density", "3");
     run_program_assert_code(&result, 2);
-    assert_contains(result.err, "--density: target/target.json says scene.density itself");
+    assert_contains(result.err, "--density: target/target.json has scene.density");
     RUN_PROGRAM(&result, "fit", "--target", "nowhere");
     run_program_assert_code(&result, 2);
     assert_contains(result.err, "there is no nowhere/target.json, and no rdf.tsv beside it");

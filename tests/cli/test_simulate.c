@@ -329,7 +329,7 @@ static void test_simulate_warns_when_nothing_holds_the_temperature(void **state)
                        "\"temperature\": 300");
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
     assert_contains(result.err, "mesofit: warning: temperature: 300 in units of k_B T_0");
-    assert_contains(result.err, "kelvins belong into \"units\"");
+    assert_contains(result.err, "give kelvins in \"units\"");
     temporary_folder_write(*state, "target.tsv", small_inputs_target, strlen(small_inputs_target));
     static const char warning[] = "mesofit: warning: scene: nothing holds the temperature: ";
     small_inputs_write(*state, "run.json", small_inputs_run, "\"power\", \"sigma\": 2", "\"none\"");
