@@ -409,7 +409,8 @@ static enum status print_all(const char *format, const struct topic *topics, siz
         mf_completion_print(stdout, topics, count);
     else {
         mf_nearest_hint(format, formats, 3, hint, sizeof hint);
-        return mf_status_fail(STATUS_BAD_INPUT, "describe: \"%s\" is no format; %s", format, hint);
+        return mf_status_fail(STATUS_BAD_INPUT, "describe: unknown format \"%s\"; %s", format,
+                              hint);
     }
     return STATUS_OK;
 }

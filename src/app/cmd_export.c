@@ -31,7 +31,7 @@ static void tell(void *context, const struct simulation *simulation, uint64_t do
 static enum status run(const struct command_line *line) {
     struct progress progress = mf_progress_begin(line->options.quiet, NULL);
     if (line->own[ENGINE] == NULL)
-        return mf_status_fail(STATUS_BAD_INPUT, "--engine says for what program; one of %s",
+        return mf_status_fail(STATUS_BAD_INPUT, "--engine: expected one of %s",
                               options[ENGINE].value);
     return mf_export_run(&(struct export_request){
         .from = line->files[0],

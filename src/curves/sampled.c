@@ -69,7 +69,7 @@ enum status mf_sampled_set_points(struct curve *curve, const double *r, const do
         return mf_status_fail(STATUS_BAD_INPUT, "a table needs at least 3 points, not %zu", count);
     for (size_t k = 1; k < count; k++)
         if (!(r[k] > r[k - 1]))
-            return mf_status_fail(STATUS_BAD_INPUT, "r does not grow at point %zu", k + 1);
+            return mf_status_fail(STATUS_BAD_INPUT, "r does not increase at point %zu", k + 1);
     const double last = r[count - 1];
     // One part in 10^9 forgives a cutoff that was rounded when the table was written.
     if (p->cutoff > last * (1 + 1e-9))

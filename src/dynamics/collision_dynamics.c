@@ -30,16 +30,16 @@ static const char *warning(const struct simulation_setup *setup) {
     const bool held = parameters->walls == COLLISION_PLATES || parameters->obstacle_radius > 0;
     const bool flows = parameters->wave_acceleration != 0 || (pushed && held);
     if (parameters->particles_per_cell < 3)
-        return "dynamics.particles_per_cell: below 3 many cells have nobody to collide with, and "
-               "theory is far off";
+        return "dynamics.particles_per_cell: below 3 many cells have no collisions, and theory "
+               "does not hold";
     if (!parameters->hydrodynamics && (flows || has_drift(parameters)))
-        return "dynamics.hydrodynamics: without it beads do not feel that the solvent flows";
+        return "dynamics.hydrodynamics: without it the flow of the solvent does not act on beads";
     if (parameters->walls == COLLISION_PLATES && setup->potential)
-        return "dynamics.walls: forces of pairs know no plates: beads nearer to both plates "
-               "together than a cutoff feel each other through them";
+        return "dynamics.walls: pair forces are not cut by plates: beads within a cutoff interact "
+               "through them";
     if (flows && setup->placement.count > 1)
-        return "dynamics: the flow carries the beads: their temperature, MSD, VACF and D have it "
-               "in them; without accelerations they have not";
+        return "dynamics: the flow contributes to the temperature, MSD, VACF and D of the beads; "
+               "accelerations of 0 avoid that";
     return NULL;
 }
 

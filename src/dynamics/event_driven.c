@@ -53,8 +53,7 @@ static enum status scale_velocities(struct particles *particles, int walls, doub
     if (!(energy > 0))
         return mf_status_fail(
             STATUS_BAD_INPUT,
-            "particles.velocities: by chance nobody moves relative to the others; "
-            "another \"seed\" will do");
+            "particles.velocities: all velocities are equal; choose another \"seed\"");
     const double scale = sqrt(0.5 * degrees * temperature / energy);
     for (int d = 0; d < particles->box.dimensions; d++)
         for (size_t k = 0; k < particles->count; k++)

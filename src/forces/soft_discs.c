@@ -26,7 +26,7 @@ static enum status begin(const void *parameters, void *state, const struct parti
                               "interactions.soft-discs: discs are in two dimensions, not three");
     if (mf_particles_numbers(particles, "radius") == NULL)
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "interactions.soft-discs: wants \"radius\" in \"particles\"");
+                              "interactions.soft-discs: needs \"radius\" in \"particles\"");
     if (particles->topology && particles->topology->excludes)
         return mf_status_fail(STATUS_BAD_INPUT,
                               "interactions.soft-discs: knows no pairs that molecules exclude; "

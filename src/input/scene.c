@@ -358,8 +358,7 @@ const char *mf_scene_warning(const struct scene *scene) {
     if (simulation_holds_temperature(&scene->setup) || integrator->events ||
         (scene->unknown & ~SCENE_FITS_POTENTIAL))
         return NULL;
-    return "nothing holds the temperature: without \"dissipative\", friction and noise, a "
-           "simulation "
+    return "there is no thermostat: without \"dissipative\", friction and noise, a simulation "
            "conserves its energy, and its temperature drifts";
 }
 

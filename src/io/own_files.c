@@ -126,7 +126,7 @@ static enum status spare_input(const struct own_files *own, const char *name) {
 static const char *remedy_of(const struct own_files *own, enum own_file_found found) {
     const char *from = own->goes_on_from;
     if (from && mf_own_file_look(own->list.place, from, NULL) != OWN_FILE_ABSENT)
-        return "move it away, and go on with --resume";
+        return "move it away, and continue with --resume";
     return found == OWN_FILE_FOLDER
                ? "move it away, or write elsewhere with -o"
                : "move it away, or write elsewhere with -o; --force replaces it";

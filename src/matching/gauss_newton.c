@@ -271,7 +271,7 @@ static void tell_reason(const struct state *state, char reason[INVERSE_REASON_SI
         return;
     }
     if (state->has_model)
-        snprintf(why, sizeof why, "but none of what the linear model thought best");
+        snprintf(why, sizeof why, "but none of the linear model's optimum");
     else
         snprintf(
             why, sizeof why,

@@ -326,8 +326,7 @@ static enum status iterate(void *memory, struct inverse_step *step,
         progress->stage = UNKNOWN_OMEGA;
         progress->begun = progress->iteration;
         step->begins =
-            "the potential is found; omega is next, and \"error\" is from here on that of "
-            "its targets, too: it begins anew";
+            "the potential is found; omega is next: from here on \"error\" includes its targets";
     }
     return STATUS_OK;
 }

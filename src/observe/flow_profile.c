@@ -87,10 +87,10 @@ static enum status begin(void *state, const void *settings, const struct simulat
     p->height = solvent->box.length[1];
     p->bins = given->bins > 0 ? (size_t)given->bins : (size_t)rint(p->height / p->parameters.cell);
     if (peak_shape(p) > 0 && p->bins < LEAST_BINS)
-        return mf_status_fail(STATUS_BAD_INPUT,
-                              "flow_profile.bins: %zu along y cannot tell a viscosity; %d and more "
-                              "can, in a channel of a few cells, too",
-                              p->bins, LEAST_BINS);
+        return mf_status_fail(
+            STATUS_BAD_INPUT,
+            "flow_profile.bins: %zu along y are too few for a viscosity; expected at least %d",
+            p->bins, LEAST_BINS);
     p->interval = (double)plan->every * simulation->setup.time_step;
     p->each = ((size_t)plan->samples + MOST_BLOCKS - 1) / MOST_BLOCKS;
     p->blocks = (size_t)plan->samples / p->each;
@@ -345,11 +345,10 @@ static void say(const void *state, const struct observable_results *results, cha
                  viscosity, mf_units_suffix(units, "lambda^2/tau", unit),
                  factor * mf_collision_dynamics_viscosity(&p->setup), temperature, kelvin);
     else
-        snprintf(
-            line, size,
-            "temperature of the solvent %.4f%s; a viscosity wants plates and an acceleration along "
-            "x, or a wave, and no obstacle",
-            temperature, kelvin);
+        snprintf(line, size,
+                 "temperature of the solvent %.4f%s; a viscosity needs plates and an acceleration "
+                 "along x, or a wave, and no obstacle",
+                 temperature, kelvin);
 }
 
 /// A flow that still grows, or hardly differs from the noise, gives any viscosity.

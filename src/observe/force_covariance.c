@@ -16,7 +16,7 @@ static enum status check(const struct simulation *simulation, double range) {
     const struct simulation_setup *setup = &simulation->setup;
     if (setup->omega == NULL)
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "force_covariance: the scene has no friction weight to be seen");
+                              "force_covariance: the scene has no friction weight");
     if (setup->integrator->friction)
         return mf_status_fail(
             STATUS_BAD_INPUT,

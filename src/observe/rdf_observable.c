@@ -38,10 +38,9 @@ static struct rdf_bins bins_of(const struct rdf_settings *settings,
 static enum status check(const struct rdf_settings *settings,
                          const struct simulation_setup *setup) {
     if (!(range_of(settings, setup) > 0))
-        return mf_status_fail(
-            STATUS_BAD_INPUT,
-            "rdf: the scene has no forces whose cutoff is the range of g(r): say how "
-            "far, as in {\"range\": 2}");
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "rdf: the scene has no forces whose cutoff is the range of g(r): "
+                              "give the range, as in {\"range\": 2}");
     if (settings->of_target || settings->estimator != RDF_FORCE_USED)
         return STATUS_OK;
     if (composition_is_mixed(&setup->composition))
@@ -54,8 +53,7 @@ static enum status check(const struct rdf_settings *settings,
     if (!mf_rdf_force_applies(setup->potential, setup->temperature))
         return mf_status_fail(
             STATUS_BAD_INPUT,
-            "rdf: \"estimator\": \"force\" wants a potential that keeps particles "
-            "apart, of 10 k_B T at least where r is 0");
+            "rdf: \"estimator\": \"force\" needs a potential of at least 10 k_B T at r = 0");
     return STATUS_OK;
 }
 
@@ -244,7 +242,7 @@ static void explain(const void *settings, const struct simulation_setup *setup, 
                        !composition_is_mixed(&setup->composition);
     if (force && s->of_target)
         mf_stages_add(stages, "g(r)", false, 0,
-                      "from forces; counted if a potential keeps no pair apart");
+                      "from forces; counted for potentials that are low at r = 0");
     else
         explain_counting(setup, range, every, stages);
     if (force)

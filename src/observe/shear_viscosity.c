@@ -74,9 +74,9 @@ static enum status check(const struct simulation *simulation, bool driven) {
                               name);
     if (!driven && (!setup->integrator->tells_transfer || mf_respa_acts(setup)))
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "shear_viscosity: \"%s\"%s does not tell what pairs exchange; "
-                              "\"aboba\" and \"velocity-verlet\" do without \"inner_steps\", and "
-                              "\"shear-wave\" needs no stress",
+                              "shear_viscosity: \"%s\"%s does not give the momentum that pairs "
+                              "exchange; \"aboba\" and \"velocity-verlet\" do without "
+                              "\"inner_steps\", and \"shear-wave\" needs no stress",
                               name, mf_respa_acts(setup) ? " with \"inner_steps\"" : "");
     return STATUS_OK;
 }
@@ -277,8 +277,8 @@ static enum status judge(const void *state, const struct simulation_setup *setup
     if (s.reached)
         return STATUS_OK;
     return mf_status_fail(STATUS_UNCONVERGED,
-                          "the Green-Kubo integral of the viscosity has not come to rest within "
-                          "%.3g; raise \"shear_viscosity.lags\"",
+                          "the Green-Kubo integral of the viscosity has not converged within %.3g; "
+                          "raise \"shear_viscosity.lags\"",
                           s.window);
 }
 
@@ -391,7 +391,7 @@ static void explain(const void *settings, const struct simulation_setup *setup, 
     else
         mf_stages_add(stages, "viscosity", true,
                       carry_cost + (rubs ? friction_cost : force_cost) * pairs,
-                      "what pairs exchange, every step");
+                      "the momentum that pairs exchange, every step");
 }
 
 static enum status result(const void *const *states, size_t count,

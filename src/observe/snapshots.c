@@ -61,7 +61,7 @@ static enum status begin(void *state, const void *settings, const struct simulat
                               simulation->setup.integrator->name);
     if (!s->settings.solvent && simulation->particles.count == 0)
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "snapshots: nobody to show; \"solvent\": \"yes\" shows the solvent");
+                              "snapshots: no particles; \"solvent\": \"yes\" includes the solvent");
     return take(s, simulation);
 }
 

@@ -179,8 +179,8 @@ static const struct fault scene_faults[] = {
           "input.json: particles.jitter: no longer a key: it is 0.05 always; leave it out"),
     FAULT("motion of an earlier version", "\"measure\"",
           "\"motion\": {\"lags\": 2, \"fit_from\": 0.4}, \"measure\"",
-          "input.json: motion.fit_from: no longer a key: the line begins at half of the window; "
-          "leave it out"),
+          "input.json: motion.fit_from: no longer a key: the line always starts at half of the "
+          "window; leave it out"),
     FAULT("no lags", "\"measure\"", "\"motion\": {\"lags\": 1}, \"measure\"",
           "motion.lags: 1 is out of range"),
     FAULT("a number for motion", "\"measure\"", "\"motion\": 3, \"measure\"",
