@@ -28,11 +28,11 @@ static const struct command_option options[] = {
     [SKIPS] = {"--skips", NULL, "time steps with and without each of their parts"},
     [ISA] = {"--isa", "NAME", "portable, avx2 or avx512 alone"},
     [PRECISION] = {"--precision", "NAME", "mixed or double alone"},
-    [OUTPUT] = {"-o", "FILE.tsv", "write the results to a table, too"},
-    [WANTED] = {"--error", "E", "accuracy: largest |dg| that is wanted (0.005)"},
-    [TIME] = {"--time", "T", "accuracy: tau that each point is run for"},
+    [OUTPUT] = {"-o", "FILE.tsv", "table for the results"},
+    [WANTED] = {"--error", "E", "accuracy: largest |dg| wanted (0.005)"},
+    [TIME] = {"--time", "T", "accuracy: length of each run [tau]"},
     [TIME_STEPS] = {"--time-steps", "A,..", "accuracy: time steps [tau]"},
-    [INTEGRATORS] = {"--integrators", "A,..", "accuracy: these alone"},
+    [INTEGRATORS] = {"--integrators", "A,..", "accuracy: only these"},
     {NULL, NULL, NULL},
 };
 

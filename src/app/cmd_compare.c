@@ -11,7 +11,7 @@ static enum status run(const struct command_line *line) {
 const struct command cmd_compare = {
     .name = "compare",
     .usage = "DIR DIR...",
-    .summary = "put finished fits and simulations side by side: one table, one figure",
+    .summary = "compare finished fits and simulations: one table, one figure",
     .least_files = 1,
     .most_files = COMMAND_MAX_FILES,
     .run = run,

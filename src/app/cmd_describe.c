@@ -17,7 +17,7 @@ enum { FORMAT };
 
 static const struct command_option options[] = {
     [FORMAT] = {"--format", "man|markdown|bash",
-                "all of it at once: a man page, Markdown, or the completions of bash"},
+                "the whole reference: a man page, Markdown, or the completions of bash"},
     {NULL, NULL, NULL},
 };
 
@@ -27,16 +27,16 @@ struct inner {
 };
 
 static const struct inner run_objects[] = {
-    {"scene", "what is simulated, without what is to be found", "scene"},
-    {"target", "what was measured, at least one", "target"},
-    {"unknowns", "what is to be found; without it the potential", "unknowns"},
-    {"method", "its \"name\" and numbers", "method"},
-    {"units", "\"nm-ps\" or \"angstrom-fs\", in which the file and its results speak", "units"},
-    {"core", "where the target is 0", "core"},
+    {"scene", "the simulated system, without the unknowns", "scene"},
+    {"target", "measured quantities, at least one", "target"},
+    {"unknowns", "the unknowns; default: the potential", "unknowns"},
+    {"method", "\"name\" and settings of the method", "method"},
+    {"units", "units of the file and its results, \"nm-ps\" or \"angstrom-fs\"", "units"},
+    {"core", "region where the target is 0", "core"},
     {"verification", "independent simulations of the result", "verification"},
     {"states",
-     "{\"dilute\": {\"scene\": {…}, \"target\": {…}}, …}: systems that share a potential, "
-     "each this file with its own keys put over it",
+     "systems that share a potential, {\"dilute\": {\"scene\": {…}, …}, …}, with this file's keys "
+     "unless they have their own",
      "run"},
     {NULL, NULL, NULL},
 };
@@ -49,69 +49,65 @@ static const struct inner run_objects[] = {
 
 static const struct inner unknowns_objects[] = {
     {"potential", "Phi(r)", "potential"},
-    {"bonds", "{\"backbone\": {}, …}: U(r) of groups of molecules", "group"},
+    {"bonds", "U(r) of named groups, {\"backbone\": {}, …}", "group"},
     BONDED_LIST_BEYOND_BONDS(SAME_UNKNOWNS){"omega", "omega(r)", "omega"},
-    {"omega_transverse", "the same across pairs", "omega"},
-    {"memory",
-     "{\"slow\": {…}, …}: the same of modes of the scene's \"memory\", which then have no "
-     "\"omega\"",
+    {"omega_transverse", "omega(r) perpendicular to the pair", "omega"},
+    {"memory", "omega(r) of modes of the scene's \"memory\" without \"omega\", {\"slow\": {…}, …}",
      "omega"},
     {"numbers",
-     "{\"dissipative.sigma\": {…}, …}: numbers of the scene by their paths, for methods that "
-     "search",
+     "numbers of the scene by path, for methods that search: {\"dissipative.sigma\": {…}, …}",
      "numbers"},
     {NULL, NULL, NULL},
 };
 
 static const struct inner potential_objects[] = {
-    {"start", "a law to begin with, in a mixture one for each pair type", "conservative"},
-    {"truth", "the law that is known to be true, to be compared with", "conservative"},
+    {"start", "initial law, in a mixture one for each pair type", "conservative"},
+    {"truth", "known law, for comparison", "conservative"},
     {NULL, NULL, NULL},
 };
 
 static const struct inner omega_objects[] = {
-    {"fixed", "parameters of the curve \"power\" that are not to be found", "fixed"},
-    {"start", "a law to begin with", "dissipative"},
-    {"truth", "the law that is known to be true, to be compared with", "dissipative"},
+    {"fixed", "fixed parameters of the curve \"power\"", "fixed"},
+    {"start", "initial law", "dissipative"},
+    {"truth", "known law, for comparison", "dissipative"},
     {NULL, NULL, NULL},
 };
 
 static const struct inner scene_objects[] = {
-    {"particles", "how many, and where", "particles"},
-    {"conservative", "{\"law\": …}, the potential; in a mixture one for each pair type",
+    {"particles", "number and placement of particles", "particles"},
+    {"conservative", "potential, {\"law\": …}; in a mixture one for each pair type",
      "conservative"},
-    {"dissipative", "{\"law\": …}, the friction weight; likewise", "dissipative"},
-    {"dissipative_transverse", "{\"law\": …}, the friction weight across pairs; likewise",
+    {"dissipative", "friction weight, likewise", "dissipative"},
+    {"dissipative_transverse", "friction weight perpendicular to the pair, likewise",
      "dissipative"},
-    {"memory", "{\"slow\": {…}, …}: friction that remembers, modes under names of yours", "memory"},
-    {"molecules", "{\"hexane\": {…}, …}: kinds of molecules under names of yours", "molecule"},
-    {"bonds", "{\"backbone\": {\"law\": …}, …}: groups of bonds under names of yours", "bonds"},
+    {"memory", "friction with memory: named modes, {\"slow\": {…}, …}", "memory"},
+    {"molecules", "named kinds of molecules, {\"hexane\": {…}, …}", "molecule"},
+    {"bonds", "named groups of bonds, {\"backbone\": {\"law\": …}, …}", "bonds"},
     BONDED_LIST_BEYOND_BONDS(SAME_GROUPS){
-        "interactions", "what acts beside the pairs: {\"harmonic-trap\": {…}, …}", "interactions"},
+        "interactions", "other interactions, {\"harmonic-trap\": {…}, …}", "interactions"},
     {"dynamics",
-     "{\"integrator\": …} and its numbers; without it \"aboba\" if there is friction, else "
+     "{\"integrator\": …} and its settings; default \"aboba\" with friction, else "
      "\"velocity-verlet\"",
      "dynamics"},
-    {"units", "of a scene in reduced units: physical ones for the results beside", "scale"},
-    {"measure", "when to sample; this and observables in a scene file only", "measure"},
+    {"units", "physical units for the results of a scene in reduced units", "scale"},
+    {"measure", "sampling; like the observables below (measured if given) in scene files only",
+     "measure"},
     {NULL, NULL, NULL},
 };
 
 static const struct inner molecule_objects[] = {
-    {"chain", "the beads one after the other; in its place \"beads\": [\"A\", \"B\", …] and",
-     "chain"},
-    {"bonds", "{\"backbone\": [[1, 2], …], …}: the beads of each bond, from 1 on", "bonds"},
+    {"chain", "linear chain; instead \"beads\": [\"A\", \"B\", …] and", "chain"},
+    {"bonds", "beads of each bond, counted from 1: {\"backbone\": [[1, 2], …], …}", "bonds"},
     BONDED_LIST_BEYOND_BONDS(SAME_TERMS){NULL, NULL, NULL},
 };
 
 static const struct inner memory_objects[] = {
-    {"omega", "{\"law\": …}, how strongly: friction omega^2, over 1 + (time frequency)^2",
-     "dissipative"},
+    {"omega", "amplitude, {\"law\": …}: friction omega^2/[1 + (time frequency)^2]", "dissipative"},
     {NULL, NULL, NULL},
 };
 
 static const struct inner map_objects[] = {
-    {"beads", "{\"CH3\": {…}, \"OH\": {…}}: kinds of beads by their names", "bead"},
+    {"beads", "named kinds of beads, {\"CH3\": {…}, \"OH\": {…}}", "bead"},
     {NULL, NULL, NULL},
 };
 
@@ -130,8 +126,8 @@ static const struct topic fixed_topics[] = {
     {"files", "run", "the top of a run file, for `mesofit fit`", {mf_heading_fields}},
     {"files",
      "scene",
-     "the top of a scene file, for `mesofit simulate`, and \"scene\" of a run file, which has no "
-     "title and seed",
+     "the top of a scene file, for `mesofit simulate`, and \"scene\" of a run file (without title "
+     "and seed)",
      {mf_heading_fields, mf_scene_fields, mf_scene_density_fields}},
     {"files",
      "particles",
@@ -139,7 +135,7 @@ static const struct topic fixed_topics[] = {
      {mf_placement_count_fields, mf_placement_fields, mf_attributes_fields}},
     {"files",
      "memory",
-     "a mode of \"memory\" of a scene: friction that remembers",
+     "a mode of \"memory\" of a scene: friction with memory",
      {mf_scene_memory_fields}},
     {"files", "molecule", "a kind of \"molecules\" of a scene", {mf_scene_molecule_fields}},
     {"files", "chain", "\"chain\" of a molecule", {mf_scene_chain_fields}},
@@ -150,11 +146,11 @@ static const struct topic fixed_topics[] = {
     {"files", "measure", "\"measure\" of a scene file: when to sample", {mf_measure_plan_fields}},
     {"files",
      "units",
-     "\"units\" at the top of a file in physical units: \"nm-ps\", \"angstrom-fs\", or an object",
+     "\"units\" of a file in physical units: \"nm-ps\", \"angstrom-fs\", or an object",
      {mf_units_system_fields}},
     {"files",
      "scale",
-     "\"units\" of a scene in reduced units: physical ones for the results beside",
+     "\"units\" of a scene in reduced units: physical units for its results",
      {mf_units_fields}},
     {"files", "core", "\"core\" of a run file: where the target is 0", {mf_fit_core_fields}},
     {"files",
@@ -164,8 +160,7 @@ static const struct topic fixed_topics[] = {
     {"files",
      "map",
      "the top of a map of atoms to beads, for `mesofit measure --map`; \"masses\": {\"C\": 12.011, "
-     "…} "
-     "tells those of atoms [u] by their names",
+     "…} has masses of atoms [u] by name",
      {mf_mapping_plan_fields}},
     {"files", "bead", "one of \"beads\" of a map", {mf_mapping_plan_bead_fields}},
     {"target", "target", "\"target\" of a run file", {NULL}},
@@ -188,7 +183,7 @@ static const struct topic unknown_topics[] = {
      {mf_numbers_fields}},
     {"unknowns",
      "fixed",
-     "\"fixed\" of a friction weight: parameters of the curve \"power\" that are not to be found",
+     "\"fixed\" of a friction weight: parameters of the curve \"power\" that are not fitted",
      {mf_inverse_fixed_fields}},
 };
 
@@ -204,6 +199,33 @@ static size_t add_curves(struct topic *topics, size_t n, const char *group,
                          const struct curve_family *const *list) {
     for (; *list; list++)
         topics[n++] = (struct topic){group, (*list)->name, (*list)->summary, {(*list)->fields}};
+    return n;
+}
+
+/// Tables that several methods share, by their names there.
+static const struct {
+    const char *name, *summary;
+} shared[] = {
+    {"inversions", "what inversions simulate: auto, imc, ibi, hnc, relative-entropy"},
+    {"candidates", "how methods that search simulate a candidate"},
+    {"searches", "what genetic, cma-es and nlopt have in common"},
+};
+
+static const struct field *find_shared(const char *name) {
+    for (size_t k = 0; mf_inverse_methods[k]; k++)
+        for (const struct inverse_table *table = mf_inverse_methods[k]->tables; table->fields;
+             table++)
+            if (table->shared && strcmp(table->shared, name) == 0)
+                return table->fields;
+    return NULL;
+}
+
+static size_t add_shared(struct topic *topics, size_t n) {
+    topics[n++] = (struct topic){
+        "shared", "weights", "what all targets have in common", {mf_target_files_use_fields}};
+    for (size_t k = 0; k < sizeof shared / sizeof *shared; k++)
+        topics[n++] = (struct topic){
+            "shared", shared[k].name, shared[k].summary, {find_shared(shared[k].name)}};
     return n;
 }
 
@@ -237,6 +259,7 @@ size_t mf_describe_topics(struct topic topics[DESCRIBE_MOST_TOPICS]) {
                                      mf_integrator_list[k]->name,
                                      mf_integrator_list[k]->summary,
                                      {mf_integrator_list[k]->fields}};
+    n = add_shared(topics, n);
     for (size_t k = 0; mf_inverse_methods[k]; k++) {
         const struct inverse_method *method = mf_inverse_methods[k];
         topics[n] = (struct topic){"method", method->name, method->summary, {NULL}};
@@ -261,7 +284,7 @@ static size_t add_observables(struct topic_object *objects, size_t n) {
         const struct observable *observable = mf_observables[k];
         char help[sizeof objects->help];
         snprintf(help, sizeof help, "%s%s", observable->summary,
-                 observable->always ? "" : "; measured if it is there");
+                 observable->always ? "; always measured" : "");
         if (observable->fields)
             n = add_object(objects, n, observable->name, help, observable->name);
     }
@@ -289,6 +312,14 @@ size_t mf_describe_objects(const char *topic, struct topic_object objects[DESCRI
     if (strcmp(topic, "target") == 0)
         n = add_targets(objects, n);
     return n;
+}
+
+const struct topic *mf_describe_home(const struct topic *topics, size_t count,
+                                     const struct field *table) {
+    for (size_t k = 0; k < count; k++)
+        if (topics[k].tables[0] == table && topics[k].tables[1] == NULL)
+            return &topics[k];
+    return NULL;
 }
 
 static void print_index(const struct topic *topics, size_t count) {
@@ -350,7 +381,8 @@ static enum status print_all(const char *format, const struct topic *topics, siz
         mf_completion_print(stdout, topics, count);
     else {
         mf_nearest_hint(format, formats, 3, hint, sizeof hint);
-        return mf_status_fail(STATUS_BAD_INPUT, "describe: \"%s\" is no format; %s", format, hint);
+        return mf_status_fail(STATUS_BAD_INPUT, "describe: unknown format \"%s\"; %s", format,
+                              hint);
     }
     return STATUS_OK;
 }
@@ -396,7 +428,7 @@ static enum status run(const struct command_line *line) {
 const struct command cmd_describe = {
     .name = "describe",
     .usage = "[NAME]",
-    .summary = "list everything that a file can say, with units, defaults and ranges",
+    .summary = "list the keys of files with units, defaults and ranges",
     .least_files = 0,
     .most_files = 1,
     .options = options,

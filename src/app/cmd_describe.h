@@ -20,8 +20,13 @@ struct topic_object {
     char key[64], help[256], topic[64];
 };
 
-/// All topics, those of a group together: fixed ones, and one for each record in the lists.
+/// All topics, those of a group together: fixed ones, one for each record in the lists, and one for
+/// each table that several of these share, in the group "shared".
 size_t mf_describe_topics(struct topic topics[DESCRIBE_MOST_TOPICS]);
 
 /// The objects in what a topic is about; returns their number.
 size_t mf_describe_objects(const char *topic, struct topic_object objects[DESCRIBE_MOST_OBJECTS]);
+
+/// The first topic that is about nothing but `table`, or NULL: where a document prints it.
+const struct topic *mf_describe_home(const struct topic *topics, size_t count,
+                                     const struct field *table);

@@ -7,10 +7,10 @@ enum { ENGINE, BANDS, PROJECT, TO };
 
 static const struct command_option options[] = {
     [ENGINE] = {"--engine", "lammps|hoomd|espresso|openmm|gromacs|dl_poly|votca",
-                "program that is to run the result"},
-    [BANDS] = {"--bands", NULL, "also the potential less and plus one standard error"},
+                "program that will run the result"},
+    [BANDS] = {"--bands", NULL, "also the potential minus and plus one standard error"},
     [PROJECT] = {"--project", NULL,
-                 "the nearest friction that the engine has; simulates what that costs"},
+                 "the nearest friction that the engine has; the deviation is simulated"},
     [TO] = {"-o", "DIR", "folder for its files (default: the engine's name, here)"},
     {NULL, NULL, NULL},
 };
@@ -31,7 +31,7 @@ static void tell(void *context, const struct simulation *simulation, uint64_t do
 static enum status run(const struct command_line *line) {
     struct progress progress = mf_progress_begin(line->options.quiet, NULL);
     if (line->own[ENGINE] == NULL)
-        return mf_status_fail(STATUS_BAD_INPUT, "--engine says for what program; one of %s",
+        return mf_status_fail(STATUS_BAD_INPUT, "--engine: expected one of %s",
                               options[ENGINE].value);
     return mf_export_run(&(struct export_request){
         .from = line->files[0],

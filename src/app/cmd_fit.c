@@ -20,12 +20,12 @@ enum { EXPLAIN, RANKS, TARGET, DENSITY, TEMPERATURE, LIVE };
 enum { MOST_RANKS = 100000 };
 
 static const struct command_option options[] = {
-    [EXPLAIN] = {"--explain", NULL, "print what a step will pay for and why; run nothing"},
-    [RANKS] = {"--ranks", "N", "with --explain: how much faster N processes of an MPI job will be"},
-    [TARGET] = {"--target", "DIR", "fit DIR/target.json, or with the next two DIR/rdf.tsv alone"},
-    [DENSITY] = {"--density", "NUMBER", "beads in a unit of volume, which target.json lacks"},
+    [EXPLAIN] = {"--explain", NULL, "print what will be done and what a step costs; run nothing"},
+    [RANKS] = {"--ranks", "N", "with --explain: speed-up of N processes of an MPI job"},
+    [TARGET] = {"--target", "DIR", "folder of target.json; with the next two rdf.tsv is enough"},
+    [DENSITY] = {"--density", "NUMBER", "number density of the beads, without target.json"},
     [TEMPERATURE] = {"--temperature", "NUMBER",
-                     "of the target, which target.json lacks; 1 without target.json"},
+                     "temperature of the target, without target.json; else 1"},
     [LIVE] = CMD_LIVE_OPTION,
     {NULL, NULL, NULL},
 };
@@ -43,9 +43,8 @@ static enum status run_shared(const char *file, const struct command_line *line)
     own.quiet = own.quiet || !ranks_lead();
     const enum status status =
         line->own[LIVE] && mf_ranks_count() > 1
-            ? mf_status_fail(STATUS_BAD_INPUT,
-                             "--live is for a fit in one process; progress.json in "
-                             "the folder of any says how far it is")
+            ? mf_status_fail(STATUS_BAD_INPUT, "--live is for a fit in one process; progress.json "
+                                               "in the folder shows the progress of any")
         : line->own[LIVE] ? mf_cmd_live_run(file, &own, line->own[LIVE])
                           : mf_fit_run(file, &own);
     mf_ranks_end();
@@ -63,8 +62,9 @@ static enum status parse_positive(const char *option, const char *text, double *
 static enum status run_file(const char *file, const struct command_line *line) {
     double ranks = 0;
     if (line->own[RANKS] && !line->own[EXPLAIN])
-        return mf_status_fail(STATUS_BAD_INPUT, "--ranks is for --explain; mpirun -np says how "
-                                                "many processes a fit has");
+        return mf_status_fail(
+            STATUS_BAD_INPUT,
+            "--ranks is for --explain; mpirun -np sets the number of processes of a fit");
     if (line->own[RANKS])
         TRY(parse_positive("--ranks", line->own[RANKS], &ranks));
     if (ranks != floor(ranks) || ranks > MOST_RANKS)
@@ -80,13 +80,10 @@ static enum status run_rdf(const char *file, const char *rdf, const struct comma
     char text[256];
     if (access(rdf, R_OK) != 0)
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "--target: there is no %s, and no rdf.tsv beside it with which "
-                              "--density would do",
-                              file);
+                              "--target: %s not found, nor rdf.tsv for use with --density", file);
     if (line->own[DENSITY] == NULL)
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "--target: there is no %s: it would say density and temperature, as "
-                              "--density and --temperature do",
+                              "--target: %s not found: give --density and --temperature instead",
                               file);
     TRY(parse_positive("--density", line->own[DENSITY], &density));
     if (line->own[TEMPERATURE])

@@ -10,9 +10,9 @@
 enum { START, STAY, PORT };
 
 static const struct command_option options[] = {
-    [START] = {"--start", NULL, "begin at once, not when the page says so"},
-    [STAY] = {"--stay", NULL, "serve on after the end of the run"},
-    [PORT] = {"--port", "N", "of 127.0.0.1; without it any that is free"},
+    [START] = {"--start", NULL, "start at once, not from the page"},
+    [STAY] = {"--stay", NULL, "keep serving after the end of the run"},
+    [PORT] = {"--port", "N", "port of 127.0.0.1; else any free one"},
     {NULL, NULL, NULL},
 };
 
@@ -61,7 +61,7 @@ static enum status run(const struct command_line *line) {
 const struct command cmd_live = {
     .name = "live",
     .usage = "[FILE]",
-    .summary = "see a scene, a run file or a folder of results in a browser, and run them there",
+    .summary = "show and run scenes, run files and results in a browser",
     .least_files = 0,
     .most_files = 1,
     .options = options,

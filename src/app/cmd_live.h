@@ -6,7 +6,7 @@
 
 /// What the option takes, and what it does.
 #define CMD_LIVE_OPTION                                                                            \
-    { "--live", "[=PORT]", "show it in a browser while it runs; its address is printed" }
+    { "--live", "[=PORT]", "show the run in a browser; the address is printed" }
 
 /// Run a scene or run file beside a page.
 /// @param[in] port  the option's value, or its name: any port

@@ -20,11 +20,11 @@ const struct command_option mf_command_common[] = {
     {"--threads", "N",
      "threads (default: all processors; bench engine: 1); results do not depend on it"},
     {"--seed", "N", "seed, instead of the file's"},
-    {"--resume", NULL, "go on with an interrupted run in its folder"},
+    {"--resume", NULL, "continue an interrupted run in its folder"},
     {"--force", NULL, "replace what the folder holds: a fit, an unfinished run, changed files"},
     {"--quiet", NULL, "no progress"},
-    {"--help", NULL, "print a summary of all commands and options, behind a command of that one"},
-    {"--version", NULL, "print the version"},
+    {"--help", NULL, "summary of all commands and options, after a command of that one"},
+    {"--version", NULL, "version"},
     {NULL, NULL, NULL},
 };
 

@@ -157,9 +157,8 @@ static enum status find_command(const char *name, const struct command **command
         }
     }
     if (strcmp(name, "watch") == 0)
-        return mf_status_fail(STATUS_BAD_INPUT,
-                              "there is no command \"watch\" any more: progress.json in the "
-                              "folder of a run says how far it is, mesofit live shows its curves");
+        return mf_status_fail(STATUS_BAD_INPUT, "the command \"watch\" was removed: use mesofit "
+                                                "live, or progress.json in the run's folder");
     mf_nearest_hint(name, names, count, hint, sizeof hint);
     return mf_status_fail(STATUS_BAD_INPUT, "unknown command \"%s\"; %s", name, hint);
 }
@@ -173,8 +172,7 @@ static enum status run(int count, char **words) {
         return mf_status_fail(STATUS_BAD_INPUT, "usage: mesofit %s %s", command->name,
                               command->usage);
     if (line.options.resume && line.options.force)
-        return mf_status_fail(STATUS_BAD_INPUT,
-                              "--resume goes on with what --force would replace: give one of them");
+        return mf_status_fail(STATUS_BAD_INPUT, "--resume and --force exclude each other");
     return command->run(&line);
 }
 

@@ -9,7 +9,9 @@
 #include <stdbool.h>
 #include <string.h>
 
-enum { CELLS = 6 };
+/// Of the tables of keys.
+static const char *const key_titles[] = {"key", "what", "value", "default", NULL};
+enum { CELLS = sizeof key_titles / sizeof *key_titles - 1 };
 
 /// How the parts of a text look in a format.
 struct look {
@@ -20,7 +22,7 @@ struct look {
     void (*titles)(FILE *stream, const char *const *titles);
     /// A row, with as many cells as titles; an empty cell says nothing.
     void (*row)(FILE *stream, const char *const *titles, const char *const *cells);
-    const char *object; ///< printf format of a reference: name and place of a section
+    const char *link; ///< printf format: name and place of a section
 };
 
 // Markdown ----------------------------------------------------------------------------------------
@@ -74,7 +76,7 @@ static const struct look markdown = {
     .paragraph = markdown_paragraph,
     .titles = markdown_titles,
     .row = markdown_row,
-    .object = "object: [%s](#%s)",
+    .link = "[%s](#%s)",
 };
 
 // Man pages ---------------------------------------------------------------------------------------
@@ -143,7 +145,7 @@ static const struct look man = {
     .paragraph = man_paragraph,
     .titles = man_titles,
     .row = man_row,
-    .object = "object: see %s",
+    .link = "%s",
 };
 
 // The text ----------------------------------------------------------------------------------------
@@ -181,49 +183,83 @@ static void print_commands(FILE *stream, const struct look *look) {
     look->paragraph(stream, mf_command_exit_codes);
 }
 
-static void print_field(FILE *stream, const struct look *look, const char *const *titles,
-                        const struct field *field) {
-    char type[256], fallback[64], range[64];
+/// What a key takes: "number [lambda], above 0".
+static void print_field(FILE *stream, const struct look *look, const struct field *field) {
+    char type[256], fallback[64], range[64], value[512];
     mf_fields_type_text(field, type, sizeof type);
     mf_fields_default_text(field, fallback, sizeof fallback);
     mf_fields_range_text(field, range, sizeof range);
-    look->row(stream, titles,
-              (const char *const[CELLS]){field->name, field->help, type, field->unit, fallback,
-                                         strcmp(range, "any") != 0 ? range : ""});
+    const bool has_unit = field->unit[0], has_range = strcmp(range, "any") != 0;
+    snprintf(value, sizeof value, "%s%s%s%s%s%s", type, has_unit ? " [" : "", field->unit,
+             has_unit ? "]" : "", has_range ? ", " : "", has_range ? range : "");
+    look->row(stream, key_titles,
+              (const char *const[CELLS]){
+                  field->name, field->help, value,
+                  field->type == FIELD_CHOICE || strcmp(fallback, "none") != 0 ? fallback : ""});
 }
 
-/// An object that has a section, by its topic, or a chapter, by its group.
+static const struct topic *find_topic(const struct topic *topics, size_t count, const char *name) {
+    for (size_t k = 0; k < count; k++)
+        if (strcmp(topics[k].name, name) == 0)
+            return &topics[k];
+    return NULL;
+}
+
+/// The place of a topic's section, or where there is none of a group's chapter.
 static void refer(char *text, size_t size, const struct look *look, const char *name,
                   const struct topic *topics, size_t count) {
     char place[64];
-    bool section = false;
-    for (size_t k = 0; k < count; k++)
-        section = section || strcmp(topics[k].name, name) == 0;
-    snprintf(place, sizeof place, "%s%s", section ? "" : "keys-", name);
-    snprintf(text, size, look->object, name, place);
+    snprintf(place, sizeof place, "%s%s", find_topic(topics, count, name) ? "" : "keys-", name);
+    snprintf(text, size, look->link, name, place);
+}
+
+/// The table of a topic's own keys, and of the objects in it.
+static void print_keys(FILE *stream, const struct look *look, const struct topic *topic,
+                       const struct topic *topics, size_t count) {
+    struct topic_object objects[DESCRIBE_MOST_OBJECTS];
+    const size_t object_count = mf_describe_objects(topic->name, objects);
+    char place[128];
+    bool begun = false;
+    for (size_t t = 0; topic->tables[t]; t++) {
+        const struct topic *home = mf_describe_home(topics, count, topic->tables[t]);
+        if (home && home != topic)
+            continue;
+        for (const struct field *field = topic->tables[t]; field->name; field++, begun = true) {
+            if (!begun)
+                look->titles(stream, key_titles);
+            print_field(stream, look, field);
+        }
+    }
+    if (object_count > 0 && !begun)
+        look->titles(stream, key_titles);
+    for (size_t k = 0; k < object_count; k++) {
+        const struct topic *inner = find_topic(topics, count, objects[k].topic);
+        const bool repeats = inner && strcmp(inner->summary, objects[k].help) == 0;
+        refer(place, sizeof place, look, objects[k].topic, topics, count);
+        look->row(
+            stream, key_titles,
+            (const char *const[CELLS]){objects[k].key, repeats ? "" : objects[k].help, place, ""});
+    }
 }
 
 static void print_topic(FILE *stream, const struct look *look, const struct topic *topic,
                         const struct topic *topics, size_t count) {
-    static const char *const titles[] = {"key", "what", "type", "unit", "default", "range", NULL};
-    struct topic_object objects[DESCRIBE_MOST_OBJECTS];
-    const size_t object_count = mf_describe_objects(topic->name, objects);
-    char kind[128];
+    char text[256], place[128];
+    size_t used = 0;
     look->heading(stream, 2, topic->name);
     look->paragraph(stream, topic->summary);
-    bool any = object_count > 0;
-    for (size_t t = 0; topic->tables[t]; t++)
-        any = any || topic->tables[t]->name;
-    if (any)
-        look->titles(stream, titles);
-    for (size_t t = 0; topic->tables[t]; t++)
-        for (const struct field *field = topic->tables[t]; field->name; field++)
-            print_field(stream, look, titles, field);
-    for (size_t k = 0; k < object_count; k++) {
-        refer(kind, sizeof kind, look, objects[k].topic, topics, count);
-        look->row(stream, titles,
-                  (const char *const[CELLS]){objects[k].key, objects[k].help, kind, "", "", ""});
+    print_keys(stream, look, topic, topics, count);
+    // What several topics share stands in one section.
+    for (size_t t = 0; topic->tables[t]; t++) {
+        const struct topic *home = mf_describe_home(topics, count, topic->tables[t]);
+        if (home == NULL || home == topic)
+            continue;
+        refer(place, sizeof place, look, home->name, topics, count);
+        used += (size_t)snprintf(text + used, sizeof text - used, "%s%s",
+                                 used ? ", " : "Keys as in ", place);
     }
+    if (used)
+        look->paragraph(stream, text);
 }
 
 static void print_topics(FILE *stream, const struct look *look, const struct topic *topics,
@@ -242,26 +278,21 @@ static void print_body(FILE *stream, const struct look *look, const struct topic
                        size_t count) {
     print_commands(stream, look);
     look->heading(stream, 1, "Files");
-    look->paragraph(stream, "Run files, for `mesofit fit`, and scene files, for `mesofit "
-                            "simulate`, are strict JSON. A run file begins with \"run\" below, a "
-                            "scene file with \"scene\"; what is an object has a section of its "
-                            "own. The groups \"conservative\" and \"dissipative\" are laws, "
-                            "chosen by {\"law\": …}; \"dynamics\" are integrators, chosen by "
-                            "{\"integrator\": …}; \"method\" are methods, chosen by "
-                            "{\"name\": …}. {\"law\": \"none\"} is no law at all. "
-                            "Units are written as reduced ones: energy k_B T_0, length "
-                            "lambda, mass mu, time tau = lambda sqrt(mu/(k_B T_0)). With "
-                            "\"units\" at its top, all numbers of a file are in nm, ps, u, kJ/mol, "
-                            "K and bar, or angstrom, fs, g/mol, kcal/mol, K and atm, of the same "
-                            "kind.");
+    look->paragraph(
+        stream,
+        "Run files (`mesofit fit`, section \"run\") and scene files (`mesofit simulate`, section "
+        "\"scene\") are strict JSON. Laws of \"conservative\" and \"dissipative\" are chosen by "
+        "{\"law\": …}, {\"law\": \"none\"} for none, \"dynamics\" by {\"integrator\": …}, "
+        "\"method\" by {\"name\": …}. Units here are the reduced ones: energy k_B T_0, length "
+        "lambda, mass mu, time tau = lambda sqrt(mu/(k_B T_0)). With \"units\" at its top a file "
+        "is in nm, ps, u, kJ/mol, K and bar, or in angstrom, fs, g/mol, kcal/mol, K and atm.");
     print_topics(stream, look, topics, count);
 }
 
 void mf_reference_print_markdown(FILE *stream, const struct topic *topics, size_t count) {
-    fprintf(stream, "# Reference\n\nThis page is made by `make docs` from what `mesofit describe "
-                    "--format markdown` prints; the man page\n`mesofit(1)` says the same. What "
-                    "runs leave in their folders, every table and every key of\n`summary.json`, "
-                    "is told in [files.md](files.md#results).\n");
+    fprintf(stream, "# Reference\n\nThis page is made by `make docs`; the man page `mesofit(1)` "
+                    "has the same text, `mesofit describe TOPIC`\nall keys of a section. The files "
+                    "that runs write are in [files.md](files.md#results).\n");
     print_body(stream, &markdown, topics, count);
 }
 

@@ -20,7 +20,7 @@ struct parameters {
     {                                                                                              \
         "angle", FIELD_NUMBER, MEMBER(angle), .initial = 180, .minimum = 0, .maximum = 180,        \
                                               .unit = "degrees",                                   \
-                                              .help = "theta_0, without strain; 180: straight"     \
+                                              .help = "theta_0, the equilibrium angle"             \
     }
 
 static double given_rest(const void *parameters) {
@@ -43,9 +43,7 @@ static void harmonic_evaluate(const void *parameters, size_t count, const double
 }
 
 static const struct field harmonic_fields[] = {
-    STRENGTH("per rad^2, in U = k (theta - theta_0)^2/2, as GROMACS has it; the K of LAMMPS is "
-             "k/2"),
-    ANGLE, FIELD_END};
+    STRENGTH("k of GROMACS, per rad^2; the K of LAMMPS is k/2"), ANGLE, FIELD_END};
 
 const struct bonded_law mf_angle_harmonic = {
     .name = "harmonic",
@@ -65,9 +63,8 @@ static void cosine_evaluate(const void *parameters, size_t count, const double *
     }
 }
 
-static const struct field cosine_fields[] = {
-    STRENGTH("in U = k (1 + cos theta), as the K of LAMMPS; a chain's bending stiffness"),
-    FIELD_END};
+static const struct field cosine_fields[] = {STRENGTH("bending stiffness, the K of LAMMPS"),
+                                             FIELD_END};
 
 const struct bonded_law mf_angle_cosine = {
     .name = "cosine",
@@ -90,9 +87,7 @@ static void squared_evaluate(const void *parameters, size_t count, const double 
 }
 
 static const struct field squared_fields[] = {
-    STRENGTH("in U = k (cos theta - cos theta_0)^2/2, as GROMACS has it (\"G96\"); the K of LAMMPS "
-             "is k/2"),
-    ANGLE, FIELD_END};
+    STRENGTH("k of GROMACS (\"G96\"); the K of LAMMPS is k/2"), ANGLE, FIELD_END};
 
 const struct bonded_law mf_angle_cosine_squared = {
     .name = "cosine-squared",
@@ -103,7 +98,7 @@ const struct bonded_law mf_angle_cosine_squared = {
     .rest = given_rest,
 };
 
-BONDED_TABLE(mf_angle_table, "columns theta in degrees, U",
+BONDED_TABLE(mf_angle_table, "columns theta [degrees], U",
              "cubic spline through the points of a file, straight lines beyond its ends");
 
 // Geometry: a = r_0 − r_1 and b = r_2 − r_1 -------------------------------------------------------

@@ -35,9 +35,9 @@ static double harmonic_rest(const void *parameters) {
 #define HARMONIC(member) .offset = offsetof(struct harmonic, member)
 static const struct field harmonic_fields[] = {
     {"k", FIELD_NUMBER, HARMONIC(k), .required = true, AT_LEAST_ZERO, .unit = "k_B T_0/lambda^2",
-     .help = "in U = k (r - length)^2/2, as GROMACS has it; the K of LAMMPS is k/2"},
+     .help = "k of GROMACS; the K of LAMMPS is k/2"},
     {"length", FIELD_NUMBER, HARMONIC(length), .required = true, AT_LEAST_ZERO, .unit = "lambda",
-     .help = "of the bond without strain"},
+     .help = "equilibrium length"},
     FIELD_END,
 };
 
@@ -96,9 +96,9 @@ static double fene_longest(const void *parameters) {
 #define FENE(member) .offset = offsetof(struct fene, member)
 static const struct field fene_fields[] = {
     {"k", FIELD_NUMBER, FENE(k), .initial = 30, AT_LEAST_ZERO, .unit = "k_B T_0/lambda^2",
-     .help = "in U = -k R^2 ln(1 - (r/R)^2)/2"},
+     .help = "k, the curvature at r = 0"},
     {"longest", FIELD_NUMBER, FENE(longest), .initial = 1.5, POSITIVE, .unit = "lambda",
-     .help = "R; a bond that is longer ends the simulation as unstable"},
+     .help = "R; a longer bond ends the simulation as unstable"},
     FIELD_END,
 };
 

@@ -56,8 +56,8 @@ static enum status check_points(const struct bonded_kind *kind, const double *q,
         return mf_status_fail(STATUS_BAD_INPUT, "a table needs at least 4 points, not %zu", count);
     for (size_t k = 1; k < count; k++)
         if (!(q[k] > q[k - 1]))
-            return mf_status_fail(STATUS_BAD_INPUT, "the first column does not grow at point %zu",
-                                  k + 1);
+            return mf_status_fail(STATUS_BAD_INPUT,
+                                  "the first column does not increase at point %zu", k + 1);
     const double span = q[count - 1] - q[0];
     if (kind->periodic && fabs(span - 360) > 360 * rounding)
         return mf_status_fail(STATUS_BAD_INPUT, "%s %s's table spans 360 degrees, not %g",

@@ -40,7 +40,7 @@ static void cosines_evaluate(const void *parameters, size_t count, const double 
                               .initial = 0, ANY_NUMBER, .unit = "k_B T_0", .help = text            \
     }
 static const struct field cosines_fields[] = {
-    COSINE(0, "C_0; psi is 0 for trans, 180 degrees from the phi of \"periodic\""),
+    COSINE(0, "C_0"),
     COSINE(1, "C_1 cos psi"),
     COSINE(2, "C_2 (cos psi)^2"),
     COSINE(3, "C_3 (cos psi)^3"),
@@ -85,12 +85,11 @@ static double periodic_rest(const void *parameters) {
 #define PERIODIC(member) .offset = offsetof(struct periodic, member)
 static const struct field periodic_fields[] = {
     {"k", FIELD_NUMBER, PERIODIC(k), .required = true, ANY_NUMBER, .unit = "k_B T_0",
-     .help =
-         "in U = k [1 + cos(n phi - phase)]; phi is 0 for cis and 180 degrees for trans (IUPAC)"},
+     .help = "k; phi is 0 for cis and 180 degrees for trans (IUPAC)"},
     {"multiplicity", FIELD_INTEGER, PERIODIC(multiplicity), .initial = 1, .minimum = 1,
      .maximum = 12, .unit = "", .help = "n, the number of minima"},
     {"phase", FIELD_NUMBER, PERIODIC(phase), .initial = 0, .minimum = -360, .maximum = 360,
-     .unit = "degrees", .help = "at which n phi has its maximum, if k is above 0"},
+     .unit = "degrees", .help = "n phi at the maximum, if k is above 0"},
     FIELD_END,
 };
 
@@ -103,8 +102,7 @@ const struct bonded_law mf_dihedral_periodic = {
     .rest = periodic_rest,
 };
 
-BONDED_TABLE(mf_dihedral_table,
-             "columns phi in degrees, U: 360 of them; 0 is cis and 180 trans (IUPAC)",
+BONDED_TABLE(mf_dihedral_table, "columns phi, U: 360 degrees; 0 is cis and 180 trans (IUPAC)",
              "periodic cubic spline through the points of a file");
 
 // Geometry: F = r_0 − r_1, G = r_1 − r_2 and H = r_3 − r_2 ----------------------------------------

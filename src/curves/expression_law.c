@@ -93,8 +93,8 @@ static double omega_value(const void *parameters, double r) {
          MEMBER(formula),                                                                          \
          .required = true,                                                                         \
          .unit = "",                                                                               \
-         .help = "of the distance r: numbers, + - * / ^ and exp, such as 4*(1/r^12 - 1/r^6); "     \
-                 "r and value in the units of the file"},                                          \
+         .help = "formula with + - * / ^ and exp, as 4*(1/r^12 - 1/r^6), in units of the"          \
+                 " file"},                                                                         \
             {"inner_cutoff", FIELD_NUMBER,       MEMBER(inner_cutoff), .initial = 0,               \
              .minimum = 0,   .maximum = DBL_MAX, .unit = "lambda",     .help = inner_help},        \
             {"cutoff",                                                                             \
@@ -109,8 +109,7 @@ static double omega_value(const void *parameters, double r) {
     }
 
 static const struct field potential_fields[] =
-    FIELDS("below it the potential is a straight line with the slope there",
-           "distance beyond which the potential is 0");
+    FIELDS("r below which the potential is a straight line", "distance beyond which it is 0");
 
 static const struct field omega_fields[] =
     FIELDS("r_0: omega is 0 at and below it", "r_c: omega is 0 beyond it");

@@ -50,7 +50,7 @@ static enum status read_number(struct reader *reader) {
     char *end;
     const double value = strtod(reader->at, &end);
     if (!isfinite(value) || strpbrk(reader->at, "xX") == reader->at + 1)
-        return fault(reader, "this is no decimal number that a double holds");
+        return fault(reader, "not a decimal number within the range of a double");
     TRY(push(reader, EXPRESSION_CONSTANT, value));
     reader->at = end;
     return STATUS_OK;
@@ -73,7 +73,7 @@ static enum status read_name(struct reader *reader) {
         return fault(reader, "this name is not known: there are r and exp(...)");
     reader->at += length;
     if (!take(reader, "("))
-        return fault(reader, "a \"(\" is missing behind exp");
+        return fault(reader, "expected \"(\" after exp");
     TRY(read_parentheses(reader));
     return push(reader, EXPRESSION_EXP, 0);
 }
@@ -86,8 +86,8 @@ static enum status read_atom(struct reader *reader) {
         return read_number(reader);
     if (isalpha((unsigned char)*reader->at))
         return read_name(reader);
-    return fault(reader, *reader->at ? "a number, r, exp or \"(\" is expected"
-                                     : "it ends where a number, r, exp or \"(\" is expected");
+    return fault(reader, *reader->at ? "expected a number, r, exp or \"(\""
+                                     : "it ends where a number, r, exp or \"(\" is needed");
 }
 
 /// What was read since node `begin` becomes one constant, if it is a number.
@@ -172,6 +172,6 @@ enum status mf_expression_parse(struct expression *expression, const char *text)
     TRY(read_sum(&reader));
     skip_blanks(&reader);
     if (*reader.at)
-        return fault(&reader, "an operator is expected: + - * / ^");
+        return fault(&reader, "expected an operator: + - * / ^");
     return STATUS_OK;
 }

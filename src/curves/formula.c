@@ -34,7 +34,7 @@ static const struct field lennard_jones_fields[] = {
     {"sigma", FIELD_NUMBER, LJ(sigma), .initial = 1, POSITIVE, .unit = "lambda",
      .help = "distance at which the unshifted potential is 0"},
     {"cutoff", FIELD_NUMBER, LJ(cutoff), .initial = 2.5, POSITIVE, .unit = "lambda",
-     .help = "distance beyond which the potential is 0"},
+     .help = "distance beyond which it is 0"},
     FIELD_END,
 };
 
@@ -62,7 +62,7 @@ static const struct field soft_repulsion_fields[] = {
     {"a", FIELD_NUMBER, SOFT(a), .initial = 25, ANY_NUMBER, .unit = "k_B T_0/lambda",
      .help = "largest force"},
     {"cutoff", FIELD_NUMBER, SOFT(cutoff), .initial = 1, POSITIVE, .unit = "lambda",
-     .help = "distance beyond which the force is 0"},
+     .help = "distance beyond which it is 0"},
     FIELD_END,
 };
 
@@ -94,7 +94,7 @@ static const struct field gaussian_fields[] = {
     {"sigma", FIELD_NUMBER, GAUSS(sigma), .initial = 1, POSITIVE, .unit = "lambda",
      .help = "width: epsilon/e at r = sigma"},
     {"cutoff", FIELD_NUMBER, GAUSS(cutoff), .initial = 3.2, POSITIVE, .unit = "lambda",
-     .help = "distance beyond which the potential is 0"},
+     .help = "distance beyond which it is 0"},
     FIELD_END,
 };
 
@@ -134,7 +134,7 @@ static const struct field power_omega_fields[] = {
      .help = "omega extrapolated to r = 0; sigma^2 is Groot and "
              "Warren's gamma"},
     {"exponent", FIELD_NUMBER, OMEGA(exponent), .initial = 1, POSITIVE, .unit = "",
-     .help = "s in omega = sigma (1 - r/r_c)^s"},
+     .help = "s, the exponent"},
     {"inner_cutoff", FIELD_NUMBER, OMEGA(inner_cutoff), .initial = 0, AT_LEAST_ZERO,
      .unit = "lambda", .help = "r_0: omega is 0 at and below it"},
     {"cutoff", FIELD_NUMBER, OMEGA(cutoff), .initial = 1, POSITIVE, .unit = "lambda",

@@ -35,10 +35,10 @@ static const struct field fields[] = {
      .unit = "", .help = "columns r, value"},
     {"format", FIELD_CHOICE, .offset = offsetof(struct sampled_parameters, format),
      .choices = formats, .initial = SAMPLED_COLUMNS, .unit = "",
-     .help = "votca: a .pot in nm and kJ/mol, by the scene's \"units\""},
+     .help = "votca: a .pot in nm and kJ/mol; the scene needs \"units\""},
     {"cutoff", FIELD_NUMBER, .offset = offsetof(struct sampled_parameters, cutoff), .initial = 0,
      .minimum = 0, .maximum = DBL_MAX, .unit = "lambda",
-     .help = "distance beyond which the value is 0; 0 means the table's last r"},
+     .help = "distance beyond which it is 0; 0: the last r"},
     FIELD_END,
 };
 
@@ -54,7 +54,7 @@ const struct curve_family mf_sampled_family = {
 
 const struct curve_family mf_sampled_omega_family = {
     .name = "table",
-    .summary = "straight pieces between the points of a file, as omega.tsv; 0 before the first",
+    .summary = "linear interpolation of the points of a file, as omega.tsv; 0 before the first",
     .fields = fields,
     .size = sizeof(struct sampled_parameters),
     .value = omega_value,
@@ -69,7 +69,7 @@ enum status mf_sampled_set_points(struct curve *curve, const double *r, const do
         return mf_status_fail(STATUS_BAD_INPUT, "a table needs at least 3 points, not %zu", count);
     for (size_t k = 1; k < count; k++)
         if (!(r[k] > r[k - 1]))
-            return mf_status_fail(STATUS_BAD_INPUT, "r does not grow at point %zu", k + 1);
+            return mf_status_fail(STATUS_BAD_INPUT, "r does not increase at point %zu", k + 1);
     const double last = r[count - 1];
     // One part in 10^9 forgives a cutoff that was rounded when the table was written.
     if (p->cutoff > last * (1 + 1e-9))

@@ -60,11 +60,11 @@ static enum status fill_base(const struct fit_file *fit, const struct unknowns *
     else if (base == BASE_MEAN_FORCE || (base == BASE_AUTO && joined))
         mf_potential_grid_start_pairs(&unknowns->potential, &without, curve);
     else if (joined)
-        return mf_status_fail(STATUS_BAD_INPUT, "unknowns.potential.base: the hypernetted chain "
-                                                "knows no molecules; \"mean-force\" does");
+        return mf_status_fail(STATUS_BAD_INPUT, "unknowns.potential.base: the hypernetted chain is "
+                                                "not for molecules; use \"mean-force\"");
     else if (base == BASE_HNC && fit->problem.scene.box.dimensions != 3)
         return mf_status_fail(STATUS_BAD_INPUT, "unknowns.potential.base: the hypernetted chain is "
-                                                "for three dimensions; \"mean-force\" is not");
+                                                "for three dimensions; use \"mean-force\"");
     else
         return fill_hnc(&without, unknowns, base == BASE_HNC, curve);
     return STATUS_OK;

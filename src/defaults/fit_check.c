@@ -83,13 +83,14 @@ static bool is_inverted(const struct fit_file *fit, int kind) {
 static enum status check_molecules(const struct fit_file *fit, const char *file) {
     if (scene_has_molecules(&fit->scene.molecules) && !fit->method->knows_molecules)
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "%s: method.name: \"%s\" knows no molecules; \"imc\", \"ibi\", "
+                              "%s: method.name: \"%s\" does not fit molecules; \"imc\", \"ibi\", "
                               "\"auto\", \"gauss-newton\" and the optimisers do",
                               file, fit->method->name);
     for (int kind = 0; mf_targets_name(kind); kind++)
         if (is_inverted(fit, kind) && !fit->files.use[kind].fitted)
-            return mf_status_fail(STATUS_BAD_INPUT, "%s: target.%s.fitted: it is all that finds U",
-                                  file, mf_targets_name(kind));
+            return mf_status_fail(STATUS_BAD_INPUT,
+                                  "%s: target.%s.fitted: U is found from this target alone", file,
+                                  mf_targets_name(kind));
     return STATUS_OK;
 }
 
@@ -150,11 +151,10 @@ static enum status check_bins(const struct fit_file *fit, const char *file) {
         bins += fit->problem.group[g].bins.count;
     if (fit->method->kind != INVERSE_INVERSION || bins <= INVERSION_MOST_BINS)
         return STATUS_OK;
-    return mf_status_fail(
-        STATUS_BAD_INPUT,
-        "%s: target.rdf: an inversion takes %d bins at most, of all pairs, and there "
-        "are %zu: join bins, or end the target by \"cutoff\"",
-        file, INVERSION_MOST_BINS, bins);
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "%s: target.rdf: expected at most %d bins of all pairs, found %zu: merge "
+                          "bins by \"bin_width\", or end the target by \"cutoff\"",
+                          file, INVERSION_MOST_BINS, bins);
 }
 
 /// What moves the curves of all pairs would move that of pairs that there are not.
@@ -180,11 +180,10 @@ static enum status check_interactions(const struct fit_file *fit, const char *fi
     const int others = fit->scene.setup.interactions - scene_has_molecules(&fit->scene.molecules);
     if (fit->method->kind != INVERSE_INVERSION || others == 0)
         return STATUS_OK;
-    return mf_status_fail(
-        STATUS_BAD_INPUT,
-        "%s: scene.interactions: \"%s\" samples pairs and molecules alone; the methods that "
-        "simulate candidates, as \"gauss-newton\", carry them",
-        file, fit->method->name);
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "%s: scene.interactions: \"%s\" samples only pairs and molecules; use a "
+                          "method that simulates candidates, such as \"gauss-newton\"",
+                          file, fit->method->name);
 }
 
 /// Without velocities there is no VACF to be measured, and without time nothing that needs it.
@@ -193,7 +192,7 @@ static enum status check_velocities(const struct fit_file *fit, const char *file
     for (int kind = 0; kind < TARGETS && setup->integrator->samples; kind++)
         if (fit->files.given[kind] && mf_observable_kind(kind).observable->of_time)
             return mf_status_fail(STATUS_BAD_INPUT,
-                                  "%s: target.%s: \"%s\" knows neither time nor velocities", file,
+                                  "%s: target.%s: \"%s\" has neither time nor velocities", file,
                                   mf_targets_name(kind), setup->integrator->name);
     if (simulation_has_velocities(setup) || !fit->files.given[TARGET_VACF])
         return STATUS_OK;
@@ -225,11 +224,10 @@ static enum status check_memory(const struct fit_file *fit, const char *file) {
             continue;
         const double factor = mf_units_factor(&fit->scene.units, number->unit);
         if (strcmp(field, ".time") == 0 && number->minimum < 2 * step)
-            return mf_status_fail(
-                STATUS_BAD_INPUT,
-                "%s: unknowns.numbers.%s.minimum: %.4g is below two time steps, %.4g: what is "
-                "forgotten so soon is \"omega\"",
-                file, number->name, number->minimum * factor, 2 * step * factor);
+            return mf_status_fail(STATUS_BAD_INPUT,
+                                  "%s: unknowns.numbers.%s.minimum: %.4g is below two time steps, "
+                                  "%.4g: use \"omega\" for so short a memory",
+                                  file, number->name, number->minimum * factor, 2 * step * factor);
         if (strcmp(field, ".frequency") == 0 && number->maximum * step > 0.5)
             return mf_status_fail(STATUS_BAD_INPUT,
                                   "%s: unknowns.numbers.%s.maximum: %.4g is beyond %.4g, half a "
@@ -294,7 +292,7 @@ enum status mf_fit_check(const struct fit_file *fit, const char *file) {
     if (files->given[TARGET_ETD])
         TRY(check_range(fit, file, "etd", target_files_etd(files)->grid.r_maximum));
     if (mf_targets_count(&fit->problem.targets) == 0)
-        return mf_status_fail(STATUS_BAD_INPUT, "%s: target: nothing is to be fitted%s", file,
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: target: nothing to fit%s", file,
                               fit->constraints.count > 0
                                   ? ": what has a target is a constraint, whose law is known"
                                   : "");

@@ -168,7 +168,7 @@ static enum status choose_count(struct fit_choice *c) {
                          : "enough for the statistics, and the box is wider than twice the range",
         target_files_rdf(&c->read->files)->member[0].parameters.particles > 0
             ? ""
-            : "; g(r) is taken for that of as many, since its \"particles\" are not said");
+            : "; g(r) is taken for that of as many, since its \"particles\" are not given");
     return mf_fit_choice_give(c, "scene.particles", mf_placement_count_fields, "count", c->count);
 }
 
@@ -230,8 +230,8 @@ static enum status choose_time_step(struct fit_choice *c) {
                           "within 0.3 %% of their variance",
                           step);
     else
-        mf_fit_choice_say(c, "time step %s: beads move a fiftieth of the way to their neighbours",
-                          step);
+        mf_fit_choice_say(
+            c, "time step %s: beads move a fiftieth of the distance to their neighbours", step);
     return mf_fit_choice_give(c, "scene", mf_scene_fields, "time_step", c->time_step);
 }
 

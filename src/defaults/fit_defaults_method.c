@@ -163,7 +163,8 @@ enum status mf_fit_defaults_method(struct fit_choice *c) {
     }
     if (!simulates)
         return STATUS_OK;
-    mf_fit_choice_say(c, "method \"%s\": it finds %s from simulations as long as the targets look",
+    mf_fit_choice_say(c,
+                      "method \"%s\": it finds %s from simulations as long as the targets' windows",
                       method->name, c->finds[UNKNOWN_OMEGA] ? "omega" : "what is unknown");
     return choose_rounds(c, fields_with(method, "equilibration"));
 }
@@ -224,8 +225,8 @@ enum status mf_fit_defaults_verification(struct fit_choice *c) {
                                            "and method, and T known within a third of a per cent"
                       : counts == wanted ? "so that the difference of g is known within a tenth "
                                            "of it"
-                      : looks == wanted  ? "20 times as long as the targets look"
-                                         : "the least of which errors can be told";
+                      : looks == wanted  ? "20 times as long as the targets' windows"
+                                         : "the least that gives errors";
     if (mf_fit_choice_lacks(c->root, path, "samples"))
         mf_fit_choice_say(c, "verification: %.0f simulations of %.0f samples, %s", replicas,
                           samples, why);

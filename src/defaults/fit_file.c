@@ -17,8 +17,7 @@
 const struct field mf_fit_core_fields[] = {
     {"threshold", FIELD_NUMBER, MEMBER(threshold), .initial = 1e-3, .minimum = 0, .maximum = 1,
      .unit = "",
-     .help = "bins near r = 0 in which the target is below this, or below two of its standard "
-             "errors, are the core"},
+     .help = "g, if larger than two standard errors, below which bins near r = 0 are the core"},
     {"stiffness", FIELD_NUMBER, MEMBER(stiffness), .initial = 2000, .minimum = 0,
      .maximum = DBL_MAX, .unit = "k_B T_0/lambda^2",
      .help = "curvature of the potential in the core"},
@@ -50,15 +49,16 @@ static bool knows(const struct inverse_method *method, const char *key) {
 
 /// What files of earlier versions may say.
 static void refuse_removed(const struct inverse_method *method, struct json_object *object) {
-    static const char usual[] = "what was its default is taken always; leave it out";
+    static const char usual[] = "its default is always used; leave it out";
     static const struct {
         const char *key, *now, *reason; ///< what is always so now
     } removed[] = {
-        {"asynchronous", "no", "candidates are measured by rounds alone; leave it out"},
-        {"regularisation", "noise", "the step is as smooth as the noise asks; leave it out"},
+        {"asynchronous", "no", "candidates are always measured in rounds; leave it out"},
+        {"regularisation", "noise",
+         "the smoothness of the step follows from the noise; leave it out"},
         {"strength", "0", "it is chosen from the noise; leave it out"},
-        {"islands", "1", "all of a population breed with all; leave it out"},
-        {"migration", "5", "all of a population breed with all; leave it out"},
+        {"islands", "1", "the population is not divided any more; leave it out"},
+        {"migration", "5", "the population is not divided any more; leave it out"},
         {"common_noise", "no", "each candidate has random numbers of its own; leave it out"},
         {"restarts", "0", "leave it out, and begin again with another \"seed\""},
         {"remeasurements", "2", usual},
@@ -107,18 +107,16 @@ static void refuse_foreign(struct json_object *scene, int unknown) {
     if (unknown & SCENE_FITS_POTENTIAL)
         mf_json_refuse(
             scene, "conservative",
-            "it is to be found; \"start\" in \"unknowns.potential\" takes a law to begin "
-            "with");
+            "it is to be found; give an initial law as \"start\" of \"unknowns.potential\"");
     if (unknown & SCENE_FITS_OMEGA)
-        mf_json_refuse(
-            scene, "dissipative",
-            "it is to be found; \"start\" in \"unknowns.omega\" takes a law to begin with");
+        mf_json_refuse(scene, "dissipative",
+                       "it is to be found; give an initial law as \"start\" of \"unknowns.omega\"");
     if (unknown & SCENE_FITS_TRANSVERSE)
-        mf_json_refuse(scene, "dissipative_transverse",
-                       "it is to be found; \"start\" in \"unknowns.omega_transverse\" takes a law "
-                       "to begin with");
-    mf_json_refuse(scene, "seed", "it stands at the top of a run file");
-    mf_json_refuse(scene, "measure", "\"method\" and \"verification\" say when a fit samples");
+        mf_json_refuse(
+            scene, "dissipative_transverse",
+            "it is to be found; give an initial law as \"start\" of \"unknowns.omega_transverse\"");
+    mf_json_refuse(scene, "seed", "it belongs at the top of a run file");
+    mf_json_refuse(scene, "measure", "\"method\" and \"verification\" set the sampling of a fit");
     for (size_t k = 0; mf_observables[k]; k++)
         mf_json_refuse(scene, mf_observables[k]->name, "a fit measures what its \"target\" names");
 }

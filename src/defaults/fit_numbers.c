@@ -32,7 +32,7 @@ static const char *not_a_number(const struct field *field) {
         return NULL;
     case FIELD_INTEGER:
     case FIELD_SEED:
-        return "it is an integer, and only numbers that change little by little can be found";
+        return "it is an integer; only real numbers can be found";
     case FIELD_LENGTHS:
         return "it is several numbers";
     case FIELD_TEXT:
@@ -72,7 +72,7 @@ static void add_top(struct entries *entries, const struct scene *scene) {
         const char *name, *fixed;
     } fixed[] = {{"time_step", "targets are measured in whole time steps"},
                  {"skin", "it changes the speed, not the results"},
-                 {"temperature_limit", "it only says when a simulation has failed"}};
+                 {"temperature_limit", "it only defines when a simulation has failed"}};
     static const size_t count = sizeof fixed / sizeof *fixed;
     const struct simulation_setup *setup = &scene->setup;
     for (const struct field *field = mf_scene_fields; field->name; field++) {
@@ -84,7 +84,7 @@ static void add_top(struct entries *entries, const struct scene *scene) {
                                     .offset = is_step
                                                   ? offsetof(struct simulation_setup, time_step)
                                                   : offsetof(struct simulation_setup, temperature)};
-        const char *why = is_free ? NULL : "it is no property of the fluid";
+        const char *why = is_free ? NULL : "it is not a property of the fluid";
         for (size_t k = 0; k < count && !is_free; k++)
             why = strcmp(fixed[k].name, field->name) == 0 ? fixed[k].fixed : why;
         one[0].offset = 0;
@@ -161,7 +161,7 @@ const struct scene_law *mf_fit_numbers_law(const struct scene *scene, enum inver
 
 static void list(struct entries *entries, const struct scene *scene) {
     static const char converts[] = "it converts results, and changes none";
-    static const char places[] = "it says how many particles there are, or where they begin";
+    static const char places[] = "it sets the number of particles or where they start";
     const struct simulation_setup *setup = &scene->setup;
     const struct entry nowhere = {.place = INVERSE_OF_SETUP};
     const struct entry dynamics = {.place = INVERSE_OF_DYNAMICS};
@@ -216,8 +216,7 @@ static enum status fault_unknown(struct json_object *numbers, const char *path,
     const bool in_omega =
         (scene->unknown & SCENE_FITS_OMEGA) && strncmp(path, "dissipative.", 12) == 0;
     if (in_potential || in_omega) {
-        mf_json_fault(numbers, path,
-                      "%s is an unknown curve itself; \"curve\" says what it is made of",
+        mf_json_fault(numbers, path, "%s is an unknown curve itself; set its form by \"curve\"",
                       mf_inverse_unknown_names[in_potential ? UNKNOWN_POTENTIAL : UNKNOWN_OMEGA]);
         return STATUS_OK;
     }

@@ -35,7 +35,7 @@ static enum status check_keys(const struct json_object *states, const char *file
         if (!known)
             return mf_status_fail(STATUS_BAD_INPUT,
                                   "%s: %s.%s.%.80s: a state has \"scene\", \"target\" and "
-                                  "\"verification\"; what all share stands outside",
+                                  "\"verification\"; shared keys belong outside",
                                   file, key, name, member);
     }
     return STATUS_OK;
@@ -46,8 +46,8 @@ static enum status check_names(const struct json_object *states, const char *fil
     for (*count = 0; (name = mf_json_key(states, *count)); ++*count) {
         if (!is_plain(name))
             return mf_status_fail(STATUS_BAD_INPUT,
-                                  "%s: %s: \"%.80s\": a state is called by letters, digits, _, - "
-                                  "and ., %d of them at most",
+                                  "%s: %s: \"%.80s\": expected a state name of letters, digits, _, "
+                                  "- and ., at most %d",
                                   file, key, name, FIT_STATE_NAME_SIZE - 1);
         TRY(check_keys(states, file, name));
     }

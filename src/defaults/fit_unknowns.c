@@ -50,13 +50,13 @@ static void enter_group(struct scene_fitted *fitted, int order, const char *name
                         const struct json_object *known, struct json_object *from) {
     const bool has_law = mf_json_is_member(known, name);
     if (has_law && fitted->told)
-        mf_json_fault(from, name, "it is to be found, and \"scene.%s\" has a law for it",
+        mf_json_fault(from, name, "it is to be found, but \"scene.%s\" has a law for it",
                       mf_bonded_kinds[order]->plural);
     if (has_law || fitted->count[order] == MOLECULES_MOST_GROUPS)
         return;
     if (!mf_topology_is_name(name)) {
         mf_json_fault(from, name,
-                      "a group is called by up to %d letters, digits, _ and -, " OWN_WORDS,
+                      "expected a group name of up to %d letters, digits, _ and -, " OWN_WORDS,
                       TOPOLOGY_NAME_SIZE - 1);
         return;
     }
@@ -220,10 +220,10 @@ static void check_modes(const struct fit_file *fit, struct json_object *memory) 
         const bool wanted = fit->unknown[UNKNOWN_MEMORY + m].wanted;
         const bool known = fit->scene.memory.omega[m].curves > 0;
         if (wanted && known)
-            mf_json_fault(memory, fit->scene.memory.name[m],
-                          "it is to be found, and \"scene.memory.%s\" has an \"omega\"; \"start\" "
-                          "takes a law to begin with",
-                          fit->scene.memory.name[m]);
+            mf_json_fault(
+                memory, fit->scene.memory.name[m],
+                "it is to be found, but \"scene.memory.%s\" has an \"omega\"; give it as \"start\"",
+                fit->scene.memory.name[m]);
         if (!wanted && !known)
             mf_json_fault(memory, fit->scene.memory.name[m],
                           "is missing, and \"scene.memory.%s\" has no \"omega\"",

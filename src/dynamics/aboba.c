@@ -105,9 +105,7 @@ static enum status step_implicit(struct simulation *simulation) {
 }
 
 static const struct field exact_fields[] = {
-    RESPA_FIELD(
-        offsetof(struct respa_parameters, inner_steps),
-        "; half of them in each half of a step, so that an odd number counts as the next even one"),
+    RESPA_FIELD(offsetof(struct respa_parameters, inner_steps), ", rounded up to even"),
     FIELD_END,
 };
 
@@ -132,13 +130,13 @@ const struct integrator mf_aboba = {
 static const struct field implicit_fields[] = {
     {"tolerance", FIELD_NUMBER, offsetof(struct aboba_parameters, tolerance), .initial = 0.01,
      .minimum = 1e-12, .maximum = 0.5, .unit = "",
-     .help = "of the implicit friction, relative to what it changes"},
+     .help = "relative tolerance of the implicit friction"},
     FIELD_END,
 };
 
 const struct integrator mf_aboba_implicit = {
     .name = "aboba-implicit",
-    .summary = "the same with friction of all pairs at once by the implicit midpoint rule",
+    .summary = "aboba with friction of all pairs at once by the implicit midpoint rule",
     .fields = implicit_fields,
     .parameters_size = sizeof(struct aboba_parameters),
     .dissipative = true,

@@ -222,21 +222,20 @@ double mf_brownian_free_long_time(const struct brownian_free *free) {
 #define MEMBER(name) .offset = offsetof(struct brownian_parameters, name)
 static const struct field fields[] = {
     {"friction", FIELD_NUMBER, MEMBER(friction), .initial = 1, .minimum = FIELD_ABOVE_ZERO,
-     .maximum = DBL_MAX, .unit = "mu/tau",
-     .help = "gamma of each particle; alone it diffuses with D = T/gamma"},
+     .maximum = DBL_MAX, .unit = "mu/tau", .help = "gamma, with D = T/gamma of a single particle"},
     {"orientation_friction", FIELD_NUMBER, MEMBER(orientation_friction), .initial = 1,
      .minimum = FIELD_ABOVE_ZERO, .maximum = DBL_MAX, .unit = "mu lambda^2/tau",
-     .help = "gamma_r of the orientation, if particles have one"},
+     .help = "gamma_r of the orientation"},
     {"orientation_temperature", FIELD_NUMBER, MEMBER(orientation_temperature), .initial = 1,
      .minimum = 0, .maximum = DBL_MAX, .unit = "T_0",
-     .help = "T_r of the noise that turns it: D_r = T_r/gamma_r"},
+     .help = "T_r of the orientation's noise: D_r = T_r/gamma_r"},
     FIELD_END,
 };
 
 const struct integrator mf_brownian = {
     .name = "brownian",
-    .summary = "no velocities, friction with what is at rest, the high-friction limit of BAOAB; "
-               "B. Leimkuhler and C. Matthews, Appl. Math. Res. Express 2013, 34 (2013)",
+    .summary = "overdamped dynamics, the high-friction limit of BAOAB; B. Leimkuhler and C. "
+               "Matthews, Appl. Math. Res. Express 2013, 34 (2013)",
     .fields = fields,
     .parameters_size = sizeof(struct brownian_parameters),
     .state_size = sizeof(struct state),
@@ -249,8 +248,8 @@ const struct integrator mf_brownian = {
 
 const struct integrator mf_brownian_euler = {
     .name = "euler-maruyama",
-    .summary = "the same dynamics, first order in the time step: what others are compared with; G. "
-               "Maruyama, Rend. Circ. Mat. Palermo 4, 48 (1955)",
+    .summary = "brownian to first order in the time step, for comparison; G. Maruyama, Rend. Circ. "
+               "Mat. Palermo 4, 48 (1955)",
     .fields = fields,
     .parameters_size = sizeof(struct brownian_parameters),
     .state_size = sizeof(struct state),

@@ -30,16 +30,16 @@ static const char *warning(const struct simulation_setup *setup) {
     const bool held = parameters->walls == COLLISION_PLATES || parameters->obstacle_radius > 0;
     const bool flows = parameters->wave_acceleration != 0 || (pushed && held);
     if (parameters->particles_per_cell < 3)
-        return "dynamics.particles_per_cell: below 3 many cells have nobody to collide with, and "
-               "theory is far off";
+        return "dynamics.particles_per_cell: below 3 many cells have no collisions, and theory "
+               "does not hold";
     if (!parameters->hydrodynamics && (flows || has_drift(parameters)))
-        return "dynamics.hydrodynamics: without it beads do not feel that the solvent flows";
+        return "dynamics.hydrodynamics: without it the flow of the solvent does not act on beads";
     if (parameters->walls == COLLISION_PLATES && setup->potential)
-        return "dynamics.walls: forces of pairs know no plates: beads nearer to both plates "
-               "together than a cutoff feel each other through them";
+        return "dynamics.walls: pair forces are not cut by plates: beads within a cutoff interact "
+               "through them";
     if (flows && setup->placement.count > 1)
-        return "dynamics: the flow carries the beads: their temperature, MSD, VACF and D have it "
-               "in them; without accelerations they have not";
+        return "dynamics: the flow contributes to the temperature, MSD, VACF and D of the beads; "
+               "accelerations of 0 avoid that";
     return NULL;
 }
 
@@ -190,51 +190,48 @@ static const char *const walls[] = {"none", "plates", NULL}; // enum collision_w
 #define MEMBER(name) .offset = offsetof(struct collision_dynamics_parameters, name)
 static const struct field fields[] = {
     {"cell", FIELD_NUMBER, MEMBER(cell), .initial = 1, .minimum = FIELD_ABOVE_ZERO,
-     .maximum = DBL_MAX, .unit = "lambda", .help = "edge a of a cell; it divides the box"},
+     .maximum = DBL_MAX, .unit = "lambda", .help = "edge a of a cell, which divides the box"},
     {"particles_per_cell", FIELD_NUMBER, MEMBER(particles_per_cell), .initial = 10,
      .minimum = FIELD_ABOVE_ZERO, .maximum = 1e6, .unit = "",
-     .help = "M, solvent particles of a cell on the average"},
+     .help = "M, mean number of solvent particles in a cell"},
     {"mass", FIELD_NUMBER, MEMBER(mass), .initial = 1, .minimum = FIELD_ABOVE_ZERO,
      .maximum = DBL_MAX, .unit = "mu", .help = "m of a solvent particle"},
     {"angle", FIELD_NUMBER, MEMBER(angle), .initial = 130, .minimum = FIELD_ABOVE_ZERO,
-     .maximum = 180, .unit = "degrees", .help = "alpha, by which relative velocities turn"},
+     .maximum = 180, .unit = "degrees", .help = "alpha, rotation of relative velocities"},
     {"interval", FIELD_INTEGER, MEMBER(interval), .initial = 1, .minimum = 1, .maximum = 1e9,
-     .unit = "steps", .help = "from collision to collision, in which the solvent flies freely"},
+     .unit = "steps", .help = "interval between collisions"},
     {"thermostat", FIELD_CHOICE, MEMBER(thermostat), .choices = yes_or_no, .initial = 0, .unit = "",
-     .help = "of every cell: its energy of relative motion is drawn from the canonical "
-             "distribution"},
+     .help = "canonical thermostat of every cell"},
     {"grid_shift", FIELD_CHOICE, MEMBER(grid_shift), .choices = yes_or_no, .initial = 1, .unit = "",
-     .help = "at random before each collision; without it what flows is another fluid"},
+     .help = "random shift of the grid before each collision"},
     {"hydrodynamics", FIELD_CHOICE, MEMBER(hydrodynamics), .choices = yes_or_no, .initial = 1,
-     .unit = "",
-     .help = "no: where beads are, velocities of the solvent are drawn anew before each collision: "
-             "beads feel friction and noise and no flow, as in Rouse's model"},
+     .unit = "", .help = "no: friction and noise without flow, as in Rouse's model"},
     {"walls", FIELD_CHOICE, MEMBER(walls), .choices = walls, .initial = COLLISION_NO_WALLS,
-     .unit = "", .help = "plates where y is 0 and at the edge of the box, at rest; fluid sticks"},
+     .unit = "", .help = "no-slip plates at y = 0 and the box edge"},
     {"wall_filling", FIELD_NUMBER, MEMBER(wall_filling), .initial = 1.4, .minimum = 0,
      .maximum = 10, .unit = "particles_per_cell",
-     .help = "up to which virtual particles fill cells that a wall cuts: 1.4 lets the fluid stick, "
-             "1, as is usual, lets it slip by a quarter of a cell"},
+     .help = "filling of cells at walls by virtual particles: 1.4 for no slip; 1 slips by a "
+             "quarter of a cell"},
     {"acceleration", FIELD_LENGTHS, MEMBER(acceleration), .minimum = -DBL_MAX, .maximum = DBL_MAX,
-     .unit = "lambda/tau^2", .help = "of the solvent and the beads, along each axis"},
+     .unit = "lambda/tau^2", .help = "acceleration of solvent and beads, along each axis"},
     {"wave_acceleration", FIELD_NUMBER, MEMBER(wave_acceleration), .initial = 0,
      .minimum = -DBL_MAX, .maximum = DBL_MAX, .unit = "lambda/tau^2",
-     .help = "A of A sin(2 pi y/L_y) along x, of the solvent and the beads, in a periodic box: the "
-             "height of the wave of velocity tells the viscosity"},
+     .help = "A of a force A sin(2 pi y/L_y) per mass along x, to measure the viscosity in a "
+             "periodic box"},
     {"drift", FIELD_LENGTHS, MEMBER(drift), .minimum = -DBL_MAX, .maximum = DBL_MAX,
-     .unit = "lambda/tau", .help = "mean velocity of the solvent at the start"},
+     .unit = "lambda/tau", .help = "initial mean velocity of the solvent"},
     {"obstacle_centre", FIELD_LENGTHS, MEMBER(obstacle_centre), .minimum = -DBL_MAX,
      .maximum = DBL_MAX, .unit = "lambda",
-     .help = "of a disc or sphere at rest to which fluid sticks"},
+     .help = "centre of a disc or sphere at rest, without slip"},
     {"obstacle_radius", FIELD_NUMBER, MEMBER(obstacle_radius), .initial = 0, .minimum = 0,
-     .maximum = DBL_MAX, .unit = "lambda", .help = "of the disc or sphere; 0: there is none"},
+     .maximum = DBL_MAX, .unit = "lambda", .help = "its radius; 0: none"},
     FIELD_END,
 };
 
 const struct integrator mf_collision_dynamics = {
     .name = "collision-dynamics",
-    .summary = "a solvent that flies and collides in cells, with the particles as its beads; "
-               "A. Malevanets and R. Kapral, J. Chem. Phys. 110, 8605 (1999)",
+    .summary = "multi-particle collision dynamics of a solvent and beads in it; A. Malevanets and "
+               "R. Kapral, J. Chem. Phys. 110, 8605 (1999)",
     .fields = fields,
     .parameters_size = sizeof(struct collision_dynamics_parameters),
     .state_size = sizeof(struct solvent),

@@ -31,8 +31,7 @@ static enum status begin(struct simulation *simulation) {
 
 static const struct field fields[] = {
     {"lambda", FIELD_NUMBER, offsetof(struct dpd_verlet_parameters, lambda), .initial = 0.5,
-     .minimum = 0, .maximum = 1, .unit = "",
-     .help = "how far velocities are predicted for the friction, in time steps"},
+     .minimum = 0, .maximum = 1, .unit = "", .help = "velocity prediction, in time steps"},
     RESPA_FIELD(offsetof(struct dpd_verlet_parameters, inner_steps), ""),
     FIELD_END,
 };

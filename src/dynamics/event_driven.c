@@ -53,8 +53,7 @@ static enum status scale_velocities(struct particles *particles, int walls, doub
     if (!(energy > 0))
         return mf_status_fail(
             STATUS_BAD_INPUT,
-            "particles.velocities: by chance nobody moves relative to the others; "
-            "another \"seed\" will do");
+            "particles.velocities: all velocities are equal; choose another \"seed\"");
     const double scale = sqrt(0.5 * degrees * temperature / energy);
     for (int d = 0; d < particles->box.dimensions; d++)
         for (size_t k = 0; k < particles->count; k++)
@@ -138,7 +137,7 @@ static const char *const walls[] = {"none", "x", "y", "xy", "z", "xz", "yz", "xy
 
 static const struct field fields[] = {
     {"walls", FIELD_CHOICE, offsetof(struct event_driven_parameters, walls), .choices = walls,
-     .unit = "", .help = "axes with reflecting walls at both ends; the others are periodic"},
+     .unit = "", .help = "axes with reflecting walls at both ends; others are periodic"},
     FIELD_END,
 };
 

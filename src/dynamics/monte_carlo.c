@@ -94,8 +94,8 @@ static const struct field fields[] = {FIELD_END};
 
 const struct integrator mf_monte_carlo = {
     .name = "monte-carlo",
-    .summary = "Metropolis Monte Carlo, without time: a step is a sweep, one move of each bead and "
-               "of each molecule; N. Metropolis et al., J. Chem. Phys. 21, 1087 (1953)",
+    .summary = "Metropolis Monte Carlo: a step is a sweep, one move of each bead and of each "
+               "molecule; N. Metropolis et al., J. Chem. Phys. 21, 1087 (1953)",
     .fields = fields,
     .state_size = sizeof(struct monte_carlo),
     .begin = begin,

@@ -12,8 +12,8 @@ enum status mf_respa_init(struct respa *respa, const struct simulation *simulati
         return STATUS_OK;
     if (simulation->setup.interactions == 0)
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "dynamics.inner_steps: there is nothing beside the pairs, as bonds, "
-                              "that could take them; leave it out");
+                              "dynamics.inner_steps: only bonds, angles, dihedrals and "
+                              "interactions take them, and there are none; leave it out");
     for (int d = 0; d < simulation->setup.box.dimensions; d++)
         NEW_ARRAY(respa->fast[d], simulation->particles.count);
 done:

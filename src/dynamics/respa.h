@@ -26,9 +26,7 @@ struct respa_parameters {
     {                                                                                              \
         "inner_steps", FIELD_INTEGER,                                                              \
             .offset = place, .initial = 1, .minimum = 1, .maximum = 1000, .unit = "",              \
-            .help =                                                                                \
-                "steps of bonds, angles and dihedrals in one of the pairs (r-RESPA, Tuckerman et " \
-                "al. 1992)" more                                                                   \
+            .help = "bonded steps in a time step (r-RESPA, Tuckerman et al. 1992)" more            \
     }
 
 /// Make room, if there is more than one inner step; else nothing.

@@ -26,9 +26,9 @@ enum status mf_simulation_check_change(const struct simulation *simulation,
                               "simulation to change them",
                               integrator->name);
     if (heats && !simulation_holds_temperature(setup))
-        return mf_status_fail(STATUS_BAD_INPUT,
-                              "temperature: nothing holds it in this scene, which has no friction "
-                              "and no noise");
+        return mf_status_fail(
+            STATUS_BAD_INPUT,
+            "temperature: there is no thermostat: the scene has no friction and noise");
     return STATUS_OK;
 }
 

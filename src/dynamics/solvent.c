@@ -58,7 +58,7 @@ static enum status check_room(const struct solvent *solvent) {
         if (!(centre >= margin && centre <= box->length[d] - margin))
             return mf_status_fail(STATUS_BAD_INPUT,
                                   "dynamics.obstacle_centre[%d]: with %g an obstacle of radius %g "
-                                  "is outside the box of %g; say where it is",
+                                  "is outside the box of %g",
                                   d, centre, radius, box->length[d]);
         // Farther away, the nearest image of the obstacle may not be the one that is met.
         if (margin == 0 && !(radius + flight < 0.5 * box->length[d]))

@@ -207,8 +207,8 @@ enum status mf_solvent_stream(struct solvent *solvent, uint64_t step, int thread
     for (int part = 0; part < solvent->parts; part++)
         if (solvent->trapped[part])
             return mf_status_fail(STATUS_UNSTABLE,
-                                  "unstable at step %llu: a particle of the solvent meets walls "
-                                  "without end; lower the acceleration or use the thermostat",
+                                  "unstable at step %llu: a particle of the solvent hits walls "
+                                  "endlessly; lower the acceleration or use the thermostat",
                                   (unsigned long long)step);
     return STATUS_OK;
 }

@@ -43,11 +43,11 @@ static enum status check_friction(const struct export_job *job) {
                               "%s: --project: friction of %s is between beads of one type",
                               job->model->folder, job->engine->title);
     if (job->model->setup.omega == NULL)
-        return mf_status_fail(STATUS_BAD_INPUT, "%s: --project: there is no friction weight%s",
-                              job->model->folder,
-                              job->model->remembers ? " alone: friction remembers or acts across "
-                                                      "pairs, and no power law stands for that"
-                                                    : "");
+        return mf_status_fail(
+            STATUS_BAD_INPUT, "%s: --project: there is no friction weight%s", job->model->folder,
+            job->model->remembers ? " alone: friction with memory or perpendicular to pairs cannot "
+                                    "be replaced by a power law"
+                                  : "");
     return STATUS_OK;
 }
 
@@ -178,9 +178,8 @@ static void print_cost(const struct export_job *job, FILE *stream) {
 
 static void explain_projection(const struct export_job *job, FILE *stream) {
     fprintf(stream,
-            "\nThe power law stands for omega here (--project). What that costs, by two "
-            "simulations of mesofit\nof %lld steps each, with standard errors; projection.tsv has "
-            "both E:\n\n",
+            "\nOmega is replaced by the power law here (--project). The effect, by two simulations "
+            "of mesofit\nof %lld steps each, with standard errors; projection.tsv has both E:\n\n",
             (long long)job->projection.steps);
     print_cost(job, stream);
 }
@@ -238,8 +237,8 @@ static void print_readme(const struct export_job *job, FILE *stream) {
                 job->bonded.tables, job->bonded.rows, job->bonded.energy_error,
                 job->bonded.slope_error);
     if (job->grids.curves > 1)
-        fprintf(stream, "\n_lower and _upper are the potential less and plus one standard error at "
-                        "each r. Errors at\ndifferent r are correlated; the two are a band, not "
+        fprintf(stream, "\n_lower and _upper are the potential minus and plus one standard error "
+                        "at each r. Errors at\ndifferent r are correlated; the two are a band, not "
                         "two likely potentials.\n");
     const bool measured = isfinite(model->temperature.value) || isfinite(model->pressure.value);
     fprintf(stream, measured ? "\nWhat mesofit itself measured of the result:\n\n"
@@ -271,7 +270,7 @@ static void say(const struct export_job *job) {
     if (job->model->remembers)
         fprintf(stderr, "mesofit: warning: %.160s: %s\n", job->model->folder, left_out);
     if (job->projected) {
-        fprintf(stderr, "a power law stands for omega: misfit %.2g\n", job->worst_misfit);
+        fprintf(stderr, "omega is replaced by a power law: misfit %.2g\n", job->worst_misfit);
         print_cost(job, stderr);
     } else if (job->model->setup.omega)
         fprintf(stderr, "omega is %sa power law: misfit %.2g\n",

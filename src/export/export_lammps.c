@@ -248,19 +248,15 @@ static const char unquotable[] = "'\"$\n\r";
 
 static void print_input(const struct export_job *job, FILE *stream) {
     const struct export_model *model = job->model;
-    fprintf(
-        stream,
-        "# %s: written by mesofit; README tells of it. Variables: lmp -in in.mesofit -var steps "
-        "100000\n\n"
-        "variable steps index 10000      # that are measured\n"
-        "variable equilibration index %d\n"
-        "variable every index 20         # steps between samples\n"
-        "variable dump index 0           # steps between frames of dump.lammpstrj; 0: none\n"
-        "variable friction index %s # or another one that README names\n"
-        "variable band index \"\"          # _lower or _upper: exported with --bands\n"
-        "variable seed index 12345\n\n",
-        model->title[0] ? model->title : "beads", model->equilibrated ? 1000 : 5000,
-        job->projected ? "dpd" : "langevin");
+    fprintf(stream,
+            "# %s: written by mesofit; see README. Variables: lmp -in in.mesofit -var steps "
+            "100000\n\nvariable steps index 10000      # that are measured\nvariable equilibration "
+            "index %d\nvariable every index 20         # steps between samples\nvariable dump "
+            "index 0           # steps between frames of dump.lammpstrj; 0: none\nvariable "
+            "friction index %s # or another one named in README\nvariable band index \"\"          "
+            "# _lower or _upper: exported with --bands\nvariable seed index 12345\n\n",
+            model->title[0] ? model->title : "beads", model->equilibrated ? 1000 : 5000,
+            job->projected ? "dpd" : "langevin");
     if (job->folder[strcspn(job->folder, unquotable)] == '\0')
         fprintf(stream,
                 "# in this folder, or where it was written from\n"

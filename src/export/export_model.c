@@ -178,13 +178,13 @@ static enum status check_scene(const struct export_model *model) {
     if (setup->integrator->events || setup->integrator->companions) {
         what = setup->integrator->name;
         why = setup->integrator->events ? "moves hard particles, which have no pair forces"
-                                        : "moves a solvent, which other engines have not";
+                                        : "moves a solvent, which other engines do not have";
     } else if (!simulation_has_velocities(setup)) {
         what = setup->integrator->name;
         why = "moves particles without velocities; only dynamics with velocities are exported";
     } else if (find_other(setup)) {
         what = find_other(setup)->name;
-        why = "acts beside the pairs; only forces of pairs and molecules are exported";
+        why = "is not a force of pairs or molecules; only these are exported";
     }
     return what == NULL ? STATUS_OK
                         : mf_status_fail(STATUS_BAD_INPUT, "%s: cannot be exported: \"%s\" %s",
@@ -293,8 +293,8 @@ static enum status read_omega(struct export_model *model) {
     TRY(mf_export_columns_read(&points, path, &model->scene.units, wanted));
     const double *r = points.values, *omega = r + points.rows;
     if (points.rows != OMEGA_POINTS || !(r[0] < r[points.rows - 1]))
-        status =
-            mf_status_fail(STATUS_BAD_INPUT, "%s: not %d rows with growing r", path, OMEGA_POINTS);
+        status = mf_status_fail(STATUS_BAD_INPUT, "%s: not %d rows with increasing r", path,
+                                OMEGA_POINTS);
     CHECK(status);
     mf_omega_grid_init(&grid, r[0], r[points.rows - 1]);
     CHECK(mf_omega_grid_table(&grid, omega, &model->omega));

@@ -83,8 +83,8 @@ void mf_export_script_head(const struct export_job *job, const char *module, FIL
     const struct export_model *model = job->model;
     const struct export_units *units = &job->units;
     const double *length = model->setup.box.length;
-    fprintf(stream, "# Written by mesofit; README tells of it. Units: %s, %s, %s.\n",
-            units->length_name, units->time_name, units->energy_name);
+    fprintf(stream, "# Written by mesofit; see README. Units: %s, %s, %s.\n", units->length_name,
+            units->time_name, units->energy_name);
     fprintf(stream,
             "import os\nimport sys\nimport numpy\nimport %s\n\n"
             "os.chdir(os.path.dirname(os.path.abspath(__file__)))\n",

@@ -47,13 +47,13 @@ static const struct field fields[] = {
      .help = "k along each axis; 0: free along this one"},
     {"centre", FIELD_LENGTHS, offsetof(struct parameters, centre), .minimum = -DBL_MAX,
      .maximum = DBL_MAX, .unit = "lambda",
-     .help = "of the trap; without it the corner of the box, which is as good as any point"},
+     .help = "centre of the trap; default: the corner of the box"},
     FIELD_END,
 };
 
 const struct interaction mf_harmonic_trap = {
     .name = "harmonic-trap",
-    .summary = "a spring to a point: U = (k_x s_x^2 + k_y s_y^2 + k_z s_z^2)/2",
+    .summary = "spring to a point: U = (k_x s_x^2 + k_y s_y^2 + k_z s_z^2)/2",
     .fields = fields,
     .parameters_size = sizeof(struct parameters),
     .cost = 2,

@@ -166,7 +166,7 @@ static enum status check_torn(const struct sweep *sweep) {
             &state->molecules->group[sums->torn_order][sums->torn];
         if (sums->longest > 0)
             return mf_status_fail(STATUS_UNSTABLE,
-                                  "unstable at step %llu: %s %s \"%s\" is %.4g long, and tears at "
+                                  "unstable at step %llu: %s %s \"%s\" is %.4g long, and breaks at "
                                   "%.4g; lower \"time_step\", or begin with shorter bonds",
                                   (unsigned long long)sweep->pass->step,
                                   mf_bonded_kinds[sums->torn_order]->article,

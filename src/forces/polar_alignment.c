@@ -79,10 +79,9 @@ static enum status add(const void *parameters, void *state, const struct interac
 static const struct field fields[] = {
     {"coupling", FIELD_NUMBER, offsetof(struct parameters, coupling), .required = true,
      .minimum = -DBL_MAX, .maximum = DBL_MAX, .unit = "k_B T_0",
-     .help = "J: the torque on i is -J sin(theta_i - theta_j) for each neighbour j"},
+     .help = "J, strength of the torques"},
     {"range", FIELD_NUMBER, offsetof(struct parameters, range), .required = true,
-     .minimum = FIELD_ABOVE_ZERO, .maximum = DBL_MAX, .unit = "lambda",
-     .help = "b: how far away neighbours are seen"},
+     .minimum = FIELD_ABOVE_ZERO, .maximum = DBL_MAX, .unit = "lambda", .help = "b, the range"},
     FIELD_END,
 };
 

@@ -44,8 +44,7 @@ static enum status add(const void *parameters, void *state, const struct interac
 
 static const struct field fields[] = {
     {"force", FIELD_NUMBER, offsetof(struct parameters, force), .required = true, .minimum = 0,
-     .maximum = DBL_MAX, .unit = "k_B T_0/lambda",
-     .help = "alpha, along the polarity of each particle, whose speed alone is v_0 = alpha/gamma"},
+     .maximum = DBL_MAX, .unit = "k_B T_0/lambda", .help = "alpha; the speed is v_0 = alpha/gamma"},
     FIELD_END,
 };
 

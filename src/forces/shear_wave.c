@@ -33,14 +33,14 @@ static enum status add(const void *parameters, void *state, const struct interac
 static const struct field fields[] = {
     {"acceleration", FIELD_NUMBER, offsetof(struct shear_wave_parameters, acceleration),
      .required = true, .minimum = -DBL_MAX, .maximum = DBL_MAX, .unit = "lambda/tau^2",
-     .help = "A; the flow reaches the velocity A m/(eta k^2 V), m/V the density of mass"},
+     .help = "A; the flow has the velocity A rho/(eta k^2)"},
     FIELD_END,
 };
 
 const struct interaction mf_shear_wave = {
     .name = "shear-wave",
-    .summary = "acceleration A cos(kz) along x, k = 2 pi/L_z, which drives a flow whose height "
-               "tells the viscosity; B. Hess, J. Chem. Phys. 116, 209 (2002)",
+    .summary = "acceleration A cos(kz) along x, k = 2 pi/L_z, to measure the viscosity; B. Hess, "
+               "J. Chem. Phys. 116, 209 (2002)",
     .fields = fields,
     .parameters_size = sizeof(struct shear_wave_parameters),
     .cost = 12,

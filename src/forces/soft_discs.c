@@ -26,7 +26,7 @@ static enum status begin(const void *parameters, void *state, const struct parti
                               "interactions.soft-discs: discs are in two dimensions, not three");
     if (mf_particles_numbers(particles, "radius") == NULL)
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "interactions.soft-discs: wants \"radius\" in \"particles\"");
+                              "interactions.soft-discs: needs \"radius\" in \"particles\"");
     if (particles->topology && particles->topology->excludes)
         return mf_status_fail(STATUS_BAD_INPUT,
                               "interactions.soft-discs: knows no pairs that molecules exclude; "
@@ -87,9 +87,7 @@ static enum status add(const void *parameters, void *state, const struct interac
 
 static const struct field fields[] = {
     {"strength", FIELD_NUMBER, offsetof(struct parameters, strength), .initial = 1, .minimum = 0,
-     .maximum = DBL_MAX, .unit = "k_B T_0/lambda^4",
-     .help = "a, by which the products of the stiffnesses are multiplied; without \"stiffness\" "
-             "these are 1"},
+     .maximum = DBL_MAX, .unit = "k_B T_0/lambda^4", .help = "a; without \"stiffness\" k is 1"},
     FIELD_END,
 };
 

@@ -28,13 +28,13 @@ static enum status add(const void *parameters, void *state, const struct interac
 static const struct field fields[] = {
     {"force", FIELD_LENGTHS, offsetof(struct parameters, force), .required = true,
      .minimum = -DBL_MAX, .maximum = DBL_MAX, .unit = "k_B T_0/lambda",
-     .help = "on each particle, along each axis"},
+     .help = "force on each particle, along each axis"},
     FIELD_END,
 };
 
 const struct interaction mf_uniform_force = {
     .name = "uniform-force",
-    .summary = "the same force F on every particle: U = -F.x, x as if the box had no end",
+    .summary = "the same force F on every particle: U = -F.x with x unwrapped",
     .fields = fields,
     .parameters_size = sizeof(struct parameters),
     .cost = 1,

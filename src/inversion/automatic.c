@@ -68,10 +68,8 @@ static enum status update(struct inversion *inversion, double *extra) {
 const struct inverse_method mf_automatic = {
     .name = "auto",
     .summary =
-        "hypernetted-chain steps (Delbary et al. 2020; in 2-D Boltzmann inversion, Reith et "
-        "al. 2003; of mixtures and molecules that with a low-rank response) until the response "
-        "is known, or with groups until the targets are near, then inverse Monte Carlo "
-        "(Lyubartsev and Laaksonen 1995)",
+        "hnc (ibi in two dimensions; with a low-rank response for mixtures and molecules) until "
+        "the response is known, or the targets of groups are near, then imc",
     .own = &(const struct inversion_rule){.update = update},
     .knows_molecules = true,
     .meets_integrals = true,

@@ -82,14 +82,14 @@ enum status mf_inversion_write(const void *inversion, const struct inverse_folde
 
 /// The parameters that all have, which stand first in those of each method and in their tables.
 #define INVERSION_TABLE                                                                            \
-    { mf_inversion_fields, 0 }
+    { mf_inversion_fields, 0, "inversions" }
 
 /// What the records of methods without parameters of their own have beside.
 #define INVERSION_PARAMETERS                                                                       \
     .parameters_size = sizeof(struct inversion_parameters),                                        \
     .tables = (const struct inverse_table[]) {                                                     \
         INVERSION_TABLE, {                                                                         \
-            NULL, 0                                                                                \
+            NULL, 0, NULL                                                                          \
         }                                                                                          \
     }
 

@@ -11,34 +11,30 @@ static const char *const starts[] = {"auto", "mean-force", NULL};
 #define MEMBER(name) .offset = offsetof(struct inversion_parameters, name)
 const struct field mf_inversion_fields[] = {
     {"particles", FIELD_INTEGER, MEMBER(particles), .initial = 0, .minimum = 0, .maximum = 1e7,
-     .unit = "", .help = "of the Monte Carlo system, at the scene's density; 0 means the scene's"},
+     .unit = "", .help = "particles at the scene's density; 0: the scene's"},
     {"sampler", FIELD_CHOICE, MEMBER(sampler), .choices = mf_sampler_kinds, .initial = SAMPLER_AUTO,
      .unit = "",
-     .help = "Metropolis moves of beads and molecules, or short trajectories of all particles "
-             "(hybrid Monte Carlo); auto: moves of single beads, trajectories of molecules"},
+     .help = "Metropolis moves or hybrid Monte Carlo; auto: moves of single beads, hybrid of "
+             "molecules"},
     {"replicas", FIELD_INTEGER, MEMBER(replicas), .initial = 8, .minimum = 2,
      .maximum = REPLICAS_MOST, .unit = "", .help = "independent samplers"},
     {"equilibration", FIELD_INTEGER, MEMBER(equilibration), .initial = 200, .minimum = 0,
      .maximum = 8e8, .unit = "sweeps",
-     .help = "before each iteration's samples, at least; five times as many where replicas begin "
-             "from disorder, and more until the samples have settled"},
+     .help = "least equilibration, five times as long from a random start; prolonged until the "
+             "samples are stationary"},
     {"samples", FIELD_INTEGER, MEMBER(samples), .initial = 200, .minimum = 2 * REPLICAS_BLOCKS,
      .maximum = 1e9, .unit = "",
-     .help = "of each replica, at least; doubled until the noise is a third of the error, or as "
-             "small as \"precision\""},
+     .help = "least samples of each replica; doubled until the noise is \"precision\" or a third "
+             "of the error"},
     {"every", FIELD_INTEGER, MEMBER(every), .initial = 2, .minimum = 1, .maximum = 1e6,
-     .unit = "sweeps", .help = "between samples, at least"},
+     .unit = "sweeps", .help = "least interval between samples"},
     {"iterations", FIELD_INTEGER, MEMBER(iterations), .initial = 30, .minimum = 1, .maximum = 10000,
-     .unit = "", .help = "at most"},
+     .unit = "", .help = "most iterations"},
     {"precision", FIELD_NUMBER, MEMBER(precision), .initial = 0.004, .minimum = FIELD_ABOVE_ZERO,
      .maximum = 1, .unit = "",
-     .help = "statistical error of g, rms over bins, at which an agreement is believed"},
+     .help = "statistical error of g, rms over bins, needed for convergence"},
     {"start", FIELD_CHOICE, MEMBER(start), .choices = starts, .initial = INVERSION_FROM_HNC,
-     .unit = "",
-     .help =
-         "without unknowns.potential.start: the hypernetted-chain inversion, and -k_B T ln g "
-         "where that leads nowhere, in two dimensions, and of small molecules of several types; "
-         "mean-force: -k_B T ln g"},
+     .unit = "", .help = "start without unknowns.potential.start; auto: as \"base\" there"},
     FIELD_END,
 };
 

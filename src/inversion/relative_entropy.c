@@ -13,11 +13,10 @@
 #define MEMBER(name) .offset = offsetof(struct inversion_basis_size, name)
 static const struct field own_fields[] = {
     {"coefficients", FIELD_INTEGER, MEMBER(coefficients), .initial = 20, .minimum = 1,
-     .maximum = INVERSION_MOST_BINS, .unit = "",
-     .help = "of each potential of pairs: cubic B-splines that end at the cutoff"},
+     .maximum = INVERSION_MOST_BINS, .unit = "", .help = "cubic B-splines of each pair potential"},
     {"group_coefficients", FIELD_INTEGER, MEMBER(group_coefficients), .initial = 8, .minimum = 1,
      .maximum = INVERSION_MOST_BINS, .unit = "",
-     .help = "of each bond, angle or dihedral: cubic B-splines, of a dihedral sines and cosines"},
+     .help = "coefficients of each group: cubic B-splines, of a dihedral sines and cosines"},
     FIELD_END,
 };
 
@@ -71,14 +70,15 @@ static enum status create(void *inversion, const struct inverse_method *method,
 
 const struct inverse_method mf_relative_entropy = {
     .name = "relative-entropy",
-    .summary = "the best potentials of few coefficients; M. S. Shell, J. Chem. Phys. 129, 144108 "
-               "(2008)",
+    .summary =
+        "relative entropy, of few coefficients; M. S. Shell, J. Chem. Phys. 129, 144108 (2008)",
     .own = &(const struct inversion_rule){.update = update, .coefficients = coefficients},
     .parameters_size = sizeof(struct relative_entropy_parameters),
-    .tables = (const struct inverse_table[]){INVERSION_TABLE,
-                                             {own_fields,
-                                              offsetof(struct relative_entropy_parameters, size)},
-                                             {NULL, 0}},
+    .tables =
+        (const struct inverse_table[]){
+            INVERSION_TABLE,
+            {own_fields, offsetof(struct relative_entropy_parameters, size), NULL},
+            {NULL, 0, NULL}},
     .knows_molecules = true,
     .restricted = true,
     .columns = columns,

@@ -49,22 +49,20 @@ static enum status check_magic(FILE *stream, const char *file) {
     char found[sizeof magic];
     if (read_exactly(stream, found, sizeof found) && memcmp(found, magic, sizeof magic) == 0)
         return STATUS_OK;
-    return mf_status_fail(
-        STATUS_BAD_INPUT,
-        "%s: not a checkpoint of this version; begin anew with --force, or go on with "
-        "the version that wrote it",
-        file);
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "%s: not a checkpoint of this version; start again with --force, or "
+                          "continue with the version that wrote it",
+                          file);
 }
 
 static enum status check_digest(FILE *stream, const char *file, uint64_t digest) {
     uint64_t found;
     if (read_exactly(stream, &found, sizeof found) && found == digest)
         return STATUS_OK;
-    return mf_status_fail(
-        STATUS_BAD_INPUT,
-        "%s: the run's settings have changed since it was written; begin anew with "
-        "--force instead of --resume",
-        file);
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "%s: the run's settings have changed since it was written; start again "
+                          "with --force instead of --resume",
+                          file);
 }
 
 /// The checksum of all bytes but the last eight must be those eight. A byte on the way to memory
@@ -89,11 +87,10 @@ static enum status check_sum(FILE *stream, const char *file, uint64_t *bytes) {
     if (ferror(stream))
         return mf_status_fail(STATUS_IO, "%s: %s", file, strerror(errno));
     if (kept != sizeof found || *bytes < head || found != checksum)
-        return mf_status_fail(
-            STATUS_BAD_INPUT,
-            "%s: the checkpoint is damaged: its checksum is not that of its bytes; "
-            "begin anew with --force, or put back a copy of it",
-            file);
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: the checkpoint is damaged: wrong checksum; start again with "
+                              "--force, or restore a copy",
+                              file);
     *bytes -= head;
     return STATUS_OK;
 }

@@ -141,8 +141,8 @@ static const char *find_remedy(const struct data_word *word, const struct demand
     if (comma && demand->decimal == '.')
         return ": a decimal comma? other decimals of the file begin with a point";
     if (comma)
-        return ": a decimal comma? part columns by semicolons or tabs, or write decimals with a "
-               "point";
+        return ": a decimal comma? separate columns by semicolons or tabs, or write decimals with "
+               "a point";
     if (demand->decimal == ',' && word->length > 0 && memchr(word->begin, '.', word->length))
         return ": other decimals of the file begin with a comma";
     return is_text(word) ? ": begin lines of text with #" : "";
@@ -167,10 +167,9 @@ static enum status read_flag(const char *file, const struct data_line *line,
     *flag = *word;
     if (of->length == 1 && ((*word >= 'a' && *word <= 'z') || (*word >= 'A' && *word <= 'Z')))
         return STATUS_OK;
-    return mf_status_fail(
-        STATUS_BAD_INPUT,
-        "%s:%zu: the row does not end with a letter, as the flags i, o and u of VOTCA", file,
-        line->number);
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "%s:%zu: expected a flag i, o or u of VOTCA at the end of the row", file,
+                          line->number);
 }
 
 /// A column of text must not have numbers, too, which would be lost.
@@ -309,8 +308,8 @@ enum status mf_data_table_check_increasing(const struct data_table *table, const
         const double before = row ? table->values[(row - 1) * table->columns + column] : -INFINITY;
         if (!(value > before))
             return mf_status_fail(STATUS_BAD_INPUT,
-                                  "%s:%zu: column %zu: %.15g does not grow from %.15g in line %zu "
-                                  "(are the columns in another order?)",
+                                  "%s:%zu: column %zu: %.15g does not increase from %.15g in line "
+                                  "%zu (are the columns in another order?)",
                                   file, line, column + 1, value, before, table->line[row - 1]);
     }
     return STATUS_OK;

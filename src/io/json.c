@@ -72,7 +72,7 @@ static void check_keys(struct json_object *object) {
     int index = 0;
     cJSON_ArrayForEach(member, item) {
         if (member->string && cJSON_GetObjectItemCaseSensitive(item, member->string) != member)
-            mf_json_fault(object, member->string, "the key stands here twice");
+            mf_json_fault(object, member->string, "duplicate key");
         if (member->string)
             mf_json_is_encoded(object, member->string, member->string);
         if (member->child) {
@@ -224,7 +224,7 @@ struct json_object mf_json_child_of(struct json_object *parent, const char *key,
     else if (item)
         fault_no_object(parent, key, chief, item);
     else if (required && parent->item)
-        mf_json_fault(parent, key, "missing: an object is required");
+        mf_json_fault(parent, key, "missing: expected an object");
     return child;
 }
 
@@ -294,7 +294,7 @@ void mf_json_retired(struct json_object *object, const char *old, const char *fi
 
 void mf_json_renamed(struct json_object *object, const char *old, const char *today) {
     if (refuses(object, old))
-        mf_json_fault(object, old, "is called \"%s\" now", today);
+        mf_json_fault(object, old, "is now called \"%s\"", today);
 }
 
 const char *mf_json_key(const struct json_object *object, size_t n) {

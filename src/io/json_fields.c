@@ -202,7 +202,7 @@ void mf_json_fields(struct json_object *object, const struct field *fields, void
         if (item)
             read_field(object, field, item, (char *)parameters + field->offset);
         else if (field->required && object->item)
-            mf_json_fault(object, field->name, "missing: %s is required (%s)",
+            mf_json_fault(object, field->name, "missing: expected %s (%s)",
                           expected_name[field->type], field->help ? field->help : field->name);
     }
 }
@@ -214,7 +214,7 @@ static void fault_missing_choice(struct json_object *object, const char *key,
     while (known && known[count])
         count++;
     mf_nearest_hint("", known, count, hint, sizeof hint);
-    mf_json_fault(object, key, "missing: a text is required%s%s", known ? "; " : "",
+    mf_json_fault(object, key, "missing: expected a text%s%s", known ? "; " : "",
                   known ? hint : "");
 }
 

@@ -19,8 +19,8 @@ static enum status add(const char *file, cJSON *root, const char *object,
     if (!cJSON_IsObject(place)) // its reader says what should stand there
         return STATUS_OK;
     if (cJSON_GetObjectItemCaseSensitive(place, filling->key))
-        return mf_status_fail(STATUS_BAD_INPUT, "--%s: %s says %s.%s itself", filling->key, file,
-                              object, filling->key);
+        return mf_status_fail(STATUS_BAD_INPUT, "--%s: %s has %s.%s", filling->key, file, object,
+                              filling->key);
     return cJSON_AddNumberToObject(place, filling->key, filling->value) ? STATUS_OK
                                                                         : STATUS_NO_MEMORY;
 }

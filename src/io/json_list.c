@@ -44,12 +44,12 @@ bool mf_json_list_numbers(struct json_object *object, const char *key, double *v
     size_t n = 0;
     mf_json_has(object, key);
     if (!cJSON_IsArray(list) || (size_t)mf_json_count(object, key) != count) {
-        mf_json_fault(object, key, "a list of %zu numbers is required", count);
+        mf_json_fault(object, key, "expected a list of %zu numbers", count);
         return false;
     }
     cJSON_ArrayForEach(element, list) {
         if (!cJSON_IsNumber(element) || !isfinite(element->valuedouble)) {
-            mf_json_fault(object, key, "number %zu of the list is none", n + 1);
+            mf_json_fault(object, key, "number %zu of the list is not a number", n + 1);
             return false;
         }
         values[n++] = element->valuedouble;
@@ -68,7 +68,7 @@ bool mf_json_list_texts(struct json_object *object, const char *key, const char 
     }
     if (n == count && (size_t)mf_json_count(object, key) == count)
         return true;
-    mf_json_fault(object, key, "a list of %zu texts is required", count);
+    mf_json_fault(object, key, "expected a list of %zu texts", count);
     return false;
 }
 
@@ -108,8 +108,7 @@ bool mf_json_list_rows(struct json_object *object, const char *key, int *values,
     }
     if (cJSON_IsArray(list) && n == rows && (size_t)cJSON_GetArraySize(list) == rows)
         return true;
-    mf_json_fault(object, key,
-                  "a list of lists of %zu whole numbers is required; number %zu is none", width,
-                  n + 1);
+    mf_json_fault(object, key, "expected a list of lists of %zu integers; number %zu is not one",
+                  width, n + 1);
     return false;
 }

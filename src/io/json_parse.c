@@ -60,7 +60,7 @@ static enum status fail_where_it_ended(const char *file, const char *text, const
     const bool behind_key = is_behind_key(text, end);
     const char *at = behind_key ? end - 1 : end, *before = find_before(text, at);
     if (before && *before == ',' && strchr("}]", *at)) // also the end of the file
-        return fail_at(file, text, at, "something behind the last comma");
+        return fail_at(file, text, at, "something after the last comma");
     if (behind_key || (before && *before == '{'))
         return fail_at(file, text, at, "a key in double quotes");
     if (before == NULL || strchr(":[,", *before))

@@ -126,7 +126,7 @@ static enum status spare_input(const struct own_files *own, const char *name) {
 static const char *remedy_of(const struct own_files *own, enum own_file_found found) {
     const char *from = own->goes_on_from;
     if (from && mf_own_file_look(own->list.place, from, NULL) != OWN_FILE_ABSENT)
-        return "move it away, and go on with --resume";
+        return "move it away, and continue with --resume";
     return found == OWN_FILE_FOLDER
                ? "move it away, or write elsewhere with -o"
                : "move it away, or write elsewhere with -o; --force replaces it";
@@ -361,7 +361,7 @@ static enum status claim(struct own_files *own, const char *name) {
     struct own_entry *entry;
     TRY(check_place(own));
     if (!mf_own_list_takes(name))
-        return mf_status_fail(STATUS_BAD_INPUT, "%s: no file can have the name \"%s\"", own->folder,
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: not a valid file name: \"%s\"", own->folder,
                               name);
     TRY(find_entry(own, name, &entry));
     if (entry && entry->claimed)

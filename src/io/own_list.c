@@ -183,7 +183,7 @@ enum status mf_own_list_read(struct own_list *list) {
     if (!list->there)
         return STATUS_OK;
     if (stream == NULL && errno == ELOOP)
-        return mf_status_fail(STATUS_BAD_INPUT, "%s/%s is no file of its own: remove it",
+        return mf_status_fail(STATUS_BAD_INPUT, "%s/%s is a link or not a regular file: remove it",
                               list->folder, list->name);
     if (stream == NULL)
         return fail_to_read(list);

@@ -67,7 +67,7 @@ static enum status check_types(struct json_object *particles,
             continue;
         mf_json_fault(particles, "type",
                       "particle %zu is \"%s\" here and \"%s\" in the scene, whose \"types\" must "
-                      "stand in the order of the file",
+                      "have the order of the file",
                       k, types[k], name);
         break;
     }
@@ -85,7 +85,7 @@ enum status mf_snapshot_read(struct data_table *table, const char *file, int dim
     struct json_object particles = mf_json_child(&root, "particles", true);
     enum status status = STATUS_OK;
     if (particles.item && mf_json_count(&particles, "x") == 0)
-        mf_json_fault(&particles, "x", "a list of numbers is required");
+        mf_json_fault(&particles, "x", "expected a list of numbers");
     else if (particles.item)
         status = read_columns(table, &particles, dimensions);
     if (particles.item && status == STATUS_OK)

@@ -8,12 +8,12 @@
 #define MEMBER(name) .offset = offsetof(struct units, name)
 const struct field mf_units_fields[] = {
     {"length", FIELD_NUMBER, MEMBER(length), .required = true, .minimum = FIELD_ABOVE_ZERO,
-     .maximum = DBL_MAX, .unit = "nm", .help = "the unit of length, lambda"},
+     .maximum = DBL_MAX, .unit = "nm", .help = "unit of length, lambda"},
     {"temperature", FIELD_NUMBER, MEMBER(temperature), .required = true,
      .minimum = FIELD_ABOVE_ZERO, .maximum = DBL_MAX, .unit = "K",
      .help = "T_0, which makes k_B T_0 the unit of energy"},
     {"mass", FIELD_NUMBER, MEMBER(mass), .required = true, .minimum = FIELD_ABOVE_ZERO,
-     .maximum = DBL_MAX, .unit = "kg", .help = "of a particle"},
+     .maximum = DBL_MAX, .unit = "kg", .help = "mass of a particle"},
     FIELD_END,
 };
 
@@ -27,14 +27,13 @@ struct system {
 #define SCALE .initial = NAN, .minimum = FIELD_ABOVE_ZERO, .maximum = DBL_MAX
 const struct field mf_units_system_fields[] = {
     {"system", FIELD_CHOICE, SYSTEM(kind), .choices = mf_units_systems + 1, .unit = "",
-     .help = "of all numbers of the file, its tables and its results: nm, ps, u, kJ/mol, K, bar; "
-             "or angstrom, fs, g/mol, kcal/mol, K, atm"},
+     .help = "units of the file, its tables and results"},
     {"length", FIELD_NUMBER, SYSTEM(length), SCALE, .unit = "nm or angstrom",
-     .help = "lambda; without it lambda^3, in two dimensions lambda^2, holds three beads"},
+     .help = "lambda; default: three beads in lambda^d"},
     {"temperature", FIELD_NUMBER, SYSTEM(temperature), SCALE, .unit = "K",
-     .help = "T_0; without it that of the scene"},
+     .help = "T_0; default: the scene's temperature"},
     {"mass", FIELD_NUMBER, SYSTEM(mass), SCALE, .unit = "u",
-     .help = "mu; without it the mean mass of the scene's beads, or 1 if it says none"},
+     .help = "mu; default: mean mass of the scene's beads, or 1"},
     FIELD_END,
 };
 
@@ -96,7 +95,7 @@ static void complete(struct system *system, struct json_object *scene) {
             mf_json_fault(scene, "temperature",
                           is_number ? "0 K makes no unit of energy; \"temperature\" of \"units\" "
                                       "gives another"
-                                    : "missing: a number is required (K)");
+                                    : "missing: expected a number (K)");
         system->temperature = 300;
     }
 }
@@ -124,8 +123,7 @@ void mf_units_speak(struct json_object *root, struct json_object *scene) {
         if (root->item != scene->item && mf_json_is_object(root, "units") &&
             mf_json_has(root, "units"))
             mf_json_fault(root, "units",
-                          "\"system\" is missing; without it, it stands in "
-                          "\"scene\"");
+                          "\"system\" is missing; units without it belong into \"scene\"");
         return;
     }
     const size_t faults = mf_json_fault_count(root->document);
@@ -151,7 +149,7 @@ void mf_units_read(struct units *units, struct json_object *scene) {
     *units = *mf_json_units(scene);
     if (mf_units_speaks(units) || (is_root && !mf_json_is_object(scene, "units"))) {
         if (!is_root)
-            mf_json_refuse(scene, "units", "the file's stand at its top");
+            mf_json_refuse(scene, "units", "the file's units are at its top; leave them out");
         return;
     }
     struct json_object object = mf_json_child(scene, "units", false);

@@ -211,21 +211,22 @@ enum status mf_units_from(const struct units *units, const char *from, const cha
     struct units_text given, wanted;
     *factor = 1;
     if (!mf_units_text_parse(&given, from, units->dimensions))
-        return mf_status_fail(STATUS_BAD_INPUT, "\"%.60s\" is no unit that is known here", from);
+        return mf_status_fail(STATUS_BAD_INPUT, "unknown unit \"%.60s\"", from);
     if (!mf_units_text_parse(&wanted, unit, units->dimensions))
         return STATUS_OK;
     if (units->chosen && (given.exponent[UNITS_LAMBDA] != 0 || given.exponent[UNITS_TAU] != 0))
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "\"%.60s\" needs the lambda that it was made with: \"length\" of "
-                              "\"units\" gives it",
+                              "\"%.60s\" needs the lambda that it was written with: give it as "
+                              "\"length\" of \"units\"",
                               from);
     resolve(&given, units);
     resolve(&wanted, units);
     for (int base = UNITS_SCALED; base < UNITS_BASES; base++)
         if (given.exponent[base] != wanted.exponent[base]) {
             char name[UNITS_NAME_SIZE];
-            return mf_status_fail(STATUS_BAD_INPUT, "\"%.60s\" is no unit of what is in %s here",
-                                  from, mf_units_name(units, unit, name));
+            return mf_status_fail(STATUS_BAD_INPUT,
+                                  "\"%.60s\" is not a unit of the same kind as %s", from,
+                                  mf_units_name(units, unit, name));
         }
     *factor = given.factor / wanted.factor;
     return STATUS_OK;

@@ -12,7 +12,7 @@
 static enum status check_row(const struct data_table *table, const char *file, size_t row) {
     const char flag = table->flags[row];
     if (strchr("iou", flag) == NULL)
-        return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: the flag \"%c\" is none of i, o, u", file,
+        return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: the flag \"%c\" is not i, o or u", file,
                               table->line[row], flag);
     for (size_t column = 0; flag == 'i' && column < table->columns; column++)
         if (!isfinite(table->values[row * table->columns + column]))

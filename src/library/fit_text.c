@@ -95,7 +95,7 @@ static enum status write_method(const struct mesofit_fit_options *options, FILE 
     const char *settings = options->settings ? options->settings : "{}";
     settings += strspn(settings, blanks);
     if (*settings != '{')
-        return mf_status_fail(STATUS_BAD_INPUT, "settings: \"%s\" is no JSON object", settings);
+        return mf_status_fail(STATUS_BAD_INPUT, "settings: \"%s\" is not a JSON object", settings);
     const char *first = settings + 1 + strspn(settings + 1, blanks);
     fprintf(stream, "\"method\": {\"name\": \"%s\"%s%s", options->method ? options->method : "",
             *first == '}' ? "" : ", ", first);

@@ -41,7 +41,7 @@ bool mf_live_folder_is_plain(const char *path) {
 }
 
 static int refuse(const char *path) {
-    mf_status_fail(STATUS_BAD_INPUT, "\"%.200s\" is no file of the working folder", path);
+    mf_status_fail(STATUS_BAD_INPUT, "\"%.200s\" is not a file of the working folder", path);
     return -1;
 }
 
@@ -79,7 +79,7 @@ int mf_live_folder_enter(int root, const char *path) {
 
 enum status mf_live_folder_check_new(int root, const char *path) {
     if (!mf_live_folder_is_plain(path))
-        return mf_status_fail(STATUS_BAD_INPUT, "\"%.200s\" is no folder of the working folder",
+        return mf_status_fail(STATUS_BAD_INPUT, "\"%.200s\" is not a folder of the working folder",
                               path);
     const int folder = go_down(root, path, strlen(path));
     if (folder < 0 && errno != ENOENT)
@@ -111,7 +111,7 @@ static int open_regular(int folder, const char *name, size_t *size) {
         return file;
     }
     close(file);
-    mf_status_fail(STATUS_BAD_INPUT, "%.200s is no regular file", name);
+    mf_status_fail(STATUS_BAD_INPUT, "%.200s is not a regular file", name);
     return -1;
 }
 

@@ -197,7 +197,7 @@ static enum status read_wish(const struct live_request *request, struct wished *
     const struct text_lent lent = {"the wish", request->body};
     struct json_document *document;
     if (strlen(request->body) != request->size)
-        return mf_status_fail(STATUS_BAD_INPUT, "the wish has a NUL byte");
+        return mf_status_fail(STATUS_BAD_INPUT, "the request has a NUL byte");
     mf_text_file_lend(&lent, 1);
     const enum status status = mf_json_open(&document, lent.name);
     mf_text_file_lend(NULL, 0);

@@ -181,7 +181,7 @@ static const char *find_fault(const struct live_server *server, struct MHD_Conne
     const char *length = find_head(connection, MHD_HTTP_HEADER_CONTENT_LENGTH);
     *code = MHD_HTTP_FORBIDDEN;
     if (!mf_live_guard_is_host(host))
-        return "This server speaks to 127.0.0.1 and localhost alone.";
+        return "This server answers on 127.0.0.1 and localhost only.";
     if (!mf_live_guard_is_origin(find_head(connection, "Origin"), host))
         return "This page belongs to another site.";
     if (!has_token(server, connection, request))

@@ -201,7 +201,7 @@ static void review_change(struct live_watch *watch) {
         isnan(wish.time_step) ? setup->time_step : wish.time_step / mf_units_factor(units, "tau")};
     watch->changes = mf_simulation_check_change(simulation, &watch->change) == STATUS_OK;
     mf_live_view_set_phase(watch->view, watch->paused ? LIVE_PAUSED : LIVE_RUNNING,
-                           watch->changes ? "the next step has it; samples begin anew"
+                           watch->changes ? "it takes effect at the next step; samples are reset"
                                           : mf_status_message());
 }
 

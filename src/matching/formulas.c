@@ -20,12 +20,13 @@ static const struct field own_fields[] = {
     {"checks", FIELD_INTEGER, OWN(checks), .initial = 2, .minimum = 1, .maximum = 100, .unit = "",
      .help = "simulations of each formula of the front"},
     {"cycles", FIELD_INTEGER, OWN(cycles), .initial = 3, .minimum = 1, .maximum = 100, .unit = "",
-     .help = "of breeding and simulating, of a potential; a friction weight has one"},
+     .help = "cycles of breeding and simulating (potential only)"},
     {"curve_particles", FIELD_INTEGER, OWN(curve_particles), .initial = 0, .minimum = 0,
      .maximum = 1e7, .unit = "",
      .help = "\"particles\" of the method auto, which finds the potential's curve"},
     {"curve_precision", FIELD_NUMBER, OWN(curve_precision), .initial = 0.004,
-     .minimum = FIELD_ABOVE_ZERO, .maximum = 1, .unit = "", .help = "its \"precision\""},
+     .minimum = FIELD_ABOVE_ZERO, .maximum = 1, .unit = "",
+     .help = "\"precision\" of the method auto"},
     FIELD_END,
 };
 
@@ -354,11 +355,12 @@ const struct inverse_method mf_formulas = {
     .name = "formulas",
     .summary = "a formula of r by genetic programming; J. R. Koza (1992)",
     .kind = INVERSE_MATCHING,
-    .tables = (const struct inverse_table[]){{mf_programming_fields,
-                                              offsetof(struct formulas_parameters, programming)},
-                                             {own_fields, 0},
-                                             {mf_population_fields, 0},
-                                             {NULL, 0}},
+    .tables =
+        (const struct inverse_table[]){
+            {mf_programming_fields, offsetof(struct formulas_parameters, programming), NULL},
+            {own_fields, 0, NULL},
+            {mf_population_fields, 0, "candidates"},
+            {NULL, 0, NULL}},
     .parameters_size = sizeof(struct formulas_parameters),
     .state_size = sizeof(struct formulas_state),
     .finds_potential = true,

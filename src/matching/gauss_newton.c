@@ -72,18 +72,17 @@ struct state {
 #define OWN(name) .offset = offsetof(struct parameters, name)
 static const struct field own_fields[] = {
     {"iterations", FIELD_INTEGER, OWN(iterations), .initial = 20, .minimum = 1, .maximum = 10000,
-     .unit = "", .help = "at most; a fit that has not settled by then has not converged"},
+     .unit = "", .help = "most iterations"},
     {"spread", FIELD_INTEGER, OWN(spread), .initial = 0, .minimum = 0, .maximum = POPULATION_MOST,
-     .unit = "", .help = "candidates about the best in an iteration; 0: 1.5 for each variable"},
+     .unit = "", .help = "candidates around the best in an iteration; 0: 1.5 for each variable"},
     {"reach", FIELD_NUMBER, OWN(reach), .initial = 0.15, .minimum = FIELD_ABOVE_ZERO, .maximum = 1,
-     .unit = "", .help = "radius of the region at first, as a part of a variable's range"},
+     .unit = "", .help = "initial trust radius, as a fraction of the range"},
     {"checks", FIELD_INTEGER, OWN(checks), .initial = 4, .minimum = 1, .maximum = POPULATION_MOST,
-     .unit = "", .help = "measurements of what the model thinks best"},
+     .unit = "", .help = "measurements of the model's optimum"},
     {"tolerance", FIELD_NUMBER, OWN(tolerance), .initial = 0.1, .minimum = FIELD_ABOVE_ZERO,
-     .maximum = 1, .unit = "", .help = "of the first radius; with a smaller region the fit ends"},
+     .maximum = 1, .unit = "", .help = "trust radius at the end, as a fraction of the first"},
     {"pressure", FIELD_CHOICE, OWN(pressure), .choices = pressures, .initial = PRESSURE_WEIGHED,
-     .unit = "",
-     .help = "a fitted one: weighed with the other targets, or met exactly by the linear model"},
+     .unit = "", .help = "a fitted pressure: weighted, or met exactly by the linear model"},
     FIELD_END,
 };
 
@@ -272,7 +271,7 @@ static void tell_reason(const struct state *state, char reason[INVERSE_REASON_SI
         return;
     }
     if (state->has_model)
-        snprintf(why, sizeof why, "but none of what the linear model thought best");
+        snprintf(why, sizeof why, "but none of the linear model's optimum");
     else
         snprintf(
             why, sizeof why,
@@ -386,9 +385,10 @@ const struct inverse_method mf_gauss_newton = {
     .summary = "linear models of all observables in a trust region; J. Nocedal and S. J. Wright "
                "(2006)",
     .kind = INVERSE_MATCHING,
-    .tables =
-        (const struct inverse_table[]){
-            {own_fields, 0}, {mf_population_fields, 0}, {mf_population_round_fields, 0}, {NULL, 0}},
+    .tables = (const struct inverse_table[]){{own_fields, 0, NULL},
+                                             {mf_population_fields, 0, "candidates"},
+                                             {mf_population_round_fields, 0, NULL},
+                                             {NULL, 0, NULL}},
     .parameters_size = sizeof(struct parameters),
     .state_size = sizeof(struct state),
     .finds_potential = true,

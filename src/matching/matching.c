@@ -68,18 +68,14 @@ static const char *const surrogates[] = {"no", "yes", "join", NULL};
 static const struct field own_fields[] = {
     {"racing", FIELD_NUMBER, MEMBER(population.evaluate.racing), .initial = 0, .minimum = 0,
      .maximum = 100, .unit = "standard errors",
-     .help = "by which a running error must be hopeless for its simulation to stop; 0: never"},
+     .help = "significance at which a losing simulation is stopped; 0: never"},
     {"checks", FIELD_INTEGER, MEMBER(checks), .initial = 2, .minimum = 1,
-     .maximum = POPULATION_MOST, .unit = "",
-     .help = "fresh measurements of what is thought best, before it is believed"},
+     .maximum = POPULATION_MOST, .unit = "", .help = "repeated measurements of an apparent best"},
     {"check_length", FIELD_INTEGER, MEMBER(check_length), .initial = 1, .minimum = 1,
-     .maximum = 1000, .unit = "",
-     .help = "of their simulations, in those of a round: a liquid may boil after a while only"},
+     .maximum = 1000, .unit = "", .help = "length of these simulations, in units of a round's"},
     {"surrogate", FIELD_CHOICE, MEMBER(surrogate), .choices = surrogates, .initial = TRIED,
      .unit = "",
-     .help =
-         "whether to try what a linear model of all simulations thinks best, too; join: and let "
-         "it join the genetic population"},
+     .help = "try the optimum of a linear model, too; join: add it to the genetic population"},
     FIELD_END,
 };
 
@@ -346,12 +342,13 @@ static enum status write(const void *memory, const struct inverse_folder *folder
         .kind = INVERSE_MATCHING,                                                                  \
         .own = &(const struct driven){&mf_##record##_optimiser,                                    \
                                       offsetof(struct record##_settings, optimiser)},              \
-        .tables = (const struct inverse_table[]){{mf_##record##_fields,                            \
-                                                  offsetof(struct record##_settings, optimiser)},  \
-                                                 {mf_population_fields, 0},                        \
-                                                 {mf_population_round_fields, 0},                  \
-                                                 {own_fields, 0},                                  \
-                                                 {NULL, 0}},                                       \
+        .tables =                                                                                  \
+            (const struct inverse_table[]){                                                        \
+                {mf_##record##_fields, offsetof(struct record##_settings, optimiser), NULL},       \
+                {mf_population_fields, 0, "candidates"},                                           \
+                {mf_population_round_fields, 0, NULL},                                             \
+                {own_fields, 0, "searches"},                                                       \
+                {NULL, 0, NULL}},                                                                  \
         .parameters_size = sizeof(struct record##_settings),                                       \
         .state_size = sizeof(struct state),                                                        \
         .finds_potential = true,                                                                   \

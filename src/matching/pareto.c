@@ -14,10 +14,10 @@
 #define OWN(name) .offset = offsetof(struct pareto_parameters, name)
 static const struct field own_fields[] = {
     {"checks", FIELD_INTEGER, OWN(checks), .initial = 2, .minimum = 1, .maximum = POPULATION_MOST,
-     .unit = "", .help = "fresh measurements of a member of the front before it is chosen"},
+     .unit = "", .help = "repeated measurements of the chosen one"},
     {"surrogate", FIELD_INTEGER, OWN(surrogate), .initial = 4, .minimum = 0,
      .maximum = NSGA2_PLANTED, .unit = "",
-     .help = "children of a generation that are what linear models of the simulations think best"},
+     .help = "children of a generation from linear models of the simulations"},
     FIELD_END,
 };
 
@@ -283,14 +283,14 @@ static size_t spans(void *memory, struct memory_span *span) {
 
 const struct inverse_method mf_pareto = {
     .name = "pareto",
-    .summary = "the front of all targets by NSGA-II, without weights; K. Deb et al. (2002)",
+    .summary = "Pareto front of all targets by NSGA-II, without weights; K. Deb et al. (2002)",
     .kind = INVERSE_MATCHING,
-    .tables =
-        (const struct inverse_table[]){{mf_nsga2_fields, offsetof(struct pareto_parameters, nsga2)},
-                                       {own_fields, 0},
-                                       {mf_population_fields, 0},
-                                       {mf_population_round_fields, 0},
-                                       {NULL, 0}},
+    .tables = (const struct inverse_table[]){{mf_nsga2_fields,
+                                              offsetof(struct pareto_parameters, nsga2), NULL},
+                                             {own_fields, 0, NULL},
+                                             {mf_population_fields, 0, "candidates"},
+                                             {mf_population_round_fields, 0, NULL},
+                                             {NULL, 0, NULL}},
     .parameters_size = sizeof(struct pareto_parameters),
     .state_size = sizeof(struct pareto_state),
     .finds_potential = true,

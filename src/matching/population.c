@@ -17,27 +17,26 @@ const char *const mf_population_no_or_yes[] = {"no", "yes", NULL};
 #define MEMBER(name) .offset = offsetof(struct population_parameters, name)
 const struct field mf_population_fields[] = {
     {"equilibration", FIELD_INTEGER, MEMBER(evaluate.plan.equilibration), .initial = 350,
-     .minimum = 10, .maximum = 1e9, .unit = "steps", .help = "of a candidate's simulation"},
+     .minimum = 10, .maximum = 1e9, .unit = "steps", .help = "equilibration of a simulation"},
     {"samples", FIELD_INTEGER, MEMBER(evaluate.plan.samples), .initial = 45, .minimum = 1,
-     .maximum = 1e8, .unit = "",
-     .help = "of its g(r) and pressure; times \"every\" it is as long as all else is measured"},
+     .maximum = 1e8, .unit = "", .help = "samples of g(r) and pressure"},
     {"every", FIELD_INTEGER, MEMBER(evaluate.plan.every), .initial = 50, .minimum = 1,
-     .maximum = 1e9, .unit = "steps", .help = "between samples"},
+     .maximum = 1e9, .unit = "steps", .help = "interval between samples"},
     {"temperature_tolerance", FIELD_NUMBER, MEMBER(evaluate.temperature_tolerance), .initial = 0.1,
      .minimum = FIELD_ABOVE_ZERO, .maximum = 1, .unit = "",
-     .help = "relative deviation at the end of equilibration with which a candidate fails"},
+     .help = "largest relative deviation of the temperature after equilibration"},
     {"estimator", FIELD_CHOICE, MEMBER(evaluate.estimator), .choices = mf_rdf_force_estimators,
      .initial = RDF_FORCE_NOT_USED, .unit = "",
-     .help = "of g(r): force is worth twice the samples, but a large time step puts it off"},
+     .help = "estimator of g(r); force: less noise, biased by a large time step"},
     {"precision", FIELD_NUMBER, MEMBER(evaluate.precision), .initial = 0, .minimum = 0,
      .maximum = 1, .unit = "",
-     .help = "relative standard error of an error with which its simulation stops; 0: never"},
+     .help = "relative standard error of the error that ends a simulation; 0: none"},
     FIELD_END,
 };
 
 const struct field mf_population_round_fields[] = {
     {"warm_start", FIELD_CHOICE, MEMBER(warm_start), .choices = mf_population_no_or_yes,
-     .initial = 0, .unit = "", .help = "begin where the best simulation of the last round ended"},
+     .initial = 0, .unit = "", .help = "start from the end of the last round's best simulation"},
     FIELD_END,
 };
 

@@ -63,7 +63,8 @@ static const struct field own_fields[] = {
     {"potential_particles", FIELD_INTEGER, OWN(potential_particles), .initial = 0, .minimum = 0,
      .maximum = 1e7, .unit = "", .help = "\"particles\" of the method auto, which comes first"},
     {"potential_precision", FIELD_NUMBER, OWN(potential_precision), .initial = 0.004,
-     .minimum = FIELD_ABOVE_ZERO, .maximum = 1, .unit = "", .help = "its \"precision\""},
+     .minimum = FIELD_ABOVE_ZERO, .maximum = 1, .unit = "",
+     .help = "\"precision\" of the method auto"},
     FIELD_END,
 };
 
@@ -325,8 +326,7 @@ static enum status iterate(void *memory, struct inverse_step *step,
         progress->stage = UNKNOWN_OMEGA;
         progress->begun = progress->iteration;
         step->begins =
-            "the potential is found; omega is next, and \"error\" is from here on that of "
-            "its targets, too: it begins anew";
+            "the potential is found; omega is next: from here on \"error\" includes its targets";
     }
     return STATUS_OK;
 }
@@ -350,12 +350,13 @@ static size_t spans(void *memory, struct memory_span *span) {
 
 const struct inverse_method mf_successive = {
     .name = "successive",
-    .summary = "the potential from g(r) by auto, then omega from what moves by gauss-newton, with "
-               "that potential; g(r) does not depend on omega (Espanol and Warren 1995)",
+    .summary = "the potential from g(r) by auto, then with it omega from the dynamics by "
+               "gauss-newton; g(r) does not depend on omega (Espanol and Warren 1995)",
     .kind = INVERSE_MATCHING,
-    .tables =
-        (const struct inverse_table[]){
-            {own_fields, 0}, {mf_population_fields, 0}, {mf_population_round_fields, 0}, {NULL, 0}},
+    .tables = (const struct inverse_table[]){{own_fields, 0, NULL},
+                                             {mf_population_fields, 0, "candidates"},
+                                             {mf_population_round_fields, 0, NULL},
+                                             {NULL, 0, NULL}},
     .parameters_size = sizeof(struct parameters),
     .state_size = sizeof(struct state),
     .finds_potential = true,

@@ -19,8 +19,7 @@ enum { COLUMNS = 3, MOST_PARTS = 20 };
 static const struct field fields[] = {
     {"bins", FIELD_INTEGER, .offset = offsetof(struct bonded_settings, bins), .initial = 100,
      .minimum = 1, .maximum = 100000, .unit = "",
-     .help = "of lengths up to twice those at rest, or to where a bond tears; of angles from 0 to "
-             "180 degrees, of dihedrals from -180 to 180"},
+     .help = "number of bins; lengths up to twice those at rest, all angles"},
     FIELD_END,
 };
 

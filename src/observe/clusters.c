@@ -178,15 +178,14 @@ static void explain(const void *settings, const struct simulation_setup *setup, 
 static const struct field fields[] = {
     {"distance", FIELD_NUMBER, offsetof(struct settings, distance), .required = true,
      .minimum = FIELD_ABOVE_ZERO, .maximum = DBL_MAX, .unit = "lambda",
-     .help = "below which two particles are in the same cluster, at most the range of the "
-             "interactions"},
+     .help = "largest distance of neighbours, at most the range of the interactions"},
     FIELD_END,
 };
 static const char *const files[] = {"clusters.tsv", NULL};
 
 const struct observable mf_clusters = {
     .name = "clusters",
-    .summary = "sizes of clusters of particles that are near each other",
+    .summary = "sizes of clusters of neighbouring particles",
     .fields = fields,
     .settings_size = sizeof(struct settings),
     .state_size = sizeof(struct state),

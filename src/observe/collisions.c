@@ -37,7 +37,7 @@ struct settings {
 #define MEMBER(name) .offset = offsetof(struct settings, name)
 static const struct field fields[] = {
     {"bins", FIELD_INTEGER, MEMBER(bins), .initial = 50, .minimum = 1, .maximum = 10000, .unit = "",
-     .help = "of the distribution of speeds, up to five thermal ones"},
+     .help = "number of bins of the speed distribution, up to five thermal speeds"},
     FIELD_END,
 };
 
@@ -408,7 +408,7 @@ static const char *const files[] = {"speeds.tsv", "collisions.tsv", "timing.tsv"
 
 const struct observable mf_collisions = {
     .name = "collisions",
-    .summary = "of hard particles: pressure, collision rate, mean free path, speeds",
+    .summary = "pressure, collision rate, mean free path and speeds of hard particles",
     .of_time = true,
     .fields = fields,
     .settings_size = sizeof(struct settings),

@@ -11,17 +11,17 @@
 #define PLAN(name) .offset = offsetof(struct etd_settings, plan.name)
 const struct field mf_etd_fields[] = {
     {"r_minimum", FIELD_NUMBER, GRID(r_minimum), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
-     .unit = "lambda", .help = "where the bins of the first separation r_0 begin"},
+     .unit = "lambda", .help = "lower edge of the bins of the first separation r_0"},
     {"r_maximum", FIELD_NUMBER, GRID(r_maximum), .required = true, .minimum = FIELD_ABOVE_ZERO,
-     .maximum = DBL_MAX, .unit = "lambda", .help = "where they end, and where a pair has escaped"},
+     .maximum = DBL_MAX, .unit = "lambda", .help = "upper edge, at which a pair has escaped"},
     {"bins", FIELD_INTEGER, GRID(bins), .initial = 100, .minimum = 1, .maximum = 10000, .unit = "",
-     .help = "of r_0"},
+     .help = "number of bins of r_0"},
     {"times", FIELD_INTEGER, GRID(times), .initial = 101, .minimum = 2, .maximum = 100000,
-     .unit = "", .help = "number of times, t = 0 among them"},
+     .unit = "", .help = "number of times, including t = 0"},
     {"every", FIELD_INTEGER, PLAN(every), .initial = 1, .minimum = 1, .maximum = 1e9,
-     .unit = "steps", .help = "between times; escapes in between go unseen"},
+     .unit = "steps", .help = "interval between times; escapes in between are missed"},
     {"origin_every", FIELD_INTEGER, PLAN(origin_every), .initial = 10, .minimum = 1, .maximum = 1e6,
-     .unit = "times", .help = "between time origins"},
+     .unit = "times", .help = "interval between time origins"},
     FIELD_END,
 };
 

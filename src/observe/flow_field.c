@@ -34,7 +34,7 @@ struct flow_field {
 static const struct field fields[] = {
     {"spacing", FIELD_NUMBER, offsetof(struct settings, spacing), .initial = 1,
      .minimum = FIELD_ABOVE_ZERO, .maximum = DBL_MAX, .unit = "lambda",
-     .help = "of the points at which the flow is told, nearly: a whole number of them fits"},
+     .help = "approximate spacing of points"},
     FIELD_END,
 };
 

@@ -40,7 +40,7 @@ struct profile {
 
 static const struct field fields[] = {
     {"bins", FIELD_INTEGER, offsetof(struct settings, bins), .initial = 0, .minimum = 0,
-     .maximum = 1e5, .unit = "", .help = "along y; 0: as many as cells"},
+     .maximum = 1e5, .unit = "", .help = "number of bins along y; 0: one a cell"},
     FIELD_END,
 };
 
@@ -87,10 +87,10 @@ static enum status begin(void *state, const void *settings, const struct simulat
     p->height = solvent->box.length[1];
     p->bins = given->bins > 0 ? (size_t)given->bins : (size_t)rint(p->height / p->parameters.cell);
     if (peak_shape(p) > 0 && p->bins < LEAST_BINS)
-        return mf_status_fail(STATUS_BAD_INPUT,
-                              "flow_profile.bins: %zu along y cannot tell a viscosity; %d and more "
-                              "can, in a channel of a few cells, too",
-                              p->bins, LEAST_BINS);
+        return mf_status_fail(
+            STATUS_BAD_INPUT,
+            "flow_profile.bins: %zu along y are too few for a viscosity; expected at least %d",
+            p->bins, LEAST_BINS);
     p->interval = (double)plan->every * simulation->setup.time_step;
     p->each = ((size_t)plan->samples + MOST_BLOCKS - 1) / MOST_BLOCKS;
     p->blocks = (size_t)plan->samples / p->each;
@@ -345,11 +345,10 @@ static void say(const void *state, const struct observable_results *results, cha
                  viscosity, mf_units_suffix(units, "lambda^2/tau", unit),
                  factor * mf_collision_dynamics_viscosity(&p->setup), temperature, kelvin);
     else
-        snprintf(
-            line, size,
-            "temperature of the solvent %.4f%s; a viscosity wants plates and an acceleration along "
-            "x, or a wave, and no obstacle",
-            temperature, kelvin);
+        snprintf(line, size,
+                 "temperature of the solvent %.4f%s; a viscosity needs plates and an acceleration "
+                 "along x, or a wave, and no obstacle",
+                 temperature, kelvin);
 }
 
 /// A flow that still grows, or hardly differs from the noise, gives any viscosity.
@@ -393,14 +392,14 @@ static const struct observable_target targets[] = {
      .summary = "kinematic viscosity of a solvent that is driven",
      .form = OBSERVABLE_NUMBER},
     {.name = "schmidt_number",
-     .summary = "viscosity over the diffusion coefficient of the beads in a wave",
+     .summary = "viscosity over diffusion coefficient of the beads in a wave",
      .form = OBSERVABLE_NUMBER},
     {.name = NULL}};
 static const char *const files[] = {"flow_profile.tsv", NULL};
 
 const struct observable mf_flow_profile = {
     .name = "flow_profile",
-    .summary = "velocity of the solvent between plates or in a wave, its viscosity",
+    .summary = "velocity and viscosity of the solvent between plates or in a wave",
     .of_time = true,
     .of_solvent = true,
     .fields = fields,

@@ -6,9 +6,9 @@
 #define MEMBER(name) .offset = offsetof(struct force_covariance_plan, name)
 const struct field mf_force_covariance_fields[] = {
     {"range", FIELD_NUMBER, MEMBER(range), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
-     .unit = "lambda", .help = "of the bins; 0 means the cutoff of the friction weight"},
+     .unit = "lambda", .help = "range; 0: the cutoff of the friction weight"},
     {"bins", FIELD_INTEGER, MEMBER(bins), .initial = 50, .minimum = 1, .maximum = 100000,
-     .unit = "", .help = "from r = 0 on"},
+     .unit = "", .help = "number of bins from r = 0"},
     FIELD_END,
 };
 
@@ -16,7 +16,7 @@ static enum status check(const struct simulation *simulation, double range) {
     const struct simulation_setup *setup = &simulation->setup;
     if (setup->omega == NULL)
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "force_covariance: the scene has no friction weight to be seen");
+                              "force_covariance: the scene has no friction weight");
     if (setup->integrator->friction)
         return mf_status_fail(
             STATUS_BAD_INPUT,

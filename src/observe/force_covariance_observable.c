@@ -59,7 +59,7 @@ static const char *const files[] = {"force_covariance.tsv", NULL};
 
 const struct observable mf_force_covariance_observable = {
     .name = "force_covariance",
-    .summary = "friction as the forces show it",
+    .summary = "friction from the covariance of the forces",
     .of_time = true,
     .fields = mf_force_covariance_fields,
     .settings_size = sizeof(struct force_covariance_plan),

@@ -20,9 +20,8 @@ static const char unit[] = "lambda^d";
 const struct field mf_kirkwood_buff_observable_fields[] = {
     {"q_maximum", FIELD_NUMBER, .offset = offsetof(struct kirkwood_buff_settings, q_maximum),
      .initial = 0, .minimum = 0, .maximum = DBL_MAX, .unit = "1/lambda",
-     .help = "longest waves of the density, up to this wave number, from which S(q) goes to q = 0 "
-             "as a line in q^2; 0: a fifth of 2 pi density^(1/d), and not more than one over the "
-             "size of molecules"},
+     .help = "largest wave number of the extrapolation to q = 0; 0: a fifth of 2 pi density^(1/d), "
+             "less for large molecules"},
     FIELD_END,
 };
 
@@ -198,7 +197,7 @@ static void explain(const void *settings, const struct simulation_setup *setup, 
 
 static const struct observable_target targets[] = {
     {.name = "kirkwood_buff",
-     .summary = "Kirkwood and Buff's integrals of pairs of components, of the open system",
+     .summary = "Kirkwood-Buff integrals of pairs of components",
      .form = OBSERVABLE_OWN_FORM,
      .unit = unit,
      .has_settings = true},
@@ -206,7 +205,7 @@ static const struct observable_target targets[] = {
 
 const struct observable mf_kirkwood_buff_observable = {
     .name = "kirkwood_buff",
-    .summary = "Kirkwood and Buff's integrals by the longest waves of the density",
+    .summary = "Kirkwood-Buff integrals from S(q) at small q",
     .fields = mf_kirkwood_buff_observable_fields,
     .settings_size = sizeof(struct kirkwood_buff_settings),
     .state_size = sizeof(struct state),

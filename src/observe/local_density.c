@@ -134,10 +134,9 @@ static void explain(const void *settings, const struct simulation_setup *setup, 
 #define MEMBER(name) .offset = offsetof(struct settings, name)
 static const struct field fields[] = {
     {"cell", FIELD_NUMBER, MEMBER(cell), .required = true, .minimum = FIELD_ABOVE_ZERO,
-     .maximum = DBL_MAX, .unit = "lambda",
-     .help = "edge of a cell, about: whole numbers of them fill the box"},
+     .maximum = DBL_MAX, .unit = "lambda", .help = "approximate edge of a cell"},
     {"diameter", FIELD_NUMBER, MEMBER(diameter), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
-     .unit = "lambda", .help = "of a particle, for the packing fraction; 0: none"},
+     .unit = "lambda", .help = "diameter of a particle, for the packing fraction; 0: none"},
     FIELD_END,
 };
 static const char *const files[] = {"local_density.tsv", NULL};

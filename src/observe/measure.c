@@ -9,11 +9,11 @@
 #define MEMBER(name) .offset = offsetof(struct measure_plan, name)
 const struct field mf_measure_plan_fields[] = {
     {"equilibration", FIELD_INTEGER, MEMBER(equilibration), .initial = 1000, .minimum = 0,
-     .maximum = 1e12, .unit = "steps", .help = "before the first sample"},
+     .maximum = 1e12, .unit = "steps", .help = "interval before the first sample"},
     {"samples", FIELD_INTEGER, MEMBER(samples), .initial = 200, .minimum = 1, .maximum = 1e8,
      .unit = "", .help = "number of samples"},
     {"every", FIELD_INTEGER, MEMBER(every), .initial = 25, .minimum = 1, .maximum = 1e9,
-     .unit = "steps", .help = "between samples"},
+     .unit = "steps", .help = "interval between samples"},
     FIELD_END,
 };
 

@@ -47,7 +47,7 @@ struct state {
 static const struct field fields[] = {
     {"lags", FIELD_INTEGER, .offset = offsetof(struct settings, lags), .initial = 100, .minimum = 0,
      .maximum = 100000, .unit = "samples",
-     .help = "as far as the correlation of the end-to-end vector goes"},
+     .help = "length of the correlation function of the end-to-end vector"},
     FIELD_END,
 };
 
@@ -411,7 +411,7 @@ static const char *const files[] = {"end_to_end.tsv", "molecule_sizes.tsv", NULL
 
 const struct observable mf_molecule_sizes = {
     .name = "molecule_sizes",
-    .summary = "radius of gyration, end-to-end distance and how long its vector lives",
+    .summary = "radius of gyration, end-to-end distance and correlation of its vector",
     .fields = fields,
     .settings_size = sizeof(struct settings),
     .state_size = sizeof(struct state),

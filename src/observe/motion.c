@@ -13,12 +13,11 @@
 #define MEMBER(name) .offset = offsetof(struct motion_plan, name)
 const struct field mf_motion_plan_fields[] = {
     {"every", FIELD_INTEGER, MEMBER(every), .initial = 5, .minimum = 1, .maximum = 1e9,
-     .unit = "steps", .help = "between samples; the velocities should change little meanwhile"},
+     .unit = "steps", .help = "interval between samples, in which velocities change little"},
     {"lags", FIELD_INTEGER, MEMBER(lags), .initial = 100, .minimum = 2, .maximum = 1e5,
-     .unit = "samples", .help = "length of the window; a run should be twenty windows or more"},
+     .unit = "samples", .help = "length of the window, at most a twentieth of the run"},
     {"origin_every", FIELD_INTEGER, MEMBER(origin_every), .initial = 10, .minimum = 1,
-     .maximum = 1e5, .unit = "samples",
-     .help = "between time origins: fewer of them cost less and say little less"},
+     .maximum = 1e5, .unit = "samples", .help = "interval between time origins"},
     FIELD_END,
 };
 

@@ -255,13 +255,13 @@ static void explain(const void *settings, const struct simulation_setup *setup,
 
 static const struct observable_target targets[] = {
     {.name = "polarity_correlation",
-     .summary = "<n(t).n(0)>, how long particles keep their direction",
+     .summary = "<n(t).n(0)>, persistence of directions",
      .form = OBSERVABLE_CURVE,
      .argument = "time[tau]",
      .unit = "1",
      .has_settings = true},
     {.name = "polar_order",
-     .summary = "|<n>|, the mean over time",
+     .summary = "|<n>|, averaged over time",
      .form = OBSERVABLE_NUMBER,
      .has_settings = true},
     {.name = NULL}};
@@ -269,7 +269,7 @@ static const char *const files[] = {"polarity.tsv", "polar_order.tsv", NULL};
 
 const struct observable mf_polarity_observable = {
     .name = "polarity",
-    .summary = "directions: their order, how long they are kept, and where to",
+    .summary = "order, persistence and distribution of directions",
     .of_time = true,
     .fields = mf_motion_plan_fields,
     .settings_size = sizeof(struct motion_plan),

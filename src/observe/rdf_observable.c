@@ -11,12 +11,12 @@
 #define MEMBER(name) .offset = offsetof(struct rdf_settings, name)
 static const struct field fields[] = {
     {"range", FIELD_NUMBER, MEMBER(range), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
-     .unit = "lambda", .help = "of g(r); 0 means the cutoff of the forces, if there are any"},
+     .unit = "lambda", .help = "range of g(r); 0: the cutoff of the forces"},
     {"bins", FIELD_INTEGER, MEMBER(bins), .initial = 100, .minimum = 1, .maximum = 100000,
-     .unit = "", .help = "of g(r)"},
+     .unit = "", .help = "number of bins"},
     {"estimator", FIELD_CHOICE, MEMBER(estimator), .choices = mf_rdf_force_estimators,
      .initial = RDF_FORCE_NOT_USED, .unit = "",
-     .help = "of g(r): force is worth twice the samples, but a large time step puts it off"},
+     .help = "estimator of g(r); force: less noise, biased by a large time step"},
     FIELD_END,
 };
 
@@ -38,10 +38,9 @@ static struct rdf_bins bins_of(const struct rdf_settings *settings,
 static enum status check(const struct rdf_settings *settings,
                          const struct simulation_setup *setup) {
     if (!(range_of(settings, setup) > 0))
-        return mf_status_fail(
-            STATUS_BAD_INPUT,
-            "rdf: the scene has no forces whose cutoff is the range of g(r): say how "
-            "far, as in {\"range\": 2}");
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "rdf: the scene has no forces whose cutoff is the range of g(r): "
+                              "give the range, as in {\"range\": 2}");
     if (settings->of_target || settings->estimator != RDF_FORCE_USED)
         return STATUS_OK;
     if (composition_is_mixed(&setup->composition))
@@ -54,8 +53,7 @@ static enum status check(const struct rdf_settings *settings,
     if (!mf_rdf_force_applies(setup->potential, setup->temperature))
         return mf_status_fail(
             STATUS_BAD_INPUT,
-            "rdf: \"estimator\": \"force\" wants a potential that keeps particles "
-            "apart, of 10 k_B T at least where r is 0");
+            "rdf: \"estimator\": \"force\" needs a potential of at least 10 k_B T at r = 0");
     return STATUS_OK;
 }
 
@@ -244,7 +242,7 @@ static void explain(const void *settings, const struct simulation_setup *setup, 
                        !composition_is_mixed(&setup->composition);
     if (force && s->of_target)
         mf_stages_add(stages, "g(r)", false, 0,
-                      "from forces; counted if a potential keeps no pair apart");
+                      "from forces; counted for potentials that are low at r = 0");
     else
         explain_counting(setup, range, every, stages);
     if (force)
@@ -320,9 +318,9 @@ static void explain_apart(const void *settings, const struct simulation_setup *s
 
 static const struct field apart_fields[] = {
     {"range", FIELD_NUMBER, MEMBER(range), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
-     .unit = "lambda", .help = "of g(r); 0 means the cutoff of the forces, if there are any"},
+     .unit = "lambda", .help = "range of g(r); 0: the cutoff of the forces"},
     {"bins", FIELD_INTEGER, MEMBER(bins), .initial = 100, .minimum = 1, .maximum = 100000,
-     .unit = "", .help = "of g(r)"},
+     .unit = "", .help = "number of bins"},
     FIELD_END,
 };
 
@@ -337,7 +335,7 @@ static const char *const apart_files[] = {"intermolecular_rdf.tsv", "intermolecu
 
 const struct observable mf_rdf_intermolecular = {
     .name = "intermolecular_rdf",
-    .summary = "g(r) of beads of different molecules alone, normalised as that of all",
+    .summary = "g(r) of beads of different molecules, normalised as that of all",
     .fields = apart_fields,
     .settings_size = sizeof(struct rdf_settings),
     .state_size = sizeof(struct rdf_observed),

@@ -42,13 +42,9 @@ struct viscosity {
 
 static const struct field fields[] = {
     {"every", FIELD_INTEGER, offsetof(struct settings, every), .initial = 5, .minimum = 1,
-     .maximum = 1e9, .unit = "steps",
-     .help = "interval of the momentum transfer, in which all steps count, or between samples of a "
-             "wave"},
+     .maximum = 1e9, .unit = "steps", .help = "averaging interval of the momentum transfer"},
     {"lags", FIELD_INTEGER, offsetof(struct settings, lags), .initial = 200, .minimum = 8,
-     .maximum = 1e5, .unit = "samples",
-     .help = "the longest window of the Green-Kubo integral; the program takes one that is long "
-             "enough, and says if none is"},
+     .maximum = 1e5, .unit = "samples", .help = "longest window of the Green-Kubo integral"},
     FIELD_END,
 };
 
@@ -78,9 +74,9 @@ static enum status check(const struct simulation *simulation, bool driven) {
                               name);
     if (!driven && (!setup->integrator->tells_transfer || mf_respa_acts(setup)))
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "shear_viscosity: \"%s\"%s does not tell what pairs exchange; "
-                              "\"aboba\" and \"velocity-verlet\" do without \"inner_steps\", and "
-                              "\"shear-wave\" needs no stress",
+                              "shear_viscosity: \"%s\"%s does not give the momentum that pairs "
+                              "exchange; \"aboba\" and \"velocity-verlet\" do without "
+                              "\"inner_steps\", and \"shear-wave\" needs no stress",
                               name, mf_respa_acts(setup) ? " with \"inner_steps\"" : "");
     return STATUS_OK;
 }
@@ -281,8 +277,8 @@ static enum status judge(const void *state, const struct simulation_setup *setup
     if (s.reached)
         return STATUS_OK;
     return mf_status_fail(STATUS_UNCONVERGED,
-                          "the Green-Kubo integral of the viscosity has not come to rest within "
-                          "%.3g; raise \"shear_viscosity.lags\"",
+                          "the Green-Kubo integral of the viscosity has not converged within %.3g; "
+                          "raise \"shear_viscosity.lags\"",
                           s.window);
 }
 
@@ -395,7 +391,7 @@ static void explain(const void *settings, const struct simulation_setup *setup, 
     else
         mf_stages_add(stages, "viscosity", true,
                       carry_cost + (rubs ? friction_cost : force_cost) * pairs,
-                      "what pairs exchange, every step");
+                      "the momentum that pairs exchange, every step");
 }
 
 static enum status result(const void *const *states, size_t count,
@@ -426,7 +422,7 @@ static const char *const files[] = {"shear_viscosity.tsv", NULL};
 
 const struct observable mf_shear_viscosity = {
     .name = "shear_viscosity",
-    .summary = "shear viscosity by Green and Kubo, or of the flow that \"shear-wave\" drives",
+    .summary = "shear viscosity by Green and Kubo, or from the flow that \"shear-wave\" drives",
     .of_time = true,
     .fields = fields,
     .settings_size = sizeof(struct settings),

@@ -61,7 +61,7 @@ static enum status begin(void *state, const void *settings, const struct simulat
                               simulation->setup.integrator->name);
     if (!s->settings.solvent && simulation->particles.count == 0)
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "snapshots: nobody to show; \"solvent\": \"yes\" shows the solvent");
+                              "snapshots: no particles; \"solvent\": \"yes\" includes the solvent");
     return take(s, simulation);
 }
 
@@ -176,17 +176,13 @@ static const char *const no_or_yes[] = {"no", "yes", NULL};
 
 static const struct field fields[] = {
     {"every", FIELD_INTEGER, offsetof(struct settings, every), .required = true, .minimum = 1,
-     .maximum = 1e9, .unit = "steps",
-     .help = "between snapshots; the first is at the first step "
-             "after the equilibration"},
+     .maximum = 1e9, .unit = "steps", .help = "interval between snapshots after the equilibration"},
     {"formats", FIELD_CHOICES, offsetof(struct settings, formats), .initial = 1,
      .choices = mf_snapshot_format_names, .unit = "",
-     .help = "files that ParaView opens, lists of numbers with which a scene can begin, one "
-             "extended XYZ file, one dump as LAMMPS writes it"},
+     .help = "ParaView, JSON (also for \"placement\"), extended XYZ, LAMMPS dump"},
     {"solvent", FIELD_CHOICE, offsetof(struct settings, solvent), .choices = no_or_yes,
      .initial = 0, .unit = "",
-     .help = "whether they show the particles of collision-dynamics, behind the others and as a "
-             "type called so"},
+     .help = "include the solvent of collision-dynamics, as the last type"},
     FIELD_END,
 };
 
@@ -196,8 +192,7 @@ const struct observable mf_snapshots = {
     .name = "snapshots",
     .of_solvent = true, // if it is to be shown
     .summary =
-        "positions, velocities, forces of the potentials at these positions, and attributes of "
-        "all particles, as files",
+        "files of positions, velocities, conservative forces and attributes of all particles",
     .fields = fields,
     .settings_size = sizeof(struct settings),
     .state_size = sizeof(struct state),

@@ -22,11 +22,9 @@ struct settings {
 static const struct field fields[] = {
     {"q_maximum", FIELD_NUMBER, MEMBER(q_maximum), .required = true, .minimum = FIELD_ABOVE_ZERO,
      .maximum = DBL_MAX, .unit = "1/lambda",
-     .help = "largest wave number; the vectors, and their time, grow as its cube"},
+     .help = "largest wave number; the cost grows as its cube"},
     {"bins", FIELD_INTEGER, MEMBER(bins), .initial = 100, .minimum = 1, .maximum = 100000,
-     .unit = "",
-     .help = "of the wave number from 0 on; those without a vector of the box are left "
-             "out"},
+     .unit = "", .help = "number of bins from 0"},
     FIELD_END,
 };
 
@@ -136,7 +134,7 @@ static void explain(const void *settings, const struct simulation_setup *setup, 
 }
 
 static const struct observable_target targets[] = {{.name = "structure_factor",
-                                                    .summary = "S(q), of all beads",
+                                                    .summary = "S(q) of all beads",
                                                     .form = OBSERVABLE_CURVE,
                                                     .argument = "q[1/lambda]",
                                                     .unit = "1",

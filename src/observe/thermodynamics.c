@@ -209,8 +209,8 @@ enum status mf_thermodynamics_judge_fit(const struct thermodynamics_summary *sum
         return STATUS_OK;
     if (!held && !agrees(s->temperature, s->temperature_error, setup->temperature))
         return mf_status_fail(STATUS_UNSTABLE,
-                              "the temperature is %.3g, not %.3g: nothing holds it; give the scene "
-                              "\"dissipative\", friction and noise",
+                              "the temperature is %.3g, not %.3g: there is no thermostat; give the "
+                              "scene \"dissipative\", friction and noise",
                               s->temperature, setup->temperature);
     const double wanted = held ? setup->temperature : s->temperature;
     const bool flies = is_off(s->temperature, s->temperature_error, wanted);
@@ -222,8 +222,8 @@ enum status mf_thermodynamics_judge_fit(const struct thermodynamics_summary *sum
     const double error = flies ? s->temperature_error : s->temperature_configurational_error;
     return mf_status_fail(
         STATUS_UNSTABLE,
-        "the %s temperature is %.3f(%.0f), %.1f %% off: the time step is coarse for this "
-        "potential, or its force ends abruptly; a shorter \"verification.time_step\" tells which",
+        "the %s temperature is %.3f(%.0f), %.1f %% off: the time step is long for this potential, "
+        "or its force ends abruptly; test it by a shorter \"verification.time_step\"",
         flies ? "kinetic" : "configurational", found, ceil(1e3 * error),
         100 * (found - wanted) / wanted);
 }

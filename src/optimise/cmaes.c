@@ -24,13 +24,13 @@
 #define MEMBER(name) .offset = offsetof(struct cmaes_parameters, name)
 const struct field mf_cmaes_fields[] = {
     {"population", FIELD_INTEGER, MEMBER(population), .initial = 0, .minimum = 0, .maximum = 1e5,
-     .unit = "", .help = "candidates of a round, at least 4; 0 for 4 + 3 ln(variables)"},
+     .unit = "", .help = "candidates of a round, at least 4; 0: 4 + 3 ln(variables)"},
     {"step", FIELD_NUMBER, MEMBER(step), .initial = 0.3, .minimum = FIELD_ABOVE_ZERO, .maximum = 1,
-     .unit = "", .help = "first standard deviation, as a fraction of the range"},
+     .unit = "", .help = "initial standard deviation, as a fraction of the range"},
     {"rounds", FIELD_INTEGER, MEMBER(rounds), .initial = 500, .minimum = 1, .maximum = 1e6,
-     .unit = "", .help = "after which it ends"},
+     .unit = "", .help = "most rounds"},
     {"tolerance", FIELD_NUMBER, MEMBER(tolerance), .initial = 1e-12, .minimum = 0,
-     .maximum = DBL_MAX, .unit = "error", .help = "within which errors stand still"},
+     .maximum = DBL_MAX, .unit = "error", .help = "change of the error at which it ends"},
     FIELD_END,
 };
 

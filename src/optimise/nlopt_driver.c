@@ -35,14 +35,13 @@ enum { SBPLX = 4 }; ///< index of the default
 #define MEMBER(name) .offset = offsetof(struct nlopt_parameters, name)
 const struct field mf_nlopt_fields[] = {
     {"algorithm", FIELD_CHOICE, MEMBER(algorithm), .choices = names, .initial = SBPLX, .unit = "",
-     .help = "of NLopt: GN_ searches everywhere, LN_ around the start"},
+     .help = "algorithm; GN_: global, LN_: local"},
     {"evaluations", FIELD_INTEGER, MEMBER(evaluations), .initial = 1000, .minimum = 1,
-     .maximum = MOST_EVALUATIONS, .unit = "", .help = "after which it ends"},
+     .maximum = MOST_EVALUATIONS, .unit = "", .help = "most evaluations"},
     {"step", FIELD_NUMBER, MEMBER(step), .initial = 0.2, .minimum = FIELD_ABOVE_ZERO,
      .maximum = 0.5, .unit = "", .help = "first step of LN_, as a fraction of the range"},
     {"tolerance", FIELD_NUMBER, MEMBER(tolerance), .initial = 1e-6, .minimum = 0, .maximum = 1,
-     .unit = "",
-     .help = "change of all variables below which LN_ ends, as a fraction of the range"},
+     .unit = "", .help = "change of all variables at which LN_ ends, likewise"},
     FIELD_END,
 };
 

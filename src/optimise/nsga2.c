@@ -12,11 +12,11 @@ const struct field mf_nsga2_fields[] = {
     {"population", FIELD_INTEGER, MEMBER(population), .initial = 40, .minimum = 4, .maximum = 512,
      .unit = "", .help = "parents, and children of a generation"},
     {"generations", FIELD_INTEGER, MEMBER(generations), .initial = 50, .minimum = 1,
-     .maximum = 10000, .unit = "", .help = "after which the fit ends"},
+     .maximum = 10000, .unit = "", .help = "number of generations"},
     {"spread", FIELD_NUMBER, MEMBER(spread), .initial = 0.1, .minimum = 0, .maximum = 1, .unit = "",
-     .help = "of the first population's genes about the start; 0: they are anywhere"},
+     .help = "spread of the first genes around the start; 0: uniform"},
     {"mutation_exponent", FIELD_NUMBER, MEMBER(mutation_exponent), .initial = 20, .minimum = 0,
-     .maximum = 1000, .unit = "", .help = "larger: smaller mutations"},
+     .maximum = 1000, .unit = "", .help = "exponent of mutations: larger for smaller ones"},
     FIELD_END,
 };
 

@@ -15,13 +15,13 @@
 const struct field mf_programming_fields[] = {
     {"nodes", FIELD_INTEGER, MEMBER(nodes), .initial = 12, .minimum = 1,
      .maximum = PROGRAMMING_MOST_NODES, .unit = "",
-     .help = "of a formula at most: each constant, r, operator, power and exp is one"},
+     .help = "most nodes of a formula: constants, r, operators, powers and exp"},
     {"islands", FIELD_INTEGER, MEMBER(islands), .initial = 8, .minimum = 1,
-     .maximum = PROGRAMMING_MOST_ISLANDS, .unit = "", .help = "groups of formulas that rarely mix"},
+     .maximum = PROGRAMMING_MOST_ISLANDS, .unit = "", .help = "number of subpopulations"},
     {"rounds", FIELD_INTEGER, MEMBER(rounds), .initial = 12, .minimum = 1, .maximum = 10000,
-     .unit = "", .help = "of breeding"},
+     .unit = "", .help = "rounds of breeding"},
     {"children", FIELD_INTEGER, MEMBER(children), .initial = 1000, .minimum = 1, .maximum = 1e7,
-     .unit = "", .help = "formulas that an island breeds in a round"},
+     .unit = "", .help = "children of an island in a round"},
     FIELD_END,
 };
 

@@ -37,8 +37,7 @@ static const char *const omega_bases[] = {"none", "start", NULL};
      .choices = its_names,                                                                          \
      .initial = 0,                                                                                  \
      .unit = "",                                                                                    \
-     .help =                                                                                        \
-         "that coefficients make: Bezier-smoothed random walk, cubic B-splines, or a formula"},     \
+     .help = "smoothed random walk, cubic B-splines, or a power law"},                              \
         {"coefficients",                                                                            \
          FIELD_INTEGER,                                                                             \
          MEMBER(coefficients),                                                                      \
@@ -46,8 +45,8 @@ static const char *const omega_bases[] = {"none", "start", NULL};
          .minimum = 0,                                                                              \
          .maximum = 1000,                                                                           \
          .unit = "",                                                                                \
-         .help = "of the curve; 0: 100 of bezier, 12 of bspline, of power 3 less those that are "   \
-                 "fixed"},                                                                          \
+         .help = "number of coefficients; 0: 100 (bezier), 12 (bspline) or those not "              \
+                 "fixed (power)"},                                                                  \
         {"base",     FIELD_CHOICE,         MEMBER(base), .choices = its_bases, .initial = its_base, \
          .unit = "", .help = its_base_help},                                                        \
         {"minimum",                                                                                 \
@@ -63,21 +62,19 @@ static const char *const omega_bases[] = {"none", "start", NULL};
 
 const struct field mf_inverse_potential_fields[] = {
     CURVE(potential_curves, potential_bases, BASE_AUTO,
-          "what the curve is added to; auto: \"start\" if there is one, else hypernetted-chain, "
-          "the inversion of g, or where that fails, in two dimensions and beside molecules "
-          "mean-force, -k_B T ln g. "
-          "Default: none where \"minimum\" or \"maximum\" is given, else auto",
+          "what the curve is added to; auto: \"start\", else hypernetted-chain inversion of g, or "
+          "where that is not possible mean-force, -k_B T ln g; default none with \"minimum\" or "
+          "\"maximum\"",
           6.5, "k_B T_0") // ends at the target's range
     FIELD_END,
 };
 
 const struct field mf_inverse_omega_fields[] = {
-    CURVE(omega_curves, omega_bases, BASE_NONE,
-          "what the curve is added to; start: that of \"start\"", 6.5, "sqrt(mu/tau)"){
+    CURVE(omega_curves, omega_bases, BASE_NONE, "what the curve is added to", 6.5, "sqrt(mu/tau)"){
         "inner_cutoff", FIELD_NUMBER, MEMBER(inner_cutoff), .initial = 0, .minimum = 0,
-        .maximum = DBL_MAX, .unit = "lambda", .help = "below which omega is 0"},
+        .maximum = DBL_MAX, .unit = "lambda", .help = "r at and below which omega is 0"},
     {"cutoff", FIELD_NUMBER, MEMBER(cutoff), .initial = 1, .minimum = FIELD_ABOVE_ZERO,
-     .maximum = DBL_MAX, .unit = "lambda", .help = "where omega ends"},
+     .maximum = DBL_MAX, .unit = "lambda", .help = "cutoff of omega"},
     FIELD_END,
 };
 
@@ -85,11 +82,10 @@ const struct field mf_inverse_omega_fields[] = {
 const struct field mf_inverse_group_fields[] = {
     {"coefficients", FIELD_INTEGER, SHAPE(coefficients), .initial = 0, .minimum = 0, .maximum = 100,
      .unit = "",
-     .help =
-         "of what methods that simulate candidates add to -k_B T ln(p/J): cubic B-splines, of a "
-         "dihedral cos phi, sin phi, cos 2 phi, ...; 0: 4, of a dihedral 6"},
+     .help = "coefficients of methods that search, added to -k_B T ln(p/J): cubic B-splines, of "
+             "dihedrals cos phi, sin phi, …; 0: 4, dihedrals 6"},
     {"maximum", FIELD_NUMBER, SHAPE(maximum), .initial = 2, .minimum = FIELD_ABOVE_ZERO,
-     .maximum = DBL_MAX, .unit = "k_B T_0", .help = "largest coefficient; the least is -maximum"},
+     .maximum = DBL_MAX, .unit = "k_B T_0", .help = "largest absolute coefficient"},
     FIELD_END,
 };
 
@@ -97,7 +93,7 @@ const struct field mf_inverse_fixed_fields[] = {
     {"sigma", FIELD_NUMBER, INVERSE_SIGMA * sizeof(double), .initial = NAN, .minimum = 0,
      .maximum = DBL_MAX, .unit = "sqrt(mu/tau)", .help = "omega extrapolated to r = 0"},
     {"exponent", FIELD_NUMBER, INVERSE_EXPONENT * sizeof(double), .initial = NAN, .minimum = 0,
-     .maximum = DBL_MAX, .unit = "", .help = "s in omega = sigma (1 - r/r_c)^s"},
+     .maximum = DBL_MAX, .unit = "", .help = "s, the exponent"},
     {"inner_cutoff", FIELD_NUMBER, INVERSE_INNER_CUTOFF * sizeof(double), .initial = NAN,
      .minimum = 0, .maximum = DBL_MAX, .unit = "lambda", .help = "r_0: omega is 0 at and below it"},
     FIELD_END,

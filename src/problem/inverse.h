@@ -279,6 +279,7 @@ enum inverse_kind {
 struct inverse_table {
     const struct field *fields;
     size_t offset;
+    const char *shared; ///< name of what several methods have in common, or NULL
 };
 
 /// What a method measures of an evaluation.

@@ -14,8 +14,7 @@ const struct field mf_numbers_fields[NUMBERS_FIELDS] = {
      .maximum = DBL_MAX, .unit = "", .help = "largest value"},
     {"start", FIELD_NUMBER, MEMBER(start), .initial = NAN, .minimum = -DBL_MAX, .maximum = DBL_MAX,
      .unit = "",
-     .help = "to begin with; without it what the scene says, and the middle if that is out of the "
-             "range"},
+     .help = "initial value; default: the scene's, or the middle if that is out of range"},
     FIELD_END,
 };
 

@@ -18,21 +18,17 @@ const struct field mf_verify_fields[] = {
     {"replicas", FIELD_INTEGER, MEMBER(replicas), .initial = 4, .minimum = 1, .maximum = 1024,
      .unit = "", .help = "independent simulations"},
     {"time_step", FIELD_NUMBER, MEMBER(time_step), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
-     .unit = "tau",
-     .help =
-         "of the verification, which should be finer than a fit's: a fit makes up for the error "
-         "of its own; 0: that of the scene"},
+     .unit = "tau", .help = "time step; 0: the scene's"},
     {"shorten_time_step", FIELD_CHOICE, MEMBER(shorten), .choices = no_or_yes, .initial = 0,
      .unit = "",
-     .help = "begin with a step that suits the potential found, and halve it until the kinetic and "
-             "the configurational temperature are within 1 %, down to a sixteenth; equilibration "
-             "and samples take as long a time. Where the file gives no time step it is \"yes\""},
+     .help = "halve the time step until kinetic and configurational temperature agree within 1 %; "
+             "default yes if the file has no time step"},
     {"equilibration", FIELD_INTEGER, MEMBER(plan.equilibration), .initial = 1000, .minimum = 0,
-     .maximum = 1e12, .unit = "steps", .help = "before the first sample"},
+     .maximum = 1e12, .unit = "steps", .help = "interval before the first sample"},
     {"samples", FIELD_INTEGER, MEMBER(plan.samples), .initial = 50, .minimum = 1, .maximum = 1e8,
-     .unit = "", .help = "of each replica"},
+     .unit = "", .help = "samples of each replica"},
     {"every", FIELD_INTEGER, MEMBER(plan.every), .initial = 25, .minimum = 1, .maximum = 1e9,
-     .unit = "steps", .help = "between samples"},
+     .unit = "steps", .help = "interval between samples"},
     FIELD_END,
 };
 

@@ -220,8 +220,8 @@ static enum status bring_together(struct compared *fits, size_t count, const cha
             continue;
         if (!mf_units_known(first) || !mf_units_known(other))
             return mf_status_fail(STATUS_BAD_INPUT,
-                                  "compare: %s speaks %s units and %s %s ones, and what they are "
-                                  "is not known: the scene's \"units\" would tell",
+                                  "compare: %s is in %s units and %s in %s ones: give \"units\" in "
+                                  "the scene to convert them",
                                   folders[0], mf_units_systems[first->system], folders[k],
                                   mf_units_systems[other->system]);
         convert(&fits[k], first);

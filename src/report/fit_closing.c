@@ -38,7 +38,7 @@ bool mf_fit_closing_is_noise(const struct unknowns *unknowns, const double *cons
         snprintf(reason, INVERSE_REASON_SIZE,
                  "%.24s is mostly noise: only %.0f %% of it is above two of its standard errors, "
                  "%.2g%.16s rms of %.2g; more exact targets of motion, or fewer \"coefficients\", "
-                 "would tell it",
+                 "are needed",
                  name, 100 * known.seen, factor * known.error,
                  mf_units_suffix(units, mf_unknowns_unit(kind), unit), factor * known.rms);
         return true;
@@ -145,8 +145,8 @@ void mf_fit_closing_say(struct progress *to, const struct fit_file *fit,
                         "the model for another engine",
                         folder, folder);
     else
-        mf_progress_say(to,
-                        "next: figures and summary.json are in %s; docs/fit.md says what "
-                        "to do about each reason",
-                        folder);
+        mf_progress_say(
+            to,
+            "next: figures and summary.json are in %s; docs/fit.md has a remedy for each reason",
+            folder);
 }

@@ -142,8 +142,7 @@ static enum status write_flat(const struct fit_file *fit, enum unknown_kind kind
     curve_file(unknowns, kind, curve, "_flat.tsv", folder, path);
     return mf_data_table_write_in(
         path, &fit->scene.units,
-        "changes of the curve that the data say least of, widest first; one "
-        "standard error each",
+        "changes of the curve that the data determine least, widest first; one standard error each",
         columns, 1 + INVERSE_FLAT, part.points);
 }
 

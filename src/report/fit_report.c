@@ -68,8 +68,7 @@ static void say_numbers(struct progress *to, const struct fit_file *fit,
         mf_units_suffix(&fit->scene.units, number->unit, unit);
         mf_number_text(factor * found[n].value, factor * found[n].error, text);
         if (mf_numbers_undetermined(number, &found[n]))
-            mf_progress_say(to,
-                            "%s: undetermined by the targets, anything from %g to %g%s may be it",
+            mf_progress_say(to, "%s: undetermined by the targets, between %g and %g%s",
                             number->name, factor * number->minimum, factor * number->maximum, unit);
         else
             mf_progress_say(to, "%s = %s%s%s%s", number->name, text, unit, mark,

@@ -87,7 +87,7 @@ void mf_fit_step_text(const struct verification *verification, const struct unit
     if (!step->shortens)
         return;
     if (step->verdict == VERIFY_STEP_UNKNOWN)
-        snprintf(bound, sizeof bound, "too few samples to tell whether it holds");
+        snprintf(bound, sizeof bound, "too few samples to check it");
     else
         snprintf(bound, sizeof bound, "both temperatures are right within %.2g %%",
                  100 * step->off.within);
@@ -100,7 +100,8 @@ void mf_fit_step_text(const struct verification *verification, const struct unit
         snprintf(why, sizeof why, "with %s %s", time_text(units, step->tried, first),
                  off_text(&step->first_off, step->first_blew_up, off));
     else
-        snprintf(why, sizeof why, "the potential found bends more than its target told");
+        snprintf(why, sizeof why,
+                 "the potential has a larger curvature than estimated from the target");
     snprintf(text, FIT_STEP_TEXT_SIZE,
              "time step of the verification: %s, %s of the one chosen before the fit, since %s; %s",
              used, part_text(step->halvings), why, bound);

@@ -78,7 +78,7 @@ static enum status refuse(const struct run_folder *folder, const char *what, con
 /// a word.
 static enum status check_replaced(const struct run_folder *folder, enum run_kind kind) {
     static const char replaces[] = "--force replaces it, -o OTHER keeps it",
-                      resumes[] = "--resume goes on, --force begins anew";
+                      resumes[] = "--resume continues it, --force starts again";
     const bool summary = mf_own_files_has(&folder->own, "summary.json");
     const bool saved = mf_own_files_has(&folder->own, checkpoint);
     if (!summary && !saved)
@@ -101,7 +101,7 @@ static enum status check_listed(const struct run_folder *folder) {
     if (!exists(folder, "used.json") || mf_own_files_has(&folder->own, "used.json"))
         return STATUS_OK;
     return refuse(folder, "results without a list of files (" OWN_FILES_OF_RUN ")",
-                  exists(folder, checkpoint) ? "--resume may go on, -o OTHER keeps them"
+                  exists(folder, checkpoint) ? "--resume may continue it, -o OTHER keeps them"
                                              : "write elsewhere with -o");
 }
 

@@ -3,9 +3,9 @@
 
 #define MEMBER(name) .offset = offsetof(struct heading, name)
 const struct field mf_heading_fields[] = {
-    {"title", FIELD_TEXT, MEMBER(title), .unit = "", .help = "one line for people"},
+    {"title", FIELD_TEXT, MEMBER(title), .unit = "", .help = "one line of text"},
     {"seed", FIELD_SEED, MEMBER(seed), .initial = 1, .minimum = 0, .maximum = FIELD_LARGEST_INTEGER,
-     .unit = "", .help = "of all random numbers"},
+     .unit = "", .help = "seed of all random numbers"},
     FIELD_END,
 };
 

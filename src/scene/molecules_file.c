@@ -47,8 +47,8 @@ enum status mf_molecules_file_read(struct scene_molecules *molecules, struct com
     *types = (struct composition){0};
     if (mf_lammps_topology_is(file))
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "%s: a data file of LAMMPS does not say in which order a trajectory "
-                              "has its molecules: name a JSON file or a topology of GROMACS",
+                              "%s: a LAMMPS data file does not define the order of molecules in a "
+                              "trajectory: give a JSON file or a GROMACS topology",
                               file);
     if (is_topology(file))
         return read_topology(molecules, types, file);

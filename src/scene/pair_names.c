@@ -12,7 +12,7 @@ static void fault_unknown(struct json_object *object, const struct composition *
         strcat(names, pair ? ", " : "");
         strcat(names, name);
     }
-    mf_json_fault(object, key, "there is no such pair; the pairs are %s", names);
+    mf_json_fault(object, key, "unknown pair; expected %s", names);
 }
 
 bool mf_pair_names_find(struct json_object *object, const struct composition *composition,
@@ -28,7 +28,7 @@ bool mf_pair_names_find(struct json_object *object, const struct composition *co
             continue;
         }
         if (pair >= 0)
-            mf_json_fault(object, member, "the pair stands here twice, in both orders");
+            mf_json_fault(object, member, "duplicate pair, in both orders");
         else if (mf_json_is_object(object, member))
             fault_unknown(object, composition, member);
         else

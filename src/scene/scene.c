@@ -24,32 +24,30 @@ static const char *const precisions[] = {"mixed", "double", NULL}; // enum pair_
 #define MEMBER(name) .offset = offsetof(struct top, name)
 const struct field mf_scene_fields[] = {
     {"dimensions", FIELD_INTEGER, MEMBER(dimensions), .initial = 3, .minimum = 2, .maximum = 3,
-     .unit = "", .help = "of space"},
+     .unit = "", .help = "number of dimensions"},
     {"box", FIELD_LENGTHS, MEMBER(box), .minimum = FIELD_ABOVE_ZERO, .maximum = LARGEST_BOX,
-     .unit = "lambda", .help = "edges of the periodic box, unless \"density\" is given"},
+     .unit = "lambda", .help = "edges of the periodic box"},
     {"temperature", FIELD_NUMBER, MEMBER(temperature), .initial = 1, .minimum = 0,
      .maximum = DBL_MAX, .unit = "T_0",
-     .help = "of the first velocities and of the noise; 0 for dynamics without velocities alone"},
+     .help = "temperature; 0 only for dynamics without velocities"},
     {"time_step", FIELD_NUMBER, MEMBER(time_step), .initial = 0.01, .minimum = FIELD_ABOVE_ZERO,
-     .maximum = DBL_MAX, .unit = "tau", .help = "of the integrator; \"monte-carlo\" has no time"},
+     .maximum = DBL_MAX, .unit = "tau",
+     .help = "time step of the integrator; unused by \"monte-carlo\""},
     {"skin", FIELD_NUMBER, MEMBER(skin), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
      .unit = "lambda",
-     .help = "of the neighbour list: changes speed, not results; 0: the program chooses"},
+     .help = "skin of the neighbour list (affects speed only); 0: chosen by the program"},
     {"temperature_limit", FIELD_NUMBER, MEMBER(temperature_limit), .initial = 20, .minimum = 1,
      .maximum = DBL_MAX, .unit = "",
-     .help = "a kinetic temperature above this multiple of the "
-             "temperature ends the simulation as unstable"},
+     .help = "kinetic temperature, in units of the temperature, above which a run is unstable"},
     {"precision", FIELD_CHOICE, MEMBER(precision), .choices = precisions, .initial = PAIR_MIXED,
-     .unit = "",
-     .help = "of the arithmetic of a pair; positions, velocities and sums are in double always"},
+     .unit = "", .help = "precision of pair forces"},
     FIELD_END,
 };
 
 const struct field mf_scene_density_fields[] = {
     {"density", FIELD_NUMBER, .offset = offsetof(struct scene, density), .initial = 0,
      .minimum = FIELD_ABOVE_ZERO, .maximum = DBL_MAX, .unit = "1/lambda^d",
-     .help = "beads in a unit of volume, of all types: in the place of \"box\" it makes one with "
-             "edges that are alike"},
+     .help = "number density of all beads, for a box of equal edges instead of \"box\""},
     FIELD_END,
 };
 
@@ -59,11 +57,11 @@ static void check_box(struct scene *scene, struct json_object *object, const str
     mf_json_fields(object, mf_scene_density_fields, scene);
     if (has_box == mf_json_has(object, "density"))
         mf_json_fault(object, has_box ? "density" : "box", "%s",
-                      has_box ? "\"box\" is given, and says it already"
+                      has_box ? "\"box\" is given, too; leave one of them out"
                               : "missing: it or \"density\" is required");
     if (top->box[0] > 0 && (top->box[2] > 0) != (top->dimensions == 3))
         mf_json_fault(object, "box",
-                      "has %d edges, but the scene has %d dimensions; \"dimensions\" says how many",
+                      "has %d edges, but the scene has %d dimensions; \"dimensions\" sets them",
                       top->box[2] > 0 ? 3 : 2, (int)top->dimensions);
 }
 
@@ -156,7 +154,7 @@ static void check_masses(struct scene *scene, struct json_object *object, bool r
             integrator->name);
     else if (mass->ranges > 0 && remembers)
         mf_json_fault(object, "particles.mass",
-                      "friction that remembers, or acts across pairs, is of particles of mass 1");
+                      "friction with memory or perpendicular to pairs needs particles of mass 1");
 }
 
 static enum status read_dynamics(struct scene *scene, struct json_object *object, int unknown) {
@@ -200,11 +198,12 @@ static enum status read_dynamics(struct scene *scene, struct json_object *object
     else if (dissipative && !integrator->dissipative)
         mf_json_fault(object, "dynamics",
                       integrator->samples
-                          ? "%s knows no friction, and needs none: leave \"dissipative\" out"
-                          : "%s knows no friction; use \"aboba\" with \"dissipative\"",
+                          ? "%s has no friction: leave \"dissipative\" out"
+                          : "%s has no friction; use \"aboba\" with \"dissipative\"",
                       integrator->name);
     else if (remembers && !integrator->remembers)
-        mf_json_fault(object, "dynamics", "%s knows no \"%s\"; use \"aboba\"", integrator->name,
+        mf_json_fault(object, "dynamics", "%s does not integrate \"%s\"; use \"aboba\"",
+                      integrator->name,
                       scene->memory.modes > 0 ? "memory" : "dissipative_transverse");
     if (integrator->samples)
         check_moves(scene, object);
@@ -227,8 +226,7 @@ static const double hottest = 50;
 
 bool mf_scene_is_hot(const struct scene *scene, char line[SCENE_LINE_SIZE]) {
     snprintf(line, SCENE_LINE_SIZE,
-             "temperature: %g in units of k_B T_0, which is 1 as a rule; kelvins belong into "
-             "\"units\"",
+             "temperature: %g in units of k_B T_0, usually 1; give kelvins in \"units\"",
              scene->setup.temperature);
     return scene->setup.temperature > hottest && !mf_units_known(&scene->units) &&
            scene->setup.attribute[ATTRIBUTES_MASS].ranges == 0;
@@ -244,7 +242,7 @@ static void check_mass_told_twice(const struct scene *scene, struct json_object 
     if (masses.maximum > light && fabs(masses.maximum / unit - 1) < alike)
         mf_json_fault(object, "particles.mass",
                       "%g is in units of mu, and \"mass\" of \"units\" makes mu %.6g u: a bead "
-                      "would have %.6g u; leave one of them out, or let mu be another mass",
+                      "would have %.6g u; leave one of them out, or choose another mu",
                       masses.maximum, unit, masses.maximum * unit);
 }
 
@@ -360,8 +358,7 @@ const char *mf_scene_warning(const struct scene *scene) {
     if (simulation_holds_temperature(&scene->setup) || integrator->events ||
         (scene->unknown & ~SCENE_FITS_POTENTIAL))
         return NULL;
-    return "nothing holds the temperature: without \"dissipative\", friction and noise, a "
-           "simulation "
+    return "there is no thermostat: without \"dissipative\", friction and noise, a simulation "
            "conserves its energy, and its temperature drifts";
 }
 

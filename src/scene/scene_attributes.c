@@ -10,7 +10,7 @@ static void read_range(struct json_object *parent, const char *key, const struct
     for (int k = 0; k < 2; k++) {
         fields[k].required = true;
         fields[k].initial = 0;
-        fields[k].help = "of a particle";
+        fields[k].help = "mass of a particle";
     }
     fields[0].offset = offsetof(struct attributes_range, minimum);
     fields[1].offset = offsetof(struct attributes_range, maximum);
@@ -136,7 +136,7 @@ void mf_scene_attributes_column(struct scene *scene, struct json_object *particl
     const struct field *kind = &mf_attributes_fields[number];
     struct attributes_source *source = &scene->setup.attribute[number];
     if (source->ranges > 0)
-        mf_json_fault(particles, kind->name, "stands in %s, too", file);
+        mf_json_fault(particles, kind->name, "is given in %s, too", file);
     *source = (struct attributes_source){
         .ranges = 1, .range = {{values[0], values[0]}}, .column = values};
     for (size_t row = 0; row < table->rows; row++) {

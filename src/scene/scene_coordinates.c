@@ -35,7 +35,8 @@ static bool is_box(const struct scene *scene, struct json_object *particles,
                    const struct trajectory_frame *frame, double unit) {
     const struct box *box = &scene->setup.box;
     if (fabs(frame->box[1][0]) + fabs(frame->box[2][0]) + fabs(frame->box[2][1]) > box_tolerance) {
-        mf_json_fault(particles, "file", "%s: its box is tilted, and those of scenes are not",
+        mf_json_fault(particles, "file",
+                      "%s: the box is triclinic; a scene needs an orthogonal one",
                       scene->setup.placement.file);
         return false;
     }
@@ -141,8 +142,7 @@ static enum status find_order(struct scene *scene) {
     struct scene_molecules *molecules = &scene->molecules;
     if (!mf_lammps_topology_is(file) && molecules->order)
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "%s: molecules of a data file of LAMMPS begin where it has them",
-                              file);
+                              "%s: a LAMMPS data file has the coordinates of its molecules", file);
     if (!mf_lammps_topology_is(file) || molecules->order)
         return STATUS_OK;
     TRY(mf_lammps_topology_units(file, "", &scene->units, &molecules->order_units));
@@ -159,7 +159,7 @@ enum status mf_scene_coordinates_read(struct scene *scene, struct json_object *p
         return STATUS_OK; // whose places they are may not be known
     if (scene->molecules.scattered) {
         mf_json_fault(particles, "file",
-                      "%s: coordinates want each moleculetype once in [ molecules ]", file);
+                      "%s: coordinates need each moleculetype only once in [ molecules ]", file);
         return STATUS_OK;
     }
     enum status status = find_order(scene);

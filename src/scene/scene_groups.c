@@ -79,7 +79,7 @@ static enum status read_known(struct molecules *molecules, int order, struct jso
             mf_json_has(&groups, name);
         } else if (!mf_topology_is_name(name)) {
             mf_json_fault(&groups, name,
-                          "a group is called by up to %d letters, digits, _ and -, " OWN_WORDS,
+                          "expected a group name of up to %d letters, digits, _ and -, " OWN_WORDS,
                           TOPOLOGY_NAME_SIZE - 1);
             mf_json_has(&groups, name);
         } else {
@@ -104,10 +104,10 @@ static enum status open_group(struct molecules *molecules, struct json_object *o
     if (mf_molecules_group(molecules, order, name))
         return STATUS_OK;
     if (molecules->groups[order] == MOLECULES_MOST_GROUPS || !mf_topology_is_name(name)) {
-        mf_json_fault(
-            object, name,
-            "there are at most %d groups, called by up to %d letters, digits, _ and -, " OWN_WORDS,
-            MOLECULES_MOST_GROUPS, TOPOLOGY_NAME_SIZE - 1);
+        mf_json_fault(object, name,
+                      "expected at most %d groups with names of up to %d letters, digits, _ and "
+                      "-, " OWN_WORDS,
+                      MOLECULES_MOST_GROUPS, TOPOLOGY_NAME_SIZE - 1);
         return STATUS_OK;
     }
     return mf_molecules_add_group(molecules, order, name, mf_bonded_kinds[order]->laws[0]);
@@ -216,8 +216,8 @@ void mf_scene_groups_join(struct molecules *molecules, struct molecules *told,
         for (int g = 0; g < molecules->groups[order]; g++)
             if (mf_scene_groups_are_fitted(&molecules->group[order][g]) && !known[g])
                 mf_json_fault(scene, "molecules",
-                              "the %s \"%s\" is a table in the topology, which is not read: "
-                              "\"scene.%s\" or, of a fit, \"target.%s\" tells it by that name",
+                              "the %s \"%s\" is a table in the topology, which is not read: give "
+                              "it by that name in \"scene.%s\" or, for a fit, in \"target.%s\"",
                               mf_bonded_kinds[order]->name, molecules->group[order][g].name,
                               mf_bonded_kinds[order]->plural,
                               mf_bonded_distribution_of(order)->name);

@@ -140,7 +140,7 @@ static enum status read_pairs(struct scene_law *law, struct json_object *object,
             TRY(mf_scene_read_curve(&law->curve[pair], object, key[pair], list, units));
         else if (!mf_json_has(object, name[pair]) && known)
             mf_json_fault(object, name[pair],
-                          "missing: an object is required; \"law\": \"none\" is one");
+                          "missing: expected an object, such as {\"law\": \"none\"}");
         if (law->curve[pair].family)
             law->curves = mf_composition_pairs(composition);
     }

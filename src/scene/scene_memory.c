@@ -6,10 +6,9 @@
 #define MEMBER(name) .offset = offsetof(struct scene_memory_mode, name)
 const struct field mf_scene_memory_fields[] = {
     {"time", FIELD_NUMBER, MEMBER(time), .required = true, .minimum = FIELD_ABOVE_ZERO,
-     .maximum = DBL_MAX, .unit = "tau", .help = "for which a pair remembers: decay of the kernel"},
+     .maximum = DBL_MAX, .unit = "tau", .help = "decay time of the memory kernel"},
     {"frequency", FIELD_NUMBER, MEMBER(frequency), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
-     .unit = "1/tau",
-     .help = "angular frequency (radians) with which the kernel oscillates; 0: it does not"},
+     .unit = "1/tau", .help = "angular frequency of the kernel; 0: no oscillation"},
     FIELD_END,
 };
 
@@ -42,7 +41,7 @@ static enum status read_mode(struct scene_memory *memory, struct json_object *ob
         !is_plain(name)) {
         mf_json_fault(
             object, name,
-            "there are at most %d modes, called by up to %d letters, digits, - and _, " OWN_WORDS,
+            "expected at most %d modes with names of up to %d letters, digits, - and _, " OWN_WORDS,
             PAIR_MEMORY_MOST_MODES, SCENE_MEMORY_NAME_SIZE - 1);
         return STATUS_OK;
     }

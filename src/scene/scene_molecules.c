@@ -27,9 +27,8 @@ const struct field mf_scene_molecule_fields[] = {
      .unit = "", .help = "number of molecules of this kind"},
     {"exclude", FIELD_INTEGER, MOLECULE(exclude), .initial = AS_FAR_AS_TERMS,
      .minimum = AS_FAR_AS_TERMS, .maximum = TOPOLOGY_MOST_EXCLUDE, .unit = "",
-     .help = "pairs of beads at most so many bonds apart have no pair potential and no friction; "
-             "-1: as far as the terms of the molecule reach, 1 with bonds alone, 2 with angles, 3 "
-             "with dihedrals, as VOTCA does"},
+     .help = "largest number of bonds between beads without pair interactions; -1: 1, 2 with "
+             "angles, 3 with dihedrals, as in VOTCA"},
     FIELD_END,
 };
 
@@ -41,7 +40,8 @@ enum { MOLECULE_FIELDS = sizeof mf_scene_molecule_fields / sizeof *mf_scene_mole
 #define CHAIN(member) .offset = offsetof(struct told_chain, member)
 const struct field mf_scene_chain_fields[] = {
     {"type", FIELD_TEXT, CHAIN(type), .unit = "",
-     .help = "of all beads; a chain of several types has \"beads\": [\"A\", \"B\", …] for it"},
+     .help =
+         "type of all beads; a chain of several types has \"beads\": [\"A\", \"B\", …] instead"},
     {"length", FIELD_INTEGER, CHAIN(length), .initial = 0, .minimum = 2, .maximum = 10000,
      .unit = "", .help = "number of beads, with \"type\""},
     {"bond", FIELD_TEXT, CHAIN(group[BONDED_BOND]), .required = true, .unit = "",
@@ -85,7 +85,7 @@ static int find_group(struct reading *reading, struct json_object *object, const
                                             : mf_bonded_distribution_of(order)->name,
                       molecules->groups[order] ? "; " : "", molecules->groups[order] ? hint : "");
     else
-        mf_json_fault(object, key, "\"%.60s\" is no group of \"%s\"%s%s", name,
+        mf_json_fault(object, key, "\"%.60s\" is not a group of \"%s\"%s%s", name,
                       mf_bonded_kinds[order]->plural, molecules->groups[order] ? "; " : "",
                       molecules->groups[order] ? hint : "");
     return -1;
@@ -99,12 +99,12 @@ static int find_type(struct reading *reading, struct json_object *object, const 
         if (strcmp(composition->name[type], name) == 0)
             return type;
     if (!mf_composition_is_name(name))
-        mf_json_fault(object, key,
-                      "\"%.60s\": a type is called by up to %d letters, digits and _, " OWN_WORDS,
-                      name, COMPOSITION_NAME_SIZE - 1);
+        mf_json_fault(
+            object, key,
+            "\"%.60s\": expected a type name of up to %d letters, digits and _, " OWN_WORDS, name,
+            COMPOSITION_NAME_SIZE - 1);
     else if (composition->types == COMPOSITION_MOST_TYPES)
-        mf_json_fault(object, key, "\"%s\" would be a type more than %d", name,
-                      COMPOSITION_MOST_TYPES);
+        mf_json_fault(object, key, "\"%s\": more than %d types", name, COMPOSITION_MOST_TYPES);
     else {
         strcpy(composition->name[composition->types], name);
         return composition->types++;
@@ -129,7 +129,7 @@ static enum status read_beads(struct reading *reading, struct json_object *objec
     NEW_ARRAY(names, count);
     NEW_ARRAY(reading->kind.type, count);
     if (count < 1)
-        mf_json_fault(object, "beads", "missing: a list of the types of the beads is required");
+        mf_json_fault(object, "beads", "missing: expected a list of the types of the beads");
     else if (mf_json_list_texts(object, "beads", names, (size_t)count))
         for (int k = 0; k < count; k++)
             reading->kind.type[k] = find_type(reading, object, "beads", names[k]);
@@ -147,7 +147,7 @@ static enum status read_chain_of_one(struct reading *reading, struct json_object
         return STATUS_OK; // out of range, which is told
     if (chain->type[0] == '\0' || chain->length == 0) {
         mf_json_fault(object, chain->type[0] ? "length" : "type",
-                      "missing: a chain has \"type\" and \"length\", or \"beads\"");
+                      "missing: expected \"type\" and \"length\", or \"beads\"");
         return STATUS_OK;
     }
     const int type = find_type(reading, object, "type", chain->type);
@@ -206,7 +206,7 @@ static enum status read_chain(struct reading *reading) {
         TRY(read_beads(reading, &object));
     for (const char *const *key = (const char *const[]){"type", "length", NULL}; *key; key++)
         if (!reading->told.of_one_type && mf_json_has(&object, *key))
-            mf_json_fault(&object, *key, "\"beads\" says it already; leave one of them out");
+            mf_json_fault(&object, *key, "\"beads\" is given, too; leave one of them out");
     for (int order = 0; order < BONDED_KINDS; order++) {
         const char *name = chain.group[order];
         if (name[0] && mf_json_fault_count(object.document) == faults &&
@@ -368,7 +368,7 @@ static enum status read_kinds(struct reading *reading, struct json_object *scene
     for (size_t n = 0; (name = mf_json_key(&object, n)); n++) {
         if (n >= TOPOLOGY_MOST_KINDS || !mf_topology_is_name(name)) {
             mf_json_fault(&object, name,
-                          "there are at most %d kinds, called by up to %d letters, digits, _ and "
+                          "expected at most %d kinds with names of up to %d letters, digits, _ and "
                           "-, " OWN_WORDS,
                           TOPOLOGY_MOST_KINDS, TOPOLOGY_NAME_SIZE - 1);
             mf_json_has(&object, name);

@@ -37,8 +37,8 @@ static void warn_of_fene(struct scene_molecules *molecules, const struct topolog
         if (molecules->molecules.group[BONDED_BOND][group].curve.law != &mf_bond_fene)
             continue;
         warn(molecules,
-             "molecules.%s: \"fene\" only pulls, and \"exclude\": %d takes the repulsion of "
-             "its beads away; 0 leaves it",
+             "molecules.%s: \"fene\" only pulls, and \"exclude\": %d removes the repulsion of its "
+             "beads; 0 keeps it",
              kind->name, kind->exclude);
         return;
     }

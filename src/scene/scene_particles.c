@@ -54,10 +54,10 @@ static void fault_shape(const struct scene *scene, struct json_object *particles
     char name[32], called[64] = "";
     if (motion > dimensions && motion != 2 * dimensions &&
         mf_scene_attributes_column_name(table, motion - 1, name, sizeof name))
-        snprintf(called, sizeof called, ", of which nobody knows \"%s\"", name);
+        snprintf(called, sizeof called, ", of which \"%s\" is unknown", name);
     mf_json_fault(particles, "file",
-                  "%s: %zu rows of %zu numbers%s, not %lld of %zu or %zu; other columns are "
-                  "called mass, radius, stiffness or orientation in a line of names",
+                  "%s: %zu rows of %zu numbers%s, not %lld of %zu or %zu; further columns need the "
+                  "names mass, radius, stiffness or orientation in a header",
                   placement->file, table->rows, motion, called, (long long)placement->count,
                   dimensions, 2 * dimensions);
 }
@@ -137,7 +137,8 @@ static void read_type(struct scene *scene, struct json_object *types, const char
     mf_json_fields(types, fields, count);
     scene->setup.placement.count += *count;
     if (!mf_composition_is_name(name))
-        mf_json_fault(types, name, "a type is called by up to %d letters, digits and _, " OWN_WORDS,
+        mf_json_fault(types, name,
+                      "expected a type name of up to %d letters, digits and _, " OWN_WORDS,
                       COMPOSITION_NAME_SIZE - 1);
     snprintf(composition->name[composition->types++], COMPOSITION_NAME_SIZE, "%s", name);
 }
@@ -152,7 +153,7 @@ static void read_types(struct scene *scene, struct json_object *particles, bool 
     size_t n = 0;
     if (counted)
         mf_json_fault(particles, "count",
-                      "stands beside \"types\", which are numbers, too: write one of them");
+                      "is given with \"types\", which has numbers, too: leave one of them out");
     for (const char *name; (name = mf_json_key(&types, n)); n++)
         if (n < COMPOSITION_MOST_TYPES)
             read_type(scene, &types, name);
@@ -181,7 +182,7 @@ static enum status read_beads(struct scene *scene, struct json_object *object,
     const bool typed = mf_json_has(particles, "types");
     if (beside && !typed && mf_json_has(particles, "count"))
         mf_json_fault(particles, "count",
-                      "beside molecules single beads have types, as in \"types\": {\"A\": 100}");
+                      "with molecules single beads need types, as in \"types\": {\"A\": 100}");
     else if (typed)
         read_types(scene, particles, beside);
     else if (!beside)

@@ -15,15 +15,13 @@ static const char *const file_units[] = {"auto", "lj", "real", "metal", NULL};
 #define TOLD_FILE(member) .offset = offsetof(struct told_file, member)
 const struct field mf_scene_file_fields[] = {
     {"file", FIELD_FILE, TOLD_FILE(file), .required = true, .unit = "",
-     .help = "a topology of GROMACS (.top, .itp), or a data file of LAMMPS (.data, data.…), in the "
-             "place of kinds"},
+     .help = "GROMACS topology (.top, .itp) or LAMMPS data file (.data, data.…)"},
     {"exclude", FIELD_INTEGER, TOLD_FILE(exclude), .initial = TOPOLOGY_MOST_EXCLUDE, .minimum = 0,
      .maximum = TOPOLOGY_MOST_EXCLUDE, .unit = "",
-     .help = "of a data file: pairs of beads at most so many bonds apart do not act as pairs; "
-             "special_bonds 0 0 0, as LAMMPS begins, is 3, 0 1 1 is 1 and 1 1 1 is 0"},
+     .help = "LAMMPS: largest number of bonds between beads without pair interactions; 3 as "
+             "special_bonds 0 0 0"},
     {"units", FIELD_CHOICE, TOLD_FILE(units), .choices = file_units, .initial = 0, .unit = "",
-     .help = "of a data file whose first line does not tell them; auto: real, and lj if the scene "
-             "has no units"},
+     .help = "units of a data file without any; auto: real, or lj if the scene has no units"},
     FIELD_END,
 };
 
@@ -36,7 +34,7 @@ static enum status read_top(struct scene_molecules *own, struct json_object *obj
     own->molecules = (struct molecules){0};
     for (const char *const *key = (const char *const[]){"exclude", "units", NULL}; *key; key++)
         if (mf_json_has(object, *key))
-            mf_json_fault(object, *key, "a topology of GROMACS says it itself");
+            mf_json_fault(object, *key, "a GROMACS topology defines it; leave it out");
     TRY(mf_gromacs_topology_read(&own->molecules, composition, told->file, units, &note));
     snprintf(own->warning, sizeof own->warning, "%s", note.text);
     own->scattered = note.scattered;

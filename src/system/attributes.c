@@ -6,15 +6,14 @@
 const struct field mf_attributes_fields[] = {
     {"mass", FIELD_NUMBER, .initial = NAN, .minimum = FIELD_ABOVE_ZERO, .maximum = DBL_MAX,
      .unit = "mu",
-     .help = "of each particle: a number, {\"minimum\": …, \"maximum\": …} for uniform ones, or "
-             "either for each type; 1 without"},
+     .help = "mass of each particle: a number, {\"minimum\": …, \"maximum\": …} (uniform), or an "
+             "object for each type; default 1"},
     {"radius", FIELD_NUMBER, .initial = NAN, .minimum = FIELD_ABOVE_ZERO, .maximum = DBL_MAX,
-     .unit = "lambda", .help = "of each particle, likewise, for what asks for it"},
+     .unit = "lambda", .help = "radius of each particle, likewise, if an interaction needs it"},
     {"stiffness", FIELD_NUMBER, .initial = NAN, .minimum = 0, .maximum = DBL_MAX, .unit = "",
-     .help = "of each particle, likewise, for what asks for it and says its unit"},
+     .help = "stiffness of each particle, likewise, in the unit of its interaction"},
     {"orientation", FIELD_NUMBER, .initial = NAN, .minimum = -1e6, .maximum = 1e6, .unit = "rad",
-     .help = "theta of each particle at the start, likewise, if interactions are about it; uniform "
-             "without"},
+     .help = "initial theta of each particle, likewise; default: uniform"},
     FIELD_END,
 };
 

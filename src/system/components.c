@@ -44,12 +44,10 @@ static enum status check_names(const struct composition *components) {
             char its[COMPOSITION_PAIR_NAME_SIZE];
             mf_composition_pair_name(components, other, its);
             if (strcmp(its, name[0]) == 0 || strcmp(its, name[1]) == 0)
-                return mf_status_fail(
-                    STATUS_BAD_INPUT,
-                    "\"%s\" would be two pairs of components, which are the kinds "
-                    "of molecules and the types of single beads: call a kind "
-                    "differently",
-                    its);
+                return mf_status_fail(STATUS_BAD_INPUT,
+                                      "\"%s\" would name two pairs of components (kinds of "
+                                      "molecules, types of single beads): rename a kind",
+                                      its);
         }
     }
     return STATUS_OK;

@@ -11,26 +11,23 @@ static const char *const speeds[] = {"maxwell", "normal", "uniform", "signs",
 #define MEMBER(name) .offset = offsetof(struct placement, name)
 const struct field mf_placement_count_fields[] = {
     {"count", FIELD_INTEGER, MEMBER(count), .required = true, .minimum = 0, .maximum = 1e8,
-     .unit = "", .help = "number of particles, at least 2; 0 or 1 for dynamics with a solvent"},
+     .unit = "", .help = "number of particles, below 2 only with a solvent"},
     FIELD_END,
 };
 
 const struct field mf_placement_fields[] = {
     {"placement", FIELD_CHOICE, MEMBER(kind), .initial = PLACEMENT_LATTICE, .choices = kinds,
      .unit = "",
-     .help = "simple cubic lattice, nearly, random without overlap, or a file of "
-             "coordinates; molecules grow from there along their bonds"},
+     .help = "simple cubic lattice, random without overlap, or file; of molecules' first beads"},
     {"separation", FIELD_NUMBER, MEMBER(separation), .initial = 0.5, .minimum = 0,
-     .maximum = DBL_MAX, .unit = "lambda", .help = "random: least distance of any two"},
+     .maximum = DBL_MAX, .unit = "lambda", .help = "random: least distance of two particles"},
     {"file", FIELD_FILE, MEMBER(file), .unit = "",
-     .help = "file: columns x, y (, z), if wanted the velocities, and attributes by their names, "
-             "in rows "
-             "in the order of \"types\" and, in a type, of molecules, single beads last; or a "
-             "snapshot in JSON"},
+     .help = "columns x, y (, z), optional velocities, attributes by name, in the order of "
+             "\"types\", then molecules, single beads last; or a JSON snapshot"},
     {"velocities", FIELD_CHOICE, MEMBER(speeds), .initial = PARTICLES_MAXWELL, .choices = speeds,
      .unit = "",
-     .help = "the first ones: maxwell is equilibrium; normal, uniform and signs (equal but for the "
-             "sign) have the same spread for all masses"},
+     .help =
+         "initial velocities; maxwell: equilibrium; the others have one variance for all masses"},
     FIELD_END,
 };
 

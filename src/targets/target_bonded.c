@@ -21,20 +21,17 @@ static const char *const formats[] = {"columns", "votca", NULL};
 #define COLUMN .maximum = 1000, .unit = ""
 const struct field mf_target_bonded_fields[] = {
     {"file", FIELD_FILE, MEMBER(file), .required = true, .unit = "",
-     .help = "p at equally spaced bin centres, of lengths or of angles in degrees; its integral is "
-             "1, and no Jacobian is taken out"},
+     .help = "p at equally spaced bin centres (angles in degrees), normalised, not divided by the "
+             "Jacobian"},
     {"format", FIELD_CHOICE, MEMBER(format), .choices = formats, .initial = TARGET_ROWS_COLUMNS,
-     .unit = "",
-     .help =
-         "votca: a .dist.tgt in nm or radians, by the scene's \"units\"; its columns are known"},
+     .unit = "", .help = "votca: a .dist.tgt in nm or radians; the scene needs \"units\""},
     {"q_column", FIELD_INTEGER, MEMBER(q_column), .initial = 1, .minimum = 1, COLUMN,
-     .help = "number of the column with the bin centres, from 1"},
+     .help = "column of the bin centres, from 1"},
     {"value_column", FIELD_INTEGER, MEMBER(value_column), .initial = 0, .minimum = 0, COLUMN,
-     .help = "number of the column with p; 0: that with the group's name, or 2"},
+     .help = "column of p; 0: that named as the group, or 2"},
     {"error_column", FIELD_INTEGER, MEMBER(error_column), .initial = -1, .minimum = -1, COLUMN,
-     .help = "number of the column with the standard error of p; 0: none, they are estimated from "
-             "the scatter of neighbouring bins; -1: that with the group's name and _error, or 3, "
-             "or none"},
+     .help = "column of the standard error; 0: estimated from the scatter of bins; -1: that named "
+             "as the group with \"_error\", or 3, else 0"},
     FIELD_END,
 };
 
@@ -95,14 +92,13 @@ static enum status check_rows(const struct target_rows *rows, const char *file) 
     for (size_t k = 0; k < rows->count; k++) {
         const double step = k > 0 ? rows->x[k] - rows->x[k - 1] : width;
         if (!(fabs(step / width - 1) < 0.05))
-            return mf_status_fail(
-                STATUS_BAD_INPUT,
-                "%s:%zu: the bins are not equally spaced: this step is %.3g times the mean one; "
-                "count them anew in equal bins",
-                file, rows->line[k], step / width);
+            return mf_status_fail(STATUS_BAD_INPUT,
+                                  "%s:%zu: the bins are not equally spaced: this step is %.3g "
+                                  "times the mean one; use equal bins",
+                                  file, rows->line[k], step / width);
         if (!(rows->y[k] >= 0 && rows->error[k] >= 0 && isfinite(rows->y[k] + rows->error[k])))
             return mf_status_fail(STATUS_BAD_INPUT,
-                                  "%s:%zu: p = %g with an error of %g is no distribution", file,
+                                  "%s:%zu: p = %g with an error of %g is not a distribution", file,
                                   rows->line[k], rows->y[k], rows->error[k]);
     }
     return STATUS_OK;
@@ -133,8 +129,8 @@ static enum status normalise(struct target_rows *rows, const char *file) {
         sum += rows->y[k] * width_of(rows);
     if (!(fabs(sum - 1) <= normalised))
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "%s: the integral of p is %.4g, not 1: a distribution is normalised, "
-                              "and has its Jacobian in it",
+                              "%s: the integral of p is %.4g, not 1: expected a normalised "
+                              "distribution, not divided by the Jacobian",
                               file, sum);
     rescale(rows, 1 / sum);
     return STATUS_OK;
@@ -166,8 +162,7 @@ static enum status close_circle(struct target_rows *rows, double *width, const c
         rows->count--;
     } else if (fabs((double)rows->count - bins) >= 0.5) {
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "%s: dihedrals go round, from -180 to 180 degrees, and its bins over "
-                              "%g",
+                              "%s: expected dihedrals from -180 to 180 degrees, found bins over %g",
                               file, (double)rows->count * *width);
     }
     *width = 360 / (double)rows->count;

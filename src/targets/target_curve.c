@@ -19,49 +19,47 @@
      .initial = 0,                                                                                 \
      .minimum = 0,                                                                                 \
      COLUMN,                                                                                       \
-     .help =                                                                                       \
-         "number of the column with the values; 0: the one that is called as the target, else 2"}, \
+     .help = "column of the values; 0: that named as the target, else 2"},                         \
         {"error_column",                                                                           \
          FIELD_INTEGER,                                                                            \
          CURVE(error_column),                                                                      \
          .initial = -1,                                                                            \
          .minimum = -1,                                                                            \
          COLUMN,                                                                                   \
-         .help = "number of the column with their standard errors; 0: none; -1: the one that is "  \
-                 "called as the target with \"_error\", else 3 if there are so many columns"},     \
+         .help = "column of the standard errors; 0: none; -1: that named as the target "           \
+                 "with \"_error\", else 3 if present"},                                            \
         FIELD_END
 
 static const struct field time_fields[] = {
     {"file", FIELD_FILE, CURVE(file), .required = true, .unit = "",
-     .help = "values at equally spaced times from 0 on, in units of the scene"},
+     .help = "values at equally spaced times from 0, in units of the scene"},
     {"time_column", FIELD_INTEGER, CURVE(x_column), .initial = 1, .minimum = 1, COLUMN,
-     .help = "number of the column with the times, from 1"},
+     .help = "column of the times, from 1"},
     VALUE_COLUMNS,
 };
 
 static const struct field x_fields[] = {
     {"file", FIELD_FILE, CURVE(file), .required = true, .unit = "",
-     .help = "values at growing x, in units of the scene"},
+     .help = "values at increasing x, in units of the scene"},
     {"x_column", FIELD_INTEGER, CURVE(x_column), .initial = 1, .minimum = 1, COLUMN,
-     .help = "number of the column with x, from 1"},
+     .help = "column of x, from 1"},
     VALUE_COLUMNS,
 };
 
 #define NUMBER(name) .offset = offsetof(struct target_number, name)
 static const struct field number_fields[] = {
     {"value", FIELD_NUMBER, NUMBER(value), .required = true, .minimum = -DBL_MAX,
-     .maximum = DBL_MAX, .unit = "its own", .help = "measured"},
+     .maximum = DBL_MAX, .unit = "its own", .help = "measured value"},
     {"error", FIELD_NUMBER, NUMBER(error), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
-     .unit = "its own", .help = "its standard error"},
+     .unit = "its own", .help = "standard error"},
     FIELD_END,
 };
 
 static const struct field diffusion_fields[] = {
     {"window", FIELD_NUMBER, NUMBER(window), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
      .unit = "tau",
-     .help =
-         "D is the slope of the MSD over the second half of it, as the value must be; 0: that of "
-         "\"vacf\", \"msd\" or \"etd\" if they are given, else 1.6"},
+     .help = "window, over whose second half D is the slope of the MSD; 0: that of other targets, "
+             "else 1.6"},
     FIELD_END,
 };
 

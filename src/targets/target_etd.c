@@ -14,19 +14,19 @@
 #define COLUMN .maximum = 1000, .unit = ""
 static const struct field etd_fields[] = {
     {"file", FIELD_FILE, MEMBER(file), .required = true, .unit = "",
-     .help = "E(t, r_0): a time in each row, a bin of r_0 in each column, in units of the scene"},
+     .help = "E(t, r_0): a row for each time, a column for each bin of r_0, in units of the scene"},
     {"error_file", FIELD_FILE, MEMBER(error_file), .unit = "",
-     .help = "the standard errors of E, a table of the same shape"},
+     .help = "table of the standard errors of E, same shape"},
     {"time_column", FIELD_INTEGER, MEMBER(time_column), .initial = 1, .minimum = 1, COLUMN,
-     .help = "number of the column with the times, from 1"},
+     .help = "column of the times, from 1"},
     {"first_column", FIELD_INTEGER, MEMBER(first_column), .initial = 2, .minimum = 2, COLUMN,
-     .help = "number of the column with the first bin, after that of the times; all others follow"},
+     .help = "column of the first bin, after the times; the others follow"},
     {"r_minimum", FIELD_NUMBER, MEMBER(r_minimum), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
-     .unit = "lambda", .help = "where the first bin begins"},
+     .unit = "lambda", .help = "lower edge of the first bin"},
     {"r_maximum", FIELD_NUMBER, MEMBER(r_maximum), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
      .unit = "lambda",
-     .help = "where the last one ends, and where a pair has escaped; 0: both by the names of the "
-             "columns, \"E(r0=0.51)\", which tell the middle of each bin"},
+     .help = "upper edge of the last bin, at which a pair has escaped; 0: edges from column names "
+             "as \"E(r0=0.51)\""},
     FIELD_END,
 };
 
@@ -43,7 +43,7 @@ static double time_of(const struct data_table *table, const struct target_etd_pa
 
 static enum status check_columns(const struct target_etd_parameters *p) {
     if (p->time_column >= p->first_column)
-        return mf_status_fail(STATUS_BAD_INPUT, "first_column %lld is not behind time_column %lld",
+        return mf_status_fail(STATUS_BAD_INPUT, "first_column %lld is not after time_column %lld",
                               (long long)p->first_column, (long long)p->time_column);
     return STATUS_OK;
 }
@@ -93,7 +93,7 @@ static enum status read_table(struct data_table *table, const char *file,
                 return mf_status_fail(
                     STATUS_BAD_INPUT, "%s:%zu: column %zu: %g is not %s%s", file, table->line[row],
                     column + 1, value, largest == 1 ? "from 0 to 1" : "a standard error",
-                    column == before ? ": \"first_column\" tells where E begins" : "");
+                    column == before ? ": \"first_column\" is the first column of E" : "");
         }
     return STATUS_OK;
 }
@@ -144,7 +144,7 @@ static enum status take_values(struct target_etd *target, const struct data_tabl
             target->left_out += !known;
         }
     if (target->left_out == table->rows * bins)
-        status = mf_status_fail(STATUS_BAD_INPUT, "%s: nothing but nan", p->file);
+        status = mf_status_fail(STATUS_BAD_INPUT, "%s: all values are nan", p->file);
 done:
     return status;
 }
@@ -163,8 +163,8 @@ static enum status find_bins(struct target_etd_parameters *p, const struct data_
     }
     if (names != bins || bins < 2 || !(last > first))
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "%s: r_maximum: missing, and the %zu columns are not called "
-                              "\"E(r0=…)\" with growing r0",
+                              "%s: r_maximum: missing, and the %zu columns have no names "
+                              "\"E(r0=…)\" with increasing r0",
                               p->file, bins);
     const double factor = mf_units_factor(units, "lambda");
     const double width = (last - first) / (double)(bins - 1) / factor;

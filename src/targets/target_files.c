@@ -18,8 +18,7 @@ enum { DEFAULT_LAGS = 50 };
 static const char *const no_or_yes[] = {"no", "yes", NULL};
 const struct field mf_target_files_use_fields[] = {
     {"weight", FIELD_NUMBER, USE(weight), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
-     .unit = "",
-     .help = "of its error beside those of other files; 0: one over its statistical error"},
+     .unit = "", .help = "weight of this target; 0: one over its statistical error"},
     {"fitted", FIELD_CHOICE, USE(fitted), .choices = no_or_yes, .initial = 1, .unit = "",
      .help = "no: only compared with the result"},
     FIELD_END,
@@ -67,7 +66,7 @@ static enum status read_settings(struct target_files *files, const struct observ
     mf_json_fields(object, observable->fields, settings);
     void **kept = &files->settings[kind->place];
     if (*kept && memcmp(*kept, settings, observable->settings_size) != 0)
-        mf_json_fault(object, kind->target->name, "must have the settings of the target before it");
+        mf_json_fault(object, kind->target->name, "must have the settings of the previous target");
     mf_memory_free(*kept);
     *kept = settings;
     return STATUS_OK;
@@ -79,9 +78,8 @@ static void check_window(const struct target_files *files, struct json_object *o
     if (diffusion->window > 0 &&
         (target_files_curve(files, TARGET_VACF)->points > 0 ||
          target_files_curve(files, TARGET_MSD)->points > 0 || files->given[TARGET_ETD]))
-        mf_json_fault(
-            object, "diffusion",
-            "has a \"window\" of its own beside \"vacf\", \"msd\" or \"etd\", which say it");
+        mf_json_fault(object, "diffusion",
+                      "\"window\" is set by \"vacf\", \"msd\" or \"etd\"; leave it out");
 }
 
 /// VACF and MSD come from the same samples.

@@ -107,9 +107,9 @@ static enum status allocate(struct target_groups *groups, struct json_object *ob
     NEW_ARRAY(groups->member, groups->groups);
     for (size_t g = 0; g < groups->groups; g++) {
         if (is_use(molecules->group[order][g].name))
-            mf_json_fault(object, molecules->group[order][g].name,
-                          "is a setting of the target, and a group of the scene is called so: give "
-                          "the group another name");
+            mf_json_fault(
+                object, molecules->group[order][g].name,
+                "is both a setting of the target and a group of the scene: rename the group");
         memcpy(groups->name[g], molecules->group[order][g].name, sizeof groups->name[g]);
     }
 done:

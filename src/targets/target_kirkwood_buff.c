@@ -14,11 +14,10 @@ struct target_kirkwood_buff_number {
 static const struct field number_fields[] = {
     {"value", FIELD_NUMBER, NUMBER(value), .required = true, .minimum = -DBL_MAX,
      .maximum = DBL_MAX, .unit = "lambda^d",
-     .help = "integral of g - 1 over all space, of the open system; of a mixture in an object of "
-             "each pair of components (kinds of molecules, types of single beads) that is to be "
-             "met, as \"A-B\""},
+     .help = "integral of g - 1 over all space, of the open system; in a mixture an object for "
+             "each pair of components, as \"A-B\""},
     {"error", FIELD_NUMBER, NUMBER(error), .required = true, .minimum = FIELD_ABOVE_ZERO,
-     .maximum = DBL_MAX, .unit = "lambda^d", .help = "its standard error"},
+     .maximum = DBL_MAX, .unit = "lambda^d", .help = "standard error"},
     FIELD_END,
 };
 
@@ -71,7 +70,7 @@ static enum status read(struct target_files *files, int kind, struct json_object
     }
     if (named == 0 && known) {
         mf_json_fault(object, NULL,
-                      "names no pair of the scene's components, as {\"%s-%s\": {\"value\": "
+                      "expected pairs of the scene's components, such as {\"%s-%s\": {\"value\": "
                       "0.1, \"error\": 0.01}}",
                       components->name[0], components->name[1]);
         return STATUS_OK;

@@ -19,42 +19,33 @@ static const char *const formats[] = {"columns", "votca", NULL};
 #define COLUMN .maximum = 1000, .unit = ""
 const struct field mf_target_rdf_fields[] = {
     {"file", FIELD_FILE, MEMBER(file), .required = true, .unit = "",
-     .help = "g(r) at the centres of equal bins, or at any growing r as a digitised figure has it, "
-             "in units of the scene"},
+     .help = "g(r) at increasing r, in units of the scene"},
     {"format", FIELD_CHOICE, MEMBER(format), .choices = formats, .initial = TARGET_ROWS_COLUMNS,
-     .unit = "",
-     .help = "votca: a .dist.tgt in nm, by the scene's \"units\"; its columns are known"},
+     .unit = "", .help = "votca: a .dist.tgt in nm; the scene needs \"units\""},
     {"cutoff", FIELD_NUMBER, MEMBER(cutoff), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
-     .unit = "lambda", .help = "bins with centres beyond are left out; 0: none"},
+     .unit = "lambda", .help = "largest bin centre used; 0: any"},
     {"r_column", FIELD_INTEGER, MEMBER(r_column), .initial = 1, .minimum = 1, COLUMN,
-     .help = "number of the column with the bin centres, from 1"},
+     .help = "column of the bin centres, from 1"},
     {"g_column", FIELD_INTEGER, MEMBER(g_column), .initial = 2, .minimum = 1, COLUMN,
-     .help = "number of the column with g"},
+     .help = "column of g"},
     {"error_column", FIELD_INTEGER, MEMBER(error_column), .initial = -1, .minimum = -1, COLUMN,
-     .help = "number of the column with the standard error of g; 0: none, they are estimated from "
-             "the scatter of neighbouring bins; -1: 3 if there are so many columns, else none; a "
-             "column "
-             "of nan is none"},
+     .help = "column of the standard error; 0, or nan: estimated from the scatter of bins; -1: 3 "
+             "if present, else 0"},
     {"bin_width", FIELD_NUMBER, MEMBER(bin_width), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
      .unit = "lambda",
-     .help =
-         "rows are joined to bins of about this width; 0: without a \"method\" chosen by noise and "
-         "structure of g, else those of the file, or the least whole number of them that makes no "
-         "more than 400 bins"},
+     .help = "approximate width to which bins are merged; 0: the file's, at most 400 bins; without "
+             "\"method\" chosen by noise and structure"},
     {"particles", FIELD_INTEGER, MEMBER(particles), .initial = 0, .minimum = 0, .maximum = 1e9,
      .unit = "",
-     .help = "of all types in the system where it was measured, by whose pairs g is normalised, to "
-             "correct for another number in the scene; 0: as many as the scene has, and g may be "
-             "off as a whole by one particle in so many"},
+     .help = "number of particles in the measured system, to correct the normalisation; 0: the "
+             "scene's"},
     {"normalisation", FIELD_NUMBER, MEMBER(normalisation), .initial = 0, .minimum = 0,
      .maximum = 100, .unit = "",
-     .help = "factor by which g of the file is too large as a whole, as by N - 1 for N or by a "
-             "wrong density; 0: found from g itself, and 1 where nothing speaks against it"},
+     .help = "factor by which the file's g is too large, as by N - 1 for N or a wrong density; 0: "
+             "estimated from g"},
     {"normalisation_error", FIELD_NUMBER, MEMBER(normalisation_error), .initial = 0.01,
      .minimum = FIELD_ABOVE_ZERO, .maximum = 1, .unit = "",
-     .help =
-         "how far from 1 a normalisation that is to be found may well be: its standard deviation "
-         "before any measurement"},
+     .help = "prior standard deviation of an estimated normalisation from 1"},
     FIELD_END,
 };
 
@@ -76,10 +67,10 @@ static enum status check_errors(const struct target_rdf_parameters *p,
     }
     if (!named && (grows || 2 * large > seen))
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "%s: column %lld cannot be the standard error of g: it %s; "
-                              "\"error_column\" names another, or 0 for none",
+                              "%s: column %lld cannot be the standard error of g: it %s; set "
+                              "\"error_column\" to another, or to 0",
                               p->file, (long long)column,
-                              grows ? "grows from row to row, as a number of neighbours does"
+                              grows ? "increases from row to row, as a number of neighbours does"
                                     : "is as large as g");
     return STATUS_OK;
 }
@@ -105,7 +96,7 @@ static enum status read_votca(const struct target_rdf_parameters *p, const struc
         rows->x[k] /= units->length;
     for (size_t k = 1; k < rows->count; k++)
         if (!(rows->x[k] > rows->x[k - 1]))
-            return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: column 1 does not grow", p->file,
+            return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: column 1 does not increase", p->file,
                                   rows->line[k]);
     return STATUS_OK;
 }

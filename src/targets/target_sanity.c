@@ -133,7 +133,7 @@ static enum status check_tail(const struct view *view, const char *file) {
         STATUS_BAD_INPUT,
         "%s: target.%s.%s: the mean of g over the last quarter of %s is %.4g, not 1: %s%s", file,
         view->name, votca ? "file" : "g_column", p->file, tail->mean,
-        tail->grows ? "it grows from row to row, as a number of neighbours does"
+        tail->grows ? "it increases from row to row, as a number of neighbours does"
         : away > 1  ? "counts of pairs, or another column than g?"
         : tail->mean < far_from_1 && scene_has_molecules(&view->scene->molecules)
             ? "a potential, another column than g, or g of a single molecule, which ends with it? "
@@ -322,11 +322,10 @@ static void tell_origin(const struct view *view, const struct target_sanity_list
         mf_target_sanity_say(listener, "target %s: %zu rows of the file make a bin of %.4g %s",
                              view->name, target->joined, view->bins->width * length, unit);
     if (target->assumed)
-        mf_target_sanity_say(
-            listener,
-            "target %s: no errors given, and no scatter tells them: %.2g at g = 1 in the last bin "
-            "is assumed",
-            view->name, target->estimated_error);
+        mf_target_sanity_say(listener,
+                             "target %s: no errors given, and no scatter to estimate them: %.2g at "
+                             "g = 1 in the last bin is assumed",
+                             view->name, target->estimated_error);
     else if (target->estimated_error > 0)
         mf_target_sanity_say(
             listener,

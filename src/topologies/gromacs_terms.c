@@ -79,13 +79,13 @@ static enum status read_values(const struct gromacs_line *line, const struct gro
                                int first, int wanted, double *values, int *count) {
     *count = words->count - first;
     if (*count != 0 && *count != wanted && *count != 2 * wanted)
-        return mf_gromacs_fail(line, "%d numbers stand behind the function, which has %d", *count,
-                               wanted);
+        return mf_gromacs_fail(line, "%d numbers after the function, expected %d", *count, wanted);
     for (int n = 0; n < *count; n++) {
         char *end;
         values[n] = strtod(words->word[first + n], &end);
         if (*end != '\0' || !isfinite(values[n]))
-            return mf_gromacs_fail(line, "\"%.40s\" is no number", words->word[first + n]);
+            return mf_gromacs_fail(line, "expected a number, found \"%.40s\"",
+                                   words->word[first + n]);
     }
     return STATUS_OK;
 }
@@ -98,7 +98,7 @@ enum status mf_gromacs_add_type(struct gromacs_reading *reading, const struct gr
     if (reading->types == GROMACS_MOST_TYPES)
         return mf_gromacs_fail(line, "more than %d types of terms", GROMACS_MOST_TYPES);
     if (words->count <= beads)
-        return mf_gromacs_fail(line, "%d types and a function are expected", beads);
+        return mf_gromacs_fail(line, "expected %d types and a function", beads);
     *type = (struct gromacs_term_type){.order = order};
     for (int k = 0; k < beads; k++)
         snprintf(type->bead[k], GROMACS_WORD_SIZE, "%s", words->word[k]);
@@ -242,8 +242,7 @@ enum status mf_gromacs_add_term(struct gromacs_reading *reading, const struct gr
         return mf_gromacs_fail(line, "%s has more than %d %ss", kind->name, GROMACS_MOST_TERMS,
                                mf_bonded_kinds[order]->name);
     if (kind == NULL || words->count <= beads)
-        return mf_gromacs_fail(line, "%d atoms of a moleculetype and a function are expected",
-                               beads);
+        return mf_gromacs_fail(line, "expected %d atoms of a moleculetype and a function", beads);
     for (int k = 0; k < beads; k++) {
         int64_t number;
         if (!mf_gromacs_is_integer(words->word[k], 1, kind->beads, &number))

@@ -81,8 +81,8 @@ static enum status include(struct reading *reading, struct gromacs_line *line, c
     if (stat(path, &found) != 0)
         return mf_gromacs_fail(line, "#include: there is no file %.300s", path);
     if (reading->depth == MOST_DEPTH || reading->files == MOST_FILES)
-        return mf_gromacs_fail(line, "#include without an end: files are more than %d deep, or %d",
-                               MOST_DEPTH, MOST_FILES);
+        return mf_gromacs_fail(line, "#include: more than %d levels or %d files", MOST_DEPTH,
+                               MOST_FILES);
     return read_file(reading, path);
 }
 
@@ -142,7 +142,7 @@ static enum status replace(const struct reading *reading, struct gromacs_line *l
         const char *own = word ? word->text : text + blank;
         const size_t size = word ? strlen(word->text) : length;
         if (at + size + 2 > sizeof replaced)
-            return mf_gromacs_fail(line, "the line is too long with what its words stand for");
+            return mf_gromacs_fail(line, "the line is too long after macro expansion");
         at += (size_t)snprintf(replaced + at, sizeof replaced - at, "%.*s ", (int)size, own);
         text += blank + length;
     }
@@ -166,7 +166,8 @@ static enum status take_line(const char **text, struct gromacs_line *line, size_
         more = used > 0 && (*text)[used - 1] == '\\';
         used -= more;
         if (at + used + 2 > sizeof line->text)
-            return mf_gromacs_fail(line, "the line is longer than %zu letters", sizeof line->text);
+            return mf_gromacs_fail(line, "the line is longer than %zu characters",
+                                   sizeof line->text);
         memcpy(line->text + at, *text, used);
         at += used;
         if (more)

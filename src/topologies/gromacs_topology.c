@@ -72,18 +72,19 @@ static enum status begin_kind(struct gromacs_reading *reading, const struct grom
     int64_t exclude = 0;
     char name[TOPOLOGY_NAME_SIZE];
     if (words->count < 2 || !copy_name(words->word[0], name))
-        return mf_gromacs_fail(line, "a moleculetype has a name of up to %d letters, and nrexcl",
-                               TOPOLOGY_NAME_SIZE - 1);
+        return mf_gromacs_fail(
+            line, "expected the name of a moleculetype, of up to %d characters, and nrexcl",
+            TOPOLOGY_NAME_SIZE - 1);
     if (mf_own_words_has(name))
-        return mf_gromacs_fail(line, "\"%.40s\": a moleculetype has a name of its own, " OWN_WORDS,
-                               name);
+        return mf_gromacs_fail(
+            line, "\"%.40s\": a moleculetype needs a name of its own, " OWN_WORDS, name);
     if (!mf_gromacs_is_integer(words->word[1], 0, TOPOLOGY_MOST_EXCLUDE, &exclude))
         return mf_gromacs_fail(line, "nrexcl is 0 to %d, not %.40s", TOPOLOGY_MOST_EXCLUDE,
                                words->word[1]);
     if (topology->kinds == TOPOLOGY_MOST_KINDS)
         return mf_gromacs_fail(line, "there are more than %d moleculetypes", TOPOLOGY_MOST_KINDS);
     if (find_kind(topology, name) < topology->kinds)
-        return mf_gromacs_fail(line, "moleculetype %s stands there twice", name);
+        return mf_gromacs_fail(line, "duplicate moleculetype %s", name);
     *kind = (struct topology_kind){.exclude = (int)exclude};
     memcpy(kind->name, name, sizeof name);
     topology->kinds++;
@@ -100,11 +101,10 @@ static enum status find_type(struct gromacs_reading *reading, const struct groma
             return STATUS_OK;
     if (!mf_composition_is_name(name))
         return mf_gromacs_fail(
-            line, "\"%.40s\": a type is called by up to %d letters, digits and _, " OWN_WORDS, name,
-            COMPOSITION_NAME_SIZE - 1);
+            line, "\"%.40s\": expected a type name of up to %d letters, digits and _, " OWN_WORDS,
+            name, COMPOSITION_NAME_SIZE - 1);
     if (composition->types == COMPOSITION_MOST_TYPES)
-        return mf_gromacs_fail(line, "\"%s\" would be a type more than %d", name,
-                               COMPOSITION_MOST_TYPES);
+        return mf_gromacs_fail(line, "\"%s\": more than %d types", name, COMPOSITION_MOST_TYPES);
     strcpy(composition->name[composition->types++], name);
     return STATUS_OK;
 }
@@ -113,8 +113,8 @@ static void note(struct gromacs_reading *reading, const struct gromacs_line *lin
                  const char *what) {
     if (reading->note->text[0] == '\0')
         snprintf(reading->note->text, sizeof reading->note->text,
-                 "%.120s:%zu: %s not taken; \"conservative\" is what pairs have", line->file,
-                 line->number, what);
+                 "%.120s:%zu: %s not used: pairs have \"conservative\"", line->file, line->number,
+                 what);
 }
 
 static enum status add_atom(struct gromacs_reading *reading, const struct gromacs_line *line,
@@ -127,7 +127,7 @@ static enum status add_atom(struct gromacs_reading *reading, const struct gromac
         return mf_gromacs_fail(line, "atoms without a moleculetype");
     if (words->count < 2 ||
         !mf_gromacs_is_integer(words->word[0], kind->beads + 1, kind->beads + 1, &number))
-        return mf_gromacs_fail(line, "the next atom has number %d, and a type", kind->beads + 1);
+        return mf_gromacs_fail(line, "expected atom number %d and a type", kind->beads + 1);
     TRY(mf_gromacs_reserve((void **)&kind->type, (size_t)kind->beads, &reading->atom_room,
                            sizeof *kind->type));
     TRY(find_type(reading, line, words->word[1], &kind->type[kind->beads]));
@@ -146,7 +146,7 @@ static enum status add_count(struct gromacs_reading *reading, const struct groma
     int64_t count;
     char name[TOPOLOGY_NAME_SIZE];
     if (words->count != 2 || !mf_gromacs_is_integer(words->word[1], 0, 100000000, &count))
-        return mf_gromacs_fail(line, "a moleculetype and how many there are (to 1e8) are expected");
+        return mf_gromacs_fail(line, "expected a moleculetype and a count up to 1e8");
     copy_name(words->word[0], name);
     const int k = find_kind(topology, name);
     if (k == topology->kinds)
@@ -164,7 +164,7 @@ static enum status add_count(struct gromacs_reading *reading, const struct groma
 static enum status begin_section(struct reading *reading, struct gromacs_line *line) {
     char name[GROMACS_WORD_SIZE] = "";
     if (sscanf(line->text, "[ %31[a-z_A-Z0-9] ]", name) != 1 || strchr(line->text, ']') == NULL)
-        return mf_gromacs_fail(line, "a section is \"[ name ]\"");
+        return mf_gromacs_fail(line, "expected \"[ name ]\"");
     for (size_t k = 0; k < sizeof sections / sizeof *sections; k++)
         if (strcmp(sections[k].name, name) == 0) {
             reading->section = &sections[k];
@@ -180,7 +180,7 @@ static enum status take(void *context, struct gromacs_line *line) {
     if (line->text[0] == '[')
         return begin_section(own, line);
     if (own->section == NULL)
-        return mf_gromacs_fail(line, "a topology begins with a section, as \"[ defaults ]\"");
+        return mf_gromacs_fail(line, "expected a section, such as \"[ defaults ]\"");
     const struct gromacs_words words = split(line);
     switch (own->section->section) {
     case TERMS:
@@ -194,7 +194,7 @@ static enum status take(void *context, struct gromacs_line *line) {
     case MOLECULES:
         return add_count(reading, line, &words);
     case EXCLUSIONS:
-        return mf_gromacs_fail(line, "[ exclusions ]: what is excluded is said by nrexcl alone");
+        return mf_gromacs_fail(line, "[ exclusions ] are not read: nrexcl alone excludes pairs");
     case PAIRS:
         note(reading, line, "parameters of pairs are");
         return STATUS_OK;

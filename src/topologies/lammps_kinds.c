@@ -162,8 +162,7 @@ static enum status add_kind(struct finding *finding, size_t molecule) {
     const size_t beads = beads_of(finding, molecule);
     const long long id = (long long)finding->source->structure->atom[molecule].id;
     if (topology->kinds == TOPOLOGY_MOST_KINDS)
-        return mf_status_fail(STATUS_BAD_INPUT,
-                              "%s: the molecule of atom %lld is a kind more than %d",
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: the molecule of atom %lld: more than %d kinds",
                               finding->source->file, id, TOPOLOGY_MOST_KINDS);
     if (beads > LAMMPS_MOST_ATOMS)
         return mf_status_fail(STATUS_BAD_INPUT,

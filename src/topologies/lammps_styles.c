@@ -96,7 +96,7 @@ static bool fill_opls(struct bonded_curve *curve, const struct numbers *of) {
 static const struct style styles[] = {
     {BONDED_BOND, "harmonic", 2, 2, &mf_bond_harmonic, fill_bond, NULL},
     {BONDED_BOND, "fene", 4, 4, &mf_bond_fene, fill_fene,
-     "epsilon and sigma of fene are not taken: pairs repel each other by \"conservative\", with "
+     "epsilon and sigma of fene are not used: pairs repel each other by \"conservative\", with "
      "\"exclude\": 0"},
     {BONDED_ANGLE, "harmonic", 2, 2, &mf_angle_harmonic, fill_angle, NULL},
     {BONDED_ANGLE, "cosine", 1, 1, &mf_angle_cosine, fill_cosine, NULL},
@@ -141,5 +141,5 @@ enum status mf_lammps_style_create(struct bonded_curve *curve, int order, const 
     mf_bonded_clear(curve);
     return mf_status_fail(STATUS_BAD_INPUT, "the law \"%s\" cannot have these numbers%s",
                           found->law->name,
-                          found->fill == fill_charmm ? "; the weight behind them is to be 0" : "");
+                          found->fill == fill_charmm ? "; the last weight must be 0" : "");
 }

@@ -129,10 +129,10 @@ static enum status add_term(struct reading *reading, const struct words *words) 
     struct lammps_term term = {.line = reading->line};
     int64_t number;
     if (words->count != 2 + beads)
-        return FAIL(reading, "%d words, and a line of %s has %d: its number, its type and %d atoms",
-                    words->count, mf_bonded_kinds[order]->plural, 2 + beads, beads);
+        return FAIL(reading, "%d words; expected in %s %d: number, type and %d atoms", words->count,
+                    mf_bonded_kinds[order]->plural, 2 + beads, beads);
     if (!mf_words_integer(&words->word[1], &number) || number < 1 || number > terms->types[order])
-        return FAIL(reading, "\"%.*s\" is no type of %s %s: there are 1 to %lld",
+        return FAIL(reading, "\"%.*s\" is not a type of %s %s: expected 1 to %lld",
                     (int)words->word[1].length, words->word[1].begin,
                     mf_bonded_kinds[order]->article, name, (long long)terms->types[order]);
     term.type = (int)number;
@@ -172,25 +172,25 @@ static enum status add_coefficient(struct reading *reading, const struct words *
     const int first = hybrid ? 2 : 1;
     int64_t type;
     if (reading->style[0] == '\0')
-        return FAIL(reading, "which style is it? Write \"%c%s # harmonic\", or what else it is",
+        return FAIL(reading, "unknown style: name it, as in \"%c%s # harmonic\"",
                     toupper((unsigned char)reading->section->name[0]), reading->section->name + 1);
     if (!mf_words_integer(&words->word[0], &type) || type < 1 || type > terms->types[order])
-        return FAIL(reading, "here should stand a type from 1 to %lld and its numbers",
+        return FAIL(reading, "expected a type from 1 to %lld and its coefficients",
                     (long long)terms->types[order]);
     struct lammps_coefficient *own = &terms->coefficient[order][type];
     if (own->line > 0)
-        return FAIL(reading, "type %lld stands there twice", (long long)type);
+        return FAIL(reading, "duplicate type %lld", (long long)type);
     *own = (struct lammps_coefficient){.line = reading->line, .count = words->count - first};
     if (own->count < 0 || own->count > LAMMPS_MOST_NUMBERS)
-        return FAIL(reading, "%d numbers are none of a style that is known", own->count);
+        return FAIL(reading, "no known style has %d numbers", own->count);
     if (!hybrid)
         memcpy(own->style, reading->style, sizeof own->style);
     else if (!mf_words_copy(&words->word[1], own->style, sizeof own->style))
         return FAIL(reading, "the style's name is too long");
     for (int n = 0; n < own->count; n++)
         if (!mf_words_number(&words->word[first + n], &own->number[n]))
-            return FAIL(reading, "\"%.*s\" is no number", (int)(words->word[first + n].length % 40),
-                        words->word[first + n].begin);
+            return FAIL(reading, "expected a number, found \"%.*s\"",
+                        (int)(words->word[first + n].length % 40), words->word[first + n].begin);
     return STATUS_OK;
 }
 
@@ -267,8 +267,7 @@ static enum status check_whole(struct reading *reading) {
     for (int order = 0; order < BONDED_KINDS; order++) {
         if ((int64_t)terms->terms[order] != reading->promised[order])
             return mf_status_fail(STATUS_BAD_INPUT,
-                                  "%s: \"%lld %s\" are said, and %zu are there: is it the whole "
-                                  "file?",
+                                  "%s: expected \"%lld %s\", found %zu: is the file complete?",
                                   reading->file, (long long)reading->promised[order],
                                   mf_bonded_kinds[order]->plural, terms->terms[order]);
         TRY(check_doubled(reading, order));

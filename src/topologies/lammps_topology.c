@@ -40,14 +40,12 @@ enum status mf_lammps_topology_units(const char *file, const char *told, const s
     mf_lammps_terms_units(text, title);
     mf_memory_free(text);
     if (title[0] && told[0] && strcmp(title, told) != 0)
-        return mf_status_fail(STATUS_BAD_INPUT, "%s:1: says that its units are \"%s\"", file,
-                              title);
+        return mf_status_fail(STATUS_BAD_INPUT, "%s:1: the file has the units \"%s\"", file, title);
     const char *name = told[0] ? told : title[0] ? title : known ? "real" : "lj";
     const struct scale *scale = find_scale(name);
     if (scale == NULL)
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "%s:1: units \"%s\" are not known, but real, metal and lj", file,
-                              name);
+                              "%s:1: unknown units \"%s\"; expected real, metal or lj", file, name);
     if (scale == &scales[LJ] && known)
         return mf_status_fail(STATUS_BAD_INPUT,
                               "%s: units of \"lj\" are for a scene without \"units\"", file);

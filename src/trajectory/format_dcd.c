@@ -31,8 +31,7 @@ static enum status take_record(struct source *source, struct bytes *raw, uint64_
     if (binary_word(raw->data + begin, big) != size ||
         binary_word(raw->data + begin + MARK + size, big) != size)
         return mf_source_fail_byte(source,
-                                   "a record before here is not of the %llu bytes that it "
-                                   "should have",
+                                   "the preceding record does not have the expected %llu bytes",
                                    (unsigned long long)size);
     return STATUS_OK;
 }
@@ -67,7 +66,7 @@ static enum status skip_title(struct source *source, struct bytes *raw, bool big
         return mf_source_fail_byte(source, "its title has %u bytes", (unsigned)size);
     TRY(mf_source_take(source, raw, (uint64_t)size + MARK));
     if (binary_word(raw->data + begin + MARK + size, big) != size)
-        return mf_source_fail_byte(source, "its title does not end where it should");
+        return mf_source_fail_byte(source, "the title has the wrong length");
     return STATUS_OK;
 }
 
@@ -84,7 +83,7 @@ static enum status open_file(struct trajectory *trajectory) {
     CHECK(take_record(source, &raw, 4, dcd->big));
     dcd->atoms = binary_int(raw.data + begin + MARK, dcd->big);
     if (dcd->atoms < 1 || dcd->atoms > INT32_MAX / 4)
-        status = mf_source_fail_byte(source, "its number of atoms is none");
+        status = mf_source_fail_byte(source, "the number of atoms is not valid");
 done:
     mf_source_free(&raw);
     return status;
@@ -123,7 +122,7 @@ static enum status read_cell(const struct dcd *dcd, struct trajectory_frame *fra
     if (v[0] == 0 && v[2] == 0 && v[5] == 0)
         return STATUS_OK;
     if (!mf_frame_box_of_angles(frame, length, angle))
-        return mf_frame_fail_byte(frame, MARK, "its box is none: lengths %g %g %g, angles %g %g %g",
+        return mf_frame_fail_byte(frame, MARK, "not a valid box: lengths %g %g %g, angles %g %g %g",
                                   v[0], v[2], v[5], v[4], v[3], v[1]);
     return STATUS_OK;
 }

@@ -99,7 +99,7 @@ static enum status describe(struct trajectory *trajectory, struct trajectory_fra
         const struct word residue = mf_words_columns(line, NAME_WIDTH, NAME_WIDTH);
         const struct word name = mf_words_columns(line, 2 * NAME_WIDTH, NAME_WIDTH);
         if (!mf_words_integer(&number, &atom->residue_number))
-            return mf_frame_fail_line(first, line, "here should stand the number of a residue");
+            return mf_frame_fail_line(first, line, "expected a residue number");
         mf_words_copy(&residue, atom->residue_name, STRUCTURE_NAME); // both are short enough
         mf_words_copy(&name, atom->name, STRUCTURE_NAME);
     }
@@ -123,10 +123,10 @@ static enum status read_atoms(struct trajectory_frame *frame, const char **line)
         const size_t length = strnlen(*line, speeds + 3 * width);
         if (width == 0 || length <= NUMBERS ||
             !read_vector(*line, NUMBERS, width, frame->position[k]))
-            return mf_frame_fail_line(frame, *line, "here should stand the position of an atom");
+            return mf_frame_fail_line(frame, *line, "expected an atom position");
         if (frame->has_velocities &&
             (length <= speeds || !read_vector(*line, speeds, width, frame->velocity[k])))
-            return mf_frame_fail_line(frame, *line, "here should stand the velocity of an atom");
+            return mf_frame_fail_line(frame, *line, "expected an atom velocity");
     }
     return STATUS_OK;
 }
@@ -158,7 +158,7 @@ static enum status read_box(struct trajectory_frame *frame, const char *line, si
     if ((count != 3 && count != 9) || !mf_words_numbers(&rest, v, count))
         count = read_tight(line, decimals, v, sizeof v / sizeof *v);
     if (count != 3 && count != 9)
-        return mf_frame_fail_line(frame, line, "here should stand the box, 3 or 9 numbers");
+        return mf_frame_fail_line(frame, line, "expected the box, 3 or 9 numbers");
     const double box[3][3] = {{v[0], v[3], v[4]}, {v[5], v[1], v[6]}, {v[7], v[8], v[2]}};
     mf_frame_set_box(frame, box);
     return STATUS_OK;

@@ -190,7 +190,7 @@ static enum status find_atoms(const struct trajectory *trajectory, struct trajec
             return mf_status_fail(STATUS_BAD_INPUT, "%s: frame %zu: the id %lld %s", frame->file,
                                   frame->number, (long long)id,
                                   place[k] == frame->atoms ? "is not in the first frame"
-                                                           : "stands there twice");
+                                                           : "is a duplicate");
         frame->scratch.data[place[k]] = 1;
     }
     return STATUS_OK;

@@ -53,7 +53,7 @@ static enum status read_masses(const struct lammps_data *data, const struct traj
         double value = 0;
         if (mf_lammps_data_split(line, word) < 2 || !mf_words_integer(&word[0], &type) ||
             type < 1 || (size_t)type > data->types || !mf_words_number(&word[1], &value))
-            return mf_frame_fail_line(first, line, "here should stand a type and its mass");
+            return mf_frame_fail_line(first, line, "expected an atom type and its mass");
         mass[type] = value * unit;
     }
     return STATUS_OK;
@@ -91,10 +91,9 @@ static enum status describe_atoms(struct structure *structure, const struct lamm
         if (!mf_words_integer(&word[0], &atom->id) || !mf_words_integer(type, &atom->type) ||
             atom->type < 1 || (size_t)atom->type > data->types ||
             (style->molecule >= 0 && !mf_words_integer(&word[style->molecule], &atom->molecule)))
-            return mf_frame_fail_line(first, line,
-                                      "id, molecule and type should be whole numbers, "
-                                      "types from 1 to %zu",
-                                      data->types);
+            return mf_frame_fail_line(
+                first, line, "expected integers for id, molecule and type, types from 1 to %zu",
+                data->types);
         mf_words_copy(type, atom->name, STRUCTURE_NAME);
         atom->mass = mass[atom->type];
         line = mf_frame_next_line(first, line);
@@ -142,7 +141,7 @@ static enum status read_positions(const struct trajectory *trajectory,
             good = good && mf_words_number(&place[d], &position[d]) &&
                    (!images || mf_words_number(&place[3 + d], &image[d]));
         if (!good)
-            return mf_frame_fail_line(frame, line, "a coordinate is no finite number");
+            return mf_frame_fail_line(frame, line, "a coordinate is not a finite number");
         for (int d = 0; d < 3; d++)
             position[d] = trajectory->scale.length *
                           (position[d] + image[0] * data->box[0][d] + image[1] * data->box[1][d] +
@@ -167,7 +166,7 @@ static enum status read_velocities(const struct trajectory *trajectory,
         for (int d = 0; d < 3; d++)
             good = good && mf_words_number(&word[1 + d], &velocity[d]);
         if (!good)
-            return mf_frame_fail_line(frame, line, "a velocity is no finite number");
+            return mf_frame_fail_line(frame, line, "a velocity is not a finite number");
         for (int d = 0; d < 3; d++)
             velocity[d] *= trajectory->scale.speed;
     }

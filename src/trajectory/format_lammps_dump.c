@@ -27,7 +27,7 @@ static enum status fetch(struct trajectory *trajectory, struct trajectory_frame 
         const size_t begin = raw->size;
         TRY(mf_source_lines(source, raw, 1));
         if (strncmp((const char *)raw->data + begin, "ITEM: ", 6) != 0)
-            return mf_source_fail_line(source, "here should stand an ITEM of a dump");
+            return mf_source_fail_line(source, "expected \"ITEM:\"");
         if (strncmp((const char *)raw->data + begin, table, sizeof table - 1) == 0)
             break;
         const size_t value = raw->size;
@@ -36,7 +36,7 @@ static enum status fetch(struct trajectory *trajectory, struct trajectory_frame 
             TRY(mf_trajectory_read_count(trajectory, (const char *)raw->data + value, &atoms));
     }
     if (atoms == 0)
-        return mf_source_fail_line(source, "the number of atoms should stand before the atoms");
+        return mf_source_fail_line(source, "expected the number of atoms before the atoms");
     return mf_source_lines(source, raw, atoms);
 }
 
@@ -56,13 +56,13 @@ static enum status describe_atom(const struct lammps_dump *dump,
     if (!integer_at(dump, word, LAMMPS_ID, &atom->id) ||
         !integer_at(dump, word, LAMMPS_TYPE, &atom->type) ||
         !integer_at(dump, word, LAMMPS_MOLECULE, &atom->molecule))
-        return mf_frame_fail_line(first, line, "id, type and mol should be whole numbers");
+        return mf_frame_fail_line(first, line, "expected integers for id, type and mol");
     if (column[LAMMPS_MASS] >= 0 && !mf_words_number(&word[column[LAMMPS_MASS]], &atom->mass))
-        return mf_frame_fail_line(first, line, "the mass should be a number");
+        return mf_frame_fail_line(first, line, "expected a number for the mass");
     atom->mass *= scale->mass;
     const int name = column[LAMMPS_ELEMENT] >= 0 ? column[LAMMPS_ELEMENT] : column[LAMMPS_TYPE];
     if (name >= 0 && !mf_words_copy(&word[name], atom->name, STRUCTURE_NAME))
-        return mf_frame_fail_line(first, line, "a name of more than %d letters",
+        return mf_frame_fail_line(first, line, "a name of more than %d characters",
                                   STRUCTURE_NAME - 1);
     if (column[LAMMPS_ELEMENT] >= 0)
         memcpy(atom->element, atom->name, sizeof atom->element);
@@ -77,7 +77,7 @@ static enum status describe(struct trajectory *trajectory, struct trajectory_fra
     if (dump.units) {
         const struct word name = mf_words_columns(dump.units, 0, sizeof units);
         if (!mf_words_copy(&name, units, sizeof units))
-            return mf_frame_fail_line(first, dump.units, "here should stand the units");
+            return mf_frame_fail_line(first, dump.units, "expected the units");
         TRY(mf_trajectory_found_units(trajectory, units));
     }
     TRY(mf_structure_init(structure, dump.atoms));
@@ -154,7 +154,7 @@ static enum status find_atom(const struct trajectory *trajectory, struct traject
     if (!trajectory->structure.has_ids)
         return STATUS_OK;
     if (dump->column[LAMMPS_ID] < 0 || !mf_words_integer(&word[dump->column[LAMMPS_ID]], &id))
-        return mf_frame_fail_line(frame, line, "here should stand an atom's id");
+        return mf_frame_fail_line(frame, line, "expected an atom id");
     return mf_trajectory_find_atom(trajectory, frame, line, id, atom);
 }
 
@@ -175,12 +175,12 @@ static enum status read_atoms(const struct trajectory *trajectory, struct trajec
         TRY(find_atom(trajectory, frame, dump, word, line, &atom));
         double *const position = frame->position[atom];
         if (!read_position(dump, word, from, position))
-            return mf_frame_fail_line(frame, line, "a coordinate is no finite number");
+            return mf_frame_fail_line(frame, line, "a coordinate is not a finite number");
         scale_vector(position, trajectory->scale.length);
         if (!frame->has_velocities)
             continue;
         if (!read_vector(dump, word, LAMMPS_VX, frame->velocity[atom]))
-            return mf_frame_fail_line(frame, line, "a velocity is no finite number");
+            return mf_frame_fail_line(frame, line, "a velocity is not a finite number");
         scale_vector(frame->velocity[atom], trajectory->scale.speed);
     }
     return STATUS_OK;

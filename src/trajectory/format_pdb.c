@@ -49,12 +49,12 @@ static enum status read_cell(const struct source *source, struct pdb *pdb, const
         const struct word edge = mf_words_columns(line, 6 + 9 * d, 9);
         const struct word corner = mf_words_columns(line, 33 + 7 * d, 7);
         if (!mf_words_number(&edge, &length[d]) || !mf_words_number(&corner, &angle[d]))
-            return mf_source_fail_line(source, "CRYST1 should have three lengths and three angles");
+            return mf_source_fail_line(source, "expected three lengths and three angles in CRYST1");
         unit = unit && length[d] <= 1;
         length[d] *= angstrom;
     }
     if (!unit && !mf_frame_box_of_angles(&frame, length, angle))
-        return mf_source_fail_line(source, "there is no box of these lengths and angles");
+        return mf_source_fail_line(source, "not a valid box: no cell has these lengths and angles");
     memcpy(pdb->box, frame.box, sizeof pdb->box);
     return STATUS_OK;
 }
@@ -173,7 +173,7 @@ static enum status decode(const struct trajectory *trajectory, struct trajectory
         for (size_t d = 0; d < 3; d++) {
             const struct word word = mf_words_columns(line, COORDINATES + WIDTH * d, WIDTH);
             if (!mf_words_number(&word, &frame->position[k][d]))
-                return mf_frame_fail_line(frame, line, "here should stand the position of an atom");
+                return mf_frame_fail_line(frame, line, "expected an atom position");
             frame->position[k][d] *= angstrom;
         }
     return STATUS_OK;

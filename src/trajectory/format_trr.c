@@ -63,9 +63,9 @@ static enum status check_header(const struct trajectory *trajectory, const unsig
     const struct source *const source = &trajectory->source;
     static const unsigned char title[] = "\0\0\0\x0D\0\0\0\x0CGMX_trn_file";
     if (!recognise(raw, HEADER) || memcmp(raw + 4, title, TITLE - 4) != 0)
-        return mf_source_fail_byte(source, "here should begin a frame, and none does");
+        return mf_source_fail_byte(source, "expected the beginning of a frame");
     if (!read_header(header, raw))
-        return mf_source_fail_byte(source, "the sizes in its header do not belong together");
+        return mf_source_fail_byte(source, "inconsistent sizes in the header");
     if (source->frame > 0 && (size_t)header->atoms != trajectory->structure.atoms)
         return mf_source_fail_byte(source, "it has %d atoms, the first frame %zu",
                                    (int)header->atoms, trajectory->structure.atoms);

@@ -21,9 +21,9 @@ static enum status check_header(const struct trajectory *trajectory, const unsig
     const struct source *const source = &trajectory->source;
     const int32_t atoms = binary_int(header + 4, true);
     if (!recognise(header, HEADER))
-        return mf_source_fail_byte(source, "here should begin a frame, and none does");
+        return mf_source_fail_byte(source, "expected the beginning of a frame");
     if (atoms < 1 || atoms != binary_int(header + 52, true))
-        return mf_source_fail_byte(source, "its number of atoms is none");
+        return mf_source_fail_byte(source, "the number of atoms is not valid");
     if (source->frame > 0 && (size_t)atoms != trajectory->structure.atoms)
         return mf_source_fail_byte(source, "it has %d atoms, the first frame %zu", (int)atoms,
                                    trajectory->structure.atoms);
@@ -61,7 +61,7 @@ static enum status fetch_packed(struct source *source, struct bytes *raw) {
     TRY(mf_source_take(source, raw, PACKING + (large ? 8 : 4)));
     const struct packed packed = read_packed(raw->data);
     if (packed.bytes == 0 || packed.bytes > INT64_MAX)
-        return mf_source_fail_byte(source, "its number of bytes is none");
+        return mf_source_fail_byte(source, "the number of bytes is not valid");
     TRY(mf_source_take(source, raw, (packed.bytes + 3) / 4 * 4));
     const char *const fault = mf_xtc_coordinates_check(&packed.packing, packed.bytes);
     if (fault)

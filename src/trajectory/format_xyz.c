@@ -58,8 +58,7 @@ static enum status split(const struct xyz_comment *comment, const struct traject
     struct word word;
     for (int k = 0; k < (int)comment->columns; k++) {
         if (!mf_words_next(&rest, &word))
-            return mf_frame_fail_line(frame, line, "%d columns, there should be %zu", k,
-                                      comment->columns);
+            return mf_frame_fail_line(frame, line, "%d columns, expected %zu", k, comment->columns);
         for (int c = 0; c < XYZ_COLUMNS; c++) {
             const int place = k - comment->column[c];
             const int width = c == XYZ_POSITION || c == XYZ_VELOCITY ? 3 : 1;
@@ -77,14 +76,14 @@ static enum status describe_atom(const struct xyz_comment *comment,
     const int *const column = comment->column;
     TRY(split(comment, first, line, known));
     if (column[XYZ_NAME] >= 0 && !mf_words_copy(known[XYZ_NAME], atom->name, STRUCTURE_NAME))
-        return mf_frame_fail_line(first, line, "a name of more than %d letters",
+        return mf_frame_fail_line(first, line, "a name of more than %d characters",
                                   STRUCTURE_NAME - 1);
     if (column[XYZ_MASS] >= 0 && !mf_words_number(known[XYZ_MASS], &atom->mass))
-        return mf_frame_fail_line(first, line, "the mass should be a number");
+        return mf_frame_fail_line(first, line, "expected a number for the mass");
     atom->mass *= mass_unit;
     if ((column[XYZ_ID] >= 0 && !mf_words_integer(known[XYZ_ID], &atom->id)) ||
         (column[XYZ_MOLECULE] >= 0 && !mf_words_integer(known[XYZ_MOLECULE], &atom->molecule)))
-        return mf_frame_fail_line(first, line, "id and molecule should be whole numbers");
+        return mf_frame_fail_line(first, line, "expected integers for id and molecule");
     return STATUS_OK;
 }
 
@@ -130,14 +129,14 @@ static enum status read_atom(const struct trajectory *trajectory, struct traject
     TRY(split(comment, frame, line, known));
     if (trajectory->structure.has_ids) {
         if (comment->column[XYZ_ID] < 0 || !mf_words_integer(known[XYZ_ID], &id))
-            return mf_frame_fail_line(frame, line, "here should stand an atom's id");
+            return mf_frame_fail_line(frame, line, "expected an atom id");
         TRY(mf_trajectory_find_atom(trajectory, frame, line, id, &atom));
     }
     if (!read_vector(known[XYZ_POSITION], trajectory->scale.length, frame->position[atom]))
-        return mf_frame_fail_line(frame, line, "a coordinate is no finite number");
+        return mf_frame_fail_line(frame, line, "a coordinate is not a finite number");
     if (frame->has_velocities &&
         !read_vector(known[XYZ_VELOCITY], trajectory->scale.speed, frame->velocity[atom]))
-        return mf_frame_fail_line(frame, line, "a velocity is no finite number");
+        return mf_frame_fail_line(frame, line, "a velocity is not a finite number");
     return STATUS_OK;
 }
 

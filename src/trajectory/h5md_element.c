@@ -16,7 +16,7 @@ static herr_t take_reason(unsigned n, const H5E_error2_t *error, void *reason) {
 }
 
 enum status mf_h5md_element_fail(const char *file, const char *what) {
-    char reason[200] = "HDF5 does not say why";
+    char reason[200] = "HDF5 gives no reason";
     H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, take_reason, reason);
     return mf_status_fail(STATUS_BAD_INPUT, "%s: %s: %s", file, what, reason);
 }
@@ -88,7 +88,7 @@ static void read_text(hid_t object, const char *name, char *text, size_t size) {
 static enum status read_number(const struct h5md_element *element, hid_t dataset, double *number) {
     if (!is_of_numbers(dataset) ||
         H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, number) < 0)
-        return fail(element, "has a step or time that is no number");
+        return fail(element, "has a step or time that is not a number");
     return STATUS_OK;
 }
 
@@ -128,7 +128,7 @@ static enum status open_clock(const struct h5md_element *element, hid_t group, c
     TRY(open_dataset(element, group, name, &clock->dataset));
     const hid_t dataset = clock->dataset;
     if (dataset < 0)
-        return fail(element, "has a step or time that is no dataset of this file");
+        return fail(element, "has a step or time that is not a dataset of this file");
     const hid_t space = H5Dget_space(dataset);
     const int rank = H5Sget_simple_extent_ndims(space);
     const hssize_t count = H5Sget_simple_extent_npoints(space);
@@ -142,7 +142,7 @@ static enum status open_clock(const struct h5md_element *element, hid_t group, c
         H5Dclose(dataset);
         clock->dataset = -1;
     } else if (rank != 1 || count != (hssize_t)element->frames || !is_of_numbers(dataset)) {
-        status = fail(element, "has not one step, and one time, for each of its frames");
+        status = fail(element, "does not have one step and one time for each frame");
     }
     return status;
 }
@@ -157,7 +157,8 @@ static enum status find_sizes(struct h5md_element *element, uint64_t bytes) {
         H5Sget_simple_extent_dims(space, size, NULL);
     H5Sclose(space);
     if (!fits || !is_of_numbers(element->value))
-        return fail(element, "is no array of numbers, of one or two dimensions and perhaps frames");
+        return fail(element,
+                    "is not an array of numbers, of one or two dimensions and optionally frames");
     element->frames = element->timed ? size[0] : 1;
     element->rank = rank - first;
     double all = sizeof(float);
@@ -166,7 +167,7 @@ static enum status find_sizes(struct h5md_element *element, uint64_t bytes) {
         all *= (double)element->size[k];
     }
     if (all > MOST_COMPRESSION * (double)bytes)
-        return fail(element, "says that a frame has more numbers than the file can hold");
+        return fail(element, "claims more numbers in a frame than the file can hold");
     return STATUS_OK;
 }
 

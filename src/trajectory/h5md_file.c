@@ -70,20 +70,20 @@ static enum status choose_group(struct h5md_file *h5md, hid_t particles, const c
                               "%s",
                               file, wish, groups.names);
     if (!wish && groups.count > 1)
-        return mf_status_fail(STATUS_BAD_INPUT,
-                              "%s: there are several groups of particles, %s: --file-group tells "
-                              "which",
-                              file, groups.names);
+        return mf_status_fail(
+            STATUS_BAD_INPUT,
+            "%s: there are several groups of particles, %s: choose one by --file-group", file,
+            groups.names);
     h5md->group = mf_h5md_element_group(particles, wish ? wish : groups.last);
-    return h5md->group >= 0 ? STATUS_OK : fail(file, "its particles are no group of this file");
+    return h5md->group >= 0 ? STATUS_OK : fail(file, "the particles are not a group of this file");
 }
 
 static enum status open_group(struct h5md_file *h5md, const char *file, const char *wish) {
     if (H5Lexists(h5md->file, "particles", H5P_DEFAULT) <= 0)
-        return fail(file, "it is HDF5 and no H5MD: there is no group \"particles\"");
+        return fail(file, "HDF5, but not H5MD: there is no group \"particles\"");
     const hid_t particles = mf_h5md_element_group(h5md->file, "particles");
     if (particles < 0)
-        return fail(file, "\"particles\" is no group of this file");
+        return fail(file, "\"particles\" is not a group of this file");
     const enum status status = choose_group(h5md, particles, file, wish);
     H5Gclose(particles);
     return status;
@@ -154,7 +154,7 @@ static enum status open_box(struct h5md_file *h5md, const char *file) {
         return STATUS_OK;
     const hid_t box = mf_h5md_element_group(h5md->group, "box");
     if (box < 0)
-        return fail(file, "\"box\" is no group of this file");
+        return fail(file, "\"box\" is not a group of this file");
     read_boundary(box, h5md->periodic);
     const enum status status = mf_h5md_element_open(&h5md->edges, file, box, "edges", h5md->bytes);
     H5Gclose(box);
@@ -163,7 +163,7 @@ static enum status open_box(struct h5md_file *h5md, const char *file) {
     const bool vector = edges->rank == 1 && edges->size[0] == 3,
                matrix = edges->rank == 2 && edges->size[0] == 3 && edges->size[1] == 3;
     if (edges->there && !vector && !matrix)
-        return fail(file, "\"edges\" of the box should be 3 lengths or 3 vectors");
+        return fail(file, "expected 3 lengths or 3 vectors in \"edges\" of the box");
     return STATUS_OK;
 }
 
@@ -196,14 +196,13 @@ static enum status find_units(struct h5md_file *h5md, struct trajectory *traject
     const char *const file = trajectory->file;
     const bool told = scale->length > 0, says = h5md->position.unit[0] != '\0';
     if (told && says)
-        return mf_status_fail(STATUS_BAD_INPUT, "%s: says itself that positions are in \"%s\"",
-                              file, h5md->position.unit);
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: the file has positions in \"%s\"", file,
+                              h5md->position.unit);
     if (!told)
         *scale = (struct trajectory_scale){1, 1, 1, 1};
     if (!told && !says)
         snprintf(trajectory->note, sizeof trajectory->note,
-                 "%.200s: tells no unit of positions: nm, ps and u are assumed (--file-units)",
-                 file);
+                 "%.200s: has no unit of positions: nm, ps and u are assumed (--file-units)", file);
     TRY(find_unit(file, "position", h5md->position.unit, H5MD_LENGTH, &scale->length));
     TRY(find_unit(file, "time", h5md->position.time.unit, H5MD_TIME, &scale->time));
     if (!told)
@@ -224,7 +223,7 @@ enum status mf_h5md_file_open(struct h5md_file *h5md, struct trajectory *traject
     *h5md = (struct h5md_file){.bytes = (uint64_t)is.st_size, .periodic = {true, true, true}};
     h5md->file = H5Fopen(file, H5F_ACC_RDONLY, H5P_DEFAULT);
     if (h5md->file < 0)
-        return mf_h5md_element_fail(file, "HDF5 cannot open it, it may be cut off");
+        return mf_h5md_element_fail(file, "HDF5 cannot open it; it may be truncated");
     TRY(open_group(h5md, file, trajectory->group));
     TRY(open_elements(h5md, file));
     return find_units(h5md, trajectory);

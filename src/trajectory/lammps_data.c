@@ -86,7 +86,7 @@ static enum status read_header_line(struct lammps_data *data, const struct traje
     }
     for (int d = 0; d < 3 && good; d++)
         good = read_bounds(data, word, count, d);
-    return good ? STATUS_OK : mf_frame_fail_line(frame, line, "the numbers of this line are none");
+    return good ? STATUS_OK : mf_frame_fail_line(frame, line, "expected numbers in this line");
 }
 
 /// Remember where a section begins: at the first line that is not empty.
@@ -180,9 +180,8 @@ enum status mf_lammps_data_style(const struct lammps_data *data,
     else if (count == 7 || count == 10)
         *style = &styles[FULL];
     else
-        return mf_frame_fail_line(frame, data->atom,
-                                  "no atom style has %zu columns; write \"Atoms # full\" or what "
-                                  "else it is",
-                                  count);
+        return mf_frame_fail_line(
+            frame, data->atom,
+            "no atom style has %zu columns; name the style, as in \"Atoms # full\"", count);
     return STATUS_OK;
 }

@@ -63,7 +63,7 @@ static enum status read_box(struct lammps_dump *dump, const struct trajectory_fr
     for (int d = 0; d < 3; d++) {
         const char *rest = at = mf_frame_next_line(frame, at);
         if (rest == NULL || !mf_words_numbers(&rest, v[d], vectors ? 4 : tilted ? 3 : 2))
-            return mf_frame_fail_line(frame, at ? at : line, "here should stand bounds of the box");
+            return mf_frame_fail_line(frame, at ? at : line, "expected the bounds of the box");
     }
     if (tilted)
         set_tilted(dump, v);
@@ -108,10 +108,10 @@ static enum status read_item(struct lammps_dump *dump, const struct trajectory_f
     if (after(begin, "ITEM: UNITS"))
         dump->units = value;
     else if (after(begin, "ITEM: TIMESTEP") && !read_integer(value, &dump->step))
-        return mf_frame_fail_line(frame, value, "here should stand the time step");
+        return mf_frame_fail_line(frame, value, "expected the time step");
     else if (after(begin, "ITEM: TIME") && !after(begin, "ITEM: TIMESTEP") &&
              !read_number(value, &dump->time))
-        return mf_frame_fail_line(frame, value, "here should stand the time");
+        return mf_frame_fail_line(frame, value, "expected the time");
     else if (after(begin, "ITEM: NUMBER OF ATOMS") && read_integer(value, &count))
         dump->atoms = (size_t)count;
     return STATUS_OK;
@@ -135,7 +135,6 @@ enum status mf_lammps_dump_split(const struct lammps_dump *dump,
     const char *rest = line;
     for (size_t k = 0; k < dump->columns; k++)
         if (!mf_words_next(&rest, &word[k]))
-            return mf_frame_fail_line(frame, line, "%zu columns, there should be %zu", k,
-                                      dump->columns);
+            return mf_frame_fail_line(frame, line, "%zu columns, expected %zu", k, dump->columns);
     return STATUS_OK;
 }

@@ -44,10 +44,10 @@ static enum status take_atoms(struct mapping *mapping, const struct structure *s
         const struct structure_atom *const atom = &structure->atom[k];
         const size_t type = type_of(atom, types, mapping->types);
         if (type == mapping->types)
-            return mf_status_fail(STATUS_BAD_INPUT,
-                                  "%s: no type is called as atom %zu, \"%s\"; a map (--map) makes "
-                                  "beads of atoms",
-                                  file, k + 1, atom->name);
+            return mf_status_fail(
+                STATUS_BAD_INPUT,
+                "%s: no type has the name of atom %zu, \"%s\"; a map (--map) makes beads of atoms",
+                file, k + 1, atom->name);
         mapping->atom[k] = k;
         mapping->weight[k] = 1;
         mapping->bead[mapping->beads++] =

@@ -104,8 +104,8 @@ static enum status weigh_bead(struct mapping *mapping, const struct mapping_plan
         const enum origin origin = find_mass(plan, structure, k, &mass);
         if (origin == FROM_NOBODY && by_mass && bead->count > 1)
             return mf_status_fail(STATUS_BAD_INPUT,
-                                  "%s: nobody knows the mass of atom %zu, \"%s\": tell it in "
-                                  "\"masses\" of the map, 0 of a site without mass",
+                                  "%s: unknown mass of atom %zu, \"%s\": give it in \"masses\" of "
+                                  "the map (0 for a site without mass)",
                                   plan->file, k + 1, structure->atom[k].name);
         if (origin == FROM_ELEMENT)
             look_for_united(told, structure, k);
@@ -131,10 +131,11 @@ enum status mf_mapping_build_masses(struct mapping *mapping, const struct mappin
     for (size_t k = 0; k < mapping->beads; k++)
         TRY(weigh_bead(mapping, plan, structure, &mapping->bead[k], &told));
     if (told.carbon && !told.hydrogen)
-        return mf_mapping_note(mapping,
-                               "mesofit: warning: \"%s\" weighs as carbon, and there is no "
-                               "hydrogen: are these united atoms? \"masses\" of a map tells theirs",
-                               told.carbon->name);
+        return mf_mapping_note(
+            mapping,
+            "mesofit: warning: \"%s\" has the mass of carbon, and there is no hydrogen: are these "
+            "united atoms? Give their masses in \"masses\" of a map",
+            told.carbon->name);
     return STATUS_OK;
 }
 

@@ -13,27 +13,26 @@ struct rest {
     int rest;
 };
 
-const struct field mf_mapping_plan_fields[] = {
-    {"rest", FIELD_CHOICE, offsetof(struct rest, rest), .choices = rests, .unit = "",
-     .help = "atoms that no bead names are a fault, or are left out"},
-    FIELD_END};
+const struct field mf_mapping_plan_fields[] = {{"rest", FIELD_CHOICE, offsetof(struct rest, rest),
+                                                .choices = rests, .unit = "",
+                                                .help = "treatment of atoms in no bead"},
+                                               FIELD_END};
 
 #define OFFSET(member) offsetof(struct mapping_entry, member)
 const struct field mf_mapping_plan_bead_fields[] = {
-    {"type", FIELD_TEXT, OFFSET(type), .unit = "",
-     .help = "type of the bead; by default the name under which it stands in \"beads\""},
+    {"type", FIELD_TEXT, OFFSET(type), .unit = "", .help = "type of the bead; default: its name"},
     {"residue", FIELD_TEXT, OFFSET(residue), .unit = "",
-     .help = "name of the residue; by default any residue or molecule"},
+     .help = "name of the residue; default: any residue or molecule"},
     {"atoms", FIELD_TEXT, OFFSET(atoms), .unit = "",
-     .help = "names of its atoms, blanks between; by default all of the residue"},
+     .help = "names of its atoms, separated by blanks; default: all of the residue"},
     {"first", FIELD_INTEGER, OFFSET(first), .minimum = 1, .maximum = FIELD_LARGEST_INTEGER,
-     .unit = "", .help = "instead of names: the first of the atoms, counted from 1"},
+     .unit = "", .help = "instead of names: first atom, counted from 1"},
     {"last", FIELD_INTEGER, OFFSET(last), .minimum = 1, .maximum = FIELD_LARGEST_INTEGER,
-     .unit = "", .help = "the last of the atoms"},
+     .unit = "", .help = "last atom"},
     {"size", FIELD_INTEGER, OFFSET(size), .minimum = 1, .maximum = FIELD_LARGEST_INTEGER,
-     .unit = "", .help = "atoms a bead, one behind the other; by default all are one bead"},
+     .unit = "", .help = "consecutive atoms in a bead; default: all"},
     {"centre", FIELD_CHOICE, OFFSET(centre), .choices = centres, .unit = "",
-     .help = "where a bead is: the centre of mass of its atoms, or of geometry"},
+     .help = "position of a bead: centre of mass or of geometry"},
     FIELD_END};
 #undef OFFSET
 
@@ -46,12 +45,12 @@ static void check_entry(struct json_object *object, const struct mapping_entry *
     else if (range && !(entry->first && entry->last >= entry->first))
         mf_json_fault(object, NULL, "a range goes from \"first\" to \"last\"");
     else if (entry->size && (entry->last - entry->first + 1) % entry->size != 0)
-        mf_json_fault(object, "size", "%lld atoms are no whole number of beads of %lld",
+        mf_json_fault(object, "size", "%lld atoms are not a whole number of beads of %lld",
                       (long long)(entry->last - entry->first + 1), (long long)entry->size);
     if (entry->atoms[0] && mf_words_count(entry->atoms) == 0)
         mf_json_fault(object, "atoms", "names no atom");
     if (strlen(entry->type) >= STRUCTURE_NAME)
-        mf_json_fault(object, "type", "is longer than %d letters", STRUCTURE_NAME - 1);
+        mf_json_fault(object, "type", "is longer than %d characters", STRUCTURE_NAME - 1);
 }
 
 static enum status read_beads(struct mapping_plan *plan, struct json_object *root) {
@@ -102,7 +101,7 @@ static void read_masses(struct mapping_plan *plan, struct json_object *root) {
         if (mf_words_copy(&word, mass->name, STRUCTURE_NAME))
             plan->masses++;
         else
-            mf_json_fault(&masses, name, "no atom has a name of more than %d letters",
+            mf_json_fault(&masses, name, "no atom has a name of more than %d characters",
                           STRUCTURE_NAME - 1);
     }
 }
@@ -126,7 +125,7 @@ enum status mf_mapping_plan_read(struct mapping_plan *plan, const char *file) {
 }
 
 enum status mf_mapping_plan_default(struct mapping_plan *plan) {
-    *plan = (struct mapping_plan){.file = "one bead a residue", .entries = 1};
+    *plan = (struct mapping_plan){.file = "one bead per residue", .entries = 1};
     plan->entry = mf_memory_zeroed(1, sizeof *plan->entry);
     return plan->entry ? STATUS_OK : STATUS_NO_MEMORY;
 }

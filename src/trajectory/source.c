@@ -141,7 +141,7 @@ enum status mf_source_line(struct source *source, struct bytes *bytes, bool *the
     }
     source->broken_line = !ended;
     if (memchr(bytes->data + first, '\0', bytes->size - first))
-        return mf_source_fail_line(source, "a NUL byte: this is no text");
+        return mf_source_fail_line(source, "a NUL byte: not a text file");
     while (bytes->size > first && bytes->data[bytes->size - 1] == '\r')
         bytes->size--;
     if (memchr(bytes->data + first, '\r', bytes->size - first))

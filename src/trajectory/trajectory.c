@@ -31,16 +31,16 @@ static bool ends_with(const char *file, const char *extension) {
 /// What a packed file or another format begins with or is called, and what is to be done about it.
 static const char *find_hint(const char *file, const unsigned char *begin, size_t size) {
     if (ends_with(file, ".tpr"))
-        return "GROMACS's .tpr is not read: a .gro of the same atoms tells their names and "
-               "residues, a map their masses";
+        return "GROMACS's .tpr is not read: give names and residues by a .gro of the same atoms, "
+               "masses in a map";
     if (ends_with(file, ".top") || ends_with(file, ".itp"))
-        return "a topology has no coordinates: a .gro of the same atoms tells their names and "
-               "residues, a map their masses, and --molecules takes a topology of the beads";
+        return "a topology has no coordinates: give names and residues by a .gro of the same "
+               "atoms, masses in a map, bonds of the beads by --molecules";
     if (size >= 2 && memcmp(begin, "\x1F\x8B", 2) == 0)
-        return "it is packed: unpack it with gunzip";
+        return "compressed: decompress it with gunzip";
     if (size >= 4 && memcmp(begin, "\x28\xB5\x2F\xFD", 4) == 0)
-        return "it is packed: unpack it with unzstd";
-    return "neither its first bytes nor its extension are those of a format that is read here";
+        return "compressed: decompress it with unzstd";
+    return "neither its first bytes nor its extension are those of a known format";
 }
 
 static enum status find_format(struct trajectory *trajectory) {
@@ -58,7 +58,7 @@ static enum status find_format(struct trajectory *trajectory) {
             trajectory->format = formats[k];
     if (trajectory->format)
         return STATUS_OK;
-    return mf_status_fail(STATUS_BAD_INPUT, "%s: is no trajectory: %s", trajectory->file,
+    return mf_status_fail(STATUS_BAD_INPUT, "%s: not a trajectory: %s", trajectory->file,
                           find_hint(trajectory->file, begin, size));
 }
 
@@ -79,7 +79,7 @@ enum status mf_trajectory_found_units(struct trajectory *trajectory, const char 
         return mf_status_prefix(STATUS_BAD_INPUT, "%s", trajectory->file);
     const bool told = trajectory->scale.length > 0;
     if (told && memcmp(&scale, &trajectory->scale, sizeof scale) != 0)
-        return mf_status_fail(STATUS_BAD_INPUT, "%s: says that its units are \"%s\"",
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: the file has the units \"%s\"",
                               trajectory->file, name);
     trajectory->scale = scale;
     return STATUS_OK;
@@ -90,8 +90,7 @@ static enum status check_units(const struct trajectory *trajectory) {
         return STATUS_OK;
     return mf_status_fail(
         STATUS_BAD_INPUT,
-        "%s: this file of LAMMPS does not say its units: tell them by --file-units (real, metal, "
-        "nano, lj …)",
+        "%s: the LAMMPS file has no units: give them by --file-units (real, metal, nano, lj …)",
         trajectory->file);
 }
 
@@ -180,10 +179,10 @@ static enum status check_box(const struct trajectory_frame *frame) {
     const bool triangular = box[0][1] == 0 && box[0][2] == 0 && box[1][2] == 0;
     for (int d = 0; d < 3 && triangular; d++)
         if (box[d][d] < 0)
-            return mf_status_fail(STATUS_BAD_INPUT,
-                                  "%s: frame %zu: edge %d of the box is %.6g nm: it ends before it "
-                                  "begins",
-                                  frame->file, frame->number, d + 1, box[d][d]);
+            return mf_status_fail(
+                STATUS_BAD_INPUT,
+                "%s: frame %zu: edge %d of the box is %.6g nm; expected a positive length",
+                frame->file, frame->number, d + 1, box[d][d]);
     return STATUS_OK;
 }
 
@@ -229,8 +228,7 @@ enum status mf_trajectory_find_atom(const struct trajectory *trajectory,
         return mf_frame_fail_line(frame, line, "the first frame has no atom of id %lld",
                                   (long long)id);
     if (frame->scratch.data[*atom])
-        return mf_frame_fail_line(frame, line, "the atom of id %lld stands here twice",
-                                  (long long)id);
+        return mf_frame_fail_line(frame, line, "duplicate atom id %lld", (long long)id);
     frame->scratch.data[*atom] = 1;
     return STATUS_OK;
 }
@@ -242,7 +240,7 @@ enum status mf_trajectory_read_count(const struct trajectory *trajectory, const 
     struct word word;
     int64_t count;
     if (!mf_words_next(&line, &word) || !mf_words_integer(&word, &count) || count < 1)
-        return mf_source_fail_line(source, "here should stand the number of atoms");
+        return mf_source_fail_line(source, "expected the number of atoms");
     *atoms = (uint64_t)count;
     if (source->frame > 0 && *atoms != wanted)
         return mf_source_fail_line(source, "it has %lld atoms, the first frame %zu",

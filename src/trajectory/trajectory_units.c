@@ -38,5 +38,5 @@ enum status mf_trajectory_units_find(const char *name, struct trajectory_scale *
             return STATUS_OK;
         }
     mf_nearest_hint(name, mf_trajectory_unit_names, STYLES, hint, sizeof hint);
-    return mf_status_fail(STATUS_BAD_INPUT, "no units are called \"%s\"; %s", name, hint);
+    return mf_status_fail(STATUS_BAD_INPUT, "unknown units \"%s\"; %s", name, hint);
 }

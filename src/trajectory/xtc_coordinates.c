@@ -133,18 +133,18 @@ static inline bool take_whole(const struct whole *whole, const unsigned char *da
 
 const char *mf_xtc_coordinates_check(const struct xtc_packing *packing, size_t bytes) {
     if (!(packing->precision > 0 && isfinite(packing->precision)))
-        return "the precision of the coordinates is no positive number";
+        return "the precision of the coordinates is not positive";
     if (packing->level < FIRST_LEVEL || packing->level >= LEVELS)
-        return "the width of the differences is none";
+        return "the size of the differences is not valid";
     for (int d = 0; d < 3; d++)
         if ((int64_t)packing->most[d] - packing->least[d] < 0 ||
             (int64_t)packing->most[d] - packing->least[d] >= INT32_MAX)
-            return "the range of the coordinates is none";
+            return "the range of the coordinates is not valid";
     const struct whole whole = make_whole(packing);
     // Atoms of one point take no bits but the flag that ends each.
     const unsigned bits = whole.apart ? LEAST_BITS : whole.digits.bits + 1;
     if ((double)packing->atoms * (bits < LEAST_BITS ? bits : LEAST_BITS) > 8.0 * (double)bytes)
-        return "there are too few bytes for so many atoms";
+        return "too few bytes for the number of atoms";
     return NULL;
 }
 
@@ -219,5 +219,5 @@ const char *mf_xtc_coordinates_unpack(const struct xtc_packing *packing, const u
     }
     *damage = bytes;
     const size_t used = (bit + 7) / 8;
-    return used > bytes || bytes - used > 3 ? "the packed coordinates end elsewhere" : NULL;
+    return used > bytes || bytes - used > 3 ? "the packed coordinates have the wrong length" : NULL;
 }

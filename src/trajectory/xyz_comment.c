@@ -109,13 +109,13 @@ static const char *read_pair(struct xyz_comment *comment, const struct word *key
     double number;
     if (mf_words_alike(key, "Lattice"))
         return read_numbers(value, &comment->box[0][0], 9) ? NULL
-                                                           : "Lattice should have nine numbers";
+                                                           : "expected nine numbers in Lattice";
     if (mf_words_alike(key, "Properties"))
         return read_properties(value, comment)
                    ? NULL
-                   : "Properties should be name:kind:number, with pos:R:3 among them";
+                   : "expected name:kind:number in Properties, including pos:R:3";
     if (mf_words_alike(key, "pbc"))
-        return read_periodic(value, comment->periodic) ? NULL : "pbc should be three of T and F";
+        return read_periodic(value, comment->periodic) ? NULL : "expected three of T and F in pbc";
     if (mf_words_alike(key, "Units"))
         return mf_words_copy(value, comment->units, sizeof comment->units) ? NULL
                                                                            : "Units is too long";

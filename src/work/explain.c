@@ -221,7 +221,7 @@ void mf_explain_scene(FILE *out, const struct simulation_setup *setup, const str
     }
     add_observables(&stages, setup, uses, (double)every);
     if (!simulation_holds_temperature(setup) && !setup->integrator->events)
-        mf_stages_add(&stages, "thermostat", false, 0, "nothing holds the temperature");
+        mf_stages_add(&stages, "thermostat", false, 0, "no thermostat");
     double total = 0;
     for (int k = 0; k < stages.count; k++)
         total += stages.stage[k].nanoseconds;

@@ -283,7 +283,7 @@ static enum status iterate(struct run *run) {
     const struct inverse_listener listener = {tell, run};
     if (run->standing.finished)
         mf_progress_say(&run->progress,
-                        "the fit was finished before: its result alone is verified and written");
+                        "the fit is finished: only its result is verified and written");
     while (!run->standing.finished) {
         struct inverse_step step;
         mf_parallel_keep(&run->checkpoint.kept);
@@ -402,10 +402,10 @@ static enum status write_interrupted(struct run *run) {
         TRY(mf_fit_output_summary(&run->fit, &run->unknowns, &result, &run->folder));
         mf_run_folder_draw(&run->folder);
     }
-    return mf_status_fail(STATUS_INTERRUPTED,
-                          "interrupted after %llu iterations; what there is, is in %s; go on with "
-                          "--resume",
-                          (unsigned long long)run->standing.iterations, run->folder.path);
+    return mf_status_fail(
+        STATUS_INTERRUPTED,
+        "interrupted after %llu iterations; what there is, is in %s; continue with --resume",
+        (unsigned long long)run->standing.iterations, run->folder.path);
 }
 
 enum status mf_fit_run(const char *file, const struct run_options *options) {

@@ -158,11 +158,10 @@ enum status mf_fit_tasks_explain(FILE *out, const char *file, const struct run_o
     TRY(mf_run_folder_choose(&folder, RUN_FIT, file, options));
     mf_run_folder_file(&folder, "tasks.tsv", path);
     if (access(path, F_OK) != 0) {
-        fprintf(
-            out,
-            "How much faster %d ranks are follows from what tasks take: let the fit begin, stop it "
-            "after some iterations, and ask again; there is no %s.\n",
-            ranks, path);
+        fprintf(out,
+                "The speed-up of %d ranks follows from the times of tasks: start the fit, stop it "
+                "after some iterations, and ask again; %s not found.\n",
+                ranks, path);
         return STATUS_OK;
     }
     TRY(mf_data_table_read(&table, path, COLUMNS));

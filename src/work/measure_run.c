@@ -212,7 +212,7 @@ static void say_diffusion(struct run *run, const struct units *units) {
     else if (motion->has_vacf && mf_motion_is_coarse(&s))
         mf_progress_say(&run->progress,
                         "mesofit: warning: frames are too far apart for D by the VACF, %.3g 1e-5 "
-                        "cm^2/s: velocities forget %.0f %% from one to the next",
+                        "cm^2/s: velocities lose %.0f %% of their correlation from one to the next",
                         cm2 * s.green_kubo, 100 * s.vacf_drop);
 }
 
@@ -332,10 +332,10 @@ static void say_results(struct run *run, const struct measure_result *result) {
     if (!measured->in_vacuum)
         say_pairs(run);
     if (measured->pairs.molecule && result->kinds == NULL)
-        mf_progress_say(&run->progress,
-                        "mesofit: warning: molecules have several beads: a fit knows no bonds "
-                        "without --molecules, its beads go where they like; g(r) is of different "
-                        "molecules alone, no target of a fit that has them");
+        mf_progress_say(
+            &run->progress,
+            "mesofit: warning: molecules have several beads: without --molecules a fit has no "
+            "bonds; g(r) is of different molecules alone, no target of a fit that has them");
     say_molecules(run, result);
     if (!measured->in_vacuum)
         say_motion(run, &result->units);
@@ -343,10 +343,10 @@ static void say_results(struct run *run, const struct measure_result *result) {
         mf_progress_say(&run->progress, "masses of beads differ: target.json has motion compared "
                                         "with and not fitted, since friction is for one mass");
     if (isnan(run->request->temperature) && measured->motion.temperature.count == 0)
-        mf_progress_say(&run->progress,
-                        "no temperature is known%s: tell it by --temperature, or in "
-                        "\"scene\" of target.json",
-                        run->mapping.broken ? " by parts of molecules" : "");
+        mf_progress_say(
+            &run->progress,
+            "unknown temperature%s: give it by --temperature, or in \"scene\" of target.json",
+            run->mapping.broken ? " by parts of molecules" : "");
 }
 
 static enum status write_results(struct run *run, bool interrupted) {

@@ -314,8 +314,9 @@ enum status mf_simulate_file(const char *file, const struct run_options *options
     status = mf_units_mark(&run->scene.units, carry_out(run));
     if (status == STATUS_INTERRUPTED) {
         CHECK(save(run));
-        status = mf_status_fail(STATUS_INTERRUPTED, "interrupted at step %llu; go on with --resume",
-                                (unsigned long long)run->simulation.step);
+        status =
+            mf_status_fail(STATUS_INTERRUPTED, "interrupted at step %llu; continue with --resume",
+                           (unsigned long long)run->simulation.step);
     }
     if (status == STATUS_UNSTABLE) // it would be so again
         remove_checkpoint(run);

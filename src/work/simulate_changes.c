@@ -38,7 +38,7 @@ void mf_simulate_changes_say(const struct simulate_changes *changes, const struc
     const struct simulation_change *last = mf_simulate_changes_last(changes);
     char of_temperature[UNITS_NAME_SIZE], of_time[UNITS_NAME_SIZE];
     mf_progress_say(
-        to, "after step %llu: temperature %.6g%s, time step %.6g%s; samples begin anew",
+        to, "after step %llu: temperature %.6g%s, time step %.6g%s; samples are reset",
         (unsigned long long)last->step, last->temperature * mf_units_factor(units, "T_0"),
         mf_units_suffix(units, "T_0", of_temperature),
         last->time_step * mf_units_factor(units, "tau"), mf_units_suffix(units, "tau", of_time));

@@ -15,8 +15,8 @@ static bool is_usual(const struct observable *observable, const struct simulatio
 /// What files of earlier versions may say.
 static void refuse_removed(struct json_object *object) {
     mf_json_retired(object, "fit_from", "0.5",
-                    "the line begins at half of the window; leave it out");
-    mf_json_retired(object, "speed_maximum", "5", "it is 5 always; leave it out");
+                    "the line always starts at half of the window; leave it out");
+    mf_json_retired(object, "speed_maximum", "5", "always 5; leave it out");
 }
 
 /// Monte Carlo goes through configurations in no time.

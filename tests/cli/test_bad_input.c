@@ -62,13 +62,13 @@ static const struct fault common_faults[] = {
           "particles.cuont: unknown key; did you mean \"count\"?"),
     FAULT("a law alone", DISSIPATIVE, "\"power\"",
           "dissipative: expected an object, found the text \"power\": write {\"law\": \"power\"}"),
-    FAULT("no law", DISSIPATIVE, "{\"sigma\": 2}", "dissipative.law: missing: a text is required; ",
+    FAULT("no law", DISSIPATIVE, "{\"sigma\": 2}", "dissipative.law: missing: expected a text; ",
           "known: none, power, expression, table"),
     FAULT("an integrator alone", STEP, STEP ", \"dynamics\": \"aboba\"",
           "write {\"integrator\": \"aboba\"}"),
     FAULT("a comma too many", STEP, STEP ",,", "input.json:", "expected a key"),
     FAULT("a comma behind the last", "{\"count\": 81}", "{\"count\": 81,}",
-          "expected something behind the last comma, found '}'"),
+          "expected something after the last comma, found '}'"),
     FAULT("a comment", STEP, STEP "// of the scene\n", "input.json:", "JSON has no comments"),
     FAULT("text for a number", STEP, "\"time_step\": \"0.02\"", "input.json",
           "time_step: expected a number, found the text"),
@@ -82,7 +82,7 @@ static const struct fault common_faults[] = {
     FAULT("NaN", "0.02", "NaN", "input.json:"),
     FAULT("-Infinity", "0.02", "-Infinity", "input.json:"),
     FAULT("1e999", "0.02", "1e999", "time_step: the number is too large"),
-    FAULT("duplicate", STEP, STEP ", \"time_step\": 0.03", "time_step: the key stands here twice"),
+    FAULT("duplicate", STEP, STEP ", \"time_step\": 0.03", "time_step: duplicate key"),
     FAULT("seed of 2^53", "\"seed\": 1", "\"seed\": 9007199254740992", "seed", "2^53"),
     FAULT("seed below 0", "\"seed\": 1", "\"seed\": -1", "seed: -1 is out of range"),
     FAULT("small box", "[3, 3, 3]", "[3, 1.9, 3]", "input.json", "box", "1.9"),
@@ -95,7 +95,7 @@ static const struct fault common_faults[] = {
     FAULT("unknown law", "\"power\"", "\"powr\"", "dissipative.law", "did you mean \"power\"?"),
     FAULT("friction without an integrator for it", STEP,
           STEP ", \"dynamics\": {\"integrator\": \"velocity-verlet\"}",
-          "dynamics: velocity-verlet knows no friction", "\"aboba\""),
+          "dynamics: velocity-verlet has no friction", "\"aboba\""),
     WITH_TABLE("negative omega", DISSIPATIVE, TABLE_WEIGHT, "0 1\n0.5 -0.5\n1 0\n1.1 0\n",
                "dissipative", "omega is negative at r = "),
     FAULT("short table", DISSIPATIVE,
@@ -149,18 +149,18 @@ static const struct fault scene_faults[] = {
     FAULT("masses of pairs that remember", PARTICLES,
           "\"particles\": {\"count\": 81, \"mass\": 2}, \"dissipative_transverse\": {\"law\": "
           "\"power\"}",
-          "input.json: particles.mass: friction that remembers, or acts across pairs"),
+          "input.json: particles.mass: friction with memory or perpendicular to pairs"),
     WITH_TABLE("radii twice", PARTICLES,
                "\"particles\": {\"count\": 2, \"radius\": 2, \"placement\": \"file\", "
                "\"file\": \"table.tsv\"}",
-               "# x y z radius\n1 1 1 1\n2 2 2 1\n", "particles.radius: stands in", "table.tsv"),
+               "# x y z radius\n1 1 1 1\n2 2 2 1\n", "particles.radius: is given in", "table.tsv"),
     WITH_TABLE("a radius of nothing in a file", PARTICLES, FROM_FILE,
                "# x y z radius[lambda]\n1 1 1 1\n2 2 2 0\n", "particles.file",
                "table.tsv:3: the radius 0 is out of range; allowed: above 0"),
     WITH_TABLE("a column of another name", PARTICLES, FROM_FILE, "x y z charge\n1 1 1 1\n2 2 2 0\n",
-               "particles.file", "nobody knows \"charge\", not 2 of 3 or 6; other columns"),
+               "particles.file", "\"charge\" is unknown, not 2 of 3 or 6; further columns"),
     WITH_TABLE("a diameter", PARTICLES, FROM_FILE, "# x y z diameter\n1 1 1 1\n2 2 2 1\n",
-               "particles.file", "2 rows of 4 numbers, of which nobody knows \"diameter\", not 2"),
+               "particles.file", "2 rows of 4 numbers, of which \"diameter\" is unknown, not 2"),
     WITH_TABLE("a comment is no list of names", PARTICLES, FROM_FILE,
                "# some beads\n1 1 1 1\n2 2 2 1\n", "2 rows of 4 numbers, not 2 of 3 or 6"),
     FAULT("an orientation in space", PARTICLES,
@@ -179,8 +179,8 @@ static const struct fault scene_faults[] = {
           "input.json: particles.jitter: no longer a key: it is 0.05 always; leave it out"),
     FAULT("motion of an earlier version", "\"measure\"",
           "\"motion\": {\"lags\": 2, \"fit_from\": 0.4}, \"measure\"",
-          "input.json: motion.fit_from: no longer a key: the line begins at half of the window; "
-          "leave it out"),
+          "input.json: motion.fit_from: no longer a key: the line always starts at half of the "
+          "window; leave it out"),
     FAULT("no lags", "\"measure\"", "\"motion\": {\"lags\": 1}, \"measure\"",
           "motion.lags: 1 is out of range"),
     FAULT("a number for motion", "\"measure\"", "\"motion\": 3, \"measure\"",
@@ -209,9 +209,9 @@ static const struct fault run_faults[] = {
           "             \"every\": 1, \"iterations\": 1}",
           "\"imc\"", "write {\"name\": \"imc\"}"),
     FAULT("no method", "\"name\": \"imc\", ", "",
-          "method.name: missing: a text is required; known: auto, imc"),
+          "method.name: missing: expected a text; known: auto, imc"),
     FAULT("the potential that is to be found", STEP, STEP ", \"conservative\": {\"law\": \"none\"}",
-          "scene.conservative: unknown key: it is to be found; \"start\""),
+          "scene.conservative: unknown key: it is to be found; give an initial law as \"start\""),
     FAULT("hard particles in a fit", STEP,
           STEP ", \"dynamics\": {\"integrator\": \"event-driven\"}",
           "scene.dynamics: event-driven moves hard particles"),
@@ -219,7 +219,7 @@ static const struct fault run_faults[] = {
           "scene.measure: unknown key: \"method\" and \"verification\""),
     FAULT("an observable in the scene of a fit", STEP, STEP ", \"motion\": {}",
           "scene.motion: unknown key: a fit measures what its \"target\" names"),
-    FAULT("a seed in the scene of a fit", STEP, STEP ", \"seed\": 2", "it stands at the top"),
+    FAULT("a seed in the scene of a fit", STEP, STEP ", \"seed\": 2", "it belongs at the top"),
     FAULT("a text for the unknowns", "\"verification\"",
           "\"unknowns\": \"potential\", \"verification\"",
           "unknowns: expected an object, found the text \"potential\""),
@@ -258,13 +258,12 @@ static const struct fault run_faults[] = {
           "scene.conservative"),
     FAULT("an optimiser of an earlier version", "\"samples\": 8",
           "\"samples\": 8, \"asynchronous\": \"yes\"",
-          "input.json: method.asynchronous: no longer a key: candidates are measured by rounds "
-          "alone; "
-          "leave it out"),
+          "input.json: method.asynchronous: no longer a key: candidates are always measured in "
+          "rounds; leave it out"),
     FAULT("a solver of an earlier version", "\"samples\": 8",
           "\"samples\": 8, \"regularisation\": \"truncated\"",
-          "input.json: method.regularisation: no longer a key: the step is as smooth as the noise "
-          "asks; leave it out"),
+          "input.json: method.regularisation: no longer a key: the smoothness of the step follows "
+          "from the noise; leave it out"),
     FAULT(
         "a solver's strength of an earlier version", "\"samples\": 8",
         "\"samples\": 8, \"strength\": 1000",
@@ -273,13 +272,14 @@ static const struct fault run_faults[] = {
           "input.json: method.name: \"joint-imc\" is of an earlier version: write \"imc\", which "
           "fits one state or several"),
     FAULT("a constant of an earlier version", "\"samples\": 8", "\"samples\": 8, \"depth\": 8",
-          "input.json: method.depth: no longer a key: what was its default is taken always; leave "
+          "input.json: method.depth: no longer a key: its default is always used; leave "
           "it out"),
     FAULT("islands of an earlier version",
           "{\"name\": \"imc\", \"replicas\": 2, \"equilibration\": 1, \"samples\": 8,\n"
           "             \"every\": 1, \"iterations\": 1}",
           "{\"name\": \"genetic\", \"islands\": 2}",
-          "input.json: method.islands: no longer a key: all of a population breed with all; leave "
+          "input.json: method.islands: no longer a key: the population is not divided any more; "
+          "leave "
           "it out"),
 };
 
@@ -296,11 +296,11 @@ static const char good_mixture[] =
 static const struct fault mixture_faults[] = {
     FAULT("a missing pair", "\"A-A\": " LAW ", ", "", "input.json: conservative.A-A: missing"),
     FAULT("an unknown pair", "\"A-A\"", "\"A-A\": " LAW ", \"A-C\"",
-          "input.json: conservative.A-C: there is no such pair; the pairs are A-A, A-B, B-B"),
+          "input.json: conservative.A-C: unknown pair; expected A-A, A-B, B-B"),
     FAULT("an unknown pair in the place of another", "\"A-B\"", "\"A-Q\"",
-          "input.json: conservative.A-Q: there is no such pair; the pairs are A-A, A-B, B-B"),
+          "input.json: conservative.A-Q: unknown pair; expected A-A, A-B, B-B"),
     FAULT("a pair in both orders", "\"A-A\"", "\"B-A\": " LAW ", \"A-A\"",
-          "input.json: conservative.A-B", "twice"),
+          "input.json: conservative.A-B", "duplicate pair"),
     FAULT("an unknown law of a pair", "\"gaussian\"", "\"gausian\"", "conservative.A-B.law",
           "did you mean \"gaussian\"?"),
     FAULT("an unknown key of a pair", "\"cutoff\": 1.2", "\"cutof\": 1.2",
@@ -315,9 +315,9 @@ static const struct fault mixture_faults[] = {
     FAULT("a name that tables end with", "\"A\": 40", "\"A_history\": 40",
           "particles.types.A_history", "nor end with _history"),
     FAULT("types and a count", TYPES, TYPES ", \"count\": 81",
-          "input.json: particles.count: stands beside \"types\""),
+          "input.json: particles.count: is given with \"types\""),
     FAULT("one type and a count", TYPES, "\"types\": {\"A\": 81}, \"count\": 81",
-          "input.json: particles.count: stands beside \"types\""),
+          "input.json: particles.count: is given with \"types\""),
     FAULT("a mixture of one type", TYPES, "\"types\": {\"A\": 81}",
           "particles.types: a mixture has 2 to 8 types, not 1"),
     FAULT("a number for the types", TYPES, "\"types\": 81", "particles.types: expected an object"),

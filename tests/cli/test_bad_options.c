@@ -22,7 +22,7 @@ struct command_line {
 
 static const struct command_line bad_lines[] = {
     {{"simulat", "scene.json"}, {"unknown command \"simulat\"", "did you mean \"simulate\"?"}},
-    {{"watch", "out"}, {"no command \"watch\" any more: progress.json", "mesofit live"}},
+    {{"watch", "out"}, {"the command \"watch\" was removed: use mesofit live", "mesofit live"}},
     {{"dance"}, {"unknown command \"dance\"", "known: measure, fit"}},
     {{"simulate", "scene.json", "--thread", "2"},
      {"unknown option --thread", "did you mean \"--threads\"?"}},

@@ -65,9 +65,9 @@ static const struct fault faults[] = {
     FAULT("variables without a range", "\"maximum\": 6", "\"maximum\": 0",
           "unknowns.omega.maximum"),
     FAULT("a key of 0.1", "\"coefficients\": 4", "\"genes\": 4", "unknowns.omega.genes",
-          "is called \"coefficients\" now"),
+          "is now called \"coefficients\""),
     FAULT("an unknown of 0.1", OMEGA, OMEGA ", \"weight\": {}", "unknowns.weight",
-          "is called \"omega\" now"),
+          "is now called \"omega\""),
     FAULT("no unknown", OMEGA, "", "unknowns",
           "needs \"potential\", \"omega\", \"numbers\", or \"bonds\""),
     FAULT("another unknown", OMEGA, OMEGA ", \"mass\": {}", "unknowns.mass", "unknown key"),
@@ -128,8 +128,8 @@ static const struct fault faults[] = {
               "81}, " STEP,
           "target.rdf.fitted"),
     FAULT("nothing to be fitted", "\"etd\": {", "\"etd\": {\"fitted\": \"no\", ",
-          "target: nothing is to be fitted"),
-    FAULT("no target", ETD, "", "target: nothing is to be fitted"),
+          "target: nothing to fit"),
+    FAULT("no target", ETD, "", "target: nothing to fit"),
     FAULT("IMC of a friction weight",
           GENETIC ", \"equilibration\": 10, " FIT_PLAN ", \"temperature_tolerance\": 0.9",
           "\"name\": \"imc\"", "method.name", "\"imc\" does not find omega"),
@@ -184,8 +184,8 @@ static void test_imc_refuses_more_bins_than_it_can_solve_for(void **state) {
     small_inputs_write(*state, "run.json", small_inputs_run, "\"file\": \"target.tsv\"",
                        "\"file\": \"target.tsv\", \"bin_width\": 1e-5");
     RUN_PROGRAM(&result, "fit", "run.json");
-    const char *const words[] = {"run.json: target.rdf: an inversion takes 4000 bins",
-                                 "there are 100000: join bins", NULL};
+    const char *const words[] = {"run.json: target.rdf: expected at most 4000 bins",
+                                 "found 100000: merge bins", NULL};
     run_program_assert_refused(&result, ".", "too many bins", 1, words);
     RUN_PROGRAM(&result, "fit", "run.json", "--explain");
     run_program_assert_refused(&result, ".", "too many bins, explained", 1, words);

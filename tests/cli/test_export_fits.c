@@ -172,7 +172,7 @@ static void test_projection_of_a_power_law_costs_nothing(void **state) {
     simulate_with(*state, "{\"law\": \"power\", \"sigma\": 3}", "out");
     project("lammps", "2");
     char *text = temporary_folder_read("lammps/README");
-    const char *at = strstr(text, "The power law stands for omega here");
+    const char *at = strstr(text, "Omega is replaced by the power law here");
     assert_non_null(at);
     for (int k = 0; k < 2; k++) {
         at = strstr(at, ", D ");

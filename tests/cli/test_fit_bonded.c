@@ -306,7 +306,7 @@ static void test_fit_of_curves_refuses_the_hypernetted_chain(void **state) {
     RUN_PROGRAM(&result, "fit", "run.json", "-o", "refused");
     run_program_assert_code(&result, 2);
     assert_contains(result.err,
-                    "unknowns.potential.base: the hypernetted chain knows no molecules");
+                    "unknowns.potential.base: the hypernetted chain is not for molecules");
 }
 
 struct wrong {
@@ -325,7 +325,7 @@ static void test_fit_refuses_numbers_that_cannot_be(void **state) {
         {GAUSS_NEWTON, "\"name\": \"imc\"", {"\"imc\" does not find numbers", NULL}},
         {GAUSS_NEWTON,
          "\"name\": \"formulas\"",
-         {"method.name: \"formulas\" knows no molecules", NULL}},
+         {"method.name: \"formulas\" does not fit molecules", NULL}},
     };
     for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++) {
         small_inputs_write(*state, "run.json", numbers, wrong[k].from, wrong[k].to);

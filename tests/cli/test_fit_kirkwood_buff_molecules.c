@@ -146,15 +146,13 @@ static void assert_refused(struct temporary_folder *folder, const char *members,
 #define ONE "{\"value\": 0.1, \"error\": 0.01}"
 
 static void test_fit_refuses_integrals_of_what_is_no_component(void **state) {
-    assert_refused(
-        *state, "\"dimer-dimer\": " ONE ", \"A-A\": " ONE, NULL, NULL,
-        "target.kirkwood_buff.A-A: there is no such pair; the pairs are dimer-dimer, dimer-W, W-W");
+    assert_refused(*state, "\"dimer-dimer\": " ONE ", \"A-A\": " ONE, NULL, NULL,
+                   "target.kirkwood_buff.A-A: unknown pair; expected dimer-dimer, dimer-W, W-W");
     assert_refused(*state, "\"dimer-dimer\": {\"value\": 0.1}", NULL, NULL,
                    "target.kirkwood_buff.dimer-dimer.error");
-    assert_refused(*state, "\"W-dimer\": " ONE ", \"dimer-W\": " ONE, NULL, NULL,
-                   "stands here twice");
+    assert_refused(*state, "\"W-dimer\": " ONE ", \"dimer-W\": " ONE, NULL, NULL, "duplicate pair");
     assert_refused(*state, "\"W-W\": " ONE, "\"dimer\"", "\"W\"",
-                   "target.kirkwood_buff: \"W-W\" would be two pairs of components");
+                   "target.kirkwood_buff: \"W-W\" would name two pairs of components");
     assert_refused(*state, "\"W-W\": " ONE, "\"dimer\"", "\"a-dimer-of-beads\"",
                    "target.kirkwood_buff: the kind of molecules \"a-dimer-of-beads\"");
 }

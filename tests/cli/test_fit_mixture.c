@@ -240,10 +240,10 @@ static void test_fit_of_a_mixture_is_refused_in_a_line_when_a_pair_is_wrong(void
     refuse(*state, ", " TARGET_BB, "", 1,
            (const char *[]){"run.json: target.rdf.B-B: missing", NULL});
     refuse(*state, "\"B-A\"", "\"B-C\"", 1,
-           (const char *[]){"run.json: target.rdf.B-C: there is no such pair",
-                            "the pairs are A-A, A-B, B-B", NULL});
+           (const char *[]){"run.json: target.rdf.B-C: unknown pair", "the pairs are A-A, A-B, B-B",
+                            NULL});
     refuse(*state, TARGET_BB, TARGET_BB ", \"C-B\": {}", 1,
-           (const char *[]){"run.json: target.rdf.C-B: there is no such pair", NULL});
+           (const char *[]){"run.json: target.rdf.C-B: unknown pair", NULL});
     refuse(*state, "target/rdf_A-B.tsv", "target/none.tsv", 1,
            (const char *[]){"run.json: target.rdf.B-A.file", "none.tsv", NULL});
     refuse(*state, TRUTH_AB, "", 1,

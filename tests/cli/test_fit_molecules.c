@@ -309,11 +309,11 @@ struct wrong {
 
 static void test_fit_molecules_refuses_what_cannot_be(void **state) {
     static const struct wrong wrong[] = {
-        {"\"imc\"", "\"hnc\"", {"method.name: \"hnc\" knows no molecules", NULL}},
+        {"\"imc\"", "\"hnc\"", {"method.name: \"hnc\" does not fit molecules", NULL}},
         {"\"name\": \"imc\", \"replicas\": 2, \"equilibration\": 40, \"samples\": 60,\n"
          "  \"iterations\": 4, \"precision\": 0.02",
          "\"name\": \"formulas\"",
-         {"method.name: \"formulas\" knows no molecules", NULL}},
+         {"method.name: \"formulas\" does not fit molecules", NULL}},
         {"\"truth/bond_angles.tsv\"",
          "\"truth/bond_lengths.tsv\"",
          {"target.bond_angles.bend.file: ", "as if in radians", NULL}},
@@ -356,9 +356,9 @@ static void test_fit_molecules_tells_a_wrong_name_in_one_line(void **state) {
         {"[\"A\", \"B\", \"A\"]", "[\"A\", \"A\", \"A\"]",
          "target.rdf.A-A: pairs are named in mixtures, and there is only A; write {\"file\": …}"},
         {"\"A-B\": {\"file\"", "\"A-Q\": {\"file\"",
-         "run.json: target.rdf.A-Q: there is no such pair; the pairs are A-A, A-B, B-B"},
+         "run.json: target.rdf.A-Q: unknown pair; expected A-A, A-B, B-B"},
         {"\"A-B\": {\"file\"", "\"B-A\": {\"file\": \"truth/rdf_A-B.tsv\"}, \"A-B\": {\"file\"",
-         "run.json: target.rdf.A-B: the pair stands here twice, in both orders"},
+         "run.json: target.rdf.A-B: duplicate pair, in both orders"},
         {"\"bond_lengths\": {",
          "\"kirkwood_buff\": {\"A-B\": {\"value\": 1, \"error\": 1}}, \"bond_lengths\": {",
          "run.json: target.kirkwood_buff.A-B: pairs are named in mixtures, and there is only "

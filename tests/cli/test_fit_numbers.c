@@ -216,7 +216,7 @@ static void test_fit_finds_a_coupling_from_the_polar_order(void **state) {
                        "\"lags\": 10}, \"polar_order\": {");
     RUN_PROGRAM(&result, "fit", "run.json", "-o", "both");
     run_program_assert_code(&result, 2);
-    assert_contains(result.err, "polar_order: must have the settings of the target before it");
+    assert_contains(result.err, "polar_order: must have the settings of the previous target");
 }
 
 static void test_explain_tells_of_numbers(void **state) {
@@ -264,7 +264,7 @@ static void test_fit_refuses_numbers_that_cannot_be_found(void **state) {
          {"particles.count: it cannot be found: it is an integer"}},
         {SIGMA,
          "\"particles.separation" RANGE,
-         {"particles.separation: it cannot be found: it says how"}},
+         {"particles.separation: it cannot be found: it sets the number"}},
         {SIGMA, "\"box" RANGE, {"numbers.box: it cannot be found: it is several numbers"}},
         {SIGMA, "\"precision" RANGE, {"precision: it cannot be found: it is a choice"}},
         {SIGMA, "\"time_step" RANGE, {"time_step: it cannot be found: targets are measured in"}},
@@ -333,8 +333,7 @@ static void test_fit_says_that_a_number_is_undetermined(void **state) {
         write_fit(*state, (const char *const[]){MSD, RDF, GAUSS_NEWTON, methods[k], NULL});
         RUN_PROGRAM(&result, "fit", "run.json", "-o", "out", "--force");
         assert_contains(result.err,
-                        "\ndissipative.sigma: undetermined by the targets, anything from "
-                        "1 to 8 may be it\n");
+                        "\ndissipative.sigma: undetermined by the targets, between 1 and 8\n");
         assert_null(strstr(result.err, "dissipative.sigma = "));
         char *text = temporary_folder_read("out/summary.json");
         assert_contains(text, "\"undetermined\":\t\"yes\"");

@@ -191,7 +191,7 @@ static void test_what_no_states_can_be_is_refused(void **state) {
         {"\"dense\": {", "\"dense\": 4, \"x\": {", {"states.dense", "expected an object"}},
         {"\"dense\": {",
          "\"dense\": {\"core\": {},",
-         {"states.dense.core", "what all share stands outside"}},
+         {"states.dense.core", "shared keys belong outside"}},
         {"{\"count\": 500}", "{\"types\": {\"A\": 500}}", {"states.dense", NULL}},
         {"{\"file\": \"dense/rdf.tsv\"}",
          "{\"file\": \"dense/rdf.tsv\"}, \"pressure\": {\"value\": 3, \"error\": 1}",

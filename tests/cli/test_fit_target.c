@@ -52,7 +52,7 @@ static void test_fit_target_takes_density_and_temperature_where_there_is_g_alone
     make_target(*state, "");
     RUN_PROGRAM(&result, "fit", "--target", "target", "-o", "out", "--quiet");
     run_program_assert_code(&result, 2);
-    assert_contains(result.err, "there is no target/target.json: it would say density");
+    assert_contains(result.err, "target/target.json not found: give --density");
     RUN_PROGRAM(&result, "fit", "--target", "target", "--density", "3", "--explain");
     run_program_assert_code(&result, 0);
     assert_contains(result.out, "1000 particles");
@@ -82,10 +82,10 @@ static void test_fit_target_tells_what_goes_together(void **state) {
     make_target(*state, shortest);
     RUN_PROGRAM(&result, "fit", "--target", "target", "--density", "3");
     run_program_assert_code(&result, 2);
-    assert_contains(result.err, "--density: target/target.json says scene.density itself");
+    assert_contains(result.err, "--density: target/target.json has scene.density");
     RUN_PROGRAM(&result, "fit", "--target", "nowhere");
     run_program_assert_code(&result, 2);
-    assert_contains(result.err, "there is no nowhere/target.json, and no rdf.tsv beside it");
+    assert_contains(result.err, "nowhere/target.json not found, nor rdf.tsv");
     RUN_PROGRAM(&result, "fit", "target");
     run_program_assert_code(&result, 2);
     assert_contains(result.err,

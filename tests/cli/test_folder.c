@@ -111,14 +111,15 @@ static void test_a_fit_is_replaced_by_force_alone(void **state) {
     RUN_PROGRAM(&result, "fit", "run.json", "--seed", "7", "--quiet");
     assert_refused("out holds a finished fit: --force replaces it, -o OTHER keeps it", "mesofit: ");
     RUN_PROGRAM(&result, "fit", "run.json", "--force", "--resume");
-    assert_refused("give one of them", "--force");
+    assert_refused("exclude each other", "--force");
     assert_kept(&kept);
     RUN_PROGRAM(&result, "fit", "run.json", "--seed", "7", "--force", "--quiet");
     assert_in_range(result.code, 0, 1);
     results_assert_number("out/summary.json", "seed", 7);
     assert_int_equal(unlink("out/summary.json"), 0);
     RUN_PROGRAM(&result, "fit", "run.json", "--quiet");
-    assert_refused("out holds an unfinished fit: --resume goes on, --force begins anew", "out");
+    assert_refused("out holds an unfinished fit: --resume continues it, --force starts again",
+                   "out");
     small_inputs_write(*state, "out/used.json", "{", NULL, NULL); // not to be known: the safe side
     RUN_PROGRAM(&result, "simulate", "scene.json", "--quiet");
     assert_refused("out holds an unfinished fit", "--force");
@@ -191,7 +192,7 @@ static void test_a_resumed_run_may_read_its_own_settings(void **state) {
     struct kept kept = keep(results);
     RUN_PROGRAM(&result, "fit", "out/used.json", "-o", "out", "--resume");
     assert_in_range(result.code, 0, 1);
-    assert_contains(result.err, "the fit was finished before: its result alone is verified");
+    assert_contains(result.err, "the fit is finished: only its result is verified");
     assert_kept(&kept);
     RUN_PROGRAM(&result, "fit", "out/used.json", "-o", "out", "--force", "--quiet");
     assert_refused("out/used.json would be replaced", "reads it as out/used.json");

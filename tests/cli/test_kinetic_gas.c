@@ -51,7 +51,7 @@ static void test_kinetic_gas_goes_on_with_the_same_bits(void **state) {
     write_text(*state, "scene.json", scene);
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "whole");
     run_program_assert_code(&result, 0);
-    assert_null(strstr(result.err, "nothing holds the temperature"));
+    assert_null(strstr(result.err, "there is no thermostat"));
     const char *const words[] = {"simulate", "scene.json", "-o", "pieces", NULL};
     run_program_in_pieces(0, words);
     results_assert_same("whole", "pieces", tables);

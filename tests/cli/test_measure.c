@@ -275,7 +275,7 @@ static void test_measure_tells_types_apart_when_the_map_does(void **state) {
     // There are no bonds, and friction is for one mass: motion is not fitted, so that a fit begins.
     MEASURE(xtc, "-s", gro, "--map", "two.json", "-o", "moving", "--window", "0.04",
             "--temperature", "298");
-    assert_contains(result.err, "a fit knows no bonds");
+    assert_contains(result.err, "without --molecules a fit has no bonds");
     assert_contains(result.err, "no target of a fit that has them");
     assert_contains(result.err, "masses of beads differ");
     RUN_PROGRAM(&result, "fit", "--target", "moving", "--explain");

@@ -295,7 +295,7 @@ static void test_a_molecule_in_vacuum_is_fitted_by_its_bonds(void **state) {
     free(target);
     RUN_PROGRAM(&result, "fit", "target/run.json", "--explain");
     run_program_assert_code(&result, 2);
-    assert_contains(result.err, "nothing is to be fitted: what has a target is a constraint");
+    assert_contains(result.err, "nothing to fit: what has a target is a constraint");
 }
 
 /// Trimers A-B-A, all A before all B, which in the first frames are in an eighth of the box.

@@ -292,7 +292,7 @@ static void test_an_odd_number_of_inner_steps_is_made_even_as_the_help_says(void
     for (int k = 0; k < 3; k++)
         free(runs[k]);
     RUN_PROGRAM(&result, "describe", "aboba");
-    assert_contains(result.out, "odd number counts as the next even one");
+    assert_contains(result.out, "rounded up to even");
 }
 
 /// A dimer at rest across the box, and one of 2.5, more than three times 0.8.
@@ -343,19 +343,20 @@ static const struct fault {
      "[[1, 2], [2, 4]]",
      {"scene.json: molecules.ring: the bond 2-4 has a bead 4, which is not there: beads are 1 to "
       "3"}},
-    {RING, "[[1, 2], [2, 3], [2, 1]]", {"molecules.ring: the bond 2-1 stands there twice"}},
+    {RING, "[[1, 2], [2, 3], [2, 1]]", {"molecules.ring: duplicate bond 2-1"}},
     {RING, "[[1, 2], [2, 2]]", {"molecules.ring: the bond 2-2 has a bead twice"}},
     {RING,
      "[[1, 2], [2]]",
-     {"molecules.ring.bonds.spring: a list of lists of 2 whole numbers is required; number 2 is "
-      "none"}},
-    {RING, "[[1, 2], [2, 2.5]]", {"molecules.ring.bonds.spring: a list of lists of 2 whole"}},
+     {"molecules.ring.bonds.spring: expected a list of lists of 2 integers; number 2 is not one"}},
+    {RING,
+     "[[1, 2], [2, 2.5]]",
+     {"molecules.ring.bonds.spring: expected a list of lists of 2 integers"}},
     {"\"bonds\": {\"spring\": " RING,
      "\"bonds\": {\"sprong\": " RING,
      {"molecules.ring.bonds.sprong: unknown key; did you mean \"spring\"?"}},
     {"\"bond\": \"backbone\"",
      "\"bond\": \"bakbone\"",
-     {"molecules.chain.chain.bond: \"bakbone\" is no group of \"bonds\"; did you mean "
+     {"molecules.chain.chain.bond: \"bakbone\" is not a group of \"bonds\"; did you mean "
       "\"backbone\"?"}},
     {", \"dihedral\": \"twist\"", "", {"dihedrals.twist: no molecule has such a dihedral"}},
     {BACKBONE,
@@ -369,18 +370,20 @@ static const struct fault {
     {"\"exclude\": 0", "\"exclude\": 4", {"molecules.ring.exclude: 4 is out of range"}},
     {"\"count\": 20", "\"count\": 0", {"molecules.ring.count: 0 is out of range"}},
     {CHAIN, "\"type\": \"A\"", {"molecules.chain.chain.length: missing"}},
-    {CHAIN, CHAIN ", \"length\": 4", {"molecules.chain.chain.length: \"beads\" says it already"}},
-    {CHAIN, CHAIN ", \"type\": \"A\"", {"molecules.chain.chain.type: \"beads\" says it already"}},
+    {CHAIN, CHAIN ", \"length\": 4", {"molecules.chain.chain.length: \"beads\" is given, too"}},
+    {CHAIN, CHAIN ", \"type\": \"A\"", {"molecules.chain.chain.type: \"beads\" is given, too"}},
     {CHAIN,
      "\"type\": \"A\", \"length\": 1",
      {"molecules.chain.chain.length: 1 is out of range; allowed: 2 to"}},
     {CHAIN,
      "\"beads\": [\"A\", \"A\", \"B\"]",
      {"molecules.chain.chain.dihedral: a dihedral is of 4 beads, and the chain has 3"}},
-    {CHAIN, "\"beads\": [\"A\", \"a b\"]", {"molecules.chain.chain.beads: \"a b\": a type is"}},
+    {CHAIN,
+     "\"beads\": [\"A\", \"a b\"]",
+     {"molecules.chain.chain.beads: \"a b\": expected a type name"}},
     {"\"types\": {\"W\": 60},",
      "\"count\": 60,",
-     {"particles.count: beside molecules single beads have types"}},
+     {"particles.count: with molecules single beads need types"}},
     {"\"box\": [6, 6, 6]",
      "\"dimensions\": 2, \"box\": [6, 6]",
      {"dihedrals: in two dimensions there are none"}},

@@ -177,8 +177,9 @@ static void test_forgotten_resume_keeps_the_simulation(void **state) {
     (void)state;
     interrupt("out", NULL);
     RUN_PROGRAM(&result, "simulate", "long.json");
-    assert_refused("out holds an unfinished simulation: --resume goes on, --force begins anew",
-                   "mesofit: ");
+    assert_refused(
+        "out holds an unfinished simulation: --resume continues it, --force starts again",
+        "mesofit: ");
     RUN_PROGRAM(&result, "simulate", "scene.json", "--seed", "9");
     assert_refused("out holds an unfinished simulation", "--resume");
     RUN_PROGRAM(&result, "simulate", "scene.json", "--force", "--quiet");
@@ -191,7 +192,7 @@ static void test_file_in_the_way_of_a_run_that_goes_on(void **state) {
     interrupt("out", NULL);
     put(state, "out/rdf.tsv");
     RUN_PROGRAM(&result, "simulate", "long.json", "--resume");
-    assert_refused("out/rdf.tsv is there, and mesofit did not write it: move it away, and go on "
+    assert_refused("out/rdf.tsv is there, and mesofit did not write it: move it away, and continue "
                    "with --resume\n",
                    "mesofit: ");
     assert_mine("out/rdf.tsv");
@@ -201,7 +202,7 @@ static void test_file_in_the_way_of_a_run_that_goes_on(void **state) {
     put(state, "new/snapshots/step_000000004.vtp");
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "new", "--quiet");
     assert_refused("new/snapshots/step_000000004.vtp is there, and mesofit did not write it: ",
-                   "move it away, and go on with --resume\n");
+                   "move it away, and continue with --resume\n");
     assert_int_equal(unlink("new/snapshots/step_000000004.vtp"), 0);
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "new", "--quiet", "--resume");
     run_program_assert_code(&result, 0);
@@ -236,14 +237,14 @@ static void test_results_without_a_list_are_left_alone(void **state) {
                        "with -o\n",
                        "mesofit: ");
         RUN_PROGRAM(&result, "fit", "run.json", "-o", "fit", how[k]);
-        assert_refused("fit holds results without a list of files (.mesofit-run): --resume may go "
-                       "on, -o OTHER keeps them\n",
+        assert_refused("fit holds results without a list of files (.mesofit-run): --resume may "
+                       "continue it, -o OTHER keeps them\n",
                        "mesofit: ");
     }
     // What else is of that run is not known.
     RUN_PROGRAM(&result, "fit", "run.json", "-o", "fit", "--resume");
-    assert_refused("fit/summary.json is there, and mesofit did not write it: move it away, and go "
-                   "on with --resume\n",
+    assert_refused("fit/summary.json is there, and mesofit did not write it: move it away, and "
+                   "continue with --resume\n",
                    "mesofit: ");
     assert_false(temporary_folder_exists("fit/.mesofit-run"));
     // Nor is a checkpoint of somebody.
@@ -266,11 +267,11 @@ static void test_copy_without_a_list_goes_on(void **state) {
     interrupt("out", NULL);
     assert_int_equal(system("/bin/mkdir copy && /bin/cp out/* copy"), 0);
     RUN_PROGRAM(&result, "simulate", "long.json", "-o", "copy");
-    assert_refused("copy holds results without a list of files", "--resume may go on");
+    assert_refused("copy holds results without a list of files", "--resume may continue it");
     for (int times = 0; times < 2; times++)
         interrupt("copy", "--resume");
     RUN_PROGRAM(&result, "simulate", "long.json", "-o", "copy");
-    assert_refused("copy holds an unfinished simulation", "--resume goes on");
+    assert_refused("copy holds an unfinished simulation", "--resume continues");
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "copy", "--force", "--quiet");
     run_program_assert_code(&result, 0);
     assert_false(temporary_folder_exists("copy/checkpoint.bin"));

@@ -85,6 +85,22 @@ static void test_reference_links_lead_to_sections(void **state) {
     free(markdown);
 }
 
+/// What all inversions have in common: once in the document, with each of them on the terminal.
+static void test_reference_prints_a_shared_table_once(void **state) {
+    (void)state;
+    static const char *const methods[] = {"imc", "ibi", "inversions"};
+    char *markdown = shell("\"$MESOFIT\" describe --format markdown");
+    const char *row = strstr(markdown, "\n| `sampler` |");
+    assert_non_null(row);
+    assert_null(strstr(row + 1, "\n| `sampler` |"));
+    assert_contains(strstr(markdown, "\n### imc\n"), "[inversions](#inversions)");
+    free(markdown);
+    for (size_t k = 0; k < sizeof methods / sizeof *methods; k++) {
+        RUN_PROGRAM(&result, "describe", methods[k]);
+        assert_contains(result.out, "\n  sampler ");
+    }
+}
+
 /// Its parts by their names, and groff without a word of complaint.
 static void test_man_page_is_good_roff(void **state) {
     (void)state;
@@ -119,6 +135,7 @@ int main(void) {
         TEST(test_reference_page_is_what_the_program_prints),
         TEST(test_reference_tells_of_every_option_object_and_key),
         TEST(test_reference_links_lead_to_sections),
+        TEST(test_reference_prints_a_shared_table_once),
         TEST(test_man_page_is_good_roff),
         TEST(test_formats_that_are_not_known_are_refused),
     };

@@ -130,7 +130,7 @@ static void test_viscosity_refuses_scenes_that_have_none(void **state) {
          "shear_viscosity: \"interactions\" other than \"shear-wave\" do not conserve momentum"},
         {"\"lags\": 40", "\"lags\": 4000", "shear_viscosity: 2000 intervals are fewer than two"},
         {"\"memory\": {\"slow\": {\"time\": 0.5, \"omega\": {\"law\": \"power\", \"sigma\": 3}}},",
-         "\"dynamics\": {\"integrator\": \"dpd-vv\"},", "\"dpd-vv\" does not tell"},
+         "\"dynamics\": {\"integrator\": \"dpd-vv\"},", "\"dpd-vv\" does not give"},
     };
     for (size_t k = 0; k < sizeof faults / sizeof *faults; k++) {
         simulate(*state, faults[k].from, faults[k].to, "out");

@@ -321,17 +321,16 @@ static void test_simulate_warns_when_nothing_holds_the_temperature(void **state)
                            "MORE", cases[k].to);
         RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
         run_program_assert_code(&result, 0);
-        assert_int_equal(strstr(result.err, "mesofit: warning: nothing holds the temperature: ") !=
-                             NULL,
+        assert_int_equal(strstr(result.err, "mesofit: warning: there is no thermostat: ") != NULL,
                          cases[k].warned);
     }
     small_inputs_write(*state, "scene.json", small_inputs_scene, "\"temperature\": 1",
                        "\"temperature\": 300");
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
     assert_contains(result.err, "mesofit: warning: temperature: 300 in units of k_B T_0");
-    assert_contains(result.err, "kelvins belong into \"units\"");
+    assert_contains(result.err, "give kelvins in \"units\"");
     temporary_folder_write(*state, "target.tsv", small_inputs_target, strlen(small_inputs_target));
-    static const char warning[] = "mesofit: warning: scene: nothing holds the temperature: ";
+    static const char warning[] = "mesofit: warning: scene: there is no thermostat: ";
     small_inputs_write(*state, "run.json", small_inputs_run, "\"power\", \"sigma\": 2", "\"none\"");
     RUN_PROGRAM(&result, "fit", "run.json", "-o", "fit");
     assert_contains(result.err, warning);

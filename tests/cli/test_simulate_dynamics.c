@@ -181,7 +181,7 @@ static void test_scenes_are_refused_when_interactions_do_not_suit(void **state) 
          "\"interactions\"",
          "dissipative: the inner_cutoff 3 is not below the cutoff 1"},
         {"\"interactions\"", "\"dissipative\": {\"law\": \"power\"}, \"interactions\"",
-         "brownian knows no friction"},
+         "brownian has no friction"},
         {"\"measure\"", "\"rdf\": {\"estimator\": \"force\"}, \"measure\"",
          "knows the forces of pairs alone"},
     };
@@ -203,7 +203,7 @@ static void test_inversion_is_refused_when_the_scene_has_interactions(void **sta
     RUN_PROGRAM(&result, "fit", "run.json", "-o", "refused");
     run_program_assert_code(&result, 2);
     assert_contains(result.err,
-                    "run.json: scene.interactions: \"imc\" samples pairs and molecules alone");
+                    "run.json: scene.interactions: \"imc\" samples only pairs and molecules");
 }
 
 static void test_vacf_is_refused_when_there_are_no_velocities(void **state) {

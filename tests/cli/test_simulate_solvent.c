@@ -36,8 +36,8 @@ static void test_simulate_measures_a_solvent_without_beads(void **state) {
     write(*state, NULL, NULL);
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out", "--threads", "1");
     run_program_assert_code(&result, 0);
-    assert_null(strstr(result.err, "nothing holds"));
-    assert_contains(result.err, "a viscosity wants"); // past an obstacle the flow is no parabola
+    assert_null(strstr(result.err, "there is no thermostat"));
+    assert_contains(result.err, "a viscosity needs"); // past an obstacle the flow is no parabola
     assert_true(results_number("out/summary.json", "solvent_temperature") > 0.98);
     assert_true(results_number("out/summary.json", "solvent_temperature") < 1.02);
     assert_true(results_number("out/summary.json", "flow_field.drag") > 0);
@@ -61,7 +61,7 @@ static void test_snapshots_show_the_solvent_where_it_is_wanted(void **state) {
     write(*state, "\"measure\"", "\"snapshots\": {\"every\": 500}, \"measure\"");
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
     run_program_assert_code(&result, 2);
-    assert_contains(result.err, "scene.json: snapshots: nobody to show; \"solvent\": \"yes\"");
+    assert_contains(result.err, "scene.json: snapshots: no particles; \"solvent\": \"yes\"");
 }
 
 static void test_a_flow_tells_its_viscosity_and_whether_it_has_settled(void **state) {
@@ -114,7 +114,8 @@ static void test_no_viscosity_and_no_coefficient_where_there_is_none(void **stat
     small_inputs_write(*state, "scene.json", scene, NULL, NULL);
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
     run_program_assert_code(&result, 2);
-    assert_contains(result.err, "scene.json: flow_profile.bins: 2 along y cannot tell a viscosity");
+    assert_contains(result.err,
+                    "scene.json: flow_profile.bins: 2 along y are too few for a viscosity");
     small_inputs_write(*state, "scene.json", scene, "\"flow_profile\": {}",
                        "\"flow_profile\": {\"bins\": 6}");
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
@@ -251,15 +252,15 @@ static void test_simulate_warns_of_what_plates_and_flows_do_to_beads(void **stat
         "\"measure\": {\"equilibration\": 0, \"samples\": 2, \"every\": 1}}\n";
     small_inputs_write(*state, "scene.json", beads, NULL, NULL);
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
-    assert_contains(result.err, "warning: dynamics.walls: forces of pairs know no plates");
+    assert_contains(result.err, "warning: dynamics.walls: pair forces are not cut by plates");
     small_inputs_write(*state, "scene.json", beads, "\"walls\": \"plates\"",
                        "\"wave_acceleration\": 0.1");
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
-    assert_contains(result.err, "warning: dynamics: the flow carries the beads");
+    assert_contains(result.err, "warning: dynamics: the flow contributes to the temperature");
     small_inputs_write(*state, "scene.json", beads, "\"walls\": \"plates\"",
                        "\"acceleration\": [0.1, 0]");
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
-    assert_null(strstr(result.err, "flow carries")); // all fall alike
+    assert_null(strstr(result.err, "flow contributes")); // all fall alike
 }
 
 /// With beads that carry forces, in space, killed and resumed.

@@ -261,14 +261,13 @@ static void test_broken_snapshot_is_refused_as_a_start(void **state) {
     RUN_PROGRAM(&result, "simulate", "scene.json");
     run_program_assert_refused(&result, ".", "null", 1,
                                (const char *[]){"scene.json: particles.file: start.json: "
-                                                "particles.y: number 2 of the list is none",
+                                                "particles.y: number 2 of the list is not a number",
                                                 NULL});
     small_inputs_write(*state, "start.json", "{\"particles\": {\"x\": [1, 2], \"y\": [1]}}", NULL,
                        NULL);
     RUN_PROGRAM(&result, "simulate", "scene.json");
-    run_program_assert_refused(
-        &result, ".", "short", 1,
-        (const char *[]){"particles.y: a list of 2 numbers is required", NULL});
+    run_program_assert_refused(&result, ".", "short", 1,
+                               (const char *[]){"particles.y: expected a list of 2 numbers", NULL});
 }
 
 /// Types follow from the order of particles: that of the file is to be that of the scene.
@@ -295,7 +294,7 @@ static void test_snapshot_of_other_types_is_refused_as_a_start(void **state) {
     RUN_PROGRAM(&result, "simulate", "scene.json");
     run_program_assert_refused(
         &result, ".", "texts", 1,
-        (const char *[]){"start.json: particles.type: a list of 4 texts is required", NULL});
+        (const char *[]){"start.json: particles.type: expected a list of 4 texts", NULL});
     small_inputs_write(*state, "start.json", start, NULL, NULL);
     small_inputs_write(*state, "scene.json", scene, "\"small\": 2, \"large\": 2",
                        "\"large\": 2, \"small\": 2");

@@ -86,7 +86,7 @@ static void test_structure_factor_says_what_its_target_lacks(void **state) {
         {"\"bins\": 30}", "\"bins\": 30, \"time_column\": 1}",
          "target.structure_factor.time_column", "unknown key"},
         {"whole/structure_factor.tsv", "falls.tsv", "target.structure_factor.file",
-         "does not grow"},
+         "does not increase"},
         // Found now, and not by the verification of a fit that has ended.
         {"\"q_maximum\": 9, \"bins\": 30}", "\"q_maximum\": 1, \"bins\": 30, \"fitted\": \"no\"}",
          "q_maximum 1", "longest wave"},

@@ -69,9 +69,10 @@ static const struct mistake refused[] = {
     MISTAKE("errors as g", COLUMNS ERRORS, "\"r_column\": 2, \"g_column\": 6",
             "target.rdf.g_column: ", "water.txt is 0.0003556, not 1"),
     MISTAKE("numbers of neighbours as errors", ERRORS, ", \"error_column\": 8", "target.rdf.file: ",
-            "column 8 cannot be the standard error of g: it grows", "\"error_column\""),
-    MISTAKE("no column of errors among many", ERRORS, "", "target.rdf.file: ",
-            "column 3 cannot be the standard error of g", "\"error_column\" names another, or 0"),
+            "column 8 cannot be the standard error of g: it increases", "\"error_column\""),
+    MISTAKE("no column of errors among many", ERRORS, "",
+            "target.rdf.file: ", "column 3 cannot be the standard error of g",
+            "set \"error_column\" to another, or to 0"),
     MISTAKE("a column of errors that is not there", ERRORS, ", \"error_column\": 9",
             "water.txt:9: 8 columns, at least 9 are needed for \"error_column\""),
     MISTAKE("ten times the beads", BEADS, "27440", "run.json: target.rdf: ",
@@ -270,7 +271,8 @@ static void test_fit_tells_where_errors_and_bins_come_from(void **state) {
     small_inputs_write(*state, "run.json", small_inputs_run, NULL, NULL);
     RUN_PROGRAM(&result, "fit", "run.json", "--explain");
     run_program_assert_code(&result, 0);
-    assert_contains(result.out, "target rdf: no errors given, and no scatter tells them: 0.002 at");
+    assert_contains(result.out,
+                    "target rdf: no errors given, and no scatter to estimate them: 0.002 at");
 }
 
 /// Every target of the repository, as its run has it, passes without a warning.

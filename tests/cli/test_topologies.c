@@ -109,7 +109,7 @@ static void test_what_is_not_taken_is_told(void **state) {
     write_inputs(*state, "3 4 7 0.8 500", "3 4 1 0.4 500");
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
     run_program_assert_code(&result, 0);
-    assert_contains(result.err, "types.itp:8: parameters of pairs are not taken");
+    assert_contains(result.err, "types.itp:8: parameters of pairs are not used");
 }
 
 /// 1-2 and 2-3 are bonded, and the angle 1-3-2 begins with a pair that is not.
@@ -151,25 +151,25 @@ static void test_topologies_that_cannot_be_are_refused(void **state) {
         const char *from, *to, *place, *what;
     } cases[] = {
         {"3 4 7 0.8 500", "3 5 7 0.8 500", "topol.top:20:", "no atom 5: hexane has 1 to 4"},
-        {"3 4 7 0.8 500", "2 1 1 0.8 500", "topol.top:20:", "2-1 stands there twice"},
+        {"3 4 7 0.8 500", "2 1 1 0.8 500", "topol.top:20:", "duplicate bond 2-1"},
         {"3 4 7 0.8 500", "3 4 5 0.8 500", "topol.top:20:", "function 5 of a bond"},
-        {"3 4 7 0.8 500", "3 4 7 0.8", "topol.top:20:", "1 numbers stand behind"},
+        {"3 4 7 0.8 500", "3 4 7 0.8", "topol.top:20:", "1 numbers after"},
         {"3 4 7 0.8 500", "3 4 7", "topol.top:20:", "no parameters"},
         {"3 4 7 0.8 500", "3 4 7 0.8 -5", "topol.top:20:", "k of the law \"fene\" cannot be"},
-        {"3 4 7 0.8 500", "3 4 7 0.8 5x", "topol.top:20:", "\"5x\" is no number"},
+        {"3 4 7 0.8 500", "3 4 7 0.8 5x", "topol.top:20:", "expected a number, found \"5x\""},
         {"hexane 2 ;", "hexane 5 ;", "topol.top:9:", "nrexcl is 0 to 3, not 5"},
-        {"\"types.itp\"", "\"topol.top\"", "topol.top:", "include without an end"},
+        {"\"types.itp\"", "\"topol.top\"", "topol.top:", "include: more than"},
         {"\"types.itp\"", "\"other.itp\"", "topol.top:4:", "there is no file other.itp"},
         {"#endif", "", "topol.top:", "#ifdef has no #endif"},
         {"[ system ]", "[ settles ]", "topol.top:", "[ settles ] is not known"},
         {"hexane 20", "octane 20", "topol.top:", "no moleculetype octane"},
         {"hexane 20", "hexane 99999999999", "topol.top:", "to 1e8"},
         {"hexane 20", "hexane 100000000", "molecules", "the most are 1e+08"},
-        {"4 C1 1 HEX A 4", "5 C1 1 HEX A 4", "topol.top:16:", "next atom has number 4"},
-        {"2 C2 1 HEX B 2", "2 C* 1 HEX B 2", "topol.top:14:", "a type is called"},
+        {"4 C1 1 HEX A 4", "5 C1 1 HEX A 4", "topol.top:16:", "expected atom number 4"},
+        {"2 C2 1 HEX B 2", "2 C* 1 HEX B 2", "topol.top:14:", "expected a type name"},
         {"hexane 20\nW 5\nhexane 10", "hexane 0", "topol.top", "[ molecules ] has none"},
         {"; a comment", "[ bondtypes ]\nC1 C2 1 0.4 900", "topol.top:", "2 lines have parameters"},
-        {"; a comment", "word", "topol.top:1:", "begins with a section"},
+        {"; a comment", "word", "topol.top:1:", "expected a section"},
     };
     static struct run_program_result result;
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
@@ -206,7 +206,7 @@ static void test_a_table_of_a_topology_has_a_law_of_the_scene(void **state) {
     run_program_assert_refused(
         &result, ".", "a table", 1,
         (const char *const[]){"the bond \"C1-C1\" is a table in the topology, which is not read: "
-                              "\"scene.bonds\"",
+                              "give it by that name in \"scene.bonds\"",
                               NULL});
     small_inputs_write(*state, "scene.json", scene, "\"molecules\"", law);
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
@@ -278,7 +278,7 @@ static void test_coordinates_come_with_a_topology(void **state) {
     static const struct {
         const char *file, *text, *from, *to, *what;
     } cases[] = {
-        {"topol.top", topology, NULL, NULL, "each moleculetype once"},
+        {"topol.top", topology, NULL, NULL, "each moleculetype only once"},
         {"topol.top", topology, counts, "hexane 29\nW 5", "125 atoms; the scene has 121"},
         {"topol.top", topology, counts, "hexane 30\nW 5", NULL},
         {"types.itp", types, "0.38 1500", "0.1 2500",

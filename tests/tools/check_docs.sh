@@ -96,6 +96,7 @@ faults=$(
     check_commands
     grep -nE '\]\(\.\./lab/' docs/*.md | sed 's/$/: a user needs no laboratory record/'
     check_length README.md 700 -w
+    check_length docs/reference.md 10000 -w
     check_length ARCHITECTURE.md 2500 -w
     check_length CHANGELOG.md 100 -l
 )

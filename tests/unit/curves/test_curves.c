@@ -287,10 +287,11 @@ static void test_sampled_create_refuses_when_points_are_bad(void **state) {
     (void)state;
     struct curve curve;
     const double r[] = {0, 1, 1, 2}, y[] = {3, 2, 1, 0};
-    assert_fails(mf_sampled_create(&curve, r, y, 4), STATUS_BAD_INPUT, "does not grow at point 3");
+    assert_fails(mf_sampled_create(&curve, r, y, 4), STATUS_BAD_INPUT,
+                 "does not increase at point 3");
     assert_fails(mf_sampled_create(&curve, r, y, 2), STATUS_BAD_INPUT, "at least 3 points");
     const double nan[] = {0, NAN, 2};
-    assert_fails(mf_sampled_create(&curve, nan, y, 3), STATUS_BAD_INPUT, "does not grow");
+    assert_fails(mf_sampled_create(&curve, nan, y, 3), STATUS_BAD_INPUT, "does not increase");
     assert_ok(mf_curve_create(&curve, &mf_sampled_family));
     ((struct sampled_parameters *)curve.parameters)->cutoff = 3;
     const double good[] = {0, 1, 1.5, 2};

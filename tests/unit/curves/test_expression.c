@@ -78,13 +78,13 @@ static void test_expression_parse_names_the_place_when_a_formula_is_wrong(void *
         {"1 +", "character 4: it ends where a number"},
         {"4*(1 - r", "character 9: a \")\" is missing"},
         {"4*x", "character 3: this name is not known"},
-        {"2 r", "character 3: an operator is expected"},
+        {"2 r", "character 3: expected an operator"},
         {"2^r", "character 3: an exponent must be a number"},
-        {"exp r", "character 5: a \"(\" is missing behind exp"},
-        {"1e999", "character 1: this is no decimal number"},
-        {"0x10", "character 1: this is no decimal number"},
-        {"r)", "character 2: an operator is expected"},
-        {"3 + @", "character 5: a number, r, exp or \"(\" is expected"},
+        {"exp r", "character 5: expected \"(\" after exp"},
+        {"1e999", "character 1: not a decimal number"},
+        {"0x10", "character 1: not a decimal number"},
+        {"r)", "character 2: expected an operator"},
+        {"3 + @", "character 5: expected a number, r, exp or \"(\""},
     };
     struct expression expression;
     for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++) {

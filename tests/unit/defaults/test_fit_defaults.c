@@ -333,7 +333,7 @@ static void test_fit_defaults_tell_faults_once_and_only_what_is_missing(void **s
     mf_fit_file_clear(&fit);
     assert_fails(read_run(state, &fit, "b.json",
                           TARGET "\"scene\": {\"density\": 0.3, \"box\": [9, 9, 9]}}"),
-                 STATUS_BAD_INPUT, "scene.density: \"box\" is given, and says it already");
+                 STATUS_BAD_INPUT, "scene.density: \"box\" is given, too");
     mf_fit_file_clear(&fit);
     assert_fails(read_run(state, &fit, "c.json", TARGET "\"scene\": 5}"), STATUS_BAD_INPUT,
                  "scene: expected an object, found the number 5");

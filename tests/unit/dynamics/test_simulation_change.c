@@ -121,7 +121,7 @@ static void test_what_cannot_change_is_refused(void **state) {
     // Friction and noise alone hold a temperature; the time step is the integrator's.
     simulation.setup.omega = NULL;
     simulation.setup.integrator = &mf_velocity_verlet;
-    expect_refusal(&simulation, &(struct simulation_change){0, 2, 0.02}, "nothing holds it");
+    expect_refusal(&simulation, &(struct simulation_change){0, 2, 0.02}, "there is no thermostat");
     assert_ok(mf_simulation_check_change(&simulation, &(struct simulation_change){0, 1, 0.01}));
     simulation.setup.integrator = &mf_event_driven;
     expect_refusal(&simulation, &(struct simulation_change){0, 1, 0.01}, "\"event-driven\"");

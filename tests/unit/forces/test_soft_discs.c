@@ -173,7 +173,7 @@ static void test_soft_discs_refuse_what_they_cannot_do(void **state) {
     make(&discs, 100, 50, 50, 1, 2);
     discs.setup.attribute[ATTRIBUTES_RADIUS].ranges = 0;
     assert_fails(mf_simulation_init(&simulation, &discs.setup, NULL), STATUS_BAD_INPUT,
-                 "interactions.soft-discs: wants \"radius\" in \"particles\"");
+                 "interactions.soft-discs: needs \"radius\" in \"particles\"");
     make(&discs, 100, 50, 50, 1, 13);
     assert_fails(mf_simulation_init(&simulation, &discs.setup, NULL), STATUS_BAD_INPUT,
                  "interactions.soft-discs: the shortest edge 50 of the box");

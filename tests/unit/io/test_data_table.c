@@ -125,8 +125,8 @@ static void test_data_table_read_says_so_when_decimals_have_a_comma(void **state
     assert_refused(state, "0,5;1,5\n1;1.25\n",
                    ":2: column 2: \"1.25\" is not a finite number: other decimals of the file");
     assert_refused(state, "0,5 1,5\n",
-                   ":1: column 1: \"0,5\" is not a finite number: a decimal comma? part columns "
-                   "by semicolons or tabs, or write decimals with a point");
+                   ":1: column 1: \"0,5\" is not a finite number: a decimal comma? separate "
+                   "columns by semicolons or tabs, or write decimals with a point");
     assert_refused(state, "1.000,5;2\n", ":1: column 1: \"1.000,5\"");
 }
 
@@ -233,9 +233,9 @@ static void test_data_table_check_increasing_names_the_line_when_a_row_does_not_
     const char *file = write_text(state, "# r\n0 5\n1 4\n\n1 6\n");
     assert_ok(mf_data_table_read(&table, file, 2));
     assert_fails(mf_data_table_check_increasing(&table, file, 0, 0), STATUS_BAD_INPUT,
-                 "t.dat:5: column 1: 1 does not grow from 1 in line 3");
+                 "t.dat:5: column 1: 1 does not increase from 1 in line 3");
     assert_fails(mf_data_table_check_increasing(&table, file, 1, 0), STATUS_BAD_INPUT,
-                 "t.dat:3: column 2: 4 does not grow from 5 in line 2");
+                 "t.dat:3: column 2: 4 does not increase from 5 in line 2");
     assert_fails(mf_data_table_check_increasing(&table, file, 0, 0.5), STATUS_BAD_INPUT,
                  "t.dat:2: column 1: 0 is below 0.5");
     assert_fails(mf_data_table_check_increasing(&table, file, 2, 0), STATUS_BAD_INPUT,

@@ -88,12 +88,12 @@ static void test_data_table_convert_refuses_units_of_something_else(void **state
     double value[2];
     struct units chosen = argon;
     assert_fails(convert(state, "# r[ps] phi\n1 1\n", &argon, value), STATUS_BAD_INPUT,
-                 "t.tsv: column 1: \"ps\" is no unit of what is in nm here");
+                 "t.tsv: column 1: \"ps\" is not a unit of the same kind as nm");
     assert_fails(convert(state, "# r[nm] phi[parsec]\n1 1\n", &argon, value), STATUS_BAD_INPUT,
-                 "t.tsv: column 2: \"parsec\" is no unit that is known");
+                 "t.tsv: column 2: unknown unit \"parsec\"");
     chosen.chosen = true;
     assert_fails(convert(state, "# r[lambda] phi\n1 1\n", &chosen, value), STATUS_BAD_INPUT,
-                 "needs the lambda that it was made with");
+                 "needs the lambda that it was written with");
 }
 
 static void test_data_table_write_in_converts_columns_and_names(void **state) {

@@ -206,7 +206,7 @@ static void test_json_fields_demands_required_ones_when_the_object_is_there(void
     assert_int_equal(mf_json_fault_count(document), 1);
     mf_json_finish(&root);
     assert_fails(mf_json_close(document, STATUS_OK), STATUS_BAD_INPUT,
-                 "run.json: here.strength: missing: a number is required (how strong)");
+                 "run.json: here.strength: missing: expected a number (how strong)");
 }
 
 // Keys and objects --------------------------------------------------------------------------------
@@ -243,18 +243,18 @@ static void test_json_finish_proposes_no_key_that_is_refused(void **state) {
     assert_int_equal(mf_json_fault_count(document), 4);
     assert_fails(mf_json_close(document, STATUS_OK), STATUS_BAD_INPUT,
                  "run.json: old: no longer a key: leave it out");
-    assert_contains(mf_status_message(), "run.json: mask: is called \"cover\" now");
+    assert_contains(mf_status_message(), "run.json: mask: is now called \"cover\"");
     assert_contains(mf_status_message(), "run.json: away: unknown key: it stands elsewhere");
     assert_contains(mf_status_message(), "run.json: other: unknown key; known: a");
     assert_null(strstr(mf_status_message(), "known: a,"));
 }
 
 static void test_json_open_records_a_fault_when_a_key_stands_twice(void **state) {
-    assert_fault(state, "{\"seed\": 1, \"seed\": 1}", "run.json: seed: the key stands here twice");
+    assert_fault(state, "{\"seed\": 1, \"seed\": 1}", "run.json: seed: duplicate key");
     struct json_document *document =
         open_text(state, "{\"a\": [{\"x\": 1}, {\"b\": {\"c\": 1, \"d\": 2, \"c\": 3}}]}");
     assert_fails(mf_json_close(document, STATUS_OK), STATUS_BAD_INPUT,
-                 "run.json: a[1].b.c: the key stands");
+                 "run.json: a[1].b.c: duplicate key");
 }
 
 static void test_json_child_reports_paths_when_objects_are_nested(void **state) {
@@ -276,7 +276,7 @@ static void test_json_child_reports_paths_when_objects_are_nested(void **state) 
     const char *file = ((struct temporary_folder *)*state)->file;
     snprintf(expected, sizeof expected,
              "%s: a.c: expected an object, found the number 3\n"
-             "%s: a.d: missing: an object is required\n"
+             "%s: a.d: missing: expected an object\n"
              "%s: a.b.x: must be below 1\n"
              "%s: a.b: is odd\n"
              "%s: a.b.x: unknown key; none is known here",
@@ -300,7 +300,7 @@ static void test_json_choice_returns_known_texts_when_given_or_falls_back(void *
     assert_int_equal(mf_json_fault_count(document), 3);
     assert_fails(mf_json_close(document, STATUS_OK), STATUS_BAD_INPUT, "did you mean \"hard\"?");
     assert_contains(mf_status_message(), "number: expected a text, found the number 1");
-    assert_contains(mf_status_message(), "missing: missing: a text is required");
+    assert_contains(mf_status_message(), "missing: missing: expected a text");
 }
 
 static void test_json_close_counts_the_rest_when_faults_are_many(void **state) {
@@ -351,7 +351,7 @@ static void test_json_close_tells_want_of_memory_first(void **state) {
     mf_status_fail(STATUS_NO_MEMORY, "out of memory");
     assert_fails(mf_json_close(document, STATUS_NO_MEMORY), STATUS_NO_MEMORY, "out of memory");
     document = open_text(state, "{\"a\": 1, \"a\": 2}");
-    assert_fails(mf_json_close(document, STATUS_IO), STATUS_BAD_INPUT, "twice");
+    assert_fails(mf_json_close(document, STATUS_IO), STATUS_BAD_INPUT, "duplicate key");
     document = open_text(state, "{}");
     assert_int_equal(mf_json_close(document, STATUS_IO), STATUS_IO);
 }

@@ -47,11 +47,10 @@ static void test_json_parse_gives_the_place_when_the_text_is_malformed(void **st
                      "f.json:3:3: expected ',', ':' or a closing bracket (is one, or a '\"', "
                      "missing?), found '\"'");
     assert_malformed("{\"a\": 1,}",
-                     "f.json:1:9: expected something behind the last comma, found '}'");
-    assert_malformed("{\"a\": [1, ]}",
-                     ":1:11: expected something behind the last comma, found ']'");
+                     "f.json:1:9: expected something after the last comma, found '}'");
+    assert_malformed("{\"a\": [1, ]}", ":1:11: expected something after the last comma, found ']'");
     assert_malformed("{\"a\": 1,\n",
-                     ":2:1: expected something behind the last comma, found the end");
+                     ":2:1: expected something after the last comma, found the end");
     assert_malformed("{\"a\" 1}", ":1:6: expected ',', ':' or a closing bracket");
     assert_malformed("{\"a\": NaN}", ":1:7: expected a value, found 'N'");
     assert_malformed("{\"ä\": nul}", ":1:7: expected a value, found 'n'");

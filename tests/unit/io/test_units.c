@@ -221,9 +221,9 @@ static void test_units_from_takes_back_what_name_gives(void **state) {
     assert_ok(mf_units_from(&units, "angstrom", "lambda", &factor));
     assert_close_relative(factor, 1 / 3.4, 1e-12);
     assert_fails(mf_units_from(&units, "ps", "lambda", &factor), STATUS_BAD_INPUT,
-                 "\"ps\" is no unit of");
+                 "\"ps\" is not a unit of");
     assert_fails(mf_units_from(&units, "parsec", "lambda", &factor), STATUS_BAD_INPUT,
-                 "no unit that");
+                 "unknown unit");
 }
 
 /// Whatever number a file says is written again, as short as it was, and reads to the same bits.

@@ -51,9 +51,9 @@ static void test_votca_read_takes_two_columns_without_flags(void **state) {
 
 static void test_votca_read_refuses_what_is_no_table_of_votca(void **state) {
     assert_refused(state, "0.1 1 i\n0.2 1 u\n0.3 1 i\n", "a.pot:2: flagged u between");
-    assert_refused(state, "0.1 1 i\n0.2 1 x\n", "a.pot:2: the flag \"x\" is none of i, o, u");
-    assert_refused(state, "0.1 1 i\n0.2 1 ii\n", "a.pot:2: the row does not end with a letter");
-    assert_refused(state, "0.1 1 2\n", "a.pot:1: the row does not end with a letter");
+    assert_refused(state, "0.1 1 i\n0.2 1 x\n", "a.pot:2: the flag \"x\" is not i, o or u");
+    assert_refused(state, "0.1 1 i\n0.2 1 ii\n", "a.pot:2: expected a flag i, o or u of VOTCA");
+    assert_refused(state, "0.1 1 2\n", "a.pot:1: expected a flag i, o or u of VOTCA");
     assert_refused(state, "0.1 1 u\n", "no row is flagged i");
     assert_refused(state, "0.1 nan i\n", "a.pot:1: column 2: nan");
     assert_refused(state, "0.1 1 2 3 i\n", "a.pot:1: not \"x y flag\"");

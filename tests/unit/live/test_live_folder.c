@@ -86,7 +86,7 @@ static void test_folder_of_results_may_be_new_but_not_through_a_link(void **stat
     assert_fails(mf_live_folder_check_new(root, "up"), STATUS_BAD_INPUT, "links");
     assert_fails(mf_live_folder_check_new(root, "up/out"), STATUS_BAD_INPUT, "links");
     assert_fails(mf_live_folder_check_new(root, "run.json/out"), STATUS_BAD_INPUT, "a file");
-    assert_fails(mf_live_folder_check_new(root, "../out"), STATUS_BAD_INPUT, "no folder");
+    assert_fails(mf_live_folder_check_new(root, "../out"), STATUS_BAD_INPUT, "not a folder");
 }
 
 static void test_pipe_is_not_waited_for(void **state) {
@@ -94,7 +94,7 @@ static void test_pipe_is_not_waited_for(void **state) {
     (void)state;
     assert_int_equal(mkfifoat(root, "pipe.json", 0600), 0);
     assert_int_equal(mf_live_folder_read(root, "pipe.json", &size), -1);
-    assert_contains(mf_status_message(), "no regular file");
+    assert_contains(mf_status_message(), "not a regular file");
 }
 
 static void test_file_is_written_whole_and_kept_unless_it_may_be_replaced(void **state) {

@@ -265,7 +265,7 @@ static void test_judge_of_a_fit_sees_a_few_percent(void **state) {
     s.temperature = 0.79;
     assert_ok(mf_thermodynamics_judge(&s, &fluid.setup));
     assert_fails(mf_thermodynamics_judge_fit(&s, &fluid.setup), STATUS_UNSTABLE,
-                 "0.79, not 1: nothing holds it");
+                 "0.79, not 1: there is no thermostat");
     s.blocks = 4;
     assert_ok(mf_thermodynamics_judge_fit(&s, &fluid.setup));
     fluid_clear(&fluid);

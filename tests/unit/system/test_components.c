@@ -69,9 +69,9 @@ static void test_components_refuse_names_that_tell_nothing(void **state) {
     struct topology topology;
     struct composition components;
     struct composition beads = make(&topology);
-    assert_refused(&topology, &beads, "three", "B", "\"three-B\" would be two pairs");
-    assert_refused(&topology, &beads, "C-B", "C", "\"C-B-C\" would be two pairs");
-    assert_refused(&topology, &beads, "B-C", "C-B", "\"C-B-C\" would be two pairs");
+    assert_refused(&topology, &beads, "three", "B", "\"three-B\" would name two pairs");
+    assert_refused(&topology, &beads, "C-B", "C", "\"C-B-C\" would name two pairs");
+    assert_refused(&topology, &beads, "B-C", "C-B", "\"C-B-C\" would name two pairs");
     assert_refused(&topology, &beads, "sixteen-letters-", "two", "up to 15 characters");
     name(&topology, "fifteen-letters", "A");
     assert_ok(mf_components_find(&components, &beads, 17, &topology));

@@ -120,10 +120,10 @@ static void test_terms_that_cannot_be_are_refused(void **state) {
     check_refused(kind, "the bond 2-5 has a bead 5, which is not there: beads are 1 to 4");
     kind = molecules_chain(1, abba, 4, BONDED_DIHEDRAL, 1);
     kind.term[BONDED_BOND][2] = (struct topology_term){.bead = {1, 0}, .group = 7};
-    check_refused(kind, "the bond 2-1 stands there twice");
+    check_refused(kind, "duplicate bond 2-1");
     kind = molecules_chain(1, abba, 4, BONDED_DIHEDRAL, 1);
     kind.term[BONDED_ANGLE][1] = (struct topology_term){.bead = {2, 1, 0}};
-    check_refused(kind, "the angle 3-2-1 stands there twice");
+    check_refused(kind, "duplicate angle 3-2-1");
     kind = molecules_chain(1, abba, 4, BONDED_DIHEDRAL, 1);
     kind.term[BONDED_DIHEDRAL][0].bead[3] = 0;
     check_refused(kind, "the dihedral 1-2-3-1 has a bead twice");

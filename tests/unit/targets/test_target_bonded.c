@@ -178,7 +178,7 @@ static void test_target_bonded_refuses_nonsense(void **state) {
     assert_refused(state, normal(0, 0.01, 315, 1.9, 0.05, 1, ""), "", BONDED_ANGLE,
                    "as if in radians");
     assert_refused(state, strdup("0 0.9\n0 2.7\n0.1 4.5\n0.4 6.3\n"), "", BONDED_ANGLE,
-                   "p.tsv:2: column 1: 0 does not grow from 0 in line 1 (are the columns");
+                   "p.tsv:2: column 1: 0 does not increase from 0 in line 1 (are the columns");
     assert_refused(state, normal(0, 1, 181, 110, 5, 1, " i"), VOTCA, BONDED_ANGLE,
                    "as if in degrees");
     assert_refused(state, normal(0, 2, 181, 110, 5, 1, ""), "", BONDED_ANGLE,
@@ -186,7 +186,7 @@ static void test_target_bonded_refuses_nonsense(void **state) {
     assert_refused(state, normal(-1, 0.01, 300, 0.5, 0.05, 1, ""), "", BONDED_BOND,
                    "lengths are from 0");
     assert_refused(state, normal(-90, 1, 181, 0, 20, 1, ""), "", BONDED_DIHEDRAL,
-                   "dihedrals go round");
+                   "expected dihedrals from -180 to 180 degrees");
     assert_refused(state, normal(1, 0.1, 5, 1.2, 0.1, 1, ""), "", BONDED_BOND, "only 5 bins");
 }
 

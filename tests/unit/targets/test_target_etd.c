@@ -120,7 +120,7 @@ static void test_target_etd_read_refuses_what_is_no_escape_time_distribution(voi
                    "r_maximum 1 is not above r_minimum 1");
     assert_refused(state, good, NULL, RANGE ", \"colour\": 1", "colour");
     assert_refused(state, good, NULL, RANGE ", \"time_column\": 2",
-                   "first_column 2 is not behind time_column 2");
+                   "first_column 2 is not after time_column 2");
     assert_refused(state, good, NULL, RANGE ", \"first_column\": 4",
                    "e.tsv:2: 3 columns, at least 4");
     assert_refused(state, good, NULL, RANGE ", \"first_column\": 5",
@@ -137,7 +137,7 @@ static void test_target_etd_read_refuses_what_is_no_escape_time_distribution(voi
                    "e.tsv:2: column 2: -0.1 is not from 0 to 1");
     assert_refused(state, "0 1 0.9\n0.1 1 0.9\n", NULL, RANGE,
                    "e.tsv:1: column 3: 0.9 is not 1 at time 0");
-    assert_refused(state, "0 nan\n0.1 nan\n", NULL, RANGE, "nothing but nan");
+    assert_refused(state, "0 nan\n0.1 nan\n", NULL, RANGE, "all values are nan");
     assert_refused(state, "0 1\n0.1 inf\n", NULL, RANGE, "e.tsv:2: column 2");
 }
 

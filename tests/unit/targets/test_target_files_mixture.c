@@ -108,8 +108,8 @@ static void test_targets_read_refuses_a_mixture_that_is_not_complete(void **stat
     assert_refused(state, AA ", " BB, "a.json: target.rdf.A-B", "missing");
     assert_refused(state, "", "a.json: target.rdf.A-A", "missing");
     assert_refused(state, AA ", " AB ", " BB ", \"A-C\": {\"file\": \"aa.tsv\"}", "target.rdf.A-C",
-                   "no such pair");
-    assert_refused(state, AA ", " AB ", " BA ", " BB, "target.rdf.B-A", "twice");
+                   "unknown pair");
+    assert_refused(state, AA ", " AB ", " BA ", " BB, "target.rdf.B-A", "duplicate pair");
     assert_refused(state, "\"file\": \"aa.tsv\"", "target.rdf.A-A", "missing");
     assert_refused(state, AA ", " AB ", \"B-B\": {\"file\": \"other.tsv\"}", "target.rdf.B-B",
                    "must have the bins of \"A-A\"");

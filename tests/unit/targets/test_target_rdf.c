@@ -156,7 +156,7 @@ static void test_target_read_takes_comma_separated_columns_with_names(void **sta
 static void test_target_read_refuses_errors_that_are_none(void **state) {
     // Three columns as gmx rdf -cn, pasted, has them: neighbours up to r.
     assert_refused(state, "0.1 0 0\n0.2 0.5 0.1\n0.3 1.5 0.9\n0.4 1 1.8\n", "",
-                   "column 3 cannot be the standard error of g: it grows");
+                   "column 3 cannot be the standard error of g: it increases");
     // Those of a short measurement, which say what they are.
     struct target_rdf target;
     assert_ok(
@@ -166,7 +166,7 @@ static void test_target_read_refuses_errors_that_are_none(void **state) {
     // The g of other pairs.
     assert_refused(
         state, "0.1 0 0\n0.2 0.5 1.1\n0.3 1.5 0.9\n0.4 1 0.98\n", "",
-        "column 3 cannot be the standard error of g: it is as large as g; \"error_column\"");
+        "column 3 cannot be the standard error of g: it is as large as g; set \"error_column\"");
     assert_refused(state, "0.1 0 0\n0.2 0.5 0.1\n0.3 1.5 nan\n0.4 1 0.1\n", "",
                    "g.tsv:3: column 3: \"nan\"");
     assert_refused(state, "0.1 0\n0.2 0.5\n0.3 1.5\n0.4 1\n", ", \"error_column\": 3",
@@ -266,9 +266,9 @@ static void test_target_convert_takes_votca_to_possible_pairs(void **state) {
 static void test_target_read_refuses_what_votca_does_not_write(void **state) {
     assert_refused(state, "0.1 0 i\n0.2 0.5 o\n0.3 1.5 i\n0.4 1 i\n", VOTCA, "g.tsv:2: flagged o");
     assert_refused(state, "0.1 0 i\n0.3 0.5 i\n0.2 1.5 i\n0.4 1 i\n", VOTCA,
-                   "g.tsv:3: column 1 does not grow");
+                   "g.tsv:3: column 1 does not increase");
     assert_refused(state, "0.1 0 0\n0.2 0.5 0\n0.3 1.5 0\n0.4 1 0\n", VOTCA,
-                   "g.tsv:1: the row does not end with a letter");
+                   "g.tsv:1: expected a flag i, o or u of VOTCA");
     assert_refused(state, "0.1 0 i\n0.2 0 i\n0.3 -1.5 i\n0.4 1 i\n", VOTCA, "g.tsv:3: a negative");
 }
 

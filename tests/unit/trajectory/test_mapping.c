@@ -181,7 +181,7 @@ static void test_map_is_refused_when_it_does_not_fit_the_atoms(void **state) {
     assert_refused(state, "{\"beads\": {\"A\": {\"residue\": \"MET\"}}, \"rest\": \"ignore\"}",
                    "residue 2 \"MET\" (atom 4) has 2 atoms, the first of its name has 3");
     snprintf(structure.atom[6].name, STRUCTURE_NAME, "QQ");
-    assert_refused(state, "{\"beads\": {\"A\": {}}}", "nobody knows the mass of atom 7, \"QQ\"");
+    assert_refused(state, "{\"beads\": {\"A\": {}}}", "unknown mass of atom 7, \"QQ\"");
     assert_ok(try_map(state, "{\"beads\": {\"A\": {}}, \"masses\": {\"QQ\": 0}}"));
     assert_true(fabs(mapping.bead[3].mass - 2 * 1.008) < 1e-12); // of a water with such a site
     mf_mapping_clear(&mapping);
@@ -206,7 +206,7 @@ static void test_united_atoms_are_warned_of(void **state) {
     snprintf(structure.atom[0].name, STRUCTURE_NAME, "CH3");
     assert_ok(try_map(state, "{\"beads\": {\"A\": {}}}"));
     assert_contains((const char *)mapping.notes.data,
-                    "warning: \"CH3\" weighs as carbon, and there is no hydrogen");
+                    "warning: \"CH3\" has the mass of carbon, and there is no hydrogen");
     mf_mapping_clear(&mapping);
     assert_ok(try_map(state, "{\"beads\": {\"A\": {}}, \"masses\": {\"CH3\": 15.035}}"));
     assert_null(strstr((const char *)mapping.notes.data, "united"));
@@ -222,7 +222,7 @@ static void test_map_file_is_refused_when_its_keys_are_wrong(void **state) {
     assert_refused(state, "{\"beads\": {\"A\": {\"residue\": \"SOL\", \"first\": 1}}}", "not both");
     assert_refused(state, "{\"beads\": {\"A\": {\"first\": 3, \"last\": 2}}}", "from \"first\" to");
     assert_refused(state, "{\"beads\": {\"A\": {\"first\": 1, \"last\": 7, \"size\": 2}}}",
-                   "7 atoms are no whole number of beads of 2");
+                   "7 atoms are not a whole number of beads of 2");
     assert_refused(state, "{\"beads\": {\"A\": {}}, \"masses\": {\"O\": -1}}", "masses.O");
     assert_refused(state, "{\"beads\": {\"A\": {\"atoms\": \"  \"}}}", "names no atom");
     clear();

@@ -171,8 +171,9 @@ static void test_dcd_is_refused_when_its_records_do_not_fit(void **state) {
     assert_ok(try(state, &(struct trajectory_options){0}));
     bool more;
     next(true);
-    assert_fails(mf_trajectory_next(&trajectory, &frame, &more), STATUS_BAD_INPUT,
-                 "a.bin: frame 1, byte 428: a record before here is not of the 12 bytes");
+    assert_fails(
+        mf_trajectory_next(&trajectory, &frame, &more), STATUS_BAD_INPUT,
+        "a.bin: frame 1, byte 428: the preceding record does not have the expected 12 bytes");
     close_all();
     file_size = 200;
     assert_int_equal(try(state, &(struct trajectory_options){0}), STATUS_BAD_INPUT);

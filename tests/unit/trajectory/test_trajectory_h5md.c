@@ -367,8 +367,9 @@ static void test_h5md_names_its_groups_when_there_are_several(void **state) {
     H5Gclose(two);
     H5Gclose(none);
     end_file();
-    assert_fails(try(&nothing), STATUS_BAD_INPUT,
-                 "several groups of particles, \"polymer\", \"solvent\": --file-group tells which");
+    assert_fails(
+        try(&nothing), STATUS_BAD_INPUT,
+        "several groups of particles, \"polymer\", \"solvent\": choose one by --file-group");
     assert_fails(try(&(struct trajectory_options){.group = "no"}), STATUS_BAD_INPUT,
                  "no group of particles with positions is called \"no\"");
     assert_ok(try(&(struct trajectory_options){.group = "polymer"}));
@@ -424,7 +425,7 @@ static void test_h5md_is_refused_when_its_box_or_steps_do_not_fit(void **state) 
     H5Gclose(box);
     H5Gclose(group);
     end_file();
-    assert_fails(try(&nothing), STATUS_BAD_INPUT, "should be 3 lengths or 3 vectors");
+    assert_fails(try(&nothing), STATUS_BAD_INPUT, "expected 3 lengths or 3 vectors");
     begin_file(state);
     group = begin_group("all");
     put_positions(group, H5T_IEEE_F64LE, true, "nm");
@@ -434,7 +435,7 @@ static void test_h5md_is_refused_when_its_box_or_steps_do_not_fit(void **state) 
     H5Gclose(position);
     H5Gclose(group);
     end_file();
-    assert_fails(try(&nothing), STATUS_BAD_INPUT, "not one step, and one time, for each");
+    assert_fails(try(&nothing), STATUS_BAD_INPUT, "not have one step and one time for each");
     begin_file(state);
     group = begin_group("all");
     put_positions(group, H5T_IEEE_F64LE, true, "kg");
@@ -457,7 +458,7 @@ static void test_h5md_is_refused_when_it_promises_more_than_it_holds(void **stat
     H5Gclose(position);
     H5Gclose(group);
     end_file();
-    assert_fails(try(&nothing), STATUS_BAD_INPUT, "more numbers than the file can hold");
+    assert_fails(try(&nothing), STATUS_BAD_INPUT, "more numbers in a frame than the file can hold");
 }
 
 /// Cut at many places: always a line, never a crash; and a packed frame that is damaged.
@@ -476,7 +477,7 @@ static void test_h5md_is_refused_when_it_is_cut_or_damaged(void **state) {
     fclose(stream);
     for (off_t cut = whole - 1; cut > 8; cut -= 97) {
         assert_int_equal(truncate(path, cut), 0);
-        assert_fails(try(&nothing), STATUS_BAD_INPUT, "HDF5 cannot open it, it may be cut off");
+        assert_fails(try(&nothing), STATUS_BAD_INPUT, "HDF5 cannot open it; it may be truncated");
     }
     // The packed bytes begin with those of zlib; the frame after the first two is broken.
     char *place = bytes;
@@ -541,7 +542,7 @@ static void test_h5md_is_refused_when_links_lead_into_other_files(void **state) 
     put_positions(group, H5T_IEEE_F64LE, true, NULL);
     link_elsewhere(group, "box", "/particles/all/box");
     H5Gclose(group);
-    assert_elsewhere("\"box\" is no group of this file");
+    assert_elsewhere("\"box\" is not a group of this file");
     begin_file(state);
     group = H5Gopen(file, "particles", H5P_DEFAULT);
     link_elsewhere(group, "all", "/particles/all");
@@ -576,7 +577,7 @@ static void test_h5md_is_refused_when_its_numbers_are_elsewhere(void **state) {
 static void test_h5md_is_told_apart_when_it_is_other_hdf5(void **state) {
     snprintf(path, sizeof path, "%s/a.h5", ((struct temporary_folder *)*state)->path);
     H5Fclose(H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT));
-    assert_fails(try(&nothing), STATUS_BAD_INPUT, "it is HDF5 and no H5MD");
+    assert_fails(try(&nothing), STATUS_BAD_INPUT, "HDF5, but not H5MD");
     begin_file(state);
     end_file();
     assert_fails(try(&nothing), STATUS_BAD_INPUT,

@@ -237,7 +237,7 @@ static void test_dump_is_periodic_when_it_does_not_say(void **state) {
 static void test_units_must_be_told_unless_the_file_does(void **state) {
     char text[1024];
     assert_int_equal(try(state, dump, NULL), STATUS_BAD_INPUT);
-    assert_contains(mf_status_message(), "does not say its units");
+    assert_contains(mf_status_message(), "has no units: give them by --file-units");
     assert_int_equal(try(state, dump, "reel"), STATUS_BAD_INPUT);
     assert_contains(mf_status_message(), "did you mean \"real\"?");
     snprintf(text, sizeof text, "ITEM: UNITS\nlj\n%s", dump);
@@ -245,7 +245,7 @@ static void test_units_must_be_told_unless_the_file_does(void **state) {
     assert_true(trajectory.scale.length == 1);
     mf_trajectory_close(&trajectory);
     assert_int_equal(try(state, text, "real"), STATUS_BAD_INPUT);
-    assert_contains(mf_status_message(), "says that its units are \"lj\"");
+    assert_contains(mf_status_message(), "the file has the units \"lj\"");
     assert_ok(try(state, data_file("Atoms", "3 7 8 9", "2 1 2 3"), NULL));
     assert_true(trajectory.scale.length == 0.1 && trajectory.scale.time == 1);
     mf_trajectory_close(&trajectory);
@@ -284,20 +284,20 @@ static void test_dump_is_refused_with_its_line(void **state) {
     snprintf(text, sizeof text, "%s%.*s", dump, (int)sizeof dump - 9, dump);
     assert_refused(state, text, "a.txt:21: frame 1: the file ends within the frame, 1 lines");
     snprintf(text, sizeof text, "%s%.*s2 4 5 6\n", dump, (int)sizeof dump - 9, dump);
-    assert_refused(state, text, "a.txt:22: frame 1: the atom of id 2 stands here twice");
+    assert_refused(state, text, "a.txt:22: frame 1: duplicate atom id 2");
     snprintf(text, sizeof text, "%s%.*s3 4 5 6\n", dump, (int)sizeof dump - 9, dump);
     assert_refused(state, text, "a.txt:22: frame 1: the first frame has no atom of id 3");
     snprintf(text, sizeof text, "%s%.*s1 4 five 6\n", dump, (int)sizeof dump - 9, dump);
-    assert_refused(state, text, "a.txt:22: frame 1: a coordinate is no finite number");
+    assert_refused(state, text, "a.txt:22: frame 1: a coordinate is not a finite number");
     snprintf(text, sizeof text, "%s%.*s1 4 5\n", dump, (int)sizeof dump - 9, dump);
-    assert_refused(state, text, "a.txt:22: frame 1: 3 columns, there should be 4");
+    assert_refused(state, text, "a.txt:22: frame 1: 3 columns, expected 4");
     snprintf(text, sizeof text, "%.*s2 4 5 6\n", (int)sizeof dump - 9, dump);
     assert_refused(state, text, "two atoms have the id 2");
     snprintf(text, sizeof text, "%sITEM: TIMESTEP\n8\nITEM: NUMBER OF ATOMS\n3\n", dump);
     assert_refused(state, text, "a.txt:15: frame 1: it has 3 atoms, the first frame 2");
     assert_refused(state, "ITEM: NUMBER OF ATOMS\n1\nITEM: ATOMS id x y\n1 2 3\n", "no positions");
     assert_refused(state, "ITEM: ATOMS id x y z\n1 2 3 4\n",
-                   "a.txt:1: frame 0: the number of atoms");
+                   "a.txt:1: frame 0: expected the number of atoms");
     assert_refused(state, "ITEM: NUMBER OF ATOMS\n999999999999999\nITEM: ATOMS x y z\n1 2 3\n",
                    "999999999999998 lines are missing");
     assert_int_equal(try(state, data_file("Atoms # dipole", "3 7 8 9", "2 1 2 3"), NULL),

@@ -239,39 +239,42 @@ static void assert_refused(void **state, const char *name, const char *text, con
 
 static void test_text_is_refused_with_its_line(void **state) {
     assert_refused(state, "a.gro", "t\n2\n    1ABC      C    1   0.1", "a.gro:3: frame 0: ");
-    assert_refused(state, "a.gro", "t\nmany\n", "a.gro:2: frame 0: here should stand the number");
+    assert_refused(state, "a.gro", "t\nmany\n", "a.gro:2: frame 0: expected the number of atoms");
     assert_refused(state, "a.gro", "t\n99999999999\n    1ABC      C    1   0.100   0.200   0.300\n",
                    "99999999998 lines are missing");
     assert_refused(state, "a.gro", "t\n1\n    1ABC      C    1   0.100   0.2x0   0.300\n 1 1 1\n",
-                   "a.gro:3: frame 0: here should stand the position");
+                   "a.gro:3: frame 0: expected an atom position");
     assert_refused(state, "a.gro", "t\n1\n    1ABC      C    1   0.100   0.200   0.300\n 1 1\n",
-                   "a.gro:4: frame 0: here should stand the box");
+                   "a.gro:4: frame 0: expected the box");
     assert_refused(state, "a.gro", "a\n" ARGON BOX "\nb\n" ARGON "   2.00000   3.00000   4.000",
                    "a.gro:8: frame 1: the file ends within this line");
     assert_refused(state, "a.gro", "a\n" ARGON BOX "\nb\n" ARGON "   2.00000   3.00000",
-                   "a.gro:8: frame 1: here should stand the box");
+                   "a.gro:8: frame 1: expected the box");
     assert_refused(state, "a.gro", "a\n" ARGON BOX "\nb\n" ARGON,
                    "a.gro:7: frame 1: the file ends within the frame, the box is missing");
     assert_refused(state, "a.gro", "a\n" ARGON "40000.0000030000.00000\n",
-                   "a.gro:4: frame 0: here should stand the box");
+                   "a.gro:4: frame 0: expected the box");
     assert_refused(state, "a.xyz", "1\n\nO 1 2 3\n2\n\nO 1 2 3\nO 1 2 3\n",
                    "a.xyz:4: frame 1: it has 2 atoms, the first frame 1");
     assert_refused(state, "a.xyz", "1\n\nO 1 2 3\n1\n\nO 1 2 3",
                    "a.xyz:6: frame 1: the file ends within this line");
     assert_refused(state, "a.xyz", "1\n\nO 1 2 3\n1\n\n", "a.xyz:5: frame 1: the file ends within");
     assert_refused(state, "a.xyz", "1\n\nO 1 nan 3\n", "a.xyz:3: frame 0: a coordinate");
-    assert_refused(state, "a.xyz", "1\nProperties=pos:R:2\n1 2\n", "a.xyz:2: frame 0: Properties");
+    assert_refused(state, "a.xyz", "1\nProperties=pos:R:2\n1 2\n",
+                   "a.xyz:2: frame 0: expected name:kind:number in Properties");
     assert_refused(state, "a.xyz", "1\nLattice=\"1 2 3\"\nO 1 2 3\n", "nine numbers");
     assert_refused(state, "a.xyz", "1\nUnits=furlong Properties=pos:R:3\n1 2 3\n",
-                   "a.xyz: no units are called \"furlong\"");
+                   "a.xyz: unknown units \"furlong\"");
     assert_refused(state, "a.pdb", "MODEL 1\n" PDB_ATOM("1", " CA ", "A", "   1.000"),
                    "ENDMDL is missing");
     assert_refused(state, "a.pdb", "REMARK nothing\nEND\n", "a.pdb: the file has no frame");
-    assert_refused(state, "a.pdb", "CRYST1   40.000   40.000\n", "a.pdb:1: frame 0: CRYST1");
-    assert_refused(state, "a.odd", "who knows\n", "a.odd: is no trajectory");
+    assert_refused(state, "a.pdb", "CRYST1   40.000   40.000\n",
+                   "a.pdb:1: frame 0: expected three lengths and three angles in CRYST1");
+    assert_refused(state, "a.odd", "who knows\n", "a.odd: not a trajectory");
     assert_refused(state, "a.odd", "\x1F\x8B", "gunzip");
-    assert_refused(state, "a.tpr", "any bytes", "a.tpr: is no trajectory: GROMACS's .tpr is not");
-    assert_refused(state, "a.top", "[ defaults ]\n", "a topology has no coordinates: a .gro");
+    assert_refused(state, "a.tpr", "any bytes", "a.tpr: not a trajectory: GROMACS's .tpr is not");
+    assert_refused(state, "a.top", "[ defaults ]\n",
+                   "a topology has no coordinates: give names and residues by a .gro");
     assert_refused(state, "a.xtc", "", "a.xtc: the file is empty");
 }
 

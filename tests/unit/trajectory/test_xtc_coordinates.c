@@ -205,7 +205,7 @@ static void test_packing_is_refused_when_it_cannot_be(void **state) {
     (void)state;
     assert_null(mf_xtc_coordinates_check(&good, 200));
     assert_string_equal(mf_xtc_coordinates_check(&good, 100),
-                        "there are too few bytes for so many atoms");
+                        "too few bytes for the number of atoms");
     bad.level = 8;
     assert_non_null(mf_xtc_coordinates_check(&bad, 200));
     bad.level = 73;
