@@ -20,11 +20,16 @@ bool mf_imc_is_known(const struct inversion *inversion, double directions) {
            directions < well_known * well_known * inversion->state->response.independent;
 }
 
-/// A step that is as smooth as the noise allows leaves what is wide and far outside its own noise,
-/// as the ramp and the concentrations of a mixture, since it is few among many bins. Where C is
-/// known in all of them the step is the most probable one, with the prior of the band.
+/// Near the noise a step that is as smooth as the noise allows is none at all, though g still asks
+/// for one along the ramp. There the step is the most probable one, with the prior of the band. Of
+/// a mixture it leaves the concentrations far outside their own noise, few directions among many
+/// bins, and the most probable one is taken wherever C is known in all bins. Far from the target of
+/// one type of beads that one takes what is not linear for the ramp, and g hardly calls it back:
+/// soft beads ended four errors off.
 static double choose_strength(struct inversion *inversion) {
-    if (!mf_imc_is_known(inversion, (double)inversion_grid(inversion)->known))
+    const struct potential_grid *grid = inversion_grid(inversion);
+    if (grid->pairs > 1 ? !mf_imc_is_known(inversion, (double)grid->known)
+                        : !mf_inversion_is_near(inversion))
         return 0; // by the noise
     inversion->course.most_probable = true;
     return mf_inversion_band_prior(inversion);
