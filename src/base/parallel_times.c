@@ -21,22 +21,16 @@ static struct parallel_size *find(size_t tasks) {
     return &seen.size[nearest];
 }
 
-void mf_parallel_times_add(size_t tasks, double seconds) {
-#pragma omp critical
-    mf_statistics_add(&find(tasks)->now, seconds);
-}
-
-void mf_parallel_times_end(size_t tasks, double waited) {
+void mf_parallel_times_add(size_t tasks, const struct running_mean *seconds, double waited) {
 #pragma omp critical
     {
         struct parallel_size *size = find(tasks);
         size->rounds++;
         size->waited += waited;
-        size->done += size->now.count;
-        size->seconds += size->now.count * size->now.mean;
-        if (size->now.mean > 0)
-            size->squares += size->now.squares / (size->now.mean * size->now.mean);
-        size->now = (struct running_mean){0};
+        size->done += seconds->count;
+        size->seconds += seconds->count * seconds->mean;
+        if (seconds->mean > 0)
+            size->squares += seconds->squares / (seconds->mean * seconds->mean);
     }
 }
 

@@ -55,7 +55,7 @@ void mf_live_control_stop(struct live_control *control) {
     pthread_mutex_lock(&control->lock);
     control->stopped = true;
     control->paused = false;
-    mf_interrupt_wish(true);
+    mf_interrupt_request(true);
     leave(control);
 }
 
@@ -95,7 +95,7 @@ void mf_live_control_reset(struct live_control *control) {
     pthread_mutex_lock(&control->lock);
     control->paused = control->stopped = control->changes = false;
     control->steps = 0;
-    mf_interrupt_wish(false);
+    mf_interrupt_request(false);
     pthread_mutex_unlock(&control->lock);
 }
 
