@@ -3,7 +3,7 @@
 
 #include "base/clock.h"
 #include "base/memory.h"
-#include "base/parallel_outcome.h"
+#include "base/parallel_call.h"
 #include "base/parallel_times.h"
 #include "base/ranks.h"
 #include "base/task_log.h"
@@ -40,16 +40,9 @@ double mf_parallel_sum(size_t count, int threads,
     return total;
 }
 
-static bool may_begin(const struct parallel_outcome *outcome, size_t task) {
-    bool may;
-#pragma omp critical
-    may = parallel_outcome_allows(outcome, task);
-    return may;
-}
-
 /// Run a task, and take its result or keep its failure.
-static void try_one(const struct parallel_tasks *tasks, size_t task,
-                    struct parallel_outcome *outcome) {
+static void try_one(struct parallel_call *call, size_t task) {
+    const struct parallel_tasks *tasks = call->tasks;
     void *result = NULL;
     enum status status = STATUS_OK;
     if (tasks->result_size > 0 && (result = mf_memory_zeroed(1, tasks->result_size)) == NULL)
@@ -60,34 +53,38 @@ static void try_one(const struct parallel_tasks *tasks, size_t task,
     const double seconds = clock_thread_seconds() - begin;
 #pragma omp critical
     {
+        if (status == STATUS_OK && call->log)
+            mf_task_log_note(call, task, result);
         if (status == STATUS_OK && tasks->take)
             tasks->take(tasks->context, task, result);
-        parallel_outcome_add(outcome, task, status, mf_status_message(), seconds);
+        parallel_call_end_task(call, task, status, mf_status_message(), seconds);
     }
     mf_memory_free(result);
 }
 
-static void try_alone(const struct parallel_tasks *tasks, struct parallel_outcome *outcome) {
+static void try_alone(struct parallel_call *call) {
     // Threads take the numbers in their order: all below one that failed have begun.
 #pragma omp parallel for schedule(dynamic)                                                         \
-    num_threads(tasks->threads) if (tasks->threads > 1 && tasks->count > 1)
-    for (size_t task = 0; task < tasks->count; task++)
-        if (may_begin(outcome, task))
-            try_one(tasks, task, outcome);
-}
-
-static enum status try_all(const struct parallel_tasks *tasks) {
-    const double begin = clock_seconds();
-    struct parallel_outcome outcome = {.task = tasks->count};
-    if (tasks->spans && mf_ranks_count() > 1)
-        mf_ranks_try(tasks, &outcome);
-    else
-        try_alone(tasks, &outcome);
-    if (tasks->spans)
-        mf_parallel_times_add(tasks->count, &outcome.seconds, clock_seconds() - begin);
-    return parallel_outcome_status(&outcome);
+    num_threads(call->tasks->threads) if (call->tasks->threads > 1 && call->left > 1)
+    for (size_t task = 0; task < call->tasks->count; task++) {
+        bool wanted;
+#pragma omp critical
+        wanted = parallel_call_wants(call, task);
+        if (wanted)
+            try_one(call, task);
+    }
 }
 
 enum status mf_parallel_try(const struct parallel_tasks *tasks) {
-    return mf_task_log_try(tasks, try_all);
+    const double begin = clock_seconds();
+    struct parallel_call call = {.tasks = tasks, .left = tasks->count, .failed = tasks->count};
+    TRY(mf_task_log_begin(&call));
+    if (call.left > 0 && tasks->spans && mf_ranks_count() > 1)
+        mf_ranks_try(&call);
+    else
+        try_alone(&call);
+    if (call.left > 0 && tasks->spans)
+        mf_parallel_times_add(call.left, &call.seconds, clock_seconds() - begin);
+    mf_task_log_end(&call);
+    return call.status == STATUS_OK ? STATUS_OK : mf_status_fail(call.status, "%s", call.message);
 }

@@ -3,7 +3,6 @@
 
 #include "base/clock.h"
 #include "base/interrupt.h"
-#include "base/parallel_outcome.h"
 #include "base/task_log.h"
 
 #include <limits.h>
@@ -127,42 +126,41 @@ void mf_ranks_end(void) {
 
 static const uint64_t NO_TASK = UINT64_MAX;
 
-/// What the threads of a rank share; all but `tasks` and `working` is of rank 0, behind the lock.
+/// What the threads of a rank share. On rank 0 the call and `next` are behind the lock.
 struct round {
-    const struct parallel_tasks *tasks;
+    struct parallel_call *call;
     atomic_bool working; ///< threads of this rank do tasks, or ask for one
     double pause;        ///< of the thread that talks to other ranks [s]
     pthread_mutex_t lock;
     size_t next; ///< task to be handed out
-    struct parallel_outcome *outcome;
-    struct task_log log;
 };
 
 /// A task has ended here, or on another rank, which has changed its own context alone.
-static void collect(struct round *round, const struct task_record *record, bool is_here) {
-    const struct parallel_tasks *tasks = round->tasks;
+static void collect(struct parallel_call *call, const struct task_record *record, bool is_here) {
+    const struct parallel_tasks *tasks = call->tasks;
     const void *result = tasks->result_size > 0 ? task_record_bytes(record) : NULL;
-    parallel_outcome_add(round->outcome, record->task, (enum status)record->status,
-                         task_record_bytes(record), record->seconds);
+    parallel_call_end_task(call, record->task, (enum status)record->status,
+                           task_record_bytes(record), record->seconds);
     if (record->status != STATUS_OK)
         return;
     if (!is_here && !mf_task_record_restore(record, tasks, &result))
         stop_diverged();
+    if (mf_task_log_add(call->log, record) != STATUS_OK)
+        stop(STATUS_NO_MEMORY);
     if (tasks->take)
         tasks->take(tasks->context, record->task, result);
-    if (mf_task_log_add(&round->log, record) != STATUS_OK)
-        stop(STATUS_NO_MEMORY);
 }
 
 /// Rank 0 gives a thread the next task. They go in their order: all below one that failed have
 /// begun.
 static uint64_t next_task(struct round *round, const struct task_record *finished, bool is_here) {
-    uint64_t task = NO_TASK;
+    const size_t count = round->call->tasks->count;
     pthread_mutex_lock(&round->lock);
     if (finished)
-        collect(round, finished, is_here);
-    if (round->next < round->tasks->count && parallel_outcome_allows(round->outcome, round->next))
-        task = round->next++;
+        collect(round->call, finished, is_here);
+    while (round->next < count && !parallel_call_wants(round->call, round->next))
+        round->next++;
+    const uint64_t task = round->next < count ? round->next++ : NO_TASK;
     pthread_mutex_unlock(&round->lock);
     return task;
 }
@@ -198,8 +196,9 @@ static uint64_t ask_for_task(const struct task_record *finished) {
     return task;
 }
 
-static struct task_record *do_task(const struct parallel_tasks *tasks, uint64_t task) {
-    struct task_record head = {.task = task};
+static struct task_record *do_task(const struct parallel_call *call, uint64_t task) {
+    const struct parallel_tasks *tasks = call->tasks;
+    struct task_record head = {.call = call->number, .task = task};
     void *result = or_stop(mf_memory_zeroed(1, tasks->result_size));
     const double begin = clock_thread_seconds();
     head.status = tasks->run(tasks->context, task, tasks->result_size > 0 ? result : NULL);
@@ -215,7 +214,7 @@ static void work(struct round *round) {
     while ((task = job.number == 0 ? next_task(round, finished, true) : ask_for_task(finished)) !=
            NO_TASK) {
         mf_memory_free(finished);
-        finished = do_task(round->tasks, task);
+        finished = do_task(round->call, task);
     }
     mf_memory_free(finished);
 }
@@ -337,7 +336,7 @@ static void *talk(void *memory) {
         for (double waited = 0; round->working && waited < BETWEEN_REPORTS;)
             waited += look(round);
         all = (struct report){.call = job.calls,
-                              .digest = round->tasks->count,
+                              .digest = round->call->tasks->count,
                               .signal = mf_interrupt_signal(),
                               .working = round->working};
         meet(&all, round);
@@ -347,30 +346,38 @@ static void *talk(void *memory) {
 }
 
 /// What rank 0 has collected goes to the others, which have seen their own tasks alone.
-static void share(struct round *round) {
-    struct task_log *log = &round->log;
-    broadcast(round->outcome, sizeof *round->outcome);
+static void share(struct parallel_call *call) {
+    struct task_log *log = call->log;
+    broadcast(&call->status, sizeof call->status);
+    if (call->status != STATUS_OK)
+        broadcast(call->message, sizeof call->message);
     broadcast(&log->size, sizeof log->size);
     if (mf_task_log_make_room(log) != STATUS_OK)
         stop(STATUS_NO_MEMORY);
-    broadcast(log->records, log->size);
-    if (job.number != 0 && !mf_task_log_replay(log, 0, round->tasks, NULL))
+    broadcast(log->records + call->begin, log->size - call->begin);
+    if (job.number != 0 && !mf_task_log_replay(call))
         stop_diverged();
+    if (log->size > TASK_LOG_MOST)
+        log->size = call->begin;
 }
 
-void mf_ranks_try(const struct parallel_tasks *tasks, struct parallel_outcome *outcome) {
-    struct round round = {.tasks = tasks, .working = true, .pause = SHORTEST, .outcome = outcome};
+void mf_ranks_try(struct parallel_call *call) {
+    const struct parallel_tasks *tasks = call->tasks;
+    struct task_log own = {0};
+    struct round round = {.call = call, .working = true, .pause = SHORTEST};
     pthread_t talker;
+    if (call->log == NULL)
+        call->log = &own;
     job.calls++;
     pthread_mutex_init(&round.lock, NULL);
     if (pthread_create(&talker, NULL, talk, &round) != 0)
         stop(mf_status_fail(STATUS_NO_MEMORY, "a thread that talks to other ranks cannot begin"));
         // One task has the threads for itself.
-#pragma omp parallel num_threads(tasks->threads) if (tasks->threads > 1 && tasks->count > 1)
+#pragma omp parallel num_threads(tasks->threads) if (tasks->threads > 1 && call->left > 1)
     work(&round);
     round.working = false;
     pthread_join(talker, NULL);
     pthread_mutex_destroy(&round.lock);
-    share(&round);
-    mf_task_log_clear(&round.log);
+    share(call);
+    mf_task_log_clear(&own);
 }

@@ -39,6 +39,5 @@ void mf_ranks_broadcast(const struct memory_span *spans, size_t count);
 
 /// What mf_parallel_try does where there are several ranks: rank 0 hands out the tasks in their
 /// order, one to each thread of any rank that is free, and all ranks have all results at the end.
-struct parallel_tasks;
-struct parallel_outcome;
-void mf_ranks_try(const struct parallel_tasks *tasks, struct parallel_outcome *outcome);
+struct parallel_call;
+void mf_ranks_try(struct parallel_call *call);

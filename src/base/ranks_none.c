@@ -44,6 +44,6 @@ void mf_ranks_broadcast(const struct memory_span *spans, size_t count) {
     (void)spans, (void)count;
 }
 
-void mf_ranks_try(const struct parallel_tasks *tasks, struct parallel_outcome *outcome) {
-    (void)tasks, (void)outcome;
+void mf_ranks_try(struct parallel_call *call) {
+    (void)call;
 }

@@ -127,19 +127,19 @@ enum status mf_task_log_add(struct task_log *log, const struct task_record *reco
     return STATUS_OK;
 }
 
-bool mf_task_log_replay(const struct task_log *log, uint64_t call,
-                        const struct parallel_tasks *tasks, bool *done) {
+bool mf_task_log_replay(const struct parallel_call *call) {
+    const struct parallel_tasks *tasks = call->tasks;
     const void *result;
-    for (uint64_t at = 0; at < log->size;) {
+    for (uint64_t at = call->begin; at < call->log->size;) {
         const struct task_record *record =
-            (const struct task_record *)(const void *)(log->records + at);
+            (const struct task_record *)(const void *)(call->log->records + at);
         at += task_record_size(record);
-        if (record->call != call)
+        if (record->call != call->number)
             continue;
         if (!mf_task_record_restore(record, tasks, &result))
             return false;
-        if (done)
-            done[record->task] = true;
+        if (call->done)
+            call->done[record->task] = true;
         if (tasks->take)
             tasks->take(tasks->context, record->task, result);
     }
@@ -154,74 +154,36 @@ void mf_task_log_use(struct task_log *log) {
         log->calls = 0;
 }
 
-/// Tasks of a call that are left to be done.
-struct rest {
-    const struct parallel_tasks *tasks;
-    struct task_log *log;
-    uint64_t call;
-    bool *done;    ///< shape [tasks]
-    size_t *index; ///< shape [rest]: their numbers among the tasks
-};
-
-/// Log a task, unless it takes too much memory: a record saves no more than time.
-static void add(const struct rest *rest, uint64_t task, const void *result) {
-    enum { MOST_BYTES = 1 << 28 };
-    struct task_record *record = mf_task_record_create(
-        &(struct task_record){.call = rest->call, .task = task}, rest->tasks, result);
-    if (record && rest->log->size + task_record_size(record) <= MOST_BYTES)
-        (void)!mf_task_log_add(rest->log, record);
-    mf_memory_free(record);
-}
-
-static enum status run(void *context, size_t task, void *result) {
-    const struct rest *rest = context;
-    return rest->tasks->run(rest->tasks->context, rest->index[task], result);
-}
-
-static void take(void *context, size_t task, const void *result) {
-    const struct rest *rest = context;
-    add(rest, rest->index[task], result);
-    if (rest->tasks->take)
-        rest->tasks->take(rest->tasks->context, rest->index[task], result);
-}
-
-static size_t spans(void *context, size_t task, struct memory_span *span) {
-    const struct rest *rest = context;
-    return rest->tasks->spans(rest->tasks->context, rest->index[task], span);
-}
-
-/// Nested tasks are a part of those that are in the log.
-static enum status try_rest(struct rest *rest, enum status (*try)(const struct parallel_tasks *)) {
-    struct parallel_tasks left = *rest->tasks;
-    left.count = 0;
-    for (size_t task = 0; task < rest->tasks->count; task++)
-        if (!rest->done[task])
-            rest->index[left.count++] = task;
-    left.run = run;
-    left.take = take;
-    left.spans = spans;
-    left.context = rest;
-    used = NULL;
-    const enum status status = left.count > 0 ? try(&left) : STATUS_OK;
-    used = rest->log;
-    return status;
-}
-
-enum status mf_task_log_try(const struct parallel_tasks *tasks,
-                            enum status (*try)(const struct parallel_tasks *)) {
+enum status mf_task_log_begin(struct parallel_call *call) {
     enum status status = STATUS_OK;
-    struct rest rest = {.tasks = tasks, .log = used};
-    if (used == NULL || tasks->spans == NULL)
-        return try(tasks);
-    rest.call = used->calls++;
-    NEW_ARRAY(rest.done, tasks->count);
-    NEW_ARRAY(rest.index, tasks->count);
-    status = mf_task_log_replay(used, rest.call, tasks, rest.done)
-                 ? try_rest(&rest, try)
-                 : mf_status_fail(STATUS_BAD_INPUT, "the checkpoint has tasks of another fit; "
-                                                    "begin anew with --force instead of --resume");
+    if (used == NULL || call->tasks->spans == NULL)
+        return STATUS_OK;
+    call->log = used;
+    call->number = used->calls++;
+    NEW_ARRAY(call->done, call->tasks->count);
+    if (!mf_task_log_replay(call))
+        CHECK(mf_status_fail(STATUS_BAD_INPUT, "the checkpoint has tasks of another fit; begin "
+                                               "anew with --force instead of --resume"));
+    for (size_t task = 0; task < call->tasks->count; task++)
+        call->left -= call->done[task];
+    call->begin = used->size;
+    used = NULL;
 done:
-    mf_memory_free(rest.done);
-    mf_memory_free(rest.index);
+    if (status != STATUS_OK)
+        mf_memory_free(call->done);
     return status;
+}
+
+void mf_task_log_end(struct parallel_call *call) {
+    if (call->done)
+        used = call->log;
+    mf_memory_free(call->done);
+}
+
+void mf_task_log_note(const struct parallel_call *call, size_t task, const void *result) {
+    struct task_record *record = mf_task_record_create(
+        &(struct task_record){.call = call->number, .task = task}, call->tasks, result);
+    if (record && call->log->size + task_record_size(record) <= TASK_LOG_MOST)
+        (void)!mf_task_log_add(call->log, record);
+    mf_memory_free(record);
 }

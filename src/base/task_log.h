@@ -7,7 +7,7 @@
 /// its tasks, whatever the method; a task that is not in it is done again, with the same bits.
 #pragma once
 
-#include "base/parallel.h"
+#include "base/parallel_call.h"
 
 #include <stdbool.h>
 
@@ -43,10 +43,13 @@ enum status mf_task_log_make_room(struct task_log *log) MUST_USE;
 
 /// @name For mf_parallel_try
 
-/// Those of `tasks` that are not in the log; `try` does them. Fails: as `try`; BAD_INPUT for a log
-/// of other tasks.
-enum status mf_task_log_try(const struct parallel_tasks *tasks,
-                            enum status (*try)(const struct parallel_tasks *)) MUST_USE;
+/// Give the call what the log in use has of its tasks. That log is none of tasks within them.
+/// Fails: NO_MEMORY; BAD_INPUT for a log of other tasks.
+enum status mf_task_log_begin(struct parallel_call *call) MUST_USE;
+void mf_task_log_end(struct parallel_call *call);
+
+/// Log a task of this call. One that takes too much memory is left out: it saves no more than time.
+void mf_task_log_note(const struct parallel_call *call, size_t task, const void *result);
 
 static inline const char *task_record_bytes(const struct task_record *record) {
     return (const char *)(record + 1);
@@ -67,10 +70,12 @@ struct task_record *mf_task_record_create(const struct task_record *head,
 bool mf_task_record_restore(const struct task_record *record, const struct parallel_tasks *tasks,
                             const void **result);
 
+/// Beyond so many bytes a log takes too much memory, and time to save it.
+enum { TASK_LOG_MOST = 1 << 28 };
+
 /// Fails: NO_MEMORY.
 enum status mf_task_log_add(struct task_log *log, const struct task_record *record) MUST_USE;
 
-/// Put what the records of this call tell into its place, and note in `done` which they are, unless
-/// that is NULL. False if they do not fit.
-bool mf_task_log_replay(const struct task_log *log, uint64_t call,
-                        const struct parallel_tasks *tasks, bool *done);
+/// Put what the records of this call have into the context, from its first one, and note in `done`
+/// which they are, unless that is NULL. False if they do not fit.
+bool mf_task_log_replay(const struct parallel_call *call);
