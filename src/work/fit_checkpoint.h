@@ -4,7 +4,6 @@
 /// interruption costs the tasks that were being done, and no more.
 #pragma once
 
-#include "base/memory_image.h"
 #include "base/task_log.h"
 #include "report/history.h"
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Tasks that stop, and go on from what those before have left.
-#include "base/memory_image.h"
 #include "base/task_log.h"
 #include "shared/testing.h"
 
