@@ -2,7 +2,7 @@
 #include "input/gromacs_topology.h"
 
 #include "base/memory.h"
-#include "base/own_words.h"
+#include "base/names.h"
 #include "input/gromacs_terms.h"
 
 #include <ctype.h>
@@ -74,9 +74,9 @@ static enum status begin_kind(struct gromacs_reading *reading, const struct grom
     if (words->count < 2 || !copy_name(words->word[0], name))
         return mf_gromacs_fail(line, "a moleculetype has a name of up to %d letters, and nrexcl",
                                TOPOLOGY_NAME_SIZE - 1);
-    if (mf_own_words_has(name))
-        return mf_gromacs_fail(line, "\"%.40s\": a moleculetype has a name of its own, " OWN_WORDS,
-                               name);
+    if (mf_names_is_reserved(name))
+        return mf_gromacs_fail(
+            line, "\"%.40s\": a moleculetype has a name of its own, " NAMES_RESERVED, name);
     if (!mf_gromacs_is_integer(words->word[1], 0, TOPOLOGY_MOST_EXCLUDE, &exclude))
         return mf_gromacs_fail(line, "nrexcl is 0 to %d, not %.40s", TOPOLOGY_MOST_EXCLUDE,
                                words->word[1]);
@@ -100,8 +100,8 @@ static enum status find_type(struct gromacs_reading *reading, const struct groma
             return STATUS_OK;
     if (!mf_composition_is_name(name))
         return mf_gromacs_fail(
-            line, "\"%.40s\": a type is called by up to %d letters, digits and _, " OWN_WORDS, name,
-            COMPOSITION_NAME_SIZE - 1);
+            line, "\"%.40s\": a type is called by up to %d letters, digits and _, " NAMES_RESERVED,
+            name, COMPOSITION_NAME_SIZE - 1);
     if (composition->types == COMPOSITION_MOST_TYPES)
         return mf_gromacs_fail(line, "\"%s\" would be a type more than %d", name,
                                COMPOSITION_MOST_TYPES);

@@ -3,7 +3,6 @@
 #include "base/memory.h"
 #include "base/names.h"
 #include "base/nearest.h"
-#include "base/own_words.h"
 #include "curves/bonded_table.h"
 #include "input/scene_molecules.h"
 #include "observe/bonded_distribution.h"
@@ -79,7 +78,7 @@ static enum status read_known(struct molecules *molecules, int order, struct jso
             mf_json_has(&groups, name);
         } else if (!mf_topology_is_name(name)) {
             mf_json_fault(&groups, name,
-                          "a group is called by up to %d letters, digits, _ and -, " OWN_WORDS,
+                          "a group is called by up to %d letters, digits, _ and -, " NAMES_RESERVED,
                           TOPOLOGY_NAME_SIZE - 1);
             mf_json_has(&groups, name);
         } else {
@@ -104,10 +103,10 @@ static enum status open_group(struct molecules *molecules, struct json_object *o
     if (mf_molecules_group(molecules, order, name))
         return STATUS_OK;
     if (molecules->groups[order] == MOLECULES_MOST_GROUPS || !mf_topology_is_name(name)) {
-        mf_json_fault(
-            object, name,
-            "there are at most %d groups, called by up to %d letters, digits, _ and -, " OWN_WORDS,
-            MOLECULES_MOST_GROUPS, TOPOLOGY_NAME_SIZE - 1);
+        mf_json_fault(object, name,
+                      "there are at most %d groups, called by up to %d letters, digits, _ and "
+                      "-, " NAMES_RESERVED,
+                      MOLECULES_MOST_GROUPS, TOPOLOGY_NAME_SIZE - 1);
         return STATUS_OK;
     }
     return mf_molecules_add_group(molecules, order, name, mf_bonded_kinds[order]->laws[0]);

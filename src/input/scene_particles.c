@@ -3,7 +3,7 @@
 
 #include "base/digest.h"
 #include "base/memory.h"
-#include "base/own_words.h"
+#include "base/names.h"
 #include "input/scene_attributes.h"
 #include "input/scene_coordinates.h"
 #include "io/data_table.h"
@@ -132,7 +132,8 @@ static void read_type(struct scene *scene, struct json_object *types, const char
     mf_json_fields(types, fields, count);
     scene->setup.placement.count += *count;
     if (!mf_composition_is_name(name))
-        mf_json_fault(types, name, "a type is called by up to %d letters, digits and _, " OWN_WORDS,
+        mf_json_fault(types, name,
+                      "a type is called by up to %d letters, digits and _, " NAMES_RESERVED,
                       COMPOSITION_NAME_SIZE - 1);
     snprintf(composition->name[composition->types++], COMPOSITION_NAME_SIZE, "%s", name);
 }
