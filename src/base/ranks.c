@@ -363,7 +363,7 @@ static void share(struct parallel_call *call) {
 
 void mf_ranks_try(struct parallel_call *call) {
     const struct parallel_tasks *tasks = call->tasks;
-    struct task_log own = {0};
+    static struct task_log own; // where none is in use
     struct round round = {.call = call, .working = true, .pause = SHORTEST};
     pthread_t talker;
     if (call->log == NULL)
