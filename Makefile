@@ -100,16 +100,16 @@ $(SHARED_LIBRARY): $(SHARED_OBJECTS) src/library/exports.map
 OF_PROGRAM = $(filter $(BUILD)/src/app/%,$(OBJECTS)) $(LIVE) $(LIBRARY)
 WITH_MPI   = $(BUILD)/mpi/mesofit
 # Whether the program is linked with MPI: it is linked again when that changes.
-WISHED     = $(BUILD)/wished
-$(WISHED): FORCE
+STAMP     = $(BUILD)/configuration
+$(STAMP): FORCE
 	@mkdir -p $(@D); echo 'MPI=$(MPI)' | cmp -s - $@ || echo 'MPI=$(MPI)' > $@
 FORCE:
-$(PROGRAM): $(if $(MPI),$(RANKS)) $(OF_PROGRAM) $(WISHED)
+$(PROGRAM): $(if $(MPI),$(RANKS)) $(OF_PROGRAM) $(STAMP)
 $(WITH_MPI): $(RANKS) $(OF_PROGRAM)
 $(PROGRAM) $(WITH_MPI):
 	@mkdir -p $(@D)
 	@echo "ld $@"
-	$(AT)$(CC) $(LDFLAGS) -o $@ $(filter-out $(WISHED),$^) $(LIVE_LIBS) $(if $(filter $(RANKS),$^),$(MPI_LIBS)) $(LDLIBS)
+	$(AT)$(CC) $(LDFLAGS) -o $@ $(filter-out $(STAMP),$^) $(LIVE_LIBS) $(if $(filter $(RANKS),$^),$(MPI_LIBS)) $(LDLIBS)
 
 # The page's files, which the assembler takes from there.
 $(BUILD)/src/live/live_assets.o: CFLAGS += -Wa,-Ishare/live,-I$(CHART)

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/cmd_live.h"
 #include "app/command.h"
-#include "base/interrupt.h"
 #include "base/memory.h"
 #include "base/ranks.h"
 #include "io/json_fill.h"
@@ -30,16 +29,10 @@ static const struct command_option options[] = {
     {NULL, NULL, NULL},
 };
 
-static void warn(const char *line) {
-    fprintf(stderr, "mesofit: warning: %s\n", line);
-}
-
 /// The fit, with the other processes of an MPI job if there are some.
 static enum status run_shared(const char *file, const struct command_line *line) {
     struct run_options own = line->options;
-    TRY(mf_ranks_begin(warn));
-    if (mf_ranks_count() > 1)
-        mf_interrupt_wait_for_all();
+    TRY(mf_ranks_begin());
     own.quiet = own.quiet || !ranks_lead();
     const enum status status =
         line->own[LIVE] && mf_ranks_count() > 1

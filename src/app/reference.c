@@ -2,7 +2,7 @@
 #include "app/reference.h"
 
 #include "app/command.h"
-#include "base/fields_text.h"
+#include "base/fields.h"
 #include "mesofit.h"
 
 #include <ctype.h>

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file Time.
+/// @file Time. All of it is by clocks that are never set back.
 #pragma once
 
+#include <pthread.h>
+#include <stdbool.h>
 #include <stdint.h>
 #include <time.h>
 
@@ -11,6 +13,10 @@ static inline double clock_seconds(void) {
     clock_gettime(CLOCK_MONOTONIC, &now);
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
+
+/// Wait until the condition is signalled, or clock_seconds() is `until`: false then. The lock is
+/// held. Tested: tests/stress/test_clock.c.
+bool mf_clock_wait(pthread_cond_t *condition, pthread_mutex_t *lock, double until);
 
 /// Seconds of processor time that this thread has had.
 static inline double clock_thread_seconds(void) {

@@ -55,5 +55,11 @@ void mf_fields_describe(const struct field *fields, FILE *stream);
 /// Print the allowed range of a field, such as "above 0" or "0 to 1", into `text`.
 void mf_fields_range_text(const struct field *field, char *text, size_t size);
 
+/// The type of a field, such as "number", or its choices, "a|b".
+void mf_fields_type_text(const struct field *field, char *text, size_t size);
+
+/// The default of a field, "none" or "required".
+void mf_fields_default_text(const struct field *field, char *text, size_t size);
+
 /// Index of `name` among the choices of `field`, or −1.
 int mf_fields_choice_index(const struct field *field, const char *name);

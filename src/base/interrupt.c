@@ -5,8 +5,8 @@
 #include <stddef.h>
 
 static volatile sig_atomic_t received; ///< the first signal; 0: none
-static atomic_bool wished, together;
-static atomic_int agreed; ///< the signal by which all stop; 0: none
+static atomic_bool wanted, deferred;
+static atomic_int common; ///< the signal by which all stop; 0: none
 
 static void remember(int signal_number) {
     if (received == 0)
@@ -20,8 +20,8 @@ static bool is_ignored(int signal_number) {
 }
 
 void mf_interrupt_install(void) {
-    // A second wish of the user ends the program; a terminal that is gone may say so twice, and a
-    // closed pipe with every word.
+    // A second request of the user ends the program; a terminal that is gone may say so twice, and
+    // a closed pipe with every word.
     static const struct {
         int number;
         bool once, may_be_ignored;
@@ -39,28 +39,28 @@ void mf_interrupt_install(void) {
     }
 }
 
-void mf_interrupt_wish(bool stop) {
-    atomic_store(&wished, stop);
+void mf_interrupt_request(bool stop) {
+    atomic_store(&wanted, stop);
 }
 
 int mf_interrupt_signal(void) {
     if (received != 0)
         return received;
-    return atomic_load_explicit(&wished, memory_order_relaxed) ? SIGINT : 0;
+    return atomic_load_explicit(&wanted, memory_order_relaxed) ? SIGINT : 0;
 }
 
-void mf_interrupt_wait_for_all(void) {
-    atomic_store(&together, true);
+void mf_interrupt_defer(void) {
+    atomic_store(&deferred, true);
 }
 
-void mf_interrupt_agree(int signal_number) {
-    atomic_store(&agreed, signal_number);
+void mf_interrupt_stop_by(int signal_number) {
+    atomic_store(&common, signal_number);
 }
 
 /// The signal by which this process is to stop.
 static int reason(void) {
-    return atomic_load_explicit(&together, memory_order_relaxed)
-               ? atomic_load_explicit(&agreed, memory_order_relaxed)
+    return atomic_load_explicit(&deferred, memory_order_relaxed)
+               ? atomic_load_explicit(&common, memory_order_relaxed)
                : mf_interrupt_signal();
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file The wish to stop, seen by every long loop: the user's (Ctrl-C), the machine's (SIGTERM,
-/// SIGUSR1), or since nobody listens any more (SIGHUP, SIGPIPE).
+/// @file Stop requests, which every long loop looks for: the user's (Ctrl-C), the machine's
+/// (SIGTERM, SIGUSR1), or since nobody listens any more (SIGHUP, SIGPIPE).
 #pragma once
 
 #include <stdatomic.h>
@@ -12,7 +12,7 @@ void mf_interrupt_install(void);
 
 /// Ask to stop as a user does with Ctrl-C, or take that back; what a signal has asked for stays.
 /// From any thread. Tested: test_live_feed.
-void mf_interrupt_wish(bool stop);
+void mf_interrupt_request(bool stop);
 
 /// True once the user has asked to stop. Any thread may ask, as often as it likes.
 bool mf_interrupt_requested(void);
@@ -25,11 +25,11 @@ bool mf_interrupt_wanted(const atomic_bool *cancel);
 bool mf_interrupt_was_planned(void);
 
 /// @name Several processes that must stop at the same place
-/// From now on mf_interrupt_requested waits for mf_interrupt_agree.
-void mf_interrupt_wait_for_all(void);
+/// From now on nothing but mf_interrupt_stop_by stops this process.
+void mf_interrupt_defer(void);
 
-/// The signal that has asked this process to stop (SIGINT for a wish); 0: none.
+/// The signal that has asked this process to stop (SIGINT for mf_interrupt_request); 0: none.
 int mf_interrupt_signal(void);
 
 /// All stop, as this signal wants it; 0: not yet.
-void mf_interrupt_agree(int signal_number);
+void mf_interrupt_stop_by(int signal_number);

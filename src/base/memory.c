@@ -34,3 +34,38 @@ void mf_memory_keep(void) {
     mallopt(M_MMAP_THRESHOLD, LARGE);
     mallopt(M_TRIM_THRESHOLD, LARGE);
 }
+
+void mf_memory_image_clear(struct memory_image *image) {
+    mf_memory_free(image->span);
+    mf_memory_free(image->bytes);
+    *image = (struct memory_image){0};
+}
+
+/// Bytes of a span in the image, so many that the next one is aligned.
+static size_t room_of(size_t bytes) {
+    return (bytes + MEMORY_ALIGNMENT - 1) / MEMORY_ALIGNMENT * MEMORY_ALIGNMENT;
+}
+
+enum status mf_memory_image_take(struct memory_image *image, const struct memory_span *spans,
+                                 size_t count) {
+    enum status status = STATUS_OK;
+    struct memory_image taken = {.count = count};
+    size_t size = 0;
+    for (size_t k = 0; k < count; k++)
+        size += room_of(spans[k].bytes);
+    NEW_ARRAY(taken.span, count);
+    NEW_ARRAY(taken.bytes, size);
+    size = 0;
+    for (size_t k = 0; k < count; k++) {
+        taken.span[k] = (struct memory_span){taken.bytes + size, spans[k].bytes};
+        if (spans[k].bytes > 0)
+            memcpy(taken.bytes + size, spans[k].memory, spans[k].bytes);
+        size += room_of(spans[k].bytes);
+    }
+    mf_memory_image_clear(image);
+    *image = taken;
+    return STATUS_OK;
+done:
+    mf_memory_image_clear(&taken);
+    return status;
+}

@@ -22,6 +22,18 @@ struct memory_span {
     size_t bytes;
 };
 
+/// A copy of state, as a checkpoint keeps it, while the state itself goes on. Zeroed: of nothing.
+struct memory_image {
+    struct memory_span *span; ///< shape [count]: in `bytes`
+    size_t count;
+    char *bytes;
+};
+
+/// Copy what the spans have now. Fails: NO_MEMORY; the image is then the one before.
+enum status mf_memory_image_take(struct memory_image *image, const struct memory_span *spans,
+                                 size_t count) MUST_USE;
+void mf_memory_image_clear(struct memory_image *image);
+
 /// Keep freed memory for the next array instead of giving it back to the system: the simulations of
 /// a fit come and go by the thousand, and each worker works in the pages of its last one. Measured
 /// for the quick genetic fit: system time falls from 2.6 to 1.6 % of the whole. Call it once,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file Lists of records that are found by their names.
+/// @file Names: of records in a list, and those that are reserved.
 ///
 /// What a file may choose from (integrators, methods, families of curves, shapes, optimisers)
 /// stands in a list: an array of pointers to records of one type, with NULL at its end. The first
@@ -8,6 +8,7 @@
 
 #include "base/status.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 
 /// Said once where records of a type are looked for.
@@ -23,3 +24,16 @@ const void *mf_names_find(const void *list, const char *name);
 /// @param[in] before  a name that stands before them, or NULL: none does
 /// Fails: NO_MEMORY.
 enum status mf_names_collect(const void *list, const char *before, const char ***names) MUST_USE;
+
+/// @name Reserved names
+/// Tables, columns and numbers of a result have words before and behind the names of types, kinds,
+/// groups and modes: potential_A-B_history.tsv, rdf_now_A-B.tsv, "backbone_error". A name that has
+/// one itself is refused wherever names are read, so that what differs in its names differs in its
+/// files: with a type "B_history" the history of A-B would be the potential of A with it.
+
+/// For the message of who refuses.
+#define NAMES_RESERVED                                                                             \
+    "and does not begin with now_ or error_ nor end with _history, _flat, _error, _boltzmann, "    \
+    "_lower or _upper, as the program's tables do"
+
+bool mf_names_is_reserved(const char *name);

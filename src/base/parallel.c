@@ -3,10 +3,10 @@
 
 #include "base/clock.h"
 #include "base/memory.h"
-#include "base/parallel_keep.h"
-#include "base/parallel_ranks.h"
+#include "base/parallel_call.h"
 #include "base/parallel_times.h"
 #include "base/ranks.h"
+#include "base/task_log.h"
 
 /// Where part `number` of `parts` begins, at a multiple of 16: parts share no cache line.
 static size_t part_begin(size_t count, int number, int parts) {
@@ -40,16 +40,9 @@ double mf_parallel_sum(size_t count, int threads,
     return total;
 }
 
-static bool may_begin(const struct parallel_failure *failure, size_t task) {
-    bool may;
-#pragma omp critical
-    may = parallel_failure_allows(failure, task);
-    return may;
-}
-
 /// Run a task, and take its result or keep its failure.
-static void try_one(const struct parallel_tasks *tasks, size_t task,
-                    struct parallel_failure *failure) {
+static void try_one(struct parallel_call *call, size_t task) {
+    const struct parallel_tasks *tasks = call->tasks;
     void *result = NULL;
     enum status status = STATUS_OK;
     if (tasks->result_size > 0 && (result = mf_memory_zeroed(1, tasks->result_size)) == NULL)
@@ -57,39 +50,41 @@ static void try_one(const struct parallel_tasks *tasks, size_t task,
     const double begin = clock_thread_seconds();
     if (status == STATUS_OK)
         status = tasks->run(tasks->context, task, result);
-    if (tasks->spans)
-        mf_parallel_times_add(tasks->count, clock_thread_seconds() - begin);
+    const double seconds = clock_thread_seconds() - begin;
 #pragma omp critical
     {
-        if (status == STATUS_OK && tasks->take) {
+        if (status == STATUS_OK && call->log)
+            mf_task_log_note(call, task, result);
+        if (status == STATUS_OK && tasks->take)
             tasks->take(tasks->context, task, result);
-        } else if (status != STATUS_OK) {
-            parallel_failure_note(failure, status, task, mf_status_message());
-        }
+        parallel_call_end_task(call, task, status, mf_status_message(), seconds);
     }
     mf_memory_free(result);
 }
 
-static enum status try_alone(const struct parallel_tasks *tasks) {
-    struct parallel_failure failure = {.status = STATUS_OK, .task = tasks->count};
+static void try_alone(struct parallel_call *call) {
     // Threads take the numbers in their order: all below one that failed have begun.
 #pragma omp parallel for schedule(dynamic)                                                         \
-    num_threads(tasks->threads) if (tasks->threads > 1 && tasks->count > 1)
-    for (size_t task = 0; task < tasks->count; task++)
-        if (may_begin(&failure, task))
-            try_one(tasks, task, &failure);
-    return parallel_failure_status(&failure);
-}
-
-static enum status try_all(const struct parallel_tasks *tasks) {
-    const double begin = clock_seconds();
-    const enum status status =
-        tasks->spans && mf_ranks_count() > 1 ? mf_parallel_try_together(tasks) : try_alone(tasks);
-    if (tasks->spans)
-        mf_parallel_times_end(tasks->count, clock_seconds() - begin);
-    return status;
+    num_threads(call->tasks->threads) if (call->tasks->threads > 1 && call->left > 1)
+    for (size_t task = 0; task < call->tasks->count; task++) {
+        bool wanted;
+#pragma omp critical
+        wanted = parallel_call_wants(call, task);
+        if (wanted)
+            try_one(call, task);
+    }
 }
 
 enum status mf_parallel_try(const struct parallel_tasks *tasks) {
-    return mf_parallel_keep_try(tasks, try_all);
+    const double begin = clock_seconds();
+    struct parallel_call call = {.tasks = tasks, .left = tasks->count, .failed = tasks->count};
+    TRY(mf_task_log_begin(&call));
+    if (call.left > 0 && tasks->spans && mf_ranks_count() > 1)
+        mf_ranks_try(&call);
+    else
+        try_alone(&call);
+    if (call.left > 0 && tasks->spans)
+        mf_parallel_times_add(call.left, &call.seconds, clock_seconds() - begin);
+    mf_task_log_end(&call);
+    return call.status == STATUS_OK ? STATUS_OK : mf_status_fail(call.status, "%s", call.message);
 }

@@ -42,9 +42,9 @@ struct parallel_tasks {
     size_t result_size;
     void *context;
     /// List the part of `context` that a task has changed, for the ranks that did not do it and for
-    /// who begins again after an interruption (base/parallel_keep.h), at
-    /// most PARALLEL_MOST_SPANS; returns their number. Lengths may follow from the spans before: it
-    /// is asked again after each that has arrived. NULL: every rank does all tasks itself.
+    /// who begins again after an interruption (base/task_log.h), at most PARALLEL_MOST_SPANS;
+    /// returns their number. Lengths may follow from the spans before: it is asked again after each
+    /// that has arrived. NULL: every rank does all tasks itself.
     size_t (*spans)(void *context, size_t task, struct memory_span *spans);
 };
 
@@ -57,14 +57,6 @@ struct parallel_tasks {
 ///
 /// Ranks (base/ranks.h) share the tasks if these have `spans`: each takes the next one when a
 /// thread of it is free, and all have all results, the same status and message at the end. Rank 0
-/// takes results as they come, the others in the order of the tasks. Fails: as the tasks;
-/// NO_MEMORY. Tested: test_parallel, check_mpi.sh.
+/// takes results as they come, the others then, in the same order. Fails: as the tasks; NO_MEMORY.
+/// Tested: test_parallel, check_mpi.sh.
 enum status mf_parallel_try(const struct parallel_tasks *tasks) MUST_USE;
-
-/// Go on together: all ranks return the same status and message, rank 0's if it failed, else that
-/// of the lowest rank that did, with its name. Each rank calls it between the same tasks.
-/// @param[in] digest  of what all ranks must have computed alike; BAD_INPUT if one has not
-enum status mf_parallel_agree(enum status status, uint64_t digest) MUST_USE;
-
-/// Give all ranks this state of rank 0. All call it, with as many spans of the same lengths.
-void mf_parallel_share(const struct memory_span *spans, size_t count);

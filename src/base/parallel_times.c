@@ -1,42 +1,34 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/parallel_times.h"
 
+#include <stdlib.h>
+
 static struct parallel_times seen;
 
 /// The entry of this number of tasks, a new one, or the nearest.
 static struct parallel_size *find(size_t tasks) {
-    size_t nearest = 0;
-    for (size_t k = 0; k < seen.sizes; k++) {
-        const size_t other = seen.size[nearest].tasks, own = seen.size[k].tasks;
-        const size_t before = other > tasks ? other - tasks : tasks - other;
-        const size_t now = own > tasks ? own - tasks : tasks - own;
-        if (now < before)
-            nearest = k;
+    struct parallel_size *nearest = NULL;
+    for (struct parallel_size *at = seen.size; at < seen.size + seen.sizes; at++)
+        if (nearest == NULL ||
+            llabs((long long)(at->tasks - tasks)) < llabs((long long)(nearest->tasks - tasks)))
+            nearest = at;
+    if ((nearest == NULL || nearest->tasks != tasks) && seen.sizes < PARALLEL_MOST_SIZES) {
+        nearest = &seen.size[seen.sizes++];
+        nearest->tasks = tasks;
     }
-    if (seen.sizes == 0 ||
-        (seen.size[nearest].tasks != tasks && seen.sizes < PARALLEL_MOST_SIZES)) {
-        nearest = seen.sizes++;
-        seen.size[nearest].tasks = tasks;
-    }
-    return &seen.size[nearest];
+    return nearest;
 }
 
-void mf_parallel_times_add(size_t tasks, double seconds) {
-#pragma omp critical
-    mf_statistics_add(&find(tasks)->now, seconds);
-}
-
-void mf_parallel_times_end(size_t tasks, double waited) {
+void mf_parallel_times_add(size_t tasks, const struct running_mean *seconds, double waited) {
 #pragma omp critical
     {
         struct parallel_size *size = find(tasks);
         size->rounds++;
         size->waited += waited;
-        size->done += size->now.count;
-        size->seconds += size->now.count * size->now.mean;
-        if (size->now.mean > 0)
-            size->squares += size->now.squares / (size->now.mean * size->now.mean);
-        size->now = (struct running_mean){0};
+        size->done += seconds->count;
+        size->seconds += seconds->count * seconds->mean;
+        if (seconds->mean > 0)
+            size->squares += seconds->squares / (seconds->mean * seconds->mean);
     }
 }
 

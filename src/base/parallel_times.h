@@ -12,17 +12,15 @@ struct parallel_times {
     size_t sizes;
     struct parallel_size {
         size_t tasks; ///< of a round; beyond PARALLEL_MOST_SIZES a round counts with its nearest
-        double rounds, done;     ///< and tasks of them
-        double seconds;          ///< of processor time that they took
-        double squares;          ///< of each task's deviation from its round's mean, over that
-        double waited;           ///< [s] from begin to end of these rounds
-        struct running_mean now; ///< seconds of the round that is going on
+        double rounds, done; ///< and tasks of them
+        double seconds;      ///< of processor time that they took
+        double squares;      ///< of each task's deviation from its round's mean, over that
+        double waited;       ///< [s] from begin to end of these rounds
     } size[PARALLEL_MOST_SIZES];
 };
 
 /// What this process has seen since it began.
 struct parallel_times mf_parallel_times(void);
 
-/// @name For mf_parallel_try: one of so many tasks is done; all of them are
-void mf_parallel_times_add(size_t tasks, double seconds);
-void mf_parallel_times_end(size_t tasks, double waited);
+/// Of mf_parallel_try: a round of so many tasks, how long they took, and the round.
+void mf_parallel_times_add(size_t tasks, const struct running_mean *seconds, double waited);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "defaults/fit_unknowns.h"
 
-#include "base/own_words.h"
+#include "base/names.h"
 #include "defaults/fit_base.h"
 
 #include <math.h>
@@ -56,7 +56,7 @@ static void enter_group(struct scene_fitted *fitted, int order, const char *name
         return;
     if (!mf_topology_is_name(name)) {
         mf_json_fault(from, name,
-                      "expected a group name of up to %d letters, digits, _ and -, " OWN_WORDS,
+                      "expected a group name of up to %d letters, digits, _ and -, " NAMES_RESERVED,
                       TOPOLOGY_NAME_SIZE - 1);
         return;
     }

@@ -51,7 +51,7 @@ static enum status begin(struct simulation *simulation) {
     solvent->temperature = setup->temperature;
     solvent->time = (double)solvent->parameters.interval * setup->time_step;
     solvent->seed = setup->seed;
-    TRY(mf_solvent_init(solvent, &simulation->particles, simulation->crew.most));
+    TRY(mf_solvent_init(solvent, &simulation->particles, simulation->threads.most));
     TRY(mf_solvent_part_beads(solvent, &simulation->particles, &setup->placement));
     return mf_simulation_compute_forces(simulation, 0);
 }

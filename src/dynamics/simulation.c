@@ -176,8 +176,8 @@ enum status mf_simulation_init(struct simulation *simulation, const struct simul
     const struct molecules *molecules = mf_molecules_find(setup->interaction, setup->interactions);
     if (molecules)
         CHECK(mf_particles_join(&simulation->particles, &molecules->topology));
-    mf_crew_init(&simulation->crew, setup->threads > 1 ? setup->threads : 1);
-    simulation->particles.threads = simulation->crew.now;
+    mf_thread_count_init(&simulation->threads, setup->threads > 1 ? setup->threads : 1);
+    simulation->particles.threads = simulation->threads.now;
     CHECK(mf_neighbours_init(&simulation->neighbours, NEIGHBOURS_HALF, &setup->box, count,
                              mf_simulation_range(setup), find_skin(simulation)));
     if (setup->omega && setup->integrator->friction)
@@ -385,13 +385,13 @@ enum status mf_simulation_run(struct simulation *simulation, uint64_t steps) {
             simulation->ticks[SIMULATION_LIST] + simulation->ticks[SIMULATION_FORCES];
         simulation->step++;
         simulation->temperature = NAN;
-        simulation->particles.threads = simulation->crew.now;
+        simulation->particles.threads = simulation->threads.now;
         TRY(simulation->setup.integrator->step(simulation));
         mf_transfer_carry(simulation->transfer, &simulation->particles,
                           simulation->setup.time_step);
         TRY(watch(simulation));
-        mf_crew_end_turn(&simulation->crew,
-                         count_ticks(simulation, SIMULATION_MOTION, begin) - begin);
+        mf_thread_count_update(&simulation->threads,
+                               count_ticks(simulation, SIMULATION_MOTION, begin) - begin);
         simulation->ticks[SIMULATION_MOTION] -=
             simulation->ticks[SIMULATION_LIST] + simulation->ticks[SIMULATION_FORCES] - other;
     }

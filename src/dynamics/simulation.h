@@ -2,10 +2,10 @@
 /// @file A running simulation: owns the state, steps it, watches over it.
 #pragma once
 
-#include "base/crew.h"
 #include "base/memory.h"
 #include "dynamics/integrator.h"
 #include "dynamics/skin.h"
+#include "dynamics/thread_count.h"
 #include "forces/interaction.h"
 #include "forces/pair.h"
 #include "forces/pair_memory.h"
@@ -56,7 +56,7 @@ struct simulation {
     struct particles particles;
     struct neighbours neighbours;
     struct pair_law law;
-    struct crew crew;            ///< threads of a step
+    struct thread_count threads; ///< threads of a step
     struct friction friction;    ///< of an integrator that splits it off
     struct pair_memory memory;   ///< if the setup's acts
     void *integrator_parameters; ///< a copy, which `setup` has for its own

@@ -2,7 +2,7 @@
 /// @file What json.c and json_fields.c share of a document. Items are those of cJSON.
 #pragma once
 
-#include "base/faults.h"
+#include "io/faults.h"
 #include "io/json.h"
 
 struct cJSON;

@@ -2,14 +2,14 @@
 #include "live/live_control.h"
 
 #include "base/clock.h"
-#include "base/condition.h"
 #include "base/interrupt.h"
 
 #include <stdlib.h>
 
 enum status mf_live_control_init(struct live_control *control) {
     *control = (struct live_control){0};
-    if (pthread_mutex_init(&control->lock, NULL) != 0 || !mf_condition_init(&control->changed))
+    if (pthread_mutex_init(&control->lock, NULL) != 0 ||
+        pthread_cond_init(&control->changed, NULL) != 0)
         return mf_status_fail(STATUS_NO_MEMORY, "no lock for the live view");
     return STATUS_OK;
 }
@@ -55,7 +55,7 @@ void mf_live_control_stop(struct live_control *control) {
     pthread_mutex_lock(&control->lock);
     control->stopped = true;
     control->paused = false;
-    mf_interrupt_wish(true);
+    mf_interrupt_request(true);
     leave(control);
 }
 
@@ -74,7 +74,7 @@ void mf_live_control_change(struct live_control *control, const struct live_chan
 
 /// Wait for a change, a tenth of a second at most: a signal may ask to stop meanwhile.
 static void wait_briefly(struct live_control *control) {
-    mf_condition_wait(&control->changed, &control->lock, clock_seconds() + 0.1);
+    mf_clock_wait(&control->changed, &control->lock, clock_seconds() + 0.1);
 }
 
 bool mf_live_control_take(struct live_control *control, struct live_order *order) {
@@ -95,7 +95,7 @@ void mf_live_control_reset(struct live_control *control) {
     pthread_mutex_lock(&control->lock);
     control->paused = control->stopped = control->changes = false;
     control->steps = 0;
-    mf_interrupt_wish(false);
+    mf_interrupt_request(false);
     pthread_mutex_unlock(&control->lock);
 }
 

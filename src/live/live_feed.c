@@ -2,7 +2,6 @@
 #include "live/live_feed.h"
 
 #include "base/clock.h"
-#include "base/condition.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,7 +15,8 @@ static const double particles_patience = 1;
 enum status mf_live_feed_init(struct live_feed *feed) {
     *feed = (struct live_feed){.particles_asked = -particles_patience,
                                .energies_asked = -particles_patience};
-    return pthread_mutex_init(&feed->lock, NULL) == 0 && mf_condition_init(&feed->changed)
+    return pthread_mutex_init(&feed->lock, NULL) == 0 &&
+                   pthread_cond_init(&feed->changed, NULL) == 0
                ? STATUS_OK
                : mf_status_fail(STATUS_NO_MEMORY, "no lock for the live view");
 }
@@ -95,7 +95,7 @@ char *mf_live_feed_wait(struct live_feed *feed, uint64_t *seen, double seconds) 
     char *events = NULL;
     pthread_mutex_lock(&feed->lock);
     while (!feed->closed && !has_news(feed, *seen))
-        if (!mf_condition_wait(&feed->changed, &feed->lock, until))
+        if (!mf_clock_wait(&feed->changed, &feed->lock, until))
             break;
     if (has_news(feed, *seen))
         events = events_since(feed, *seen);

@@ -2,7 +2,7 @@
 #include "measure/measured.h"
 
 #include "base/memory.h"
-#include "base/own_words.h"
+#include "base/names.h"
 #include "base/parallel.h"
 
 #include <math.h>
@@ -36,7 +36,7 @@ static enum status find_composition(const struct mapping *mapping,
         if (!mf_composition_is_name(name))
             return mf_status_fail(STATUS_BAD_INPUT,
                                   "the type of beads \"%s\": a type is called by up to %d letters, "
-                                  "digits and _, " OWN_WORDS
+                                  "digits and _, " NAMES_RESERVED
                                   "; give it another name in a map (--map)",
                                   name, COMPOSITION_NAME_SIZE - 1);
         snprintf(composition->name[type], COMPOSITION_NAME_SIZE, "%.*s", COMPOSITION_NAME_SIZE - 1,

@@ -135,7 +135,7 @@ static enum status draw(const char *folder, const char *plots, const struct figu
 }
 
 /// Whether a file is a table of one part that the figure is drawn from, like rdf_A-B.tsv: no type
-/// is called "now_A" or "B_history" (base/own_words.h). The columns tell the rdf.tsv of a fit from
+/// is called "now_A" or "B_history" (base/names.h). The columns tell the rdf.tsv of a fit from
 /// that of a simulation.
 static bool is_of_part(const char *folder, const struct figure *figure, const char *name,
                        char part[PART_SIZE]) {

@@ -3,7 +3,6 @@
 #include "base/memory.h"
 #include "base/names.h"
 #include "base/nearest.h"
-#include "base/own_words.h"
 #include "curves/bonded_table.h"
 #include "scene/scene_molecules.h"
 #include "observe/bonded_distribution.h"
@@ -78,9 +77,10 @@ static enum status read_known(struct molecules *molecules, int order, struct jso
             mf_json_fault(&groups, name, "there are more than %d groups", MOLECULES_MOST_GROUPS);
             mf_json_has(&groups, name);
         } else if (!mf_topology_is_name(name)) {
-            mf_json_fault(&groups, name,
-                          "expected a group name of up to %d letters, digits, _ and -, " OWN_WORDS,
-                          TOPOLOGY_NAME_SIZE - 1);
+            mf_json_fault(
+                &groups, name,
+                "expected a group name of up to %d letters, digits, _ and -, " NAMES_RESERVED,
+                TOPOLOGY_NAME_SIZE - 1);
             mf_json_has(&groups, name);
         } else {
             TRY(read_group(molecules, order, &groups, name, units));
@@ -106,7 +106,7 @@ static enum status open_group(struct molecules *molecules, struct json_object *o
     if (molecules->groups[order] == MOLECULES_MOST_GROUPS || !mf_topology_is_name(name)) {
         mf_json_fault(object, name,
                       "expected at most %d groups with names of up to %d letters, digits, _ and "
-                      "-, " OWN_WORDS,
+                      "-, " NAMES_RESERVED,
                       MOLECULES_MOST_GROUPS, TOPOLOGY_NAME_SIZE - 1);
         return STATUS_OK;
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene/scene_memory.h"
 
-#include "base/own_words.h"
+#include "base/names.h"
 
 #define MEMBER(name) .offset = offsetof(struct scene_memory_mode, name)
 const struct field mf_scene_memory_fields[] = {
@@ -31,7 +31,7 @@ static bool is_plain(const char *name) {
     return name[0] &&
            name[strspn(name, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
                              "0123456789-_")] == '\0' &&
-           !mf_own_words_has(name);
+           !mf_names_is_reserved(name);
 }
 
 static enum status read_mode(struct scene_memory *memory, struct json_object *object,
@@ -39,10 +39,10 @@ static enum status read_mode(struct scene_memory *memory, struct json_object *ob
                              const struct units *units, bool open) {
     if (memory->modes == PAIR_MEMORY_MOST_MODES || strlen(name) >= SCENE_MEMORY_NAME_SIZE ||
         !is_plain(name)) {
-        mf_json_fault(
-            object, name,
-            "expected at most %d modes with names of up to %d letters, digits, - and _, " OWN_WORDS,
-            PAIR_MEMORY_MOST_MODES, SCENE_MEMORY_NAME_SIZE - 1);
+        mf_json_fault(object, name,
+                      "expected at most %d modes with names of up to %d letters, digits, - and "
+                      "_, " NAMES_RESERVED,
+                      PAIR_MEMORY_MOST_MODES, SCENE_MEMORY_NAME_SIZE - 1);
         return STATUS_OK;
     }
     struct json_object own = mf_json_child(object, name, true);

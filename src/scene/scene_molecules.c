@@ -3,7 +3,7 @@
 
 #include "base/memory.h"
 #include "base/nearest.h"
-#include "base/own_words.h"
+#include "base/names.h"
 #include "scene/scene_topology.h"
 #include "io/json_list.h"
 #include "observe/bonded_distribution.h"
@@ -101,8 +101,8 @@ static int find_type(struct reading *reading, struct json_object *object, const 
     if (!mf_composition_is_name(name))
         mf_json_fault(
             object, key,
-            "\"%.60s\": expected a type name of up to %d letters, digits and _, " OWN_WORDS, name,
-            COMPOSITION_NAME_SIZE - 1);
+            "\"%.60s\": expected a type name of up to %d letters, digits and _, " NAMES_RESERVED,
+            name, COMPOSITION_NAME_SIZE - 1);
     else if (composition->types == COMPOSITION_MOST_TYPES)
         mf_json_fault(object, key, "\"%s\": more than %d types", name, COMPOSITION_MOST_TYPES);
     else {
@@ -369,7 +369,7 @@ static enum status read_kinds(struct reading *reading, struct json_object *scene
         if (n >= TOPOLOGY_MOST_KINDS || !mf_topology_is_name(name)) {
             mf_json_fault(&object, name,
                           "expected at most %d kinds with names of up to %d letters, digits, _ and "
-                          "-, " OWN_WORDS,
+                          "-, " NAMES_RESERVED,
                           TOPOLOGY_MOST_KINDS, TOPOLOGY_NAME_SIZE - 1);
             mf_json_has(&object, name);
         } else {

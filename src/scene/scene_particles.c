@@ -3,7 +3,7 @@
 
 #include "base/digest.h"
 #include "base/memory.h"
-#include "base/own_words.h"
+#include "base/names.h"
 #include "scene/scene_attributes.h"
 #include "scene/scene_coordinates.h"
 #include "io/data_table.h"
@@ -138,7 +138,7 @@ static void read_type(struct scene *scene, struct json_object *types, const char
     scene->setup.placement.count += *count;
     if (!mf_composition_is_name(name))
         mf_json_fault(types, name,
-                      "expected a type name of up to %d letters, digits and _, " OWN_WORDS,
+                      "expected a type name of up to %d letters, digits and _, " NAMES_RESERVED,
                       COMPOSITION_NAME_SIZE - 1);
     snprintf(composition->name[composition->types++], COMPOSITION_NAME_SIZE, "%s", name);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "system/composition.h"
 
-#include "base/own_words.h"
+#include "base/names.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -119,5 +119,5 @@ bool mf_composition_is_name(const char *name) {
     for (size_t k = 0; k < length; k++)
         if (!isalnum((unsigned char)name[k]) && name[k] != '_')
             return false;
-    return length > 0 && length < COMPOSITION_NAME_SIZE && !mf_own_words_has(name);
+    return length > 0 && length < COMPOSITION_NAME_SIZE && !mf_names_is_reserved(name);
 }

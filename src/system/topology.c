@@ -2,7 +2,7 @@
 #include "system/topology.h"
 
 #include "base/memory.h"
-#include "base/own_words.h"
+#include "base/names.h"
 
 #include <ctype.h>
 #include <stdio.h>
@@ -14,7 +14,7 @@ bool mf_topology_is_name(const char *name) {
     for (size_t k = 0; k < length; k++)
         if (!isalnum((unsigned char)name[k]) && name[k] != '_' && name[k] != '-')
             return false;
-    return length > 0 && length < TOPOLOGY_NAME_SIZE && !mf_own_words_has(name);
+    return length > 0 && length < TOPOLOGY_NAME_SIZE && !mf_names_is_reserved(name);
 }
 
 // Checks ------------------------------------------------------------------------------------------

@@ -2,7 +2,7 @@
 #include "topologies/gromacs_topology.h"
 
 #include "base/memory.h"
-#include "base/own_words.h"
+#include "base/names.h"
 #include "topologies/gromacs_terms.h"
 
 #include <ctype.h>
@@ -75,9 +75,9 @@ static enum status begin_kind(struct gromacs_reading *reading, const struct grom
         return mf_gromacs_fail(
             line, "expected the name of a moleculetype, of up to %d characters, and nrexcl",
             TOPOLOGY_NAME_SIZE - 1);
-    if (mf_own_words_has(name))
+    if (mf_names_is_reserved(name))
         return mf_gromacs_fail(
-            line, "\"%.40s\": a moleculetype needs a name of its own, " OWN_WORDS, name);
+            line, "\"%.40s\": a moleculetype needs a name of its own, " NAMES_RESERVED, name);
     if (!mf_gromacs_is_integer(words->word[1], 0, TOPOLOGY_MOST_EXCLUDE, &exclude))
         return mf_gromacs_fail(line, "nrexcl is 0 to %d, not %.40s", TOPOLOGY_MOST_EXCLUDE,
                                words->word[1]);
@@ -101,7 +101,8 @@ static enum status find_type(struct gromacs_reading *reading, const struct groma
             return STATUS_OK;
     if (!mf_composition_is_name(name))
         return mf_gromacs_fail(
-            line, "\"%.40s\": expected a type name of up to %d letters, digits and _, " OWN_WORDS,
+            line,
+            "\"%.40s\": expected a type name of up to %d letters, digits and _, " NAMES_RESERVED,
             name, COMPOSITION_NAME_SIZE - 1);
     if (composition->types == COMPOSITION_MOST_TYPES)
         return mf_gromacs_fail(line, "\"%s\": more than %d types", name, COMPOSITION_MOST_TYPES);

@@ -2,7 +2,6 @@
 #include "work/fit.h"
 
 #include "base/memory.h"
-#include "base/parallel.h"
 #include "base/ranks.h"
 #include "base/visible.h"
 #include "defaults/fit_states.h"
@@ -156,8 +155,8 @@ static enum status begin_folder(struct run *run, bool resume) {
 }
 
 static enum status prepare(struct run *run, const char *file, const struct run_options *options) {
-    TRY(mf_parallel_agree(read_and_create(run, file, options), mf_fit_ranks_digest(&run->fit)));
-    TRY(mf_parallel_agree(ranks_lead() ? begin_folder(run, options->resume) : STATUS_OK, 0));
+    TRY(mf_ranks_check(read_and_create(run, file, options), mf_fit_ranks_digest(&run->fit)));
+    TRY(mf_ranks_check(ranks_lead() ? begin_folder(run, options->resume) : STATUS_OK, 0));
     if (options->resume)
         TRY(mf_fit_checkpoint_share(&run->checkpoint));
     mf_progress_tell_run(&run->progress, &(struct watcher_run){RUN_FIT, run->folder.path,
@@ -286,12 +285,12 @@ static enum status iterate(struct run *run) {
                         "the fit is finished: only its result is verified and written");
     while (!run->standing.finished) {
         struct inverse_step step;
-        mf_parallel_keep(&run->checkpoint.kept);
+        mf_task_log_use(&run->checkpoint.tasks);
         const enum status status = method->iterate(run->state, &step, &listener);
-        mf_parallel_keep(NULL);
+        mf_task_log_use(NULL);
         TRY(status);
-        TRY(mf_parallel_agree(record(run, &step),
-                              mf_fit_ranks_digest_curves(&run->unknowns, run->curve)));
+        TRY(mf_ranks_check(record(run, &step),
+                           mf_fit_ranks_digest_curves(&run->unknowns, run->curve)));
     }
     return STATUS_OK;
 }
@@ -361,10 +360,10 @@ static enum status verify_and_write(struct run *run) {
     const size_t states = mf_fit_states_count(&run->fit);
     enum status status = STATUS_OK;
     NEW_ARRAY(verification, states);
-    mf_parallel_keep(&run->checkpoint.kept);
+    mf_task_log_use(&run->checkpoint.tasks);
     status =
         mf_fit_verify_states(&run->fit, run->curve, run->standing.number, &listener, verification);
-    mf_parallel_keep(NULL);
+    mf_task_log_use(NULL);
     if (status == STATUS_UNSTABLE)
         status = write_unstable(run);
     CHECK(status);
@@ -440,5 +439,5 @@ done:
         mf_run_folder_close(&run->folder);
     }
     mf_memory_free(run);
-    return mf_parallel_agree(status, 0);
+    return mf_ranks_check(status, 0);
 }

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "work/fit_checkpoint.h"
 
+#include "base/ranks.h"
 #include "io/checkpoint.h"
 
 #include <string.h>
 
-enum { MOST_SPANS = INVERSE_MAX_SPANS + HISTORY_SPANS + PARALLEL_KEPT_SPANS + FIT_CHECKPOINT_OWN };
+enum { MOST_SPANS = INVERSE_MAX_SPANS + HISTORY_SPANS + TASK_LOG_SPANS + FIT_CHECKPOINT_OWN };
 
-/// On these spans lengths depend: the size of what is kept, and the iterations of the history.
-static const size_t sizes[] = {0, PARALLEL_KEPT_SPANS};
+/// On these spans lengths depend: the size of the log, and the iterations of the history.
+static const size_t sizes[] = {0, TASK_LOG_SPANS};
 enum { SIZES = sizeof sizes / sizeof *sizes };
 
 void mf_fit_checkpoint_add(struct fit_checkpoint *checkpoint, void *memory, size_t bytes) {
@@ -18,7 +19,7 @@ void mf_fit_checkpoint_add(struct fit_checkpoint *checkpoint, void *memory, size
 
 /// All but the method's state.
 static size_t list(struct fit_checkpoint *checkpoint, struct memory_span *spans) {
-    size_t n = mf_parallel_kept_spans(&checkpoint->kept, spans);
+    size_t n = mf_task_log_spans(&checkpoint->tasks, spans);
     n += mf_history_spans(checkpoint->history, spans + n);
     memcpy(spans + n, checkpoint->own, checkpoint->owns * sizeof *spans);
     return n + checkpoint->owns;
@@ -30,7 +31,7 @@ static size_t list_all(struct fit_checkpoint *checkpoint, struct memory_span *sp
 }
 
 static enum status make_room(struct fit_checkpoint *checkpoint) {
-    TRY(mf_parallel_kept_make_room(&checkpoint->kept));
+    TRY(mf_task_log_make_room(&checkpoint->tasks));
     return mf_history_make_room(checkpoint->history);
 }
 
@@ -41,7 +42,7 @@ static enum status remember(struct fit_checkpoint *checkpoint) {
 }
 
 enum status mf_fit_checkpoint_begin(struct fit_checkpoint *checkpoint) {
-    mf_parallel_kept_clear(&checkpoint->kept);
+    mf_task_log_clear(&checkpoint->tasks);
     return remember(checkpoint);
 }
 
@@ -69,13 +70,13 @@ enum status mf_fit_checkpoint_share(struct fit_checkpoint *checkpoint) {
     struct memory_span spans[MOST_SPANS];
     list(checkpoint, spans);
     for (int k = 0; k < SIZES; k++)
-        mf_parallel_share(&spans[sizes[k]], 1);
-    TRY(mf_parallel_agree(make_room(checkpoint), 0));
-    mf_parallel_share(spans, list_all(checkpoint, spans));
+        mf_ranks_broadcast(&spans[sizes[k]], 1);
+    TRY(mf_ranks_check(make_room(checkpoint), 0));
+    mf_ranks_broadcast(spans, list_all(checkpoint, spans));
     return STATUS_OK;
 }
 
 void mf_fit_checkpoint_clear(struct fit_checkpoint *checkpoint) {
     mf_memory_image_clear(&checkpoint->before);
-    mf_parallel_kept_clear(&checkpoint->kept);
+    mf_task_log_clear(&checkpoint->tasks);
 }

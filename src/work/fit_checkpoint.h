@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// @file What a fit goes on from: its state before an iteration, and what the tasks of the
-/// iteration that are done have left, so that they are not done again (base/parallel_keep.h). An
+/// iteration that are done have left, so that they are not done again (base/task_log.h). An
 /// interruption costs the tasks that were being done, and no more.
 #pragma once
 
-#include "base/memory_image.h"
-#include "base/parallel_keep.h"
+#include "base/task_log.h"
 #include "report/history.h"
 
 enum { FIT_CHECKPOINT_OWN = 2 + 3 * UNKNOWNS };
@@ -17,7 +16,7 @@ struct fit_checkpoint {
     struct memory_span own[FIT_CHECKPOINT_OWN]; ///< what else changes, between iterations alone
     size_t owns;
     struct memory_image before; ///< the method's state before the iteration
-    struct parallel_kept kept;  ///< of the iteration, or of the verification
+    struct task_log tasks;      ///< of the iteration, or of the verification
 };
 
 void mf_fit_checkpoint_add(struct fit_checkpoint *checkpoint, void *memory, size_t bytes);

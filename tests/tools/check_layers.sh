@@ -56,7 +56,7 @@ faults=$(
     only_in src/bench/bench_lammps.c '"([^" ]*/)?lmp[" ]' 'LAMMPS'
     only_in src/report/program.c '\b(fork|vfork|popen|system|exec[lv]p?e?|posix_spawnp?) ?\(' \
         'starting a program'
-    only_in src/base/condition.c 'pthread_(cond|mutex|rwlock)_timed|sem_timedwait|CLOCK_REALTIME|gettimeofday|\btime ?\((NULL|0|&)' \
+    only_in src/base/clock.c 'pthread_(cond|mutex|rwlock)_timed|sem_timedwait|CLOCK_REALTIME|gettimeofday|\btime ?\((NULL|0|&)' \
         'waiting until a time, by a clock that is never set back,'
     only_in 'src/\(io/own_[a-z]*\|io/output\|report/figure_script\|live/live_folder\|bench/bench_lammps\).c' \
         '\b(unlink|unlinkat|rmdir|remove|rename|renameat) ?\(' \

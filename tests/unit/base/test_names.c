@@ -57,8 +57,22 @@ static void test_names_collect_gives_all_when_there_are_many(void **state) {
     mf_memory_free(names);
 }
 
+static void test_names_that_tables_have_are_found(void **state) {
+    static const char *const own[] = {"now_A",   "error_ring", "B_history",
+                                      "B_flat",  "x_error",    "A_boltzmann",
+                                      "B_lower", "B_upper",    "_history"};
+    static const char *const plain[] = {"A",      "now",      "history",  "error", "B_historyA",
+                                        "Anow_B", "A_lower1", "flat_cat", ""};
+    (void)state;
+    for (size_t k = 0; k < sizeof own / sizeof *own; k++)
+        assert_true(mf_names_is_reserved(own[k]));
+    for (size_t k = 0; k < sizeof plain / sizeof *plain; k++)
+        assert_false(mf_names_is_reserved(plain[k]));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_names_that_tables_have_are_found),
         cmocka_unit_test(test_names_find_gives_the_record_or_null),
         cmocka_unit_test(test_names_collect_gives_all_when_there_are_many),
     };

@@ -41,7 +41,7 @@ static void tell(void *context, const struct watcher_progress *progress) {
     struct impatient *impatient = context;
     (void)progress;
     if (++impatient->words == impatient->patience)
-        mf_interrupt_wish(true);
+        mf_interrupt_request(true);
 }
 
 static void begin(void *context, const struct watcher_run *run) {
@@ -63,7 +63,7 @@ static enum status run(const char *folder, bool resume, int patience) {
     const struct run_options options = {
         .folder = folder, .threads = 1, .quiet = true, .resume = resume, .watcher = &watcher};
     const enum status status = mf_fit_run("run.json", &options);
-    mf_interrupt_wish(false);
+    mf_interrupt_request(false);
     return status;
 }
 

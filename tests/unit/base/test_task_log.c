@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Tasks that stop, and go on from what those before have left.
-#include "base/memory_image.h"
-#include "base/parallel_keep.h"
+#include "base/task_log.h"
 #include "shared/testing.h"
 
 #include <math.h>
@@ -65,18 +64,18 @@ static enum status do_all(struct work *work, int threads) {
     return STATUS_OK;
 }
 
-/// A checkpoint: what is kept comes into another process.
-static void move(struct parallel_kept *kept) {
-    struct parallel_kept moved = {.size = kept->size};
-    struct memory_span from[PARALLEL_KEPT_SPANS], to[PARALLEL_KEPT_SPANS];
-    assert_ok(mf_parallel_kept_make_room(&moved));
-    assert_int_equal(mf_parallel_kept_spans(kept, from), PARALLEL_KEPT_SPANS);
-    mf_parallel_kept_spans(&moved, to);
+/// A checkpoint: the log comes into another process.
+static void move(struct task_log *log) {
+    struct task_log moved = {.size = log->size};
+    struct memory_span from[TASK_LOG_SPANS], to[TASK_LOG_SPANS];
+    assert_ok(mf_task_log_make_room(&moved));
+    assert_int_equal(mf_task_log_spans(log, from), TASK_LOG_SPANS);
+    mf_task_log_spans(&moved, to);
     assert_int_equal(from[1].bytes, to[1].bytes);
     if (from[1].bytes > 0)
         memcpy(to[1].memory, from[1].memory, from[1].bytes);
-    mf_parallel_kept_clear(kept);
-    *kept = moved;
+    mf_task_log_clear(log);
+    *log = moved;
 }
 
 static void test_finished_tasks_are_not_done_again(void **state) {
@@ -87,41 +86,41 @@ static void test_finished_tasks_are_not_done_again(void **state) {
     assert_ok(do_all(&whole, 1));
     for (int threads = 1; threads <= 3; threads++)
         for (int most = 1; most < 30; most += 7) {
-            struct parallel_kept kept = {0};
+            struct task_log log = {0};
             int done = 0, begun = 0;
             enum status status = STATUS_INTERRUPTED;
             for (; status == STATUS_INTERRUPTED; begun++) {
                 assert_true(begun < 100);
                 memset(&pieces, 0, sizeof pieces); // the state before
                 pieces.most = most;
-                mf_parallel_keep(&kept);
+                mf_task_log_use(&log);
                 status = do_all(&pieces, threads);
-                mf_parallel_keep(NULL);
+                mf_task_log_use(NULL);
                 done += pieces.runs < most ? pieces.runs : most;
-                move(&kept);
+                move(&log);
             }
             assert_ok(status);
             assert_int_equal(done, whole.runs);
             assert_int_equal(begun, (whole.runs + most - 1) / most);
             assert_memory_equal(pieces.sum, whole.sum, sizeof whole.sum);
             assert_memory_equal(pieces.result, whole.result, sizeof whole.result);
-            mf_parallel_kept_clear(&kept);
+            mf_task_log_clear(&log);
         }
 }
 
-static void test_letters_of_other_tasks_are_refused(void **state) {
+static void test_records_of_other_tasks_are_refused(void **state) {
     static struct work work;
-    struct parallel_kept kept = {0};
+    struct task_log log = {0};
     (void)state;
     work.most = 1000;
-    mf_parallel_keep(&kept);
+    mf_task_log_use(&log);
     assert_ok(do_all(&work, 1));
-    mf_parallel_keep(&kept);
+    mf_task_log_use(&log);
     const struct parallel_tasks few = {
         .count = 3, .threads = 1, .run = run, .context = &work, .result_size = 8, .spans = spans};
     assert_fails(mf_parallel_try(&few), STATUS_BAD_INPUT, "tasks of another fit");
-    mf_parallel_keep(NULL);
-    mf_parallel_kept_clear(&kept);
+    mf_task_log_use(NULL);
+    mf_task_log_clear(&log);
 }
 
 static void test_an_image_stays_as_it_was(void **state) {
@@ -145,7 +144,7 @@ static void test_an_image_stays_as_it_was(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_finished_tasks_are_not_done_again),
-        cmocka_unit_test(test_letters_of_other_tasks_are_refused),
+        cmocka_unit_test(test_records_of_other_tasks_are_refused),
         cmocka_unit_test(test_an_image_stays_as_it_was),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

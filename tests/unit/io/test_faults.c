@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Faults of one input: told together, each once, and taken back when another explains it.
-#include "base/faults.h"
+#include "io/faults.h"
 #include "shared/testing.h"
 
 #include <stdio.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "base/faults.h"
+#include "io/faults.h"
 
 #include <stdio.h>
 #include <string.h>
