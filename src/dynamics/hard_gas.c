@@ -28,17 +28,12 @@ static void shape_cells(struct hard_gas *gas, const struct box *box, double diam
     const double room = mf_box_volume(box) / gas->count;
     const double width =
         fmax(diameter, pow(bodies_a_cell * room, 1.0 / box->dimensions)) * (1 + 1e-12);
+    mf_cells_fit_box(box, width, MOST_CELLS, gas->cells);
     for (int d = 0; d < 3; d++) {
-        const double fit = d < box->dimensions ? floor(box->length[d] / width) : 1;
-        gas->cells[d] = (int)fmin(MOST_CELLS, fmax(1, fit));
         gas->length[d] = box->length[d];
         gas->cell_width[d] = box->length[d] / gas->cells[d];
         gas->half[d] = gas->walls >> d & 1 ? INFINITY : box->length[d] / 2;
     }
-}
-
-static size_t cell_count(const struct hard_gas *gas) {
-    return (size_t)gas->cells[0] * (size_t)gas->cells[1] * (size_t)gas->cells[2];
 }
 
 static enum status allocate(struct hard_gas *gas) {
@@ -50,7 +45,7 @@ static enum status allocate(struct hard_gas *gas) {
     NEW_ARRAY(gas->spare_label, count);
     NEW_ARRAY(gas->event, count);
     NEW_ARRAY(gas->link, count);
-    NEW_ARRAY(gas->first, cell_count(gas) + 1);
+    NEW_ARRAY(gas->first, cells_total(gas->cells) + 1);
     NEW_ARRAY(gas->place, count);
     CHECK(mf_hard_gas_calendar_init(gas));
 done:
@@ -98,7 +93,7 @@ static void synchronise(struct hard_gas *gas) {
 
 /// Into the order of their cells, by counting; leaves the cells empty.
 static void sort(struct hard_gas *gas) {
-    const size_t cells = cell_count(gas);
+    const size_t cells = cells_total(gas->cells);
     int32_t *end = gas->first;
     memset(end, 0, (cells + 1) * sizeof *end);
     for (int k = 0; k < gas->count; k++)
@@ -198,6 +193,6 @@ size_t mf_hard_gas_spans(struct hard_gas *gas, struct memory_span *spans) {
     spans[2] = (struct memory_span){gas->label, count * sizeof *gas->label};
     spans[3] = (struct memory_span){gas->event, count * sizeof *gas->event};
     spans[4] = (struct memory_span){gas->link, count * sizeof *gas->link};
-    spans[5] = (struct memory_span){gas->first, cell_count(gas) * sizeof *gas->first};
+    spans[5] = (struct memory_span){gas->first, cells_total(gas->cells) * sizeof *gas->first};
     return HARD_GAS_SPANS;
 }

@@ -14,6 +14,7 @@
 #pragma once
 
 #include "base/memory.h"
+#include "system/cells.h"
 #include "system/particles.h"
 
 #include <stdatomic.h>
@@ -55,10 +56,6 @@ struct hard_gas_calendar {
     bool fetches;                 ///< what is needed soon is fetched from memory
 };
 
-struct hard_gas_link {
-    int32_t next, previous; ///< in a cell, −1: none
-};
-
 struct hard_gas_label {
     double mass;
     uint32_t id;
@@ -94,7 +91,7 @@ struct hard_gas {
     struct hard_gas_body *body, *spare_body;    ///< shape [count], in the order of cells at first
     struct hard_gas_label *label, *spare_label; ///< shape [count]
     struct hard_gas_event *event;               ///< shape [count]
-    struct hard_gas_link *link;                 ///< shape [count]
+    struct cells_link *link;                    ///< shape [count]
     int32_t *first;                             ///< body of each cell, shape [cells], −1: none
     /// Not saved, but filled anew: it then holds events after `calendar_events` of them.
     struct hard_gas_calendar calendar;

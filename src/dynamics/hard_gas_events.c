@@ -266,22 +266,9 @@ static inline size_t index_of(const struct hard_gas *gas, const uint16_t cell[3]
     return ((size_t)cell[0] * (size_t)gas->cells[1] + cell[1]) * (size_t)gas->cells[2] + cell[2];
 }
 
-static inline void enter(struct hard_gas *gas, int32_t k) {
-    int32_t *first = &gas->first[index_of(gas, gas->event[k].cell)];
-    gas->link[k] = (struct hard_gas_link){.next = *first, .previous = -1};
-    if (*first >= 0)
-        gas->link[*first].previous = k;
-    *first = k;
-}
-
-static inline void leave(struct hard_gas *gas, int32_t k) {
-    const struct hard_gas_link link = gas->link[k];
-    if (link.next >= 0)
-        gas->link[link.next].previous = link.previous;
-    if (link.previous >= 0)
-        gas->link[link.previous].next = link.next;
-    else
-        gas->first[index_of(gas, gas->event[k].cell)] = link.next;
+/// The first of the chain of a body's cell.
+static inline int32_t *first_of(const struct hard_gas *gas, int32_t k) {
+    return &gas->first[index_of(gas, gas->event[k].cell)];
 }
 
 /// Into the next cell, and look at those that have come near.
@@ -289,14 +276,14 @@ static inline void cross(struct hard_gas *gas, int32_t k, const int dimensions) 
     struct hard_gas_event *event = &gas->event[k];
     const int d = event->axis, side = gas->body[k].velocity[d] > 0 ? 1 : -1;
     int cell = event->cell[d] + side;
-    leave(gas, k);
+    cells_leave(first_of(gas, k), gas->link, k);
     if (cell < 0 || cell >= gas->cells[d]) {
         cell -= side * gas->cells[d];
         gas->body[k].place[d] -= side * gas->length[d];
         gas->label[k].image[d] += side;
     }
     event->cell[d] = (uint16_t)cell;
-    enter(gas, k);
+    cells_enter(first_of(gas, k), gas->link, k);
     gas->now.tally.crossings++;
     struct forecast forecast = begin_forecast(gas, k, dimensions);
     forecast.time = event->collision;
@@ -352,7 +339,7 @@ static inline double foresee_all(struct hard_gas *gas, const int dimensions) {
 void mf_hard_gas_events_begin(struct hard_gas *gas, double rate) {
     for (int32_t k = 0; k < gas->count; k++) {
         gas->event[k].collision = INFINITY;
-        enter(gas, k);
+        cells_enter(first_of(gas, k), gas->link, k);
     }
     const double waits = gas->dimensions == 2 ? foresee_all(gas, 2) : foresee_all(gas, 3);
     if (!(rate > 0))

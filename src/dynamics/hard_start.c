@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "dynamics/hard_start.h"
 
+#include "system/cells.h"
+
 #include <math.h>
 #include <stdbool.h>
 
@@ -19,9 +21,9 @@ struct grid {
     const double *radius;
     const struct box *box;
     size_t count;
-    int walls, cells[3];
+    int walls;
     double largest; ///< radius
-    int32_t *first, *next;
+    struct cells sorted;
 };
 
 static bool is_walled(const struct grid *grid, int d) {
@@ -30,7 +32,6 @@ static bool is_walled(const struct grid *grid, int d) {
 
 static enum status grid_init(struct grid *grid, const struct particles *particles,
                              const double *radius, int walls) {
-    enum status status = STATUS_OK;
     *grid = (struct grid){.position = particles->position,
                           .radius = radius,
                           .box = &particles->box,
@@ -40,48 +41,26 @@ static enum status grid_init(struct grid *grid, const struct particles *particle
         grid->largest = fmax(grid->largest, radius[k]);
     const double room = mf_box_volume(grid->box) / (double)grid->count;
     const double width = fmax(2 * moved_to * grid->largest, pow(room, 1.0 / grid->box->dimensions));
-    size_t total = 1;
-    for (int d = 0; d < 3; d++) {
-        grid->cells[d] = d < grid->box->dimensions
-                             ? (int)fmin(1e6, fmax(1, floor(grid->box->length[d] / width)))
-                             : 1;
-        total *= (size_t)grid->cells[d];
-    }
-    NEW_ARRAY(grid->first, total);
-    NEW_ARRAY(grid->next, grid->count);
-done:
-    return status;
-}
-
-static void grid_clear(struct grid *grid) {
-    mf_memory_free(grid->first);
-    mf_memory_free(grid->next);
+    int cells[3];
+    mf_cells_fit_box(grid->box, width, 1e6, cells);
+    return mf_cells_shape(&grid->sorted, cells, grid->count);
 }
 
 static void cell_of(const struct grid *grid, size_t k, int cell[3]) {
     for (int d = 0; d < 3; d++) {
         const double share =
             d < grid->box->dimensions ? grid->position[d][k] / grid->box->length[d] : 0;
-        cell[d] = (int)fmin(grid->cells[d] - 1, fmax(0, floor(share * grid->cells[d])));
+        cell[d] = cells_along(share, grid->sorted.count[d]);
     }
-}
-
-static size_t index_of(const struct grid *grid, const int cell[3]) {
-    return ((size_t)cell[0] * (size_t)grid->cells[1] + (size_t)cell[1]) * (size_t)grid->cells[2] +
-           (size_t)cell[2];
 }
 
 static void fill(struct grid *grid) {
     int cell[3];
-    memset(grid->first, 0xff,
-           (size_t)grid->cells[0] * (size_t)grid->cells[1] * (size_t)grid->cells[2] *
-               sizeof *grid->first);
     for (size_t k = 0; k < grid->count; k++) {
         cell_of(grid, k, cell);
-        int32_t *first = &grid->first[index_of(grid, cell)];
-        grid->next[k] = *first;
-        *first = (int32_t)k;
+        grid->sorted.of[k] = (uint32_t)cells_number(grid->sorted.count, cell);
     }
+    mf_cells_sort(&grid->sorted);
 }
 
 /// From particle i to the nearest image of j; returns the distance.
@@ -112,17 +91,15 @@ static void part(const struct grid *grid, size_t i, size_t j, const double r[3],
 /// @return whether one did
 static bool sweep(const struct grid *grid, bool parts, size_t pair[2]) {
     bool found = false;
-    int cell[3], other[3];
+    const struct cells *cells = &grid->sorted;
+    int cell[3];
+    size_t around[CELLS_AROUND];
     for (size_t i = 0; i < grid->count; i++) {
         cell_of(grid, i, cell);
-        for (int n = 0; n < 27; n++) {
-            const int step[3] = {n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1};
-            if (grid->box->dimensions == 2 && step[2] != 0)
-                continue;
-            for (int d = 0; d < 3; d++)
-                other[d] = (cell[d] + step[d] + grid->cells[d]) % grid->cells[d];
-            for (int32_t k = grid->first[index_of(grid, other)]; k >= 0; k = grid->next[k]) {
-                const size_t j = (size_t)k;
+        const int near = mf_cells_around(cells->count, cell, grid->box->dimensions, around);
+        for (int n = 0; n < near; n++)
+            for (uint32_t at = cells->start[around[n] + 1]; at-- > cells->start[around[n]];) {
+                const size_t j = cells->order[at];
                 if (j <= i)
                     continue;
                 double r[3];
@@ -137,7 +114,6 @@ static bool sweep(const struct grid *grid, bool parts, size_t pair[2]) {
                     return true;
                 part(grid, i, j, r, distance, contact);
             }
-        }
     }
     return found;
 }
@@ -180,7 +156,7 @@ enum status mf_hard_start_part(struct particles *particles, const double *radius
     }
     confine(&grid);
 done:
-    grid_clear(&grid);
+    mf_cells_clear(&grid.sorted);
     return status;
 }
 
@@ -218,6 +194,6 @@ enum status mf_hard_start_check(const struct particles *particles, const double 
                             a < b ? a : b, a < b ? b : a, separation(&grid, pair[0], pair[1], r),
                             radius[pair[a < b ? 0 : 1]], radius[pair[a < b ? 1 : 0]]);
 done:
-    grid_clear(&grid);
+    mf_cells_clear(&grid.sorted);
     return status;
 }

@@ -88,8 +88,7 @@ static enum status find_cells(struct solvent *solvent) {
     }
     for (int d = solvent->box.dimensions; d < 3; d++)
         solvent->cells[d] = 1;
-    solvent->cell_total =
-        (size_t)solvent->cells[0] * (size_t)solvent->cells[1] * (size_t)solvent->cells[2];
+    solvent->cell_total = cells_total(solvent->cells);
     return STATUS_OK;
 }
 
@@ -108,7 +107,7 @@ static enum status allocate(struct solvent *solvent, size_t beads) {
     if (beads == 0)
         goto done;
     NEW_ARRAY(solvent->first_bead, solvent->cell_total);
-    NEW_ARRAY(solvent->next_bead, beads);
+    NEW_ARRAY(solvent->bead_link, beads);
 done:
     return status;
 }
@@ -186,6 +185,6 @@ void mf_solvent_clear(struct solvent *solvent) {
     mf_memory_free(solvent->cell);
     mf_memory_free(solvent->start);
     mf_memory_free(solvent->first_bead);
-    mf_memory_free(solvent->next_bead);
+    mf_memory_free(solvent->bead_link);
     *solvent = (struct solvent){0};
 }

@@ -8,6 +8,7 @@
 
 #include "base/rng.h"
 #include "dynamics/collision_dynamics.h"
+#include "system/cells.h"
 #include "system/particles.h"
 #include "system/placement.h"
 
@@ -38,9 +39,8 @@ struct solvent {
     bool trapped[SOLVENT_MOST_PARTS];       ///< a particle met walls without end
     int parts;                              ///< into which passes are divided
     double shift[3];                        ///< of the grid, 0 to a [λ]
-    /// Beads in the collisions: the first of each cell and the next of each, or NULL and
-    /// UINT32_MAX.
-    uint32_t *first_bead, *next_bead;
+    int32_t *first_bead; ///< shape [cell_total]: chains of the beads in the collisions; NULL: none
+    struct cells_link *bead_link; ///< shape [beads]
 };
 
 /// Place the solvent at random where there is room, with Maxwell's velocities that have exactly

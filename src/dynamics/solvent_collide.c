@@ -70,9 +70,9 @@ static void draw_anew(const struct pass *pass, uint32_t begin, uint32_t end, int
 
 INLINE void add_beads(const struct pass *pass, size_t cell, struct sums *sums,
                       const int dimensions) {
-    for (uint32_t bead = pass->solvent->first_bead[cell]; bead != UINT32_MAX;
-         bead = pass->solvent->next_bead[bead]) {
-        const double mass = bead_mass(pass, bead);
+    for (int32_t bead = pass->solvent->first_bead[cell]; bead >= 0;
+         bead = pass->solvent->bead_link[bead].next) {
+        const double mass = bead_mass(pass, (size_t)bead);
         sums->mass += mass;
         sums->bodies++;
         for (int d = 0; d < dimensions; d++) {
@@ -210,8 +210,8 @@ INLINE void turn_space(const struct solvent *solvent, uint32_t begin, uint32_t e
 
 static void turn_beads(const struct pass *pass, size_t cell, const struct collision *collision) {
     const int dimensions = pass->solvent->box.dimensions;
-    for (uint32_t bead = pass->solvent->first_bead[cell]; bead != UINT32_MAX;
-         bead = pass->solvent->next_bead[bead]) {
+    for (int32_t bead = pass->solvent->first_bead[cell]; bead >= 0;
+         bead = pass->solvent->bead_link[bead].next) {
         double u[3];
         for (int d = 0; d < dimensions; d++)
             u[d] = pass->beads->velocity[d][bead];
@@ -244,7 +244,7 @@ INLINE void collide_part(const struct pass *pass, int part, const int dimensions
     size_t known = SIZE_MAX; // the cells of `bits`
     for (size_t cell = solvent_part(solvent, solvent->cell_total, part); cell < last; cell++) {
         const uint32_t begin = solvent->start[cell], end = solvent->start[cell + 1];
-        const bool beads = solvent->first_bead && solvent->first_bead[cell] != UINT32_MAX;
+        const bool beads = solvent->first_bead && solvent->first_bead[cell] >= 0;
         if (begin == end && !beads)
             continue;
         if (beads && !solvent->parameters.hydrodynamics)
@@ -297,15 +297,13 @@ SIMD_CLONES static void collide_parts(void *context, size_t begin, size_t end) {
 
 /// Beads by cell, each list in the order of the particles.
 static void sort_beads(struct solvent *solvent, const struct particles *beads) {
-    for (size_t cell = 0; cell < solvent->cell_total; cell++)
-        solvent->first_bead[cell] = UINT32_MAX;
+    memset(solvent->first_bead, 0xff, solvent->cell_total * sizeof *solvent->first_bead);
     for (size_t k = beads->count; k-- > 0;) {
         double position[3] = {0};
         for (int d = 0; d < solvent->box.dimensions; d++)
             position[d] = beads->position[d][k];
-        const uint32_t cell = mf_solvent_cell(solvent, position);
-        solvent->next_bead[k] = solvent->first_bead[cell];
-        solvent->first_bead[cell] = (uint32_t)k;
+        cells_enter(&solvent->first_bead[mf_solvent_cell(solvent, position)], solvent->bead_link,
+                    (int32_t)k);
     }
 }
 

@@ -51,7 +51,9 @@ static void choose_classes(struct soft_discs_cells *cells, const double *radius)
     cells->classes = kept;
 }
 
-static void choose_cells(struct soft_discs_cells *cells, const struct box *box) {
+/// @return how many there are
+static int choose_cells(struct soft_discs_cells *cells, const struct box *box) {
+    int total = 0;
     for (int c = 0; c < cells->classes; c++) {
         struct soft_discs_class *class = &cells->of[c];
         const double spacing = sqrt(mf_box_volume(box) / (double)class->count);
@@ -59,9 +61,10 @@ static void choose_cells(struct soft_discs_cells *cells, const struct box *box) 
             1, fmin(floor(box->length[0] / (row_height * spacing)), (double)class->count));
         const double in_row = (double)class->count / class->rows;
         class->columns = (int)fmax(1, floor(in_row / in_cell));
-        class->first_cell = cells->cells;
-        cells->cells += (size_t) class->rows * (size_t) class->columns;
+        class->first_cell = (size_t)total;
+        total += class->rows * class->columns;
     }
+    return total;
 }
 
 enum status mf_soft_discs_cells_init(struct soft_discs_cells *cells,
@@ -70,14 +73,12 @@ enum status mf_soft_discs_cells_init(struct soft_discs_cells *cells,
     const size_t count = particles->count, room = count + PARTICLES_PADDING;
     *cells = (struct soft_discs_cells){.count = count};
     choose_classes(cells, mf_particles_numbers(particles, "radius"));
-    choose_cells(cells, &particles->box);
+    const int total = choose_cells(cells, &particles->box);
+    CHECK(mf_cells_shape(&cells->sorted, (const int[3]){1, 1, total}, count));
     size_t rows = 0;
     for (int c = 0; c < cells->classes; c++)
         rows += (size_t)cells->of[c].rows;
     NEW_ARRAY(cells->block, count / SOFT_DISCS_BLOCK + rows);
-    NEW_ARRAY(cells->start, cells->cells + 1);
-    NEW_ARRAY(cells->cell, count);
-    NEW_ARRAY(cells->particle, count);
     NEW_ARRAY(cells->radius, room);
     NEW_ARRAY(cells->stiffness, room);
     for (int d = 0; d < 2; d++) {
@@ -95,9 +96,7 @@ done:
 
 void mf_soft_discs_cells_clear(struct soft_discs_cells *cells) {
     mf_memory_free(cells->block);
-    mf_memory_free(cells->start);
-    mf_memory_free(cells->cell);
-    mf_memory_free(cells->particle);
+    mf_cells_clear(&cells->sorted);
     mf_memory_free(cells->radius);
     mf_memory_free(cells->stiffness);
     for (int d = 0; d < 2; d++) {
@@ -109,27 +108,14 @@ void mf_soft_discs_cells_clear(struct soft_discs_cells *cells) {
     *cells = (struct soft_discs_cells){0};
 }
 
-/// The cell of each particle, and how many there are in each, one further.
 static void find_cells(struct soft_discs_cells *cells, const struct particles *particles,
                        const double *radius) {
-    memset(cells->start, 0, (cells->cells + 1) * sizeof *cells->start);
     for (size_t k = 0; k < cells->count; k++) {
         const struct soft_discs_class *class = &cells->of[class_of(cells, radius[k])];
-        const uint64_t row = (uint32_t)particles->fraction[0][k] * (uint64_t) class->rows >> 32;
-        const uint64_t column =
-            (uint32_t)particles->fraction[1][k] * (uint64_t) class->columns >> 32;
-        const size_t cell = class->first_cell + row * (uint64_t) class->columns + column;
-        cells->cell[k] = (uint32_t)cell;
-        cells->start[cell]++;
-    }
-}
-
-/// Ends of the cells, from how many are in each.
-static void sum_up(struct soft_discs_cells *cells) {
-    uint32_t at = 0;
-    for (size_t cell = 0; cell <= cells->cells; cell++) {
-        at += cells->start[cell];
-        cells->start[cell] = at;
+        const uint32_t row = cells_along_fraction(particles->fraction[0][k], class->rows);
+        const uint32_t column = cells_along_fraction(particles->fraction[1][k], class->columns);
+        cells->sorted.of[k] =
+            (uint32_t) class->first_cell + row * (uint32_t) class->columns + column;
     }
 }
 
@@ -139,7 +125,7 @@ static void find_blocks(struct soft_discs_cells *cells) {
         const struct soft_discs_class *class = &cells->of[c];
         const size_t columns = (size_t) class->columns;
         for (int row = 0; row < class->rows; row++) {
-            const uint32_t *start = cells->start + class->first_cell + (size_t)row * columns;
+            const uint32_t *start = cells->sorted.start + class->first_cell + (size_t)row * columns;
             for (uint32_t at = start[0]; at < start[columns]; at += SOFT_DISCS_BLOCK) {
                 const uint32_t left = start[columns] - at;
                 cells->block[cells->blocks++] = (struct soft_discs_block){
@@ -153,11 +139,9 @@ void mf_soft_discs_cells_sort(struct soft_discs_cells *cells, const struct parti
     const double *radius = mf_particles_numbers(particles, "radius");
     const double *stiffness = mf_particles_numbers(particles, "stiffness");
     find_cells(cells, particles, radius);
-    sum_up(cells);
-    // From the last on, so that an end becomes a beginning and the order is kept.
-    for (size_t k = cells->count; k-- > 0;) {
-        const size_t at = --cells->start[cells->cell[k]];
-        cells->particle[at] = (uint32_t)k;
+    mf_cells_sort(&cells->sorted);
+    for (size_t at = 0; at < cells->count; at++) {
+        const size_t k = cells->sorted.order[at];
         for (int d = 0; d < 2; d++)
             cells->fraction[d][at] = particles->fraction[d][k];
         cells->radius[at] = (float)radius[k];

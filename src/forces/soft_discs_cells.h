@@ -10,6 +10,7 @@
 /// a disc in a row is contiguous, but for the ends of the box.
 #pragma once
 
+#include "system/cells.h"
 #include "system/particles.h"
 
 #include <stdbool.h>
@@ -31,14 +32,12 @@ struct soft_discs_block {
 
 /// Discs in the order of their cells. Kernels may read PARTICLES_PADDING places beyond the last.
 struct soft_discs_cells {
-    size_t count, cells;
+    size_t count;
     int classes;
     struct soft_discs_class of[SOFT_DISCS_MOST_CLASSES]; ///< from small to large
     size_t blocks;
     struct soft_discs_block *block; ///< shape [blocks], of all classes
-    uint32_t *start;                ///< shape [cells + 1]: where a cell begins
-    uint32_t *cell;                 ///< shape [count], by particle
-    uint32_t *particle;             ///< shape [count]: index in the arrays of particles
+    struct cells sorted;            ///< the cells of all classes, one behind the other
     int32_t *fraction[2];           ///< box_fraction
     float *radius;                  ///< [λ]
     float *stiffness;               ///< k

@@ -104,7 +104,8 @@ INLINE void discs_add_row(struct discs_block *block, const struct discs_scene *s
                           const struct soft_discs_class *class, int row, float away,
                           const struct discs_view *view, const bool wants_sums) {
     const int n = class->columns;
-    const uint32_t *start = scene->cells->start + class->first_cell + (size_t)row * (size_t)n;
+    const uint32_t *start =
+        scene->cells->sorted.start + class->first_cell + (size_t)row * (size_t)n;
     const float square = view->reach * view->reach - away * away;
     const float half = sqrtf(square > 0 ? square : 0) * view->columns_each;
     const int first = (int)floorf(view->low[1] - half),
@@ -187,7 +188,7 @@ INLINE struct discs_view discs_view_of(const struct soft_discs_cells *cells, con
 INLINE void discs_end(const struct discs_block *block, const struct soft_discs_pass *pass,
                       const struct soft_discs_block *places, const bool wants_sums) {
     for (uint32_t n = 0; n < places->count; n++) {
-        const size_t at = places->first + n, k = pass->cells->particle[at];
+        const size_t at = places->first + n, k = pass->cells->sorted.order[at];
         const double own = pass->strength * (double)pass->cells->DISCS_STIFFNESS[at];
         pass->particles->force[0][k] += 4 * own * (double)lanes_sum(block->x[n]);
         pass->particles->force[1][k] += 4 * own * (double)lanes_sum(block->y[n]);

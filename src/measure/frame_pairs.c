@@ -11,7 +11,9 @@
 enum { BATCH = 512 };
 
 void mf_frame_pairs_clear(struct frame_pairs *pairs) {
-    mf_frame_grid_clear(&pairs->grid);
+    mf_cells_clear(&pairs->cells);
+    for (int i = 0; i < 3; i++)
+        mf_memory_free(pairs->place[i]);
     mf_memory_free(pairs->type);
     mf_memory_free(pairs->molecule);
     mf_memory_free(pairs->counts);
@@ -33,6 +35,8 @@ static enum status reserve(struct frame_pairs *pairs, const struct frame_pairs_p
     enum status status = STATUS_OK;
     if (pairs->counts)
         return STATUS_OK;
+    for (int i = 0; i < 3; i++)
+        NEW_ARRAY(pairs->place[i], find_beads(plan));
     NEW_ARRAY(pairs->type, find_beads(plan));
     NEW_ARRAY(pairs->molecule, find_beads(plan));
     NEW_ARRAY(pairs->counts, find_counts(plan));
@@ -42,16 +46,47 @@ done:
     return status;
 }
 
-/// Sort the beads, and what is told of them beside their places.
+/// Two beads nearer than the range differ by less than range/height of a vector of the box, so that
+/// their cells along it are at most ⌈cells range/height⌉ apart: two, or three by rounding. Where
+/// the range is near half the box, the search becomes that of all pairs.
+static void choose_cells(struct frame_pairs *pairs, size_t beads, double range,
+                         const struct frame_box *box, int count[3]) {
+    const double most = fmax(1, floor(cbrt((double)beads)));
+    for (int i = 0; i < 3; i++) {
+        const double share = range / box->height[i];
+        count[i] = cells_fit(2, share, most);
+        pairs->reach[i] = (int)fmin(CELLS_MOST_REACH, ceil(count[i] * share));
+    }
+}
+
+static void find_cells(struct cells *cells, int32_t *const place[3]) {
+    for (size_t k = 0; k < cells->particles; k++) {
+        uint32_t cell = 0;
+        for (int i = 0; i < 3; i++)
+            cell = cell * (uint32_t)cells->count[i] +
+                   cells_along_fraction(place[i][k], cells->count[i]);
+        cells->of[k] = cell;
+    }
+}
+
+/// Sort the beads, and what is told of them.
 static enum status sort(struct frame_pairs *pairs, const struct frame_pairs_plan *plan,
                         double range, const struct frame_box *box, int32_t *const place[3]) {
     const size_t beads = find_beads(plan);
+    int count[3];
     TRY(reserve(pairs, plan));
-    TRY(mf_frame_grid_sort(&pairs->grid, range, box, place, beads));
+    choose_cells(pairs, beads, range, box, count);
+    TRY(mf_cells_shape(&pairs->cells, count, beads));
+    find_cells(&pairs->cells, place);
+    mf_cells_sort(&pairs->cells);
+    const uint32_t *bead = pairs->cells.order;
+    for (int i = 0; i < 3; i++)
+        for (size_t k = 0; k < beads; k++)
+            pairs->place[i][k] = place[i][bead[k]];
     for (size_t k = 0; composition_is_mixed(&plan->composition) && k < beads; k++)
-        pairs->type[k] = mf_composition_type(&plan->composition, pairs->grid.bead[k]);
+        pairs->type[k] = mf_composition_type(&plan->composition, bead[k]);
     for (size_t k = 0; plan->molecule && k < beads; k++)
-        pairs->molecule[k] = plan->molecule[pairs->grid.bead[k]];
+        pairs->molecule[k] = plan->molecule[bead[k]];
     return STATUS_OK;
 }
 
@@ -116,8 +151,8 @@ static struct work make_work(struct frame_pairs *pairs, const struct frame_pairs
 /// Look from bead i at those from `begin` on.
 static void aim(struct work *work, size_t i, size_t begin) {
     for (int d = 0; d < 3; d++) {
-        work->probe.own[d] = work->pairs->grid.place[d][i];
-        work->probe.place[d] = work->pairs->grid.place[d] + begin;
+        work->probe.own[d] = work->pairs->place[d][i];
+        work->probe.place[d] = work->pairs->place[d] + begin;
     }
 }
 
@@ -163,7 +198,7 @@ static void count_batch(const struct work *work, size_t i, size_t begin, size_t 
         counts[offset[type[k]] + (size_t)bin[k]]++;
 }
 
-static void count_row(void *context, size_t i, struct frame_row row) {
+static void count_row(void *context, size_t i, struct cells_row row) {
     struct work *work = context;
     int32_t bin[BATCH];
     for (size_t begin = row.begin; begin < row.end; begin += BATCH) {
@@ -180,11 +215,11 @@ enum status mf_frame_pairs_count(struct frame_pairs *pairs, const struct frame_p
                                  const struct frame_box *box, int32_t *const place[3]) {
     TRY(sort(pairs, plan, plan->range, box, place));
     struct work work = make_work(pairs, plan, plan->range, box);
-    const struct frame_visitor visitor = {count_row, &work};
+    const struct cells_visitor visitor = {count_row, &work};
     memset(pairs->counts, 0, find_counts(plan) * sizeof *pairs->counts);
     if (pairs->within)
         memset(pairs->within, 0, find_counts(plan) * sizeof *pairs->within);
-    mf_frame_grid_visit(&pairs->grid, &visitor);
+    mf_cells_visit_pairs(&pairs->cells, pairs->reach, &visitor);
     return STATUS_OK;
 }
 
@@ -240,11 +275,11 @@ static void keep(struct work *work, size_t i, size_t j) {
         work->status = grow(pairs);
     if (work->status != STATUS_OK)
         return;
-    pairs->first[pairs->near_count] = pairs->grid.bead[i];
-    pairs->second[pairs->near_count++] = pairs->grid.bead[j];
+    pairs->first[pairs->near_count] = pairs->cells.order[i];
+    pairs->second[pairs->near_count++] = pairs->cells.order[j];
 }
 
-static void keep_row(void *context, size_t i, struct frame_row row) {
+static void keep_row(void *context, size_t i, struct cells_row row) {
     struct work *work = context;
     double squares[BATCH];
     for (size_t begin = row.begin; begin < row.end; begin += BATCH) {
@@ -262,9 +297,9 @@ enum status mf_frame_pairs_find(struct frame_pairs *pairs, const struct frame_pa
                                 int32_t *const place[3]) {
     TRY(sort(pairs, plan, range, box, place));
     struct work work = make_work(pairs, plan, range, box);
-    const struct frame_visitor visitor = {keep_row, &work};
+    const struct cells_visitor visitor = {keep_row, &work};
     pairs->near_count = 0;
-    mf_frame_grid_visit(&pairs->grid, &visitor);
+    mf_cells_visit_pairs(&pairs->cells, pairs->reach, &visitor);
     return work.status;
 }
 

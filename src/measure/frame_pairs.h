@@ -3,7 +3,8 @@
 #pragma once
 
 #include "base/status.h"
-#include "measure/frame_grid.h"
+#include "measure/frame_box.h"
+#include "system/cells.h"
 #include "system/composition.h"
 
 /// What is counted, the same for all frames.
@@ -17,9 +18,11 @@ struct frame_pairs_plan {
 
 /// Memory of one thread, used again for every frame; all zero is none.
 struct frame_pairs {
-    struct frame_grid grid;
-    int32_t *type;            ///< shape [beads], in the order of cells: of a mixture
-    uint32_t *molecule;       ///< likewise, if there are such pairs
+    struct cells cells;       ///< of fractions of the box's vectors, half a range high or more
+    int reach[3];             ///< of a range, in cells
+    int32_t *place[3];        ///< shape [beads]: their places, in the order of cells
+    int32_t *type;            ///< likewise their types, of a mixture
+    uint32_t *molecule;       ///< likewise, if pairs of one are left out
     uint64_t *counts;         ///< shape [pair types, bins + 1]; the last bin is of what is left out
     uint64_t *within;         ///< the same of pairs of one molecule, if these are counted
     uint32_t *first, *second; ///< shape [near_count]: beads of pairs that are near

@@ -311,7 +311,7 @@ static enum status search_own_list(struct etd *etd, size_t slot,
                                    const struct particles *particles) {
     struct particles *own = &etd->own_particles;
     // `order` of the search is free until it is used: from ids to the simulation's order.
-    uint32_t *order = etd->own_list.order;
+    uint32_t *order = etd->own_list.cells.order;
     for (size_t k = 0; k < particles->count; k++)
         order[particles->id[k]] = (uint32_t)k;
     for (int d = 0; d < particles->box.dimensions; d++)

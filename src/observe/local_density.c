@@ -60,22 +60,17 @@ done:
     return status;
 }
 
-/// Along an axis, of a place that may be outside of the box.
-static size_t cell_of(double x, double length, int cells) {
-    const double place = x / length - floor(x / length);
-    const int cell = (int)(place * cells);
-    return (size_t)(cell < cells ? cell : cells - 1);
-}
-
 static enum status sample(void *state, struct simulation *simulation) {
     struct state *s = state;
     const struct particles *particles = &simulation->particles;
     memset(s->members, 0, s->total * sizeof *s->members);
     for (size_t k = 0; k < particles->count; k++) {
         size_t cell = 0;
-        for (int d = 0; d < particles->box.dimensions; d++)
-            cell = cell * (size_t)s->cells[d] +
-                   cell_of(particles->position[d][k], particles->box.length[d], s->cells[d]);
+        for (int d = 0; d < particles->box.dimensions; d++) {
+            const double share = particles->position[d][k] / particles->box.length[d];
+            cell =
+                cell * (size_t)s->cells[d] + (size_t)cells_along(share - floor(share), s->cells[d]);
+        }
         s->members[cell]++;
     }
     for (size_t cell = 0; cell < s->total; cell++)

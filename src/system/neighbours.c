@@ -19,14 +19,13 @@ static const double fewest_in_cell = 5;
 /// Cells for each particle, at most: more would only be empty.
 static const double most_cells = 4;
 
-static void shape_cells(struct neighbours *neighbours, const struct box *box) {
+static void shape_cells(struct neighbours *neighbours, const struct box *box, int count[3]) {
     const double room = mf_box_volume(box) / (double)neighbours->count; // of a particle
     const double most = neighbours->range > 0 ? most_cells : 1 / fewest_in_cell;
     const double narrowest = pow(room / most, 1.0 / box->dimensions);
     double in_cell = pow(neighbours->range, box->dimensions) / room;
-    neighbours->cell_total = 1;
     for (int d = 2; d >= 0; d--) {
-        neighbours->range_cells[d] = neighbours->cells[d] = 1;
+        neighbours->range_cells[d] = count[d] = 1;
         if (d >= box->dimensions)
             continue;
         if (in_cell / 2 >= fewest_in_cell) {
@@ -35,14 +34,13 @@ static void shape_cells(struct neighbours *neighbours, const struct box *box) {
                 d == 2 ? 2 * NEIGHBOURS_MOST_RANGE_CELLS : NEIGHBOURS_MOST_RANGE_CELLS;
         }
         const double width = fmax(neighbours->range / neighbours->range_cells[d], narrowest);
-        neighbours->cells[d] = (int)fmax(1, floor(box->length[d] / width));
-        neighbours->cell_total *= (size_t)neighbours->cells[d];
+        count[d] = cells_fit(box->length[d], width, INT32_MAX);
     }
 }
 
 /// Divide the planes of cells into parts at least as thick as the range.
 static void divide(struct neighbours *neighbours) {
-    const int planes = neighbours->cells[0];
+    const int planes = neighbours->cells.count[0];
     int parts = planes / neighbours->range_cells[0] / 2 * 2;
     if (neighbours->kind == NEIGHBOURS_FULL || parts < 4)
         parts = 1;
@@ -63,11 +61,9 @@ static double expect_entries(const struct neighbours *neighbours, const struct b
 enum status mf_neighbours_init(struct neighbours *neighbours, enum neighbours_kind kind,
                                const struct box *box, size_t count, double cutoff, double skin) {
     enum status status = STATUS_OK;
-    *neighbours = (struct neighbours){.kind = kind,
-                                      .range = cutoff > 0 ? cutoff + skin : 0,
-                                      .skin = skin,
-                                      .count = count,
-                                      .cell_total = 1};
+    *neighbours = (struct neighbours){
+        .kind = kind, .range = cutoff > 0 ? cutoff + skin : 0, .skin = skin, .count = count};
+    int cells[3];
     if (mf_box_shortest(box) < 2 * cutoff)
         return mf_status_fail(
             STATUS_BAD_INPUT,
@@ -80,14 +76,12 @@ enum status mf_neighbours_init(struct neighbours *neighbours, enum neighbours_ki
         neighbours->range = mf_box_shortest(box) / 2;
         neighbours->skin = neighbours->range - cutoff;
     }
-    shape_cells(neighbours, box);
+    shape_cells(neighbours, box, cells);
+    CHECK(mf_cells_shape(&neighbours->cells, cells, count));
     divide(neighbours);
     neighbours->entries_each = expect_entries(neighbours, box);
     NEW_ARRAY(neighbours->start, count);
     NEW_ARRAY(neighbours->stop, count);
-    NEW_ARRAY(neighbours->cell_start, neighbours->cell_total + 1);
-    NEW_ARRAY(neighbours->cell_of, count);
-    NEW_ARRAY(neighbours->order, count);
     CHECK(mf_neighbours_init_rows(neighbours, box));
     for (int d = 0; d < box->dimensions; d++)
         NEW_ARRAY(neighbours->built[d], count);
@@ -102,9 +96,7 @@ void mf_neighbours_clear(struct neighbours *neighbours) {
     mf_memory_free(neighbours->stop);
     mf_memory_free(neighbours->list);
     mf_memory_free(neighbours->owner);
-    mf_memory_free(neighbours->cell_start);
-    mf_memory_free(neighbours->cell_of);
-    mf_memory_free(neighbours->order);
+    mf_cells_clear(&neighbours->cells);
     mf_neighbours_clear_rows(neighbours);
     for (int d = 0; d < 3; d++)
         mf_memory_free(neighbours->built[d]);
@@ -132,7 +124,7 @@ enum status mf_neighbours_sort_and_build(struct neighbours *neighbours,
         return mf_status_fail(STATUS_UNSTABLE, "a position is nan, or beyond the reach of the box");
     mf_particles_update_fractions(particles);
     mf_neighbours_sort(neighbours, particles);
-    mf_particles_permute(particles, neighbours->order);
+    mf_particles_permute(particles, neighbours->cells.order);
     mf_particles_label_places(particles);
     mf_particles_update_fractions(particles);
     for (int d = 0; d < particles->box.dimensions; d++)

@@ -7,6 +7,7 @@
 /// no pairs, and a build only sorts the particles.
 #pragma once
 
+#include "system/cells.h"
 #include "system/particles.h"
 
 #include <stdbool.h>
@@ -58,12 +59,8 @@ struct neighbours {
     size_t list_capacity;
     double entries_each; ///< places of the list for each particle
     double *built[3];    ///< positions at the last build, unwrapped like `position` since then
-    int cells[3];        ///< along each axis; the last is the fastest
-    int range_cells[3];  ///< the range in cells: neighbours lie within so many
-    size_t cell_total;
-    uint32_t *cell_start; ///< shape [cell_total + 1]; particles are sorted by cell
-    uint32_t *cell_of;    ///< shape [count]
-    uint32_t *order;      ///< shape [count]
+    struct cells cells;
+    int range_cells[3]; ///< the range in cells: neighbours lie within so many
     struct neighbours_rows rows;
     /// 1, or an even number of at least 4, by the cells alone: threads take the even parts, then
     /// the odd ones, and never meet.
@@ -80,7 +77,7 @@ void mf_neighbours_clear(struct neighbours *neighbours);
 
 /// Whether the cells in range along an axis are all that there are.
 static inline bool neighbours_span_axis(const struct neighbours *neighbours, int d) {
-    return neighbours->cells[d] <= 2 * neighbours->range_cells[d];
+    return neighbours->cells.count[d] <= 2 * neighbours->range_cells[d];
 }
 
 /// Places on the list of all particles.

@@ -15,7 +15,7 @@ _Static_assert(PAIR_SEARCH_MOST_ROWS >= WIDEST * WIDEST, "rows in range");
 // Sorting -----------------------------------------------------------------------------------------
 
 struct sorting {
-    struct neighbours *neighbours;
+    struct cells *cells;
     const struct particles *particles;
 };
 
@@ -25,27 +25,17 @@ static void find_cells_of(void *context, size_t begin, size_t end) {
     for (size_t k = begin; k < end; k++) {
         uint32_t cell = 0;
         for (int d = 0; d < particles->box.dimensions; d++) {
-            const uint64_t fraction = (uint32_t)particles->fraction[d][k];
-            const uint32_t n = (uint32_t)sorting->neighbours->cells[d];
-            cell = cell * n + (uint32_t)(fraction * n >> 32);
+            const int n = sorting->cells->count[d];
+            cell = cell * (uint32_t)n + cells_along_fraction(particles->fraction[d][k], n);
         }
-        sorting->neighbours->cell_of[k] = cell;
+        sorting->cells->of[k] = cell;
     }
 }
 
 void mf_neighbours_sort(struct neighbours *neighbours, const struct particles *particles) {
-    struct sorting sorting = {neighbours, particles};
-    uint32_t *start = neighbours->cell_start;
+    struct sorting sorting = {&neighbours->cells, particles};
     mf_parallel_for(particles->count, particles->threads, find_cells_of, &sorting);
-    memset(start, 0, (neighbours->cell_total + 1) * sizeof *start);
-    for (size_t k = 0; k < particles->count; k++)
-        start[neighbours->cell_of[k] + 1]++;
-    for (size_t c = 0; c < neighbours->cell_total; c++)
-        start[c + 1] += start[c];
-    for (size_t k = 0; k < particles->count; k++)
-        neighbours->order[start[neighbours->cell_of[k]]++] = (uint32_t)k;
-    memmove(start + 1, start, neighbours->cell_total * sizeof *start);
-    start[0] = 0;
+    mf_cells_sort(&neighbours->cells);
 }
 
 // Which cells -------------------------------------------------------------------------------------
@@ -58,7 +48,7 @@ struct nearby {
 /// Those in range of one along axis d: all of them once, if the axis is short.
 static int find_nearby(const struct neighbours *neighbours, int d, int cell,
                        struct nearby nearby[WIDEST]) {
-    const int n = neighbours->cells[d], range = neighbours->range_cells[d];
+    const int n = neighbours->cells.count[d], range = neighbours->range_cells[d];
     int found = 0;
     if (neighbours_span_axis(neighbours, d)) {
         for (int c = 0; c < n; c++)
@@ -82,14 +72,14 @@ static int find_gap(int a, int b, int n) {
 /// where there are none.
 static int find_depth(const struct neighbours *neighbours, const struct box *box, int gap_x,
                       int gap_y) {
-    const double x = gap_x * box->length[0] / neighbours->cells[0];
-    const double y = gap_y * box->length[1] / neighbours->cells[1];
+    const double x = gap_x * box->length[0] / neighbours->cells.count[0];
+    const double y = gap_y * box->length[1] / neighbours->cells.count[1];
     const double left = neighbours->range * neighbours->range - x * x - y * y;
     if (left < 0)
         return -1;
-    const double width = box->length[2] / neighbours->cells[2];
+    const double width = box->length[2] / neighbours->cells.count[2];
     if (neighbours_span_axis(neighbours, 2))
-        return neighbours->cells[2];
+        return neighbours->cells.count[2];
     return (int)fmin(ceil(sqrt(left) / width), neighbours->range_cells[2]);
 }
 
@@ -98,7 +88,7 @@ static int find_depth(const struct neighbours *neighbours, const struct box *box
 /// With planes enough, those from it up to the range ahead, across the boundary of the box too: so
 /// a part of the system reaches only into the next. Else those behind it in the order of memory.
 static bool owns_pairs(const struct neighbours *neighbours, int plane, int other) {
-    const int n = neighbours->cells[0], range = neighbours->range_cells[0];
+    const int n = neighbours->cells.count[0], range = neighbours->range_cells[0];
     if (n <= 2 * range)
         return other > plane;
     return other != plane && (other - plane + n) % n <= range;
@@ -106,7 +96,7 @@ static bool owns_pairs(const struct neighbours *neighbours, int plane, int other
 
 static void add_row(struct pair_search_rows *rows, const struct neighbours *neighbours,
                     const struct box *box, struct nearby x, struct nearby y, int depth) {
-    const size_t number = (size_t)x.cell * (size_t)neighbours->cells[1] + (size_t)y.cell;
+    const size_t number = (size_t)x.cell * (size_t)neighbours->cells.count[1] + (size_t)y.cell;
     rows->row[rows->count++] = (struct pair_search_row){
         .start = neighbours->rows.start + number * (neighbours->rows.cells + 1) +
                  neighbours->rows.margin,
@@ -118,12 +108,12 @@ static void add_row(struct pair_search_rows *rows, const struct neighbours *neig
 /// The rows that are searched for the neighbours of row a, b.
 static void find_rows(const struct neighbours *neighbours, const struct box *box, int a, int b,
                       struct pair_search_rows *rows) {
-    const int *n = neighbours->cells;
+    const int *n = neighbours->cells.count;
     const bool half = neighbours->kind == NEIGHBOURS_HALF;
     struct nearby x[WIDEST], y[WIDEST];
     const int x_count = find_nearby(neighbours, 0, a, x);
     const int y_count = find_nearby(neighbours, 1, b, y);
-    rows->first = neighbours->cell_start[((size_t)a * (size_t)n[1] + (size_t)b) * (size_t)n[2]];
+    rows->first = neighbours->cells.start[((size_t)a * (size_t)n[1] + (size_t)b) * (size_t)n[2]];
     rows->cells = n[2];
     rows->margin = neighbours->rows.margin;
     rows->count = 0;
@@ -167,7 +157,7 @@ static void build_part(struct neighbours *neighbours, const struct particles *pa
     struct pair_search_rows rows;
     size_t used = part->begin;
     for (int a = part->first_plane; a < part->last_plane && used != SIZE_MAX; a++)
-        for (int b = 0; b < neighbours->cells[1] && used != SIZE_MAX; b++) {
+        for (int b = 0; b < neighbours->cells.count[1] && used != SIZE_MAX; b++) {
             find_rows(neighbours, &particles->box, a, b, &rows);
             used = search_row(neighbours, particles, &rows, used, limit);
         }
@@ -181,11 +171,11 @@ static void build_part(struct neighbours *neighbours, const struct particles *pa
 
 /// Lay out the parts on the list, each with places for its particles.
 static void place_parts(struct neighbours *neighbours) {
-    const size_t plane = (size_t)neighbours->cells[1] * (size_t)neighbours->cells[2];
+    const size_t plane = (size_t)neighbours->cells.count[1] * (size_t)neighbours->cells.count[2];
     for (int p = 0; p < neighbours->parts; p++) {
         struct neighbours_part *part = &neighbours->part[p];
-        part->first = neighbours->cell_start[(size_t)part->first_plane * plane];
-        part->last = neighbours->cell_start[(size_t)part->last_plane * plane];
+        part->first = neighbours->cells.start[(size_t)part->first_plane * plane];
+        part->last = neighbours->cells.start[(size_t)part->last_plane * plane];
         part->begin = (size_t)(neighbours->entries_each * (double)part->first) / 16 * 16 +
                       (size_t)p * 16 * PARTICLES_PADDING;
     }

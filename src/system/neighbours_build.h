@@ -7,7 +7,7 @@
 /// Cells are at least as wide as the range, or as half of it: neighbours lie within `range_cells`.
 enum { NEIGHBOURS_MOST_RANGE_CELLS = 2 };
 
-/// Counting sort by cell: fills cell_of, cell_start and order. Stable, so sorted stays sorted.
+/// Counting sort by cell: fills neighbours->cells. Stable, so sorted stays sorted.
 void mf_neighbours_sort(struct neighbours *neighbours, const struct particles *particles);
 
 /// Build the list of sorted particles. Fails: NO_MEMORY.

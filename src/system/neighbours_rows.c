@@ -10,7 +10,7 @@
 enum { ROW_PADDING = PARTICLES_PADDING };
 
 static size_t row_count(const struct neighbours *neighbours) {
-    return (size_t)neighbours->cells[0] * (size_t)neighbours->cells[1];
+    return (size_t)neighbours->cells.count[0] * (size_t)neighbours->cells.count[1];
 }
 
 enum status mf_neighbours_init_rows(struct neighbours *neighbours, const struct box *box) {
@@ -25,7 +25,7 @@ enum status mf_neighbours_init_rows(struct neighbours *neighbours, const struct 
     for (int d = 0; d < 3; d++)
         NEW_ARRAY(rows->place[d], room);
     NEW_ARRAY(rows->particle, room);
-    rows->cells = (size_t)(neighbours->cells[2] + 2 * rows->margin);
+    rows->cells = (size_t)(neighbours->cells.count[2] + 2 * rows->margin);
     NEW_ARRAY(rows->start, row_count(neighbours) * (rows->cells + 1));
 done:
     return status;
@@ -42,8 +42,8 @@ void mf_neighbours_clear_rows(struct neighbours *neighbours) {
 /// Lay out the rows one after the other.
 static void place_rows(struct neighbours *neighbours) {
     struct neighbours_rows *rows = &neighbours->rows;
-    const int n = neighbours->cells[2];
-    const uint32_t *cell_start = neighbours->cell_start;
+    const int n = neighbours->cells.count[2];
+    const uint32_t *cell_start = neighbours->cells.start;
     uint32_t *start = rows->start, at = 0;
     for (size_t row = 0; row < row_count(neighbours); row++) {
         for (int c = -rows->margin; c < n + rows->margin; c++) {
@@ -83,10 +83,10 @@ SIMD_CLONES static void fill_rows(void *context, size_t begin, size_t end) {
     const struct filling *filling = context;
     const struct neighbours *neighbours = filling->neighbours;
     const struct neighbours_rows *rows = &neighbours->rows;
-    const size_t n = (size_t)neighbours->cells[2], margin = (size_t)rows->margin;
+    const size_t n = (size_t)neighbours->cells.count[2], margin = (size_t)rows->margin;
     const float length = (float)filling->particles->box.length[2];
     for (size_t row = begin; row < end; row++) {
-        const uint32_t *cell_start = neighbours->cell_start + row * n;
+        const uint32_t *cell_start = neighbours->cells.start + row * n;
         const uint32_t *start = rows->start + row * (rows->cells + 1);
         copy_stretch(rows, filling->particles, cell_start[n - margin], cell_start[n], start[0],
                      -length);

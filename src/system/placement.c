@@ -3,6 +3,7 @@
 
 #include "base/memory.h"
 #include "base/rng.h"
+#include "system/cells.h"
 
 static const char *const kinds[] = {"lattice", "random", "file", NULL};
 static const char *const speeds[] = {"maxwell", "normal", "uniform", "signs",
@@ -80,55 +81,44 @@ void mf_placement_mix(struct particles *particles, uint64_t seed) {
     }
 }
 
-/// Linked cells of an edge of at least `separation`, at most a few for each particle.
+/// Chains of those placed, in cells of an edge of at least `separation`, at most a few for each
+/// particle.
 struct occupied {
     int cells[3];
-    int32_t *first, *next;
+    int32_t *first;
+    struct cells_link *link;
 };
 
 static enum status occupied_init(struct occupied *occupied, const struct particles *particles,
                                  double separation) {
     enum status status = STATUS_OK;
     *occupied = (struct occupied){0};
-    size_t total = 1;
-    const double most = fmax(1, floor(cbrt((double)particles->count)));
-    for (int d = 0; d < 3; d++) {
-        const double fit = separation > 0 ? particles->box.length[d] / separation : most;
-        occupied->cells[d] =
-            d < particles->box.dimensions ? (int)fmax(1, fmin(most, floor(fit))) : 1;
-        total *= (size_t)occupied->cells[d];
-    }
+    mf_cells_fit_box(&particles->box, separation, floor(cbrt((double)particles->count)),
+                     occupied->cells);
+    const size_t total = cells_total(occupied->cells);
     NEW_ARRAY(occupied->first, total);
-    NEW_ARRAY(occupied->next, particles->count);
-    for (size_t c = 0; c < total; c++)
-        occupied->first[c] = -1;
+    NEW_ARRAY(occupied->link, particles->count);
+    memset(occupied->first, 0xff, total * sizeof *occupied->first); // −1: empty
 done:
     return status;
 }
 
 static void cell_of(const struct occupied *occupied, const struct box *box, const double x[3],
                     int cell[3]) {
-    for (int d = 0; d < 3; d++) {
-        const int n = occupied->cells[d];
-        cell[d] = d < box->dimensions ? (int)fmin(n - 1, floor(x[d] / box->length[d] * n)) : 0;
-    }
+    for (int d = 0; d < 3; d++)
+        cell[d] = d < box->dimensions ? cells_along(x[d] / box->length[d], occupied->cells[d]) : 0;
 }
 
-static int32_t *head(struct occupied *occupied, int x, int y, int z) {
-    const int *n = occupied->cells;
-    return &occupied->first[(((x + n[0]) % n[0]) * n[1] + (y + n[1]) % n[1]) * n[2] +
-                            (z + n[2]) % n[2]];
-}
-
-static bool is_free(struct occupied *occupied, const struct particles *particles, const double x[3],
-                    double separation) {
+static bool is_free(const struct occupied *occupied, const struct particles *particles,
+                    const double x[3], double separation) {
     const struct box *box = &particles->box;
     int cell[3];
+    size_t around[CELLS_AROUND];
     cell_of(occupied, box, x, cell);
-    for (int n = 0; n < 27; n++) {
-        int32_t other =
-            *head(occupied, cell[0] + n % 3 - 1, cell[1] + n / 3 % 3 - 1, cell[2] + n / 9 - 1);
-        for (; other >= 0; other = occupied->next[other]) {
+    const int cells = mf_cells_around(occupied->cells, cell, box->dimensions, around);
+    for (int n = 0; n < cells; n++) {
+        int32_t other = occupied->first[around[n]];
+        for (; other >= 0; other = occupied->link[other].next) {
             double square = 0;
             for (int d = 0; d < box->dimensions; d++) {
                 const double dx = box_nearest(x[d] - particles->position[d][other], box->length[d]);
@@ -166,16 +156,14 @@ enum status mf_placement_random(struct particles *particles, double separation, 
         } while (!is_free(&occupied, particles, x, separation));
         int cell[3];
         cell_of(&occupied, box, x, cell);
-        int32_t *first = head(&occupied, cell[0], cell[1], cell[2]);
-        occupied.next[k] = *first;
-        *first = (int32_t)k;
+        cells_enter(&occupied.first[cells_number(occupied.cells, cell)], occupied.link, (int32_t)k);
         for (int d = 0; d < box->dimensions; d++)
             particles->position[d][k] = x[d];
     }
     mf_particles_update_fractions(particles);
 done:
     mf_memory_free(occupied.first);
-    mf_memory_free(occupied.next);
+    mf_memory_free(occupied.link);
     return status;
 }
 
