@@ -240,7 +240,7 @@ static void test_fit_of_a_mixture_is_refused_in_a_line_when_a_pair_is_wrong(void
     refuse(*state, ", " TARGET_BB, "", 1,
            (const char *[]){"run.json: target.rdf.B-B: missing", NULL});
     refuse(*state, "\"B-A\"", "\"B-C\"", 1,
-           (const char *[]){"run.json: target.rdf.B-C: unknown pair", "the pairs are A-A, A-B, B-B",
+           (const char *[]){"run.json: target.rdf.B-C: unknown pair", "expected A-A, A-B, B-B",
                             NULL});
     refuse(*state, TARGET_BB, TARGET_BB ", \"C-B\": {}", 1,
            (const char *[]){"run.json: target.rdf.C-B: unknown pair", NULL});
@@ -249,7 +249,7 @@ static void test_fit_of_a_mixture_is_refused_in_a_line_when_a_pair_is_wrong(void
     refuse(*state, TRUTH_AB, "", 1,
            (const char *[]){"run.json: unknowns.potential.truth.A-B: missing", NULL});
     refuse(*state, "{\n\"A-A\": {\"law\"", "{\n\"A-C\": {\"law\"", 1,
-           (const char *[]){"run.json: unknowns.potential.truth.A-C: there is no such", NULL});
+           (const char *[]){"run.json: unknowns.potential.truth.A-C: unknown pair", NULL});
     // A fault of the types is told alone: those of their pairs would mislead.
     refuse(*state, "\"A\": 40", "\"A\": 1", 1,
            (const char *[]){"run.json: target.rdf.A-A: a single bead is of that type", NULL});

@@ -385,7 +385,7 @@ static void test_a_fene_bond_that_is_too_long_is_unstable(void **state) {
             particles->position[d][particles->place[topology_id(kind, 7, 2)]] + (d == 0 ? 1.7 : 0);
     assert_int_equal(mf_simulation_run(&simulation, 1), STATUS_UNSTABLE);
     assert_non_null(strstr(mf_status_message(), "unstable at step 1: a bond \"fene\" is"));
-    assert_non_null(strstr(mf_status_message(), "tears at 1.5;"));
+    assert_non_null(strstr(mf_status_message(), "breaks at 1.5;"));
     mf_simulation_clear(&simulation);
     clear(&polymers);
 }
