@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Inverse Monte Carlo near its solution, and before that the steps that need no response, or little
-// of it: of one type of beads by the hypernetted chain, or in two dimensions Boltzmann inversion;
-// of several pair types and of groups with the response of few coefficients
-// (inversion/inversion_coarse.h). A Newton step converges at once near the solution and leads away
-// from far off it (its basin; P. Deuflhard, Newton Methods for Nonlinear Problems (2004), section
-// 2.1): where the samples know C it is tried, with the other in reserve, each time that the error
-// has halved since it led away; of groups only near their targets.
+// of it: of one type of beads by the hypernetted chain, or, in two dimensions and of molecules
+// whose own structure is not known, Boltzmann inversion; of several pair types and of groups with
+// the response of few coefficients (inversion/inversion_coarse.h). A Newton step converges at once
+// near the solution and leads away from far off it (its basin; P. Deuflhard, Newton Methods for
+// Nonlinear Problems (2004), section 2.1): where the samples know C it is tried, with the other in
+// reserve, each time that the error has halved since it led away; of groups only near their
+// targets.
 #include "inversion/inversion_coarse.h"
 #include "inversion/inversion.h"
+#include "inversion/inversion_inside.h"
 #include "inversion/method_steps.h"
 
 #include <math.h>
@@ -29,9 +31,12 @@ static bool may_be_in_basin(const struct inversion *inversion) {
 }
 
 static enum status careful_step(struct inversion_state *state, double *step) {
-    if (state->coarse.count > 0)
-        return mf_inversion_coarse_step(state, step);
-    if (state->box.dimensions == 3)
+    if (state->coarse.count > 0) {
+        TRY(mf_inversion_coarse_step(state, step));
+        mf_inversion_pressure_add_ramp(state, step);
+        return STATUS_OK;
+    }
+    if (mf_inversion_knows_inside(state))
         return mf_hnc_step(state, step);
     mf_ibi_step(state, step);
     return STATUS_OK;

@@ -30,10 +30,11 @@ enum status mf_hnc_step(const struct inversion_state *state, double *step) {
     }
     const struct hnc_liquid liquid = mf_inversion_liquid(state);
     CHECK(mf_hnc_closure_slope(&liquid, target, difference, ridge, indirect));
-    mf_ibi_step(state, step);
+    mf_ibi_logarithms(state, step);
     for (size_t n = 0; n < grid->known; n++)
         step[grid->known_point[n]] -=
             state->problem->scene.temperature * indirect[grid->known_bin[n]];
+    mf_inversion_pressure_add_ramp(state, step); // the last: it is for the pressure of the whole
 done:
     mf_memory_free(target);
     mf_memory_free(difference);
