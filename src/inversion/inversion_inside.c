@@ -8,6 +8,10 @@
 /// of the truth but in the core; 0 of hexane in three beads, where −k_B T ln g was nearer.
 static const double independent = 0.3;
 
+/// Part of the pairs that may be nearer than the first bin, as where a file leaves out the rows of
+/// the core: without bonds Ω is another molecule's.
+static const double most_nearer = 0.01;
+
 /// Configurations of free molecules of each replica, and trajectories between them.
 enum { ROUNDS = 10, EVERY = 40 };
 
@@ -26,8 +30,9 @@ struct hnc_liquid mf_inversion_liquid(const struct inversion_state *state) {
                                state->inside.least > 0 ? state->inside.g : NULL};
 }
 
-/// Sample once more, and count.
-static enum status sample(struct inversion_state *state, const struct inverse_listener *listener) {
+/// Sample once more, and count; of what is nearer than the first bin add the number.
+static enum status sample(struct inversion_state *state, const struct inverse_listener *listener,
+                          double *nearer) {
     const struct replicas_plan plan = {.equilibration = EVERY, .block_samples = 1, .every = 1};
     const struct inverse_progress progress = {.iterations =
                                                   (uint32_t)state->parameters->iterations};
@@ -37,7 +42,7 @@ static enum status sample(struct inversion_state *state, const struct inverse_li
     for (size_t k = 0; k < replicas->count; k++) {
         struct sampler *sampler = &replicas->member[k].sampler;
         TRY(mf_sampler_begin(sampler)); // another rank may have sampled
-        mf_sampler_count_excluded(sampler, &state->composition, state->inside.g);
+        *nearer += mf_sampler_count_excluded(sampler, &state->composition, state->inside.g);
     }
     return STATUS_OK;
 }
@@ -45,15 +50,20 @@ static enum status sample(struct inversion_state *state, const struct inverse_li
 enum status mf_inversion_inside_find(struct inversion_state *state, double *phi,
                                      const struct inverse_listener *listener) {
     const struct potential_grid *grid = &state->grid;
-    double *g = state->inside.g;
+    double *g = state->inside.g, nearer = 0, pairs = 0;
     if (!has_molecules(state) || grid->pairs == 0 || state->box.dimensions != 3)
         return STATUS_OK;
     memset(phi, 0, grid->pair_points * sizeof *phi);
+    memset(g, 0, grid->pair_bins * sizeof *g);
     TRY(mf_inversion_tabulate(state));
     for (int round = 0; round < ROUNDS; round++)
-        TRY(sample(state, listener));
-    for (size_t n = 0; n < grid->pairs * grid->bins; n++)
+        TRY(sample(state, listener, &nearer));
+    for (size_t n = 0; n < grid->pair_bins; n++) {
+        pairs += g[n];
         g[n] /= ROUNDS * (double)state->replicas.count * state->target.ideal[n];
+    }
+    if (nearer > most_nearer * (nearer + pairs))
+        return STATUS_OK;
     const struct hnc_liquid liquid = {&state->problem->targets.bins, &state->box,
                                       &state->composition, g};
     return mf_hnc_closure_least_inside(&liquid, &state->inside.least);

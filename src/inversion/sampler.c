@@ -166,11 +166,13 @@ enum status mf_sampler_sample(struct sampler *sampler, uint64_t sweeps, double *
     return STATUS_OK;
 }
 
-/// Of a molecule that was made whole.
-static void count_excluded_of(const struct sampler *sampler, const struct composition *composition,
-                              const struct topology_kind *kind, double *counts) {
+/// Of a molecule that was made whole; returns how many are nearer than the first bin.
+static double count_excluded_of(const struct sampler *sampler,
+                                const struct composition *composition,
+                                const struct topology_kind *kind, double *counts) {
     const struct pair_histogram *bins = &sampler->histogram;
     const double(*place)[3] = (const double(*)[3])sampler->whole.place;
+    double nearer = 0;
     for (int bead = 0; bead < kind->beads; bead++)
         for (int n = kind->near_start[bead]; n < kind->near_start[bead + 1]; n++) {
             const int other = kind->near[n];
@@ -179,19 +181,23 @@ static void count_excluded_of(const struct sampler *sampler, const struct compos
                 square += pow(place[other][d] - place[bead][d], 2);
             const double bin = floor((sqrt(square) - bins->low) / bins->width);
             const int pair = mf_composition_pair(composition, kind->type[bead], kind->type[other]);
+            nearer += bead < other && bin < 0;
             if (bead < other && bin >= 0 && bin < (double)bins->bins)
                 counts[(size_t)pair * bins->bins + (size_t)bin]++;
         }
+    return nearer;
 }
 
-void mf_sampler_count_excluded(struct sampler *sampler, const struct composition *composition,
-                               double *counts) {
+double mf_sampler_count_excluded(struct sampler *sampler, const struct composition *composition,
+                                 double *counts) {
     const struct topology *topology = &sampler->molecules->topology;
+    double nearer = 0;
     for (int k = 0; k < topology->kinds; k++)
         for (int64_t m = 0; m < topology->kind[k].count; m++) {
             mf_whole_molecules_make(&sampler->whole, particles_of(sampler), k, m);
-            count_excluded_of(sampler, composition, &topology->kind[k], counts);
+            nearer += count_excluded_of(sampler, composition, &topology->kind[k], counts);
         }
+    return nearer;
 }
 
 double mf_sampler_acceptance(const struct sampler *sampler) {

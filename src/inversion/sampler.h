@@ -103,9 +103,10 @@ enum status mf_sampler_sample(struct sampler *sampler, uint64_t sweeps, double *
 double mf_sampler_acceptance(const struct sampler *sampler);
 
 /// Count the pairs of the configuration that molecules exclude: what S leaves out of its bins.
+/// Returns how many are nearer than the first bin.
 /// @param[in,out] counts  shape [pair types, bins], added to
-void mf_sampler_count_excluded(struct sampler *sampler, const struct composition *composition,
-                               double *counts);
+double mf_sampler_count_excluded(struct sampler *sampler, const struct composition *composition,
+                                 double *counts);
 
 /// What a checkpoint keeps between runs; returns the number of spans.
 size_t mf_sampler_spans(struct sampler *sampler, struct memory_span *span);

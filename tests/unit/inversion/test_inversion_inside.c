@@ -30,8 +30,8 @@ static void ignore(void *context, const struct inverse_progress *progress) {
 }
 static const struct inverse_listener listener = {ignore, NULL};
 
-/// Dimers of beads of these types, with a target of some liquid.
-static void make(struct made *made, const int *type) {
+/// Dimers of beads of these types, with a target of some liquid from `low` to 2.
+static void make(struct made *made, const int *type, double low) {
     const int types = type[1] + 1, pairs = types * (types + 1) / 2;
     *made = (struct made){0};
     const struct composition composition =
@@ -40,7 +40,7 @@ static void make(struct made *made, const int *type) {
     molecules_add_group(&made->molecules, BONDED_BOND, &mf_bond_harmonic, bond_numbers);
     fluid_groot_warren(&made->fluid, 2 * DIMERS, 0.004);
     molecules_enter(&made->fluid.setup, &made->molecules, &composition);
-    const struct rdf_bins bins = {0, 0.05, BINS};
+    const struct rdf_bins bins = {low, (2 - low) / BINS, BINS};
     for (int n = 0; n < pairs * BINS; n++) {
         const double r = mf_rdf_bins_centre(&bins, (size_t)(n % BINS));
         made->g[n] = 1 - 0.9 * exp(-4 * r * r);
@@ -92,7 +92,7 @@ static double find_mean_length(double *deviation) {
 static void test_inside_of_dimers_is_the_distribution_of_their_bonds(void **state) {
     (void)state;
     static struct made made;
-    make(&made, (const int[]){0, 0});
+    make(&made, (const int[]){0, 0}, 0);
     const struct inversion_state *own = made.inversion.state;
     double counts = 0, sum = 0, deviation;
     for (size_t k = 0; k < BINS; k++) {
@@ -115,10 +115,20 @@ static void test_inside_of_dimers_is_the_distribution_of_their_bonds(void **stat
 static void test_inside_of_two_types_that_always_go_together_is_of_no_use(void **state) {
     (void)state;
     static struct made made;
-    make(&made, (const int[]){0, 1});
+    make(&made, (const int[]){0, 1}, 0);
     const struct inversion_state *own = made.inversion.state;
     assert_true(own->inside.least < 0.05);
     assert_false(mf_inversion_knows_inside(own));
+    clear(&made);
+}
+
+/// Bonds of 0.6 are in no bin from 1 on: single beads' S would be taken for theirs.
+static void test_inside_of_dimers_whose_bonds_are_below_the_first_bin_is_not_known(void **state) {
+    (void)state;
+    static struct made made;
+    make(&made, (const int[]){0, 0}, 1);
+    assert_false(mf_inversion_knows_inside(made.inversion.state));
+    assert_null(mf_inversion_liquid(made.inversion.state).inside);
     clear(&made);
 }
 
@@ -126,6 +136,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_inside_of_dimers_is_the_distribution_of_their_bonds),
         cmocka_unit_test(test_inside_of_two_types_that_always_go_together_is_of_no_use),
+        cmocka_unit_test(test_inside_of_dimers_whose_bonds_are_below_the_first_bin_is_not_known),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
