@@ -62,8 +62,8 @@ enum status mf_topology_check_term(const struct topology_kind *kind, int order, 
     for (int m = 0; m < n; m++) {
         const struct topology_term *other = &kind->term[order][m];
         if (are_same(term, other, beads) && (order == BONDED_BOND || term->group == other->group))
-            return mf_status_fail(STATUS_BAD_INPUT, "duplicate %s %s",
-                                  mf_bonded_kinds[order]->name, name);
+            return mf_status_fail(STATUS_BAD_INPUT, "duplicate %s %s", mf_bonded_kinds[order]->name,
+                                  name);
     }
     return STATUS_OK;
 }

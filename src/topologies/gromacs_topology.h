@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// @file Molecules of a GROMACS topology: [ moleculetype ], [ atoms ], [ bonds ], [ angles ],
-/// [ dihedrals ] with their functions (topologies/gromacs_functions.h), parameters beside them or in
-/// [ bondtypes ] and the like, and how many there are by [ molecules ].
+/// [ dihedrals ] with their functions (topologies/gromacs_functions.h), parameters beside them or
+/// in [ bondtypes ] and the like, and how many there are by [ molecules ].
 #pragma once
 
 #include "forces/molecules.h"

@@ -239,9 +239,9 @@ static void test_fit_of_a_mixture_is_refused_in_a_line_when_a_pair_is_wrong(void
     assert_int_equal(mkdir("out", 0700), 0);
     refuse(*state, ", " TARGET_BB, "", 1,
            (const char *[]){"run.json: target.rdf.B-B: missing", NULL});
-    refuse(*state, "\"B-A\"", "\"B-C\"", 1,
-           (const char *[]){"run.json: target.rdf.B-C: unknown pair", "expected A-A, A-B, B-B",
-                            NULL});
+    refuse(
+        *state, "\"B-A\"", "\"B-C\"", 1,
+        (const char *[]){"run.json: target.rdf.B-C: unknown pair", "expected A-A, A-B, B-B", NULL});
     refuse(*state, TARGET_BB, TARGET_BB ", \"C-B\": {}", 1,
            (const char *[]){"run.json: target.rdf.C-B: unknown pair", NULL});
     refuse(*state, "target/rdf_A-B.tsv", "target/none.tsv", 1,
