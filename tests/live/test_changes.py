@@ -127,7 +127,7 @@ class Changes(unittest.TestCase):
             json.dump(bare, file)
         self.hold("bare.json", "-o", "bare")
         self.assertEqual(self.served.wish(wish="change", temperature=2)[0], 200)
-        self.wait_for(lambda: "there is no thermostat it" in self.served.state()["message"])
+        self.wait_for(lambda: "there is no thermostat" in self.served.state()["message"])
         self.finish()
         self.assertNotIn("changed", self.summary("bare"))
 
