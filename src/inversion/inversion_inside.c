@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "inversion/inversion_inside.h"
 
+#include <math.h>
 #include <string.h>
 
 /// Least eigenvalue of Ω at which g of the types are independent enough. Measured: 0.59 of rings
@@ -32,7 +33,7 @@ struct hnc_liquid mf_inversion_liquid(const struct inversion_state *state) {
 
 /// Sample once more, and count; of what is nearer than the first bin add the number.
 static enum status sample(struct inversion_state *state, const struct inverse_listener *listener,
-                          double *nearer) {
+                          double *counts, double *nearer) {
     const struct replicas_plan plan = {.equilibration = EVERY, .block_samples = 1, .every = 1};
     const struct inverse_progress progress = {.iterations =
                                                   (uint32_t)state->parameters->iterations};
@@ -42,29 +43,42 @@ static enum status sample(struct inversion_state *state, const struct inverse_li
     for (size_t k = 0; k < replicas->count; k++) {
         struct sampler *sampler = &replicas->member[k].sampler;
         TRY(mf_sampler_begin(sampler)); // another rank may have sampled
-        *nearer += mf_sampler_count_excluded(sampler, &state->composition, state->inside.g);
+        *nearer += mf_sampler_count_excluded(sampler, &state->composition, counts);
     }
     return STATUS_OK;
 }
 
+/// Counts of so many rounds over those of an ideal gas, and what they tell of Ω.
+static enum status assess(struct inversion_state *state, const double *counts, int rounds,
+                          double *least) {
+    const struct hnc_liquid liquid = {&state->problem->targets.bins, &state->box,
+                                      &state->composition, state->inside.g};
+    for (size_t n = 0; n < state->grid.pair_bins; n++)
+        state->inside.g[n] =
+            counts[n] / (rounds * (double)state->replicas.count * state->target.ideal[n]);
+    return mf_hnc_closure_least_inside(&liquid, least);
+}
+
 enum status mf_inversion_inside_find(struct inversion_state *state, double *phi,
                                      const struct inverse_listener *listener) {
+    enum status status = STATUS_OK;
     const struct potential_grid *grid = &state->grid;
-    double *g = state->inside.g, nearer = 0, pairs = 0;
+    double *counts = NULL, nearer = 0, pairs = 0, least = INFINITY;
     if (!has_molecules(state) || grid->pairs == 0 || state->box.dimensions != 3)
         return STATUS_OK;
+    NEW_ARRAY(counts, grid->pair_bins);
     memset(phi, 0, grid->pair_points * sizeof *phi);
-    memset(g, 0, grid->pair_bins * sizeof *g);
-    TRY(mf_inversion_tabulate(state));
-    for (int round = 0; round < ROUNDS; round++)
-        TRY(sample(state, listener, &nearer));
-    for (size_t n = 0; n < grid->pair_bins; n++) {
-        pairs += g[n];
-        g[n] /= ROUNDS * (double)state->replicas.count * state->target.ideal[n];
+    CHECK(mf_inversion_tabulate(state));
+    // What is of no use is seen at once.
+    for (int round = 1; round <= ROUNDS && least > independent; round++) {
+        CHECK(sample(state, listener, counts, &nearer));
+        CHECK(assess(state, counts, round, &least));
     }
-    if (nearer > most_nearer * (nearer + pairs))
-        return STATUS_OK;
-    const struct hnc_liquid liquid = {&state->problem->targets.bins, &state->box,
-                                      &state->composition, g};
-    return mf_hnc_closure_least_inside(&liquid, &state->inside.least);
+    for (size_t n = 0; n < grid->pair_bins; n++)
+        pairs += counts[n];
+    if (nearer <= most_nearer * (nearer + pairs))
+        state->inside.least = least;
+done:
+    mf_memory_free(counts);
+    return status;
 }

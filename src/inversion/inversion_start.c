@@ -126,7 +126,9 @@ enum status mf_inversion_start_of_molecules(struct inversion *inversion,
                                             const struct inverse_listener *listener) {
     struct inversion_state *state = inversion->state;
     double *phi = inversion->course.phi;
-    if (inversion->states > 1 || has_own(state) || state->parameters->start != INVERSION_FROM_HNC)
+    const struct simulation_setup *scene = &state->problem->scene;
+    if (inversion->states > 1 || has_own(state) || state->parameters->start != INVERSION_FROM_HNC ||
+        mf_molecules_find(scene->interaction, scene->interactions) == NULL)
         return STATUS_OK;
     TRY(mf_inversion_inside_find(state, phi, listener));
     return mf_inversion_start(state, phi);
