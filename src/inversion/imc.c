@@ -16,8 +16,10 @@ static const char *const columns[] = {INVERSION_COLUMNS, "regularisation[1]", "m
 static const double well_known = 1.0 / 3;
 
 bool mf_imc_is_known(const struct inversion *inversion, double directions) {
-    return mf_inversion_is_near(inversion) ||
-           directions < well_known * well_known * inversion->state->response.independent;
+    double independent = INFINITY;
+    for (size_t s = 0; s < inversion->states; s++)
+        independent = fmin(independent, inversion->state[s].response.independent);
+    return mf_inversion_is_near(inversion) || directions < well_known * well_known * independent;
 }
 
 /// Near the noise a step that is as smooth as the noise allows is none at all, though g still asks

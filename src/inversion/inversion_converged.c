@@ -10,7 +10,7 @@
 /// settled.
 static const double settled_way = 0.5;
 
-/// Iterations running, of those that are kept, that must meet the targets where C is that of few
+/// Iterations since the fit came near its targets that must meet them where C is that of few
 /// samples, so that a step goes a part of its way.
 enum { LEAST_MET_WITH_GROUPS = 3 };
 
@@ -98,15 +98,15 @@ static bool cancels(double sum, uint32_t count, const struct inversion_band_way 
     return fabs(sum) <= count * settled_way * last->open;
 }
 
-/// Whether the ways of the last iterations that met the targets, `least` of them or more, cancel
-/// but for a part of their errors: each one has the noise of its samples, and what goes on goes on
-/// in one direction. Each state has a pressure of its own, and so a sum.
+/// Whether the ways of the last iterations near the targets, `least` of them or more, cancel but
+/// for a part of their errors: each one has the noise of its samples, and what goes on goes on in
+/// one direction. Each state has a pressure of its own, and so a sum.
 static bool has_settled(const struct inversion *inversion, uint32_t least) {
     const struct inversion_band_ways *last = &inversion->course.band.ways;
     const struct inversion_ways *ways = &inversion->course.progress.ways;
     double ramp = 0, pressure[INVERSE_MOST_STATES] = {0};
-    for (uint32_t k = 1; k <= ways->met && k <= INVERSION_MOST_WAYS; k++) {
-        const uint32_t place = (ways->met - k) % INVERSION_MOST_WAYS;
+    for (uint32_t k = 1; k <= ways->near && k <= INVERSION_MOST_WAYS; k++) {
+        const uint32_t place = (ways->near - k) % INVERSION_MOST_WAYS;
         ramp += ways->ramp[place];
         bool settled = k >= least && cancels(ramp, k, &last->ramp);
         for (size_t s = 0; s < inversion->states; s++) {
@@ -121,27 +121,30 @@ static bool has_settled(const struct inversion *inversion, uint32_t least) {
 
 static void note_ways(const struct inversion *inversion, struct inversion_ways *ways) {
     const struct inversion_band_ways *last = &inversion->course.band.ways;
-    const uint32_t place = ways->met % INVERSION_MOST_WAYS;
+    const uint32_t place = ways->near % INVERSION_MOST_WAYS;
     ways->ramp[place] = last->ramp.way;
     for (size_t s = 0; s < inversion->states; s++)
         ways->pressure[place][s] = last->pressure[s].way;
-    ways->met++;
+    ways->near++;
 }
 
 bool mf_inversion_has_converged(struct inversion *inversion, bool kept) {
     struct inversion_ways *ways = &inversion->course.progress.ways;
     if (!kept) // it goes back to the one before
         return false;
-    if (!inversion->course.progress.best.precise || !meets_targets(inversion)) {
-        ways->met = 0;
+    const bool meets = inversion->course.progress.best.precise && meets_targets(inversion);
+    if (!meets && !mf_inversion_is_near(inversion))
+        ways->near = ways->met = 0;
+    else
+        note_ways(inversion, ways);
+    if (!meets)
         return false;
-    }
-    note_ways(inversion, ways);
+    ways->met++;
     const struct potential_grid *grid = inversion_grid(inversion);
+    const uint32_t least = grid->groups > 0 ? LEAST_MET_WITH_GROUPS : 1;
     if (ways->met == 1 && grid->points > 0)
         memcpy(inversion->course.met_phi, inversion->course.phi, grid->points * sizeof(double));
-    if (!must_settle(inversion) ||
-        has_settled(inversion, grid->groups > 0 ? LEAST_MET_WITH_GROUPS : 1))
+    if (!must_settle(inversion) || (ways->met >= least && has_settled(inversion, least)))
         return true;
     inversion->course.walked = grid->groups > 0 && ways->met >= INVERSION_MOST_WAYS;
     return inversion->course.walked;

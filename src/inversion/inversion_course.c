@@ -50,6 +50,13 @@ size_t mf_inversion_course_spans(struct inversion_course *course, size_t points,
     return n + mf_inversion_band_spans(&course->band, points, span + n);
 }
 
+static void keep_counts(struct inversion *inversion) {
+    double *best = inversion->course.best.counts;
+    for (size_t s = 0; s < inversion->states; best += inversion->state[s++].bins)
+        memcpy(best, inversion->state[s].replicas.counts.mean,
+               inversion->state[s].bins * sizeof *best);
+}
+
 /// Keep the present potential as the best, with the steps that lead on from it.
 static enum status keep(struct inversion *inversion) {
     struct inversion_course *course = &inversion->course;
@@ -60,7 +67,7 @@ static enum status keep(struct inversion *inversion) {
     memcpy(course->best.phi, course->phi, bytes);
     memcpy(course->best.step, course->step, bytes);
     memcpy(course->best.other_step, course->other_step, bytes);
-    memcpy(course->best.counts, first->replicas.counts.mean, first->bins * sizeof(double));
+    keep_counts(inversion);
     course->progress.has_other = course->has_other;
     memcpy(best->distance, verdict->distance, sizeof best->distance);
     best->own_noise = verdict->own_noise;
@@ -73,19 +80,21 @@ static enum status keep(struct inversion *inversion) {
     return mf_inversion_band_find(inversion);
 }
 
-/// Which part of the way from the best to the present samples is nearest to the targets, each bin
-/// in its noise, if S changes evenly along it.
+/// Which part of the way from the best to the present samples is nearest to the targets of all
+/// states, each bin in its noise, if S changes evenly along it.
 static double find_nearest_part(const struct inversion *inversion) {
-    const struct inversion_state *first = inversion->state;
-    const double *now = first->replicas.counts.mean, *best = inversion->course.best.counts;
+    const double *best = inversion->course.best.counts;
     double along = 0, squares = 0;
-    for (size_t a = 0; a < first->grid.known; a++) {
-        const size_t bin = first->grid.known_bin[a];
-        const double change = now[bin] - best[bin];
-        if (!first->grid.seen[a])
-            continue;
-        along += change * (first->target.counts[bin] - best[bin]) / first->variance[a];
-        squares += change * change / first->variance[a];
+    for (size_t s = 0; s < inversion->states; best += inversion->state[s++].bins) {
+        const struct inversion_state *state = &inversion->state[s];
+        for (size_t a = 0; a < state->grid.known; a++) {
+            const size_t bin = state->grid.known_bin[a];
+            const double change = state->replicas.counts.mean[bin] - best[bin];
+            if (!state->grid.seen[a])
+                continue;
+            along += change * (state->target.counts[bin] - best[bin]) / state->variance[a];
+            squares += change * change / state->variance[a];
+        }
     }
     return squares > 0 ? along / squares : 0;
 }

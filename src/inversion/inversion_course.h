@@ -20,11 +20,12 @@ struct inversion_best_samples {
     bool precise;                      ///< they are as exact as was asked for
 };
 
-/// What iterations running that met all targets still asked for, of the ramp and of the pressure of
-/// each state.
+/// What the iterations since the fit came near its targets still asked for, of the ramp and of the
+/// pressure of each state.
 enum { INVERSION_MOST_WAYS = 8 };
 struct inversion_ways {
-    uint32_t met; ///< such iterations; the last of them are kept
+    uint32_t near; ///< such iterations; the last of them are kept
+    uint32_t met;  ///< those of them that met all targets
     double ramp[INVERSION_MOST_WAYS], pressure[INVERSION_MOST_WAYS][INVERSE_MOST_STATES];
 };
 
@@ -33,7 +34,7 @@ struct inversion_progress {
     uint32_t iteration;
     bool from_disorder; ///< the replicas are placed without order
     bool has_other;     ///< the best has another step
-    double damping;     ///< of the step from the best
+    double damping;     ///< part of the bounded step from the best
     int64_t stretch;    ///< of equilibration and spacing, by which the next samples begin
     struct inversion_best_samples best;
     struct target_distance least[TARGETS]; ///< nearest so far, of all that was kept
@@ -55,7 +56,7 @@ struct inversion_course {
         double *phi, *step, *other_step;
         double *counts; ///< ⟨S⟩ of the first state, shape [bins]
     } best;
-    double *met_phi;            ///< of the first iteration running that met the targets
+    double *met_phi;            ///< of the first iteration since then that met the targets
     bool walked;                ///< the fit ends though it walks on: the way from there is an error
     struct inversion_band band; ///< of the best
     struct inversion_progress progress;
@@ -120,11 +121,12 @@ enum status mf_inversion_take_last_step(struct inversion *inversion) MUST_USE;
 
 /// Whether this iteration, whose potential was kept or not, ends the fit: its samples are as exact
 /// as was asked for, agree with all targets, and leave no way that g hardly sees. The way has the
-/// noise of the samples: the mean of those of the last iterations that met the targets may be half
-/// of its error. In fits with groups it is that of three or more, since each step goes a part of
-/// its way, from one side, and an iteration that finds it over by chance would end there and take
-/// the same chance into the last step: the pressures of 16 twins were 0.6 errors too low.
-/// One that meets its targets eight times running and goes on ends, too: hexane's g(r) of two types
+/// noise of the samples: the mean of those of the last iterations near the targets may be half
+/// of its error. In fits with groups three of these or more must have met the targets, since each
+/// step goes a part of its way, from one side, and an iteration that finds it over by chance would
+/// end there and take the same chance into the last step: the pressures of 16 twins were 0.6 errors
+/// too low. They need not follow on each other: by the noise of C chi^2 of hexane swings about its
+/// bound. One that meets its targets eight times and goes on ends, too: hexane's g(r) of two types
 /// of beads was met for 17 iterations, in which the pressure fell by 900 bar; the way since the
 /// first of them counts as an error (`walked`). Iterations that are not kept, or whose samples have
 /// not settled, do not count. Tested:

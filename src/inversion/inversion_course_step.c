@@ -17,6 +17,21 @@ static const double largest_unknown_change = 3;
 /// Part of the last step, back, that still swings in by itself: each step halves what is left.
 static const double most_left = 0.5;
 
+/// The share of a step that is bounded as a whole.
+static double find_bounded(const struct inversion *inversion, const double *step) {
+    const struct potential_grid *grid = inversion_grid(inversion);
+    const bool whole = inversion->state->basis.count > 0;
+    double largest = 0;
+    for (size_t a = 0; a < grid->known; a++) {
+        const double size = fabs(step[grid->known_point[a]]);
+        if (grid->well_known[a])
+            largest = fmax(largest, size / largest_change);
+        else if (whole)
+            largest = fmax(largest, size / largest_unknown_change);
+    }
+    return 1 / fmax(1, largest);
+}
+
 void mf_inversion_relax(struct inversion *inversion) {
     const struct potential_grid *grid = inversion_grid(inversion);
     struct inversion_course *course = &inversion->course;
@@ -33,8 +48,10 @@ void mf_inversion_relax(struct inversion *inversion) {
     }
     *damping = fmin(1, 1.5 * *damping);
     if (left < -most_left * squares && !mf_inversion_is_near(inversion) &&
-        course->has_other == course->progress.has_other)
-        *damping = fmin(*damping, fmax(mf_inversion_least_damping, way / (squares - left)));
+        course->has_other == course->progress.has_other) {
+        const double share = way / (squares - left) / find_bounded(inversion, course->step);
+        *damping = fmin(*damping, fmax(mf_inversion_least_damping, share));
+    }
 }
 
 void mf_inversion_take_step(struct inversion *inversion) {
@@ -42,15 +59,7 @@ void mf_inversion_take_step(struct inversion *inversion) {
     const struct potential_grid *grid = &first->grid;
     struct inversion_course *course = &inversion->course;
     const bool whole = first->basis.count > 0;
-    double largest = 0;
-    for (size_t a = 0; a < grid->known; a++) {
-        const double size = fabs(course->best.step[grid->known_point[a]]);
-        if (grid->well_known[a] || whole)
-            largest =
-                fmax(largest,
-                     grid->well_known[a] ? size : size * largest_change / largest_unknown_change);
-    }
-    const double share = fmin(course->progress.damping, largest_change / fmax(largest, 1e-300));
+    const double share = course->progress.damping * find_bounded(inversion, course->best.step);
     for (size_t a = 0; a < grid->known; a++) {
         const size_t point = grid->known_point[a];
         double change = share * course->best.step[point];

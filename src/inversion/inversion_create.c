@@ -70,17 +70,26 @@ done:
     return status;
 }
 
+/// Of the samples of all states.
+static size_t count_bins(const struct inversion *inversion) {
+    size_t bins = 0;
+    for (size_t s = 0; s < inversion->states; s++)
+        bins += inversion->state[s].bins;
+    return bins;
+}
+
 /// All but the samplers and the start.
 static enum status prepare(struct inversion *inversion, const struct inverse_problem *problem,
                            const struct inversion_basis_size *coefficients) {
     TRY(make_states(inversion, problem, coefficients));
     const struct inversion_state *first = inversion->state;
-    const size_t points = first->grid.points, bins = first->bins;
-    TRY(mf_inversion_course_init(&inversion->course, first->grid.known, points, bins));
+    TRY(mf_inversion_course_init(&inversion->course, first->grid.known, first->grid.points,
+                                 count_bins(inversion)));
     for (size_t s = 0; s < inversion->states; s++)
         inversion->state[s].phi = inversion->course.phi;
     TRY(mf_inversion_equations_init(&inversion->equations, first, inversion->states));
-    TRY(mf_inversion_trail_init(&inversion->trail, (size_t)inversion->parameters.iterations, bins));
+    TRY(mf_inversion_trail_init(&inversion->trail, (size_t)inversion->parameters.iterations,
+                                first->bins));
     return mf_inversion_smooth_init(inversion);
 }
 
@@ -110,7 +119,8 @@ size_t mf_inversion_spans(void *memory, struct memory_span *span) {
     const struct inversion_state *first = inversion->state;
     size_t n = 0;
     span[n++] = (struct memory_span){&inversion->standstill, sizeof inversion->standstill};
-    n += mf_inversion_course_spans(&inversion->course, first->grid.points, first->bins, span + n);
+    n += mf_inversion_course_spans(&inversion->course, first->grid.points, count_bins(inversion),
+                                   span + n);
     n += mf_inversion_trail_spans(&inversion->trail, span + n);
     for (size_t s = 0; s < inversion->states; s++)
         n += mf_inversion_state_spans(&inversion->state[s], span + n);

@@ -137,6 +137,25 @@ static void test_inversion_goes_back_for_the_part_of_which_its_samples_tell(void
     }
 }
 
+/// A step of 50 k_B T is cut to one k_B T; when it was too far, half of that is next.
+static void test_inversion_goes_back_from_a_step_that_was_cut(void **state) {
+    (void)state;
+    size_t point = 0;
+    bool well_known = true;
+    double best = 0, best_step = 50, phi = 0;
+    struct inversion_state made = {
+        .grid = {.known = 1, .known_point = &point, .well_known = &well_known}};
+    struct inversion inversion = {
+        .state = &made,
+        .states = 1,
+        .course = {.phi = &phi, .best = {.phi = &best, .step = &best_step}}};
+    for (double damping = 1; damping > mf_inversion_least_damping; damping /= 2) {
+        inversion.course.progress.damping = damping;
+        mf_inversion_take_step(&inversion);
+        assert_close(phi, damping, 1e-12);
+    }
+}
+
 /// With 900 independent samples less than 100 directions.
 static void test_inversion_knows_directions_by_its_samples(void **state) {
     (void)state;
@@ -312,6 +331,7 @@ int main(void) {
         cmocka_unit_test(test_inversion_ends_with_the_step_that_is_left_or_the_mean),
         cmocka_unit_test(test_inversion_shortens_steps_that_go_too_far),
         cmocka_unit_test(test_inversion_goes_back_for_the_part_of_which_its_samples_tell),
+        cmocka_unit_test(test_inversion_goes_back_from_a_step_that_was_cut),
         cmocka_unit_test(test_inversion_knows_directions_by_its_samples),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
