@@ -169,13 +169,11 @@ static double assess(struct inversion_state *state, struct inversion_section *se
     const size_t *known_bin = state->grid.known_bin;
     const double *ideal = state->target.ideal;
     const size_t *known = known_bin + section->known;
-    section->inefficiency = mf_replicas_inefficiency(&state->replicas, REPLICAS_BLOCKS, ideal,
-                                                     known, section->known_count);
-    // Blocks do not see what lasts longer than a replica.
-    if (state->verdict.unsettled.found)
-        section->inefficiency =
-            fmax(section->inefficiency,
-                 mf_replicas_inefficiency(&state->replicas, 1, ideal, known, section->known_count));
+    // Blocks do not see what lasts longer than they do.
+    section->inefficiency =
+        fmax(mf_replicas_inefficiency(&state->replicas, REPLICAS_BLOCKS, ideal, known,
+                                      section->known_count),
+             mf_replicas_inefficiency(&state->replicas, 1, ideal, known, section->known_count));
     const double independent = counts->count / section->inefficiency;
     const double bins = (double)section->bins;
     double sum = 0, own = 0, both = 0, whole = 0, alone = 0, followed = 0, seen = 0;

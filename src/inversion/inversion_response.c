@@ -92,11 +92,11 @@ static double find_change_along_way(const struct inversion_state *state) {
 }
 
 /// The independent samples at the present potential that the C of before is worth. Of n of them C
-/// of N bins has the relative variance N/n as a matrix, and 2/n along one direction. Where g has
-/// changed by δ it is off by 2 δ, as a product of two counts is; and where a fit goes by what g
-/// hardly sees, C changes along its way though g does not: of a Yukawa fluid the variance along it
-/// fell to a third while g moved by 0.002. With that C of before the fit ended at a pressure of
-/// 11.3(2.2) instead of 19.0, without it at 15.4(5.3).
+/// of N bins has the relative variance N/n as a matrix. Where g has changed by δ it is off by 2 δ,
+/// as a product of two counts is; and where a fit goes by what g hardly sees, C changes along its
+/// way though g does not: of a Yukawa fluid the variance along it fell to a third while g moved by
+/// 0.002. With that C of before the fit ended at a pressure of 11.3(2.2) instead of 19.0, without
+/// it at 15.4(5.3).
 ///
 /// Samples as such would not do: how many make one independent is another number in each iteration,
 /// as is what lies between them.
@@ -109,10 +109,8 @@ static double find_worth(const struct inversion_state *state) {
         squares += pow(
             (state->replicas.counts.mean[bin] - response->mean[a]) / state->target.ideal[bin], 2);
     }
-    const double bias = 4 * squares / known;
-    return response->independent > 0
-               ? 1 / (1 / response->independent + bias / known + find_change_along_way(state) / 2)
-               : 0;
+    const double change = 4 * squares / known + find_change_along_way(state);
+    return response->independent > 0 ? 1 / (1 / response->independent + change / known) : 0;
 }
 
 void mf_inversion_response_add(struct inversion_state *state) {
