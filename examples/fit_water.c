@@ -4,7 +4,7 @@
 #include <mesofit.h>
 #include <stdio.h>
 
-enum { MOST = 400 };
+enum { MAX_BINS = 400 };
 
 static int fail(void) {
     fprintf(stderr, "%s\n", mesofit_message());
@@ -12,9 +12,9 @@ static int fail(void) {
 }
 
 int main(void) {
-    static double r[MOST], g[MOST], error[MOST];
+    static double r[MAX_BINS], g[MAX_BINS], error[MAX_BINS];
     size_t bins = 0;
-    while (bins < MOST && scanf("%lf %lf %lf", &r[bins], &g[bins], &error[bins]) == 3)
+    while (bins < MAX_BINS && scanf("%lf %lf %lf", &r[bins], &g[bins], &error[bins]) == 3)
         bins++;
 
     struct mesofit_fit_options options = mesofit_fit_options_default();

@@ -16,7 +16,7 @@ static double normal(void) {
 
 int main(int count, char **arguments) {
     enum { TRIALS = 30 };
-    double step = 0.05, least, error;
+    double step = 0.05, best_error, error;
     struct mesofit_fit *fit = count == 2 ? mesofit_fit_open(arguments[1], 1, NULL, NULL) : NULL;
     if (fit == NULL) {
         fprintf(stderr, "%s\n", count == 2 ? mesofit_message() : "usage: own_optimiser RUN.json");
@@ -25,20 +25,20 @@ int main(int count, char **arguments) {
     const size_t n = mesofit_fit_coefficients(fit);
     double *best = malloc(2 * n * sizeof *best), *trial = best + n;
     if (best == NULL || mesofit_fit_start(fit, best) != MESOFIT_OK ||
-        mesofit_fit_evaluate(fit, best, 1, &least, NULL) != MESOFIT_OK)
+        mesofit_fit_evaluate(fit, best, 1, &best_error, NULL) != MESOFIT_OK)
         return 1;
-    printf("%zu coefficients; the start is off by %.4f\n", n, least);
+    printf("%zu coefficients; the start is off by %.4f\n", n, best_error);
     for (int k = 0; k < TRIALS; k++) {
         for (size_t c = 0; c < n; c++)
             trial[c] = fmin(1, fmax(0, best[c] + step * normal()));
         if (mesofit_fit_evaluate(fit, trial, 1, &error, NULL) != MESOFIT_OK)
             return 1;
-        step *= error < least ? 1.5 : 0.9;
-        for (size_t c = 0; error < least && c < n; c++)
+        step *= error < best_error ? 1.5 : 0.9;
+        for (size_t c = 0; error < best_error && c < n; c++)
             best[c] = trial[c];
-        least = fmin(least, error);
+        best_error = fmin(best_error, error);
     }
-    printf("after %d trials %.4f\n", TRIALS, least);
+    printf("after %d trials %.4f\n", TRIALS, best_error);
     free(best);
     mesofit_fit_free(fit);
     return 0;

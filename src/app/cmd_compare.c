@@ -12,7 +12,7 @@ const struct command cmd_compare = {
     .name = "compare",
     .usage = "DIR DIR...",
     .summary = "compare finished fits and simulations: one table, one figure",
-    .least_files = 1,
-    .most_files = COMMAND_MAX_FILES,
+    .min_files = 1,
+    .max_files = COMMAND_MAX_FILES,
     .run = run,
 };

@@ -229,7 +229,7 @@ static size_t add_shared(struct topic *topics, size_t n) {
     return n;
 }
 
-size_t mf_describe_topics(struct topic topics[DESCRIBE_MOST_TOPICS]) {
+size_t mf_describe_topics(struct topic topics[DESCRIBE_MAX_TOPICS]) {
     size_t n = sizeof fixed_topics / sizeof *fixed_topics;
     memcpy(topics, fixed_topics, sizeof fixed_topics);
     n = add_target_topics(topics, n);
@@ -263,7 +263,7 @@ size_t mf_describe_topics(struct topic topics[DESCRIBE_MOST_TOPICS]) {
     for (size_t k = 0; mf_inverse_methods[k]; k++) {
         const struct inverse_method *method = mf_inverse_methods[k];
         topics[n] = (struct topic){"method", method->name, method->summary, {NULL}};
-        for (size_t t = 0; t + 1 < DESCRIBE_MOST_TABLES && method->tables[t].fields; t++)
+        for (size_t t = 0; t + 1 < DESCRIBE_MAX_TABLES && method->tables[t].fields; t++)
             topics[n].tables[t] = method->tables[t].fields;
         n++;
     }
@@ -301,7 +301,7 @@ static size_t add_targets(struct topic_object *objects, size_t n) {
     return n;
 }
 
-size_t mf_describe_objects(const char *topic, struct topic_object objects[DESCRIBE_MOST_OBJECTS]) {
+size_t mf_describe_objects(const char *topic, struct topic_object objects[DESCRIBE_MAX_OBJECTS]) {
     size_t n = 0;
     for (size_t k = 0; k < sizeof contents / sizeof *contents; k++)
         if (strcmp(contents[k].topic, topic) == 0)
@@ -334,7 +334,7 @@ static void print_index(const struct topic *topics, size_t count) {
 }
 
 static void print_objects(const char *topic) {
-    struct topic_object objects[DESCRIBE_MOST_OBJECTS];
+    struct topic_object objects[DESCRIBE_MAX_OBJECTS];
     const size_t count = mf_describe_objects(topic, objects);
     for (size_t k = 0; k < count; k++) {
         printf("  %-24s %s\n", objects[k].key, objects[k].help);
@@ -398,8 +398,8 @@ static const char *find_of_command(const struct topic *topics, size_t count, con
 }
 
 static enum status run(const struct command_line *line) {
-    struct topic topics[DESCRIBE_MOST_TOPICS];
-    const char *names[DESCRIBE_MOST_TOPICS];
+    struct topic topics[DESCRIBE_MAX_TOPICS];
+    const char *names[DESCRIBE_MAX_TOPICS];
     const size_t count = mf_describe_topics(topics);
     if (line->own[FORMAT] && line->file_count > 0)
         return mf_status_fail(STATUS_BAD_INPUT, "describe --format prints all, and takes no NAME");
@@ -429,8 +429,8 @@ const struct command cmd_describe = {
     .name = "describe",
     .usage = "[NAME]",
     .summary = "list the keys of files with units, defaults and ranges",
-    .least_files = 0,
-    .most_files = 1,
+    .min_files = 0,
+    .max_files = 1,
     .options = options,
     .run = run,
 };

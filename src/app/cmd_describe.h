@@ -7,12 +7,12 @@
 
 #include <stddef.h>
 
-enum { DESCRIBE_MOST_TOPICS = 128, DESCRIBE_MOST_OBJECTS = 64, DESCRIBE_MOST_TABLES = 8 };
+enum { DESCRIBE_MAX_TOPICS = 128, DESCRIBE_MAX_OBJECTS = 64, DESCRIBE_MAX_TABLES = 8 };
 
 /// A thing with a name of its own: an object of a file, a law, an integrator, a method.
 struct topic {
     const char *group, *name, *summary;
-    const struct field *tables[DESCRIBE_MOST_TABLES]; ///< NULL-terminated
+    const struct field *tables[DESCRIBE_MAX_TABLES]; ///< NULL-terminated
 };
 
 /// An object inside another, and the topic or group that says what stands in it.
@@ -22,10 +22,10 @@ struct topic_object {
 
 /// All topics, those of a group together: fixed ones, one for each record in the lists, and one for
 /// each table that several of these share, in the group "shared".
-size_t mf_describe_topics(struct topic topics[DESCRIBE_MOST_TOPICS]);
+size_t mf_describe_topics(struct topic topics[DESCRIBE_MAX_TOPICS]);
 
 /// The objects in what a topic is about; returns their number.
-size_t mf_describe_objects(const char *topic, struct topic_object objects[DESCRIBE_MOST_OBJECTS]);
+size_t mf_describe_objects(const char *topic, struct topic_object objects[DESCRIBE_MAX_OBJECTS]);
 
 /// The first topic that is about nothing but `table`, or NULL: where a document prints it.
 const struct topic *mf_describe_home(const struct topic *topics, size_t count,

@@ -16,16 +16,16 @@ static const struct command_option options[] = {
 };
 
 /// On a terminal alone: in a pipe the lines of the result say how long it was.
-static void tell(void *context, const struct simulation *simulation, uint64_t done,
-                 uint64_t total) {
+static void report(void *context, const struct simulation *simulation, uint64_t done,
+                   uint64_t total) {
     struct progress *const progress = context;
     (void)simulation;
     if (!progress->terminal)
         return;
-    mf_progress_tell(progress, done, total, "steps", "with both frictions");
+    mf_progress_report(progress, done, total, "steps", "with both frictions");
     if (done == total)
-        mf_progress_say(progress, "%llu steps with both frictions in %.3g s",
-                        (unsigned long long)total, mf_progress_seconds(progress));
+        mf_progress_print(progress, "%llu steps with both frictions in %.3g s",
+                          (unsigned long long)total, mf_progress_seconds(progress));
 }
 
 static enum status run(const struct command_line *line) {
@@ -42,15 +42,15 @@ static enum status run(const struct command_line *line) {
         .quiet = line->options.quiet,
         .force = line->options.force,
         .threads = line->options.threads,
-        .listener = &(struct measure_listener){.tell = tell, .context = &progress}});
+        .listener = &(struct measure_listener){.report = report, .context = &progress}});
 }
 
 const struct command cmd_export = {
     .name = "export",
     .usage = "DIR --engine NAME",
     .summary = "write a result as files that another engine runs",
-    .least_files = 1,
-    .most_files = 1,
+    .min_files = 1,
+    .max_files = 1,
     .options = options,
     .run = run,
 };

@@ -16,7 +16,7 @@
 enum { EXPLAIN, RANKS, TARGET, DENSITY, TEMPERATURE, LIVE };
 
 /// Of --explain.
-enum { MOST_RANKS = 100000 };
+enum { MAX_RANKS = 100000 };
 
 static const struct command_option options[] = {
     [EXPLAIN] = {"--explain", NULL, "print what will be done and what a step costs; run nothing"},
@@ -60,9 +60,9 @@ static enum status run_file(const char *file, const struct command_line *line) {
             "--ranks is for --explain; mpirun -np sets the number of processes of a fit");
     if (line->own[RANKS])
         TRY(parse_positive("--ranks", line->own[RANKS], &ranks));
-    if (ranks != floor(ranks) || ranks > MOST_RANKS)
+    if (ranks != floor(ranks) || ranks > MAX_RANKS)
         return mf_status_fail(STATUS_BAD_INPUT, "--ranks takes a whole number from 1 to %d",
-                              MOST_RANKS);
+                              MAX_RANKS);
     return line->own[EXPLAIN] ? mf_fit_explain(file, &line->options, (int)ranks)
                               : run_shared(file, line);
 }
@@ -85,10 +85,10 @@ static enum status run_rdf(const char *file, const char *rdf, const struct comma
              "{\"target\": {\"rdf\": {\"file\": \"rdf.tsv\"}}, "
              "\"scene\": {\"density\": %.17g, \"temperature\": %.17g}}",
              density, temperature);
-    const struct text_lent lent = {file, text};
-    mf_text_file_lend(&lent, 1);
+    const struct memory_file memory_files = {file, text};
+    mf_text_file_set_memory_files(&memory_files, 1);
     const enum status status = run_file(file, line);
-    mf_text_file_lend(NULL, 0);
+    mf_text_file_set_memory_files(NULL, 0);
     return status;
 }
 
@@ -106,10 +106,10 @@ static enum status run_filled(const char *file, const struct command_line *line)
         TRY(parse_positive("--temperature", line->own[TEMPERATURE], &filling[count++].value));
     }
     TRY(mf_json_fill(file, "scene", filling, count, &text));
-    const struct text_lent lent = {file, text};
-    mf_text_file_lend(&lent, 1);
+    const struct memory_file memory_files = {file, text};
+    mf_text_file_set_memory_files(&memory_files, 1);
     const enum status status = run_file(file, line);
-    mf_text_file_lend(NULL, 0);
+    mf_text_file_set_memory_files(NULL, 0);
     mf_memory_free(text);
     return status;
 }
@@ -166,8 +166,8 @@ const struct command cmd_fit = {
     .name = "fit",
     .usage = "RUN.json",
     .summary = "find the potential that reproduces a target",
-    .least_files = 0,
-    .most_files = 1,
+    .min_files = 0,
+    .max_files = 1,
     .options = options,
     .run = run,
 };

@@ -62,8 +62,8 @@ const struct command cmd_live = {
     .name = "live",
     .usage = "[FILE]",
     .summary = "show and run scenes, run files and results in a browser",
-    .least_files = 0,
-    .most_files = 1,
+    .min_files = 0,
+    .max_files = 1,
     .options = options,
     .run = run,
 };

@@ -58,17 +58,17 @@ static const struct command_option options[] = {
     {NULL, NULL, NULL},
 };
 
-/// A finite number from `least` on; NULL leaves it alone.
-static enum status read_number(const struct command_line *line, int option, double least,
+/// A finite number from `min` on; NULL leaves it alone.
+static enum status read_number(const struct command_line *line, int option, double min,
                                double *number) {
     const char *const text = line->own[option];
     char *end = NULL;
     if (text == NULL)
         return STATUS_OK;
     *number = strtod(text, &end);
-    if (end == text || *end != '\0' || !isfinite(*number) || *number < least)
+    if (end == text || *end != '\0' || !isfinite(*number) || *number < min)
         return mf_status_fail(STATUS_BAD_INPUT, "%s takes a number %s, not \"%.60s\"",
-                              options[option].name, least > 0 ? "above 0" : "from 0 on", text);
+                              options[option].name, min > 0 ? "above 0" : "from 0 on", text);
     return STATUS_OK;
 }
 
@@ -144,8 +144,8 @@ const struct command cmd_measure = {
     .name = "measure",
     .usage = "TRAJECTORY...",
     .summary = "make a target of a simulation of atoms: beads, g(r), motion",
-    .least_files = 1,
-    .most_files = COMMAND_MAX_FILES,
+    .min_files = 1,
+    .max_files = COMMAND_MAX_FILES,
     .options = options,
     .run = run,
 };

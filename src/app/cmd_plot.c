@@ -10,7 +10,7 @@ const struct command cmd_plot = {
     .name = "plot",
     .usage = "DIR",
     .summary = "draw the figures of a run's folder again",
-    .least_files = 1,
-    .most_files = 1,
+    .min_files = 1,
+    .max_files = 1,
     .run = run,
 };

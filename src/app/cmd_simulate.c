@@ -22,8 +22,8 @@ const struct command cmd_simulate = {
     .name = "simulate",
     .usage = "SCENE.json",
     .summary = "run a scene and measure it",
-    .least_files = 1,
-    .most_files = 1,
+    .min_files = 1,
+    .max_files = 1,
     .options = options,
     .run = run,
 };

@@ -36,7 +36,7 @@ struct command {
     const char *name;
     const char *usage;   ///< arguments, such as "SCENE.json"
     const char *summary; ///< one line
-    size_t least_files, most_files;
+    size_t min_files, max_files;
     const struct command_option *options; ///< its own, up to one without a name; NULL: none
     int threads;                          ///< unless --threads says more; 0: all processors
     enum status (*run)(const struct command_line *line);

@@ -15,19 +15,20 @@ static const char *kind_of(const char *value) {
 }
 
 /// "a|b" up to a blank, with blanks between.
-static void put_choices(FILE *stream, const char *value) {
+static void write_choices(FILE *stream, const char *value) {
     for (; *value && *value != ' '; value++)
         fputc(*value == '|' ? ' ' : *value, stream);
 }
 
-static void put_option_values(FILE *stream, const char *verb, const struct command_option *option) {
+static void write_option_values(FILE *stream, const char *verb,
+                                const struct command_option *option) {
     for (; option && option->name; option++) {
         if (option->value == NULL || option->value[0] == '[')
             continue;
         fprintf(stream, "    %s:%s) ", verb, option->name);
         if (strchr(option->value, '|')) {
             fprintf(stream, "choices=\"");
-            put_choices(stream, option->value);
+            write_choices(stream, option->value);
             fprintf(stream, "\" ;;\n");
         } else {
             fprintf(stream, "kind=%s ;;\n", kind_of(option->value));
@@ -35,7 +36,7 @@ static void put_option_values(FILE *stream, const char *verb, const struct comma
     }
 }
 
-static void put_names(FILE *stream, const struct command_option *option) {
+static void write_names(FILE *stream, const struct command_option *option) {
     for (; option && option->name; option++)
         fprintf(stream, " %s", option->name);
 }
@@ -55,7 +56,7 @@ static bool is_group(const struct topic *topics, size_t count, const char *name)
 }
 
 /// Every name that `describe` knows, of topics and of groups, once.
-static void put_topics(FILE *stream, const struct topic *topics, size_t count) {
+static void write_topics(FILE *stream, const struct topic *topics, size_t count) {
     for (size_t k = 0; k < count; k++) {
         const char *group = topics[k].group, *name = topics[k].name;
         if (!is_group(topics, k, group) && !is_name(topics, count, group))
@@ -66,21 +67,21 @@ static void put_topics(FILE *stream, const struct topic *topics, size_t count) {
 }
 
 /// What a subcommand takes beside options; the folders that are read are those of runs.
-static void put_command(FILE *stream, const struct command *command, const struct topic *topics,
-                        size_t count) {
+static void write_command(FILE *stream, const struct command *command, const struct topic *topics,
+                          size_t count) {
     fprintf(stream, "        %s)", command->name);
     if (command->options) {
         fprintf(stream, " options=\"$options");
-        put_names(stream, command->options);
+        write_names(stream, command->options);
         fprintf(stream, "\"");
     }
     if (strcmp(command->usage, cmd_describe.usage) == 0) {
         fprintf(stream, " choices=\"");
-        put_topics(stream, topics, count);
+        write_topics(stream, topics, count);
         fprintf(stream, "\"");
     } else if (strchr(command->usage, '|')) {
         fprintf(stream, " choices=\"");
-        put_choices(stream, command->usage);
+        write_choices(stream, command->usage);
         fprintf(stream, "\"");
     }
     fprintf(stream, " kind=%s ;;\n",
@@ -129,17 +130,17 @@ void mf_completion_print(FILE *stream, const struct topic *topics, size_t count)
             "    local kind=nothing choices=\n"
             "    local options=\"",
             helpers);
-    put_names(stream, mf_command_common);
+    write_names(stream, mf_command_common);
     fprintf(stream, "\"\n    [ \"$COMP_CWORD\" -gt 1 ] || verb=\n"
                     "    case $verb:${COMP_WORDS[COMP_CWORD - 1]} in\n    :*) choices=\"");
     for (size_t k = 0; mf_command_list[k]; k++)
         fprintf(stream, " %s", mf_command_list[k]->name);
     fprintf(stream, "\" ;;\n");
     for (size_t k = 0; mf_command_list[k]; k++)
-        put_option_values(stream, mf_command_list[k]->name, mf_command_list[k]->options);
-    put_option_values(stream, "*", mf_command_common);
+        write_option_values(stream, mf_command_list[k]->name, mf_command_list[k]->options);
+    write_option_values(stream, "*", mf_command_common);
     fprintf(stream, "    *)\n        case $verb in\n");
     for (size_t k = 0; mf_command_list[k]; k++)
-        put_command(stream, mf_command_list[k], topics, count);
+        write_command(stream, mf_command_list[k], topics, count);
     fprintf(stream, "        esac\n        ;;\n    esac\n%s", ending);
 }

@@ -37,16 +37,16 @@ static int exit_code(enum status status) {
     return 1;
 }
 
-/// A whole number from `least` to `most`.
-static enum status parse_number(const char *option, const char *text, uint64_t least, uint64_t most,
+/// A whole number from `min` to `max`.
+static enum status parse_number(const char *option, const char *text, uint64_t min, uint64_t max,
                                 uint64_t *number) {
     char *end = NULL;
     errno = 0;
     *number = text ? strtoull(text, &end, 10) : 0;
-    if (text == NULL || end == text || *end != '\0' || errno || *text == '-' || *number < least ||
-        *number > most)
+    if (text == NULL || end == text || *end != '\0' || errno || *text == '-' || *number < min ||
+        *number > max)
         return mf_status_fail(STATUS_BAD_INPUT, "%s takes a whole number from %llu to %llu", option,
-                              (unsigned long long)least, (unsigned long long)most);
+                              (unsigned long long)min, (unsigned long long)max);
     return STATUS_OK;
 }
 
@@ -168,7 +168,7 @@ static enum status run(int count, char **words) {
     struct command_line line = {0};
     TRY(find_command(words[0], &command));
     TRY(parse_line(command, count - 1, words + 1, &line));
-    if (line.file_count < command->least_files || line.file_count > command->most_files)
+    if (line.file_count < command->min_files || line.file_count > command->max_files)
         return mf_status_fail(STATUS_BAD_INPUT, "usage: mesofit %s %s", command->name,
                               command->usage);
     if (line.options.resume && line.options.force)

@@ -28,7 +28,7 @@ struct look {
 // Markdown ----------------------------------------------------------------------------------------
 
 /// With what would be markup spelled out: `|` parts cells, `<` begins a tag, `*` emphasis.
-static void put_markdown(FILE *stream, const char *text) {
+static void write_markdown(FILE *stream, const char *text) {
     for (bool code = false; *text; text++) {
         code = *text == '`' ? !code : code;
         if (*text == '|' || (!code && (*text == '*' || *text == '<')))
@@ -39,13 +39,13 @@ static void put_markdown(FILE *stream, const char *text) {
 
 static void markdown_heading(FILE *stream, int level, const char *text) {
     fprintf(stream, "\n%s ", level == 1 ? "##" : "###");
-    put_markdown(stream, text);
+    write_markdown(stream, text);
     fprintf(stream, "\n");
 }
 
 static void markdown_paragraph(FILE *stream, const char *text) {
     fprintf(stream, "\n");
-    put_markdown(stream, text);
+    write_markdown(stream, text);
     fprintf(stream, "\n");
 }
 
@@ -61,11 +61,11 @@ static void markdown_titles(FILE *stream, const char *const *titles) {
 
 static void markdown_row(FILE *stream, const char *const *titles, const char *const *cells) {
     fprintf(stream, "| `");
-    put_markdown(stream, cells[0]);
+    write_markdown(stream, cells[0]);
     fprintf(stream, "` |");
     for (size_t k = 1; titles[k]; k++) {
         fprintf(stream, "%s", cells[k][0] ? " " : "");
-        put_markdown(stream, cells[k]);
+        write_markdown(stream, cells[k]);
         fprintf(stream, " |");
     }
     fprintf(stream, "\n");
@@ -82,7 +82,7 @@ static const struct look markdown = {
 // Man pages ---------------------------------------------------------------------------------------
 
 /// With what would be a command of roff spelled out; a `-` stays one that can be copied.
-static void put_man(FILE *stream, const char *text) {
+static void write_man(FILE *stream, const char *text) {
     if (*text == '.' || *text == '\'')
         fprintf(stream, "\\&");
     for (; *text; text++)
@@ -107,13 +107,13 @@ static void man_heading(FILE *stream, int level, const char *text) {
     for (char *letter = shown; level == 1 && *letter; letter++)
         *letter = (char)toupper((unsigned char)*letter);
     fprintf(stream, ".%s \"", level == 1 ? "SH" : "SS");
-    put_man(stream, shown);
+    write_man(stream, shown);
     fprintf(stream, "\"\n");
 }
 
 static void man_paragraph(FILE *stream, const char *text) {
     fprintf(stream, ".PP\n");
-    put_man(stream, text);
+    write_man(stream, text);
     fprintf(stream, "\n");
 }
 
@@ -126,15 +126,15 @@ static void man_titles(FILE *stream, const char *const *titles) {
 static void man_row(FILE *stream, const char *const *titles, const char *const *cells) {
     const char *between = "";
     fprintf(stream, ".TP\n\\fB");
-    put_man(stream, cells[0]);
+    write_man(stream, cells[0]);
     fprintf(stream, "\\fR\n");
-    put_man(stream, cells[1]);
+    write_man(stream, cells[1]);
     fprintf(stream, "\n");
     for (size_t k = 2; titles[k]; k++) {
         if (cells[k][0] == '\0')
             continue;
         fprintf(stream, "%s%s ", between[0] ? between : ".br\n", titles[k]);
-        put_man(stream, cells[k]);
+        write_man(stream, cells[k]);
         between = "; ";
     }
     fprintf(stream, "%s", between[0] ? "\n" : "");
@@ -216,7 +216,7 @@ static void refer(char *text, size_t size, const struct look *look, const char *
 /// The table of a topic's own keys, and of the objects in it.
 static void print_keys(FILE *stream, const struct look *look, const struct topic *topic,
                        const struct topic *topics, size_t count) {
-    struct topic_object objects[DESCRIBE_MOST_OBJECTS];
+    struct topic_object objects[DESCRIBE_MAX_OBJECTS];
     const size_t object_count = mf_describe_objects(topic->name, objects);
     char place[128];
     bool begun = false;
@@ -303,7 +303,7 @@ void mf_reference_print_man(FILE *stream, const struct topic *topics, size_t cou
     man.heading(stream, 1, "Synopsis");
     for (size_t k = 0; mf_command_list[k]; k++) {
         fprintf(stream, "%s.B mesofit %s\n", k ? ".br\n" : "", mf_command_list[k]->name);
-        put_man(stream, mf_command_list[k]->usage);
+        write_man(stream, mf_command_list[k]->usage);
         fprintf(stream, " [option ...]\n");
     }
     print_body(stream, &man, topics, count);

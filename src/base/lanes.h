@@ -124,17 +124,17 @@ LANES_INLINE REAL lanes_sum(lanes_real a) {
 
 // What each instruction set says in its own way: of integers here, of reals in lanes_single.h and
 // lanes_double.h. Masks are the bits of an unsigned: bit n stands for lane n.
-//   lanes_least_int, lanes_most_int
+//   lanes_min_int, lanes_max_int
 //   lanes_set_bits(mask)     numbers of the bits that are set, in order; the rest is arbitrary
 //   lanes_eights(a, b)       a in the first eight lanes, b in the next, as far as there are any
 //   lanes_multiply_low(a, b) 64-bit products of the lower halves
 #if LANES == 16
 
-LANES_INLINE lanes_int lanes_least_int(lanes_int a, lanes_int b) {
+LANES_INLINE lanes_int lanes_min_int(lanes_int a, lanes_int b) {
     return (lanes_int)_mm512_min_epi32((__m512i)a, (__m512i)b);
 }
 
-LANES_INLINE lanes_int lanes_most_int(lanes_int a, lanes_int b) {
+LANES_INLINE lanes_int lanes_max_int(lanes_int a, lanes_int b) {
     return (lanes_int)_mm512_max_epi32((__m512i)a, (__m512i)b);
 }
 
@@ -148,11 +148,11 @@ LANES_INLINE lanes_int lanes_eights(int32_t a, int32_t b) {
 
 #elif LANES == 8
 
-LANES_INLINE lanes_int lanes_least_int(lanes_int a, lanes_int b) {
+LANES_INLINE lanes_int lanes_min_int(lanes_int a, lanes_int b) {
     return (lanes_int)_mm256_min_epi32((__m256i)a, (__m256i)b);
 }
 
-LANES_INLINE lanes_int lanes_most_int(lanes_int a, lanes_int b) {
+LANES_INLINE lanes_int lanes_max_int(lanes_int a, lanes_int b) {
     return (lanes_int)_mm256_max_epi32((__m256i)a, (__m256i)b);
 }
 
@@ -191,12 +191,12 @@ LANES_INLINE lanes_int lanes_eights(int32_t a, int32_t b) {
 
 #else
 
-LANES_INLINE lanes_int lanes_least_int(lanes_int a, lanes_int b) {
+LANES_INLINE lanes_int lanes_min_int(lanes_int a, lanes_int b) {
     const lanes_int less = a < b;
     return (less & a) | (~less & b);
 }
 
-LANES_INLINE lanes_int lanes_most_int(lanes_int a, lanes_int b) {
+LANES_INLINE lanes_int lanes_max_int(lanes_int a, lanes_int b) {
     const lanes_int less = a < b;
     return (less & b) | (~less & a);
 }
@@ -237,7 +237,7 @@ struct lanes_record {
 // Of reals:
 //   lanes_below(a, b)        in which lanes a < b; never where one is NaN
 //   lanes_sqrt(a)
-//   lanes_least(a, b)        the smaller of two; b where a is NaN
+//   lanes_min(a, b)        the smaller of two; b where a is NaN
 //   lanes_permute(a, order), lanes_permute_int    lane n becomes lane order[n] of a
 //   lanes_row(records, index)    records number index[0], index[4], … one after the other
 //   lanes_store_row(to, row)     and back, to every fourth record

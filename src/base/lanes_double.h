@@ -12,7 +12,7 @@ LANES_INLINE lanes_real lanes_sqrt(lanes_real a) {
     return (lanes_real)_mm512_sqrt_pd((__m512d)a);
 }
 
-LANES_INLINE lanes_real lanes_least(lanes_real a, lanes_real b) {
+LANES_INLINE lanes_real lanes_min(lanes_real a, lanes_real b) {
     return (lanes_real)_mm512_min_pd((__m512d)a, (__m512d)b);
 }
 
@@ -51,7 +51,7 @@ LANES_INLINE lanes_real lanes_sqrt(lanes_real a) {
     return (lanes_real)_mm256_sqrt_pd((__m256d)a);
 }
 
-LANES_INLINE lanes_real lanes_least(lanes_real a, lanes_real b) {
+LANES_INLINE lanes_real lanes_min(lanes_real a, lanes_real b) {
     return (lanes_real)_mm256_min_pd((__m256d)a, (__m256d)b);
 }
 
@@ -90,7 +90,7 @@ LANES_INLINE lanes_real lanes_sqrt(lanes_real a) {
     return (lanes_real){sqrt(a[0]), sqrt(a[1]), sqrt(a[2]), sqrt(a[3])};
 }
 
-LANES_INLINE lanes_real lanes_least(lanes_real a, lanes_real b) {
+LANES_INLINE lanes_real lanes_min(lanes_real a, lanes_real b) {
     return (lanes_real){a[0] < b[0] ? a[0] : b[0], a[1] < b[1] ? a[1] : b[1],
                         a[2] < b[2] ? a[2] : b[2], a[3] < b[3] ? a[3] : b[3]};
 }

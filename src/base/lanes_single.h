@@ -12,7 +12,7 @@ LANES_INLINE lanes_real lanes_sqrt(lanes_real a) {
     return (lanes_real)_mm512_sqrt_ps((__m512)a);
 }
 
-LANES_INLINE lanes_real lanes_least(lanes_real a, lanes_real b) {
+LANES_INLINE lanes_real lanes_min(lanes_real a, lanes_real b) {
     return (lanes_real)_mm512_min_ps((__m512)a, (__m512)b);
 }
 
@@ -49,7 +49,7 @@ LANES_INLINE lanes_real lanes_sqrt(lanes_real a) {
     return (lanes_real)_mm256_sqrt_ps((__m256)a);
 }
 
-LANES_INLINE lanes_real lanes_least(lanes_real a, lanes_real b) {
+LANES_INLINE lanes_real lanes_min(lanes_real a, lanes_real b) {
     return (lanes_real)_mm256_min_ps((__m256)a, (__m256)b);
 }
 
@@ -87,7 +87,7 @@ LANES_INLINE lanes_real lanes_sqrt(lanes_real a) {
     return (lanes_real){sqrtf(a[0]), sqrtf(a[1]), sqrtf(a[2]), sqrtf(a[3])};
 }
 
-LANES_INLINE lanes_real lanes_least(lanes_real a, lanes_real b) {
+LANES_INLINE lanes_real lanes_min(lanes_real a, lanes_real b) {
     const lanes_int less = a < b;
     return (lanes_real)((less & (lanes_int)a) | (~less & (lanes_int)b));
 }

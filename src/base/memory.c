@@ -42,7 +42,7 @@ void mf_memory_image_clear(struct memory_image *image) {
 }
 
 /// Bytes of a span in the image, so many that the next one is aligned.
-static size_t room_of(size_t bytes) {
+static size_t capacity_of(size_t bytes) {
     return (bytes + MEMORY_ALIGNMENT - 1) / MEMORY_ALIGNMENT * MEMORY_ALIGNMENT;
 }
 
@@ -52,7 +52,7 @@ enum status mf_memory_image_take(struct memory_image *image, const struct memory
     struct memory_image taken = {.count = count};
     size_t size = 0;
     for (size_t k = 0; k < count; k++)
-        size += room_of(spans[k].bytes);
+        size += capacity_of(spans[k].bytes);
     NEW_ARRAY(taken.span, count);
     NEW_ARRAY(taken.bytes, size);
     size = 0;
@@ -60,7 +60,7 @@ enum status mf_memory_image_take(struct memory_image *image, const struct memory
         taken.span[k] = (struct memory_span){taken.bytes + size, spans[k].bytes};
         if (spans[k].bytes > 0)
             memcpy(taken.bytes + size, spans[k].memory, spans[k].bytes);
-        size += room_of(spans[k].bytes);
+        size += capacity_of(spans[k].bytes);
     }
     mf_memory_image_clear(image);
     *image = taken;

@@ -39,15 +39,15 @@ done:
 
 bool mf_names_is_reserved(const char *name) {
     static const char *const before[] = {"now_", "error_"};
-    static const char *const behind[] = {"_history",   "_flat",  "_error",
+    static const char *const suffix[] = {"_history",   "_flat",  "_error",
                                          "_boltzmann", "_lower", "_upper"};
     const size_t length = strlen(name);
     bool found = false;
     for (size_t k = 0; k < sizeof before / sizeof *before; k++)
         found = found || strncmp(name, before[k], strlen(before[k])) == 0;
-    for (size_t k = 0; k < sizeof behind / sizeof *behind; k++) {
-        const size_t own = strlen(behind[k]);
-        found = found || (length >= own && strcmp(name + length - own, behind[k]) == 0);
+    for (size_t k = 0; k < sizeof suffix / sizeof *suffix; k++) {
+        const size_t own = strlen(suffix[k]);
+        found = found || (length >= own && strcmp(name + length - own, suffix[k]) == 0);
     }
     return found;
 }

@@ -51,7 +51,7 @@ static bool has_same_letters(const char *a, const char *b) {
 
 const char *mf_nearest_name(const char *given, const char *const *known, size_t count) {
     const char *nearest = NULL;
-    size_t least = LONGEST_NAME + 1; // farther than any two names
+    size_t min = LONGEST_NAME + 1; // farther than any two names
     const size_t length = strlen(given);
     for (size_t k = 0; k < count; k++) {
         const size_t other = strlen(known[k]);
@@ -62,10 +62,10 @@ const char *mf_nearest_name(const char *given, const char *const *known, size_t 
         const size_t allowed = longer < 6 ? 1 : longer / 3;
         // Of two that are as near: "yz" is nearer to "zy" than "y" and "xy" are.
         const bool better =
-            distance < least || (distance == least && !has_same_letters(given, nearest) &&
-                                 has_same_letters(given, known[k]));
+            distance < min || (distance == min && !has_same_letters(given, nearest) &&
+                               has_same_letters(given, known[k]));
         if (distance <= allowed && better) {
-            least = distance;
+            min = distance;
             nearest = known[k];
         }
     }

@@ -27,10 +27,10 @@ void mf_parallel_for(size_t count, int threads,
 double mf_parallel_sum(size_t count, int threads,
                        double (*body)(const void *context, size_t begin, size_t end),
                        const void *context) {
-    enum { MOST_BLOCKS = 64, SMALLEST_BLOCK = 4096 };
+    enum { MAX_BLOCKS = 64, SMALLEST_BLOCK = 4096 };
     const size_t wanted = (count + SMALLEST_BLOCK - 1) / SMALLEST_BLOCK;
-    const int blocks = wanted < MOST_BLOCKS ? (int)wanted : MOST_BLOCKS;
-    double sums[MOST_BLOCKS], total = 0;
+    const int blocks = wanted < MAX_BLOCKS ? (int)wanted : MAX_BLOCKS;
+    double sums[MAX_BLOCKS], total = 0;
 #pragma omp parallel for schedule(static) num_threads(threads) if (threads > 1)
     for (int block = 0; block < blocks; block++)
         sums[block] =

@@ -27,7 +27,7 @@ double mf_parallel_sum(size_t count, int threads,
                        double (*body)(const void *context, size_t begin, size_t end),
                        const void *context);
 
-enum { PARALLEL_MOST_SPANS = 256 };
+enum { PARALLEL_MAX_SPANS = 256 };
 
 /// Independent tasks 0 … count − 1 that may fail. What a task finds is either its own part of
 /// `context`, which no other task touches, or a result of some bytes that is taken over.
@@ -42,7 +42,7 @@ struct parallel_tasks {
     size_t result_size;
     void *context;
     /// List the part of `context` that a task has changed, for the ranks that did not do it and for
-    /// who begins again after an interruption (base/task_log.h), at most PARALLEL_MOST_SPANS;
+    /// who begins again after an interruption (base/task_log.h), at most PARALLEL_MAX_SPANS;
     /// returns their number. Lengths may follow from the spans before: it is asked again after each
     /// that has arrived. NULL: every rank does all tasks itself.
     size_t (*spans)(void *context, size_t task, struct memory_span *spans);

@@ -12,7 +12,7 @@ static struct parallel_size *find(size_t tasks) {
         if (nearest == NULL ||
             llabs((long long)(at->tasks - tasks)) < llabs((long long)(nearest->tasks - tasks)))
             nearest = at;
-    if ((nearest == NULL || nearest->tasks != tasks) && seen.sizes < PARALLEL_MOST_SIZES) {
+    if ((nearest == NULL || nearest->tasks != tasks) && seen.sizes < PARALLEL_MAX_SIZES) {
         nearest = &seen.size[seen.sizes++];
         nearest->tasks = tasks;
     }

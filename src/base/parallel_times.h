@@ -6,17 +6,17 @@
 
 #include <stddef.h>
 
-enum { PARALLEL_MOST_SIZES = 16 };
+enum { PARALLEL_MAX_SIZES = 16 };
 
 struct parallel_times {
     size_t sizes;
     struct parallel_size {
-        size_t tasks; ///< of a round; beyond PARALLEL_MOST_SIZES a round counts with its nearest
+        size_t tasks; ///< of a round; beyond PARALLEL_MAX_SIZES a round counts with its nearest
         double rounds, done; ///< and tasks of them
         double seconds;      ///< of processor time that they took
         double squares;      ///< of each task's deviation from its round's mean, over that
         double waited;       ///< [s] from begin to end of these rounds
-    } size[PARALLEL_MOST_SIZES];
+    } size[PARALLEL_MAX_SIZES];
 };
 
 /// What this process has seen since it began.

@@ -328,7 +328,7 @@ enum status mf_ranks_check(enum status status, uint64_t digest) {
 
 /// A thread of its own talks to other ranks, so that rank 0 serves them while all its other threads
 /// work, and a signal that one rank receives stops all, until no rank has a task.
-static void *talk(void *memory) {
+static void *exchange_reports(void *memory) {
     static const double BETWEEN_REPORTS = 0.05;
     struct round *round = memory;
     struct report all = {.working = true};
@@ -352,12 +352,12 @@ static void share(struct parallel_call *call) {
     if (call->status != STATUS_OK)
         broadcast(call->message, sizeof call->message);
     broadcast(&log->size, sizeof log->size);
-    if (mf_task_log_make_room(log) != STATUS_OK)
+    if (mf_task_log_reserve(log) != STATUS_OK)
         stop(STATUS_NO_MEMORY);
     broadcast(log->records + call->begin, log->size - call->begin);
     if (job.number != 0 && !mf_task_log_replay(call))
         stop_diverged();
-    if (log->size > TASK_LOG_MOST)
+    if (log->size > TASK_LOG_MAX)
         log->size = call->begin;
 }
 
@@ -365,18 +365,18 @@ void mf_ranks_try(struct parallel_call *call) {
     const struct parallel_tasks *tasks = call->tasks;
     static struct task_log own; // where none is in use
     struct round round = {.call = call, .working = true, .pause = SHORTEST};
-    pthread_t talker;
+    pthread_t reporter;
     if (call->log == NULL)
         call->log = &own;
     job.calls++;
     pthread_mutex_init(&round.lock, NULL);
-    if (pthread_create(&talker, NULL, talk, &round) != 0)
+    if (pthread_create(&reporter, NULL, exchange_reports, &round) != 0)
         stop(mf_status_fail(STATUS_NO_MEMORY, "a thread that talks to other ranks cannot begin"));
         // One task has the threads for itself.
 #pragma omp parallel num_threads(tasks->threads) if (tasks->threads > 1 && call->left > 1)
     work(&round);
     round.working = false;
-    pthread_join(talker, NULL);
+    pthread_join(reporter, NULL);
     pthread_mutex_destroy(&round.lock);
     share(call);
     mf_task_log_clear(&own);

@@ -116,7 +116,7 @@ void mf_statistics_take_larger(double *error, const double *others, size_t count
         error[k] = others[k];
 }
 
-void mf_statistics_forget_errors(double *error, size_t count) {
+void mf_statistics_mark_unknown_errors(double *error, size_t count) {
     bool known = false;
     for (size_t k = 0; k < count; k++)
         known = known || error[k] > 0;

@@ -62,7 +62,7 @@ void mf_statistics_take_larger(double *error, const double *others, size_t count
 
 /// What a person is told of standard errors of one curve: if none is above 0, they are those of a
 /// single value, and all become NaN, not known. Tested: test_statistics.
-void mf_statistics_forget_errors(double *error, size_t count);
+void mf_statistics_mark_unknown_errors(double *error, size_t count);
 
 /// How many independent numbers several of them count as that are measured together, and how well
 /// their errors are known.

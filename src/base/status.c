@@ -35,9 +35,9 @@ enum status mf_status_prefix(enum status status, const char *format, ...) {
     va_start(arguments, format);
     const int length = print_visible(message, format, arguments);
     va_end(arguments);
-    const int room = MESSAGE_SIZE - length - (int)sizeof ": ";
-    if (room > 0)
-        snprintf(message + length, (size_t)(MESSAGE_SIZE - length), ": %.*s", room, rest);
+    const int capacity = MESSAGE_SIZE - length - (int)sizeof ": ";
+    if (capacity > 0)
+        snprintf(message + length, (size_t)(MESSAGE_SIZE - length), ": %.*s", capacity, rest);
     return status;
 }
 

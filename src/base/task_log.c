@@ -12,7 +12,7 @@ static struct task_log *used;
 /// The bytes behind a head: a message, or the result and each span behind its length.
 static void write_bytes(FILE *stream, const struct task_record *head,
                         const struct parallel_tasks *tasks, const void *result) {
-    struct memory_span span[PARALLEL_MOST_SPANS];
+    struct memory_span span[PARALLEL_MAX_SPANS];
     if (head->status != STATUS_OK) {
         fwrite(mf_status_message(), 1, strlen(mf_status_message()) + 1, stream);
         return;
@@ -56,7 +56,7 @@ struct task_record *mf_task_record_create(const struct task_record *head,
 /// Lengths may follow from the spans before, so that they are listed again for each.
 static bool restore_span(const struct parallel_tasks *tasks, uint64_t task, size_t number,
                          const char **from, size_t *left) {
-    struct memory_span span[PARALLEL_MOST_SPANS];
+    struct memory_span span[PARALLEL_MAX_SPANS];
     uint64_t bytes;
     if (*left < sizeof bytes)
         return false;
@@ -100,27 +100,27 @@ size_t mf_task_log_spans(struct task_log *log, struct memory_span *spans) {
 static enum status grow(struct task_log *log, uint64_t wanted) {
     enum { FIRST_ROOM = 1 << 16 };
     enum status status = STATUS_OK;
-    uint64_t room = log->room > 0 ? log->room : FIRST_ROOM;
+    uint64_t capacity = log->capacity > 0 ? log->capacity : FIRST_ROOM;
     char *records = NULL;
-    while (room < wanted)
-        room *= 2;
-    NEW_ARRAY(records, room);
-    if (log->room > 0)
-        memcpy(records, log->records, log->room);
+    while (capacity < wanted)
+        capacity *= 2;
+    NEW_ARRAY(records, capacity);
+    if (log->capacity > 0)
+        memcpy(records, log->records, log->capacity);
     mf_memory_free(log->records);
     log->records = records;
-    log->room = room;
+    log->capacity = capacity;
 done:
     return status;
 }
 
-enum status mf_task_log_make_room(struct task_log *log) {
-    return log->size > log->room ? grow(log, log->size) : STATUS_OK;
+enum status mf_task_log_reserve(struct task_log *log) {
+    return log->size > log->capacity ? grow(log, log->size) : STATUS_OK;
 }
 
 enum status mf_task_log_add(struct task_log *log, const struct task_record *record) {
     const size_t size = task_record_size(record);
-    if (log->size + size > log->room)
+    if (log->size + size > log->capacity)
         TRY(grow(log, log->size + size));
     memcpy(log->records + log->size, record, size);
     log->size += size;
@@ -183,7 +183,7 @@ void mf_task_log_end(struct parallel_call *call) {
 void mf_task_log_note(const struct parallel_call *call, size_t task, const void *result) {
     struct task_record *record = mf_task_record_create(
         &(struct task_record){.call = call->number, .task = task}, call->tasks, result);
-    if (record && call->log->size + task_record_size(record) <= TASK_LOG_MOST)
+    if (record && call->log->size + task_record_size(record) <= TASK_LOG_MAX)
         (void)!mf_task_log_add(call->log, record);
     mf_memory_free(record);
 }

@@ -24,7 +24,7 @@ struct task_record {
 /// Zeroed: empty.
 struct task_log {
     uint64_t size; ///< of the records [bytes]; the first span
-    uint64_t room;
+    uint64_t capacity;
     char *records;
     uint64_t calls; ///< of mf_parallel_try since the log began
 };
@@ -39,7 +39,7 @@ void mf_task_log_use(struct task_log *log);
 /// restored there is to be made room. Tested: test_task_log.
 enum { TASK_LOG_SPANS = 2 };
 size_t mf_task_log_spans(struct task_log *log, struct memory_span *spans);
-enum status mf_task_log_make_room(struct task_log *log) MUST_USE;
+enum status mf_task_log_reserve(struct task_log *log) MUST_USE;
 
 /// @name For mf_parallel_try
 
@@ -71,7 +71,7 @@ bool mf_task_record_restore(const struct task_record *record, const struct paral
                             const void **result);
 
 /// Beyond so many bytes a log takes too much memory, and time to save it.
-enum { TASK_LOG_MOST = 1 << 28 };
+enum { TASK_LOG_MAX = 1 << 28 };
 
 /// Fails: NO_MEMORY.
 enum status mf_task_log_add(struct task_log *log, const struct task_record *record) MUST_USE;

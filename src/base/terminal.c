@@ -23,7 +23,7 @@ static bool write_all(int file, const char *bytes, size_t count) {
 }
 
 /// Take one more byte; returns the bytes of `shown` that it, and what was begun, are shown as.
-static size_t take(struct terminal *terminal, char byte, char shown[4 * VISIBLE_MOST]) {
+static size_t take(struct terminal *terminal, char byte, char shown[4 * VISIBLE_MAX]) {
     size_t used = 0, taken;
     terminal->begun[terminal->size++] = byte;
     while (terminal->size > 0 && !mf_visible_is_begun(terminal->begun, terminal->size)) {
@@ -37,7 +37,7 @@ static size_t take(struct terminal *terminal, char byte, char shown[4 * VISIBLE_
 /// How the stream writes; 0 if it fails, with errno.
 static ssize_t show(void *context, const char *bytes, size_t count) {
     enum { PIECE = 4096 };
-    char shown[PIECE + 4 * VISIBLE_MOST];
+    char shown[PIECE + 4 * VISIBLE_MAX];
     size_t used = 0;
     for (size_t k = 0; k < count; k++) {
         used += take(context, bytes[k], shown + used);

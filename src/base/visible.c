@@ -14,9 +14,9 @@ static size_t length_of(unsigned char first) {
 /// Whether the second byte can follow the first one: no longer spellings, no surrogates, nothing
 /// beyond U+10FFFF.
 static bool can_follow(unsigned char first, unsigned char second) {
-    const unsigned char least = first == 0xe0 ? 0xa0 : first == 0xf0 ? 0x90 : 0x80;
-    const unsigned char most = first == 0xed ? 0x9f : first == 0xf4 ? 0x8f : 0xbf;
-    return second >= least && second <= most;
+    const unsigned char min = first == 0xe0 ? 0xa0 : first == 0xf0 ? 0x90 : 0x80;
+    const unsigned char max = first == 0xed ? 0x9f : first == 0xf4 ? 0x8f : 0xbf;
+    return second >= min && second <= max;
 }
 
 /// Bytes, of `size`, that can stand in the character of `length` bytes that the first one begins.
@@ -45,7 +45,7 @@ static bool is_control(const char *text, size_t bytes) {
            (first == 0xc2 && (unsigned char)text[1] <= 0x9f);
 }
 
-size_t mf_visible_show(const char *text, size_t size, const char *kept, char shown[VISIBLE_MOST],
+size_t mf_visible_show(const char *text, size_t size, const char *kept, char shown[VISIBLE_MAX],
                        size_t *taken) {
     static const char digits[] = "0123456789abcdef";
     const size_t bytes = mf_visible_character(text, size);
@@ -64,7 +64,7 @@ size_t mf_visible_show(const char *text, size_t size, const char *kept, char sho
 void mf_visible_copy(char *copy, size_t size, const char *text, const char *kept) {
     size_t used = 0, left = strlen(text), taken;
     for (; left > 0; text += taken, left -= taken) {
-        char shown[VISIBLE_MOST];
+        char shown[VISIBLE_MAX];
         const size_t bytes = mf_visible_show(text, left, kept, shown, &taken);
         if (used + bytes >= size)
             break;

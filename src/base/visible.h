@@ -6,7 +6,7 @@
 #include <stddef.h>
 
 /// Bytes that the longest character is shown as.
-enum { VISIBLE_MOST = 8 };
+enum { VISIBLE_MAX = 8 };
 
 /// Bytes of the character of UTF-8 (RFC 3629) that these bytes begin with; 0 if it is none.
 size_t mf_visible_character(const char *text, size_t size);
@@ -20,7 +20,7 @@ bool mf_visible_is_begun(const char *text, size_t size);
 /// @param[in] kept  control characters that stay, as "\n"
 /// @param[out] taken  bytes of the text that are shown
 /// Returns how many bytes of `shown` they are shown as.
-size_t mf_visible_show(const char *text, size_t size, const char *kept, char shown[VISIBLE_MOST],
+size_t mf_visible_show(const char *text, size_t size, const char *kept, char shown[VISIBLE_MAX],
                        size_t *taken);
 
 /// Copy a text as it is shown; one that does not fit is cut.

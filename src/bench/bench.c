@@ -15,16 +15,16 @@
 
 enum {
     PATH_SIZE = OUTPUT_PATH_SIZE + 64,
-    MOST_KERNELS = 3,
-    MOST_PRECISIONS = 2,
-    MOST_CASES = MOST_KERNELS * MOST_PRECISIONS, ///< of a scene
+    MAX_KERNELS = 3,
+    MAX_PRECISIONS = 2,
+    MAX_CASES = MAX_KERNELS * MAX_PRECISIONS, ///< of a scene
 };
 
 /// Seconds of one repeat, alone and in turn with LAMMPS.
 static const double repeat_seconds = 0.35, turn_seconds = 1;
 
-static const char *const kernels[MOST_KERNELS] = {"portable", "avx2", "avx512"};
-static const char *const precisions[MOST_PRECISIONS] = {"mixed", "double"};
+static const char *const kernels[MAX_KERNELS] = {"portable", "avx2", "avx512"};
+static const char *const precisions[MAX_PRECISIONS] = {"mixed", "double"};
 
 /// The scenes that ship with the program.
 static const char scenes_folder[] = "tests/bench/scenes";
@@ -38,7 +38,7 @@ struct run {
     struct progress progress;
     struct bench_scene *scenes;
     size_t scene_count;
-    struct bench_how hows[MOST_CASES];
+    struct bench_how hows[MAX_CASES];
     size_t how_count;
     struct bench_result *results; ///< shape [scene_count × how_count]
     size_t result_count;
@@ -49,7 +49,7 @@ struct run {
 
 /// Add one kernel with every precision that is asked for.
 static void add_kernel(struct run *run, const char *isa) {
-    for (size_t k = 0; k < MOST_PRECISIONS; k++) {
+    for (size_t k = 0; k < MAX_PRECISIONS; k++) {
         const char *wanted = run->options->precision;
         if (wanted && strcmp(wanted, precisions[k]) != 0)
             continue;
@@ -74,15 +74,15 @@ static enum status check_choice(const char *option, const char *given, const cha
 
 static enum status choose_cases(struct run *run) {
     const struct bench_options *options = run->options;
-    TRY(check_choice("--isa", options->isa, kernels, MOST_KERNELS));
-    TRY(check_choice("--precision", options->precision, precisions, MOST_PRECISIONS));
+    TRY(check_choice("--isa", options->isa, kernels, MAX_KERNELS));
+    TRY(check_choice("--precision", options->precision, precisions, MAX_PRECISIONS));
     if (options->isa && !mf_simd_select(options->isa))
         return mf_status_fail(STATUS_BAD_INPUT, "--isa: this processor lacks %s", options->isa);
     if (options->isa || options->against_lammps || options->skips) {
         add_kernel(run, mf_simd_name());
         return STATUS_OK;
     }
-    for (size_t k = 0; k < MOST_KERNELS; k++)
+    for (size_t k = 0; k < MAX_KERNELS; k++)
         if (mf_simd_select(kernels[k]))
             add_kernel(run, kernels[k]);
     return STATUS_OK;
@@ -115,18 +115,18 @@ done:
 
 // Timing ------------------------------------------------------------------------------------------
 
-static void tell(struct run *run, const struct bench_scene *scene, const struct bench_how *how) {
+static void report(struct run *run, const struct bench_scene *scene, const struct bench_how *how) {
     const uint64_t cases = run->scene_count * run->how_count;
     const uint64_t parts = run->options->against_lammps ? 1 : 1 + BENCH_REPEATS;
     char text[BENCH_NAME_SIZE + 32];
     snprintf(text, sizeof text, "%s  %s  %s", scene->name, how->isa, how->precision);
-    mf_progress_tell(&run->progress, run->parts_done++, parts * cases, "runs", text);
+    mf_progress_report(&run->progress, run->parts_done++, parts * cases, "runs", text);
 }
 
 static enum status time_alone(struct run *run, struct bench_case *bench,
                               const struct bench_scene *scene, struct bench_result *result) {
     for (int k = 0; k < BENCH_REPEATS; k++) {
-        tell(run, scene, &bench->how);
+        report(run, scene, &bench->how);
         TRY(mf_bench_case_repeat(bench));
     }
     mf_bench_case_result(bench, scene->name, result);
@@ -137,7 +137,7 @@ static enum status time_case(struct run *run, const struct bench_scene *scene,
                              const struct bench_how *how) {
     struct bench_case bench;
     struct bench_result *result = &run->results[run->result_count];
-    tell(run, scene, how);
+    report(run, scene, how);
     enum status status = mf_bench_case_begin(&bench, scene, how);
     if (status == STATUS_OK)
         status = run->options->against_lammps ? mf_bench_lammps_compare(&bench, scene, result)
@@ -151,11 +151,11 @@ static enum status time_case(struct run *run, const struct bench_scene *scene,
 
 /// True, after a word about it, if LAMMPS cannot do the scene.
 static bool is_left_out(struct run *run, const struct bench_scene *scene) {
-    const char *objection = mf_bench_lammps_objection(&scene->scene);
-    if (!run->options->against_lammps || objection == NULL)
+    const char *unsupported = mf_bench_lammps_unsupported(&scene->scene);
+    if (!run->options->against_lammps || unsupported == NULL)
         return false;
     if (!run->common->quiet)
-        fprintf(stderr, "%s is not compared: %s\n", scene->name, objection);
+        fprintf(stderr, "%s is not compared: %s\n", scene->name, unsupported);
     run->parts_done += run->how_count;
     return true;
 }
@@ -164,7 +164,8 @@ static enum status time_scene(struct run *run, const struct bench_scene *scene) 
     const struct bench_result *first = run->results + run->result_count;
     for (size_t k = 0; k < run->how_count; k++)
         TRY(time_case(run, scene, &run->hows[k]));
-    mf_progress_say(&run->progress, "%s: %.0f s", scene->name, mf_progress_seconds(&run->progress));
+    mf_progress_print(&run->progress, "%s: %.0f s", scene->name,
+                      mf_progress_seconds(&run->progress));
     if (run->options->json)
         return STATUS_OK;
     if (first > run->results)

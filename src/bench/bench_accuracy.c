@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_STEPS = 32 };
+enum { MAX_STEPS = 32 };
 
 /// Time steps in those of the scene.
 static const double factors[] = {0.25, 0.5, 0.75, 1, 1.25, 1.5, 2, 2.5, 3, 4};
@@ -31,9 +31,9 @@ struct run {
     const struct bench_accuracy_options *options;
     struct progress progress;
     struct bench_scene scene;
-    struct bench_method suitable[BENCH_MOST_METHODS], methods[BENCH_MOST_METHODS];
+    struct bench_method suitable[BENCH_MAX_METHODS], methods[BENCH_MAX_METHODS];
     size_t suitable_count, method_count;
-    double time_steps[MOST_STEPS], unstable_from[BENCH_MOST_METHODS];
+    double time_steps[MAX_STEPS], unstable_from[BENCH_MAX_METHODS];
     size_t step_count;
     double time, wanted;
     double *start_values; ///< shape [6, particles]
@@ -42,7 +42,7 @@ struct run {
     struct bench_point reference, *points; ///< shape [method_count, step_count]
     struct bench_row *rows;
     size_t row_count;
-    struct bench_limit limit[BENCH_MOST_METHODS];
+    struct bench_limit limit[BENCH_MAX_METHODS];
     uint64_t steps_done, steps_total;
 };
 
@@ -57,7 +57,7 @@ static enum status parse_number(const char *option, const char *text, double *nu
 }
 
 static enum status parse_time_steps(struct run *run, const char *text) {
-    for (char *end; run->step_count < MOST_STEPS; text = end + 1) {
+    for (char *end; run->step_count < MAX_STEPS; text = end + 1) {
         const double step = strtod(text, &end);
         const double before = run->step_count > 0 ? run->time_steps[run->step_count - 1] : 0;
         if (end == text || (*end != '\0' && *end != ',') || !isfinite(step) || step <= before)
@@ -68,7 +68,7 @@ static enum status parse_time_steps(struct run *run, const char *text) {
     }
     return mf_status_fail(
         STATUS_BAD_INPUT,
-        "--time-steps takes growing numbers above 0, such as 0.01,0.02, %d at most", MOST_STEPS);
+        "--time-steps takes growing numbers above 0, such as 0.01,0.02, %d at most", MAX_STEPS);
 }
 
 /// True if a list such as "aboba,shardlow" names a method, or its integrator.
@@ -84,7 +84,7 @@ static bool is_listed(const char *list, const struct bench_method *method) {
 
 /// Refuse a list with a name that is none of a suitable integrator.
 static enum status check_names(const struct run *run, const char *list) {
-    const char *names[BENCH_MOST_METHODS];
+    const char *names[BENCH_MAX_METHODS];
     char hint[256], word[64];
     for (size_t k = 0; k < run->suitable_count; k++)
         names[k] = run->suitable[k].name;
@@ -134,13 +134,13 @@ static enum status choose(struct run *run) {
 // Running -----------------------------------------------------------------------------------------
 
 /// Count steps, from any thread.
-static void tell(void *context, uint64_t steps) {
+static void report(void *context, uint64_t steps) {
     struct run *run = context;
 #pragma omp critical
     {
         run->steps_done += steps;
-        mf_progress_tell(&run->progress, run->steps_done, run->steps_total, "steps",
-                         run->scene.name);
+        mf_progress_report(&run->progress, run->steps_done, run->steps_total, "steps",
+                           run->scene.name);
     }
 }
 
@@ -154,7 +154,7 @@ static enum status prepare(struct run *run) {
     const struct simulation_start *start =
         scene->setup.placement.kind == PLACEMENT_FILE ? &scene->start : NULL;
     NEW_ARRAY(run->start_values, 6 * particles);
-    mf_progress_tell(&run->progress, 0, run->steps_total, "steps", run->scene.name);
+    mf_progress_report(&run->progress, 0, run->steps_total, "steps", run->scene.name);
     CHECK(mf_bench_point_prepare(&scene->setup, start, method, run->time_steps[0],
                                  preparation_share * run->time, run->start_values));
     for (size_t d = 0; d < 3; d++) {
@@ -177,7 +177,7 @@ static enum status plan(struct run *run) {
         .start = &run->start,
         .bins =
             mf_bench_bins_choose(&setup->box, (size_t)setup->placement.count, mf_pair_cutoff(&law)),
-        .tell = tell,
+        .report = report,
         .context = run};
     run->reference = (struct bench_point){
         .method = mf_bench_reference_method(run->suitable, run->suitable_count),
@@ -225,7 +225,7 @@ static enum status run_point(struct run *run, struct bench_point *point) {
 #pragma omp critical
     {
         run->unstable_from[method] = fmin(run->unstable_from[method], point->time_step);
-        run->steps_total -= planned - point->told;
+        run->steps_total -= planned - point->reported;
     }
     return STATUS_OK;
 }
@@ -262,7 +262,7 @@ static enum status run_points(struct run *run) {
 // Results -----------------------------------------------------------------------------------------
 
 /// Rows and limit of one method, up to its first unstable time step.
-static void judge(struct run *run, size_t method) {
+static void assess(struct run *run, size_t method) {
     const struct bench_point *points = run->points + method * run->step_count;
     const struct bench_row *first = run->rows + run->row_count;
     size_t count = 0;
@@ -284,14 +284,14 @@ static enum status write_table(struct run *run, const struct bench_diagram *diag
     return STATUS_OK;
 }
 
-static enum status report(struct run *run) {
-    const char *names[BENCH_MOST_METHODS];
+static enum status write_report(struct run *run) {
+    const char *names[BENCH_MAX_METHODS];
     const size_t bins = run->points_common.bins.count;
     const struct bench_extrapolation to_zero = mf_bench_extrapolate(
         &run->reference, run->points, run->method_count * run->step_count, bins);
     for (size_t m = 0; m < run->method_count; m++) {
         names[m] = run->methods[m].name;
-        judge(run, m);
+        assess(run, m);
     }
     const struct bench_diagram diagram = {
         .scene = run->scene.name,
@@ -307,8 +307,8 @@ static enum status report(struct run *run) {
         .method = names,
         .methods = run->method_count,
         .has_omega = run->scene.scene.setup.omega != NULL};
-    mf_progress_say(&run->progress, "%s: %.0f s", run->scene.name,
-                    mf_progress_seconds(&run->progress));
+    mf_progress_print(&run->progress, "%s: %.0f s", run->scene.name,
+                      mf_progress_seconds(&run->progress));
     if (run->options->json)
         TRY(mf_bench_accuracy_json(stdout, &diagram));
     else
@@ -341,7 +341,7 @@ static enum status carry_out(struct run *run, const char *file) {
     if (status != STATUS_OK && status != STATUS_INTERRUPTED)
         return mf_status_prefix(status, "%s", file);
     TRY(status);
-    return report(run);
+    return write_report(run);
 }
 
 enum status mf_bench_accuracy(const char *file, const struct run_options *common,

@@ -195,26 +195,26 @@ void mf_bench_accuracy_table(FILE *stream, const struct bench_diagram *diagram) 
 
 // For programs ------------------------------------------------------------------------------------
 
-static void put_row(struct json_writer *writer, const char *role, const struct bench_row *row) {
+static void write_row(struct json_writer *writer, const char *role, const struct bench_row *row) {
     const bool has_changes = strcmp(role, "reference") != 0;
     mf_json_begin(writer, NULL);
-    mf_json_put_text(writer, "role", role);
-    mf_json_put_text(writer, "integrator", row->method);
+    mf_json_write_text(writer, "role", role);
+    mf_json_write_text(writer, "integrator", row->method);
     for (int k = 0; k < BENCH_COLUMNS; k++)
         if (isfinite(row->value[k]) && (has_changes || k < BENCH_G_LARGEST || k >= BENCH_VALUES))
-            mf_json_put_number(writer, columns[k].key, row->value[k]);
+            mf_json_write_number(writer, columns[k].key, row->value[k]);
     mf_json_end(writer);
 }
 
-static void put_limit(struct json_writer *writer, const char *role,
-                      const struct bench_limit *limit) {
+static void write_limit(struct json_writer *writer, const char *role,
+                        const struct bench_limit *limit) {
     mf_json_begin(writer, NULL);
-    mf_json_put_text(writer, "role", role);
-    mf_json_put_text(writer, "integrator", limit->method);
-    mf_json_put_number(writer, "time_step", limit->time_step);
-    mf_json_put_number(writer, "time_step_error", limit->time_step_error);
-    mf_json_put_number(writer, "cpu", limit->cpu);
-    mf_json_put_number(writer, "cpu_error", limit->cpu_error);
+    mf_json_write_text(writer, "role", role);
+    mf_json_write_text(writer, "integrator", limit->method);
+    mf_json_write_number(writer, "time_step", limit->time_step);
+    mf_json_write_number(writer, "time_step_error", limit->time_step_error);
+    mf_json_write_number(writer, "cpu", limit->cpu);
+    mf_json_write_number(writer, "cpu_error", limit->cpu_error);
     mf_json_end(writer);
 }
 
@@ -222,21 +222,21 @@ enum status mf_bench_accuracy_json(FILE *stream, const struct bench_diagram *dia
     struct json_writer *writer = mf_json_writer_create_list();
     if (writer == NULL)
         return STATUS_NO_MEMORY;
-    put_row(writer, "reference", &diagram->reference);
+    write_row(writer, "reference", &diagram->reference);
     for (size_t k = 0; k < diagram->rows; k++)
-        put_row(writer, "point", &diagram->row[k]);
+        write_row(writer, "point", &diagram->row[k]);
     for (size_t m = 0; m < diagram->methods; m++)
         if (diagram->limit[m].method)
-            put_limit(writer, "limit", &diagram->limit[m]);
+            write_limit(writer, "limit", &diagram->limit[m]);
     const size_t best = mf_bench_cheapest(diagram);
     if (best < diagram->methods)
-        put_limit(writer, "recommendation", &diagram->limit[best]);
+        write_limit(writer, "recommendation", &diagram->limit[best]);
     const enum status status = mf_json_write_stream(writer, stream, "the results");
     mf_json_writer_free(writer);
     return status;
 }
 
-static void put_line(FILE *stream, const struct bench_row *row) {
+static void write_line(FILE *stream, const struct bench_row *row) {
     fprintf(stream, "%s", row->method);
     for (int k = 0; k < BENCH_COLUMNS; k++)
         fprintf(stream, "\t%.6g", row->value[k]);
@@ -246,7 +246,7 @@ static void put_line(FILE *stream, const struct bench_row *row) {
 void mf_bench_accuracy_tsv(FILE *stream, const struct bench_diagram *diagram) {
     fprintf(stream, "# %s: %zu particles, %.6g tau a point; reference: ", diagram->scene,
             diagram->particles, diagram->time);
-    put_line(stream, &diagram->reference);
+    write_line(stream, &diagram->reference);
     fprintf(stream, "# extrapolated with a time step of %.6g\n# wanted %.6g\n",
             diagram->extrapolation.partner, diagram->wanted);
     for (size_t m = 0; m < diagram->methods; m++)
@@ -261,6 +261,6 @@ void mf_bench_accuracy_tsv(FILE *stream, const struct bench_diagram *diagram) {
     for (size_t k = 0; k < diagram->rows; k++) {
         if (k > 0 && strcmp(diagram->row[k].method, diagram->row[k - 1].method) != 0)
             fprintf(stream, "\n\n");
-        put_line(stream, &diagram->row[k]);
+        write_line(stream, &diagram->row[k]);
     }
 }

@@ -50,11 +50,11 @@ struct bench_extrapolation mf_bench_extrapolate(struct bench_point *reference,
 // Errors ------------------------------------------------------------------------------------------
 
 double mf_bench_expected_largest(const double *error, size_t count) {
-    double most = 0, sum = 0;
+    double max = 0, sum = 0;
     for (size_t k = 0; k < count; k++)
-        most = fmax(most, error[k]);
-    const double step = most / 50;
-    for (int i = 0; i < 400 && most > 0; i++) {
+        max = fmax(max, error[k]);
+    const double step = max / 50;
+    for (int i = 0; i < 400 && max > 0; i++) {
         double below = 1;
         for (size_t k = 0; k < count; k++)
             if (error[k] > 0)
@@ -66,7 +66,7 @@ double mf_bench_expected_largest(const double *error, size_t count) {
 
 static void find_rdf_errors(const struct bench_point *point, const struct bench_point *reference,
                             size_t bins, struct bench_row *row) {
-    double error[BENCH_MOST_BINS], squares = 0, variance = 0;
+    double error[BENCH_MAX_BINS], squares = 0, variance = 0;
     double *value = row->value;
     value[BENCH_G_LARGEST] = -1;
     for (size_t k = 0; k < bins; k++) {

@@ -48,7 +48,7 @@ enum status mf_bench_lammps_check(void) {
     return mf_status_prefix(STATUS_BAD_INPUT, "--against-lammps needs Debian's package lammps");
 }
 
-const char *mf_bench_lammps_objection(const struct scene *scene) {
+const char *mf_bench_lammps_unsupported(const struct scene *scene) {
     const struct curve_family *family = scene->potential.curve[0].family;
     if (composition_is_mixed(&scene->setup.composition))
         return "it is a mixture";

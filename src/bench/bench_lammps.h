@@ -10,7 +10,7 @@ enum status mf_bench_lammps_check(void) MUST_USE;
 
 /// Why a scene is not compared, or NULL if it is: Debian's LAMMPS has pair styles for tables and
 /// Lennard-Jones, not for DPD.
-const char *mf_bench_lammps_objection(const struct scene *scene);
+const char *mf_bench_lammps_unsupported(const struct scene *scene);
 
 /// Write the input of LAMMPS for the present state of `simulation`, which has no objection, to the
 /// files in.bench, start.data and, if the law is a table, pair.table in `folder`.

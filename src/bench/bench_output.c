@@ -151,18 +151,18 @@ done:
 
 // For programs ------------------------------------------------------------------------------------
 
-static void put_result(struct json_writer *writer, const struct bench_result *result) {
+static void write_result(struct json_writer *writer, const struct bench_result *result) {
     mf_json_begin(writer, NULL);
-    mf_json_put_text(writer, "scene", result->scene);
-    mf_json_put_text(writer, "isa", result->isa);
-    mf_json_put_text(writer, "precision", result->precision);
+    mf_json_write_text(writer, "scene", result->scene);
+    mf_json_write_text(writer, "isa", result->isa);
+    mf_json_write_text(writer, "precision", result->precision);
     for (size_t k = 0; k < COLUMNS; k++) {
         const double value = number_of(result, &columns[k]);
         if (isfinite(value))
-            mf_json_put_number(writer, columns[k].key, value);
+            mf_json_write_number(writer, columns[k].key, value);
     }
     if (result->lammps_style[0])
-        mf_json_put_text(writer, "lammps_style", result->lammps_style);
+        mf_json_write_text(writer, "lammps_style", result->lammps_style);
     mf_json_end(writer);
 }
 
@@ -171,7 +171,7 @@ enum status mf_bench_output_json(FILE *stream, const struct bench_result *result
     if (writer == NULL)
         return STATUS_NO_MEMORY;
     for (size_t k = 0; k < count; k++)
-        put_result(writer, &results[k]);
+        write_result(writer, &results[k]);
     const enum status status = mf_json_write_stream(writer, stream, "the results");
     mf_json_writer_free(writer);
     return status;

@@ -25,9 +25,9 @@ static const double equilibration_share = 0.05;
 
 /// Window of the diffusion coefficient, in times in which a particle flies the mean distance: in
 /// the standard fluid 4 τ, where its D(t) has come to its plateau. It is measured in runs of
-/// LEAST_WINDOWS or more.
+/// MIN_WINDOWS or more.
 static const double window_length = 6;
-enum { LEAST_WINDOWS = 4, ORIGINS = 6 };
+enum { MIN_WINDOWS = 4, ORIGINS = 6 };
 
 // What to run -------------------------------------------------------------------------------------
 
@@ -54,10 +54,10 @@ static void add_inner_steps(struct bench_method *methods, size_t *count,
 
 size_t mf_bench_methods(const struct simulation_setup *setup, struct bench_method *methods) {
     size_t count = 0;
-    for (size_t k = 0; mf_integrator_list[k] && count + 3 <= BENCH_MOST_METHODS; k++) {
+    for (size_t k = 0; mf_integrator_list[k] && count + 3 <= BENCH_MAX_METHODS; k++) {
         const struct integrator *integrator = mf_integrator_list[k];
         if (integrator->dissipative != (setup->omega != NULL) || integrator->mobility ||
-            integrator->events || integrator->companions || integrator->samples)
+            integrator->events || integrator->solvent_particles || integrator->samples)
             continue;
         const bool predicts = integrator == &mf_dpd_verlet;
         for (size_t l = 0; l < (predicts ? sizeof predictions / sizeof *predictions : 1); l++) {
@@ -91,7 +91,7 @@ struct bench_bins mf_bench_bins_choose(const struct box *box, size_t particles, 
     const double distance = mean_distance(box, particles);
     struct bench_bins bins;
     bins.fine.low = 0;
-    bins.fine.count = (size_t)fmin(fmax(2, rint(cutoff / distance * 10)), BENCH_MOST_BINS);
+    bins.fine.count = (size_t)fmin(fmax(2, rint(cutoff / distance * 10)), BENCH_MAX_BINS);
     bins.fine.width = cutoff / (double)bins.fine.count;
     bins.core = (size_t)fmax(1, rint(distance / 3 / bins.fine.width));
     if (bins.core > bins.fine.count / 2)
@@ -158,9 +158,9 @@ static struct bench_number median(double *blocks) {
                                  1.25 * mf_statistics_standard_error(&running)};
 }
 
-static void tell(const struct bench_common *common, struct bench_point *point, int64_t steps) {
-    point->told += (uint64_t)steps;
-    common->tell(common->context, (uint64_t)steps);
+static void report(const struct bench_common *common, struct bench_point *point, int64_t steps) {
+    point->reported += (uint64_t)steps;
+    common->report(common->context, (uint64_t)steps);
 }
 
 struct bench_measured {
@@ -191,7 +191,7 @@ static enum status sample(const struct bench_common *common, struct bench_point 
         seconds[block] += processor_seconds() - begin;
         times[block] += (double)(plan->every - 1) * point->time_step;
         TRY(mf_measure_sample(simulation, &next, uses, NULL));
-        tell(common, point, plan->every);
+        report(common, point, plan->every);
     }
     for (int b = 0; b < BLOCKS; b++)
         seconds[b] /= times[b];
@@ -296,7 +296,7 @@ enum status mf_bench_point_run(const struct bench_common *common, struct bench_p
         setup_of(common->setup, common->start, point->method, point->time_step);
     const struct measure_plan plan = plan_of(common, point);
     const struct motion_plan motion_plan = motion_plan_of(common, point, &plan);
-    measured.moves = plan.samples >= LEAST_WINDOWS * motion_plan.lags;
+    measured.moves = plan.samples >= MIN_WINDOWS * motion_plan.lags;
     double temperature;
     setup.seed = point->seed;
     point->steps = (uint64_t)(plan.samples * plan.every);
@@ -308,7 +308,7 @@ enum status mf_bench_point_run(const struct bench_common *common, struct bench_p
                       (size_t)plan.samples));
     mf_thermodynamics_init(&measured.thermodynamics);
     CHECK(mf_measure_equilibrate(&simulation, &plan, &temperature, NULL));
-    tell(common, point, plan.equilibration);
+    report(common, point, plan.equilibration);
     if (measured.moves)
         CHECK(mf_motion_init(&measured.motion, &motion_plan, &simulation, plan.equilibration,
                              plan.samples * plan.every));

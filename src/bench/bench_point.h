@@ -15,7 +15,7 @@ struct bench_method {
     const void *parameters; ///< NULL: the defaults; borrowed
 };
 
-enum { BENCH_MOST_METHODS = 16, BENCH_MOST_BINS = 4096 };
+enum { BENCH_MAX_METHODS = 16, BENCH_MAX_BINS = 4096 };
 
 /// Integrators that suit a scene: those with friction for a scene with ω, dpd-verlet with two λ
 /// and, if the scene has them, with its inner steps, and those without for one without. Returns how
@@ -59,7 +59,7 @@ struct bench_point {
     const struct bench_method *method;
     double time_step, time;  ///< Δt, length of the run after equilibration [τ]
     uint64_t seed, steps;    ///< of the noise; of the run
-    uint64_t told;           ///< steps that bench_common.tell was told of
+    uint64_t reported;       ///< steps that bench_common.tell was told of
     enum status status;      ///< OK or UNSTABLE
     struct bench_number cpu; ///< seconds of one processor per τ, without what is measured
     struct bench_number quantity[BENCH_QUANTITIES];
@@ -72,7 +72,7 @@ struct bench_common {
     const struct simulation_start *start; ///< equilibrated; NULL: as the scene says
     struct bench_bins bins;
     /// Told after each sample how many steps more are done.
-    void (*tell)(void *context, uint64_t steps);
+    void (*report)(void *context, uint64_t steps);
     void *context;
 };
 

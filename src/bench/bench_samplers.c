@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <time.h>
 
-enum { REPLICAS = 4, REPEATS = 5, BINS = 100, MOST_BINS = BINS * COMPOSITION_MOST_PAIRS };
+enum { REPLICAS = 4, REPEATS = 5, BINS = 100, MAX_BINS = BINS * COMPOSITION_MAX_PAIRS };
 
 /// As in the runs of water, and as in a simulation.
 static const size_t sizes[] = {729, 2744};
@@ -29,7 +29,7 @@ static double processor_seconds(void) {
 static double error_of_g(const struct replicas *replicas, const double *ideal,
                          double *inefficiency) {
     const struct comoments *counts = &replicas->counts;
-    size_t seen[MOST_BINS], count = 0;
+    size_t seen[MAX_BINS], count = 0;
     double sum = 0;
     for (size_t a = 0; a < replicas->bins; a++)
         if (counts->mean[a] > 0)
@@ -65,7 +65,7 @@ static enum status time_sampler(const struct sampler_system *system, enum sample
     const struct rdf_bins bins = {system->low, system->width, system->bins};
     struct running_mean merit = {0}, seconds = {0}, inefficiency = {0};
     struct replicas replicas = {0};
-    double ideal[MOST_BINS];
+    double ideal[MAX_BINS];
     for (int pair = 0; pair < mf_composition_pairs(system->composition); pair++)
         for (size_t a = 0; a < BINS; a++)
             ideal[(size_t)pair * BINS + a] =

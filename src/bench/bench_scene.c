@@ -37,7 +37,7 @@ static enum status check_output(const struct input_files *inputs, const char *ou
     struct stat about;
     if (output == NULL || lstat(output, &about) != 0)
         return STATUS_OK;
-    TRY(mf_input_files_spare(inputs, output));
+    TRY(mf_input_files_protect(inputs, output));
     if (force)
         return STATUS_OK;
     return mf_status_fail(STATUS_BAD_INPUT, "%s is there: --force replaces it, -o OTHER keeps it",

@@ -29,7 +29,7 @@ static enum status time_part(const struct bench_scene *scene, const struct bench
             changed.scene.setup.integrator_parameters = NULL;
         changed.scene.setup.integrator = &mf_velocity_verlet;
     }
-    NEW_ARRAY(histogram.counts, NEIGHBOURS_MOST_PARTS * (BINS + 1));
+    NEW_ARRAY(histogram.counts, NEIGHBOURS_MAX_PARTS * (BINS + 1));
     CHECK(mf_bench_case_begin(&bench, &changed, how));
     histogram.width = mf_pair_cutoff(&bench.simulation.law) / BINS;
     if (part == WITH_SUMS)

@@ -23,7 +23,7 @@ typedef double bonded_arms[3][BONDED_BATCH];
 
 /// Forces on the arms take the place of the arms.
 struct bonded_batch {
-    _Alignas(MEMORY_ALIGNMENT) bonded_arms arm[BONDED_MOST_ARMS];
+    _Alignas(MEMORY_ALIGNMENT) bonded_arms arm[BONDED_MAX_ARMS];
     double q[BONDED_BATCH], slope[BONDED_BATCH];
     int count; ///< of numbers
 };

@@ -25,8 +25,8 @@ enum { BONDED_LIST(BONDED_NUMBER) BONDED_KINDS };
 #undef BONDED_NUMBER
 
 enum {
-    BONDED_MOST_TERM_BEADS = 4,
-    BONDED_MOST_ARMS = BONDED_MOST_TERM_BEADS - 1,
+    BONDED_MAX_TERM_BEADS = 4,
+    BONDED_MAX_ARMS = BONDED_MAX_TERM_BEADS - 1,
     BONDED_BATCH = 128, ///< lengths or angles that a law is given together
 };
 
@@ -42,13 +42,13 @@ struct bonded_kind {
     int reach; ///< the most bonds between two of its beads: as far as VOTCA excludes pairs
     /// In a chain the place of each bead behind the first, and no more than `reach`; all 0: chains
     /// have no such terms.
-    int chain[BONDED_MOST_TERM_BEADS];
+    int chain[BONDED_MAX_TERM_BEADS];
     bool spatial; ///< it means nothing in a plane
     // Geometry (curves/bonded_batch.h):
     int arms;
     struct bonded_arm {
         int from, to; ///< beads
-    } arm[BONDED_MOST_ARMS];
+    } arm[BONDED_MAX_ARMS];
     void (*measure)(struct bonded_batch *batch); ///< q from the arms [λ] or [rad]
     void (*push)(struct bonded_batch *batch);    ///< forces on the arms, from slope and the arms
     /// ∫ of the Jacobian over a bin that begins at `low`, as far as q can be [λ^d or rad].
@@ -83,7 +83,7 @@ BONDED_LIST(BONDED_DECLARE)
 extern const struct bonded_kind *const mf_bonded_kinds[BONDED_KINDS];
 
 /// From where on the q of a table may be, which for a circle may begin anywhere.
-static inline double bonded_least(int order) {
+static inline double bonded_min(int order) {
     return mf_bonded_kinds[order]->periodic ? -DBL_MAX : mf_bonded_kinds[order]->low;
 }
 

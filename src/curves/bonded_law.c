@@ -70,28 +70,28 @@ double mf_bonded_longest(const struct bonded_curve *curve) {
 
 double mf_bonded_reach(const struct bonded_curve *curve, double height) {
     enum { DOUBLINGS = 40 };
-    const double rest = mf_bonded_rest(curve), most = mf_bonded_longest(curve);
-    double least, energy, way = fmax(1e-3, 1e-3 * rest);
-    mf_bonded_value(curve, rest, &least, NULL);
-    for (int n = 0; n < DOUBLINGS && rest + way < most; n++, way *= 2) {
+    const double rest = mf_bonded_rest(curve), max = mf_bonded_longest(curve);
+    double min, energy, way = fmax(1e-3, 1e-3 * rest);
+    mf_bonded_value(curve, rest, &min, NULL);
+    for (int n = 0; n < DOUBLINGS && rest + way < max; n++, way *= 2) {
         mf_bonded_value(curve, rest + way, &energy, NULL);
-        if (energy > least + height)
+        if (energy > min + height)
             break;
     }
-    return fmin(rest + way, most);
+    return fmin(rest + way, max);
 }
 
 /// ∫ r^(d−1) e^(−(U − U_rest)/k_B T) dr, by midpoints.
 static double integrate_lengths(const struct bonded_curve *curve, double from, double to,
                                 double temperature, int dimensions) {
     enum { POINTS = 4000 };
-    double least, sum = 0;
-    mf_bonded_value(curve, mf_bonded_rest(curve), &least, NULL);
+    double min, sum = 0;
+    mf_bonded_value(curve, mf_bonded_rest(curve), &min, NULL);
     for (int k = 0; k < POINTS; k++) {
         const double r = from + (k + 0.5) * (to - from) / POINTS;
         double energy;
         mf_bonded_value(curve, r, &energy, NULL);
-        sum += pow(r, dimensions - 1) * exp((least - energy) / temperature);
+        sum += pow(r, dimensions - 1) * exp((min - energy) / temperature);
     }
     return sum * (to - from) / POINTS;
 }

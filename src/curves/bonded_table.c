@@ -15,12 +15,12 @@ enum { INTERVALS = 2048 };
 /// @param[in,out] energy  the places on the grid, from 0 on, and then the energies
 SIMD_CLONES static void evaluate_places(const struct bonded_table *p, size_t count,
                                         double *restrict energy, double *restrict slope) {
-    const double last = p->intervals, most = last - 1, inverse = 1 / p->spacing;
+    const double last = p->intervals, max = last - 1, inverse = 1 / p->spacing;
     const double(*restrict point)[2] = (const double(*)[2])p->point;
     for (size_t n = 0; n < count; n++) {
         const double place = energy[n], above = place > 0 ? place : 0;
         const double inside = above < last ? above : last, beyond = place - inside;
-        const int k = (int)(inside < most ? inside : most);
+        const int k = (int)(inside < max ? inside : max);
         const double t = inside - k, u = 1 - t;
         const double a = point[k][0], b = point[k + 1][0];
         const double da = point[k][1], db = point[k + 1][1];
@@ -82,7 +82,7 @@ static enum status check_points(const struct bonded_kind *kind, const double *q,
 /// The grid of a spline whose q is in `unit` of the curve's.
 static void fill_grid(struct bonded_table *p, const gsl_spline *spline, double unit) {
     const double first = spline->x[0], last = spline->x[spline->size - 1];
-    double least = INFINITY;
+    double min = INFINITY;
     p->first = unit * first;
     p->spacing = unit * (last - first) / INTERVALS;
     p->intervals = INTERVALS;
@@ -90,9 +90,9 @@ static void fill_grid(struct bonded_table *p, const gsl_spline *spline, double u
         const double q = fmin(first + (last - first) * k / INTERVALS, last);
         p->point[k][0] = gsl_spline_eval(spline, q, NULL);
         p->point[k][1] = gsl_spline_eval_deriv(spline, q, NULL) * (last - first) / INTERVALS;
-        if (p->point[k][0] < least)
+        if (p->point[k][0] < min)
             p->rest = unit * q;
-        least = fmin(least, p->point[k][0]);
+        min = fmin(min, p->point[k][0]);
     }
 }
 

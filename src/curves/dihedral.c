@@ -125,7 +125,7 @@ SIMD_CLONES static void measure(struct bonded_batch *batch) {
 
 /// Their eq. 27.
 SIMD_CLONES static void push(struct bonded_batch *batch) {
-    static const double least = BONDED_NO_DIRECTION * BONDED_NO_DIRECTION;
+    static const double min = BONDED_NO_DIRECTION * BONDED_NO_DIRECTION;
     for (int n = 0; n < batch->count; n++) {
         double f[3], g[3], h[3], a[3], b[3];
         bonded_take(batch->arm[0], n, f);
@@ -135,8 +135,7 @@ SIMD_CLONES static void push(struct bonded_batch *batch) {
         bonded_cross(h, g, b);
         const double aa = bonded_dot(a, a), bb = bonded_dot(b, b), gg = bonded_dot(g, g);
         const double length = sqrt(gg), slope = batch->slope[n];
-        const bool directed =
-            aa > least * bonded_dot(f, f) * gg && bb > least * bonded_dot(h, h) * gg;
+        const bool directed = aa > min * bonded_dot(f, f) * gg && bb > min * bonded_dot(h, h) * gg;
         const double fg = bonded_dot(f, g) / (aa * length), hg = bonded_dot(h, g) / (bb * length);
         for (int d = 0; d < 3; d++) {
             batch->arm[0][d][n] = directed ? slope * length / aa * a[d] : 0;

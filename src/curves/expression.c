@@ -19,7 +19,7 @@ int mf_expression_begin(const struct expression *expression, int end) {
 }
 
 int mf_expression_depth(const struct expression *expression) {
-    int depth[EXPRESSION_MOST], top = 0;
+    int depth[EXPRESSION_MAX], top = 0;
     for (int k = 0; k < expression->length; k++) {
         const int arguments = mf_expression_arguments(expression->node[k].kind);
         int below = 0;
@@ -37,7 +37,7 @@ bool mf_expression_is_exponent(const struct expression *expression, int node) {
 }
 
 bool mf_expression_push(struct expression *expression, enum expression_kind kind, double constant) {
-    if (expression->length >= EXPRESSION_MOST)
+    if (expression->length >= EXPRESSION_MAX)
         return false;
     expression->node[expression->length++] = (struct expression_node){kind, constant};
     return true;
@@ -110,7 +110,7 @@ static struct dual combine(enum expression_kind kind, struct dual a, struct dual
 }
 
 double mf_expression_value(const struct expression *expression, double r, double *slope) {
-    struct dual stack[EXPRESSION_MOST] = {{0}};
+    struct dual stack[EXPRESSION_MAX] = {{0}};
     int top = 0;
     for (int k = 0; k < expression->length; k++) {
         const struct expression_node *node = &expression->node[k];
@@ -177,7 +177,7 @@ static struct interval combine_intervals(enum expression_kind kind, struct inter
 }
 
 static bool piece_is_finite(const struct expression *expression, struct interval r) {
-    struct interval stack[EXPRESSION_MOST];
+    struct interval stack[EXPRESSION_MAX];
     int top = 0;
     for (int k = 0; k < expression->length; k++) {
         const struct expression_node *node = &expression->node[k];

@@ -23,7 +23,7 @@ enum expression_kind {
     EXPRESSION_KINDS
 };
 
-enum { EXPRESSION_MOST = 64 }; ///< nodes
+enum { EXPRESSION_MAX = 64 }; ///< nodes
 
 struct expression_node {
     enum expression_kind kind;
@@ -33,7 +33,7 @@ struct expression_node {
 /// Owns nothing: it may be copied.
 struct expression {
     int length; ///< 0: none
-    struct expression_node node[EXPRESSION_MOST];
+    struct expression_node node[EXPRESSION_MAX];
 };
 
 /// Arguments of a node: 0, 1 or 2.
@@ -71,12 +71,12 @@ bool mf_expression_is_finite(const struct expression *expression, double low, do
 void mf_expression_simplify(struct expression *expression);
 
 /// Tell it in other units: it becomes unit · f(r/length). False, and nothing changes, if that has
-/// more than EXPRESSION_MOST nodes; of up to 30 it never has. Tested: test_expression.
+/// more than EXPRESSION_MAX nodes; of up to 30 it never has. Tested: test_expression.
 bool mf_expression_scale(struct expression *expression, double length, double unit);
 
 /// @name For those who build one
 
-/// Add a node at the end. Beyond EXPRESSION_MOST nothing is added, and false returned.
+/// Add a node at the end. Beyond EXPRESSION_MAX nothing is added, and false returned.
 bool mf_expression_push(struct expression *expression, enum expression_kind kind, double constant);
 
 /// Add a part of another formula at the end, nodes begin … end of it.

@@ -9,7 +9,7 @@
 #include <string.h>
 
 /// Parentheses and signs inside one another.
-enum { MOST_LEVELS = 200 };
+enum { MAX_LEVELS = 200 };
 
 struct reader {
     const char *text, *at;
@@ -132,7 +132,7 @@ static enum status read_minus(struct reader *reader) {
 }
 
 static enum status read_signed(struct reader *reader) {
-    if (++reader->levels > MOST_LEVELS)
+    if (++reader->levels > MAX_LEVELS)
         return fault(reader, "its parts are nested too deeply");
     if (take(reader, "-"))
         TRY(read_minus(reader));

@@ -8,7 +8,7 @@
 #include <string.h>
 
 /// Rounds of all rules; a formula of 64 nodes is done after five or so.
-enum { MOST_ROUNDS = 20 };
+enum { MAX_ROUNDS = 20 };
 
 /// A part of a formula: nodes begin … end.
 struct part {
@@ -65,7 +65,7 @@ static bool are_equal(struct part a, struct part b) {
 
 /// Whether a stands behind b where the order does not matter: what is longer does, and of the same
 /// length what differs first in its nodes.
-static bool is_behind(struct part a, struct part b) {
+static bool is_after(struct part a, struct part b) {
     if (a.end - a.begin != b.end - b.begin)
         return a.end - a.begin > b.end - b.begin;
     for (int k = 0; k <= a.end - a.begin; k++) {
@@ -80,11 +80,11 @@ static bool is_behind(struct part a, struct part b) {
 
 // What a rule makes: no longer than what it was made of, so that it always fits -------------------
 
-static void put(struct expression *to, struct part part) {
+static void append(struct expression *to, struct part part) {
     mf_expression_append(to, part.of, part.begin, part.end);
 }
 
-static void put_number(struct expression *to, double value) {
+static void write_number(struct expression *to, double value) {
     mf_expression_push(to, EXPRESSION_CONSTANT, value);
 }
 
@@ -94,43 +94,43 @@ static bool done(struct expression *to, enum expression_kind last) {
 }
 
 static bool make_number(struct expression *to, double value) {
-    put_number(to, value);
+    write_number(to, value);
     return true;
 }
 
 static bool make(struct expression *to, struct part part) {
-    put(to, part);
+    append(to, part);
     return true;
 }
 
 /// x ∘ y
 static bool make_pair(struct expression *to, struct part x, enum expression_kind operation,
                       struct part y) {
-    put(to, x);
-    put(to, y);
+    append(to, x);
+    append(to, y);
     return done(to, operation);
 }
 
 /// k x
 static bool make_scaled(struct expression *to, double k, struct part x) {
-    put_number(to, k);
-    put(to, x);
+    write_number(to, k);
+    append(to, x);
     return done(to, EXPRESSION_MULTIPLY);
 }
 
 /// x + k
 static bool make_shifted(struct expression *to, struct part x, double k) {
-    put(to, x);
-    put_number(to, k);
+    append(to, x);
+    write_number(to, k);
     return done(to, EXPRESSION_ADD);
 }
 
 /// k (x ∘ y)
 static bool make_scaled_pair(struct expression *to, double k, struct part x,
                              enum expression_kind operation, struct part y) {
-    put_number(to, k);
-    put(to, x);
-    put(to, y);
+    write_number(to, k);
+    append(to, x);
+    append(to, y);
     mf_expression_push(to, operation, 0);
     return done(to, EXPRESSION_MULTIPLY);
 }
@@ -138,23 +138,23 @@ static bool make_scaled_pair(struct expression *to, double k, struct part x,
 /// (x ∘ y) + k
 static bool make_shifted_pair(struct expression *to, struct part x, enum expression_kind operation,
                               struct part y, double k) {
-    put(to, x);
-    put(to, y);
+    append(to, x);
+    append(to, y);
     mf_expression_push(to, operation, 0);
-    put_number(to, k);
+    write_number(to, k);
     return done(to, EXPRESSION_ADD);
 }
 
 /// x^p
 static bool make_power(struct expression *to, struct part x, double p) {
-    put(to, x);
-    put_number(to, p);
+    append(to, x);
+    write_number(to, p);
     return done(to, EXPRESSION_POWER);
 }
 
 /// k x^p
 static bool make_scaled_power(struct expression *to, double k, struct part x, double p) {
-    put_number(to, k);
+    write_number(to, k);
     make_power(to, x, p);
     return done(to, EXPRESSION_MULTIPLY);
 }
@@ -178,8 +178,8 @@ static bool reduce_add(struct part a, struct part b, struct expression *to) {
     if (is_number(b) && is_shifted(a))
         return make_shifted(to, first(a), number(second(a)) + number(b));
     if (is_number(b) && kind(a) == EXPRESSION_SUBTRACT && is_number(first(a))) {
-        put_number(to, number(first(a)) + number(b));
-        put(to, second(a));
+        write_number(to, number(first(a)) + number(b));
+        append(to, second(a));
         return done(to, EXPRESSION_SUBTRACT);
     }
     if (is_shifted(a) && !is_number(b))
@@ -192,7 +192,7 @@ static bool reduce_add(struct part a, struct part b, struct expression *to) {
         return make_scaled(to, k + m, x);
     if (m == -1)
         return make_pair(to, a, EXPRESSION_SUBTRACT, y);
-    return !is_number(b) && is_behind(a, b) && make_pair(to, b, EXPRESSION_ADD, a);
+    return !is_number(b) && is_after(a, b) && make_pair(to, b, EXPRESSION_ADD, a);
 }
 
 static bool reduce_subtract(struct part a, struct part b, struct expression *to) {
@@ -203,13 +203,13 @@ static bool reduce_subtract(struct part a, struct part b, struct expression *to)
     if (are_equal(a, b))
         return make_number(to, 0);
     if (is_scaled(b)) {
-        put(to, a);
+        append(to, a);
         make_scaled(to, -number(first(b)), second(b));
         return done(to, EXPRESSION_ADD);
     }
     if (is_number(a) && is_shifted(b)) {
-        put_number(to, number(a) - number(second(b)));
-        put(to, first(b));
+        write_number(to, number(a) - number(second(b)));
+        append(to, first(b));
         return done(to, EXPRESSION_SUBTRACT);
     }
     if (is_shifted(a))
@@ -239,13 +239,13 @@ static bool scale(double c, struct part b, struct expression *to) {
     if (c < 0 && kind(b) == EXPRESSION_SUBTRACT)
         return make_scaled_pair(to, -c, second(b), EXPRESSION_SUBTRACT, first(b));
     if (kind(b) == EXPRESSION_DIVIDE && is_number(first(b))) {
-        put_number(to, c * number(first(b)));
-        put(to, second(b));
+        write_number(to, c * number(first(b)));
+        append(to, second(b));
         return done(to, EXPRESSION_DIVIDE);
     }
     if (is_shifted(b) && is_scaled(first(b)) && number(first(first(b))) != 0) {
         const double k = number(first(first(b)));
-        put_number(to, c * k);
+        write_number(to, c * k);
         make_shifted(to, second(first(b)), number(second(b)) / k);
         return done(to, EXPRESSION_MULTIPLY);
     }
@@ -266,8 +266,8 @@ static bool reduce_multiply(struct part a, struct part b, struct expression *to)
     if (kind(a) == EXPRESSION_DIVIDE && is_number(first(a)))
         return make_scaled_pair(to, number(first(a)), b, EXPRESSION_DIVIDE, second(a));
     if (kind(a) == EXPRESSION_EXP && kind(b) == EXPRESSION_EXP) {
-        put(to, first(a));
-        put(to, first(b));
+        append(to, first(a));
+        append(to, first(b));
         mf_expression_push(to, EXPRESSION_ADD, 0);
         return done(to, EXPRESSION_EXP);
     }
@@ -275,7 +275,7 @@ static bool reduce_multiply(struct part a, struct part b, struct expression *to)
     const double p = exponent_of(&x), q = exponent_of(&y);
     if (are_equal(x, y))
         return make_power(to, x, p + q);
-    return is_behind(a, b) && make_pair(to, b, EXPRESSION_MULTIPLY, a);
+    return is_after(a, b) && make_pair(to, b, EXPRESSION_MULTIPLY, a);
 }
 
 static bool reduce_divide(struct part a, struct part b, struct expression *to) {
@@ -290,7 +290,7 @@ static bool reduce_divide(struct part a, struct part b, struct expression *to) {
     if (is_scaled(b) && number(first(b)) != 0)
         return make_scaled_pair(to, 1 / number(first(b)), a, EXPRESSION_DIVIDE, second(b));
     if (kind(b) == EXPRESSION_EXP && is_scaled(first(b))) {
-        put(to, a);
+        append(to, a);
         make_scaled(to, -number(first(first(b))), second(first(b)));
         mf_expression_push(to, EXPRESSION_EXP, 0);
         return done(to, EXPRESSION_MULTIPLY);
@@ -298,7 +298,7 @@ static bool reduce_divide(struct part a, struct part b, struct expression *to) {
     if (kind(b) == EXPRESSION_POWER && is_number(a) && number(a) == 1)
         return make_power(to, first(b), -number(second(b)));
     if (kind(b) == EXPRESSION_POWER) {
-        put(to, a);
+        append(to, a);
         make_power(to, first(b), -number(second(b)));
         return done(to, EXPRESSION_MULTIPLY);
     }
@@ -311,8 +311,8 @@ static bool reduce_power(struct part a, double p, struct expression *to) {
     if (p == 1)
         return make(to, a);
     if (p == -1) {
-        put_number(to, 1);
-        put(to, a);
+        write_number(to, 1);
+        append(to, a);
         return done(to, EXPRESSION_DIVIDE);
     }
     if (kind(a) == EXPRESSION_POWER && is_whole(p))
@@ -326,15 +326,15 @@ static bool reduce_power(struct part a, double p, struct expression *to) {
         return make_scaled_power(to, pow(number(first(a)), p), second(a), is_scaled(a) ? p : -p);
     if (kind(a) == EXPRESSION_SUBTRACT && is_number(first(a)) && is_whole(p / 2)) {
         make_shifted(to, second(a), -number(first(a)));
-        put_number(to, p);
+        write_number(to, p);
         return done(to, EXPRESSION_POWER);
     }
     if (is_shifted(a) && is_scaled(first(a))) {
         const double k = number(first(first(a)));
         if (k > 0 || (is_whole(p) && k != 0)) {
-            put_number(to, pow(k, p));
+            write_number(to, pow(k, p));
             make_shifted(to, second(first(a)), number(second(a)) / k);
-            put_number(to, p);
+            write_number(to, p);
             mf_expression_push(to, EXPRESSION_POWER, 0);
             return done(to, EXPRESSION_MULTIPLY);
         }
@@ -345,8 +345,8 @@ static bool reduce_power(struct part a, double p, struct expression *to) {
 static bool reduce_exp(struct part a, struct expression *to) {
     if (!is_shifted(a))
         return false;
-    put_number(to, exp(number(second(a))));
-    put(to, first(a));
+    write_number(to, exp(number(second(a))));
+    append(to, first(a));
     mf_expression_push(to, EXPRESSION_EXP, 0);
     return done(to, EXPRESSION_MULTIPLY);
 }
@@ -409,7 +409,7 @@ static bool simplify_once(const struct expression *from, struct expression *to) 
 
 void mf_expression_simplify(struct expression *expression) {
     struct expression simpler = {0};
-    for (int round = 0; round < MOST_ROUNDS; round++) {
+    for (int round = 0; round < MAX_ROUNDS; round++) {
         const bool changed = simplify_once(expression, &simpler);
         memset(expression->node, 0, sizeof expression->node);
         expression->length = 0;

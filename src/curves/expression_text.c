@@ -8,7 +8,7 @@
 #include <string.h>
 
 /// How tightly a part holds together; a looser one wants parentheses.
-enum tightness { SUM, PRODUCT, RAISED, ATOM };
+enum precedence { SUM, PRODUCT, RAISED, ATOM };
 
 struct printer {
     const struct expression *expression;
@@ -17,18 +17,18 @@ struct printer {
     size_t length;
 };
 
-__attribute__((format(printf, 2, 3))) static void put(struct printer *printer, const char *format,
-                                                      ...) {
-    const size_t room = EXPRESSION_TEXT_SIZE - printer->length;
+__attribute__((format(printf, 2, 3))) static void append(struct printer *printer,
+                                                         const char *format, ...) {
+    const size_t capacity = EXPRESSION_TEXT_SIZE - printer->length;
     va_list arguments;
     va_start(arguments, format);
-    const int wanted = vsnprintf(printer->text + printer->length, room, format, arguments);
+    const int wanted = vsnprintf(printer->text + printer->length, capacity, format, arguments);
     va_end(arguments);
-    printer->length += (size_t)wanted < room ? (size_t)wanted : room - 1;
+    printer->length += (size_t)wanted < capacity ? (size_t)wanted : capacity - 1;
 }
 
 /// A number above 0 with as few digits as give it again.
-static void put_number(struct printer *printer, double number) {
+static void write_number(struct printer *printer, double number) {
     char text[40];
     for (int digits = 1; digits <= 17; digits++) {
         snprintf(text, sizeof text, "%.*g", digits, number);
@@ -41,10 +41,10 @@ static void put_number(struct printer *printer, double number) {
     char *power = strchr(text, 'e');
     if (printer->style == EXPRESSION_LATEX && power) {
         *power = '\0';
-        put(printer, "%s\\cdot 10^{%d}", text, atoi(power + 1));
+        append(printer, "%s\\cdot 10^{%d}", text, atoi(power + 1));
     } else {
         const bool whole = !power && !strchr(text, '.');
-        put(printer, "%s%s", text, printer->style == EXPRESSION_C && whole ? ".0" : "");
+        append(printer, "%s%s", text, printer->style == EXPRESSION_C && whole ? ".0" : "");
     }
 }
 
@@ -68,7 +68,7 @@ static bool is_negative(const struct printer *printer, int end) {
            is_negative(printer, first_argument(printer, end));
 }
 
-static enum tightness tightness_of(const struct printer *printer, int end) {
+static enum precedence precedence_of(const struct printer *printer, int end) {
     switch (node_of(printer, end)->kind) {
     case EXPRESSION_ADD:
     case EXPRESSION_SUBTRACT:
@@ -83,22 +83,22 @@ static enum tightness tightness_of(const struct printer *printer, int end) {
     }
 }
 
-static void print(struct printer *printer, int end, bool minus_is_said);
+static void print(struct printer *printer, int end, bool minus_is_printed);
 
 /// A part of at least this tightness, or in parentheses.
-static void print_part(struct printer *printer, int end, enum tightness least, bool first) {
+static void print_part(struct printer *printer, int end, enum precedence min, bool first) {
     const bool latex = printer->style == EXPRESSION_LATEX;
-    const bool loose = tightness_of(printer, end) < least || (!first && is_negative(printer, end));
-    put(printer, "%s", !loose ? "" : latex ? "\\left(" : "(");
+    const bool loose = precedence_of(printer, end) < min || (!first && is_negative(printer, end));
+    append(printer, "%s", !loose ? "" : latex ? "\\left(" : "(");
     print(printer, end, false);
-    put(printer, "%s", !loose ? "" : latex ? "\\right)" : ")");
+    append(printer, "%s", !loose ? "" : latex ? "\\right)" : ")");
 }
 
 static void print_sum(struct printer *printer, int end) {
     const bool adds = node_of(printer, end)->kind == EXPRESSION_ADD;
     const bool minus = is_negative(printer, end - 1);
     print_part(printer, first_argument(printer, end), SUM, true);
-    put(printer, adds != minus ? " + " : " - ");
+    append(printer, adds != minus ? " + " : " - ");
     if (minus)
         print(printer, end - 1, true);
     else
@@ -106,70 +106,70 @@ static void print_sum(struct printer *printer, int end) {
 }
 
 /// −1 before a product is its sign alone.
-static void print_product(struct printer *printer, int end, bool minus_is_said) {
+static void print_product(struct printer *printer, int end, bool minus_is_printed) {
     const int first = first_argument(printer, end);
     const struct expression_node *factor = node_of(printer, first);
     if (factor->kind == EXPRESSION_CONSTANT && factor->constant == -1) {
-        put(printer, minus_is_said ? "" : "-");
+        append(printer, minus_is_printed ? "" : "-");
     } else {
-        if (minus_is_said)
+        if (minus_is_printed)
             print(printer, first, true);
         else
             print_part(printer, first, PRODUCT, true);
-        put(printer, printer->style == EXPRESSION_LATEX ? " \\, " : "*");
+        append(printer, printer->style == EXPRESSION_LATEX ? " \\, " : "*");
     }
     print_part(printer, end - 1, PRODUCT, false);
 }
 
-static void print_quotient(struct printer *printer, int end, bool minus_is_said) {
+static void print_quotient(struct printer *printer, int end, bool minus_is_printed) {
     const bool latex = printer->style == EXPRESSION_LATEX;
     const int first = first_argument(printer, end);
     // A minus stands before the fraction.
-    const bool minus = latex && !minus_is_said && is_negative(printer, first);
-    put(printer, "%s%s", minus ? "-" : "", latex ? "\\frac{" : "");
-    if (minus || minus_is_said)
+    const bool minus = latex && !minus_is_printed && is_negative(printer, first);
+    append(printer, "%s%s", minus ? "-" : "", latex ? "\\frac{" : "");
+    if (minus || minus_is_printed)
         print(printer, first, true);
     else
         print_part(printer, first, latex ? SUM : PRODUCT, true);
-    put(printer, latex ? "}{" : "/");
+    append(printer, latex ? "}{" : "/");
     print_part(printer, end - 1, latex ? SUM : RAISED, latex);
-    put(printer, latex ? "}" : "");
+    append(printer, latex ? "}" : "");
 }
 
 static void print_power(struct printer *printer, int end) {
     static const char *const middle[] = {"^", "^{", ", "}, *const after[] = {"", "}", ")"};
-    put(printer, printer->style == EXPRESSION_C ? "pow(" : "");
+    append(printer, printer->style == EXPRESSION_C ? "pow(" : "");
     print_part(printer, first_argument(printer, end), printer->style == EXPRESSION_C ? SUM : ATOM,
                printer->style == EXPRESSION_C);
-    put(printer, "%s", middle[printer->style]);
+    append(printer, "%s", middle[printer->style]);
     print(printer, end - 1, false);
-    put(printer, "%s", after[printer->style]);
+    append(printer, "%s", after[printer->style]);
 }
 
 static void print_exp(struct printer *printer, int end) {
     const bool latex = printer->style == EXPRESSION_LATEX;
-    put(printer, latex ? "\\exp\\left(" : "exp(");
+    append(printer, latex ? "\\exp\\left(" : "exp(");
     print(printer, end - 1, false);
-    put(printer, latex ? "\\right)" : ")");
+    append(printer, latex ? "\\right)" : ")");
 }
 
-/// @param[in] minus_is_said  the minus that the part begins with has been printed
-static void print(struct printer *printer, int end, bool minus_is_said) {
+/// @param[in] minus_is_printed  the minus that the part begins with has been printed
+static void print(struct printer *printer, int end, bool minus_is_printed) {
     const struct expression_node *node = node_of(printer, end);
     switch (node->kind) {
     case EXPRESSION_CONSTANT:
-        put(printer, node->constant < 0 && !minus_is_said ? "-" : "");
-        put_number(printer, fabs(node->constant));
+        append(printer, node->constant < 0 && !minus_is_printed ? "-" : "");
+        write_number(printer, fabs(node->constant));
         break;
     case EXPRESSION_ADD:
     case EXPRESSION_SUBTRACT:
         print_sum(printer, end);
         break;
     case EXPRESSION_MULTIPLY:
-        print_product(printer, end, minus_is_said);
+        print_product(printer, end, minus_is_printed);
         break;
     case EXPRESSION_DIVIDE:
-        print_quotient(printer, end, minus_is_said);
+        print_quotient(printer, end, minus_is_printed);
         break;
     case EXPRESSION_POWER:
         print_power(printer, end);
@@ -178,7 +178,7 @@ static void print(struct printer *printer, int end, bool minus_is_said) {
         print_exp(printer, end);
         break;
     default:
-        put(printer, "r");
+        append(printer, "r");
     }
 }
 

@@ -4,7 +4,7 @@
 
 #include "curves/expression.h"
 
-/// Characters of a printed formula of EXPRESSION_MOST nodes.
+/// Characters of a printed formula of EXPRESSION_MAX nodes.
 enum { EXPRESSION_TEXT_SIZE = 4096 };
 
 /// Read a formula such as "4*(1/r^12 - 1/r^6)" or "12.5*(1 - r/0.99)^2": numbers, r, + - * / ^,

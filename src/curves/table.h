@@ -19,14 +19,14 @@
 enum { TABLE_INTERVALS = 1024 };
 
 /// Pair types of a mixture of eight types.
-enum { TABLE_MOST_CURVES = 36 };
+enum { TABLE_MAX_CURVES = 36 };
 
 struct table {
-    double cutoff;                     ///< the largest of all curves [λ]
-    double inverse_spacing;            ///< of a table of one curve: intervals / cutoff [1/λ]
-    int terms;                         ///< coefficients an interval: 4 (Φ) or 2 (ω)
-    int curves;                        ///< 1, for all pairs, or one for each pair type
-    double cutoffs[TABLE_MOST_CURVES]; ///< of each curve; 0: it is 0 everywhere [λ]
+    double cutoff;                    ///< the largest of all curves [λ]
+    double inverse_spacing;           ///< of a table of one curve: intervals / cutoff [1/λ]
+    int terms;                        ///< coefficients an interval: 4 (Φ) or 2 (ω)
+    int curves;                       ///< 1, for all pairs, or one for each pair type
+    double cutoffs[TABLE_MAX_CURVES]; ///< of each curve; 0: it is 0 everywhere [λ]
     double *coefficient; ///< shape [curves, TABLE_INTERVALS + 1, terms]; the last row of each is 0
     /// What kernels want, shape [curves, TABLE_INTERVALS + 1, 4], a row for one load; f is the
     /// fraction of the interval. Φ: value at f = 0, then the force F = c1 + f(c2 + f c3),

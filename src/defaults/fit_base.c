@@ -53,7 +53,7 @@ static enum status fill_base(const struct fit_file *fit, const struct unknowns *
     struct inverse_problem without = fit->problem;
     const enum unknown_base base = base_of(&fit->unknown[kind]);
     const bool joined = scene_has_molecules(&fit->scene.molecules);
-    for (int pair = 0; pair < COMPOSITION_MOST_PAIRS; pair++)
+    for (int pair = 0; pair < COMPOSITION_MAX_PAIRS; pair++)
         without.unknown[UNKNOWN_POTENTIAL].start[pair] = NULL;
     if (base == BASE_START)
         mf_unknowns_start(unknowns, kind, curve);

@@ -28,8 +28,8 @@ static enum status begin_one(const struct fit_file *fit, const struct inverse_pr
                                             .thermodynamics = true,
                                             .threads = 1,
                                             .seed = problem->seed};
-    CHECK(
-        mf_units_mark(&fit->scene.units, mf_measurement_init(&measurement, &laws.problem, &setup)));
+    CHECK(mf_units_add_to_message(&fit->scene.units,
+                                  mf_measurement_init(&measurement, &laws.problem, &setup)));
 done:
     mf_measurement_clear(&measurement);
     mf_unknowns_laws_clear(&laws);
@@ -149,12 +149,12 @@ static enum status check_bins(const struct fit_file *fit, const char *file) {
     size_t bins = fit->problem.targets.target[TARGET_RDF].count;
     for (size_t g = 0; g < fit->problem.bonded; g++)
         bins += fit->problem.group[g].bins.count;
-    if (fit->method->kind != INVERSE_INVERSION || bins <= INVERSION_MOST_BINS)
+    if (fit->method->kind != INVERSE_INVERSION || bins <= INVERSION_MAX_BINS)
         return STATUS_OK;
     return mf_status_fail(STATUS_BAD_INPUT,
                           "%s: target.rdf: expected at most %d bins of all pairs, found %zu: merge "
                           "bins by \"bin_width\", or end the target by \"cutoff\"",
-                          file, INVERSION_MOST_BINS, bins);
+                          file, INVERSION_MAX_BINS, bins);
 }
 
 /// What moves the curves of all pairs would move that of pairs that there are not.
@@ -288,7 +288,7 @@ enum status mf_fit_check(const struct fit_file *fit, const char *file) {
                         mf_rdf_bins_range(target_pairs_bins(target_files_rdf(files)))));
     if (files->given[mf_rdf_intermolecular_kind()])
         TRY(check_range(fit, file, "intermolecular_rdf",
-                        mf_rdf_bins_range(target_pairs_bins(target_files_apart(files)))));
+                        mf_rdf_bins_range(target_pairs_bins(target_files_intermolecular(files)))));
     if (files->given[TARGET_ETD])
         TRY(check_range(fit, file, "etd", target_files_etd(files)->grid.r_maximum));
     if (mf_targets_count(&fit->problem.targets) == 0)

@@ -7,12 +7,12 @@
 #include <stdio.h>
 #include <string.h>
 
-void mf_fit_choice_say(struct fit_choice *c, const char *format, ...) {
+void mf_fit_choice_note(struct fit_choice *c, const char *format, ...) {
     va_list arguments;
-    if (c->said->count == FIT_MOST_CHOICES)
+    if (c->choices->count == FIT_MAX_CHOICES)
         return;
     va_start(arguments, format);
-    vsnprintf(c->said->line[c->said->count++], FIT_CHOICE_SIZE, format, arguments);
+    vsnprintf(c->choices->line[c->choices->count++], FIT_CHOICE_SIZE, format, arguments);
     va_end(arguments);
 }
 
@@ -38,9 +38,9 @@ const char *mf_fit_choice_text(const struct fit_choice *choice, const char *unit
                                char text[FIT_CHOICE_TEXT_SIZE]) {
     const struct units *units = &choice->read->scene.units;
     char name[UNITS_NAME_SIZE];
-    const struct units *spoken = units->system == UNITS_REDUCED ? NULL : units;
-    snprintf(text, FIT_CHOICE_TEXT_SIZE, "%.4g %s", value * mf_units_factor(spoken, unit),
-             mf_units_name(spoken, unit, name));
+    const struct units *physical = units->system == UNITS_REDUCED ? NULL : units;
+    snprintf(text, FIT_CHOICE_TEXT_SIZE, "%.4g %s", value * mf_units_factor(physical, unit),
+             mf_units_name(physical, unit, name));
     return text;
 }
 
@@ -49,14 +49,14 @@ static struct json_writer *writer_at(const char *path, const struct units *units
     char name[JSON_PATH_SIZE], *rest;
     struct json_writer *writer = mf_json_writer_create();
     if (writer && units && units->system != UNITS_REDUCED)
-        mf_json_writer_speak(writer, units);
+        mf_json_writer_set_units(writer, units);
     snprintf(name, sizeof name, "%s", path);
     for (char *key = strtok_r(name, ".", &rest); writer && key; key = strtok_r(NULL, ".", &rest))
         mf_json_begin(writer, key);
     return writer;
 }
 
-static enum status put_in(struct json_writer *writer, const struct json_object *root) {
+static enum status insert(struct json_writer *writer, const struct json_object *root) {
     const enum status status = writer ? mf_json_write_into(writer, root) : STATUS_NO_MEMORY;
     mf_json_writer_free(writer);
     return status;
@@ -66,8 +66,8 @@ enum status mf_fit_choice_give_text(const struct json_object *root, const char *
                                     const char *key, const char *text) {
     struct json_writer *writer = writer_at(path, NULL);
     if (writer)
-        mf_json_put_text(writer, key, text);
-    return put_in(writer, root);
+        mf_json_write_text(writer, key, text);
+    return insert(writer, root);
 }
 
 enum status mf_fit_choice_give(const struct fit_choice *choice, const char *path,
@@ -80,13 +80,13 @@ enum status mf_fit_choice_give(const struct fit_choice *choice, const char *path
     own[0].offset = 0;
     const int64_t whole = (int64_t)value;
     if (writer)
-        mf_json_put_fields(writer, own,
-                           own->type == FIELD_INTEGER ? (const void *)&whole : (void *)&value);
-    return put_in(writer, choice->root);
+        mf_json_write_fields(writer, own,
+                             own->type == FIELD_INTEGER ? (const void *)&whole : (void *)&value);
+    return insert(writer, choice->root);
 }
 
 enum status mf_fit_choice_give_empty(const struct json_object *root, const char *path) {
-    return put_in(writer_at(path, NULL), root);
+    return insert(writer_at(path, NULL), root);
 }
 
 enum status mf_fit_choice_give_omega(const struct fit_choice *c, const char *path, double sigma,

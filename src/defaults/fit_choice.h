@@ -12,7 +12,7 @@
 struct fit_choice {
     const struct fit_file *read, *leader;
     struct json_object *root;
-    struct fit_choices *said;
+    struct fit_choices *choices;
     const struct fit_scales_rdf *rdf;
     struct fit_scales scales;
     int dimensions;
@@ -29,7 +29,7 @@ struct fit_choice {
 };
 
 /// Keep a line for the person who reads what was chosen.
-void mf_fit_choice_say(struct fit_choice *choice, const char *format, ...)
+void mf_fit_choice_note(struct fit_choice *choice, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
 /// "0.334 nm": a number of a reduced unit in the units of the file, "2.15 lambda" in a reduced one.

@@ -36,8 +36,8 @@ void mf_fit_constraints_find(const struct fit_file *read, struct fit_constraints
         }
 }
 
-static enum status put_law(const struct fit_constraint *constraint,
-                           const struct fit_choice *choice) {
+static enum status write_law(const struct fit_constraint *constraint,
+                             const struct fit_choice *choice) {
     const struct bonded_kind *kind = mf_bonded_kinds[constraint->order];
     const struct bonded_law *law = kind->laws[0];
     char path[JSON_PATH_SIZE];
@@ -48,33 +48,34 @@ static enum status put_law(const struct fit_constraint *constraint,
                               constraint->moments.mean);
 }
 
-enum status mf_fit_constraints_put(const struct fit_constraints *constraints,
-                                   const struct fit_file *read, const struct json_object *root) {
+enum status mf_fit_constraints_write(const struct fit_constraints *constraints,
+                                     const struct fit_file *read, const struct json_object *root) {
     struct json_object own = *root;
     const struct fit_choice choice = {.read = read, .root = &own};
     for (size_t n = 0; n < constraints->count; n++) {
         const struct fit_constraint *constraint = &constraints->of[n];
-        TRY(put_law(constraint, &choice));
+        TRY(write_law(constraint, &choice));
         mf_json_drop(&own, "target", mf_bonded_distribution_of(constraint->order)->name,
                      constraint->name);
     }
     return STATUS_OK;
 }
 
-void mf_fit_constraints_say(const struct fit_constraints *constraints, const struct fit_file *read,
-                            struct fit_choices *choices) {
-    struct fit_choice choice = {.read = read, .said = choices};
+void mf_fit_constraints_print(const struct fit_constraints *constraints,
+                              const struct fit_file *read, struct fit_choices *choices) {
+    struct fit_choice choice = {.read = read, .choices = choices};
     for (size_t n = 0; n < constraints->count; n++) {
         const struct fit_constraint *own = &constraints->of[n];
         const bool bond = mf_bonded_kinds[own->order]->is_length;
         const double factor =
-            bond ? mf_units_factor(mf_units_speaks(&read->scene.units) ? &read->scene.units : NULL,
+            bond ? mf_units_factor(mf_units_are_physical(&read->scene.units) ? &read->scene.units
+                                                                             : NULL,
                                    "lambda")
                  : 1;
         char k[FIT_CHOICE_TEXT_SIZE];
         mf_fit_choice_text(&choice, bond ? "k_B T_0/lambda^2" : "k_B T_0", own->k, k);
         if (mf_bonded_distribution_is_constrained(own->order, &own->moments))
-            mf_fit_choice_say(
+            mf_fit_choice_note(
                 &choice,
                 "%s \"%s\": a constraint, of a standard deviation of %.2g for a mean "
                 "of %.4g: a harmonic law of k = %s, which makes it %.2g, as narrow as "
@@ -82,11 +83,11 @@ void mf_fit_constraints_say(const struct fit_constraints *constraints, const str
                 mf_bonded_kinds[own->order]->name, own->name, factor * own->moments.deviation,
                 factor * own->moments.mean, k, factor * own->deviation);
         else
-            mf_fit_choice_say(&choice,
-                              "%s \"%s\": its target has only %zu bins with a p above %g of its "
-                              "peak: a harmonic law of its width, k = %s; narrower bins would let "
-                              "its potential be found",
-                              mf_bonded_kinds[own->order]->name, own->name, own->moments.seen,
-                              mf_bonded_distribution_seen, k);
+            mf_fit_choice_note(&choice,
+                               "%s \"%s\": its target has only %zu bins with a p above %g of its "
+                               "peak: a harmonic law of its width, k = %s; narrower bins would let "
+                               "its potential be found",
+                               mf_bonded_kinds[own->order]->name, own->name, own->moments.seen,
+                               mf_bonded_distribution_seen, k);
     }
 }

@@ -11,7 +11,7 @@
 #include "io/json.h"
 #include "observe/bonded_distribution.h"
 
-enum { FIT_MOST_CONSTRAINTS = 2 * MOLECULES_MOST_GROUPS };
+enum { FIT_MAX_CONSTRAINTS = 2 * MOLECULES_MAX_GROUPS };
 
 struct fit_constraint {
     int order;
@@ -23,7 +23,7 @@ struct fit_constraint {
 
 struct fit_constraints {
     size_t count;
-    struct fit_constraint of[FIT_MOST_CONSTRAINTS];
+    struct fit_constraint of[FIT_MAX_CONSTRAINTS];
 };
 
 struct fit_file;
@@ -33,11 +33,11 @@ void mf_fit_constraints_find(const struct fit_file *read, struct fit_constraints
 
 /// Put their laws into the scene of the document that is to be read, and take their targets out.
 /// Fails: NO_MEMORY. Tested: cli/test_measure_own_targets.
-enum status mf_fit_constraints_put(const struct fit_constraints *constraints,
-                                   const struct fit_file *read,
-                                   const struct json_object *root) MUST_USE;
+enum status mf_fit_constraints_write(const struct fit_constraints *constraints,
+                                     const struct fit_file *read,
+                                     const struct json_object *root) MUST_USE;
 
 /// A line for each, as the choices of a fit.
 struct fit_choices;
-void mf_fit_constraints_say(const struct fit_constraints *constraints, const struct fit_file *read,
-                            struct fit_choices *choices);
+void mf_fit_constraints_print(const struct fit_constraints *constraints,
+                              const struct fit_file *read, struct fit_choices *choices);

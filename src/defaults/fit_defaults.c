@@ -95,9 +95,9 @@ static enum status choose_bins(struct fit_choice *c, struct fit_scales_rdf *rdf)
     TRY(mf_fit_scales_rdf_join(rdf, of));
     c->joined = of;
     TRY(give_to_pairs(c, "bin_width", rdf->bins.width, &given));
-    mf_fit_choice_say(c, "bins of %s: %s", mf_fit_choice_text(c, "lambda", rdf->bins.width, text),
-                      c->leader ? "as the first state has them"
-                                : "as wide as they can be with g between them within its noise");
+    mf_fit_choice_note(c, "bins of %s: %s", mf_fit_choice_text(c, "lambda", rdf->bins.width, text),
+                       c->leader ? "as the first state has them"
+                                 : "as wide as they can be with g between them within its noise");
     return STATUS_OK;
 }
 
@@ -109,7 +109,7 @@ static double last_row(const struct rdf_bins *bins, size_t bin, size_t rows) {
 /// Centre of the last row that is used: where g is seen to differ from 1, and all of the bin within
 /// half of a box that is given and not much too small.
 static double find_cutoff(const struct fit_choice *c, const char **why) {
-    static const double least_of_box = 0.8;
+    static const double min_of_box = 0.8;
     const double whole = c->scales.range - 0.5 * c->rdf->bins.width;
     double cutoff = fmin(whole, fmax(c->scales.seen, 2 * c->scales.neighbour));
     *why = "beyond, g differs from 1 by less than 0.03 or its noise, as it may without forces "
@@ -128,7 +128,7 @@ static double find_cutoff(const struct fit_choice *c, const char **why) {
         return cutoff;
     const double within = last_row(&c->rdf->bins, (size_t)last - 1,
                                    c->joined * target_files_rdf(&c->read->files)->member[0].joined);
-    if (within >= cutoff || within < least_of_box * cutoff)
+    if (within >= cutoff || within < min_of_box * cutoff)
         return cutoff;
     *why = "half of the box";
     return within;
@@ -147,13 +147,13 @@ static enum status choose_cutoff(struct fit_choice *c) {
     if (given)
         c->range = cutoff + 0.5 * c->rdf->bins.width;
     if (c->range < c->scales.range)
-        mf_fit_choice_say(c, "cutoff %s: %s", mf_fit_choice_text(c, "lambda", cutoff, text), why);
+        mf_fit_choice_note(c, "cutoff %s: %s", mf_fit_choice_text(c, "lambda", cutoff, text), why);
     return STATUS_OK;
 }
 
 /// A box that is somewhat wider than twice what is looked at, with a thousand beads at least.
 static enum status choose_count(struct fit_choice *c) {
-    static const double least = 1000, margin = 2.2;
+    static const double min = 1000, margin = 2.2;
     if (mf_fit_choice_lacks(c->root, "scene", "density") ||
         !mf_fit_choice_lacks(c->root, "scene.particles", "count") ||
         !mf_fit_choice_lacks(c->root, "scene.particles", "types") ||
@@ -161,11 +161,11 @@ static enum status choose_count(struct fit_choice *c) {
         return STATUS_OK;
     const double range = fmax(c->range, target_files_etd(&c->read->files)->grid.r_maximum);
     const double needed = c->density * pow(margin * range, c->dimensions);
-    c->count = ceil(fmax(least, needed));
-    mf_fit_choice_say(
+    c->count = ceil(fmax(min, needed));
+    mf_fit_choice_note(
         c, "%.0f particles: %s%s", c->count,
-        c->count > least ? "the box is 2.2 times as wide as the range of the targets"
-                         : "enough for the statistics, and the box is wider than twice the range",
+        c->count > min ? "the box is 2.2 times as wide as the range of the targets"
+                       : "enough for the statistics, and the box is wider than twice the range",
         target_files_rdf(&c->read->files)->member[0].parameters.particles > 0
             ? ""
             : "; g(r) is taken for that of as many, since its \"particles\" are not given");
@@ -204,12 +204,13 @@ static double fit_interval(const struct fit_choice *c, double time_step) {
 /// diffuses there.
 static enum status choose_time_step(struct fit_choice *c) {
     static const double allowed = 0.01, way = 0.02;
-    const bool flies = c->read->scene.setup.integrator->mobility == NULL;
+    const bool has_velocities = c->read->scene.setup.integrator->mobility == NULL;
     const double stiff = mf_fit_defaults_stiff_step(c);
-    const double free = fmin((flies ? way : way * way) * c->crossing, stiff);
+    const double free = fmin((has_velocities ? way : way * way) * c->crossing, stiff);
     const double curvature_of_pair = 2 * c->scales.curvature;
-    const double bound = flies ? sqrt(4 * allowed * c->mass / curvature_of_pair)
-                               : mf_fit_defaults_relaxing_step(c, curvature_of_pair, allowed);
+    const double bound = has_velocities
+                             ? sqrt(4 * allowed * c->mass / curvature_of_pair)
+                             : mf_fit_defaults_relaxing_step(c, curvature_of_pair, allowed);
     if (!mf_fit_choice_lacks(c->root, "scene", "time_step")) {
         c->time_step = c->read->scene.setup.time_step;
         return STATUS_OK;
@@ -220,17 +221,17 @@ static enum status choose_time_step(struct fit_choice *c) {
     mf_fit_choice_text(c, "k_B T_0/lambda^2", c->scales.curvature, curvature);
     mf_fit_choice_text(c, "lambda", c->scales.curvature_at, at);
     if (bound < free)
-        mf_fit_choice_say(c,
-                          "time step %s: the curvature of -k_B T ln g is up to %s, at %s, and the "
-                          "configurational temperature is to be right within 1 %%",
-                          step, curvature, at);
+        mf_fit_choice_note(c,
+                           "time step %s: the curvature of -k_B T ln g is up to %s, at %s, and the "
+                           "configurational temperature is to be right within 1 %%",
+                           step, curvature, at);
     else if (free == stiff)
-        mf_fit_choice_say(c,
-                          "time step %s: the distributions of bonds and angles are to be right "
-                          "within 0.3 %% of their variance",
-                          step);
+        mf_fit_choice_note(c,
+                           "time step %s: the distributions of bonds and angles are to be right "
+                           "within 0.3 %% of their variance",
+                           step);
     else
-        mf_fit_choice_say(
+        mf_fit_choice_note(
             c, "time step %s: beads move a fiftieth of the distance to their neighbours", step);
     return mf_fit_choice_give(c, "scene", mf_scene_fields, "time_step", c->time_step);
 }
@@ -238,10 +239,10 @@ static enum status choose_time_step(struct fit_choice *c) {
 /// In the core, where no pair is seen, the potential goes on bending up more than it does where
 /// pairs come near, so that none is lost there.
 static enum status choose_core(struct fit_choice *c) {
-    static const double steeper = 1.5, least = 2000;
+    static const double steeper = 1.5, min = 2000;
     const double temperature = c->read->scene.setup.temperature;
     const double stiffness =
-        fmax(steeper * c->scales.curvature, least * temperature / pow(c->scales.neighbour, 2));
+        fmax(steeper * c->scales.curvature, min * temperature / pow(c->scales.neighbour, 2));
     return c->finds[UNKNOWN_POTENTIAL]
                ? mf_fit_choice_give(c, "core", mf_fit_core_fields, "stiffness", stiffness)
                : STATUS_OK;
@@ -266,7 +267,7 @@ static enum status choose_unknowns(struct fit_choice *c) {
     if (!mf_fit_choice_lacks(c->root, "", path) || !moves)
         return STATUS_OK;
     c->finds[UNKNOWN_OMEGA] = true;
-    mf_fit_choice_say(
+    mf_fit_choice_note(
         c, "unknowns: the potential and, since targets that move are to be fitted, omega");
     TRY(mf_fit_choice_give_empty(c->root, "unknowns.potential"));
     return mf_fit_choice_give_empty(c->root, "unknowns.omega");
@@ -285,7 +286,7 @@ static double moderate_friction(const struct fit_choice *c, double cutoff) {
 /// friction that would be chosen of its own.
 static enum status choose_omega(struct fit_choice *c) {
     static const char *const path = "unknowns.omega";
-    static const double shells = 2, beyond_etd = 1.3, most = 6;
+    static const double shells = 2, beyond_etd = 1.3, max = 6;
     enum { COEFFICIENTS = 8 };
     if (!c->finds[UNKNOWN_OMEGA] || !mf_fit_choice_lacks(c->root, path, "cutoff") ||
         !mf_fit_choice_lacks(c->root, path, "maximum"))
@@ -295,14 +296,14 @@ static enum status choose_omega(struct fit_choice *c) {
                             beyond_etd * target_files_etd(&c->read->files)->grid.r_maximum));
     const double sigma = moderate_friction(c, cutoff);
     char largest[FIT_CHOICE_TEXT_SIZE], from[FIT_CHOICE_TEXT_SIZE], to[FIT_CHOICE_TEXT_SIZE];
-    mf_fit_choice_say(c, "omega: %d coefficients from 0 to %s, between r = %s and %s, %s",
-                      COEFFICIENTS, mf_fit_choice_text(c, "sqrt(mu/tau)", most * sigma, largest),
-                      mf_fit_choice_text(c, "lambda", c->scales.core, from),
-                      mf_fit_choice_text(c, "lambda", cutoff, to),
-                      "about the end of the second shell");
+    mf_fit_choice_note(c, "omega: %d coefficients from 0 to %s, between r = %s and %s, %s",
+                       COEFFICIENTS, mf_fit_choice_text(c, "sqrt(mu/tau)", max * sigma, largest),
+                       mf_fit_choice_text(c, "lambda", c->scales.core, from),
+                       mf_fit_choice_text(c, "lambda", cutoff, to),
+                       "about the end of the second shell");
     TRY(mf_fit_choice_give(c, path, mf_inverse_omega_fields, "cutoff", cutoff));
     TRY(mf_fit_choice_give(c, path, mf_inverse_omega_fields, "inner_cutoff", c->scales.core));
-    TRY(mf_fit_choice_give(c, path, mf_inverse_omega_fields, "maximum", most * sigma));
+    TRY(mf_fit_choice_give(c, path, mf_inverse_omega_fields, "maximum", max * sigma));
     TRY(mf_fit_choice_give(c, path, mf_inverse_omega_fields, "coefficients", COEFFICIENTS));
     TRY(mf_fit_choice_give_text(c->root, path, "curve", "bspline"));
     return mf_fit_choice_give_omega(c, "unknowns.omega.start", sigma, cutoff);
@@ -323,12 +324,12 @@ static enum status choose_friction(struct fit_choice *c) {
     const double cutoff = c->scales.shell, sigma = moderate_friction(c, cutoff);
     const double time = c->mass / (mf_fit_scales_friction(c->rdf, cutoff) * sigma * sigma);
     char size[FIT_CHOICE_TEXT_SIZE], end[FIT_CHOICE_TEXT_SIZE], memory[FIT_CHOICE_TEXT_SIZE];
-    mf_fit_choice_say(c,
-                      "friction omega = %s times 1 - r/(%s): up to the end of the first shell, and "
-                      "a bead forgets its velocity in %s",
-                      mf_fit_choice_text(c, "sqrt(mu/tau)", sigma, size),
-                      mf_fit_choice_text(c, "lambda", cutoff, end),
-                      mf_fit_choice_text(c, "tau", time, memory));
+    mf_fit_choice_note(
+        c,
+        "friction omega = %s times 1 - r/(%s): up to the end of the first shell, and "
+        "a bead forgets its velocity in %s",
+        mf_fit_choice_text(c, "sqrt(mu/tau)", sigma, size),
+        mf_fit_choice_text(c, "lambda", cutoff, end), mf_fit_choice_text(c, "tau", time, memory));
     return mf_fit_choice_give_omega(c, "scene.dissipative", sigma, cutoff);
 }
 
@@ -367,7 +368,7 @@ static enum status choose_simulation(struct fit_choice *c) {
 static enum status choose_without_pairs(struct fit_choice *c) {
     enum { EQUILIBRATION = 2000, SAMPLES = 200, EVERY = 20 };
     static const char *const path = "verification";
-    mf_fit_choice_say(
+    mf_fit_choice_note(
         c,
         "method \"%s\": it finds the potentials of bonds, angles and dihedrals from "
         "their distributions; without \"target.rdf\" and \"scene.conservative\" beads "
@@ -375,10 +376,10 @@ static enum status choose_without_pairs(struct fit_choice *c) {
         mf_automatic.name);
     TRY(mf_fit_choice_give_text(c->root, "method", "name", mf_automatic.name));
     if (lacks_friction(c->root)) {
-        mf_fit_choice_say(c,
-                          "dynamics \"%s\" of the verification: nothing else holds the "
-                          "temperature of molecules alone",
-                          mf_monte_carlo.name);
+        mf_fit_choice_note(c,
+                           "dynamics \"%s\" of the verification: nothing else holds the "
+                           "temperature of molecules alone",
+                           mf_monte_carlo.name);
         TRY(mf_fit_choice_give_text(c->root, "scene.dynamics", "integrator", mf_monte_carlo.name));
     }
     TRY(mf_fit_choice_give(c, path, mf_verify_fields, "equilibration", EQUILIBRATION));
@@ -402,7 +403,7 @@ enum status mf_fit_defaults_choose(const struct fit_file *read, const struct fit
     struct fit_choice c = {.read = read,
                            .leader = leader,
                            .root = root,
-                           .said = choices,
+                           .choices = choices,
                            .rdf = &rdf,
                            .joined = 1,
                            .dimensions = setup->box.dimensions,

@@ -10,7 +10,7 @@
 
 /// By how much larger the noise of g of all pair types is, rms, than that of g of all beads in the
 /// same samples: of few beads there are few pairs.
-static double find_rarity(const struct composition *composition) {
+static double find_noise_ratio(const struct composition *composition) {
     double all = 0, sum = 0, pairs = 0;
     for (int pair = 0; pair < mf_composition_pairs(composition); pair++)
         all += mf_composition_possible_pairs(composition, pair);
@@ -25,19 +25,19 @@ static double find_rarity(const struct composition *composition) {
 double mf_fit_defaults_precision(const struct fit_choice *c) {
     // Molecules move slowly: a third of the noise would take ten times as long.
     const bool slow = scene_has_molecules(&c->read->scene.molecules);
-    const double least = (slow ? 0.003 : 0.001) * find_rarity(c->rdf->composition);
-    static const double most = 0.004;
+    const double min = (slow ? 0.003 : 0.001) * find_noise_ratio(c->rdf->composition);
+    static const double max = 0.004;
     // Of single beads more samples than that would make the error of the result smaller by an
     // eighth at most.
     const double part_of_target = slow ? 1 : 0.5;
-    return fmax(part_of_target * c->scales.noise, fmin(most, fmax(least, c->scales.noise)));
+    return fmax(part_of_target * c->scales.noise, fmin(max, fmax(min, c->scales.noise)));
 }
 
 /// A system that is large enough for the range.
 static double choose_particles(const struct fit_choice *c) {
-    static const double least = 700, margin = 2.15, distortion = 0.05;
-    const double wanted = ceil(fmax(least, c->density * pow(margin * c->range, c->dimensions)));
-    return (double)mf_composition_least_particles(c->rdf->composition, (int64_t)wanted, distortion);
+    static const double min = 700, margin = 2.15, distortion = 0.05;
+    const double wanted = ceil(fmax(min, c->density * pow(margin * c->range, c->dimensions)));
+    return (double)mf_composition_min_particles(c->rdf->composition, (int64_t)wanted, distortion);
 }
 
 /// Mean and variance of a target's q, from its peak on as far as it is above half of that, as of a
@@ -113,17 +113,17 @@ double mf_fit_defaults_stiff_step(const struct fit_choice *c) {
 
 /// How candidates for ω are simulated: from the last configuration, as long as their targets look.
 static enum status choose_rounds(struct fit_choice *c, const struct field *fields) {
-    static const double equilibration = 0.7, apart = 0.1, windows = 1.5, least = 40;
+    static const double equilibration = 0.7, apart = 0.1, windows = 1.5, min = 40;
     enum target_kind longest;
     const double window =
         (double)mf_measurement_window(&c->read->problem.compared, c->time_step, &longest);
     const double free = round(apart * c->crossing / c->time_step);
-    const double every = fmax(1, fmin(free, window > 0 ? floor(windows * window / least) : free));
+    const double every = fmax(1, fmin(free, window > 0 ? floor(windows * window / min) : free));
     TRY(mf_fit_choice_give(c, "method", fields, "equilibration",
                            fmax(50, ceil(equilibration * c->crossing / c->time_step))));
     TRY(mf_fit_choice_give(c, "method", fields, "every", every));
     TRY(mf_fit_choice_give(c, "method", fields, "samples",
-                           fmax(least, ceil(windows * window / every))));
+                           fmax(min, ceil(windows * window / every))));
     TRY(mf_fit_choice_give(c, "method", fields, "precision", 0.1));
     TRY(mf_fit_choice_give(c, "method", fields, "temperature_tolerance", 0.3));
     return mf_fit_choice_give_text(c->root, "method", "warm_start", "yes");
@@ -152,7 +152,7 @@ enum status mf_fit_defaults_method(struct fit_choice *c) {
                              both ? "potential_precision" : "precision"};
         // States of other densities have other particles in a box of that width.
         const bool joined = scene_has_molecules(&c->read->scene.molecules) || c->read->name[0];
-        mf_fit_choice_say(
+        mf_fit_choice_note(
             c,
             "method \"%s\": it finds the potential from g(r) by samples of %.0f particles, until "
             "their g is known within %.2g; the target's is within %.2g",
@@ -163,9 +163,9 @@ enum status mf_fit_defaults_method(struct fit_choice *c) {
     }
     if (!simulates)
         return STATUS_OK;
-    mf_fit_choice_say(c,
-                      "method \"%s\": it finds %s from simulations as long as the targets' windows",
-                      method->name, c->finds[UNKNOWN_OMEGA] ? "omega" : "what is unknown");
+    mf_fit_choice_note(
+        c, "method \"%s\": it finds %s from simulations as long as the targets' windows",
+        method->name, c->finds[UNKNOWN_OMEGA] ? "omega" : "what is unknown");
     return choose_rounds(c, fields_with(method, "equilibration"));
 }
 
@@ -188,8 +188,8 @@ static double samples_for_temperature(const struct fit_choice *c, double replica
 }
 
 /// As exact as is wanted where that costs little; else as exact as is needed, if that may be paid.
-static double what_pays(double wanted, double needed, double little, double most) {
-    return fmin(wanted, fmax(little, fmin(needed, most)));
+static double what_pays(double wanted, double needed, double little, double max) {
+    return fmin(wanted, fmax(little, fmin(needed, max)));
 }
 
 /// What the file says of the verification, or what is chosen.
@@ -198,8 +198,8 @@ static double given_or(const struct fit_choice *c, const char *key, int64_t give
 }
 
 enum status mf_fit_defaults_verification(struct fit_choice *c) {
-    static const double apart = 0.1, equilibration = 10, least = 50, windows = 20;
-    static const double most_moves = 3e8, few_moves = 1e8, exact = 0.5, enough = 1;
+    static const double apart = 0.1, equilibration = 10, min = 50, windows = 20;
+    static const double max_moves = 3e8, few_moves = 1e8, exact = 0.5, enough = 1;
     const char *path = "verification";
     enum target_kind longest;
     const struct verify_parameters *read = &c->read->verification;
@@ -214,12 +214,12 @@ enum status mf_fit_defaults_verification(struct fit_choice *c) {
     const double looks = windows * window / every;
     const bool counted = c->read->files.given[TARGET_RDF];
     const double counts = counted ? samples_for_rdf(c, replicas, exact) : 0;
-    const double wanted = fmax(counts, fmax(least, looks));
+    const double wanted = fmax(counts, fmax(min, looks));
     const double needed =
         fmax(counted ? samples_for_rdf(c, replicas, enough) : wanted,
              fmax(looks, samples_for_temperature(c, replicas, every * time_step / c->crossing)));
-    const double can = what_pays(wanted, needed, few_moves / sample, most_moves / sample);
-    const double samples = ceil(fmax(can, fmax(least, window / every)));
+    const double can = what_pays(wanted, needed, few_moves / sample, max_moves / sample);
+    const double samples = ceil(fmax(can, fmax(min, window / every)));
     const char *why = wanted > samples && needed > samples ? "as many as a few minutes allow"
                       : wanted > samples ? "so that the noise of g is no more than that of target "
                                            "and method, and T known within a third of a per cent"
@@ -228,8 +228,8 @@ enum status mf_fit_defaults_verification(struct fit_choice *c) {
                       : looks == wanted  ? "20 times as long as the targets' windows"
                                          : "the least that gives errors";
     if (mf_fit_choice_lacks(c->root, path, "samples"))
-        mf_fit_choice_say(c, "verification: %.0f simulations of %.0f samples, %s", replicas,
-                          samples, why);
+        mf_fit_choice_note(c, "verification: %.0f simulations of %.0f samples, %s", replicas,
+                           samples, why);
     TRY(mf_fit_choice_give(c, path, mf_verify_fields, "replicas", replicas));
     TRY(mf_fit_choice_give(c, path, mf_verify_fields, "equilibration", begin));
     TRY(mf_fit_choice_give(c, path, mf_verify_fields, "every", every));

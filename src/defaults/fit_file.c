@@ -143,9 +143,9 @@ static enum status read_root(struct fit_file *fit, struct json_object *root,
                              const struct fit_file *leader, bool chosen) {
     mf_json_fields(root, mf_heading_fields, &fit->heading);
     struct json_object scene = mf_json_child(root, "scene", false);
-    mf_units_speak(root, &scene);
-    if (leader && mf_units_speaks(&leader->scene.units))
-        mf_json_speak(root->document, &leader->scene.units);
+    mf_units_read_document(root, &scene);
+    if (leader && mf_units_are_physical(&leader->scene.units))
+        mf_json_set_units(root->document, &leader->scene.units);
     // Before what its units convert.
     TRY(read_scene(fit, root, chosen));
     const struct simulation_setup *setup = &fit->scene.setup;
@@ -243,7 +243,7 @@ struct reading {
 /// What the document says, which must be read whole, as what was chosen for it.
 static enum status read_whole(struct fit_file *fit, const struct reading *reading, bool chosen) {
     struct json_object root = mf_json_root(reading->document);
-    mf_json_speak(reading->document, &(struct units){0});
+    mf_json_set_units(reading->document, &(struct units){0});
     TRY(mf_json_collect_files(reading->document, &fit->inputs));
     TRY(read_root(fit, &root, reading->leader, chosen));
     state_problem(fit, reading->options);
@@ -260,7 +260,7 @@ static enum status read_again(struct fit_file *fit, const struct reading *readin
 }
 
 /// Laws for the groups that are constraints.
-static enum status put_constraints(struct fit_file *fit, const struct reading *reading) {
+static enum status write_constraints(struct fit_file *fit, const struct reading *reading) {
     struct json_object root = mf_json_root(reading->document);
     if (reading->leader)
         fit->constraints = reading->leader->constraints; // laws are of all states
@@ -268,8 +268,8 @@ static enum status put_constraints(struct fit_file *fit, const struct reading *r
         mf_fit_constraints_find(fit, &fit->constraints);
     if (fit->constraints.count == 0)
         return STATUS_OK;
-    TRY(mf_fit_constraints_put(&fit->constraints, fit, &root));
-    mf_fit_constraints_say(&fit->constraints, fit, &fit->choices);
+    TRY(mf_fit_constraints_write(&fit->constraints, fit, &root));
+    mf_fit_constraints_print(&fit->constraints, fit, &fit->choices);
     return read_again(fit, reading, false);
 }
 
@@ -281,7 +281,7 @@ static enum status read_state(struct fit_file *fit, struct reading *reading) {
     const bool chooses = mf_fit_defaults_wanted(&root);
     TRY(read_whole(fit, reading, !chooses));
     if (mf_json_fault_count(document) == 0)
-        TRY(put_constraints(fit, reading));
+        TRY(write_constraints(fit, reading));
     if (!chooses || mf_json_fault_count(document) > 0)
         return STATUS_OK;
     TRY(mf_fit_defaults_choose(fit, reading->leader, &root, &fit->choices));
@@ -352,7 +352,7 @@ void mf_fit_file_clear(struct fit_file *fit) {
 
 static void write_verification(const struct fit_file *fit, struct json_writer *writer) {
     mf_json_begin(writer, "verification");
-    mf_json_put_fields(writer, mf_verify_fields, &fit->verification);
+    mf_json_write_fields(writer, mf_verify_fields, &fit->verification);
     mf_json_end(writer);
 }
 
@@ -377,7 +377,7 @@ static void write_states(const struct fit_file *fit, struct json_writer *writer)
 }
 
 void mf_fit_file_write(const struct fit_file *fit, struct json_writer *writer) {
-    mf_json_put_fields(writer, mf_heading_fields, &fit->heading);
+    mf_json_write_fields(writer, mf_heading_fields, &fit->heading);
     mf_units_write(&fit->scene.units, writer);
     if (fit->name[0])
         write_states(fit, writer);
@@ -385,13 +385,13 @@ void mf_fit_file_write(const struct fit_file *fit, struct json_writer *writer) {
         write_state(fit, writer);
     mf_fit_unknowns_write(fit, writer);
     mf_json_begin(writer, "method");
-    mf_json_put_text(writer, "name", fit->method->name);
+    mf_json_write_text(writer, "name", fit->method->name);
     for (const struct inverse_table *table = fit->method->tables; table->fields; table++)
-        mf_json_put_fields(writer, table->fields,
-                           (const char *)fit->method_parameters + table->offset);
+        mf_json_write_fields(writer, table->fields,
+                             (const char *)fit->method_parameters + table->offset);
     mf_json_end(writer);
     mf_json_begin(writer, "core");
-    mf_json_put_fields(writer, mf_fit_core_fields, &fit->core);
+    mf_json_write_fields(writer, mf_fit_core_fields, &fit->core);
     mf_json_end(writer);
 }
 
@@ -407,7 +407,7 @@ void mf_fit_file_digest(const struct fit_file *fit, uint64_t *digest) {
     mf_target_files_digest(&fit->files, digest);
     mf_scene_digest(&fit->scene, digest);
     for (int kind = 0; kind < UNKNOWNS; kind++)
-        for (int pair = 0; pair < COMPOSITION_MOST_PAIRS; pair++)
+        for (int pair = 0; pair < COMPOSITION_MAX_PAIRS; pair++)
             if (fit->problem.unknown[kind].start[pair])
                 digest_curve(fit->problem.unknown[kind].start[pair], digest);
     for (size_t s = 0; s < fit->others; s++)

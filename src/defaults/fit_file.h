@@ -27,10 +27,10 @@ struct fit_unknown {
 };
 
 /// What the program chose because the file did not say it, a line each with its reason.
-enum { FIT_MOST_CHOICES = 20, FIT_CHOICE_SIZE = 256 };
+enum { FIT_MAX_CHOICES = 20, FIT_CHOICE_SIZE = 256 };
 struct fit_choices {
     size_t count;
-    char line[FIT_MOST_CHOICES][FIT_CHOICE_SIZE];
+    char line[FIT_MAX_CHOICES][FIT_CHOICE_SIZE];
 };
 
 enum { FIT_STATE_NAME_SIZE = 64 };
@@ -40,15 +40,15 @@ struct fit_file {
     char name[FIT_STATE_NAME_SIZE]; ///< of a state; "" if there is but one
     size_t others;                  ///< states beside this, the first
     struct fit_file *other;         ///< shape [others], each whole but for its own others
-    const struct inverse_problem *problems[INVERSE_MOST_STATES]; ///< of all states
+    const struct inverse_problem *problems[INVERSE_MAX_STATES]; ///< of all states
     struct heading heading;
     struct fit_choices choices;
     struct fit_constraints constraints; ///< that the laws of the scene have come from
     struct target_files files;
     struct scene scene;
     struct fit_unknown unknown[UNKNOWNS];
-    struct bonded_shape shape[BONDED_KINDS][MOLECULES_MOST_GROUPS]; ///< of groups to be found
-    struct inverse_number number[INVERSE_MOST_NUMBERS];             ///< that are to be found
+    struct bonded_shape shape[BONDED_KINDS][MOLECULES_MAX_GROUPS]; ///< of groups to be found
+    struct inverse_number number[INVERSE_MAX_NUMBERS];             ///< that are to be found
     size_t numbers;
     struct fit_core core;
     const struct inverse_method *method;

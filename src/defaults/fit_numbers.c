@@ -297,10 +297,10 @@ static enum status read_all(struct json_object *numbers, const struct scene *sce
             TRY(fault_unknown(numbers, path, entries, scene));
         else if (found->fixed)
             mf_json_fault(numbers, path, "it cannot be found: %s", found->fixed);
-        else if (*count < INVERSE_MOST_NUMBERS)
+        else if (*count < INVERSE_MAX_NUMBERS)
             read_one(numbers, found, &number[(*count)++]);
         else
-            mf_json_fault(numbers, path, "there are more than %d numbers", INVERSE_MOST_NUMBERS);
+            mf_json_fault(numbers, path, "there are more than %d numbers", INVERSE_MAX_NUMBERS);
         mf_json_has(numbers, path);
     }
     return STATUS_OK;
@@ -332,7 +332,7 @@ static enum status check_law(struct json_object *numbers, const struct scene_law
                              enum inverse_place place, const struct inverse_number *number,
                              size_t count) {
     for (int pair = 0; pair < law->curves; pair++) {
-        const struct inverse_number *own[INVERSE_MOST_NUMBERS];
+        const struct inverse_number *own[INVERSE_MAX_NUMBERS];
         size_t found = 0;
         for (size_t n = 0; n < count; n++)
             if (number[n].place == place && number[n].part == pair)
@@ -344,7 +344,7 @@ static enum status check_law(struct json_object *numbers, const struct scene_law
 }
 
 enum status mf_fit_numbers_read(struct json_object *unknowns, const struct scene *scene,
-                                struct inverse_number number[INVERSE_MOST_NUMBERS], size_t *count) {
+                                struct inverse_number number[INVERSE_MAX_NUMBERS], size_t *count) {
     enum status status = STATUS_OK;
     struct entries entries = {0};
     *count = 0;
@@ -378,7 +378,7 @@ void mf_fit_numbers_write(const struct inverse_number *number, size_t count,
         mf_json_begin(writer, number[n].name);
         struct field fields[NUMBERS_FIELDS];
         mf_numbers_fields_of(number[n].unit, fields);
-        mf_json_put_fields(writer, fields, &number[n]);
+        mf_json_write_fields(writer, fields, &number[n]);
         mf_json_end(writer);
     }
     mf_json_end(writer);

@@ -11,7 +11,7 @@
 /// number, what cannot change, and ranges that are none. Fails: NO_MEMORY. Tested:
 /// test_fit_numbers.
 enum status mf_fit_numbers_read(struct json_object *unknowns, const struct scene *scene,
-                                struct inverse_number number[INVERSE_MOST_NUMBERS],
+                                struct inverse_number number[INVERSE_MAX_NUMBERS],
                                 size_t *count) MUST_USE;
 
 /// A law of the scene by its place.

@@ -34,17 +34,17 @@ static size_t highest_bin(const struct view *view) {
 
 /// A maximum of g that is no more than noise says nothing.
 static double find_neighbour(const struct view *view, double spacing) {
-    static const double least_peak = 0.05, standard_errors = 4;
+    static const double min_peak = 0.05, standard_errors = 4;
     const size_t k = highest_bin(view);
     const double peak = view->g[k] - view->tail;
-    return peak > fmax(least_peak, standard_errors * view->error[k])
+    return peak > fmax(min_peak, standard_errors * view->error[k])
                ? mf_rdf_bins_centre(view->bins, k)
                : spacing;
 }
 
 /// The first minimum behind the neighbours; without one, half as far again as they are.
 static double find_shell(const struct view *view, double neighbour) {
-    static const double without = 1.5, least = 1.2, most = 2;
+    static const double without = 1.5, min = 1.2, max = 2;
     const struct rdf_bins *bins = view->bins;
     size_t k = highest_bin(view), lowest;
     while (k < bins->count && view->g[k] >= 1)
@@ -53,7 +53,7 @@ static double find_shell(const struct view *view, double neighbour) {
         if (view->g[k] < view->g[lowest])
             lowest = k;
     const double shell = mf_rdf_bins_centre(bins, lowest);
-    return k < bins->count && shell > least * neighbour && shell < most * neighbour
+    return k < bins->count && shell > min * neighbour && shell < max * neighbour
                ? shell
                : without * neighbour;
 }
@@ -227,7 +227,7 @@ static double find_interpolation(const struct fit_scales_rdf *rdf, size_t pair, 
     enum { TAPS = 5, MIDDLE = TAPS / 2 };
     static const double taps[TAPS] = {1, -4, 6, -4, 1}, share = 3.0 / 128, standard_errors = 3;
     static const double rare = 0.02;
-    double g[TAPS] = {0}, variance[TAPS] = {0}, most = 0;
+    double g[TAPS] = {0}, variance[TAPS] = {0}, max = 0;
     for (size_t k = 0; (k + 1) * of <= rdf->bins.count; k++) {
         join_bins(rdf, pair, k * of, of, &g[k % TAPS], &variance[k % TAPS]);
         if (k + 1 < TAPS)
@@ -240,9 +240,9 @@ static double find_interpolation(const struct fit_scales_rdf *rdf, size_t pair, 
         const size_t middle = (k + 1 + MIDDLE) % TAPS;
         const double level = sqrt(fmin(1, fmax(rare, g[middle])));
         const double may = fmin(coarsest * level, fmax(finest * level, sqrt(variance[middle])));
-        most = fmax(most, share * (fabs(difference) - standard_errors * sqrt(noise)) / may);
+        max = fmax(max, share * (fabs(difference) - standard_errors * sqrt(noise)) / may);
     }
-    return most;
+    return max;
 }
 
 size_t mf_fit_scales_joined(const struct fit_scales_rdf *rdf, double finest, double coarsest) {

@@ -51,10 +51,10 @@ static enum status check_names(const struct json_object *states, const char *fil
                                   file, key, name, FIT_STATE_NAME_SIZE - 1);
         TRY(check_keys(states, file, name));
     }
-    if (*count >= 1 && *count <= INVERSE_MOST_STATES)
+    if (*count >= 1 && *count <= INVERSE_MAX_STATES)
         return STATUS_OK;
     return mf_status_fail(STATUS_BAD_INPUT, "%s: %s: there are %zu; from 1 to %d can be fitted",
-                          file, key, *count, INVERSE_MOST_STATES);
+                          file, key, *count, INVERSE_MAX_STATES);
 }
 
 enum status mf_fit_states_take(struct json_document *document, const char *file, size_t n,
@@ -87,13 +87,13 @@ static double *precision_of(const struct fit_file *state) {
 
 /// The samples of all states are as exact as the most exact target asks for.
 static void share_precision(struct fit_file *fit) {
-    double *precision = precision_of(fit), least = *precision;
+    double *precision = precision_of(fit), min = *precision;
     for (size_t s = 0; s < fit->others; s++)
-        least = fmin(least, *precision_of(&fit->other[s]));
-    if (least < *precision && fit->choices.count < FIT_MOST_CHOICES)
+        min = fmin(min, *precision_of(&fit->other[s]));
+    if (min < *precision && fit->choices.count < FIT_MAX_CHOICES)
         snprintf(fit->choices.line[fit->choices.count++], FIT_CHOICE_SIZE,
-                 "\"precision\" %.2g of all states: the least that was chosen for one", least);
-    *precision = least;
+                 "\"precision\" %.2g of all states: the least that was chosen for one", min);
+    *precision = min;
 }
 
 void mf_fit_states_link(struct fit_file *fit) {

@@ -49,10 +49,10 @@ int mf_fit_unknowns_left_out(struct json_object *root) {
 static void enter_group(struct scene_fitted *fitted, int order, const char *name,
                         const struct json_object *known, struct json_object *from) {
     const bool has_law = mf_json_is_member(known, name);
-    if (has_law && fitted->told)
+    if (has_law && fitted->given)
         mf_json_fault(from, name, "it is to be found, but \"scene.%s\" has a law for it",
                       mf_bonded_kinds[order]->plural);
-    if (has_law || fitted->count[order] == MOLECULES_MOST_GROUPS)
+    if (has_law || fitted->count[order] == MOLECULES_MAX_GROUPS)
         return;
     if (!mf_topology_is_name(name)) {
         mf_json_fault(from, name,
@@ -76,21 +76,21 @@ bool mf_fit_unknowns_name_groups(const struct json_object *root) {
 
 void mf_fit_unknowns_groups(struct json_object *root, struct json_object *scene,
                             struct scene_fitted *fitted) {
-    const bool told = mf_fit_unknowns_name_groups(root);
-    struct json_object parent = mf_json_child(root, told ? "unknowns" : "target", false);
-    *fitted = (struct scene_fitted){.told = told};
+    const bool given = mf_fit_unknowns_name_groups(root);
+    struct json_object parent = mf_json_child(root, given ? "unknowns" : "target", false);
+    *fitted = (struct scene_fitted){.given = given};
     for (int order = 0; order < BONDED_KINDS; order++) {
         const struct json_object known =
             mf_json_child(scene, mf_bonded_kinds[order]->plural, false);
-        const char *key = told ? mf_bonded_kinds[order]->plural
-                               : mf_bonded_distribution_of(order)->name,
+        const char *key = given ? mf_bonded_kinds[order]->plural
+                                : mf_bonded_distribution_of(order)->name,
                    *name;
         if (!mf_json_is_object(&parent, key))
             continue;
         struct json_object *from = &fitted->from[order];
         *from = mf_json_child(&parent, key, false);
         for (size_t n = 0; (name = mf_json_key(from, n)); n++)
-            if (told || (strcmp(name, "weight") != 0 && strcmp(name, "fitted") != 0))
+            if (given || (strcmp(name, "weight") != 0 && strcmp(name, "fitted") != 0))
                 enter_group(fitted, order, name, &known, from);
     }
 }
@@ -284,8 +284,8 @@ static void write_fixed(const struct unknown_parameters *p, struct json_writer *
     mf_json_begin(writer, "fixed");
     for (int k = 0; k < INVERSE_PARAMETERS; k++)
         if (!isnan(p->fixed[k]))
-            mf_json_put_quantity(writer, mf_inverse_fixed_fields[k].name,
-                                 mf_inverse_fixed_fields[k].unit, p->fixed[k]);
+            mf_json_write_quantity(writer, mf_inverse_fixed_fields[k].name,
+                                   mf_inverse_fixed_fields[k].unit, p->fixed[k]);
     mf_json_end(writer);
 }
 
@@ -295,7 +295,7 @@ static void write_unknown(const struct fit_file *fit, int kind, const char *name
     if (!unknown->wanted)
         return;
     mf_json_begin(writer, name);
-    mf_json_put_fields(writer, unknown_fields(kind), &unknown->parameters);
+    mf_json_write_fields(writer, unknown_fields(kind), &unknown->parameters);
     write_fixed(&unknown->parameters, writer);
     mf_scene_law_write(&unknown->start, &fit->scene.setup.composition, writer, "start");
     mf_scene_law_write(&unknown->truth, &fit->scene.setup.composition, writer, "truth");
@@ -326,7 +326,7 @@ static void write_groups(const struct fit_file *fit, struct json_writer *writer)
                 mf_json_begin(writer, mf_bonded_kinds[order]->plural);
             begun = true;
             mf_json_begin(writer, molecules->group[order][g].name);
-            mf_json_put_fields(writer, mf_inverse_group_fields, &fit->shape[order][g]);
+            mf_json_write_fields(writer, mf_inverse_group_fields, &fit->shape[order][g]);
             mf_json_end(writer);
         }
         if (begun)

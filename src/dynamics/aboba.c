@@ -76,13 +76,13 @@ static enum status step_with_flights(struct simulation *simulation, int64_t inne
     const double half = 0.5 * simulation->setup.time_step;
     const int64_t steps = (inner_steps + 1) / 2;
     TRY(mf_respa_find(respa, simulation));
-    TRY(mf_respa_fly(respa, simulation, half, steps));
+    TRY(mf_respa_drift(respa, simulation, half, steps));
     TRY(mf_respa_compute_forces(respa, simulation));
     mf_respa_kick(respa, simulation, half);
     TRY(sweep(simulation));
     mf_simulation_take_temperature(simulation);
     mf_respa_kick(respa, simulation, half);
-    return mf_respa_fly(respa, simulation, half, steps);
+    return mf_respa_drift(respa, simulation, half, steps);
 }
 
 static int64_t inner_steps_of(const struct simulation *simulation) {

@@ -167,7 +167,8 @@ static void move(void *context, size_t begin, size_t end) {
 /// independent: the MSD of free particles is 2 d D t at every lag, that of x lacks half a step. So
 /// it is with orientations, and particles drive themselves along the angle without that half: what
 /// they then diffuse is too much by a part (D_r Δt)²/12 alone, and by D_r Δt/2 with it.
-static void forget(const struct simulation *simulation, double *positions, double *angles) {
+static void remove_correlated(const struct simulation *simulation, double *positions,
+                              double *angles) {
     const struct particles *particles = &simulation->particles;
     const struct state *state = simulation->integrator_state;
     const double half = 0.5 * simulation_free_step(&simulation->setup);
@@ -242,7 +243,7 @@ const struct integrator mf_brownian = {
     .begin = begin_outlasting,
     .mobility = mobility,
     .orientation_mobility = orientation_mobility,
-    .forget = forget,
+    .remove_correlated = remove_correlated,
     .step = step,
 };
 

@@ -11,7 +11,7 @@ parameters_of(const struct simulation_setup *setup) {
     return setup->integrator_parameters;
 }
 
-static double companions(const struct simulation_setup *setup) {
+static double solvent_particles(const struct simulation_setup *setup) {
     return mf_solvent_count(parameters_of(setup), &setup->box);
 }
 
@@ -51,7 +51,7 @@ static enum status begin(struct simulation *simulation) {
     solvent->temperature = setup->temperature;
     solvent->time = (double)solvent->parameters.interval * setup->time_step;
     solvent->seed = setup->seed;
-    TRY(mf_solvent_init(solvent, &simulation->particles, simulation->threads.most));
+    TRY(mf_solvent_init(solvent, &simulation->particles, simulation->threads.max));
     TRY(mf_solvent_part_beads(solvent, &simulation->particles, &setup->placement));
     return mf_simulation_compute_forces(simulation, 0);
 }
@@ -102,7 +102,8 @@ static void drift(struct simulation *simulation) {
             position[d] = beads->position[d][k];
             velocity[d] = beads->velocity[d][k];
         }
-        mf_solvent_fly(solvent, position, velocity, none, simulation->setup.time_step, impulse);
+        mf_solvent_propagate(solvent, position, velocity, none, simulation->setup.time_step,
+                             impulse);
         for (int d = 0; d < beads->box.dimensions; d++) {
             beads->position[d][k] = position[d];
             beads->velocity[d][k] = velocity[d];
@@ -153,12 +154,12 @@ static double kept(const struct simulation_setup *setup, int power, double bodie
 }
 
 /// Σ_N P(N) (m N/(mass + m N)) (1 − ρ_n): what a particle among N others forgets in a collision.
-static double forgotten(const struct simulation_setup *setup, int power, double mass) {
+static double decorrelation(const struct simulation_setup *setup, int power, double mass) {
     const struct collision_dynamics_parameters *parameters = parameters_of(setup);
     const double mean = parameters->particles_per_cell;
-    const int most = (int)(mean + 10 * sqrt(mean) + 20);
+    const int max = (int)(mean + 10 * sqrt(mean) + 20);
     double sum = 0;
-    for (int n = 1; n <= most; n++) {
+    for (int n = 1; n <= max; n++) {
         const double chance = exp(n * log(mean) - mean - lgamma(n + 1));
         const double others = parameters->mass * n;
         sum += chance * others / (mass + others) * (1 - kept(setup, power, n + 1));
@@ -173,13 +174,13 @@ static double collision_time(const struct simulation_setup *setup) {
 double mf_collision_dynamics_viscosity(const struct simulation_setup *setup) {
     const struct collision_dynamics_parameters *parameters = parameters_of(setup);
     const double time = collision_time(setup), mass = parameters->mass;
-    return parameters->cell * parameters->cell * forgotten(setup, 1, mass) / (12 * time) +
-           setup->temperature * time / mass * (1 / forgotten(setup, 2, mass) - 0.5);
+    return parameters->cell * parameters->cell * decorrelation(setup, 1, mass) / (12 * time) +
+           setup->temperature * time / mass * (1 / decorrelation(setup, 2, mass) - 0.5);
 }
 
 double mf_collision_dynamics_diffusion(const struct simulation_setup *setup, double mass) {
     return setup->temperature * collision_time(setup) / mass *
-           (1 / forgotten(setup, 1, mass) - 0.5);
+           (1 / decorrelation(setup, 1, mass) - 0.5);
 }
 
 // Record ------------------------------------------------------------------------------------------
@@ -238,8 +239,8 @@ const struct integrator mf_collision_dynamics = {
     .begin = begin,
     .clear = clear,
     .spans = spans,
-    .companions = companions,
-    .companion_cost = 12,
+    .solvent_particles = solvent_particles,
+    .solvent_cost = 12,
     .model_time_step = true,
     .masses = true,
     .holds_temperature = holds_temperature,

@@ -19,16 +19,16 @@ enum { EVENTS_A_LOOK = 1 << 16 };
 static const double bodies_a_cell = 0.5;
 
 /// Cells are numbered by 16 bits along an axis.
-enum { MOST_CELLS = 65535 };
+enum { MAX_CELLS = 65535 };
 
 // Making it ---------------------------------------------------------------------------------------
 
 /// Cells at least as wide as the largest diameter, so that what touches is next door.
 static void shape_cells(struct hard_gas *gas, const struct box *box, double diameter) {
-    const double room = mf_box_volume(box) / gas->count;
+    const double capacity = mf_box_volume(box) / gas->count;
     const double width =
-        fmax(diameter, pow(bodies_a_cell * room, 1.0 / box->dimensions)) * (1 + 1e-12);
-    mf_cells_fit_box(box, width, MOST_CELLS, gas->cells);
+        fmax(diameter, pow(bodies_a_cell * capacity, 1.0 / box->dimensions)) * (1 + 1e-12);
+    mf_cells_fit_box(box, width, MAX_CELLS, gas->cells);
     for (int d = 0; d < 3; d++) {
         gas->length[d] = box->length[d];
         gas->cell_width[d] = box->length[d] / gas->cells[d];
@@ -159,10 +159,10 @@ enum status mf_hard_gas_run(struct hard_gas *gas, double time, const atomic_bool
     if (gas->calendar_events != gas->now.events)
         mf_hard_gas_calendar_fill(gas);
     for (;;) {
-        const uint64_t most = gas->now.left < EVENTS_A_LOOK ? gas->now.left : EVENTS_A_LOOK;
+        const uint64_t max = gas->now.left < EVENTS_A_LOOK ? gas->now.left : EVENTS_A_LOOK;
         if (mf_interrupt_wanted(cancel))
             return mf_status_fail(STATUS_INTERRUPTED, "interrupted");
-        const bool done = mf_hard_gas_events_run(gas, time - gas->now.elapsed, most);
+        const bool done = mf_hard_gas_events_run(gas, time - gas->now.elapsed, max);
         gas->calendar_events = gas->now.events;
         if (done)
             return STATUS_OK;

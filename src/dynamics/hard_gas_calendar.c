@@ -38,7 +38,7 @@ void mf_hard_gas_calendar_fill(struct hard_gas *gas) {
     calendar->heap = -1;
     calendar->present = hard_gas_calendar_number(gas, gas->now.time);
     for (int32_t k = 0; k < gas->count; k++)
-        hard_gas_calendar_put_entry(gas, k);
+        hard_gas_calendar_insert_entry(gas, k);
     gas->calendar_events = gas->now.events;
 }
 

@@ -44,7 +44,7 @@ static inline int32_t hard_gas_calendar_merge(struct hard_gas_entry *entry, int3
     return top;
 }
 
-static inline void hard_gas_calendar_put_entry(struct hard_gas *gas, int32_t body) {
+static inline void hard_gas_calendar_insert_entry(struct hard_gas *gas, int32_t body) {
     struct hard_gas_calendar *calendar = &gas->calendar;
     const double time = gas->event[body].time;
     const int64_t number = hard_gas_calendar_number(gas, time);
@@ -71,11 +71,11 @@ void mf_hard_gas_calendar_fill(struct hard_gas *gas);
 /// stages, what each leads to some events after it.
 void mf_hard_gas_calendar_fetch(const struct hard_gas *gas);
 
-static inline void hard_gas_calendar_put(struct hard_gas *gas, int32_t body) {
+static inline void hard_gas_calendar_insert(struct hard_gas *gas, int32_t body) {
     if (gas->calendar.unused < 0)
         mf_hard_gas_calendar_fill(gas); // has the new event, too, and no void ones
     else
-        hard_gas_calendar_put_entry(gas, body);
+        hard_gas_calendar_insert_entry(gas, body);
 }
 
 /// On to the next bucket: what is due goes into the heap.

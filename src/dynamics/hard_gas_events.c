@@ -13,7 +13,7 @@ static inline double later(double a, double b) {
 }
 
 /// A body as it is now, and what it will meet first.
-struct forecast {
+struct prediction {
     int32_t body;
     double now;
     double place[3], velocity[3], radius;
@@ -67,14 +67,14 @@ static const double grazing = 1e-14;
 
 /// Of r² + 2 b t + v² t² = s²; written behind the meetings that there are, and counted if the two
 /// approach each other and touch.
-static inline int add_meeting(const struct hard_gas *gas, const struct forecast *forecast,
+static inline int add_meeting(const struct hard_gas *gas, const struct prediction *prediction,
                               const struct reach reach[3], const uint8_t from[3], int32_t k,
                               struct meeting *meeting, const int dimensions) {
     const struct hard_gas_body *body = &gas->body[k];
-    const double ago = forecast->now - body->time, s = forecast->radius + body->radius;
+    const double ago = prediction->now - body->time, s = prediction->radius + body->radius;
     double b = 0, rr = 0, vv = 0;
     for (int d = 0; d < dimensions; d++) {
-        const double v = body->velocity[d] - forecast->velocity[d];
+        const double v = body->velocity[d] - prediction->velocity[d];
         const double r = body->place[d] + body->velocity[d] * ago - reach[d].place[from[d]];
         b += r * v;
         rr += r * r;
@@ -87,24 +87,24 @@ static inline int add_meeting(const struct hard_gas *gas, const struct forecast 
 
 /// Take the meeting if it is the first, t = gap/(sqrt(root) − b), which cancels nothing. A body
 /// that turns before will look by itself.
-static inline void take_earlier(const struct hard_gas *gas, struct forecast *forecast,
+static inline void take_earlier(const struct hard_gas *gas, struct prediction *prediction,
                                 const struct meeting *meeting) {
     const double wait = meeting->gap > 0 ? meeting->gap / (sqrt(meeting->root) - meeting->b) : 0;
-    const double time = forecast->now + wait;
-    if (time < forecast->time && time < gas->event[meeting->body].collision) {
-        forecast->time = time;
-        forecast->partner = meeting->body;
+    const double time = prediction->now + wait;
+    if (time < prediction->time && time < gas->event[meeting->body].collision) {
+        prediction->time = time;
+        prediction->partner = meeting->body;
     }
 }
 
-static inline void look_at(const struct hard_gas *gas, struct forecast *forecast,
+static inline void look_at(const struct hard_gas *gas, struct prediction *prediction,
                            const struct reach reach[3], struct crowd *crowd, const int dimensions) {
     while (crowd->count > 0) {
         struct meeting meeting[28];
         int meetings = 0, left = 0;
         for (int n = 0; n < crowd->count; n++) {
             const int32_t k = crowd->body[n];
-            meetings += add_meeting(gas, forecast, reach, crowd->from[n], k, &meeting[meetings],
+            meetings += add_meeting(gas, prediction, reach, crowd->from[n], k, &meeting[meetings],
                                     dimensions);
             crowd->body[left] = gas->link[k].next;
             for (int d = 0; d < dimensions; d++)
@@ -112,7 +112,7 @@ static inline void look_at(const struct hard_gas *gas, struct forecast *forecast
             left += crowd->body[left] >= 0;
         }
         for (int n = 0; n < meetings; n++)
-            take_earlier(gas, forecast, &meeting[n]);
+            take_earlier(gas, prediction, &meeting[n]);
         crowd->count = left;
     }
 }
@@ -127,15 +127,15 @@ static inline void add_cell(const struct hard_gas *gas, struct crowd *crowd, siz
 }
 
 /// Look around: into all cells near by, or into the new ones at `side` of an axis.
-static inline void look_around(const struct hard_gas *gas, struct forecast *forecast, int axis,
+static inline void look_around(const struct hard_gas *gas, struct prediction *prediction, int axis,
                                int side, const int dimensions) {
-    const uint16_t *cell = gas->event[forecast->body].cell;
+    const uint16_t *cell = gas->event[prediction->body].cell;
     struct reach reach[3] = {{.count = 1}, {.count = 1}, {.count = 1}};
     struct crowd crowd;
     crowd.count = 0;
     for (int d = 0; d < dimensions; d++)
         reach[d] = find_reach(gas, d, cell[d], d == axis ? side : -1, d == axis ? side : 1,
-                              forecast->place[d]);
+                              prediction->place[d]);
     for (int x = 0; x < reach[0].count; x++)
         for (int y = 0; y < reach[1].count; y++) {
             const size_t row =
@@ -146,27 +146,27 @@ static inline void look_around(const struct hard_gas *gas, struct forecast *fore
                 add_cell(gas, &crowd, row * (size_t)gas->cells[2] + (size_t)reach[2].cell[z], x, y,
                          z);
         }
-    look_at(gas, forecast, reach, &crowd, dimensions);
+    look_at(gas, prediction, reach, &crowd, dimensions);
 }
 
-static inline struct forecast begin_forecast(const struct hard_gas *gas, int32_t k,
-                                             const int dimensions) {
+static inline struct prediction begin_prediction(const struct hard_gas *gas, int32_t k,
+                                                 const int dimensions) {
     const struct hard_gas_body *body = &gas->body[k];
-    struct forecast forecast = {
+    struct prediction prediction = {
         .body = k, .now = gas->now.time, .radius = body->radius, .time = INFINITY, .partner = -1};
     for (int d = 0; d < dimensions; d++) {
-        forecast.velocity[d] = body->velocity[d];
-        forecast.place[d] = body->place[d] + body->velocity[d] * (forecast.now - body->time);
+        prediction.velocity[d] = body->velocity[d];
+        prediction.place[d] = body->place[d] + body->velocity[d] * (prediction.now - body->time);
     }
-    return forecast;
+    return prediction;
 }
 
-static inline void keep(struct hard_gas *gas, const struct forecast *forecast) {
-    struct hard_gas_event *event = &gas->event[forecast->body];
-    event->collision = forecast->time;
-    event->partner = forecast->partner;
-    if (forecast->partner >= 0)
-        event->partner_turns = gas->event[forecast->partner].turns;
+static inline void keep(struct hard_gas *gas, const struct prediction *prediction) {
+    struct hard_gas_event *event = &gas->event[prediction->body];
+    event->collision = prediction->time;
+    event->partner = prediction->partner;
+    if (prediction->partner >= 0)
+        event->partner_turns = gas->event[prediction->partner].turns;
 }
 
 static inline bool is_wall(const struct hard_gas *gas, int d, int cell, bool up) {
@@ -174,7 +174,7 @@ static inline bool is_wall(const struct hard_gas *gas, int d, int cell, bool up)
 }
 
 /// When a body leaves its cell, or its rim touches a wall.
-static inline void foresee_border(struct hard_gas *gas, int32_t k, const int dimensions) {
+static inline void predict_border(struct hard_gas *gas, int32_t k, const int dimensions) {
     const struct hard_gas_body *body = &gas->body[k];
     struct hard_gas_event *event = &gas->event[k];
     double earliest = INFINITY;
@@ -194,11 +194,11 @@ static inline void foresee_border(struct hard_gas *gas, int32_t k, const int dim
 }
 
 /// Foresee all of a body that has turned, or whose partner has; it is not in the calendar.
-static inline void foresee(struct hard_gas *gas, int32_t k, const int dimensions) {
+static inline void predict(struct hard_gas *gas, int32_t k, const int dimensions) {
     struct hard_gas_event *event = &gas->event[k];
-    struct forecast forecast = begin_forecast(gas, k, dimensions);
-    look_around(gas, &forecast, -1, 0, dimensions);
-    keep(gas, &forecast);
+    struct prediction prediction = begin_prediction(gas, k, dimensions);
+    look_around(gas, &prediction, -1, 0, dimensions);
+    keep(gas, &prediction);
     event->time = earlier(event->collision, event->border);
 }
 
@@ -244,9 +244,9 @@ static inline void collide(struct hard_gas *gas, int32_t i, const int dimensions
     }
     turn(gas, pair[0], pair[1], dimensions);
     for (int n = 0; n < 2; n++) {
-        foresee_border(gas, pair[n], dimensions);
-        foresee(gas, pair[n], dimensions);
-        hard_gas_calendar_put(gas, pair[n]);
+        predict_border(gas, pair[n], dimensions);
+        predict(gas, pair[n], dimensions);
+        hard_gas_calendar_insert(gas, pair[n]);
     }
 }
 
@@ -258,8 +258,8 @@ static void bounce(struct hard_gas *gas, int32_t k, const int dimensions) {
     gas->now.tally.wall_hits++;
     *v = -*v;
     event->turns++;
-    foresee_border(gas, k, dimensions);
-    foresee(gas, k, dimensions);
+    predict_border(gas, k, dimensions);
+    predict(gas, k, dimensions);
 }
 
 static inline size_t index_of(const struct hard_gas *gas, const uint16_t cell[3]) {
@@ -285,17 +285,17 @@ static inline void cross(struct hard_gas *gas, int32_t k, const int dimensions) 
     event->cell[d] = (uint16_t)cell;
     cells_enter(first_of(gas, k), gas->link, k);
     gas->now.tally.crossings++;
-    struct forecast forecast = begin_forecast(gas, k, dimensions);
-    forecast.time = event->collision;
-    look_around(gas, &forecast, d, side, dimensions);
-    if (forecast.partner >= 0)
-        keep(gas, &forecast);
-    foresee_border(gas, k, dimensions);
+    struct prediction prediction = begin_prediction(gas, k, dimensions);
+    prediction.time = event->collision;
+    look_around(gas, &prediction, d, side, dimensions);
+    if (prediction.partner >= 0)
+        keep(gas, &prediction);
+    predict_border(gas, k, dimensions);
     event->time = earlier(event->collision, event->border);
 }
 
-static inline bool happen(struct hard_gas *gas, double time, uint64_t most, const int dimensions) {
-    for (uint64_t n = 0; n < most; n++) {
+static inline bool happen(struct hard_gas *gas, double time, uint64_t max, const int dimensions) {
+    for (uint64_t n = 0; n < max; n++) {
         const int32_t k = hard_gas_calendar_take(gas, time);
         if (k < 0)
             return true;
@@ -310,27 +310,27 @@ static inline bool happen(struct hard_gas *gas, double time, uint64_t most, cons
         }
         if (event->collision < event->border) {
             gas->now.tally.voids++;
-            foresee(gas, k, dimensions);
+            predict(gas, k, dimensions);
         } else if (gas->walls && is_wall(gas, event->axis, event->cell[event->axis],
                                          gas->body[k].velocity[event->axis] > 0)) {
             bounce(gas, k, dimensions);
         } else {
             cross(gas, k, dimensions);
         }
-        hard_gas_calendar_put(gas, k);
+        hard_gas_calendar_insert(gas, k);
     }
     return false;
 }
 
-bool mf_hard_gas_events_run(struct hard_gas *gas, double time, uint64_t most) {
-    return gas->dimensions == 2 ? happen(gas, time, most, 2) : happen(gas, time, most, 3);
+bool mf_hard_gas_events_run(struct hard_gas *gas, double time, uint64_t max) {
+    return gas->dimensions == 2 ? happen(gas, time, max, 2) : happen(gas, time, max, 3);
 }
 
-static inline double foresee_all(struct hard_gas *gas, const int dimensions) {
+static inline double predict_all(struct hard_gas *gas, const int dimensions) {
     double waits = 0;
     for (int32_t k = 0; k < gas->count; k++) {
-        foresee_border(gas, k, dimensions);
-        foresee(gas, k, dimensions);
+        predict_border(gas, k, dimensions);
+        predict(gas, k, dimensions);
         waits += isfinite(gas->event[k].time) ? gas->event[k].time : 0;
     }
     return waits;
@@ -341,7 +341,7 @@ void mf_hard_gas_events_begin(struct hard_gas *gas, double rate) {
         gas->event[k].collision = INFINITY;
         cells_enter(first_of(gas, k), gas->link, k);
     }
-    const double waits = gas->dimensions == 2 ? foresee_all(gas, 2) : foresee_all(gas, 3);
+    const double waits = gas->dimensions == 2 ? predict_all(gas, 2) : predict_all(gas, 3);
     if (!(rate > 0))
         rate = waits > 0 ? (double)gas->count * (double)gas->count / waits : 1;
     gas->now.bucket_density = rate;

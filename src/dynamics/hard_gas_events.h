@@ -9,6 +9,6 @@
 /// @param[in] rate  events a time to make the calendar for [1/τ]; 0: not known yet
 void mf_hard_gas_events_begin(struct hard_gas *gas, double rate);
 
-/// At most `most` events before `time` of the epoch.
+/// At most `max` events before `time` of the epoch.
 /// @return whether there is none left before `time`
-bool mf_hard_gas_events_run(struct hard_gas *gas, double time, uint64_t most);
+bool mf_hard_gas_events_run(struct hard_gas *gas, double time, uint64_t max);

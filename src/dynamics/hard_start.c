@@ -10,7 +10,7 @@
 static const double moved_to = 1 + 1e-3;
 
 /// A fluid needs dozens of sweeps, one near jamming hundreds; what has not parted then has no room.
-enum { MOST_SWEEPS = 5000 };
+enum { MAX_SWEEPS = 5000 };
 
 /// What an overlap may be, in sums of radii: the rounding of coordinates that were written down.
 static const double tolerance = 1e-9;
@@ -39,8 +39,9 @@ static enum status grid_init(struct grid *grid, const struct particles *particle
                           .walls = walls};
     for (size_t k = 0; k < grid->count; k++)
         grid->largest = fmax(grid->largest, radius[k]);
-    const double room = mf_box_volume(grid->box) / (double)grid->count;
-    const double width = fmax(2 * moved_to * grid->largest, pow(room, 1.0 / grid->box->dimensions));
+    const double capacity = mf_box_volume(grid->box) / (double)grid->count;
+    const double width =
+        fmax(2 * moved_to * grid->largest, pow(capacity, 1.0 / grid->box->dimensions));
     int cells[3];
     mf_cells_fit_box(grid->box, width, 1e6, cells);
     return mf_cells_shape(&grid->sorted, cells, grid->count);
@@ -148,7 +149,7 @@ enum status mf_hard_start_part(struct particles *particles, const double *radius
     enum status status = STATUS_OK;
     CHECK(grid_init(&grid, particles, radius, walls));
     CHECK(check_box(&grid));
-    for (int n = 0; n < MOST_SWEEPS; n++) {
+    for (int n = 0; n < MAX_SWEEPS; n++) {
         confine(&grid);
         fill(&grid);
         if (!sweep(&grid, true, pair))

@@ -43,7 +43,7 @@ enum status mf_hybrid_init(struct hybrid *hybrid, const struct box *box,
         setup.interaction[setup.interactions++] =
             (struct interaction_choice){&mf_molecules, molecules};
     *hybrid = (struct hybrid){.trial = *bins, .longest = step.longest};
-    NEW_ARRAY(hybrid->trial.counts, NEIGHBOURS_MOST_PARTS * (pair_histogram_size(bins)));
+    NEW_ARRAY(hybrid->trial.counts, NEIGHBOURS_MAX_PARTS * (pair_histogram_size(bins)));
     NEW_ARRAY(hybrid->kept, pair_histogram_size(bins));
     hybrid->counts = hybrid->kept;
     NEW_ARRAY(hybrid->id, count);

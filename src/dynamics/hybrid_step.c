@@ -44,11 +44,11 @@ static double width_of(const struct bonded_curve *curve, double low, double high
                        double temperature) {
     enum { PLACES = 4000 };
     const double spacing = (high - low) / PLACES, rest = mf_bonded_rest(curve);
-    double least, energy, from = rest, to = rest;
-    mf_bonded_value(curve, rest, &least, NULL);
-    for (energy = least; to < high && energy < least + 0.5 * temperature; to += spacing)
+    double min, energy, from = rest, to = rest;
+    mf_bonded_value(curve, rest, &min, NULL);
+    for (energy = min; to < high && energy < min + 0.5 * temperature; to += spacing)
         mf_bonded_value(curve, to + spacing, &energy, NULL);
-    for (energy = least; from > low && energy < least + 0.5 * temperature; from -= spacing)
+    for (energy = min; from > low && energy < min + 0.5 * temperature; from -= spacing)
         mf_bonded_value(curve, from - spacing, &energy, NULL);
     return fmax(0.5 * (to - from), spacing);
 }
@@ -89,7 +89,7 @@ double mf_hybrid_step_fastest(const struct molecules *molecules, double temperat
 struct hybrid_step mf_hybrid_step_find(const struct table *potential,
                                        const struct molecules *molecules, double temperature) {
     static const double share = 0.15; // of many oscillators, all of which must be taken at once
-    enum { MOST = 10 };               // half a period is 20 of them
+    enum { MAX = 10 };                // half a period is 20 of them
     struct hybrid_step step = {.first = INFINITY, .longest = INFINITY, .inner = 1};
     if (potential) {
         step.first = first_of_pairs(potential, temperature);
@@ -98,7 +98,7 @@ struct hybrid_step mf_hybrid_step_find(const struct table *potential,
     if (molecules == NULL)
         return step;
     const double fast = share / sqrt(mf_hybrid_step_fastest(molecules, temperature));
-    step.inner = (int64_t)fmax(1, fmin(MOST, ceil(step.first / fast)));
+    step.inner = (int64_t)fmax(1, fmin(MAX, ceil(step.first / fast)));
     step.first = fmin(step.first, (double)step.inner * fast);
     return step;
 }

@@ -71,11 +71,12 @@ struct integrator {
     /// particle id, what their next steps will still share with the last [λ]: displacements between
     /// what is left have no memory. Likewise from orientations, shape [count], or NULL. NULL:
     /// positions are that already.
-    void (*forget)(const struct simulation *simulation, double *positions, double *angles);
+    void (*remove_correlated)(const struct simulation *simulation, double *positions,
+                              double *angles);
     /// Particles of its own that it moves beside those of the simulation, of which there may then
     /// be none, and what one costs a step in nanoseconds, for --explain. NULL: it has none.
-    double (*companions)(const struct simulation_setup *setup);
-    double companion_cost;
+    double (*solvent_particles)(const struct simulation_setup *setup);
+    double solvent_cost;
     /// Whether it holds the temperature of the setup by itself. NULL: not without ω.
     bool (*holds_temperature)(const struct simulation_setup *setup);
     /// What a person should know of the parameters before a simulation, one line naming the key;

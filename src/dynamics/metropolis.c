@@ -224,7 +224,7 @@ enum status mf_metropolis_run(struct metropolis *metropolis, uint32_t sweeps) {
     return STATUS_OK;
 }
 
-static void forget_tallies(struct metropolis *metropolis) {
+static void reset_counts(struct metropolis *metropolis) {
     metropolis->accepted = metropolis->tried = 0;
     for (int move = 0; move < MOLECULE_MOVES; move++)
         metropolis->molecules.tally[move].accepted = metropolis->molecules.tally[move].tried = 0;
@@ -232,20 +232,20 @@ static void forget_tallies(struct metropolis *metropolis) {
 
 enum status mf_metropolis_tune(struct metropolis *metropolis) {
     const enum molecule_move move = next_move(metropolis);
-    forget_tallies(metropolis);
+    reset_counts(metropolis);
     TRY(sweep(metropolis));
     const double accepted = (double)metropolis->accepted / (double)metropolis->tried;
     metropolis->step =
         fmin(metropolis->step * metropolis_tuning(accepted), metropolis_longest_step(metropolis));
     if (metropolis->molecules.molecules)
         mf_molecule_moves_tune(metropolis, move);
-    forget_tallies(metropolis);
+    reset_counts(metropolis);
     return STATUS_OK;
 }
 
 enum status mf_metropolis_equilibrate(struct metropolis *metropolis, uint32_t sweeps) {
     keep_order(metropolis);
-    forget_tallies(metropolis);
+    reset_counts(metropolis);
     for (uint32_t s = 0; s < sweeps; s++)
         TRY(mf_metropolis_tune(metropolis));
     return STATUS_OK;

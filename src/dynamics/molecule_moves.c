@@ -17,7 +17,7 @@ enum status mf_molecule_moves_init(struct molecule_moves *moves, const struct mo
                                    const struct particles *particles) {
     enum status status = STATUS_OK;
     const struct topology *topology = &molecules->topology;
-    int most = 1;
+    int max = 1;
     *moves = (struct molecule_moves){.molecules = molecules};
     for (int move = 0; move < MOLECULE_MOVES; move++)
         moves->tally[move].step = first_step[move];
@@ -26,16 +26,16 @@ enum status mf_molecule_moves_init(struct molecule_moves *moves, const struct mo
     for (int k = 0; k < topology->kinds; k++) {
         const struct topology_kind *kind = &topology->kind[k];
         CHECK(mf_molecule_plan_init(&moves->plan[k], kind));
-        most = kind->beads > most ? kind->beads : most;
+        max = kind->beads > max ? kind->beads : max;
         for (int64_t m = 0; m < kind->count; m++)
             for (int bead = 0; bead < kind->beads; bead++)
                 moves->bead_of[topology_id(kind, m, bead)] = bead;
     }
-    NEW_ARRAY(moves->place, most);
-    NEW_ARRAY(moves->position, most);
-    NEW_ARRAY(moves->moved, most);
-    NEW_ARRAY(moves->from, most);
-    NEW_ARRAY(moves->to, most);
+    NEW_ARRAY(moves->place, max);
+    NEW_ARRAY(moves->position, max);
+    NEW_ARRAY(moves->moved, max);
+    NEW_ARRAY(moves->from, max);
+    NEW_ARRAY(moves->to, max);
     NEW_ARRAY(moves->together, topology->particles);
     CHECK((moves->forces = mf_memory_zeroed(1, mf_molecules.state_size)) ? STATUS_OK
                                                                          : STATUS_NO_MEMORY);
@@ -49,7 +49,7 @@ done:
 void mf_molecule_moves_clear(struct molecule_moves *moves) {
     if (moves->forces)
         mf_molecules.clear(moves->forces);
-    for (int k = 0; k < TOPOLOGY_MOST_KINDS; k++)
+    for (int k = 0; k < TOPOLOGY_MAX_KINDS; k++)
         mf_molecule_plan_clear(&moves->plan[k]);
     mf_memory_free(moves->forces);
     mf_memory_free(moves->bead_of);
@@ -84,7 +84,7 @@ static double run_energy(const struct molecule_moves *moves, int k, uint32_t m,
     double sum = 0;
     for (int done = 0; done < run->count; done += SOME) {
         const int some = run->count - done < SOME ? run->count - done : SOME;
-        int32_t place[SOME * BONDED_MOST_TERM_BEADS];
+        int32_t place[SOME * BONDED_MAX_TERM_BEADS];
         double q[SOME], energy[SOME], slope[SOME];
         for (int n = 0; n < some * beads; n++)
             place[n] = (int32_t)particles->place[topology_id(kind, m, *bead++)];

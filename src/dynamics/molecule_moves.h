@@ -29,7 +29,7 @@ struct molecule_tally {
 /// A zeroed one is of no molecules.
 struct molecule_moves {
     const struct molecules *molecules; ///< borrowed; NULL: single beads alone
-    struct molecule_plan plan[TOPOLOGY_MOST_KINDS];
+    struct molecule_plan plan[TOPOLOGY_MAX_KINDS];
     struct molecule_tally tally[MOLECULE_MOVES];
     void *forces;     ///< state of the interaction mf_molecules, for sums
     int32_t *bead_of; ///< shape [particles], by id: its number in its molecule, −1 of a single bead

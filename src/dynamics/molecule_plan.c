@@ -28,29 +28,29 @@ static bool terms_follow_bonds(const struct topology_kind *kind,
 // Arms --------------------------------------------------------------------------------------------
 
 /// On the way through the beads; all of shape [beads].
-struct way {
+struct path {
     int *place; ///< in `walk`, −1 before it is reached
     int *next;  ///< its next bond
     int *low;   ///< the first place that a bond leads to from it or from what follows it
 };
 
-static void enter(struct molecule_plan *plan, const struct topology_bonds *bonds, struct way *way,
+static void enter(struct molecule_plan *plan, const struct topology_bonds *bonds, struct path *path,
                   int bead, int parent, int *reached) {
-    way->next[bead] = bonds->start[bead];
-    way->place[bead] = way->low[bead] = *reached;
+    path->next[bead] = bonds->start[bead];
+    path->place[bead] = path->low[bead] = *reached;
     plan->parent[bead] = parent;
     plan->walk[(*reached)++] = bead;
 }
 
 /// A bond from a bead's parent that no way goes around is in no ring (R. E. Tarjan, Inf. Process.
 /// Lett. 2, 160 (1974)): what follows the bead and what does not are two arms.
-static void leave(struct molecule_plan *plan, struct way *way, int bead, int reached) {
-    const int parent = plan->parent[bead], begin = way->place[bead];
+static void leave(struct molecule_plan *plan, struct path *path, int bead, int reached) {
+    const int parent = plan->parent[bead], begin = path->place[bead];
     if (parent < 0)
         return;
-    if (way->low[bead] < way->low[parent])
-        way->low[parent] = way->low[bead];
-    if (way->low[bead] < begin)
+    if (path->low[bead] < path->low[parent])
+        path->low[parent] = path->low[bead];
+    if (path->low[bead] < begin)
         return;
     const bool outside = 2 * (reached - begin) > plan->beads;
     plan->arm[plan->arms++] = (struct molecule_arm){.pivot = outside ? bead : parent,
@@ -62,21 +62,21 @@ static void leave(struct molecule_plan *plan, struct way *way, int bead, int rea
 
 /// Depth first from one bead to all that bonds lead to.
 static void walk_from(struct molecule_plan *plan, const struct topology_bonds *bonds,
-                      struct way *way, int root, int *reached) {
+                      struct path *path, int root, int *reached) {
     int bead = root;
-    enter(plan, bonds, way, root, -1, reached);
+    enter(plan, bonds, path, root, -1, reached);
     while (bead >= 0) {
-        if (way->next[bead] == bonds->start[bead + 1]) {
-            leave(plan, way, bead, *reached);
+        if (path->next[bead] == bonds->start[bead + 1]) {
+            leave(plan, path, bead, *reached);
             bead = plan->parent[bead];
             continue;
         }
-        const int to = bonds->to[way->next[bead]++];
-        if (way->place[to] < 0) {
-            enter(plan, bonds, way, to, bead, reached);
+        const int to = bonds->to[path->next[bead]++];
+        if (path->place[to] < 0) {
+            enter(plan, bonds, path, to, bead, reached);
             bead = to;
-        } else if (to != plan->parent[bead] && way->place[to] < way->low[bead]) {
-            way->low[bead] = way->place[to];
+        } else if (to != plan->parent[bead] && path->place[to] < path->low[bead]) {
+            path->low[bead] = path->place[to];
         }
     }
 }
@@ -84,29 +84,29 @@ static void walk_from(struct molecule_plan *plan, const struct topology_bonds *b
 static enum status find_arms(struct molecule_plan *plan, const struct topology_kind *kind) {
     enum status status = STATUS_OK;
     struct topology_bonds bonds = {0};
-    struct way way = {0};
+    struct path path = {0};
     int reached = 0;
     NEW_ARRAY(plan->walk, kind->beads);
     NEW_ARRAY(plan->parent, kind->beads);
     NEW_ARRAY(plan->arm, kind->beads);
-    NEW_ARRAY(way.place, kind->beads);
-    NEW_ARRAY(way.next, kind->beads);
-    NEW_ARRAY(way.low, kind->beads);
+    NEW_ARRAY(path.place, kind->beads);
+    NEW_ARRAY(path.next, kind->beads);
+    NEW_ARRAY(path.low, kind->beads);
     CHECK(mf_topology_bonds(kind, &bonds));
-    memset(way.place, 0xff, (size_t)kind->beads * sizeof *way.place);
-    walk_from(plan, &bonds, &way, 0, &reached);
+    memset(path.place, 0xff, (size_t)kind->beads * sizeof *path.place);
+    walk_from(plan, &bonds, &path, 0, &reached);
     plan->joined = reached == kind->beads;
     for (int bead = 0; bead < kind->beads; bead++)
-        if (way.place[bead] < 0)
-            walk_from(plan, &bonds, &way, bead, &reached);
+        if (path.place[bead] < 0)
+            walk_from(plan, &bonds, &path, bead, &reached);
     if (!plan->joined || !terms_follow_bonds(kind, &bonds))
         plan->arms = 0;
 done:
     mf_memory_free(bonds.start);
     mf_memory_free(bonds.to);
-    mf_memory_free(way.place);
-    mf_memory_free(way.next);
-    mf_memory_free(way.low);
+    mf_memory_free(path.place);
+    mf_memory_free(path.next);
+    mf_memory_free(path.low);
     return status;
 }
 
@@ -145,7 +145,7 @@ static enum status find_runs(struct molecule_plan *plan, const struct topology_k
     NEW_ARRAY(entry, entries);
     NEW_ARRAY(plan->run_start, kind->beads + 1);
     NEW_ARRAY(plan->run, entries);
-    NEW_ARRAY(plan->term_bead, BONDED_MOST_TERM_BEADS * entries);
+    NEW_ARRAY(plan->term_bead, BONDED_MAX_TERM_BEADS * entries);
     list_entries(kind, entry);
     qsort(entry, entries, sizeof *entry, compare_entries);
     for (size_t e = 0; e < entries; e++) {

@@ -193,7 +193,7 @@ static enum status find_pair_change(struct trial *trial, double *change) {
     return status;
 }
 
-static void put_beads(const struct trial *trial, double (*where)[3]) {
+static void write_beads(const struct trial *trial, double (*where)[3]) {
     const struct particles *particles = &trial->metropolis->particles;
     for (int n = 0; n < trial->beads; n++)
         for (int d = 0; d < particles->box.dimensions; d++)
@@ -208,17 +208,17 @@ static double find_term_change(const struct trial *trial) {
         return 0;
     const double before = mf_molecule_moves_bead_energy(trial->moves, trial->kind, trial->m,
                                                         trial->arm->first, particles);
-    put_beads(trial, trial->moves->to);
+    write_beads(trial, trial->moves->to);
     const double after = mf_molecule_moves_bead_energy(trial->moves, trial->kind, trial->m,
                                                        trial->arm->first, particles);
-    put_beads(trial, trial->moves->from);
+    write_beads(trial, trial->moves->from);
     return after - before;
 }
 
 static void accept(const struct trial *trial) {
     const struct molecule_moves *moves = trial->moves;
     const struct particles *particles = &trial->metropolis->particles;
-    put_beads(trial, trial->moves->to);
+    write_beads(trial, trial->moves->to);
     for (int n = 0; n < trial->beads; n++) {
         const size_t k = (size_t)moves->moved[n];
         for (int d = 0; d < particles->box.dimensions; d++)

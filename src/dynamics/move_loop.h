@@ -107,7 +107,7 @@ LANES_INLINE void move_sums(struct move_batch *batch, const struct move_scene *s
             first = lanes_load_int(batch->kind + k) * scene->mixture.potential_stride;
         }
         const lanes_real r = lanes_sqrt(lanes_load(batch->square + k));
-        const lanes_real place = lanes_least(r * inverse_spacing, lanes_all(TABLE_INTERVALS));
+        const lanes_real place = lanes_min(r * inverse_spacing, lanes_all(TABLE_INTERVALS));
         const lanes_int interval = lanes_to_int(place);
         lanes_store_int(row, first + interval);
         const struct lanes_record c = lanes_load_records(potential->single, row);
@@ -161,9 +161,10 @@ LANES_INLINE void move_histogram(const struct move_batch *batch, const struct mo
         const lanes_real r = lanes_sqrt(lanes_load(batch->square + k));
         const lanes_real place = (r - low) * inverse_width;
         const lanes_int outside = (lanes_all(0) > place) | (place >= bins);
-        lanes_store_int(bin, lanes_to_int(lanes_least(place, bins)));
+        lanes_store_int(bin, lanes_to_int(lanes_min(place, bins)));
         for (int lane = 0; lane < LANES && k + lane < batch->count; lane++) {
-            const int32_t first = mixed ? batch->kind[k + lane] * scene->mixture.bins_apart : 0;
+            const int32_t first =
+                mixed ? batch->kind[k + lane] * scene->mixture.histogram_stride : 0;
             histogram->counts[outside[lane] ? none : (size_t)(first + bin[lane])]++;
         }
     }

@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-enum { MOST_STEPS = 500 };
+enum { MAX_STEPS = 500 };
 
 /// So many times the thermal force are an overlap; liquids of any potential here stay below 3.
 static const double overlap = 10;
@@ -53,10 +53,10 @@ enum status mf_relax_downhill(struct simulation *simulation, double enough) {
     struct particles *particles = &simulation->particles;
     const double spacing = spacing_of(particles);
     TRY(mf_simulation_compute_potential(simulation));
-    for (int step = 0; step < MOST_STEPS; step++) {
+    for (int step = 0; step < MAX_STEPS; step++) {
         if (mf_interrupt_wanted(simulation->setup.cancel))
             return mf_status_fail(STATUS_INTERRUPTED, "interrupted");
-        shift(particles, enough, first_shift * spacing * (1 - (double)step / MOST_STEPS));
+        shift(particles, enough, first_shift * spacing * (1 - (double)step / MAX_STEPS));
         TRY(mf_simulation_compute_potential(simulation));
         if (!(mf_particles_largest_force(particles) > enough)) // NaN ends it, too
             break;

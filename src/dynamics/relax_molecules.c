@@ -8,7 +8,7 @@
 #include <math.h>
 
 /// A second time is seldom needed.
-enum { MOST_TIMES = 10 };
+enum { MAX_TIMES = 10 };
 
 /// Size of a ring that is drawn together, in its own: no bond of another passes through it.
 static const double drawn_together = 0.02;
@@ -39,7 +39,7 @@ static enum status unlink_all(struct simulation *simulation) {
     CHECK(mf_rings_init(&rings, simulation->particles.topology));
     if (rings.count == 0)
         goto done;
-    for (int time = 0; time < MOST_TIMES; time++) {
+    for (int time = 0; time < MAX_TIMES; time++) {
         CHECK(unlink_rings(simulation, &rings, time % 2 != 0, &linked));
         if (linked == 0)
             goto done;

@@ -54,7 +54,7 @@ static struct capped find_cap(const struct table *table, int pair, double cap) {
 }
 
 static enum status cap_table(const struct table *table, double cap, struct table *to) {
-    struct table part[TABLE_MOST_CURVES] = {{0}};
+    struct table part[TABLE_MAX_CURVES] = {{0}};
     enum status status = STATUS_OK;
     for (int pair = 0; pair < table->curves; pair++) {
         struct capped capped = find_cap(table, pair, cap);

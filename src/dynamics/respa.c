@@ -29,7 +29,7 @@ void mf_respa_clear(void *state) {
 enum status mf_respa_find(struct respa *respa, const struct simulation *simulation) {
     for (int d = 0; d < simulation->setup.box.dimensions; d++)
         memset(respa->fast[d], 0, simulation->particles.count * sizeof *respa->fast[d]);
-    return mf_simulation_forces_beside(simulation, respa->fast);
+    return mf_simulation_interaction_forces(simulation, respa->fast);
 }
 
 /// A kick of all particles.
@@ -82,8 +82,8 @@ void mf_respa_kick(const struct respa *respa, struct simulation *simulation, dou
     act(respa, simulation, kick_slow, time, 0);
 }
 
-enum status mf_respa_fly(struct respa *respa, struct simulation *simulation, double time,
-                         int64_t steps) {
+enum status mf_respa_drift(struct respa *respa, struct simulation *simulation, double time,
+                           int64_t steps) {
     const double each = time / (double)steps;
     for (int64_t k = 0; k < steps; k++) {
         act(respa, simulation, kick_fast, 0.5 * each, each);
@@ -105,7 +105,7 @@ enum status mf_respa_step(struct respa *respa, struct simulation *simulation, in
     const double time_step = simulation->setup.time_step;
     TRY(mf_respa_find(respa, simulation));
     mf_respa_kick(respa, simulation, 0.5 * time_step);
-    TRY(mf_respa_fly(respa, simulation, time_step, inner_steps));
+    TRY(mf_respa_drift(respa, simulation, time_step, inner_steps));
     TRY(mf_respa_compute_forces(respa, simulation));
     mf_respa_kick(respa, simulation, 0.5 * time_step);
     return STATUS_OK;

@@ -44,8 +44,8 @@ enum status mf_respa_find(struct respa *respa, const struct simulation *simulati
 void mf_respa_kick(const struct respa *respa, struct simulation *simulation, double time);
 
 /// So many steps of the fast forces alone, in this time.
-enum status mf_respa_fly(struct respa *respa, struct simulation *simulation, double time,
-                         int64_t steps) MUST_USE;
+enum status mf_respa_drift(struct respa *respa, struct simulation *simulation, double time,
+                           int64_t steps) MUST_USE;
 
 /// The forces of all, at the present positions; a new list brings the particles into another order,
 /// and the fast forces with them.

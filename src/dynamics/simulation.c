@@ -104,9 +104,9 @@ static enum status prepare_integrator(struct simulation *simulation) {
 enum status mf_simulation_add_interaction(struct simulation *simulation,
                                           const struct interaction_choice *choice) {
     const struct interaction *kind = choice->kind;
-    if (simulation->interactions == SIMULATION_MOST_INTERACTIONS)
+    if (simulation->interactions == SIMULATION_MAX_INTERACTIONS)
         return mf_status_fail(STATUS_BAD_INPUT, "%s: there are %d interactions already", kind->name,
-                              SIMULATION_MOST_INTERACTIONS);
+                              SIMULATION_MAX_INTERACTIONS);
     struct interaction_use *use = &simulation->interaction[simulation->interactions++];
     *use = (struct interaction_use){.choice = *choice};
     if (kind->state_size > 0) {
@@ -243,11 +243,11 @@ static double largest_square(const struct simulation_setup *setup) {
 
 static enum status fail_unstable(const struct simulation *simulation, double square) {
     const struct simulation_setup *setup = &simulation->setup;
-    const bool flies = simulation_has_velocities(setup);
-    const double unit = flies ? 1 : setup->time_step * setup->time_step;
+    const bool has_velocities = simulation_has_velocities(setup);
+    const double unit = has_velocities ? 1 : setup->time_step * setup->time_step;
     char what[128];
     snprintf(what, sizeof what, "%s %.3g (limit %g)",
-             flies ? "kinetic temperature" : "mean squared step along an axis",
+             has_velocities ? "kinetic temperature" : "mean squared step along an axis",
              mf_visible_number(square * unit), largest_square(setup) * unit);
     return mf_unstable_fail(simulation, what);
 }
@@ -348,8 +348,8 @@ enum status mf_simulation_compute_potential(struct simulation *simulation) {
                                                             .sums = &simulation->sums});
 }
 
-enum status mf_simulation_forces_beside(const struct simulation *simulation,
-                                        double *const force[3]) {
+enum status mf_simulation_interaction_forces(const struct simulation *simulation,
+                                             double *const force[3]) {
     struct particles elsewhere = simulation->particles;
     for (int d = 0; d < elsewhere.box.dimensions; d++)
         elsewhere.force[d] = force[d];
@@ -369,11 +369,11 @@ enum status mf_simulation_forces_beside(const struct simulation *simulation,
 static enum status watch(const struct simulation *simulation) {
     const struct particles *particles = &simulation->particles;
     const double degrees = particles->box.dimensions * fmax(1, (double)particles->count - 1);
-    const double most = largest_square(&simulation->setup);
-    if (2 * mf_particles_kinetic_energy(particles) / degrees <= most)
+    const double max = largest_square(&simulation->setup);
+    if (2 * mf_particles_kinetic_energy(particles) / degrees <= max)
         return STATUS_OK;
     const double square = mf_particles_temperature(particles);
-    return square <= most ? STATUS_OK : fail_unstable(simulation, square);
+    return square <= max ? STATUS_OK : fail_unstable(simulation, square);
 }
 
 enum status mf_simulation_run(struct simulation *simulation, uint64_t steps) {
@@ -412,8 +412,9 @@ size_t mf_simulation_spans(struct simulation *simulation, struct memory_span *sp
     struct particles *particles = &simulation->particles;
     const struct integrator *integrator = simulation->setup.integrator;
     const size_t numbers = particles->count * sizeof(double);
-    size_t n =
-        simulation_wants_room(simulation) ? mf_pair_memory_spans(&simulation->memory, spans) : 0;
+    size_t n = simulation_wants_capacity(simulation)
+                   ? mf_pair_memory_spans(&simulation->memory, spans)
+                   : 0;
     n += mf_particles_spans(particles, spans + n);
     for (int d = 0; d < particles->box.dimensions; d++)
         spans[n++] = (struct memory_span){simulation->neighbours.built[d], numbers};
@@ -429,8 +430,8 @@ size_t mf_simulation_spans(struct simulation *simulation, struct memory_span *sp
     return n;
 }
 
-enum status mf_simulation_make_room(struct simulation *simulation) {
-    return mf_pair_memory_make_room(&simulation->memory);
+enum status mf_simulation_reserve(struct simulation *simulation) {
+    return mf_pair_memory_reserve(&simulation->memory);
 }
 
 enum status mf_simulation_restore(struct simulation *simulation) {

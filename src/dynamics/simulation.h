@@ -28,7 +28,7 @@ struct simulation_setup {
     const struct integrator *integrator;
     const void *integrator_parameters; ///< its struct, or NULL: the defaults; borrowed
     /// What acts beside the pairs; its parameters are borrowed.
-    struct interaction_choice interaction[INTERACTION_MOST];
+    struct interaction_choice interaction[INTERACTION_MAX];
     int interactions;
     const struct table *potential; ///< Φ(r), one or for each pair type, or NULL; borrowed
     const struct table *omega;     ///< ω(r), the same, or NULL; borrowed
@@ -41,7 +41,7 @@ struct simulation_setup {
 };
 
 /// The pairs, all that a scene can name, and one of the caller's own.
-enum { SIMULATION_MOST_INTERACTIONS = 1 + INTERACTION_MOST + 1 };
+enum { SIMULATION_MAX_INTERACTIONS = 1 + INTERACTION_MAX + 1 };
 
 /// What a simulation spends its time on.
 enum simulation_phase {
@@ -64,7 +64,7 @@ struct simulation {
     struct interaction_use {
         struct interaction_choice choice;
         void *state;
-    } interaction[SIMULATION_MOST_INTERACTIONS]; ///< the pairs first
+    } interaction[SIMULATION_MAX_INTERACTIONS]; ///< the pairs first
     int interactions;
     uint64_t step;
     enum pair_wants wants; ///< set before a step whose sums will be read
@@ -100,8 +100,8 @@ enum status mf_simulation_add_interaction(struct simulation *simulation,
 
 /// Forces of the potentials beside the pairs, added to `force`, shape [dimensions][count].
 /// Fails: as the interactions.
-enum status mf_simulation_forces_beside(const struct simulation *simulation,
-                                        double *const force[3]) MUST_USE;
+enum status mf_simulation_interaction_forces(const struct simulation *simulation,
+                                             double *const force[3]) MUST_USE;
 
 /// Advance by `steps` steps.
 /// Fails: UNSTABLE with the step and the largest force in the message as soon as a velocity is not
@@ -158,7 +158,7 @@ bool mf_simulation_is_thermal(const struct simulation_setup *setup);
 /// How many particles move in a step, at least 1: the simulation's and its integrator's own.
 static inline double simulation_moved(const struct simulation_setup *setup) {
     const struct integrator *integrator = setup->integrator;
-    const double own = integrator->companions ? integrator->companions(setup) : 0;
+    const double own = integrator->solvent_particles ? integrator->solvent_particles(setup) : 0;
     return fmax(1, (double)setup->placement.count + own);
 }
 
@@ -186,16 +186,16 @@ double mf_simulation_pressure(const struct simulation *simulation);
 /// mf_simulation_restore, goes on with the same bits.
 enum {
     SIMULATION_SPANS = PARTICLES_SPANS + 5 + INTEGRATOR_SPANS +
-                       SIMULATION_MOST_INTERACTIONS * INTERACTION_SPANS + PAIR_MEMORY_SPANS
+                       SIMULATION_MAX_INTERACTIONS * INTERACTION_SPANS + PAIR_MEMORY_SPANS
 };
 size_t mf_simulation_spans(struct simulation *simulation, struct memory_span *spans);
 
 /// Whether lengths of the spans depend on the first of them: it is then restored before the others,
-/// alone, and mf_simulation_make_room is called.
-static inline bool simulation_wants_room(const struct simulation *simulation) {
+/// alone, and mf_simulation_reserve is called.
+static inline bool simulation_wants_capacity(const struct simulation *simulation) {
     return pair_memory_acts(&simulation->setup.memory);
 }
-enum status mf_simulation_make_room(struct simulation *simulation) MUST_USE;
+enum status mf_simulation_reserve(struct simulation *simulation) MUST_USE;
 
 /// Rebuild the list as it was when the state was saved. Fails: NO_MEMORY.
 enum status mf_simulation_restore(struct simulation *simulation) MUST_USE;

@@ -20,7 +20,7 @@ enum status mf_simulation_check_change(const struct simulation *simulation,
     if (!is_positive(change->time_step))
         return mf_status_fail(STATUS_BAD_INPUT, "time_step: %g is not above 0",
                               mf_visible_number(change->time_step));
-    if (integrator->events || integrator->companions || integrator->samples)
+    if (integrator->events || integrator->solvent_particles || integrator->samples)
         return mf_status_fail(STATUS_BAD_INPUT,
                               "\"%s\" begins with its temperature and its time step: stop the "
                               "simulation to change them",

@@ -42,7 +42,7 @@ static double longest_flight(const struct solvent *solvent) {
 }
 
 /// Walls and obstacle leave room, and nobody crosses what is between them twice.
-static enum status check_room(const struct solvent *solvent) {
+static enum status check_capacity(const struct solvent *solvent) {
     const struct collision_dynamics_parameters *parameters = &solvent->parameters;
     const struct box *box = &solvent->box;
     const double radius = parameters->obstacle_radius, flight = longest_flight(solvent);
@@ -158,7 +158,7 @@ static void draw_velocities(struct solvent *solvent) {
 enum status mf_solvent_init(struct solvent *solvent, const struct particles *beads, int threads) {
     const double count = mf_solvent_count(&solvent->parameters, &solvent->box);
     TRY(find_cells(solvent));
-    TRY(check_room(solvent));
+    TRY(check_capacity(solvent));
     if (!(count >= 2 && count < UINT32_MAX))
         return mf_status_fail(
             STATUS_BAD_INPUT,
@@ -166,7 +166,7 @@ enum status mf_solvent_init(struct solvent *solvent, const struct particles *bea
             "box",
             solvent->parameters.particles_per_cell, count);
     solvent->count = (size_t)count;
-    solvent->parts = threads < SOLVENT_MOST_PARTS ? threads : SOLVENT_MOST_PARTS;
+    solvent->parts = threads < SOLVENT_MAX_PARTS ? threads : SOLVENT_MAX_PARTS;
     TRY(allocate(solvent, beads->count));
     place(solvent);
     draw_velocities(solvent);
@@ -180,7 +180,7 @@ void mf_solvent_clear(struct solvent *solvent) {
         mf_memory_free(solvent->spare[d]);
         mf_memory_free(solvent->spare[3 + d]);
     }
-    for (int part = 0; part < SOLVENT_MOST_PARTS; part++)
+    for (int part = 0; part < SOLVENT_MAX_PARTS; part++)
         mf_memory_free(solvent->places[part]);
     mf_memory_free(solvent->cell);
     mf_memory_free(solvent->start);

@@ -15,7 +15,7 @@
 #include <stdbool.h>
 
 /// Passes are divided into parts, and mf_parallel_for gives out things by SOLVENT_STRETCH.
-enum { SOLVENT_MOST_PARTS = 64, SOLVENT_STRETCH = 16 };
+enum { SOLVENT_MAX_PARTS = 64, SOLVENT_STRETCH = 16 };
 
 /// Momenta are summed in whole numbers of this, so that their sum is the same in any order.
 #define SOLVENT_IMPULSE 0x1p-30
@@ -32,13 +32,13 @@ struct solvent {
     uint32_t *cell;                    ///< shape [count], before they are sorted
     int cells[3];                      ///< along the axes; with plates one more along y
     size_t cell_total;
-    uint32_t *start;                        ///< shape [cell_total + 1]: first particle of a cell
-    uint32_t *places[SOLVENT_MOST_PARTS];   ///< shape [cell_total]: of a part's particles
-    int64_t impulse[SOLVENT_MOST_PARTS][3]; ///< given to the obstacle by a part, in SOLVENT_IMPULSE
-    int64_t given[3];                       ///< the same in all since the start
-    bool trapped[SOLVENT_MOST_PARTS];       ///< a particle met walls without end
-    int parts;                              ///< into which passes are divided
-    double shift[3];                        ///< of the grid, 0 to a [λ]
+    uint32_t *start;                       ///< shape [cell_total + 1]: first particle of a cell
+    uint32_t *places[SOLVENT_MAX_PARTS];   ///< shape [cell_total]: of a part's particles
+    int64_t impulse[SOLVENT_MAX_PARTS][3]; ///< given to the obstacle by a part, in SOLVENT_IMPULSE
+    int64_t given[3];                      ///< the same in all since the start
+    bool trapped[SOLVENT_MAX_PARTS];       ///< a particle met walls without end
+    int parts;                             ///< into which passes are divided
+    double shift[3];                       ///< of the grid, 0 to a [λ]
     int32_t *first_bead; ///< shape [cell_total]: chains of the beads in the collisions; NULL: none
     struct cells_link *bead_link; ///< shape [beads]
 };
@@ -80,8 +80,8 @@ void mf_solvent_collide(struct solvent *solvent, struct particles *beads, uint64
 /// and the obstacle; the position is not wrapped along periodic axes.
 /// @param[out] impulse  added to: velocities given to the obstacle; NULL: not wanted
 /// @return false if the particle met walls without end
-bool mf_solvent_fly(const struct solvent *solvent, double position[3], double velocity[3],
-                    const double g[3], double time, double impulse[3]);
+bool mf_solvent_propagate(const struct solvent *solvent, double position[3], double velocity[3],
+                          const double g[3], double time, double impulse[3]);
 
 /// The cell of a point, which may be outside the box.
 uint32_t mf_solvent_cell(const struct solvent *solvent, const double position[3]);

@@ -70,8 +70,8 @@ static bool is_own(const struct body *body, size_t bead) {
 }
 
 /// Whether all beads of a body would be farther from all others than a distance.
-static bool is_room(const struct solvent *solvent, const struct particles *beads,
-                    const struct body *body, const double first[3], double distance) {
+static bool has_space(const struct solvent *solvent, const struct particles *beads,
+                      const struct body *body, const double first[3], double distance) {
     for (int n = 0; n < body->beads; n++) {
         double place[3];
         find_place(solvent, body, n, first, place);
@@ -91,7 +91,7 @@ static bool is_room(const struct solvent *solvent, const struct particles *beads
 
 /// The distance from others shrinks from trial to trial, down to the least that is wanted.
 static enum status move_out(const struct solvent *solvent, struct particles *beads,
-                            const struct body *body, double least) {
+                            const struct body *body, double min) {
     enum { TRIALS = 100000 };
     static const double share = 0.7, shrinks = 0.99;
     const struct box *box = &beads->box;
@@ -103,7 +103,7 @@ static enum status move_out(const struct solvent *solvent, struct particles *bea
         for (int d = 0; d < box->dimensions; d++)
             first[d] = box->length[d] * mf_rng_uniform(block.word[d], block.word[3]);
         if (!fits(solvent, body, first) ||
-            !is_room(solvent, beads, body, first, fmax(distance, least)))
+            !has_space(solvent, beads, body, first, fmax(distance, min)))
             continue;
         for (int n = 0; n < body->beads; n++) {
             double place[3];
@@ -121,16 +121,16 @@ static enum status move_out(const struct solvent *solvent, struct particles *bea
     return mf_status_fail(STATUS_BAD_INPUT,
                           "particles.separation: no room for particle %u outside the obstacle, %g "
                           "from the others",
-                          id, least);
+                          id, min);
 }
 
 /// Move a body that does not fit where it is.
 static enum status part_body(const struct solvent *solvent, struct particles *beads,
-                             const struct body *body, double least) {
+                             const struct body *body, double min) {
     double first[3] = {0};
     for (int d = 0; d < beads->box.dimensions; d++)
         first[d] = beads->position[d][body->bead[0]];
-    return fits(solvent, body, first) ? STATUS_OK : move_out(solvent, beads, body, least);
+    return fits(solvent, body, first) ? STATUS_OK : move_out(solvent, beads, body, min);
 }
 
 /// The beads of a molecule, from one to the next along its bonds.
@@ -152,7 +152,7 @@ static void make_whole(const struct particles *beads, const struct topology_kind
 }
 
 static enum status part_molecules(const struct solvent *solvent, struct particles *beads,
-                                  double least) {
+                                  double min) {
     enum status status = STATUS_OK;
     const struct topology *topology = beads->topology;
     struct body body = {0};
@@ -166,7 +166,7 @@ static enum status part_molecules(const struct solvent *solvent, struct particle
         mf_topology_walk(kind, order, parent);
         for (int64_t m = 0; m < kind->count; m++) {
             make_whole(beads, kind, m, order, parent, &body);
-            CHECK(part_body(solvent, beads, &body, least));
+            CHECK(part_body(solvent, beads, &body, min));
         }
         mf_memory_free(body.bead);
         mf_memory_free(body.offset);
@@ -186,15 +186,15 @@ done:
 enum status mf_solvent_part_beads(const struct solvent *solvent, struct particles *beads,
                                   const struct placement *placement) {
     const struct topology *topology = beads->topology;
-    const double least = placement->kind == PLACEMENT_RANDOM ? placement->separation : 0;
+    const double min = placement->kind == PLACEMENT_RANDOM ? placement->separation : 0;
     if (placement->kind == PLACEMENT_FILE)
         return check_file(solvent, beads);
     if (topology)
-        TRY(part_molecules(solvent, beads, least));
+        TRY(part_molecules(solvent, beads, min));
     for (size_t k = 0; k < beads->count; k++) {
         double none[1][3] = {{0}};
         if (topology == NULL || topology->molecule[beads->id[k]] >= topology->molecules)
-            TRY(part_body(solvent, beads, &(struct body){1, &k, none}, least));
+            TRY(part_body(solvent, beads, &(struct body){1, &k, none}, min));
     }
     mf_particles_update_fractions(beads);
     return STATUS_OK;

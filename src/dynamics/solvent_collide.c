@@ -57,7 +57,7 @@ INLINE struct sums add_solvent(const struct solvent *solvent, uint32_t begin, ui
 /// Maxwell's velocities in place of those that the particles of a bead's cell have: it meets a
 /// random solvent, as that of M. Ripoll, R. G. Winkler and G. Gompper, Eur. Phys. J. E 23, 349
 /// (2007).
-static void draw_anew(const struct pass *pass, uint32_t begin, uint32_t end, int dimensions) {
+static void redraw(const struct pass *pass, uint32_t begin, uint32_t end, int dimensions) {
     const struct solvent *solvent = pass->solvent;
     const double sigma = sqrt(solvent->temperature / solvent->parameters.mass);
     for (uint32_t k = begin; k < end; k++) {
@@ -248,7 +248,7 @@ INLINE void collide_part(const struct pass *pass, int part, const int dimensions
         if (begin == end && !beads)
             continue;
         if (beads && !solvent->parameters.hydrodynamics)
-            draw_anew(pass, begin, end, dimensions);
+            redraw(pass, begin, end, dimensions);
         struct sums sums = add_solvent(solvent, begin, end, thermostat, dimensions);
         if (beads)
             add_beads(pass, cell, &sums, dimensions);

@@ -109,7 +109,8 @@ static size_t turn_back(const struct pass *pass, int part, size_t begin, size_t 
             one->position[d] = solvent->position[d][k];
             one->velocity[d] = solvent->velocity[d][k];
         }
-        if (!mf_solvent_fly(solvent, one->position, one->velocity, pass->g, solvent->time, impulse))
+        if (!mf_solvent_propagate(solvent, one->position, one->velocity, pass->g, solvent->time,
+                                  impulse))
             solvent->trapped[part] = true;
         for (int d = 0; d < solvent->box.dimensions; d++)
             solvent->impulse[part][d] +=

@@ -3,9 +3,9 @@
 
 #include <stdlib.h>
 
-void mf_thread_count_init(struct thread_count *count, int most) {
+void mf_thread_count_init(struct thread_count *count, int max) {
     *count = (struct thread_count){
-        .most = most, .now = most, .better = most, .next_interval = THREAD_COUNT_INTERVAL};
+        .max = max, .now = max, .better = max, .next_interval = THREAD_COUNT_INTERVAL};
 }
 
 static int compare_ticks(const void *left, const void *right) {
@@ -21,7 +21,7 @@ static uint64_t usual_ticks(uint64_t *tried) {
 
 static void end_trial(struct thread_count *count) {
     const int better =
-        usual_ticks(count->tried[0]) <= usual_ticks(count->tried[1]) ? count->most : 1;
+        usual_ticks(count->tried[0]) <= usual_ticks(count->tried[1]) ? count->max : 1;
     if (better != count->better)
         count->next_interval = THREAD_COUNT_INTERVAL;
     count->interval = count->next_interval;
@@ -33,12 +33,12 @@ static void end_trial(struct thread_count *count) {
 
 static void begin_trial(struct thread_count *count) {
     count->interval = 0;
-    count->now = count->most;
+    count->now = count->max;
     count->steps = 0;
 }
 
 void mf_thread_count_update(struct thread_count *count, uint64_t ticks) {
-    if (count->most <= 1)
+    if (count->max <= 1)
         return;
     const int step = count->steps++;
     if (count->interval > 0) {
@@ -47,7 +47,7 @@ void mf_thread_count_update(struct thread_count *count, uint64_t ticks) {
         return;
     }
     count->tried[step >= THREAD_COUNT_TRIED][step % THREAD_COUNT_TRIED] = ticks;
-    count->now = count->steps < THREAD_COUNT_TRIED ? count->most : 1;
+    count->now = count->steps < THREAD_COUNT_TRIED ? count->max : 1;
     if (count->steps == 2 * THREAD_COUNT_TRIED)
         end_trial(count);
 }

@@ -74,16 +74,16 @@ static void find_errors(struct export_bonded *bonded, const struct export_bonded
                         const struct bonded_curve *curve, double temperature) {
     enum { BETWEEN = 4 };
     const size_t intervals = bonded->rows - 1;
-    double least = INFINITY, largest = 0, worst = 0;
+    double min = INFINITY, largest = 0, worst = 0;
     for (size_t k = 0; k <= intervals; k++)
-        least = fmin(least, table->energy[k]);
+        min = fmin(min, table->energy[k]);
     for (size_t n = 0; n < intervals * BETWEEN; n++) {
         const size_t k = n / BETWEEN;
         const double f = ((double)(n % BETWEEN) + 0.5) / BETWEEN;
         const double q = table->q[k] + f * (table->q[k + 1] - table->q[k]);
         double energy, slope;
         mf_bonded_value(curve, q, &energy, &slope);
-        if (energy - least > EXPORT_ACCESSIBLE * temperature)
+        if (energy - min > EXPORT_ACCESSIBLE * temperature)
             continue;
         const double read = table->energy[k] + f * (table->energy[k + 1] - table->energy[k]);
         const double rise = table->slope[k] + f * (table->slope[k + 1] - table->slope[k]);
@@ -144,9 +144,9 @@ done:
 }
 
 void mf_export_bonded_clear(struct export_bonded *bonded) {
-    for (int n = 0; n < BONDED_KINDS * MOLECULES_MOST_GROUPS; n++) {
+    for (int n = 0; n < BONDED_KINDS * MOLECULES_MAX_GROUPS; n++) {
         struct export_bonded_table *table =
-            &bonded->table[n / MOLECULES_MOST_GROUPS][n % MOLECULES_MOST_GROUPS];
+            &bonded->table[n / MOLECULES_MAX_GROUPS][n % MOLECULES_MAX_GROUPS];
         mf_memory_free(table->q);
         mf_memory_free(table->energy);
         mf_memory_free(table->slope);

@@ -18,7 +18,7 @@ struct export_bonded_table {
 struct export_bonded {
     int tables;
     size_t rows; ///< of each table; of dihedrals one less
-    struct export_bonded_table table[BONDED_KINDS][MOLECULES_MOST_GROUPS];
+    struct export_bonded_table table[BONDED_KINDS][MOLECULES_MAX_GROUPS];
     double energy_error, slope_error; ///< the worst, linear between rows: [k_B T], of the largest
 };
 

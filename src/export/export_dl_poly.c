@@ -126,7 +126,7 @@ const struct export_engine mf_export_dl_poly = {
     .commands = "    DLPOLY.Z\n    mpirun -np 4 DLPOLY.Z\n",
     .verified = "The tables of such folders were checked against the source of the engine; nothing "
                 "was run.",
-    .most_types = COMPOSITION_MOST_TYPES,
+    .max_types = COMPOSITION_MAX_TYPES,
     .one_cutoff = true,
     .pair_name = name_pair,
     .write = write,

@@ -4,7 +4,7 @@
 #include "base/memory.h"
 #include "base/nearest.h"
 #include "dynamics/hybrid_step.h"
-#include "io/own_files.h"
+#include "io/tracked_files.h"
 #include "mesofit.h"
 
 #include <ctype.h>
@@ -16,10 +16,10 @@
 #define EXPORT_LIST(record) &record,
 const struct export_engine *const mf_export_engines[] = {EXPORT_ENGINES(EXPORT_LIST) NULL};
 
-enum { MOST_ENGINES = 16 };
+enum { MAX_ENGINES = 16 };
 
 static enum status find_engine(const char *name, const struct export_engine **engine) {
-    const char *names[MOST_ENGINES];
+    const char *names[MAX_ENGINES];
     char hint[256];
     size_t count = 0;
     for (; mf_export_engines[count]; count++) {
@@ -55,8 +55,8 @@ static enum status check_friction(const struct export_job *job) {
 static enum status check_pair_names(const struct export_job *job) {
     const struct export_model *model = job->model;
     const int pairs = mf_export_model_pairs(model);
-    char called[COMPOSITION_MOST_PAIRS][EXPORT_PAIR_NAME_SIZE];
-    char name[COMPOSITION_MOST_PAIRS][COMPOSITION_PAIR_NAME_SIZE];
+    char called[COMPOSITION_MAX_PAIRS][EXPORT_PAIR_NAME_SIZE];
+    char name[COMPOSITION_MAX_PAIRS][COMPOSITION_PAIR_NAME_SIZE];
     for (int pair = 0; job->engine->pair_name && pair < pairs; pair++) {
         int type[2];
         mf_export_model_pair(model, pair, type, name[pair]);
@@ -74,23 +74,24 @@ static enum status check_pair_names(const struct export_job *job) {
 
 /// The folder is empty, or an export wrote it that nobody has changed, unless `force`; other files
 /// beside it, as those of the program that has run there, stay.
-static enum status open_folder(struct own_files *own, const struct export_job *job, bool force) {
+static enum status open_folder(struct tracked_files *own, const struct export_job *job,
+                               bool force) {
     char path[OUTPUT_PATH_SIZE];
     struct stat found;
     snprintf(path, sizeof path, "%.4000s/used.json", job->folder);
     if (stat(path, &found) == 0)
         return mf_status_fail(STATUS_BAD_INPUT, "%s: holds a result; give another folder with -o",
                               job->folder);
-    TRY(mf_own_files_make(own, job->folder, OWN_FILES_OF_EXPORT));
+    TRY(mf_tracked_files_make(own, job->folder, TRACKED_FILES_OF_EXPORT));
     own->force = force;
-    if (!own->list.there && !force && mf_own_files_has_others(own))
+    if (!own->list.there && !force && mf_tracked_files_has_others(own))
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "%s: holds files, and no list of an export (" OWN_FILES_OF_EXPORT
+                              "%s: holds files, and no list of an export (" TRACKED_FILES_OF_EXPORT
                               "): give another folder with -o; --force replaces those of the "
                               "same names",
                               job->folder);
-    TRY(mf_own_files_lock(own));
-    return mf_own_files_check(own, NULL);
+    TRY(mf_tracked_files_lock(own));
+    return mf_tracked_files_check(own, NULL);
 }
 
 static enum status check(const struct export_job *job, bool bands) {
@@ -103,10 +104,10 @@ static enum status check(const struct export_job *job, bool bands) {
         return mf_status_fail(STATUS_BAD_INPUT,
                               "%s: cannot be exported: %s is written for three dimensions",
                               model->folder, engine->title);
-    if (model->types > engine->most_types)
+    if (model->types > engine->max_types)
         return mf_status_fail(STATUS_BAD_INPUT,
                               "%s: cannot be exported: %s is written for %d types of beads at most",
-                              model->folder, engine->title, engine->most_types);
+                              model->folder, engine->title, engine->max_types);
     if (model->molecules && !engine->molecules)
         return mf_status_fail(STATUS_BAD_INPUT,
                               "%s: cannot be exported: what is written for %s is of single beads, "
@@ -258,7 +259,7 @@ static void print_readme(const struct export_job *job, FILE *stream) {
                                 : "that of the scene, which must be equilibrated first");
 }
 
-static void say(const struct export_job *job) {
+static void print_result(const struct export_job *job) {
     const struct export_error *error = &job->grids.error;
     if (job->model->warning[0])
         fprintf(stderr, "mesofit: warning: %s\n", job->model->warning);
@@ -286,10 +287,10 @@ static enum status write_files(struct export_job *job) {
 }
 
 /// What an earlier export left, and this one has not replaced, goes: tables of types that are gone.
-static enum status write_folder(struct export_job *job, struct own_files *own) {
-    TRY(mf_own_files_begin(own, 0));
+static enum status write_folder(struct export_job *job, struct tracked_files *own) {
+    TRY(mf_tracked_files_begin(own, 0));
     TRY(write_files(job));
-    return mf_own_files_sweep(own);
+    return mf_tracked_files_remove_earlier(own);
 }
 
 /// Share by which a temperature, or the variance of a bond, may be off.
@@ -317,7 +318,7 @@ static double safe_step(const struct export_model *model) {
 static enum status run(struct export_job *job, const struct export_request *request) {
     enum status status = STATUS_OK;
     const struct export_model *model = job->model;
-    struct own_files own = {.open = false};
+    struct tracked_files own = {.open = false};
     TRY(check(job, request->bands));
     job->units = mf_export_units(job->engine->system, &model->scene.units, job->engine->physical);
     job->time_step = safe_step(model);
@@ -333,9 +334,9 @@ static enum status run(struct export_job *job, const struct export_request *requ
                                 &job->projection));
     CHECK(write_folder(job, &own));
     if (!request->quiet)
-        say(job);
+        print_result(job);
 done:
-    mf_own_files_close(&own);
+    mf_tracked_files_close(&own);
     mf_export_grids_clear(&job->grids);
     mf_export_bonded_clear(&job->bonded);
     return status;

@@ -22,12 +22,12 @@ struct export_job {
     const char *folder;
     struct export_units units;
     struct export_grids grids;
-    struct export_power power[COMPOSITION_MOST_PAIRS]; ///< of ω, if there is one
-    double worst_misfit;                               ///< of all of them
-    bool projected;                                    ///< the power laws stand for ω, and
-    struct export_projection projection;               ///< what that costs
-    double time_step;                                  ///< for this engine [τ]
-    struct export_bonded bonded;                       ///< tables of laws that it has not
+    struct export_power power[COMPOSITION_MAX_PAIRS]; ///< of ω, if there is one
+    double worst_misfit;                              ///< of all of them
+    bool projected;                                   ///< the power laws stand for ω, and
+    struct export_projection projection;              ///< what that costs
+    double time_step;                                 ///< for this engine [τ]
+    struct export_bonded bonded;                      ///< tables of laws that it has not
     int exclude; ///< of all molecules, for engines that have one number for all
 };
 
@@ -49,7 +49,7 @@ struct export_engine {
     enum export_friction friction;
     const char *commands; ///< that run the folder, a line each
     const char *verified; ///< whether such folders were run: a sentence of the README
-    int most_types;       ///< that it is written for
+    int max_types;        ///< that it is written for
     bool one_cutoff;      ///< all its tables end at the same distance
     /// What it calls a pair of types, if not A-B: no two may have one name.
     void (*pair_name)(const char *a, const char *b, char name[EXPORT_PAIR_NAME_SIZE]);

@@ -201,15 +201,15 @@ static double sample_place(double from, double to, int k) {
 /// value.
 static double find_accessible(const struct table *table, int pair, double cutoff,
                               double temperature) {
-    double least = 0, phi;
+    double min = 0, phi;
     for (int k = 0; k < SAMPLES; k++) {
         mf_table_evaluate_pair(table, pair, sample_place(0, cutoff, k), &phi, NULL, NULL);
-        least = fmin(least, phi);
+        min = fmin(min, phi);
     }
     for (int k = SAMPLES - 1; k >= 0; k--) {
         const double r = sample_place(0, cutoff, k);
         mf_table_evaluate_pair(table, pair, r, &phi, NULL, NULL);
-        if (phi - least > EXPORT_ACCESSIBLE * temperature)
+        if (phi - min > EXPORT_ACCESSIBLE * temperature)
             return fmax(r, EXPORT_NEAREST * cutoff);
     }
     return EXPORT_NEAREST * cutoff;
@@ -288,7 +288,7 @@ done:
 }
 
 void mf_export_grids_clear(struct export_grids *grids) {
-    for (int n = 0; n < EXPORT_CURVES * COMPOSITION_MOST_PAIRS; n++)
-        mf_export_grid_clear(&grids->grid[n / COMPOSITION_MOST_PAIRS][n % COMPOSITION_MOST_PAIRS]);
+    for (int n = 0; n < EXPORT_CURVES * COMPOSITION_MAX_PAIRS; n++)
+        mf_export_grid_clear(&grids->grid[n / COMPOSITION_MAX_PAIRS][n % COMPOSITION_MAX_PAIRS]);
     *grids = (struct export_grids){0};
 }

@@ -62,7 +62,7 @@ struct export_error mf_export_grid_error(const struct export_grid *grid,
 /// The potentials of a model for an engine: all with as many rows, enough for the bounds.
 struct export_grids {
     int curves, pairs; ///< curves: 1, or EXPORT_CURVES with error bands
-    struct export_grid grid[EXPORT_CURVES][COMPOSITION_MOST_PAIRS];
+    struct export_grid grid[EXPORT_CURVES][COMPOSITION_MAX_PAIRS];
     struct export_error error; ///< the worst of all
 };
 

@@ -11,13 +11,13 @@ static enum status write_table(const struct export_job *job, const struct export
                                const char *name) {
     const struct export_units *units = &job->units;
     const double spacing = grid->r[1] * units->length;
-    const size_t behind = (size_t)(EXTENSION_NM / spacing) + 2;
+    const size_t extra = (size_t)(EXTENSION_NM / spacing) + 2;
     struct output output;
     char path[OUTPUT_PATH_SIZE];
     snprintf(path, sizeof path, "%.3800s/%.200s", job->folder, name);
     TRY(mf_output_open(&output, path));
     fprintf(output.stream, "# r, f, -f', g, -g', h = energy, -h' [nm, kJ/mol]\n");
-    for (size_t k = 0; k < grid->rows + behind; k++) {
+    for (size_t k = 0; k < grid->rows + extra; k++) {
         const bool within = k < grid->rows;
         fprintf(output.stream, "%.12e 0 0 0 0 %.12e %.12e\n", spacing * (double)k,
                 within ? grid->phi[k] * units->energy : 0,
@@ -135,7 +135,7 @@ const struct export_engine mf_export_gromacs = {
     .interpolation = &mf_export_grid_hermite,
     .commands = "    gmx grompp\n    gmx mdrun\n",
     .verified = "Such folders were checked against the manual of GROMACS, and not run.",
-    .most_types = COMPOSITION_MOST_TYPES,
+    .max_types = COMPOSITION_MAX_TYPES,
     .one_cutoff = true,
     .pair_name = name_pair,
     .molecules = true,

@@ -29,7 +29,7 @@ static void print_law(const struct export_job *job, int order, int group, FILE *
         return;
     }
     fprintf(stream, " %d", function->number);
-    for (int n = 0; n < GROMACS_MOST_PARAMETERS && function->parameter[n]; n++)
+    for (int n = 0; n < GROMACS_MAX_PARAMETERS && function->parameter[n]; n++)
         fprintf(stream, " %.10g",
                 mf_bonded_number(curve, function->parameter[n]) *
                     gromacs_unit(function->unit[n], job->units.length, job->units.energy));

@@ -67,7 +67,7 @@ const struct export_engine mf_export_hoomd = {
     .commands = "    python3 run.py\n    python3 run.py 100000   # steps\n",
     .verified = "The tables of such folders were checked against the source of the engine; nothing "
                 "was run.",
-    .most_types = COMPOSITION_MOST_TYPES,
+    .max_types = COMPOSITION_MAX_TYPES,
     .write = write,
     .explain = explain,
 };

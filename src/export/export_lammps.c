@@ -313,7 +313,7 @@ const struct export_engine mf_export_lammps = {
     .commands = "    lmp -in in.mesofit\n    mpirun -np 4 lmp -in in.mesofit   # the same on four "
                 "processors\n",
     .verified = "Such folders were run with LAMMPS of 29 Sep 2021 and 6 Jan 2022.",
-    .most_types = COMPOSITION_MOST_TYPES,
+    .max_types = COMPOSITION_MAX_TYPES,
     .flat = true,
     .molecules = true,
     .has_law = mf_export_lammps_has_law,

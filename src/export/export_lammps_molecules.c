@@ -104,7 +104,7 @@ static enum status is_right(const struct topology *topology, int exclude, bool *
 enum status mf_export_lammps_check(struct export_job *job) {
     if (job->model->molecules == NULL)
         return STATUS_OK;
-    for (job->exclude = 0; job->exclude <= TOPOLOGY_MOST_EXCLUDE; job->exclude++) {
+    for (job->exclude = 0; job->exclude <= TOPOLOGY_MAX_EXCLUDE; job->exclude++) {
         bool right;
         TRY(is_right(&job->model->molecules->topology, job->exclude, &right));
         if (right)

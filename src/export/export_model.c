@@ -23,8 +23,8 @@ struct reading {
     struct export_model *model;
     bool fit;
     int unknown; ///< a sum of scene_unknown
-    struct inverse_number number[INVERSE_MOST_NUMBERS];
-    double value[INVERSE_MOST_NUMBERS];
+    struct inverse_number number[INVERSE_MAX_NUMBERS];
+    double value[INVERSE_MAX_NUMBERS];
     size_t numbers;
 };
 
@@ -98,7 +98,7 @@ static enum status read_used(struct reading *reading) {
     reading->fit = mf_json_is_object(&root, "scene");
     struct json_object scene = reading->fit ? mf_json_child(&root, "scene", true) : root;
     if (reading->fit) // of a scene that is its own root, mf_scene_read does so
-        mf_units_speak(&root, &scene);
+        mf_units_read_document(&root, &scene);
     const enum status status = reading->fit
                                    ? read_run(reading, &root, &scene)
                                    : mf_scene_read(&model->scene, &scene, SCENE_FITS_NOTHING, NULL);
@@ -148,7 +148,7 @@ static enum status read_summary(struct reading *reading) {
     struct json_document *document;
     file_of(model, "summary.json", path);
     TRY(mf_json_open(&document, path));
-    mf_json_speak(document, &model->scene.units);
+    mf_json_set_units(document, &model->scene.units);
     struct json_object root = mf_json_root(document);
     const char *status = mf_json_choice(&root, "status", NULL, "");
     if (status && reading->fit && strcmp(status, "converged") != 0 &&
@@ -175,7 +175,7 @@ static const struct interaction *find_other(const struct simulation_setup *setup
 static enum status check_scene(const struct export_model *model) {
     const struct simulation_setup *setup = &model->setup;
     const char *what = NULL, *why = NULL;
-    if (setup->integrator->events || setup->integrator->companions) {
+    if (setup->integrator->events || setup->integrator->solvent_particles) {
         what = setup->integrator->name;
         why = setup->integrator->events ? "moves hard particles, which have no pair forces"
                                         : "moves a solvent, which other engines do not have";
@@ -229,7 +229,7 @@ static enum status read_potentials(struct export_model *model) {
     static const int sign[EXPORT_CURVES] = {0, -1, 1};
     enum status status = STATUS_OK;
     const int pairs = mf_export_model_pairs(model);
-    struct table part[EXPORT_CURVES][COMPOSITION_MOST_PAIRS] = {{{0}}};
+    struct table part[EXPORT_CURVES][COMPOSITION_MAX_PAIRS] = {{{0}}};
     model->bands = true;
     for (int pair = 0; pair < pairs; pair++) {
         struct export_columns points;
@@ -251,8 +251,8 @@ static enum status read_potentials(struct export_model *model) {
         CHECK(mf_table_stack(&model->potential[c], part[c], pairs));
     model->setup.potential = &model->potential[EXPORT_FITTED];
 done:
-    for (int k = 0; k < EXPORT_CURVES * COMPOSITION_MOST_PAIRS; k++)
-        mf_table_clear(&part[k / COMPOSITION_MOST_PAIRS][k % COMPOSITION_MOST_PAIRS]);
+    for (int k = 0; k < EXPORT_CURVES * COMPOSITION_MAX_PAIRS; k++)
+        mf_table_clear(&part[k / COMPOSITION_MAX_PAIRS][k % COMPOSITION_MAX_PAIRS]);
     return status;
 }
 
@@ -270,7 +270,7 @@ static enum status read_groups(struct export_model *model) {
                 continue;
             snprintf(name, sizeof name, "%s_%s.tsv", mf_bonded_kinds[order]->plural, group->name);
             file_of(model, name, path);
-            TRY(mf_scene_read_columns(path, unit, bonded_least(order), &model->scene.units, &q,
+            TRY(mf_scene_read_columns(path, unit, bonded_min(order), &model->scene.units, &q,
                                       &energy, &count));
             const enum status status = mf_bonded_table_set_points(&group->curve, q, energy, count);
             mf_memory_free(q);

@@ -29,8 +29,8 @@ struct export_model {
     const struct molecules *molecules;     ///< of the scene, or NULL
     bool remembers;                        ///< friction has memory, or acts across pairs: left out
     int types;                             ///< at least 1
-    char name[COMPOSITION_MOST_TYPES][COMPOSITION_NAME_SIZE];
-    double mass[COMPOSITION_MOST_TYPES]; ///< [μ]
+    char name[COMPOSITION_MAX_TYPES][COMPOSITION_NAME_SIZE];
+    double mass[COMPOSITION_MAX_TYPES]; ///< [μ]
     size_t count;
     double *position[3], *velocity[3]; ///< shape [count], by id: in the box [λ], [λ/τ]
     int *image[3];     ///< shape [count], by id: boxes away, so that no bond crosses a wall

@@ -73,7 +73,7 @@ const struct export_engine mf_export_openmm = {
     .verified =
         "Such folders were run with OpenMM 7.7 and its Langevin bath; DPDIntegrator is as in its "
         "source, and was not run.",
-    .most_types = COMPOSITION_MOST_TYPES,
+    .max_types = COMPOSITION_MAX_TYPES,
     .write = write,
     .explain = explain,
 };

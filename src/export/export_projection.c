@@ -23,12 +23,12 @@ struct halves {
     int done;                                ///< simulations that are over
 };
 
-static void tell_half(void *context, const struct simulation *simulation, uint64_t done,
-                      uint64_t total) {
+static void report_half(void *context, const struct simulation *simulation, uint64_t done,
+                        uint64_t total) {
     const struct halves *const halves = context;
     if (halves->listener)
-        halves->listener->tell(halves->listener->context, simulation,
-                               (uint64_t)halves->done * total + done, 2 * total);
+        halves->listener->report(halves->listener->context, simulation,
+                                 (uint64_t)halves->done * total + done, 2 * total);
 }
 
 /// One simulation.
@@ -119,7 +119,7 @@ done:
 
 static enum status tabulate(const struct export_power *power, int pairs, struct table *omega) {
     enum status status = STATUS_OK;
-    struct table part[COMPOSITION_MOST_PAIRS] = {{0}};
+    struct table part[COMPOSITION_MAX_PAIRS] = {{0}};
     for (int pair = 0; pair < pairs; pair++) {
         struct formula_power_omega_parameters formula = {.sigma = power[pair].amplitude,
                                                          .exponent = power[pair].exponent,
@@ -163,7 +163,7 @@ enum status mf_export_project(const struct export_model *model, const struct exp
                                    .r_maximum = plan.etd.grid.r_maximum,
                                    .steps = plan.measure.samples * plan.measure.every};
     plan.threads = threads;
-    plan.half = (struct measure_listener){.tell = tell_half, .context = &halves};
+    plan.half = (struct measure_listener){.report = report_half, .context = &halves};
     CHECK(tabulate(power, mf_export_model_pairs(model), &omega));
     CHECK(simulate(model, model->setup.omega, seed + 1, &plan, &projection->result));
     halves.done = 1;

@@ -51,7 +51,7 @@ const struct export_engine mf_export_votca = {
                 "    csg_call --ia-type non-bonded --options settings.xml convert_potential "
                 "lammps A-A.pot A-A.table\n",
     .verified = "Such files were checked against the format that VOTCA reads, and not run.",
-    .most_types = COMPOSITION_MOST_TYPES,
+    .max_types = COMPOSITION_MAX_TYPES,
     .write = write,
     .explain = explain,
 };

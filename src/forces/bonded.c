@@ -137,14 +137,14 @@ SIMD_CLONES static bool is_longer(const struct bonded_batch *batch, double longe
     return longer;
 }
 
-static void find_torn(const struct bonded_terms *terms, const struct bonded_batch *batch,
-                      struct bonded_sums *sums) {
+static void find_broken(const struct bonded_terms *terms, const struct bonded_batch *batch,
+                        struct bonded_sums *sums) {
     const double longest = mf_bonded_longest(terms->curve);
     for (int n = 0; n < batch->count && is_longer(batch, longest); n++)
         if (batch->q[n] > longest && batch->q[n] > sums->longest) {
             sums->longest = batch->q[n];
-            sums->torn_order = terms->order;
-            sums->torn = terms->group;
+            sums->broken_order = terms->order;
+            sums->broken = terms->group;
         }
 }
 
@@ -154,7 +154,7 @@ static void add_batch(const struct bonded_terms *terms, const int *bead, int cou
     const struct bonded_kind *kind = mf_bonded_kinds[terms->order];
     struct bonded_batch batch;
     double energy[BONDED_BATCH];
-    bonded_arms arm[BONDED_MOST_ARMS];
+    bonded_arms arm[BONDED_MAX_ARMS];
     batch.count = count * WIDTH;
     stretch_arms(kind, beads, bead, count, &batch);
     kind->measure(&batch);
@@ -165,7 +165,7 @@ static void add_batch(const struct bonded_terms *terms, const int *bead, int cou
     if (terms->sums)
         add_sums(terms, &batch, energy, sums);
     if (law->longest)
-        find_torn(terms, &batch, sums);
+        find_broken(terms, &batch, sums);
     if (terms->transfer)
         memcpy(arm, batch.arm, sizeof arm);
     kind->push(&batch);
@@ -188,7 +188,7 @@ void mf_bonded_measure(int order, size_t count, const int32_t *place,
                        const struct particles *particles, double *q) {
     const struct bonded_kind *kind = mf_bonded_kinds[order];
     const size_t each = (size_t)kind->beads;
-    static const int bead[BONDED_MOST_TERM_BEADS] = {0, 1, 2, 3};
+    static const int bead[BONDED_MAX_TERM_BEADS] = {0, 1, 2, 3};
     struct bonded_beads beads;
     struct bonded_batch batch;
     beads.box = &particles->box;

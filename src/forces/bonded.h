@@ -11,25 +11,25 @@
 
 enum {
     BONDED_LANES = 8,
-    BONDED_MOST_BEADS = 64, ///< side by side: their columns stay in the first-level cache
+    BONDED_MAX_BEADS = 64, ///< side by side: their columns stay in the first-level cache
 };
 
 /// A vector of each lane.
 typedef double bonded_vector[3][BONDED_LANES];
 
 struct bonded_beads {
-    _Alignas(MEMORY_ALIGNMENT) bonded_vector position[BONDED_MOST_BEADS]; ///< [λ]
-    bonded_vector force[BONDED_MOST_BEADS]; ///< of the terms [k_B T_0/λ]
+    _Alignas(MEMORY_ALIGNMENT) bonded_vector position[BONDED_MAX_BEADS]; ///< [λ]
+    bonded_vector force[BONDED_MAX_BEADS]; ///< of the terms [k_B T_0/λ]
     const struct box *box;
 };
 
 /// What is added over terms.
 struct bonded_sums {
-    double energy;         ///< [k_B T_0]
-    double virial;         ///< Σ r·F [k_B T_0]
-    double longest;        ///< of the bonds that are longer than their law allows [λ]; 0: none is
-    int torn_order, torn;  ///< the group of that one
-    double transfer[3][3]; ///< Σ r_a F_b [k_B T_0]: forces/transfer.h
+    double energy;  ///< [k_B T_0]
+    double virial;  ///< Σ r·F [k_B T_0]
+    double longest; ///< of the bonds that are longer than their law allows [λ]; 0: none is
+    int broken_order, broken; ///< the group of that one
+    double transfer[3][3];    ///< Σ r_a F_b [k_B T_0]: forces/transfer.h
 };
 
 /// Some terms of a group, in each of the lanes.

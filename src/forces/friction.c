@@ -177,9 +177,10 @@ static inline void sweep_and_add(const struct friction *friction, const struct p
 
 /// The same sweep, with the same bits, which adds up what the pairs exchange. As above, what has no
 /// masses has instructions of its own: with a choice between two the last bits would be others.
-SIMD_CLONES static void sweep_and_tell(const struct friction *friction,
-                                       const struct particles *particles, int p, const double *mass,
-                                       lanes_double4 *v, double transfer[3][3]) {
+SIMD_CLONES static void sweep_and_report(const struct friction *friction,
+                                         const struct particles *particles, int p,
+                                         const double *mass, lanes_double4 *v,
+                                         double transfer[3][3]) {
     if (mass)
         sweep_and_add(friction, particles, p, mass, v, transfer);
     else
@@ -194,15 +195,15 @@ void mf_friction_store_velocities(struct particles *particles) {
     mf_parallel_for(particles->count, particles->threads, store_velocities, particles);
 }
 
-static void sweep_all_and_tell(const struct friction *friction, struct particles *particles,
-                               struct transfer *transfer) {
+static void sweep_all_and_report(const struct friction *friction, struct particles *particles,
+                                 struct transfer *transfer) {
     lanes_double4 *v = (lanes_double4 *)particles->kernel_force;
     const double *mass = particles_masses(particles);
     const int threads = particles->threads;
     for (int first = 0; first < 2; first++) {
 #pragma omp parallel for schedule(dynamic) num_threads(threads) if (threads > 1)
         for (int p = first; p < friction->parts; p += 2)
-            sweep_and_tell(friction, particles, p, mass, v, transfer->part[p]);
+            sweep_and_report(friction, particles, p, mass, v, transfer->part[p]);
     }
     mf_transfer_collect(transfer, friction->parts, 1);
 }
@@ -211,13 +212,13 @@ static void sweep_all_and_tell(const struct friction *friction, struct particles
 /// decays, and 1/μ = 1/m_i + 1/m_j it is x' = x^(1/2μ); the impulse is then
 ///   μ (1 − x') (−u) + sqrt(μ k_B T (1 − x'²)) ζ.
 SIMD_CLONES static void weigh_pairs(struct friction_pair *pair, size_t count, const double *mass) {
-    static const double least = 1e-30; // of 1 − x²: pairs at the end of ω
+    static const double min = 1e-30; // of 1 − x²: pairs at the end of ω
     for (size_t k = 0; k < count; k++) {
         const double reduced = 1 / (1 / mass[pair[k].i] + 1 / mass[pair[k].j]);
         const double x = 1 - 2 * (double)pair[k].damping;
         const double own = x > 0 ? exp(log(x) / (2 * reduced)) : 0;
         pair[k].damping = (float)(reduced * (1 - own));
-        pair[k].kick *= (float)sqrt(2 * reduced * (1 - own * own) / fmax(1 - x * x, least));
+        pair[k].kick *= (float)sqrt(2 * reduced * (1 - own * own) / fmax(1 - x * x, min));
     }
 }
 
@@ -239,7 +240,7 @@ void mf_friction_sweep(const struct friction *friction, struct particles *partic
     const int threads = particles->threads;
     mf_friction_load_velocities(particles);
     if (transfer) {
-        sweep_all_and_tell(friction, particles, transfer);
+        sweep_all_and_report(friction, particles, transfer);
     } else {
 #define SWEEP(direction, pair, count) sweep_pairs(direction, pair, count, mass, v)
         FOR_ALL_PARTS(friction, threads, SWEEP)

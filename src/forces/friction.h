@@ -51,7 +51,7 @@ struct friction {
     float (*direction)[4]; ///< e of each pair, from j to i; the last is 0
     struct friction_pair *pair;
     size_t capacity;
-    size_t begin[NEIGHBOURS_MOST_PARTS], end[NEIGHBOURS_MOST_PARTS]; ///< pairs of each part
+    size_t begin[NEIGHBOURS_MAX_PARTS], end[NEIGHBOURS_MAX_PARTS]; ///< pairs of each part
     int parts;
     double (*work[FRICTION_WORK])[4]; ///< of mf_friction_solve; shape [count, 4] each
 };

@@ -67,7 +67,7 @@ static void finish(void *context, size_t begin, size_t end) {
 
 enum status mf_friction_solve(struct friction *friction, struct particles *particles,
                               double tolerance) {
-    enum { MOST_ITERATIONS = 1000 };
+    enum { MAX_ITERATIONS = 1000 };
     TRY(mf_friction_reserve_work(friction, particles->count));
     struct solution s = {.particles = particles,
                          .x = friction->work[0],
@@ -81,7 +81,7 @@ enum status mf_friction_solve(struct friction *friction, struct particles *parti
     memcpy(s.p, s.r, count * sizeof *s.p);
     double squares = mf_parallel_sum(count, threads, square_residual, &s);
     const double enough = tolerance * tolerance * squares;
-    for (int iteration = 0; squares > enough && iteration < MOST_ITERATIONS; iteration++) {
+    for (int iteration = 0; squares > enough && iteration < MAX_ITERATIONS; iteration++) {
         mf_friction_apply(friction, particles, (const double(*)[4])s.p, s.q, false);
         s.along = squares / mf_parallel_sum(count, threads, complete_product, &s);
         mf_parallel_for(count, threads, advance, &s);
@@ -94,7 +94,7 @@ enum status mf_friction_solve(struct friction *friction, struct particles *parti
         return mf_status_fail(STATUS_UNSTABLE,
                               "the implicit friction is not solved after %d iterations; lower "
                               "\"time_step\" or raise \"tolerance\"",
-                              MOST_ITERATIONS);
+                              MAX_ITERATIONS);
     mf_parallel_for(count, threads, finish, &s);
     return STATUS_OK;
 }

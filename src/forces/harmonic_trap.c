@@ -11,15 +11,15 @@ struct parameters {
 };
 
 static enum status begin(const void *parameters, void *state, const struct particles *particles) {
-    static const double most_boxes = 100; // farther away it is in other units, as nm and pm
+    static const double max_boxes = 100; // farther away it is in other units, as nm and pm
     const struct parameters *own = parameters;
     (void)state;
     for (int d = 0; d < particles->box.dimensions; d++)
-        if (!(fabs(own->centre[d]) <= most_boxes * particles->box.length[d]))
+        if (!(fabs(own->centre[d]) <= max_boxes * particles->box.length[d]))
             return mf_status_fail(STATUS_BAD_INPUT,
                                   "interactions.harmonic-trap.centre[%d]: %g is more than %g boxes "
                                   "of %g away",
-                                  d, own->centre[d], most_boxes, particles->box.length[d]);
+                                  d, own->centre[d], max_boxes, particles->box.length[d]);
     return STATUS_OK;
 }
 

@@ -80,7 +80,7 @@ extern const struct interaction mf_molecules;
 
 /// How many a scene can have: all that it can name, and molecules.
 #define INTERACTION_COUNT(record) +1
-enum { INTERACTION_MOST = INTERACTIONS(INTERACTION_COUNT) + 1 };
+enum { INTERACTION_MAX = INTERACTIONS(INTERACTION_COUNT) + 1 };
 #undef INTERACTION_COUNT
 
 /// An interaction and its numbers.

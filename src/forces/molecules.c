@@ -102,7 +102,7 @@ static void clear(void *own) {
 struct sweep {
     struct state *state;
     const struct interaction_pass *pass;
-    struct bonded_sums sums[MOLECULES_MOST_BLOCKS];
+    struct bonded_sums sums[MOLECULES_MAX_BLOCKS];
 };
 
 /// Add all terms of a bundle, group by group, to the forces of its beads.
@@ -158,19 +158,19 @@ static void collect(const struct sweep *sweep) {
 }
 
 /// Before the first step molecules are parted, and bonds may be too long for a while.
-static enum status check_torn(const struct sweep *sweep) {
+static enum status check_broken(const struct sweep *sweep) {
     const struct state *state = sweep->state;
     for (int block = 0; block < state->layout.blocks && sweep->pass->step > 0; block++) {
         const struct bonded_sums *sums = &sweep->sums[block];
         const struct molecules_group *group =
-            &state->molecules->group[sums->torn_order][sums->torn];
+            &state->molecules->group[sums->broken_order][sums->broken];
         if (sums->longest > 0)
             return mf_status_fail(STATUS_UNSTABLE,
                                   "unstable at step %llu: %s %s \"%s\" is %.4g long, and breaks at "
                                   "%.4g; lower \"time_step\", or begin with shorter bonds",
                                   (unsigned long long)sweep->pass->step,
-                                  mf_bonded_kinds[sums->torn_order]->article,
-                                  mf_bonded_kinds[sums->torn_order]->name, group->name,
+                                  mf_bonded_kinds[sums->broken_order]->article,
+                                  mf_bonded_kinds[sums->broken_order]->name, group->name,
                                   sums->longest, mf_bonded_longest(&group->curve));
     }
     return STATUS_OK;
@@ -183,7 +183,7 @@ static enum status add(const void *parameters, void *own, const struct interacti
     mf_parallel_for((size_t)sweep.state->layout.blocks, pass->particles->threads, add_blocks,
                     &sweep);
     collect(&sweep);
-    return check_torn(&sweep);
+    return check_broken(&sweep);
 }
 
 const struct interaction mf_molecules = {

@@ -12,7 +12,7 @@
 #include "system/placement.h"
 #include "system/topology.h"
 
-enum { MOLECULES_MOST_GROUPS = 16 }; ///< of each kind of terms
+enum { MOLECULES_MAX_GROUPS = 16 }; ///< of each kind of terms
 
 struct molecules_group {
     char name[TOPOLOGY_NAME_SIZE];
@@ -22,7 +22,7 @@ struct molecules_group {
 /// Owns the topology and the laws. A zeroed one has none.
 struct molecules {
     struct topology topology;
-    struct molecules_group group[BONDED_KINDS][MOLECULES_MOST_GROUPS];
+    struct molecules_group group[BONDED_KINDS][MOLECULES_MAX_GROUPS];
     int groups[BONDED_KINDS];
 };
 

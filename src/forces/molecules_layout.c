@@ -75,7 +75,7 @@ static void add_teams(struct molecules_layout *layout) {
     size_t bundles = 0, rows = 0;
     for (int k = 0; k < topology->kinds; k++)
         all += teams(&topology->kind[k]);
-    layout->blocks = all < MOLECULES_MOST_BLOCKS ? (int)all : MOLECULES_MOST_BLOCKS;
+    layout->blocks = all < MOLECULES_MAX_BLOCKS ? (int)all : MOLECULES_MAX_BLOCKS;
     for (int k = 0, block = 0; k < topology->kinds; k++)
         for (int64_t team = 0; team < teams(&topology->kind[k]); team++, number++) {
             if (number == all * block / layout->blocks)
@@ -99,7 +99,7 @@ enum status mf_molecules_layout_init(struct molecules_layout *layout,
 }
 
 void mf_molecules_layout_clear(struct molecules_layout *layout) {
-    for (int k = 0; k < TOPOLOGY_MOST_KINDS; k++)
+    for (int k = 0; k < TOPOLOGY_MAX_KINDS; k++)
         mf_molecules_motifs_clear(&layout->motifs[k]);
     mf_memory_free(layout->bundle);
     mf_memory_free(layout->sequence);

@@ -10,7 +10,7 @@
 
 #include "forces/molecules_motifs.h"
 
-enum { MOLECULES_MOST_BLOCKS = 64 };
+enum { MOLECULES_MAX_BLOCKS = 64 };
 
 struct molecules_bundle {
     const struct topology_kind *kind;
@@ -24,10 +24,10 @@ struct molecules_bundle {
 
 struct molecules_layout {
     const struct topology *topology;
-    struct molecules_motifs motifs[TOPOLOGY_MOST_KINDS];
+    struct molecules_motifs motifs[TOPOLOGY_MAX_KINDS];
     struct molecules_bundle *bundle;
     int blocks;
-    size_t start[MOLECULES_MOST_BLOCKS + 1]; ///< where the bundles of a block begin
+    size_t start[MOLECULES_MAX_BLOCKS + 1]; ///< where the bundles of a block begin
     uint32_t *sequence; ///< shape [molecules]: those of each kind, by the places of first beads
     uint32_t *bucket;   ///< room for sorting
     int32_t *place;     ///< shape [rows, BONDED_LANES], of the particles

@@ -49,7 +49,7 @@ static int list_terms(const struct topology_kind *kind, struct numbered_term *te
 static int number_beads(struct molecules_motif *motif, const struct numbered_term *terms, int count,
                         int *number) {
     for (int n = 0; n < count; n++) {
-        if (motif->beads + mf_bonded_kinds[terms[n].order]->beads > BONDED_MOST_BEADS)
+        if (motif->beads + mf_bonded_kinds[terms[n].order]->beads > BONDED_MAX_BEADS)
             return n;
         for (int k = 0; k < mf_bonded_kinds[terms[n].order]->beads; k++) {
             const int bead = terms[n].term->bead[k];
@@ -70,9 +70,9 @@ static enum status add_piece(struct molecules_motifs *motifs, struct numbered_te
     struct molecules_motif *motif = &motifs->motif[motifs->count++];
     int *next;
     motif->copies = 1;
-    NEW_ARRAY(motif->bead, BONDED_MOST_BEADS);
+    NEW_ARRAY(motif->bead, BONDED_MAX_BEADS);
     *taken = number_beads(motif, terms, count, number);
-    NEW_ARRAY(motif->term_bead, (size_t)*taken * BONDED_MOST_TERM_BEADS);
+    NEW_ARRAY(motif->term_bead, (size_t)*taken * BONDED_MAX_TERM_BEADS);
     next = motif->term_bead;
     qsort(terms, (size_t)*taken, sizeof *terms, compare_groups);
     for (int n = 0; n < *taken; n++) {
@@ -110,8 +110,8 @@ static enum status add_single(struct molecules_motifs *motifs, const struct numb
     const int order = terms->order, group = terms->term->group;
     motif->beads = mf_bonded_kinds[order]->beads;
     motif->terms[order][group] = 1;
-    NEW_ARRAY(motif->bead, (size_t)count * BONDED_MOST_TERM_BEADS);
-    NEW_ARRAY(motif->term_bead, BONDED_MOST_TERM_BEADS);
+    NEW_ARRAY(motif->bead, (size_t)count * BONDED_MAX_TERM_BEADS);
+    NEW_ARRAY(motif->term_bead, BONDED_MAX_TERM_BEADS);
     for (int k = 0; k < motif->beads; k++)
         motif->term_bead[k] = k;
     for (; motif->copies < count && terms[motif->copies].order == order &&
@@ -136,7 +136,7 @@ static enum status add_singles(struct molecules_motifs *motifs, struct numbered_
 enum status mf_molecules_motifs_find(struct molecules_motifs *motifs,
                                      const struct topology_kind *kind, bool single) {
     // A piece that is full has this many terms at least.
-    enum { FEWEST_TERMS = BONDED_MOST_BEADS / BONDED_MOST_TERM_BEADS - 1 };
+    enum { FEWEST_TERMS = BONDED_MAX_BEADS / BONDED_MAX_TERM_BEADS - 1 };
     enum status status = STATUS_OK;
     struct numbered_term *terms = NULL;
     size_t count = 0;
@@ -144,7 +144,7 @@ enum status mf_molecules_motifs_find(struct molecules_motifs *motifs,
         count += (size_t)kind->terms[order];
     NEW_ARRAY(terms, count);
     NEW_ARRAY(motifs->motif,
-              single ? (size_t)BONDED_KINDS * MOLECULES_MOST_GROUPS : count / FEWEST_TERMS + 1);
+              single ? (size_t)BONDED_KINDS * MOLECULES_MAX_GROUPS : count / FEWEST_TERMS + 1);
     list_terms(kind, terms);
     CHECK(single ? add_singles(motifs, terms, (int)count)
                  : add_pieces(motifs, kind, terms, (int)count));

@@ -12,7 +12,7 @@ struct molecules_motif {
     int beads;
     int copies; ///< in a molecule: 1, or as many as there are terms of one group
     int *bead;  ///< of the molecule, shape [copies, beads]
-    int terms[BONDED_KINDS][MOLECULES_MOST_GROUPS];
+    int terms[BONDED_KINDS][MOLECULES_MAX_GROUPS];
     int *term_bead; ///< numbers in `bead` of a copy: the terms of one group after the other
 };
 
@@ -22,7 +22,7 @@ struct molecules_motifs {
     struct molecules_motif *motif;
 };
 
-/// Find them: pieces of up to BONDED_MOST_BEADS beads, or single terms.
+/// Find them: pieces of up to BONDED_MAX_BEADS beads, or single terms.
 /// Fails: NO_MEMORY; the motifs are to be cleared in any case. Tested: test_molecules.
 enum status mf_molecules_motifs_find(struct molecules_motifs *motifs,
                                      const struct topology_kind *kind, bool single) MUST_USE;

@@ -22,7 +22,7 @@ enum pair_precision {
     PAIR_DOUBLE, ///< double, from double positions; the noise is the same
 };
 
-_Static_assert((int)TABLE_MOST_CURVES >= (int)COMPOSITION_MOST_PAIRS,
+_Static_assert((int)TABLE_MAX_CURVES >= (int)COMPOSITION_MAX_PAIRS,
                "a table holds a curve for each pair type");
 
 /// Distances counted in passing: bin k holds those from low + k width on.
@@ -30,7 +30,7 @@ struct pair_histogram {
     double low, width; ///< [λ]
     size_t bins;
     size_t pairs;     ///< pair types of a mixture, to count each apart; 0 or 1: all together
-    uint32_t *counts; ///< shape [NEIGHBOURS_MOST_PARTS, pair_histogram_size]
+    uint32_t *counts; ///< shape [NEIGHBOURS_MAX_PARTS, pair_histogram_size]
 };
 
 /// Numbers of a part: shape [pairs, bins], and a last one for all pairs beyond the bins.

@@ -55,7 +55,7 @@ void mf_pair_add(const struct pair_law *law, struct particles *particles,
                  struct pair_sums *sums) {
     const pair_kernel kernel = choose(law, particles->box.dimensions);
     const int parts = kernel ? neighbours->parts : 0, threads = particles->threads;
-    struct pair_sums part_sums[NEIGHBOURS_MOST_PARTS] = {{0}};
+    struct pair_sums part_sums[NEIGHBOURS_MAX_PARTS] = {{0}};
     // A part adds to its own particles and to those of the next one: even parts never meet.
     for (int first = 0; first < 2; first++) {
 #pragma omp parallel for schedule(dynamic) num_threads(threads) if (threads > 1)

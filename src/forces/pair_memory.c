@@ -13,18 +13,18 @@ double mf_pair_memory_range(const struct pair_memory_law *law) {
 }
 
 static double largest(const struct table *omega) {
-    double most = 0;
+    double max = 0;
     for (int k = 0; omega && k < (TABLE_INTERVALS + 1) * omega->curves; k++)
-        most = fmax(most, fabs(omega->coefficient[2 * k]));
-    return most;
+        max = fmax(max, fabs(omega->coefficient[2 * k]));
+    return max;
 }
 
 bool mf_pair_memory_is_coarse(const struct pair_memory_law *law, double time_step) {
-    static const double part = 0.5, most_turn = 1;
+    static const double part = 0.5, max_turn = 1;
     for (int m = 0; m < law->modes; m++) {
         const struct pair_memory_mode *mode = &law->mode[m];
         const double turn = M_SQRT2 * largest(mode->omega) * time_step / sqrt(mode->time);
-        if (time_step > part * mode->time || time_step * mode->frequency > part || turn > most_turn)
+        if (time_step > part * mode->time || time_step * mode->frequency > part || turn > max_turn)
             return true;
     }
     return false;
@@ -54,8 +54,8 @@ done:
 /// tan(g Δt/√2), half the angle, with g Δt = ω `number`. A rotation of nearly half a turn a step
 /// keeps the stationary law too, but follows no motion: it is not exceeded.
 static double half_angle(double omega, double number) {
-    static const double most = 1.4;
-    return tan(fmin(omega * number * M_SQRT1_2, most));
+    static const double max = 1.4;
+    return tan(fmin(omega * number * M_SQRT1_2, max));
 }
 
 /// sqrt of the damping ½ (1 − exp(−2 ω² Δt)), which is straight where ω is.
@@ -130,7 +130,7 @@ static void free_pairs(struct pair_memory_pairs *pairs) {
     mf_memory_free(pairs->second);
     mf_memory_free(pairs->first_id);
     mf_memory_free(pairs->second_id);
-    for (int k = 0; k < PAIR_MEMORY_MOST_VARIABLES; k++)
+    for (int k = 0; k < PAIR_MEMORY_MAX_VARIABLES; k++)
         mf_memory_free(pairs->value[k]);
     *pairs = (struct pair_memory_pairs){0};
 }
@@ -309,7 +309,7 @@ size_t mf_pair_memory_spans(struct pair_memory *memory, struct memory_span *span
     return n;
 }
 
-enum status mf_pair_memory_make_room(struct pair_memory *memory) {
+enum status mf_pair_memory_reserve(struct pair_memory *memory) {
     const size_t count = memory->pairs.count;
     memory->builds = UINT64_MAX;
     TRY(reserve(&memory->pairs, count, memory->variables));

@@ -27,7 +27,7 @@
 #include "system/composition.h"
 #include "system/neighbours.h"
 
-enum { PAIR_MEMORY_MOST_MODES = 4, PAIR_MEMORY_MOST_VARIABLES = 2 * PAIR_MEMORY_MOST_MODES };
+enum { PAIR_MEMORY_MAX_MODES = 4, PAIR_MEMORY_MAX_VARIABLES = 2 * PAIR_MEMORY_MAX_MODES };
 
 struct pair_memory_mode {
     const struct table *omega; ///< ω(r), one or for each pair type; borrowed
@@ -38,7 +38,7 @@ struct pair_memory_mode {
 /// All zero: nothing remembers.
 struct pair_memory_law {
     int modes;
-    struct pair_memory_mode mode[PAIR_MEMORY_MOST_MODES];
+    struct pair_memory_mode mode[PAIR_MEMORY_MAX_MODES];
     const struct table *transverse; ///< ω_t(r), the same, or NULL; borrowed
 };
 
@@ -71,7 +71,7 @@ struct pair_memory_pairs {
     uint32_t *first_id, *second_id; ///< shape [capacity]: their ids
     /// Shape [variables][capacity] [sqrt(k_B T_0)]; NaN: the pair is out of range.
     /// There is room for one more, which `before` has for pairs that are new: it is NaN.
-    double *value[PAIR_MEMORY_MOST_VARIABLES];
+    double *value[PAIR_MEMORY_MAX_VARIABLES];
 };
 
 /// By particles: shape [particles].
@@ -85,20 +85,20 @@ struct pair_memory_index {
 struct pair_memory {
     struct pair_memory_law law;
     struct pair_memory_scene scene;
-    double range[TABLE_MOST_CURVES]; ///< of each pair type; 0: nothing acts
-    int variables;                   ///< of a pair
+    double range[TABLE_MAX_CURVES]; ///< of each pair type; 0: nothing acts
+    int variables;                  ///< of a pair
     struct {
         float (*half)[4];  ///< tan of half the angle of the rotation: rows of the table of ω
         int first;         ///< of its variables
         double keep, turn; ///< z ← keep z + turn y + noise ξ, y ← keep y − turn z + noise ξ'
         double noise;
-    } mode[PAIR_MEMORY_MOST_MODES];
+    } mode[PAIR_MEMORY_MAX_MODES];
     float (*root)[4]; ///< sqrt of the transverse damping: rows of its table
     struct normal_table normal;
     uint64_t builds;                        ///< of the neighbour list whose pairs these are
     struct pair_memory_pairs pairs, before; ///< of this list, and those of the last
     struct pair_memory_index index;
-    size_t begin[NEIGHBOURS_MOST_PARTS], end[NEIGHBOURS_MOST_PARTS]; ///< of each part of the list
+    size_t begin[NEIGHBOURS_MAX_PARTS], end[NEIGHBOURS_MAX_PARTS]; ///< of each part of the list
     int parts;
 };
 
@@ -130,8 +130,8 @@ void mf_pair_memory_sweep(struct pair_memory *memory, struct particles *particle
 double mf_pair_memory_energy(const struct pair_memory *memory, size_t *variables);
 
 /// @name Restart
-/// The first span is `pairs.count`: read it before the others and call mf_pair_memory_make_room,
+/// The first span is `pairs.count`: read it before the others and call mf_pair_memory_reserve,
 /// since their lengths depend on it. Afterwards the pairs follow the list anew.
-enum { PAIR_MEMORY_SPANS = 3 + PAIR_MEMORY_MOST_VARIABLES };
+enum { PAIR_MEMORY_SPANS = 3 + PAIR_MEMORY_MAX_VARIABLES };
 size_t mf_pair_memory_spans(struct pair_memory *memory, struct memory_span *spans);
-enum status mf_pair_memory_make_room(struct pair_memory *memory) MUST_USE;
+enum status mf_pair_memory_reserve(struct pair_memory *memory) MUST_USE;

@@ -13,8 +13,8 @@
 enum {
     MEMORY_BLOCK = PAIR_BATCH, ///< pairs of the list looked at together
     MEMORY_CALL = 4,           ///< words of a call of Philox
-    MEMORY_WORDS = (PAIR_MEMORY_MOST_VARIABLES + 3 + MEMORY_CALL - 1) / MEMORY_CALL * MEMORY_CALL,
-    MEMORY_CURVES = PAIR_MEMORY_MOST_MODES + 1, ///< of modes, and of what is across
+    MEMORY_WORDS = (PAIR_MEMORY_MAX_VARIABLES + 3 + MEMORY_CALL - 1) / MEMORY_CALL * MEMORY_CALL,
+    MEMORY_CURVES = PAIR_MEMORY_MAX_MODES + 1, ///< of modes, and of what is across
 };
 
 /// What the numbers are for: the lower bits of the fourth counter, to which the call is added.
@@ -29,8 +29,8 @@ struct memory_scene {
     struct pair_box box;
     bool mixed;
     struct pair_mixture mixture;
-    float square[COMPOSITION_MOST_PAIRS]; ///< of the range of each pair type
-    float inverse_spacing[MEMORY_CURVES][COMPOSITION_MOST_PAIRS];
+    float square[COMPOSITION_MAX_PAIRS]; ///< of the range of each pair type
+    float inverse_spacing[MEMORY_CURVES][COMPOSITION_MAX_PAIRS];
     int variables, kicks; ///< normal numbers that a pair needs: of z and y, across
 };
 
@@ -44,7 +44,7 @@ struct memory_columns {
     float direction[PAIR_ROOM][4]; ///< e; the last is 0
     int32_t word[MEMORY_WORDS][PAIR_ROOM];
     float zeta[MEMORY_WORDS][PAIR_ROOM];
-    double cosine[PAIR_MEMORY_MOST_MODES][PAIR_ROOM], sine[PAIR_MEMORY_MOST_MODES][PAIR_ROOM];
+    double cosine[PAIR_MEMORY_MAX_MODES][PAIR_ROOM], sine[PAIR_MEMORY_MAX_MODES][PAIR_ROOM];
     float damping[PAIR_ROOM], kick[PAIR_ROOM][4]; ///< of what is across
 };
 
@@ -93,17 +93,17 @@ INLINE void memory_measure(struct memory_columns *columns, const struct memory_s
         const struct lanes_record j = lanes_load_records(places, second);
         struct pair_vector vector = {lanes_load_int(first), lanes_load_int(second), pair_id(&i),
                                      pair_id(&j), .dr = {{0}}};
-        lanes_real r2 = lanes_all(0), most = lanes_all(scene->square[0]);
+        lanes_real r2 = lanes_all(0), max = lanes_all(scene->square[0]);
         for (int d = 0; d < 3; d++) {
             const lanes_uint x = (lanes_uint)i.word[d] - (lanes_uint)j.word[d];
             vector.dr[d] = scene->box.scale[d] * lanes_to_real((lanes_int)x);
             r2 += vector.dr[d] * vector.dr[d];
         }
         if (scene->mixed)
-            most =
+            max =
                 memory_by_kind(scene->square, pair_kind(&scene->mixture, vector.id_i, vector.id_j));
-        lanes_store(columns->excess + k, r2 - most);
-        unsigned in_range = lanes_below(r2 - most, lanes_all(0)) & lanes_below(lanes_all(0), r2);
+        lanes_store(columns->excess + k, r2 - max);
+        unsigned in_range = lanes_below(r2 - max, lanes_all(0)) & lanes_below(lanes_all(0), r2);
         if (count - k < LANES)
             in_range &= (1U << (count - k)) - 1;
         lanes_store_int(columns->place + near, k + lanes_set_bits(in_range));
@@ -114,7 +114,7 @@ INLINE void memory_measure(struct memory_columns *columns, const struct memory_s
 }
 
 /// Pairs out of range forget.
-INLINE void memory_forget(const struct memory_columns *columns, double *value, int count) {
+INLINE void memory_clear(const struct memory_columns *columns, double *value, int count) {
     for (int n = 0; n < count; n++)
         value[n] = columns->excess[n] < 0 ? value[n] : (double)NAN;
 }
@@ -143,8 +143,8 @@ INLINE uint32_t memory_stream(const struct memory_scene *scene, uint32_t purpose
 
 /// A pair that comes into the range draws its variables from the stationary law.
 static void __attribute__((noinline))
-memory_greet(const struct memory_columns *columns, const struct memory_scene *scene, int n,
-             size_t pair) {
+memory_draw_new(const struct memory_columns *columns, const struct memory_scene *scene, int n,
+                size_t pair) {
     const struct pair_memory *memory = scene->memory;
     const uint64_t seed = memory->scene.seed;
     const double sigma = sqrt(memory->scene.temperature);
@@ -235,8 +235,8 @@ INLINE double memory_sum(lanes_double4 a) {
 
 /// Add the impulse on the first of a pair, whose velocity was `before`, to what is transferred,
 /// unless nobody asks. As a difference, so that what a compiler fuses is the same for both.
-INLINE void memory_tell(const struct memory_columns *columns, int n, lanes_double4 before,
-                        lanes_double4 after, double (*transfer)[3]) {
+INLINE void memory_report(const struct memory_columns *columns, int n, lanes_double4 before,
+                          lanes_double4 after, double (*transfer)[3]) {
     const lanes_double4 impulse = after - before;
     if (transfer)
         transfer_add(transfer, (double)columns->r[n], columns->direction[n],
@@ -254,7 +254,7 @@ INLINE void memory_rotate(const struct memory_columns *columns, const struct mem
     const double before = M_SQRT1_2 * memory_sum(e * (*a - *b));
     double w = before;
     if (isnan(memory->pairs.value[0][p]))
-        memory_greet(columns, scene, n, p);
+        memory_draw_new(columns, scene, n, p);
     for (int m = 0; m < modes; m++) {
         const int first = memory->mode[m].first;
         const double keep = memory->mode[m].keep, noise = memory->mode[m].noise;
@@ -272,7 +272,7 @@ INLINE void memory_rotate(const struct memory_columns *columns, const struct mem
     const lanes_double4 change = M_SQRT1_2 * (w - before) * e, velocity = *a;
     *a += change;
     *b -= change;
-    memory_tell(columns, n, velocity, *a, transfer);
+    memory_report(columns, n, velocity, *a, transfer);
 }
 
 INLINE void memory_damp_across(const struct memory_columns *columns,
@@ -285,7 +285,7 @@ INLINE void memory_damp_across(const struct memory_columns *columns,
     const lanes_double4 velocity = *a;
     *a += change;
     *b -= change;
-    memory_tell(columns, n, velocity, *a, transfer);
+    memory_report(columns, n, velocity, *a, transfer);
 }
 
 /// Pairs come sorted by particle, where each waits for the velocity that the last one changed. So
@@ -321,7 +321,7 @@ INLINE void memory_sweep_block(const struct memory_scene *scene, size_t begin, i
         pair_kinds(columns.kind, &columns.near, columns.near.count, &scene->mixture);
     pair_ids(columns.low_id, columns.high_id, &columns.near, columns.near.count);
     if (memory->variables > 0)
-        memory_forget(&columns, memory->pairs.value[0] + begin, count);
+        memory_clear(&columns, memory->pairs.value[0] + begin, count);
     memory_draw(&columns, scene);
     for (int m = 0; m < memory->law.modes; m++)
         memory_find_rotations(&columns, scene, m);
@@ -368,9 +368,9 @@ INLINE void memory_select(struct pair_batch *batch, const struct pair_memory *me
 /// Append the pairs of a batch, as far as there is room for them; returns the new number.
 INLINE size_t memory_append(struct pair_memory_pairs *pairs, const struct pair_batch *batch,
                             size_t n) {
-    const size_t room = pairs->capacity > n ? pairs->capacity - n : 0;
+    const size_t left = pairs->capacity > n ? pairs->capacity - n : 0;
     const size_t size =
-        sizeof(int32_t) * ((size_t)batch->count < room ? (size_t)batch->count : room);
+        sizeof(int32_t) * ((size_t)batch->count < left ? (size_t)batch->count : left);
     if (size > 0) {
         memcpy(pairs->first + n, batch->i, size);
         memcpy(pairs->second + n, batch->j, size);
@@ -383,10 +383,10 @@ INLINE size_t memory_append(struct pair_memory_pairs *pairs, const struct pair_b
 INLINE size_t memory_collect(struct pair_memory *memory, const struct particles *built,
                              const struct neighbours *neighbours, int part_number, size_t n) {
     const struct neighbours_part *part = &neighbours->part[part_number];
-    const double most = mf_pair_memory_range(&memory->law) + neighbours->skin;
+    const double max = mf_pair_memory_range(&memory->law) + neighbours->skin;
     struct particles particles = *built;
     const struct pair_scene scene = {
-        .particles = &particles, .box = pair_box_of(&built->box), .cutoff2 = (float)(most * most)};
+        .particles = &particles, .box = pair_box_of(&built->box), .cutoff2 = (float)(max * max)};
     struct pair_batch batch, far; // none is far
     batch.count = far.count = 0;
     for (size_t k = part->begin; k < part->end; k += PAIR_PIECE) {

@@ -8,11 +8,11 @@
 /// What tells pair types apart in a mixture.
 struct pair_mixture {
     int types;
-    int32_t first[COMPOSITION_MOST_TYPES]; ///< least id of each type
+    int32_t first[COMPOSITION_MAX_TYPES]; ///< least id of each type
     /// For each pair type, in a record: intervals of Φ and of ω per length, length of one of Φ.
-    REAL grid[COMPOSITION_MOST_PAIRS][4];
+    REAL grid[COMPOSITION_MAX_PAIRS][4];
     int32_t potential_stride, omega_stride; ///< table_stride
-    int32_t bins_apart;                     ///< of the histogram, from pair type to pair type
+    int32_t histogram_stride;               ///< of the histogram, from pair type to pair type
 };
 
 /// What the pairs of a mixture need to find their curves and bins.
@@ -32,7 +32,7 @@ LANES_INLINE struct pair_mixture pair_mixture_of(const struct pair_law *law) {
     mixture.potential_stride = law->potential ? table_stride(law->potential) : 0;
     mixture.omega_stride = law->omega ? table_stride(law->omega) : 0;
     if (law->histogram && law->histogram->pairs > 1)
-        mixture.bins_apart = (int32_t)law->histogram->bins;
+        mixture.histogram_stride = (int32_t)law->histogram->bins;
     return mixture;
 }
 
@@ -49,6 +49,6 @@ LANES_INLINE lanes_int pair_kind(const struct pair_mixture *mixture, lanes_int i
                                  lanes_int id_j) {
     const int32_t twice = 2 * mixture->types - 1;
     const lanes_int a = pair_type(mixture, id_i), b = pair_type(mixture, id_j);
-    const lanes_int low = lanes_least_int(a, b), high = lanes_most_int(a, b);
+    const lanes_int low = lanes_min_int(a, b), high = lanes_max_int(a, b);
     return (low * (twice - low) >> 1) + high;
 }

@@ -39,7 +39,7 @@ struct pair_rows {
 /// Of a table whose curves for these pairs begin at `first`.
 INLINE struct pair_rows pair_rows_of(lanes_real inverse_spacing, lanes_int first, lanes_real r) {
     // Beyond the cutoff is the last row, of zeros.
-    const lanes_real place = lanes_least(r * inverse_spacing, lanes_all(TABLE_INTERVALS));
+    const lanes_real place = lanes_min(r * inverse_spacing, lanes_all(TABLE_INTERVALS));
     const lanes_int interval = lanes_to_int(place);
     return (struct pair_rows){first + interval, place - lanes_to_real(interval)};
 }
@@ -135,8 +135,8 @@ INLINE void pair_velocities(struct pair_columns *columns, const struct pair_batc
             r_dot_v += lanes_load(batch->dz + k) * (i.word[2] - j.word[2]);
         const lanes_int id_i = pair_id(&i), id_j = pair_id(&j);
         lanes_store(columns->r_dot_v + k, r_dot_v);
-        lanes_store_int(columns->low_id + k, lanes_least_int(id_i, id_j));
-        lanes_store_int(columns->high_id + k, lanes_most_int(id_i, id_j));
+        lanes_store_int(columns->low_id + k, lanes_min_int(id_i, id_j));
+        lanes_store_int(columns->high_id + k, lanes_max_int(id_i, id_j));
     }
 }
 
@@ -254,8 +254,8 @@ INLINE void pair_ids(int32_t *low, int32_t *high, const struct pair_batch *batch
     for (int k = 0; k < count; k += LANES) {
         const lanes_int id_i = lanes_load_int(batch->id_i + k);
         const lanes_int id_j = lanes_load_int(batch->id_j + k);
-        lanes_store_int(low + k, lanes_least_int(id_i, id_j));
-        lanes_store_int(high + k, lanes_most_int(id_i, id_j));
+        lanes_store_int(low + k, lanes_min_int(id_i, id_j));
+        lanes_store_int(high + k, lanes_max_int(id_i, id_j));
     }
 }
 
@@ -297,7 +297,7 @@ INLINE void pair_keep(const struct pair_columns *columns, const struct pair_batc
         const lanes_real root = c.word[0] + f * c.word[1], damping = root * root;
         lanes_real kick = lanes_load(columns->zeta + k);
         if (scale > 0) // of the damping, so that the two agree wherever r is
-            kick *= scale * root * lanes_sqrt(1 - lanes_least(bound * damping, lanes_all(1)));
+            kick *= scale * root * lanes_sqrt(1 - lanes_min(bound * damping, lanes_all(1)));
         pair_store_directions(friction->direction + place + k,
                               inverse_r * lanes_load(batch->dx + k),
                               inverse_r * lanes_load(batch->dy + k),
@@ -316,7 +316,7 @@ INLINE void pair_count(const struct pair_columns *columns, int count,
     const size_t none = pair_histogram_size(histogram) - 1;
     for (int k = 0; k < count; k++) {
         const REAL place = (columns->r[k] - low) * inverse_width;
-        const int32_t first = mixed ? columns->kind[k] * scene->mixture.bins_apart : 0;
+        const int32_t first = mixed ? columns->kind[k] * scene->mixture.histogram_stride : 0;
         counts[place >= 0 && place < bins ? (size_t)(first + (int32_t)place) : none]++;
     }
 }

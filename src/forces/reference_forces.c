@@ -121,7 +121,7 @@ enum status mf_reference_configurational(const struct table *potential,
     enum status status = STATUS_OK;
     const int dimensions = particles->box.dimensions;
     double *force = NULL;
-    double density[COMPOSITION_MOST_PAIRS] = {0}; // of each pair type
+    double density[COMPOSITION_MAX_PAIRS] = {0}; // of each pair type
     *squares = *laplacian = 0;
     NEW_ARRAY(force, 3 * particles->count);
     for (size_t i = 0; i < particles->count; i++)

@@ -32,11 +32,11 @@ static void choose_classes(struct soft_discs_cells *cells, const double *radius)
     double smallest = largest;
     for (size_t k = 0; k < cells->count; k++)
         smallest = fmin(smallest, radius[k]);
-    cells->classes = 1 + (int)fmin(SOFT_DISCS_MOST_CLASSES - 1,
+    cells->classes = 1 + (int)fmin(SOFT_DISCS_MAX_CLASSES - 1,
                                    floor(log(largest / smallest) / log(class_factor)));
     for (int c = 0; c < cells->classes; c++)
         cells->of[c].largest = largest / pow(class_factor, cells->classes - 1 - c);
-    double found[SOFT_DISCS_MOST_CLASSES] = {0};
+    double found[SOFT_DISCS_MAX_CLASSES] = {0};
     for (size_t k = 0; k < cells->count; k++) {
         const int class = class_of(cells, radius[k]);
         found[class] = fmax(found[class], radius[k]);
@@ -70,7 +70,7 @@ static int choose_cells(struct soft_discs_cells *cells, const struct box *box) {
 enum status mf_soft_discs_cells_init(struct soft_discs_cells *cells,
                                      const struct particles *particles, bool precise) {
     enum status status = STATUS_OK;
-    const size_t count = particles->count, room = count + PARTICLES_PADDING;
+    const size_t count = particles->count, capacity = count + PARTICLES_PADDING;
     *cells = (struct soft_discs_cells){.count = count};
     choose_classes(cells, mf_particles_numbers(particles, "radius"));
     const int total = choose_cells(cells, &particles->box);
@@ -79,16 +79,16 @@ enum status mf_soft_discs_cells_init(struct soft_discs_cells *cells,
     for (int c = 0; c < cells->classes; c++)
         rows += (size_t)cells->of[c].rows;
     NEW_ARRAY(cells->block, count / SOFT_DISCS_BLOCK + rows);
-    NEW_ARRAY(cells->radius, room);
-    NEW_ARRAY(cells->stiffness, room);
+    NEW_ARRAY(cells->radius, capacity);
+    NEW_ARRAY(cells->stiffness, capacity);
     for (int d = 0; d < 2; d++) {
-        NEW_ARRAY(cells->fraction[d], room);
+        NEW_ARRAY(cells->fraction[d], capacity);
         if (precise)
-            NEW_ARRAY(cells->position[d], room);
+            NEW_ARRAY(cells->position[d], capacity);
     }
     if (precise) {
-        NEW_ARRAY(cells->precise_radius, room);
-        NEW_ARRAY(cells->precise_stiffness, room);
+        NEW_ARRAY(cells->precise_radius, capacity);
+        NEW_ARRAY(cells->precise_stiffness, capacity);
     }
 done:
     return status;

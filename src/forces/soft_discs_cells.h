@@ -15,7 +15,7 @@
 
 #include <stdbool.h>
 
-enum { SOFT_DISCS_MOST_CLASSES = 12, SOFT_DISCS_BLOCK = 8 };
+enum { SOFT_DISCS_MAX_CLASSES = 12, SOFT_DISCS_BLOCK = 8 };
 
 struct soft_discs_class {
     double largest; ///< radius in it [λ]
@@ -34,7 +34,7 @@ struct soft_discs_block {
 struct soft_discs_cells {
     size_t count;
     int classes;
-    struct soft_discs_class of[SOFT_DISCS_MOST_CLASSES]; ///< from small to large
+    struct soft_discs_class of[SOFT_DISCS_MAX_CLASSES]; ///< from small to large
     size_t blocks;
     struct soft_discs_block *block; ///< shape [blocks], of all classes
     struct cells sorted;            ///< the cells of all classes, one behind the other

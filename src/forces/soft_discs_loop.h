@@ -69,7 +69,7 @@ INLINE void discs_add(struct discs_block *block, const struct discs_scene *scene
         const lanes_real dy = discs_separation(scene, block->place[1][n], at, 1);
         const lanes_real s = radius + block->radius[n];
         const lanes_real r2 = dx * dx + dy * dy;
-        const lanes_real overlap = lanes_least(r2 - s * s, zero);
+        const lanes_real overlap = lanes_min(r2 - s * s, zero);
         lanes_real force = stiffness * overlap;
         block->x[n] += force * dx;
         block->y[n] += force * dy;

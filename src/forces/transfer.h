@@ -20,8 +20,8 @@
 #include <math.h>
 
 struct transfer {
-    double sum[3][3];                         ///< G [k_B T_0 τ]
-    double part[NEIGHBOURS_MOST_PARTS][3][3]; ///< of the parts of a list, in one pass or sweep
+    double sum[3][3];                        ///< G [k_B T_0 τ]
+    double part[NEIGHBOURS_MAX_PARTS][3][3]; ///< of the parts of a list, in one pass or sweep
 };
 
 /// Add an impulse [μ λ/τ] on the first of a pair, r = distance · e.

@@ -3,14 +3,14 @@
 // Inverse Monte Carlo near its solution, and before that the steps that need no response, or little
 // of it: of one type of beads by the hypernetted chain, or, in two dimensions and of molecules
 // whose own structure is not known, Boltzmann inversion; of several pair types and of groups with
-// the response of few coefficients (inversion/inversion_coarse.h). A Newton step converges at once
-// near the solution and leads away from far off it (its basin; P. Deuflhard, Newton Methods for
-// Nonlinear Problems (2004), section 2.1): where the samples know C it is tried, with the other in
-// reserve, each time that the error has halved since it led away; of groups only near their
+// the response of few coefficients (inversion/inversion_low_rank.h). A Newton step converges at
+// once near the solution and leads away from far off it (its basin; P. Deuflhard, Newton Methods
+// for Nonlinear Problems (2004), section 2.1): where the samples know C it is tried, with the other
+// in reserve, each time that the error has halved since it led away; of groups only near their
 // targets.
-#include "inversion/inversion_coarse.h"
+#include "inversion/inversion_low_rank.h"
 #include "inversion/inversion.h"
-#include "inversion/inversion_inside.h"
+#include "inversion/inversion_intramolecular.h"
 #include "inversion/method_steps.h"
 
 #include <math.h>
@@ -27,16 +27,16 @@ static bool may_be_in_basin(const struct inversion *inversion) {
     const bool start = isinf(progress->best.distance[TARGET_RDF].rms);
     return mf_inversion_is_near(inversion) ||
            (!start && inversion_grid(inversion)->groups == 0 &&
-            inversion->verdict.distance[TARGET_RDF].rms < again * progress->failed_error);
+            inversion->assessment.distance[TARGET_RDF].rms < again * progress->failed_error);
 }
 
 static enum status careful_step(struct inversion_state *state, double *step) {
-    if (state->coarse.count > 0) {
-        TRY(mf_inversion_coarse_step(state, step));
+    if (state->low_rank.count > 0) {
+        TRY(mf_inversion_low_rank_step(state, step));
         mf_inversion_pressure_add_ramp(state, step);
         return STATUS_OK;
     }
-    if (mf_inversion_knows_inside(state))
+    if (mf_inversion_knows_intramolecular(state))
         return mf_hnc_step(state, step);
     mf_ibi_step(state, step);
     return STATUS_OK;

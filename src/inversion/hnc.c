@@ -9,7 +9,7 @@
 // 451 (1985)) was tried: for water the noise of S at small q made every step but the first useless.
 #include "inversion/hnc_closure.h"
 #include "inversion/inversion.h"
-#include "inversion/inversion_inside.h"
+#include "inversion/inversion_intramolecular.h"
 #include "inversion/method_steps.h"
 
 /// Structure factors below this are not trusted.
@@ -58,7 +58,7 @@ const struct inverse_method mf_hnc = {
     .name = "hnc",
     .summary = "Newton steps by the hypernetted chain; F. Delbary, M. Hanke and D. Ivanizki, J. "
                "Inverse Ill-Posed Probl. 28 (2020)",
-    .own = &(const struct inversion_rule){.update = update, .forgets = true},
+    .own = &(const struct inversion_rule){.update = update, .memoryless = true},
     .columns = columns,
     .create = create,
     INVERSION_PARAMETERS,

@@ -13,7 +13,7 @@ static const double ranges = 8;
 
 /// S(q) counts as no less in h − c. Measured: with 0.01 the noise of a soft fluid's g, S(0) = 0.06,
 /// made a potential so wrong (g off by 0.9) that no inversion came back from it.
-static const double least_structure = 0.1;
+static const double min_structure = 0.1;
 
 /// Transform at q of `values` − `zero` in the bins and of `core` below the first.
 static double transform(const struct rdf_bins *bins, const double *values, double zero, double core,
@@ -30,7 +30,7 @@ static double transform(const struct rdf_bins *bins, const double *values, doubl
 /// Matrices over the types at one q: transforms times sqrt(ρ_a ρ_b).
 struct wave {
     const struct hnc_liquid *liquid;
-    double density[COMPOSITION_MOST_TYPES];
+    double density[COMPOSITION_MAX_TYPES];
     gsl_matrix *matrix, *vectors; ///< S or Ω, which is lost, and its eigenvectors
     gsl_matrix *result, *scratch;
     gsl_vector *values; ///< its eigenvalues
@@ -110,7 +110,7 @@ static void take_from_indirect(struct wave *wave) {
         const double s = gsl_vector_get(wave->values, i);
         for (size_t j = 0; j < wave->values->size; j++) {
             double *value = gsl_matrix_ptr(wave->result, i, j);
-            *value = (i == j ? (s - 1) * (s - 1) / fmax(s, least_structure) : 0) - *value;
+            *value = (i == j ? (s - 1) * (s - 1) / fmax(s, min_structure) : 0) - *value;
         }
     }
     rotate(wave, true);
@@ -199,15 +199,15 @@ enum status mf_hnc_closure_slope(const struct hnc_liquid *liquid, const double *
     return solve(liquid, g, difference, ridge, indirect);
 }
 
-enum status mf_hnc_closure_least_inside(const struct hnc_liquid *liquid, double *least) {
+enum status mf_hnc_closure_min_intramolecular(const struct hnc_liquid *liquid, double *min) {
     struct wave wave = {0};
     double spacing;
     const size_t waves = count_waves(liquid->bins, &spacing);
     const enum status status = wave_init(&wave, liquid);
-    *least = 1;
+    *min = 1;
     for (size_t n = 1; status == STATUS_OK && n <= waves; n++) {
         diagonalise(&wave, NULL, (double)n * spacing);
-        *least = fmin(*least, gsl_vector_min(wave.values));
+        *min = fmin(*min, gsl_vector_min(wave.values));
     }
     wave_clear(&wave);
     return status;

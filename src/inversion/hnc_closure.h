@@ -48,4 +48,5 @@ enum status mf_hnc_closure_slope(const struct hnc_liquid *liquid, const double *
 /// The least eigenvalue of Ω at any q. Near 0, as of small molecules that exclude all their pairs,
 /// g of the types are hardly independent at small q, and their differences noise.
 /// Fails: NO_MEMORY. Tested: test_hnc_closure_molecules.
-enum status mf_hnc_closure_least_inside(const struct hnc_liquid *liquid, double *least) MUST_USE;
+enum status mf_hnc_closure_min_intramolecular(const struct hnc_liquid *liquid,
+                                              double *min) MUST_USE;

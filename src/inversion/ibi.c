@@ -18,9 +18,9 @@ void mf_ibi_logarithms(const struct inversion_state *state, double *step) {
         }
         // An empty bin is as full as one with the threshold's few pairs.
         const size_t bin = grid->known_bin[n];
-        const double least = state->target.least[bin];
-        const double g = fmax(mf_inversion_g(state, bin), least);
-        const double target = fmax(mf_inversion_target_g(state, bin), least);
+        const double min = state->target.min[bin];
+        const double g = fmax(mf_inversion_g(state, bin), min);
+        const double target = fmax(mf_inversion_target_g(state, bin), min);
         step[grid->known_point[n]] = state->problem->scene.temperature * log(g / target);
     }
 }
@@ -43,14 +43,14 @@ static void keep_within_noise(const struct inversion_state *state, double *step)
     const struct potential_grid *grid = &state->grid;
     for (size_t n = grid->pairs_known; n < grid->known; n++) {
         const size_t bin = grid->known_bin[n];
-        const double least = state->target.least[bin] * state->target.ideal[bin];
+        const double min = state->target.min[bin] * state->target.ideal[bin];
         const double target = state->target.counts[bin];
         const double excess = state->replicas.counts.mean[bin] - target;
         const double beyond = fmax(0, fabs(excess) - errors * error_of(state, n));
         const double counts = target + copysign(beyond, excess);
         if (grid->seen[n] && !grid->well_known[n])
             step[grid->known_point[n]] =
-                state->problem->scene.temperature * log(fmax(counts, least) / fmax(target, least));
+                state->problem->scene.temperature * log(fmax(counts, min) / fmax(target, min));
     }
 }
 
@@ -71,7 +71,7 @@ const struct inverse_method mf_ibi = {
     .summary =
         "iterative Boltzmann inversion; D. Reith, M. Puetz and F. Mueller-Plathe, J. Comput. "
         "Chem. 24, 1624 (2003)",
-    .own = &(const struct inversion_rule){.update = update, .forgets = true},
+    .own = &(const struct inversion_rule){.update = update, .memoryless = true},
     .knows_molecules = true,
     .columns = columns,
     .create = mf_inversion_create,

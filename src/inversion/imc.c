@@ -2,7 +2,7 @@
 //
 // Inverse Monte Carlo. A. P. Lyubartsev and A. Laaksonen, Phys. Rev. E 52, 3730 (1995).
 #include "inversion/imc_solve.h"
-#include "inversion/inversion_coarse.h"
+#include "inversion/inversion_low_rank.h"
 #include "inversion/inversion.h"
 #include "inversion/method_steps.h"
 
@@ -56,11 +56,11 @@ done:
 }
 
 /// The step far from the targets of groups.
-static enum status step_coarsely(struct inversion *inversion, double *step) {
+static enum status step_low_rank(struct inversion *inversion, double *step) {
     struct inversion_state *first = inversion->state;
     if (inversion->states > 1)
-        return mf_inversion_states_coarse_step(first, inversion->states, step);
-    TRY(mf_inversion_coarse_step(first, step));
+        return mf_inversion_states_low_rank_step(first, inversion->states, step);
+    TRY(mf_inversion_low_rank_step(first, step));
     mf_inversion_pressure_add_ramp(first, step);
     return STATUS_OK;
 }
@@ -74,8 +74,8 @@ enum status mf_imc_step(struct inversion *inversion, double *step, double extra[
     struct imc_system system = first->grid.groups > 0 ? equations->of_response : equations->system;
     struct imc_solution solution;
     double *x = NULL;
-    if (mf_inversion_is_coarse(inversion))
-        return step_coarsely(inversion, step);
+    if (mf_inversion_is_low_rank(inversion))
+        return step_low_rank(inversion, step);
     if (targets_ask(targets, TARGET_PRESSURE) && !equations->reduced) {
         system.constraint = first->pressure.slope;
         system.wanted = *targets->target[TARGET_PRESSURE].value - first->pressure.value;

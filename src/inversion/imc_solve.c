@@ -155,10 +155,10 @@ static void meet(const struct imc_system *s, const double *u, double *x) {
 }
 
 /// What is left in a discrepancy principle: 1, or more where not even the weakest regularisation,
-/// which leaves `least`, comes so far. To follow the excess down to that would make the potential
+/// which leaves `min`, comes so far. To follow the excess down to that would make the potential
 /// large in directions that do not matter.
-static double discrepancy(double least) {
-    return fmax(1, least + noise_share);
+static double discrepancy(double min) {
+    return fmax(1, min + noise_share);
 }
 
 /// H⁻¹ p, with H = RᵀR.

@@ -8,7 +8,7 @@ bool mf_inversion_is_near(const struct inversion *inversion) {
     const struct inversion_state *first = inversion->state;
     return first->basis.count > 0
                ? mf_inversion_state_is_near(first)
-               : mf_inversion_verdict_is_near(&inversion->verdict, first->pool.samples > 0);
+               : mf_inversion_assessment_is_near(&inversion->assessment, first->pool.samples > 0);
 }
 
 // Samples -----------------------------------------------------------------------------------------
@@ -20,12 +20,12 @@ struct sharing {
     const struct inverse_listener *listener;
 };
 
-static void tell_of_state(void *context, const struct inverse_progress *own) {
+static void report_of_state(void *context, const struct inverse_progress *own) {
     const struct sharing *sharing = context;
     struct inverse_progress all = *own;
     all.done += sharing->state * own->total;
     all.total *= sharing->inversion->states;
-    sharing->listener->tell(sharing->listener->context, &all);
+    sharing->listener->report(sharing->listener->context, &all);
 }
 
 enum status mf_inversion_observe(struct inversion *inversion,
@@ -34,14 +34,14 @@ enum status mf_inversion_observe(struct inversion *inversion,
         struct inversion_state *state = &inversion->state[s];
         struct sharing sharing = {inversion, s, listener};
         TRY(mf_inversion_sample(inversion, state,
-                                &(struct inverse_listener){tell_of_state, &sharing}));
+                                &(struct inverse_listener){report_of_state, &sharing}));
         TRY(mf_inversion_response_assess(state));
-        if (state->verdict.unsettled.found)
+        if (state->assessment.unequilibrated.found)
             state->pool.samples = 0;
         else
             mf_inversion_pool(state);
     }
-    mf_inversion_states_verdict(inversion->state, inversion->states, &inversion->verdict);
+    mf_inversion_states_assess(inversion->state, inversion->states, &inversion->assessment);
     return STATUS_OK;
 }
 
@@ -64,14 +64,14 @@ static void show_groups(const struct inversion *inversion, struct inverse_step *
 static void describe_samples(const struct inversion *inversion, const double *own,
                              struct inverse_step *step) {
     const struct inversion_state *first = inversion->state;
-    const struct inversion_verdict *verdict = &inversion->verdict;
+    const struct inversion_assessment *assessment = &inversion->assessment;
     const double particles = (double)mf_composition_particles(&first->composition);
     const struct replicas_mean energy =
         mf_replicas_mean(&first->replicas, SAMPLER_ENERGY, first->inefficiency);
     const double columns[INVERSION_SHARED_COLUMNS] = {inversion->course.progress.damping,
-                                                      verdict->own_noise,
-                                                      verdict->disagreement,
-                                                      verdict->distance[TARGET_RDF].rms,
+                                                      assessment->own_noise,
+                                                      assessment->disagreement,
+                                                      assessment->distance[TARGET_RDF].rms,
                                                       first->pressure.value,
                                                       first->pressure.error,
                                                       mf_replicas_acceptance(&first->replicas),
@@ -90,7 +90,7 @@ static void describe(const struct inversion *inversion, const double *own, bool 
     const struct inversion_course *course = &inversion->course;
     const struct inversion_progress *progress = &course->progress;
     const struct targets *targets = &inversion->problem->targets;
-    const bool stuck = progress->damping < mf_inversion_least_damping;
+    const bool stuck = progress->damping < mf_inversion_min_damping;
     *step = (struct inverse_step){
         .iteration = progress->iteration,
         .error = mf_targets_error(targets, progress->best.distance),
@@ -110,7 +110,7 @@ static void describe(const struct inversion *inversion, const double *own, bool 
     show_groups(inversion, step);
     describe_samples(inversion, own, step);
     if (step->finished && !converged)
-        mf_inversion_reason_tell(inversion, step->reason);
+        mf_inversion_reason_write(inversion, step->reason);
 }
 
 // An iteration ------------------------------------------------------------------------------------
@@ -124,10 +124,12 @@ static enum status advance(struct inversion *inversion, struct inverse_step *ste
     bool kept, converged;
     course->has_other = course->most_probable = false;
     TRY(rule->update(inversion, own));
-    mf_inversion_trail_add(&inversion->trail, first->replicas.counts.mean, first->target.counts);
-    TRY(mf_inversion_course_judge(inversion, &kept));
-    converged = mf_inversion_has_converged(inversion, kept && !inversion->verdict.unsettled.found);
-    if (course->walked)
+    mf_inversion_history_add(&inversion->history, first->replicas.counts.mean,
+                             first->target.counts);
+    TRY(mf_inversion_course_accept(inversion, &kept));
+    converged =
+        mf_inversion_has_converged(inversion, kept && !inversion->assessment.unequilibrated.found);
+    if (course->not_stationary)
         TRY(mf_inversion_band_find(inversion));
     if (converged)
         TRY(mf_inversion_take_last_step(inversion));
@@ -145,7 +147,7 @@ enum status mf_inversion_iterate(void *memory, struct inverse_step *step,
         TRY(mf_inversion_start_of_molecules(inversion, listener));
     TRY(mf_inversion_observe(inversion, listener));
     TRY(mf_inversion_equations_fill(&inversion->equations,
-                                    mf_inversion_band_birge(&inversion->verdict)));
+                                    mf_inversion_band_birge(&inversion->assessment)));
     TRY(advance(inversion, step));
     if (inversion->states > 1)
         mf_inversion_states_end(inversion, step);

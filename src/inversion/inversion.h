@@ -25,7 +25,7 @@
 #include "inversion/inversion_equations.h"
 #include "inversion/inversion_smooth.h"
 #include "inversion/inversion_states.h"
-#include "inversion/inversion_trail.h"
+#include "inversion/inversion_history.h"
 
 extern const struct field mf_inversion_fields[]; ///< of struct inversion_parameters
 
@@ -34,13 +34,13 @@ struct inversion;
 /// What an inversion has of its own (inverse_method.own): the step from its samples, for the known
 /// bins, into `course.step`; perhaps another into `course.other_step`, with `has_other` set, to be
 /// taken from here if that one makes it worse; and up to INVERSION_OWN_COLUMNS columns. A method
-/// that `forgets` goes by the present samples alone: each of its potentials has their noise. One
+/// that `memoryless` goes by the present samples alone: each of its potentials has their noise. One
 /// whose potentials are made of few coefficients, which measures their gradient and goes by that,
 /// says by its parameters how many.
 struct inversion_rule {
     enum status (*update)(struct inversion *inversion, double *extra);
     const struct inversion_basis_size *(*coefficients)(const void *parameters); ///< or NULL
-    bool forgets;
+    bool memoryless;
 };
 
 struct inversion {
@@ -49,12 +49,12 @@ struct inversion {
     const struct inverse_problem *problem; ///< of the first state
     struct inversion_state *state;         ///< shape [states]; the tables show the first one
     size_t states;
-    struct inversion_verdict verdict;     ///< of all states
-    struct inversion_equations equations; ///< of all states
+    struct inversion_assessment assessment; ///< of all states
+    struct inversion_equations equations;   ///< of all states
     struct inversion_course course;
-    struct inversion_standstill standstill; ///< of several states
+    struct inversion_stagnation stagnation; ///< of several states
     double *smoothness;                     ///< of each group, see inversion_smooth.h
-    struct inversion_trail trail;           ///< of all iterations
+    struct inversion_history history;       ///< of all iterations
 };
 
 /// The known bins and all points of the potentials, which are those of all states; what a state has
@@ -108,15 +108,15 @@ enum status mf_inversion_observe(struct inversion *inversion,
 /// is small against their error, and assess them. Samples in equilibrium count for all; those that
 /// are far from their targets and not from equilibrium, for a step. They are left `useless` where
 /// they have cost 200 times as much as the first ones, or get farther and cannot be kept. Fails:
-/// NO_MEMORY, INTERRUPTED. Tested: test_inversion_doubling, test_inversion_settled.
+/// NO_MEMORY, INTERRUPTED. Tested: test_inversion_doubling, test_inversion_equilibrium.
 enum status mf_inversion_sample(struct inversion *inversion, struct inversion_state *state,
                                 const struct inverse_listener *listener) MUST_USE;
 
 /// Whether samples that have not settled do for a step: all that is asked for is so far off that
 /// what has not settled is a third of it at most. A potential that is far off may freeze a liquid
 /// or tear it, which takes for ever and tells no more of the way to the target. Tested:
-/// test_inversion_settled.
-bool mf_inversion_tells_way(const struct inversion_state *state);
+/// test_inversion_equilibrium.
+bool mf_inversion_gives_direction(const struct inversion_state *state);
 
 /// Whether the verdict is near, as mf_inversion_state_is_near.
 bool mf_inversion_is_near(const struct inversion *inversion);
@@ -130,7 +130,7 @@ enum status mf_inversion_start(struct inversion_state *state, double *phi) MUST_
 
 /// The same of molecules, whose structure by themselves is sampled first. Nothing changes for
 /// single beads, several states, and a start that the run file gives. Fails: as
-/// mf_inversion_inside_find.
+/// mf_inversion_intramolecular_find.
 enum status mf_inversion_start_of_molecules(struct inversion *inversion,
                                             const struct inverse_listener *listener) MUST_USE;
 
@@ -148,8 +148,8 @@ bool mf_inversion_start_has_other(const struct inversion *inversion,
 /// Whether samples of the hypernetted chain's start are far off under tension, so that it freezes,
 /// or tears.
 /// @param[in] verdict  the state's, or that of all
-bool mf_inversion_start_tears(const struct inversion_state *state,
-                              const struct inversion_verdict *verdict);
+bool mf_inversion_start_is_under_tension(const struct inversion_state *state,
+                                         const struct inversion_assessment *assessment);
 
 /// Whether the start was the hypernetted chain's and leads nowhere, after an iteration whose
 /// potential was kept or not.

@@ -9,7 +9,7 @@
 #include <string.h>
 
 /// Share of the present samples in what all iterations near the target tell, at least.
-static const double least_share = 1.0 / 3;
+static const double min_share = 1.0 / 3;
 
 /// The gradient of coefficients, in its noise, below which C hardly changes any more.
 static const double near_gradient = 3;
@@ -172,7 +172,7 @@ static double assess(struct inversion_state *state, struct inversion_section *se
     section->inefficiency = mf_replicas_inefficiency(&state->replicas, REPLICAS_BLOCKS, ideal,
                                                      known, section->known_count);
     // Blocks do not see what lasts longer than a replica.
-    if (state->verdict.unsettled.found)
+    if (state->assessment.unequilibrated.found)
         section->inefficiency =
             fmax(section->inefficiency,
                  mf_replicas_inefficiency(&state->replicas, 1, ideal, known, section->known_count));
@@ -203,7 +203,7 @@ static double assess(struct inversion_state *state, struct inversion_section *se
                                                    section->known + section->known_count);
     const struct explained explained =
         explain(state, state->excess, section->known, section->known + section->known_count);
-    add_distance(&state->verdict.distance[section->kind], sum, whole, own, section->bins);
+    add_distance(&state->assessment.distance[section->kind], sum, whole, own, section->bins);
     section->rms = sqrt(fmax(0, sum - explained.square) / bins) / section->peak;
     section->noise = sqrt(fmax(0, both - explained.noise) / bins) / section->peak;
     section->misfit = seen > 0 ? misfit / seen : 0;
@@ -228,10 +228,10 @@ static double count_seen(const struct potential_grid *grid) {
 
 /// From the mean variance of the bins to that of their rms.
 static void finish_distance(struct inversion_state *state, int kind) {
-    struct target_distance *distance = &state->verdict.distance[kind];
+    struct target_distance *distance = &state->assessment.distance[kind];
     bool counted = false;
-    for (int k = 0; k < state->verdict.sections; k++)
-        counted = counted || state->verdict.section[k].kind == kind;
+    for (int k = 0; k < state->assessment.sections; k++)
+        counted = counted || state->assessment.section[k].kind == kind;
     if (counted)
         distance->variance =
             mf_targets_rms_variance(distance->rms, distance->variance, (double)distance->count);
@@ -239,27 +239,27 @@ static void finish_distance(struct inversion_state *state, int kind) {
 
 void mf_inversion_assess(struct inversion_state *state) {
     double misfit = 0;
-    state->verdict.own_noise = state->inefficiency = 0;
-    for (int k = 0; k < state->verdict.sections; k++)
-        state->verdict.distance[state->verdict.section[k].kind] = (struct target_distance){0};
-    for (int k = 0; k < state->verdict.sections; k++) {
-        const struct inversion_section *section = &state->verdict.section[k];
-        misfit += assess(state, &state->verdict.section[k]);
-        state->verdict.own_noise = fmax(state->verdict.own_noise, section->own_noise);
+    state->assessment.own_noise = state->inefficiency = 0;
+    for (int k = 0; k < state->assessment.sections; k++)
+        state->assessment.distance[state->assessment.section[k].kind] = (struct target_distance){0};
+    for (int k = 0; k < state->assessment.sections; k++) {
+        const struct inversion_section *section = &state->assessment.section[k];
+        misfit += assess(state, &state->assessment.section[k]);
+        state->assessment.own_noise = fmax(state->assessment.own_noise, section->own_noise);
         state->inefficiency = fmax(state->inefficiency, section->inefficiency);
     }
     for (int kind = 0; kind < TARGETS; kind++)
         finish_distance(state, kind);
-    state->verdict.disagreement = mf_replicas_disagreement(
+    state->assessment.disagreement = mf_replicas_disagreement(
         &state->replicas, state->target.ideal, state->grid.known_bin, state->grid.known);
-    state->verdict.misfit = misfit / count_seen(&state->grid);
+    state->assessment.misfit = misfit / count_seen(&state->grid);
     mf_inversion_kirkwood_buff_measure(state);
 }
 
 bool mf_inversion_state_is_near(const struct inversion_state *state) {
     if (state->basis.count > 0)
         return state->gradient < near_gradient;
-    return mf_inversion_verdict_is_near(&state->verdict, state->pool.samples > 0);
+    return mf_inversion_assessment_is_near(&state->assessment, state->pool.samples > 0);
 }
 
 /// The mean excess of the pool, S̄ at the mean potential Φ̄, at the present one: S̄ − C (Φ − Φ̄)/k_B T.
@@ -285,7 +285,7 @@ void mf_inversion_pool(struct inversion_state *state) {
         *pool = 0;
         return;
     }
-    const double share = fmax(least_share, now / (*pool + now));
+    const double share = fmax(min_share, now / (*pool + now));
     for (size_t a = 0; a < grid->known; a++) {
         const double target = mf_inversion_target_variance(state, a);
         double *excess = &state->pool.excess[a], *sampled = &state->pool.variance[a];

@@ -32,7 +32,7 @@ size_t mf_inversion_band_spans(struct inversion_band *band, size_t points,
     span[1] = (struct memory_span){band->without_ramp, points * sizeof(double)};
     span[2] = (struct memory_span){band->flat, INVERSE_FLAT * points * sizeof(double)};
     span[3] = (struct memory_span){&band->ramp, sizeof band->ramp};
-    span[4] = (struct memory_span){&band->ways, sizeof band->ways};
+    span[4] = (struct memory_span){&band->drifts, sizeof band->drifts};
     return INVERSION_BAND_SPANS;
 }
 
@@ -151,29 +151,30 @@ done:
 }
 
 /// What this step would change of the number whose slope is v.
-static struct inversion_band_way find_way(const struct inversion *inversion, const double *v,
-                                          const double *step, double *scratch) {
-    struct inversion_band_way found = {0, sqrt(spread(inversion, v, scratch))};
+static struct inversion_band_drift find_drift(const struct inversion *inversion, const double *v,
+                                              const double *step, double *scratch) {
+    struct inversion_band_drift found = {0, sqrt(spread(inversion, v, scratch))};
     for (size_t a = 0; a < inversion_grid(inversion)->known; a++)
-        found.way += v[a] * step[a];
+        found.drift += v[a] * step[a];
     return found;
 }
 
-static void find_ways(struct inversion *inversion, const double *step, const double *weight,
-                      double *scratch) {
-    struct inversion_band_ways *ways = &inversion->course.band.ways;
-    ways->ramp = find_way(inversion, weight, step, scratch);
+static void find_drifts(struct inversion *inversion, const double *step, const double *weight,
+                        double *scratch) {
+    struct inversion_band_drifts *drifts = &inversion->course.band.drifts;
+    drifts->ramp = find_drift(inversion, weight, step, scratch);
     for (size_t s = 0; s < inversion->states; s++)
-        ways->pressure[s] = find_way(inversion, inversion->state[s].pressure.slope, step, scratch);
-    inversion->course.band.ramp.way = ways->ramp.way;
-    inversion->course.band.ramp.pressure_way = ways->pressure[0].way;
+        drifts->pressure[s] =
+            find_drift(inversion, inversion->state[s].pressure.slope, step, scratch);
+    inversion->course.band.ramp.drift = drifts->ramp.drift;
+    inversion->course.band.ramp.pressure_drift = drifts->pressure[0].drift;
 }
 
 /// The way of A counts as an error: Σ ← Σ + (A/σ_A²)² Σw (Σw)ᵀ.
-static void add_way(struct inversion *inversion, const double *weight, double *scratch) {
+static void add_drift(struct inversion *inversion, const double *weight, double *scratch) {
     const double variance = spread(inversion, weight, scratch);
     if (variance > 0) // without pairs there is no ramp
-        add_square(inversion, pow(inversion->course.band.ways.ramp.way / variance, 2), scratch);
+        add_square(inversion, pow(inversion->course.band.drifts.ramp.drift / variance, 2), scratch);
 }
 
 /// A fit that ends while it walks on has gone where its targets hardly see: the way is an error.
@@ -192,7 +193,7 @@ static void add_pressure(struct inversion *inversion, double *scratch) {
     inversion->course.band.ramp.pressure_open = sqrt(open);
     if (!targets_ask(&inversion->problem->targets, TARGET_PRESSURE) || inversion->equations.reduced)
         return; // it is among the equations
-    const double noise = inversion->verdict.distance[TARGET_PRESSURE].noise;
+    const double noise = inversion->assessment.distance[TARGET_PRESSURE].noise;
     add_square(inversion, -1 / (open + noise * noise), scratch);
 }
 
@@ -247,7 +248,7 @@ static double find_scatter(const struct inversion_state *state, size_t first, si
 
 /// What the bins of a group have in common of the error of −k_B T ln p, as the populations of two
 /// wells that a molecule seldom leaves: a smooth U follows it, and is not known better.
-static double least_of_group(const struct inversion *inversion, size_t a) {
+static double min_of_group(const struct inversion *inversion, size_t a) {
     const struct potential_grid *grid = inversion_grid(inversion);
     const size_t bin = grid->known_bin[a];
     size_t first = grid->pairs_known, end, group = 0;
@@ -266,13 +267,13 @@ static double least_of_group(const struct inversion *inversion, size_t a) {
     return known.counts > 0 ? 1 / sqrt(known.weighed) : 0;
 }
 
-double mf_inversion_band_least(const struct inversion *inversion, size_t a) {
+double mf_inversion_band_min_error(const struct inversion *inversion, size_t a) {
     const size_t bin = inversion_grid(inversion)->known_bin[a];
     struct counted asked = {0}, seen = {0};
     if (inversion->state->basis.count > 0)
         return 0;
     if (a >= inversion_grid(inversion)->pairs_known)
-        return least_of_group(inversion, a);
+        return min_of_group(inversion, a);
     for (size_t s = 0; s < inversion->states; s++) {
         const struct inversion_state *own = &inversion->state[s];
         count_state(&asked, own,
@@ -293,10 +294,10 @@ static void find_errors(struct inversion *inversion, const double *weight, doubl
     for (size_t a = 0; a < n; a++) {
         const double variance = band->covariance[a * n + a];
         const double of_ramp = ramp_variance > 0 ? scratch[a] * scratch[a] / ramp_variance : 0;
-        const double least = mf_inversion_band_least(inversion, a);
-        band->error[grid->known_point[a]] = variance >= 0 ? fmax(sqrt(variance), least) : NAN;
+        const double min = mf_inversion_band_min_error(inversion, a);
+        band->error[grid->known_point[a]] = variance >= 0 ? fmax(sqrt(variance), min) : NAN;
         band->without_ramp[grid->known_point[a]] =
-            variance >= 0 ? fmax(sqrt(fmax(0, variance - of_ramp)), least) : NAN;
+            variance >= 0 ? fmax(sqrt(fmax(0, variance - of_ramp)), min) : NAN;
     }
     for (size_t g = 0; g < grid->groups; g++) {
         mf_potential_grid_close(grid, g, band->error);
@@ -348,22 +349,22 @@ done:
     return status;
 }
 
-struct inversion_band_way mf_inversion_band_farthest(const struct inversion *inversion) {
-    const struct inversion_band_way *pressure = inversion->course.band.ways.pressure;
+struct inversion_band_drift mf_inversion_band_farthest(const struct inversion *inversion) {
+    const struct inversion_band_drift *pressure = inversion->course.band.drifts.pressure;
     size_t farthest = 0;
     for (size_t s = 1; s < inversion->states; s++)
-        if (fabs(pressure[s].way) * pressure[farthest].open >
-            fabs(pressure[farthest].way) * pressure[s].open)
+        if (fabs(pressure[s].drift) * pressure[farthest].open >
+            fabs(pressure[farthest].drift) * pressure[s].open)
             farthest = s;
     return pressure[farthest];
 }
 
-double mf_inversion_band_birge(const struct inversion_verdict *verdict) {
-    return fmax(1, verdict->misfit);
+double mf_inversion_band_birge(const struct inversion_assessment *assessment) {
+    return fmax(1, assessment->misfit);
 }
 
 double mf_inversion_band_prior(const struct inversion *inversion) {
-    return mf_inversion_band_birge(&inversion->verdict) /
+    return mf_inversion_band_birge(&inversion->assessment) /
            pow(inversion->problem->scene.temperature, 2);
 }
 
@@ -372,7 +373,7 @@ enum status mf_inversion_band_find(struct inversion *inversion) {
     const struct potential_grid *grid = inversion_grid(inversion);
     struct inversion_band *band = &inversion->course.band;
     double *weight = NULL, *scratch = NULL, *step = NULL;
-    const double birge = mf_inversion_band_birge(&inversion->verdict);
+    const double birge = mf_inversion_band_birge(&inversion->assessment);
     struct imc_shape *shape = NULL;
     NEW_ARRAY(weight, grid->known);
     NEW_ARRAY(scratch, grid->known);
@@ -389,12 +390,12 @@ enum status mf_inversion_band_find(struct inversion *inversion) {
     take_constants_off(inversion);
     weigh_ramp(inversion, weight);
     CHECK(find_step(inversion, &system, birge, step));
-    find_ways(inversion, step, weight, scratch);
-    if (inversion->course.walked) {
+    find_drifts(inversion, step, weight, scratch);
+    if (inversion->course.not_stationary) {
         add_walk(inversion, scratch);
         take_constants_off(inversion);
     }
-    add_way(inversion, weight, scratch);
+    add_drift(inversion, weight, scratch);
     add_pressure(inversion, scratch);
     find_errors(inversion, weight, scratch);
     if (!isnan(band->covariance[0]))

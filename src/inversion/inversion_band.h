@@ -44,13 +44,13 @@
 #include "problem/inverse.h"
 
 struct inversion;
-struct inversion_verdict;
+struct inversion_assessment;
 
 /// What the target still asks for of a number that it hardly sees, and the standard error by g(r)
 /// alone: that of the present samples, in which no way counts, neither this one nor that of a fit
 /// that has walked.
-struct inversion_band_way {
-    double way, open;
+struct inversion_band_drift {
+    double drift, open;
 };
 
 struct inversion_band {
@@ -60,9 +60,9 @@ struct inversion_band {
     double
         *flat; ///< inverse_step.curve_flat, shape [INVERSE_FLAT, points] of pairs, then of groups
     struct inverse_ramp ramp;
-    struct inversion_band_ways {
-        struct inversion_band_way ramp, pressure[INVERSE_MOST_STATES];
-    } ways; ///< of A, and of the pressure of each state [k_B T_0/λ^d]
+    struct inversion_band_drifts {
+        struct inversion_band_drift ramp, pressure[INVERSE_MAX_STATES];
+    } drifts; ///< of A, and of the pressure of each state [k_B T_0/λ^d]
 };
 
 /// Standard deviation of ln λ of a Poisson distribution with the mean λ of which so many were
@@ -74,7 +74,7 @@ double mf_inversion_band_of_counts(double counts);
 /// be at least: both of all states together, of which some have none there, and exact targets
 /// infinitely many; of groups what the errors of their bins have in common. Tested:
 /// test_inversion_band.
-double mf_inversion_band_least(const struct inversion *inversion, size_t a);
+double mf_inversion_band_min_error(const struct inversion *inversion, size_t a);
 
 /// (F + prior)⁻¹.
 /// @param[in]  system      size, blocks, C, variances and what bins have in common, temperature,
@@ -88,11 +88,11 @@ enum status mf_inversion_band_covariance(const struct imc_system *system, double
 
 /// Of the pressures of all states the one whose way is the most of its error. Tested:
 /// test_inversion_start.
-struct inversion_band_way mf_inversion_band_farthest(const struct inversion *inversion);
+struct inversion_band_drift mf_inversion_band_farthest(const struct inversion *inversion);
 
 /// χ² by bin, if above 1: by so much the covariances of g are larger, as what is left of the excess
 /// shows. R. T. Birge, Phys. Rev. 40, 207 (1932).
-double mf_inversion_band_birge(const struct inversion_verdict *verdict);
+double mf_inversion_band_birge(const struct inversion_assessment *assessment);
 
 /// Strength of mf_imc_solve's prior with which its step is the most probable one.
 double mf_inversion_band_prior(const struct inversion *inversion);

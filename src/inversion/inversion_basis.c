@@ -19,8 +19,8 @@ static size_t count_of(const struct potential_grid *grid, size_t block,
     const size_t wanted =
         (size_t)(block < grid->pairs ? parameters->coefficients : parameters->group_coefficients);
     // A constant of a group is no degree of freedom.
-    const size_t most = block < grid->pairs ? known : known - 1;
-    return wanted < most ? wanted : most;
+    const size_t max = block < grid->pairs ? known : known - 1;
+    return wanted < max ? wanted : max;
 }
 
 /// B-splines of a pair type from its first known bin, number `first` of all, to the cutoff.
@@ -97,14 +97,13 @@ static void make_curve(const struct inversion_basis *basis, const struct potenti
 }
 
 void mf_inversion_basis_weights(const struct inversion_state *state, double *weight) {
-    static const double least = 0.01;
+    static const double min = 0.01;
     const struct potential_grid *grid = &state->grid;
     double sum = 0;
     for (size_t a = 0; a < grid->known; a++)
         sum += state->target.counts[grid->known_bin[a]];
     for (size_t a = 0; a < grid->known; a++)
-        weight[a] =
-            fmax(state->target.counts[grid->known_bin[a]], least * sum / (double)grid->known);
+        weight[a] = fmax(state->target.counts[grid->known_bin[a]], min * sum / (double)grid->known);
 }
 
 enum status mf_inversion_basis_project(const struct inversion_basis *basis,
@@ -237,11 +236,11 @@ static void invert(const struct inversion_basis *basis, double larger, double he
 /// Schneider, Astron. Astrophys. 464, 399 (2007). Far from it the diagonal is larger by K/n, which
 /// all but stops what C hardly sees, as the ramp.
 static void damp(struct inversion_basis *basis, bool near) {
-    static const double most = 0.5;
+    static const double max = 0.5;
     const double part = (double)basis->count / basis->samples;
     invert(basis, near ? 1 : 1 + part, 1 / basis->pooled, basis->damped);
     for (size_t k = 0; near && k < basis->count * basis->count; k++)
-        basis->damped[k] *= 1 - fmin(part, most);
+        basis->damped[k] *= 1 - fmin(part, max);
 }
 
 /// The step of the coefficients, and what it promises.

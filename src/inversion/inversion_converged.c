@@ -8,11 +8,11 @@
 
 /// The way that is left of the ramp, and of the pressure, in their errors, at which both have
 /// settled.
-static const double settled_way = 0.5;
+static const double settled_drift = 0.5;
 
 /// Iterations running, of those that are kept, that must meet the targets where C is that of few
 /// samples, so that a step goes a part of its way.
-enum { LEAST_MET_WITH_GROUPS = 3 };
+enum { MIN_MET_WITH_GROUPS = 3 };
 
 /// Iterations near the target whose mean is worth more than the last: of fewer the first ones lie
 /// on the side that the fit came from. As many samples, less what rounding may take.
@@ -24,7 +24,7 @@ bool mf_inversion_ends_with_mean(const struct inversion *inversion) {
     const double samples = first->pool.samples;
     double mean = 0, now = 0;
     if (samples <= 0 || samples < enough_near * first->replicas.counts.count ||
-        !((const struct inversion_rule *)inversion->method->own)->forgets ||
+        !((const struct inversion_rule *)inversion->method->own)->memoryless ||
         targets_ask(&inversion->problem->targets, TARGET_PRESSURE))
         return false;
     for (size_t a = 0; a < grid->known; a++) {
@@ -49,29 +49,30 @@ static bool mean_meets_section(const struct inversion_state *state,
 
 /// Whether that mean meets the targets of all sections.
 static bool mean_meets(const struct inversion_state *state) {
-    for (int k = 0; k < state->verdict.sections; k++)
-        if (!mean_meets_section(state, &state->verdict.section[k]))
+    for (int k = 0; k < state->assessment.sections; k++)
+        if (!mean_meets_section(state, &state->assessment.section[k]))
             return false;
     return true;
 }
 
 /// Whether a kind of targets is that of sections.
-static bool has_sections(const struct inversion_verdict *verdict, int kind) {
+static bool has_sections(const struct inversion_assessment *assessment, int kind) {
     bool has = false;
-    for (int k = 0; k < verdict->sections; k++)
-        has = has || verdict->section[k].kind == kind;
+    for (int k = 0; k < assessment->sections; k++)
+        has = has || assessment->section[k].kind == kind;
     return has;
 }
 
 /// Whether the present potential meets all targets as far as their noise lets see: each section by
 /// its χ², and the numbers beside them.
 static bool present_meets(const struct inversion *inversion) {
-    const struct inversion_verdict *verdict = &inversion->verdict;
-    if (!inversion_section_agrees(mf_inversion_verdict_worst(verdict)))
+    const struct inversion_assessment *assessment = &inversion->assessment;
+    if (!inversion_section_agrees(mf_inversion_assessment_worst(assessment)))
         return false;
     for (int kind = 0; kind < TARGETS; kind++)
-        if (targets_ask(&inversion->problem->targets, kind) && !has_sections(verdict, kind) &&
-            verdict->distance[kind].rms > mf_inverse_noise_margin * verdict->distance[kind].noise)
+        if (targets_ask(&inversion->problem->targets, kind) && !has_sections(assessment, kind) &&
+            assessment->distance[kind].rms >
+                mf_inverse_noise_margin * assessment->distance[kind].noise)
             return false;
     return true;
 }
@@ -94,23 +95,23 @@ static bool must_settle(const struct inversion *inversion) {
 }
 
 /// Whether the sum of the last `count` ways of a number is a part of so many errors.
-static bool cancels(double sum, uint32_t count, const struct inversion_band_way *last) {
-    return fabs(sum) <= count * settled_way * last->open;
+static bool cancels(double sum, uint32_t count, const struct inversion_band_drift *last) {
+    return fabs(sum) <= count * settled_drift * last->open;
 }
 
-/// Whether the ways of the last iterations that met the targets, `least` of them or more, cancel
+/// Whether the ways of the last iterations that met the targets, `min` of them or more, cancel
 /// but for a part of their errors: each one has the noise of its samples, and what goes on goes on
 /// in one direction. Each state has a pressure of its own, and so a sum.
-static bool has_settled(const struct inversion *inversion, uint32_t least) {
-    const struct inversion_band_ways *last = &inversion->course.band.ways;
-    const struct inversion_ways *ways = &inversion->course.progress.ways;
-    double ramp = 0, pressure[INVERSE_MOST_STATES] = {0};
-    for (uint32_t k = 1; k <= ways->met && k <= INVERSION_MOST_WAYS; k++) {
-        const uint32_t place = (ways->met - k) % INVERSION_MOST_WAYS;
-        ramp += ways->ramp[place];
-        bool settled = k >= least && cancels(ramp, k, &last->ramp);
+static bool has_settled(const struct inversion *inversion, uint32_t min) {
+    const struct inversion_band_drifts *last = &inversion->course.band.drifts;
+    const struct inversion_drifts *drifts = &inversion->course.progress.drifts;
+    double ramp = 0, pressure[INVERSE_MAX_STATES] = {0};
+    for (uint32_t k = 1; k <= drifts->met && k <= INVERSION_MAX_DRIFTS; k++) {
+        const uint32_t place = (drifts->met - k) % INVERSION_MAX_DRIFTS;
+        ramp += drifts->ramp[place];
+        bool settled = k >= min && cancels(ramp, k, &last->ramp);
         for (size_t s = 0; s < inversion->states; s++) {
-            pressure[s] += ways->pressure[place][s];
+            pressure[s] += drifts->pressure[place][s];
             settled = settled && cancels(pressure[s], k, &last->pressure[s]);
         }
         if (settled)
@@ -119,30 +120,30 @@ static bool has_settled(const struct inversion *inversion, uint32_t least) {
     return false;
 }
 
-static void note_ways(const struct inversion *inversion, struct inversion_ways *ways) {
-    const struct inversion_band_ways *last = &inversion->course.band.ways;
-    const uint32_t place = ways->met % INVERSION_MOST_WAYS;
-    ways->ramp[place] = last->ramp.way;
+static void record_drifts(const struct inversion *inversion, struct inversion_drifts *drifts) {
+    const struct inversion_band_drifts *last = &inversion->course.band.drifts;
+    const uint32_t place = drifts->met % INVERSION_MAX_DRIFTS;
+    drifts->ramp[place] = last->ramp.drift;
     for (size_t s = 0; s < inversion->states; s++)
-        ways->pressure[place][s] = last->pressure[s].way;
-    ways->met++;
+        drifts->pressure[place][s] = last->pressure[s].drift;
+    drifts->met++;
 }
 
 bool mf_inversion_has_converged(struct inversion *inversion, bool kept) {
-    struct inversion_ways *ways = &inversion->course.progress.ways;
+    struct inversion_drifts *drifts = &inversion->course.progress.drifts;
     if (!kept) // it goes back to the one before
         return false;
     if (!inversion->course.progress.best.precise || !meets_targets(inversion)) {
-        ways->met = 0;
+        drifts->met = 0;
         return false;
     }
-    note_ways(inversion, ways);
+    record_drifts(inversion, drifts);
     const struct potential_grid *grid = inversion_grid(inversion);
-    if (ways->met == 1 && grid->points > 0)
+    if (drifts->met == 1 && grid->points > 0)
         memcpy(inversion->course.met_phi, inversion->course.phi, grid->points * sizeof(double));
     if (!must_settle(inversion) ||
-        has_settled(inversion, grid->groups > 0 ? LEAST_MET_WITH_GROUPS : 1))
+        has_settled(inversion, grid->groups > 0 ? MIN_MET_WITH_GROUPS : 1))
         return true;
-    inversion->course.walked = grid->groups > 0 && ways->met >= INVERSION_MOST_WAYS;
-    return inversion->course.walked;
+    inversion->course.not_stationary = grid->groups > 0 && drifts->met >= INVERSION_MAX_DRIFTS;
+    return inversion->course.not_stationary;
 }

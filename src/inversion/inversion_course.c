@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-const double mf_inversion_least_damping = 1.0 / 64;
+const double mf_inversion_min_damping = 1.0 / 64;
 
 enum status mf_inversion_course_init(struct inversion_course *course, size_t known, size_t points,
                                      size_t bins) {
@@ -24,7 +24,7 @@ enum status mf_inversion_course_init(struct inversion_course *course, size_t kno
                                                    .stretch = 1,
                                                    .damping = 1,
                                                    .best.distance[TARGET_RDF].rms = INFINITY,
-                                                   .least_decrement = INFINITY};
+                                                   .min_decrement = INFINITY};
 done:
     return status;
 }
@@ -54,7 +54,7 @@ size_t mf_inversion_course_spans(struct inversion_course *course, size_t points,
 static enum status keep(struct inversion *inversion) {
     struct inversion_course *course = &inversion->course;
     const struct inversion_state *first = inversion->state;
-    const struct inversion_verdict *verdict = &inversion->verdict;
+    const struct inversion_assessment *assessment = &inversion->assessment;
     struct inversion_best_samples *best = &course->progress.best;
     const size_t bytes = first->grid.points * sizeof(double);
     memcpy(course->best.phi, course->phi, bytes);
@@ -62,13 +62,13 @@ static enum status keep(struct inversion *inversion) {
     memcpy(course->best.other_step, course->other_step, bytes);
     memcpy(course->best.counts, first->replicas.counts.mean, first->bins * sizeof(double));
     course->progress.has_other = course->has_other;
-    memcpy(best->distance, verdict->distance, sizeof best->distance);
-    best->own_noise = verdict->own_noise;
+    memcpy(best->distance, assessment->distance, sizeof best->distance);
+    best->own_noise = assessment->own_noise;
     for (size_t s = 0; s < inversion->states; s++)
         best->noise[s] = mf_targets_noise(&inversion->state[s].problem->targets,
-                                          inversion->state[s].verdict.distance);
-    best->precise = mf_inversion_verdict_is_precise(verdict);
-    best->worst = *mf_inversion_verdict_worst(verdict);
+                                          inversion->state[s].assessment.distance);
+    best->precise = mf_inversion_assessment_is_precise(assessment);
+    best->worst = *mf_inversion_assessment_worst(assessment);
     mf_inversion_find_factor(first, &best->factor);
     return mf_inversion_band_find(inversion);
 }
@@ -108,41 +108,41 @@ static void go_back(struct inversion *inversion) {
 /// S_rel is convex: its Newton steps promise less and less, unless one was too long.
 static bool keeps_by_gradient(struct inversion *inversion) {
     const struct inversion_basis *basis = &inversion->state->basis;
-    double *least = &inversion->course.progress.least_decrement;
-    const bool kept = basis->decrement <= 2 * *least + 8 * basis->chance;
-    *least = fmin(*least, basis->decrement);
+    double *min = &inversion->course.progress.min_decrement;
+    const bool kept = basis->decrement <= 2 * *min + 8 * basis->chance;
+    *min = fmin(*min, basis->decrement);
     return kept;
 }
 
 bool mf_inversion_is_near_enough(const struct inversion *inversion,
-                                 const struct inversion_verdict *verdict) {
+                                 const struct inversion_assessment *assessment) {
     const struct inversion_progress *progress = &inversion->course.progress;
     const struct targets *targets = &inversion->problem->targets;
     return isinf(progress->best.distance[TARGET_RDF].rms) ||
-           mf_inversion_verdict_noises(verdict, targets, verdict->distance) <=
-               mf_inversion_verdict_noises(verdict, targets, progress->least) + 2;
+           mf_inversion_assessment_noises(assessment, targets, assessment->distance) <=
+               mf_inversion_assessment_noises(assessment, targets, progress->min) + 2;
 }
 
 bool mf_inversion_keeps(struct inversion *inversion) {
     struct inversion_progress *progress = &inversion->course.progress;
-    const struct inversion_verdict *verdict = &inversion->verdict;
+    const struct inversion_assessment *assessment = &inversion->assessment;
     const struct targets *targets = &inversion->problem->targets;
     if (inversion->state->basis.count > 0)
         return keeps_by_gradient(inversion);
-    const bool kept = mf_inversion_is_near_enough(inversion, verdict);
+    const bool kept = mf_inversion_is_near_enough(inversion, assessment);
     if (isinf(progress->best.distance[TARGET_RDF].rms) ||
-        mf_inversion_verdict_noises(verdict, targets, verdict->distance) <
-            mf_inversion_verdict_noises(verdict, targets, progress->least))
-        memcpy(progress->least, verdict->distance, sizeof progress->least);
+        mf_inversion_assessment_noises(assessment, targets, assessment->distance) <
+            mf_inversion_assessment_noises(assessment, targets, progress->min))
+        memcpy(progress->min, assessment->distance, sizeof progress->min);
     return kept;
 }
 
-enum status mf_inversion_course_judge(struct inversion *inversion, bool *kept) {
+enum status mf_inversion_course_accept(struct inversion *inversion, bool *kept) {
     struct inversion_progress *progress = &inversion->course.progress;
-    const struct inversion_verdict *verdict = &inversion->verdict;
-    const double error = verdict->distance[TARGET_RDF].rms;
+    const struct inversion_assessment *assessment = &inversion->assessment;
+    const double error = assessment->distance[TARGET_RDF].rms;
     const bool start = isinf(progress->best.distance[TARGET_RDF].rms);
-    *kept = !verdict->useless && mf_inversion_keeps(inversion);
+    *kept = !assessment->useless && mf_inversion_keeps(inversion);
     progress->from_disorder = !*kept;
     progress->lost = start && !*kept && !mf_inversion_start_is_poor(inversion, false);
     if (start && !*kept)
@@ -157,7 +157,7 @@ enum status mf_inversion_course_judge(struct inversion *inversion, bool *kept) {
     }
     if (!start)
         mf_inversion_relax(inversion);
-    progress->stretch = verdict->stretch > 1 ? verdict->stretch / 2 : 1;
+    progress->stretch = assessment->stretch > 1 ? assessment->stretch / 2 : 1;
     return keep(inversion);
 }
 
@@ -167,7 +167,7 @@ enum status mf_inversion_course_go_on(struct inversion *inversion, bool kept) {
         mf_inversion_take_step(inversion);
         return STATUS_OK;
     }
-    progress->best.distance[TARGET_RDF].rms = progress->least_decrement = INFINITY;
+    progress->best.distance[TARGET_RDF].rms = progress->min_decrement = INFINITY;
     progress->damping = 1;
     progress->from_disorder = progress->second_start = true;
     return mf_inversion_start_again(inversion->state, inversion->course.phi);

@@ -16,16 +16,16 @@ struct inversion_best_samples {
     struct inversion_section worst; ///< section with the largest χ² by bin over the probable
     struct inversion_factor factor; ///< mf_inversion_find_factor
     double own_noise;
-    double noise[INVERSE_MOST_STATES]; ///< mf_targets_noise of each state
-    bool precise;                      ///< they are as exact as was asked for
+    double noise[INVERSE_MAX_STATES]; ///< mf_targets_noise of each state
+    bool precise;                     ///< they are as exact as was asked for
 };
 
 /// What iterations running that met all targets still asked for, of the ramp and of the pressure of
 /// each state.
-enum { INVERSION_MOST_WAYS = 8 };
-struct inversion_ways {
+enum { INVERSION_MAX_DRIFTS = 8 };
+struct inversion_drifts {
     uint32_t met; ///< such iterations; the last of them are kept
-    double ramp[INVERSION_MOST_WAYS], pressure[INVERSION_MOST_WAYS][INVERSE_MOST_STATES];
+    double ramp[INVERSION_MAX_DRIFTS], pressure[INVERSION_MAX_DRIFTS][INVERSE_MAX_STATES];
 };
 
 /// What a checkpoint keeps besides arrays and samplers.
@@ -36,11 +36,11 @@ struct inversion_progress {
     double damping;     ///< of the step from the best
     int64_t stretch;    ///< of equilibration and spacing, by which the next samples begin
     struct inversion_best_samples best;
-    struct target_distance least[TARGETS]; ///< nearest so far, of all that was kept
-    double least_decrement;                ///< of what was kept, by the gradient
-    double first_error, second_error;      ///< of g, in the first two iterations from a start
+    struct target_distance min[TARGETS]; ///< nearest so far, of all that was kept
+    double min_decrement;                ///< of what was kept, by the gradient
+    double first_error, second_error;    ///< of g, in the first two iterations from a start
     double failed_error; ///< of g, from where a step with another in reserve led away, or the first
-    struct inversion_ways ways;
+    struct inversion_drifts drifts;
     bool second_start; ///< it began again, from −k_B T ln g
     bool lost;         ///< none of the starts settled
 };
@@ -56,7 +56,7 @@ struct inversion_course {
         double *counts; ///< ⟨S⟩ of the first state, shape [bins]
     } best;
     double *met_phi;            ///< of the first iteration running that met the targets
-    bool walked;                ///< the fit ends though it walks on: the way from there is an error
+    bool not_stationary;        ///< the fit ends though it walks on: the way from there is an error
     struct inversion_band band; ///< of the best
     struct inversion_progress progress;
 };
@@ -72,11 +72,11 @@ size_t mf_inversion_course_spans(struct inversion_course *course, size_t points,
                                  struct memory_span *span);
 
 /// Damping below this: the step leads nowhere, and the fit ends.
-extern const double mf_inversion_least_damping;
+extern const double mf_inversion_min_damping;
 
 /// Whether distances are near enough to the targets for their potential to be kept.
 bool mf_inversion_is_near_enough(const struct inversion *inversion,
-                                 const struct inversion_verdict *verdict);
+                                 const struct inversion_assessment *assessment);
 
 /// Whether the present potential is kept: unless it is farther from the targets than the nearest so
 /// far, by two of the present noises. The nearest, not the last: samples are no more precise than a
@@ -88,7 +88,7 @@ bool mf_inversion_keeps(struct inversion *inversion);
 /// Keep the present potential, or go back if it is worse than the nearest by more than chance.
 /// Replicas that a worse potential may have frozen or torn apart are not gone on with. Fails:
 /// NO_MEMORY.
-enum status mf_inversion_course_judge(struct inversion *inversion, bool *kept) MUST_USE;
+enum status mf_inversion_course_accept(struct inversion *inversion, bool *kept) MUST_USE;
 
 /// The next potential to be sampled: the other start, or a step from the best. Fails: NO_MEMORY.
 enum status mf_inversion_course_go_on(struct inversion *inversion, bool kept) MUST_USE;
@@ -126,10 +126,9 @@ enum status mf_inversion_take_last_step(struct inversion *inversion) MUST_USE;
 /// the same chance into the last step: the pressures of 16 twins were 0.6 errors too low.
 /// One that meets its targets eight times running and goes on ends, too: hexane's g(r) of two types
 /// of beads was met for 17 iterations, in which the pressure fell by 900 bar; the way since the
-/// first of them counts as an error (`walked`). Iterations that are not kept, or whose samples have
-/// not settled, do not count. Tested:
-/// test_inversion_converged.
+/// first of them counts as an error (`not_stationary`). Iterations that are not kept, or whose
+/// samples have not settled, do not count. Tested: test_inversion_converged.
 bool mf_inversion_has_converged(struct inversion *inversion, bool kept);
 
 /// Why a fit that has finished did not converge, in words.
-void mf_inversion_reason_tell(const struct inversion *inversion, char reason[INVERSE_REASON_SIZE]);
+void mf_inversion_reason_write(const struct inversion *inversion, char reason[INVERSE_REASON_SIZE]);

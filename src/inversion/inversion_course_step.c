@@ -15,26 +15,26 @@ static const double largest_change = 1;
 static const double largest_unknown_change = 3;
 
 /// Part of the last step, back, that still swings in by itself: each step halves what is left.
-static const double most_left = 0.5;
+static const double max_left = 0.5;
 
 void mf_inversion_relax(struct inversion *inversion) {
     const struct potential_grid *grid = inversion_grid(inversion);
     struct inversion_course *course = &inversion->course;
     double *damping = &course->progress.damping;
-    double way = 0, squares = 0, left = 0;
+    double along = 0, squares = 0, left = 0;
     for (size_t a = 0; a < grid->known; a++) {
         const size_t point = grid->known_point[a];
         const double last = course->best.step[point];
         if (!grid->well_known[a])
             continue;
-        way += last * (course->phi[point] - course->best.phi[point]);
+        along += last * (course->phi[point] - course->best.phi[point]);
         left += last * course->step[point];
         squares += last * last;
     }
     *damping = fmin(1, 1.5 * *damping);
-    if (left < -most_left * squares && !mf_inversion_is_near(inversion) &&
+    if (left < -max_left * squares && !mf_inversion_is_near(inversion) &&
         course->has_other == course->progress.has_other)
-        *damping = fmin(*damping, fmax(mf_inversion_least_damping, way / (squares - left)));
+        *damping = fmin(*damping, fmax(mf_inversion_min_damping, along / (squares - left)));
 }
 
 void mf_inversion_take_step(struct inversion *inversion) {

@@ -17,7 +17,7 @@ const struct field mf_inversion_fields[] = {
      .help = "Metropolis moves or hybrid Monte Carlo; auto: moves of single beads, hybrid of "
              "molecules"},
     {"replicas", FIELD_INTEGER, MEMBER(replicas), .initial = 8, .minimum = 2,
-     .maximum = REPLICAS_MOST, .unit = "", .help = "independent samplers"},
+     .maximum = REPLICAS_MAX, .unit = "", .help = "independent samplers"},
     {"equilibration", FIELD_INTEGER, MEMBER(equilibration), .initial = 200, .minimum = 0,
      .maximum = 8e8, .unit = "sweeps",
      .help = "least equilibration, five times as long from a random start; prolonged until the "
@@ -45,7 +45,7 @@ void mf_inversion_destroy(void *memory) {
     mf_memory_free(inversion->state);
     mf_inversion_equations_clear(&inversion->equations);
     mf_inversion_course_clear(&inversion->course);
-    mf_inversion_trail_clear(&inversion->trail);
+    mf_inversion_history_clear(&inversion->history);
     mf_memory_free(inversion->smoothness);
 }
 
@@ -80,7 +80,8 @@ static enum status prepare(struct inversion *inversion, const struct inverse_pro
     for (size_t s = 0; s < inversion->states; s++)
         inversion->state[s].phi = inversion->course.phi;
     TRY(mf_inversion_equations_init(&inversion->equations, first, inversion->states));
-    TRY(mf_inversion_trail_init(&inversion->trail, (size_t)inversion->parameters.iterations, bins));
+    TRY(mf_inversion_history_init(&inversion->history, (size_t)inversion->parameters.iterations,
+                                  bins));
     return mf_inversion_smooth_init(inversion);
 }
 
@@ -109,9 +110,9 @@ size_t mf_inversion_spans(void *memory, struct memory_span *span) {
     struct inversion *inversion = memory;
     const struct inversion_state *first = inversion->state;
     size_t n = 0;
-    span[n++] = (struct memory_span){&inversion->standstill, sizeof inversion->standstill};
+    span[n++] = (struct memory_span){&inversion->stagnation, sizeof inversion->stagnation};
     n += mf_inversion_course_spans(&inversion->course, first->grid.points, first->bins, span + n);
-    n += mf_inversion_trail_spans(&inversion->trail, span + n);
+    n += mf_inversion_history_spans(&inversion->history, span + n);
     for (size_t s = 0; s < inversion->states; s++)
         n += mf_inversion_state_spans(&inversion->state[s], span + n);
     return n;

@@ -38,7 +38,7 @@ void mf_inversion_kirkwood_buff_measure(struct inversion_state *state) {
         kb->error[pair] = mean.error;
     }
     if (kb->pairs > 0)
-        state->verdict.distance[mf_kirkwood_buff_kind()] =
+        state->assessment.distance[mf_kirkwood_buff_kind()] =
             mf_targets_worst(target_of(state), kb->value, kb->error);
 }
 

@@ -14,7 +14,7 @@ struct inversion_state;
 struct inversion_kirkwood_buff {
     size_t pairs;     ///< 0: not asked for
     double q_maximum; ///< of the waves, as the target has it [1/λ]
-    double value[COMPOSITION_MOST_PAIRS], error[COMPOSITION_MOST_PAIRS]; ///< [λ^d]
+    double value[COMPOSITION_MAX_PAIRS], error[COMPOSITION_MAX_PAIRS]; ///< [λ^d]
     double *slope; ///< ∂G/∂Φ_b, shape [pairs, known]
 };
 

@@ -21,13 +21,13 @@ void mf_inversion_pressure_measure(struct inversion_state *state) {
     state->pressure.error = virial.error / unit;
     const struct target *target = &state->problem->targets.target[TARGET_PRESSURE];
     if (target->count > 0)
-        state->verdict.distance[TARGET_PRESSURE] =
+        state->assessment.distance[TARGET_PRESSURE] =
             mf_targets_distance(target, &state->pressure.value, &state->pressure.error);
 }
 
 double mf_inversion_pressure_shift(const struct inversion_state *state) {
     const double square =
-        mf_inversion_settled_shift(&state->replicas, state->bins + SAMPLER_VIRIAL);
+        mf_inversion_equilibrium_shift(&state->replicas, state->bins + SAMPLER_VIRIAL);
     return sqrt(fmax(square, 0)) / virial_unit(state);
 }
 

@@ -15,7 +15,7 @@ struct inversion_pressure {
 /// makes of as many independent ones as g(r) sees, if that is more: few chains may agree by chance.
 void mf_inversion_pressure_measure(struct inversion_state *state);
 
-/// How far from that of equilibrium the pressure may be, see mf_inversion_settled_shift.
+/// How far from that of equilibrium the pressure may be, see mf_inversion_equilibrium_shift.
 double mf_inversion_pressure_shift(const struct inversion_state *state);
 
 /// Slopes, from how the virial W = −Σ r Φ'(r) over all pairs depends on the potential itself, and

@@ -13,19 +13,19 @@ static int find_missed(const struct inversion *inversion) {
 }
 
 /// Why no samples could be made use of.
-static void tell_unsettled(const struct inversion_unsettled *unsettled,
-                           char reason[INVERSE_REASON_SIZE]) {
+static void report_unsettled(const struct inversion_unequilibrated *unequilibrated,
+                             char reason[INVERSE_REASON_SIZE]) {
     char what[INVERSE_REASON_SIZE / 2];
-    mf_stationary_tell(unsettled->quantity, &unsettled->is, what, sizeof what);
+    mf_stationary_describe(unequilibrated->quantity, &unequilibrated->is, what, sizeof what);
     snprintf(reason, INVERSE_REASON_SIZE,
              "the samples are not in equilibrium after %llu sweeps of each replica: %.100s. The "
              "liquid freezes, tears or condenses, or needs a longer \"equilibration\"; long "
              "molecules may settle sooner with the \"sampler\" \"monte-carlo\"",
-             (unsigned long long)unsettled->sweeps, what);
+             (unsigned long long)unequilibrated->sweeps, what);
 }
 
 /// Groups alone have no ramp and no g.
-static void tell_of_groups(const struct inversion *inversion, char reason[INVERSE_REASON_SIZE]) {
+static void report_groups(const struct inversion *inversion, char reason[INVERSE_REASON_SIZE]) {
     snprintf(reason, INVERSE_REASON_SIZE,
              "the distributions agree within a statistical error of %.2g of their peaks, but "
              "\"precision\" asks for %.2g: more \"samples\" or \"iterations\" are needed",
@@ -33,14 +33,14 @@ static void tell_of_groups(const struct inversion *inversion, char reason[INVERS
 }
 
 /// Why a fit whose g agrees has not converged.
-static void tell_what_is_missing(const struct inversion *inversion,
-                                 char reason[INVERSE_REASON_SIZE]) {
+static void report_what_is_missing(const struct inversion *inversion,
+                                   char reason[INVERSE_REASON_SIZE]) {
     const struct inversion_progress *p = &inversion->course.progress;
     const struct inversion_parameters *settings = &inversion->parameters;
     const struct target_distance *pressure = &p->best.distance[TARGET_PRESSURE];
     const struct target_distance *integrals = &p->best.distance[mf_kirkwood_buff_kind()];
-    const struct inversion_band_way *ramp = &inversion->course.band.ways.ramp;
-    const struct inversion_band_way walks = mf_inversion_band_farthest(inversion);
+    const struct inversion_band_drift *ramp = &inversion->course.band.drifts.ramp;
+    const struct inversion_band_drift farthest = mf_inversion_band_farthest(inversion);
     const int missed = find_missed(inversion);
     if (missed >= 0)
         snprintf(reason, INVERSE_REASON_SIZE,
@@ -60,8 +60,8 @@ static void tell_what_is_missing(const struct inversion *inversion,
                  "potential",
                  integrals->rms, integrals->noise);
     else if (inversion_grid(inversion)->groups > 0 && inversion_grid(inversion)->pairs == 0)
-        tell_of_groups(inversion, reason);
-    else if (isnan(ramp->way))
+        report_groups(inversion, reason);
+    else if (isnan(ramp->drift))
         snprintf(
             reason, INVERSE_REASON_SIZE,
             "g agrees within %.2g, but its covariances have no inverse, so that the errors of the "
@@ -73,7 +73,7 @@ static void tell_what_is_missing(const struct inversion *inversion,
                  "the potential and with it the pressure: they went on by %.2g k_B T_0, known "
                  "within %.2g, and by %.2g, known within %.2g; give \"pressure\" as a second "
                  "target, or more \"iterations\"",
-                 ramp->way, ramp->open, walks.way, walks.open);
+                 ramp->drift, ramp->open, farthest.drift, farthest.open);
     else
         snprintf(
             reason, INVERSE_REASON_SIZE,
@@ -83,53 +83,54 @@ static void tell_what_is_missing(const struct inversion *inversion,
 }
 
 /// The same of potentials made of coefficients, which need not meet g.
-static void tell_gradient(const struct inversion *inversion, char reason[INVERSE_REASON_SIZE]) {
+static void report_gradient(const struct inversion *inversion, char reason[INVERSE_REASON_SIZE]) {
     if (!(inversion->state->gradient <= mf_inverse_noise_margin))
         snprintf(reason, INVERSE_REASON_SIZE,
                  "the gradient of the relative entropy is %.2g times its noise: more "
                  "\"iterations\" or \"samples\", or fewer \"coefficients\", may help",
                  inversion->state->gradient);
     else
-        tell_what_is_missing(inversion, reason);
+        report_what_is_missing(inversion, reason);
 }
 
-static double square_of(const struct inversion_trail *trail, uint64_t iteration) {
-    const double *excess = trail->excess + iteration * trail->bins;
+static double square_of(const struct inversion_history *history, uint64_t iteration) {
+    const double *excess = history->excess + iteration * history->bins;
     double sum = 0;
-    for (size_t bin = 0; bin < trail->bins; bin++)
+    for (size_t bin = 0; bin < history->bins; bin++)
         sum += excess[bin] * excess[bin];
     return sum;
 }
 
 /// Whether the second half of the iterations has not made the excess much smaller.
-static bool has_stopped(const struct inversion_trail *trail) {
+static bool has_stopped(const struct inversion_history *history) {
     static const double much = 0.5;
-    return trail->iterations < 2 || square_of(trail, trail->iterations - 1) >
-                                        much * square_of(trail, (trail->iterations - 1) / 2);
+    return history->iterations < 2 || square_of(history, history->iterations - 1) >
+                                          much * square_of(history, (history->iterations - 1) / 2);
 }
 
 /// The first reason that applies.
-void mf_inversion_reason_tell(const struct inversion *inversion, char reason[INVERSE_REASON_SIZE]) {
+void mf_inversion_reason_write(const struct inversion *inversion,
+                               char reason[INVERSE_REASON_SIZE]) {
     const struct inversion_progress *p = &inversion->course.progress;
-    const struct inversion_unsettled *unsettled = &inversion->verdict.unsettled;
-    if (unsettled->found && unsettled->for_long) {
-        tell_unsettled(unsettled, reason);
+    const struct inversion_unequilibrated *unequilibrated = &inversion->assessment.unequilibrated;
+    if (unequilibrated->found && unequilibrated->for_long) {
+        report_unsettled(unequilibrated, reason);
         return;
     }
     if (inversion->state->basis.count > 0) {
-        tell_gradient(inversion, reason);
+        report_gradient(inversion, reason);
         return;
     }
     const struct inversion_parameters *settings = &inversion->parameters;
     const struct target_distance *rdf = &p->best.distance[TARGET_RDF];
-    const bool stuck = p->damping < mf_inversion_least_damping;
+    const bool stuck = p->damping < mf_inversion_min_damping;
     const struct inversion_section *worst = &p->best.worst;
     const bool agrees = worst->kind != TARGET_RDF || inversion_section_agrees(worst);
-    static const double most = 3; // standard deviations of what was known of a factor
+    static const double max = 3; // standard deviations of what was known of a factor
     const double improved = rdf->rms / p->first_error;
     const bool explains = worst->rms < mf_inverse_noise_margin * worst->noise;
-    if (!agrees && explains && has_stopped(&inversion->trail) &&
-        fabs(p->best.factor.missing) > most * p->best.factor.prior)
+    if (!agrees && explains && has_stopped(&inversion->history) &&
+        fabs(p->best.factor.missing) > max * p->best.factor.prior)
         snprintf(reason, INVERSE_REASON_SIZE,
                  "g of the target is too %s as a whole by %.2g %%, which no short-ranged potential "
                  "makes, and which its \"particles\" or \"normalisation\" allow by %.2g %%; look "
@@ -143,7 +144,7 @@ void mf_inversion_reason_tell(const struct inversion *inversion, char reason[INV
                  "another start may lead there",
                  p->first_error, p->second_error, inversion->method->name);
     else if (agrees)
-        tell_what_is_missing(inversion, reason);
+        report_what_is_missing(inversion, reason);
     else if (stuck)
         snprintf(reason, INVERSE_REASON_SIZE,
                  "the step has shrunk to 1/%.0f without progress: the error of g is %.2g, its "

@@ -73,17 +73,17 @@ const double *mf_inversion_response_values(const struct inversion_state *state) 
 /// How far the variance of S along the way from the potentials of C to the present one is another
 /// than C says: the square of its relative change, but for noise. Of n independent samples a
 /// variance has the relative variance 2/n.
-static double find_change_along_way(const struct inversion_state *state) {
+static double find_change_along_step(const struct inversion_state *state) {
     const struct potential_grid *grid = &state->grid;
     const struct inversion_response *response = &state->response;
     const struct comoments *counts = &state->replicas.counts;
     double before = 0, now = 0;
     for (size_t a = 0; a < grid->known; a++)
         for (size_t b = 0; b < grid->known; b++) {
-            const double way = (state->phi[grid->known_point[a]] - response->phi[a]) *
-                               (state->phi[grid->known_point[b]] - response->phi[b]);
-            before += way * response->covariance[a * grid->known + b];
-            now += way * mf_comoments_covariance(counts, grid->known_bin[a], grid->known_bin[b]);
+            const double change = (state->phi[grid->known_point[a]] - response->phi[a]) *
+                                  (state->phi[grid->known_point[b]] - response->phi[b]);
+            before += change * response->covariance[a * grid->known + b];
+            now += change * mf_comoments_covariance(counts, grid->known_bin[a], grid->known_bin[b]);
         }
     if (!(before > 0 && now > 0))
         return 0;
@@ -111,7 +111,7 @@ static double find_worth(const struct inversion_state *state) {
     }
     const double bias = 4 * squares / known;
     return response->independent > 0
-               ? 1 / (1 / response->independent + bias / known + find_change_along_way(state) / 2)
+               ? 1 / (1 / response->independent + bias / known + find_change_along_step(state) / 2)
                : 0;
 }
 

@@ -16,14 +16,14 @@ static const double noise_share = 1.0 / 3;
 static const double gradient_of_noise = 2;
 
 /// Samples of an iteration double at most so often.
-enum { MOST_DOUBLINGS = 7 };
+enum { MAX_DOUBLINGS = 7 };
 
 /// Replicas that begin from disorder are equilibrated so many times as long.
 enum { DISORDER_EQUILIBRATION = 5 };
 
 /// Sweeps of one potential, over those of its first samples, after which it is given up if it has
 /// not settled.
-enum { MOST_TIMES = 200 };
+enum { MAX_TIMES = 200 };
 
 /// The sweeps and least samples of an iteration, with so many times the least equilibration and
 /// spacing.
@@ -49,8 +49,8 @@ static double find_share(const struct inversion_state *state,
 /// small part of what is off.
 static struct inverse_doubling find_noisiest(const struct inversion_state *state) {
     struct inverse_doubling noisiest = mf_inversion_kirkwood_buff_noise(state);
-    for (int k = 0; k < state->verdict.sections; k++) {
-        const struct inversion_section *section = &state->verdict.section[k];
+    for (int k = 0; k < state->assessment.sections; k++) {
+        const struct inversion_section *section = &state->assessment.section[k];
         const double noises = sqrt(section->misfit / section->own_misfit);
         const double wanted =
             fmax(section->precision, find_share(state, section) * noises * section->own_noise);
@@ -66,8 +66,8 @@ static bool needs_samples(const struct inversion_state *state, struct inverse_do
     const int before = doubling->number;
     *doubling = find_noisiest(state);
     doubling->number = before + 1;
-    doubling->most = MOST_DOUBLINGS;
-    return doubling->noise > doubling->wanted && before < MOST_DOUBLINGS;
+    doubling->max = MAX_DOUBLINGS;
+    return doubling->noise > doubling->wanted && before < MAX_DOUBLINGS;
 }
 
 /// The samples of an iteration as they are taken.
@@ -84,24 +84,24 @@ struct sampling {
 
 /// Whether the section is so far from its targets that what has not settled hardly changes the way
 /// to them.
-static bool section_tells_way(const struct inversion_state *state,
-                              const struct inversion_section *section) {
+static bool section_gives_direction(const struct inversion_state *state,
+                                    const struct inversion_section *section) {
     double squares = 0, seen = 0;
     for (size_t a = section->known; a < section->known + section->known_count; a++) {
         const size_t bin = state->grid.known_bin[a];
         if (state->grid.seen[a])
-            squares += mf_inversion_settled_shift(&state->replicas, bin) / state->variance[a];
+            squares += mf_inversion_equilibrium_shift(&state->replicas, bin) / state->variance[a];
         seen += state->grid.seen[a];
     }
     return squares < seen * section->misfit * pow(find_share(state, section), 2);
 }
 
-bool mf_inversion_tells_way(const struct inversion_state *state) {
+bool mf_inversion_gives_direction(const struct inversion_state *state) {
     const struct targets *targets = &state->problem->targets;
     if (state->basis.count > 0) // what is off may be out of reach of the gradient
         return false;
-    for (int k = 0; k < state->verdict.sections; k++)
-        if (!section_tells_way(state, &state->verdict.section[k]))
+    for (int k = 0; k < state->assessment.sections; k++)
+        if (!section_gives_direction(state, &state->assessment.section[k]))
             return false;
     return !targets_ask(targets, TARGET_PRESSURE) ||
            mf_inversion_pressure_shift(state) <
@@ -115,21 +115,21 @@ bool mf_inversion_tells_way(const struct inversion_state *state) {
 static bool is_hopeless(struct sampling *sampling) {
     const struct inversion *inversion = sampling->inversion;
     const struct targets *targets = &sampling->state->problem->targets;
-    struct inversion_verdict *verdict = &sampling->state->verdict;
-    const struct replicas_plan least = plan(inversion, 1);
-    const uint64_t first = replicas_plan_sweeps(&least) + (uint64_t)least.equilibration;
+    struct inversion_assessment *assessment = &sampling->state->assessment;
+    const struct replicas_plan min = plan(inversion, 1);
+    const uint64_t first = replicas_plan_sweeps(&min) + (uint64_t)min.equilibration;
     const bool farther = sampling->before[TARGET_RDF].count > 0 &&
-                         mf_inversion_verdict_noises(verdict, targets, verdict->distance) >
-                             mf_inversion_verdict_noises(verdict, targets, sampling->before);
+                         mf_inversion_assessment_noises(assessment, targets, assessment->distance) >
+                             mf_inversion_assessment_noises(assessment, targets, sampling->before);
     const bool other = mf_inversion_start_has_other(inversion, sampling->state);
     const bool lost =
-        other || (inversion->states == 1 && !mf_inversion_is_near_enough(inversion, verdict));
+        other || (inversion->states == 1 && !mf_inversion_is_near_enough(inversion, assessment));
     const bool worse = sampling->state->basis.count == 0 && farther && lost;
     const bool poor = other && inversion->course.progress.iteration == 0 &&
-                      mf_inversion_start_tears(sampling->state, verdict);
-    verdict->unsettled.for_long = sampling->sweeps > MOST_TIMES * first;
-    memcpy(sampling->before, verdict->distance, sizeof sampling->before);
-    return verdict->unsettled.for_long || worse || poor;
+                      mf_inversion_start_is_under_tension(sampling->state, assessment);
+    assessment->unequilibrated.for_long = sampling->sweeps > MAX_TIMES * first;
+    memcpy(sampling->before, assessment->distance, sizeof sampling->before);
+    return assessment->unequilibrated.for_long || worse || poor;
 }
 
 /// Take samples by the plan, all of them or as many again.
@@ -139,7 +139,7 @@ static enum status take(struct sampling *sampling, bool again) {
     const struct inverse_listener *listener = sampling->listener;
     const int threads = state->problem->threads;
     if (again) {
-        listener->tell(listener->context, &sampling->progress); // it takes as long as all before
+        listener->report(listener->context, &sampling->progress); // it takes as long as all before
         TRY(mf_replicas_double(&state->replicas, now, threads, &sampling->progress, listener));
         sampling->sweeps += replicas_plan_sweeps(now) / 2;
     } else {
@@ -147,24 +147,24 @@ static enum status take(struct sampling *sampling, bool again) {
         TRY(mf_replicas_run(&state->replicas, now, threads, &sampling->progress, listener));
         sampling->sweeps += replicas_plan_sweeps(now) + (uint64_t)now->equilibration;
     }
-    TRY(mf_inversion_settled_judge(state, &state->verdict.unsettled));
+    TRY(mf_inversion_equilibrium_check(state, &state->assessment.unequilibrated));
     mf_inversion_assess(state);
     mf_inversion_pressure_measure(state);
-    mf_inversion_settled_forget(state);
+    mf_inversion_equilibrium_reset(state);
     return STATUS_OK;
 }
 
 /// What drifts was equilibration; what only remembers its begin is too short.
 static enum status settle(struct sampling *sampling) {
-    struct inversion_verdict *verdict = &sampling->state->verdict;
+    struct inversion_assessment *assessment = &sampling->state->assessment;
     struct replicas_plan *now = &sampling->plan;
-    const bool drifts = verdict->unsettled.drifts;
+    const bool drifts = assessment->unequilibrated.drifts;
     if (!drifts || sampling->failures++ > 0)
-        verdict->stretch *= 2;
+        assessment->stretch *= 2;
     if (!drifts)
         return take(sampling, true);
     now->scatter = false;
-    now->equilibration = sampling->state->parameters->equilibration * verdict->stretch;
+    now->equilibration = sampling->state->parameters->equilibration * assessment->stretch;
     if (sampling->failures > 1)
         now->every *= 2;
     return take(sampling, false);
@@ -173,7 +173,7 @@ static enum status settle(struct sampling *sampling) {
 enum status mf_inversion_sample(struct inversion *inversion, struct inversion_state *state,
                                 const struct inverse_listener *listener) {
     const struct inversion_progress *progress = &inversion->course.progress;
-    struct inversion_unsettled *unsettled = &state->verdict.unsettled;
+    struct inversion_unequilibrated *unequilibrated = &state->assessment.unequilibrated;
     const uint64_t replicas = (uint64_t)state->parameters->replicas;
     struct sampling sampling = {.inversion = inversion,
                                 .state = state,
@@ -183,16 +183,16 @@ enum status mf_inversion_sample(struct inversion *inversion, struct inversion_st
                                              .iterations = (uint32_t)state->parameters->iterations,
                                              .best = mf_targets_error(&inversion->problem->targets,
                                                                       progress->best.distance),
-                                             .least = NAN,
+                                             .min = NAN,
                                              .mean = NAN}};
-    state->verdict.stretch = progress->stretch;
-    unsettled->for_long = false;
+    state->assessment.stretch = progress->stretch;
+    unequilibrated->for_long = false;
     TRY(mf_inversion_tabulate(state));
     state->work.evaluations += replicas;
     TRY(take(&sampling, false));
     sampling.progress.done = sampling.progress.total = replicas;
     for (;;) {
-        const bool waits = unsettled->found && !mf_inversion_tells_way(state);
+        const bool waits = unequilibrated->found && !mf_inversion_gives_direction(state);
         if (waits && is_hopeless(&sampling))
             break;
         if (waits)
@@ -202,8 +202,8 @@ enum status mf_inversion_sample(struct inversion *inversion, struct inversion_st
         else
             break;
     }
-    unsettled->sweeps = sampling.sweeps;
-    state->verdict.useless = unsettled->found && !mf_inversion_tells_way(state);
+    unequilibrated->sweeps = sampling.sweeps;
+    state->assessment.useless = unequilibrated->found && !mf_inversion_gives_direction(state);
     state->work.sweeps += replicas * sampling.sweeps;
     return STATUS_OK;
 }

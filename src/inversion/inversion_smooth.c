@@ -8,7 +8,7 @@
 #include <math.h>
 
 /// The laws that U is compared with: 1, q, q², or of a dihedral 1, cos φ, sin φ, … sin 3φ.
-enum { PARABOLA = 3, TORSION = 7, MOST_TERMS = TORSION };
+enum { PARABOLA = 3, TORSION = 7, MAX_TERMS = TORSION };
 
 /// One group as it is smoothed.
 struct group {
@@ -38,8 +38,8 @@ static double term_of(const struct group *group, size_t term, size_t bin) {
 /// bins at both ends are seen, and some between.
 static void find_law(const struct group *group, const double *curve, double *law) {
     const size_t terms = group->shape.periodic ? TORSION : PARABOLA;
-    double normal[MOST_TERMS * MOST_TERMS] = {0}, right[MOST_TERMS] = {0};
-    double t[MOST_TERMS];
+    double normal[MAX_TERMS * MAX_TERMS] = {0}, right[MAX_TERMS] = {0};
+    double t[MAX_TERMS];
     for (size_t a = 0; a < group->own->known; a++) {
         const double weight = group->own->target[group->own->first + a];
         for (size_t k = 0; k < terms; k++)
@@ -110,11 +110,11 @@ static void take_target(const struct inversion_state *state, const struct group 
     for (size_t a = 0; a < own->known; a++) {
         const size_t bin = state->grid.known_bin[group->first + a];
         const double counts = state->target.counts[bin];
-        const double least = state->target.least[bin] * state->target.ideal[bin];
+        const double min = state->target.min[bin] * state->target.ideal[bin];
         const double error = fmax(state->target.error[bin], exact * state->target.ideal[bin]);
         const double jacobian = mf_bonded_distribution_jacobian(
             own->unknown->order, own->dimensions, &own->unknown->bins, own->first + a);
-        curve[a] = -temperature * log(fmax(counts, least) / jacobian);
+        curve[a] = -temperature * log(fmax(counts, min) / jacobian);
         information[a] = pow(counts / (error * temperature), 2);
     }
 }
@@ -130,7 +130,7 @@ static enum status find_smoothness(const struct inversion_state *state, size_t g
     const size_t known = group.own->known;
     const double temperature = state->problem->scene.temperature;
     double *target = NULL, *curve = NULL, *information = NULL;
-    double least = INFINITY;
+    double min = INFINITY;
     NEW_ARRAY(target, known);
     NEW_ARRAY(curve, known);
     NEW_ARRAY(information, known);
@@ -141,9 +141,9 @@ static enum status find_smoothness(const struct inversion_state *state, size_t g
         CHECK(smooth(&group, temperature, pow(ratio, k) / (temperature * temperature), information,
                      curve, &solution));
         const double risk = (double)known * solution.misfit + 2 * solution.directions;
-        if (risk >= least)
+        if (risk >= min)
             continue;
-        least = risk;
+        min = risk;
         *smoothness = pow(ratio, k);
     }
 done:
@@ -176,25 +176,25 @@ void mf_inversion_smooth_shapes(const struct inversion *inversion, struct imc_sh
 /// and F u.
 static void add_state(const struct inversion *inversion, const struct inversion_state *state,
                       const struct group *group, double *information, double *moved) {
-    static const double most = 1; // an empty bin tells no more than that of (S − S*)/S
+    static const double max = 1; // an empty bin tells no more than that of (S − S*)/S
     const double temperature = state->problem->scene.temperature;
-    const bool moves = ((const struct inversion_rule *)inversion->method->own)->forgets;
+    const bool moves = ((const struct inversion_rule *)inversion->method->own)->memoryless;
     const bool mean = moves && mf_inversion_ends_with_mean(inversion);
     // The first state counts with what is left of all, as the equations do, the others with their
     // own.
-    const double birge =
-        mf_inversion_band_birge(state == inversion->state ? &inversion->verdict : &state->verdict);
+    const double birge = mf_inversion_band_birge(state == inversion->state ? &inversion->assessment
+                                                                           : &state->assessment);
     for (size_t a = 0; a < group->own->known; a++) {
         const size_t known = group->first + a, bin = state->grid.known_bin[known];
         const double counts = state->replicas.counts.mean[bin], target = state->target.counts[bin];
         const double excess = mean ? state->pool.excess[known] : counts - target;
-        const double least = state->target.least[bin] * state->target.ideal[bin];
+        const double min = state->target.min[bin] * state->target.ideal[bin];
         const double own = pow(counts / temperature, 2) / (birge * state->variance[known]);
         if (!state->grid.seen[known] || !(counts > 0))
             continue;
-        const double step = log(fmax(target + excess, least) / fmax(target, least));
+        const double step = log(fmax(target + excess, min) / fmax(target, min));
         information[a] += own;
-        moved[a] += moves ? own * temperature * fmin(step, most) : 0;
+        moved[a] += moves ? own * temperature * fmin(step, max) : 0;
     }
 }
 

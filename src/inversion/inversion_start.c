@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "inversion/inversion.h"
 
-#include "inversion/inversion_inside.h"
+#include "inversion/inversion_intramolecular.h"
 
 #include <math.h>
 
@@ -23,7 +23,7 @@ static bool has_own(const struct inversion_state *state) {
 }
 
 static bool is_from_hnc(const struct inversion_state *state) {
-    return !has_own(state) && mf_inversion_knows_inside(state) &&
+    return !has_own(state) && mf_inversion_knows_intramolecular(state) &&
            state->parameters->start == INVERSION_FROM_HNC;
 }
 
@@ -33,7 +33,7 @@ static bool find_variance(const struct inversion_state *state, double *variance)
     const struct potential_grid *grid = &state->grid;
     for (size_t a = 0; a < grid->known; a++) {
         const size_t bin = grid->known_bin[a];
-        const double g = fmax(mf_inversion_target_g(state, bin), state->target.least[bin]);
+        const double g = fmax(mf_inversion_target_g(state, bin), state->target.min[bin]);
         const double error = state->target.error[bin] / state->target.ideal[bin];
         // What another state has seen is known within k_B T here.
         variance[a] = pow(state->problem->scene.temperature * (grid->seen[a] ? error / g : 1), 2);
@@ -130,7 +130,7 @@ enum status mf_inversion_start_of_molecules(struct inversion *inversion,
     if (inversion->states > 1 || has_own(state) || state->parameters->start != INVERSION_FROM_HNC ||
         mf_molecules_find(scene->interaction, scene->interactions) == NULL)
         return STATUS_OK;
-    TRY(mf_inversion_inside_find(state, phi, listener));
+    TRY(mf_inversion_intramolecular_find(state, phi, listener));
     return mf_inversion_start(state, phi);
 }
 
@@ -148,9 +148,9 @@ bool mf_inversion_start_has_other(const struct inversion *inversion,
     return is_from_hnc(state) && !progress->second_start && progress->iteration <= 1;
 }
 
-bool mf_inversion_start_tears(const struct inversion_state *state,
-                              const struct inversion_verdict *verdict) {
-    return verdict->distance[TARGET_RDF].rms > poor * find_structure(state) &&
+bool mf_inversion_start_is_under_tension(const struct inversion_state *state,
+                                         const struct inversion_assessment *assessment) {
+    return assessment->distance[TARGET_RDF].rms > poor * find_structure(state) &&
            state->pressure.value < 0;
 }
 
@@ -158,9 +158,9 @@ bool mf_inversion_start_is_poor(const struct inversion *inversion, bool kept) {
     const struct inversion_state *first = inversion->state;
     if (!mf_inversion_start_has_other(inversion, first))
         return false;
-    if (inversion->course.progress.iteration == 1 || inversion->verdict.useless)
+    if (inversion->course.progress.iteration == 1 || inversion->assessment.useless)
         return !kept;
-    return mf_inversion_start_tears(first, &inversion->verdict);
+    return mf_inversion_start_is_under_tension(first, &inversion->assessment);
 }
 
 enum status mf_inversion_start_again(struct inversion_state *state, double *phi) {

@@ -2,13 +2,13 @@
 //
 // What a state is made of: its system, its memory.
 #include "inversion/inversion_state.h"
-#include "inversion/inversion_coarse.h"
+#include "inversion/inversion_low_rank.h"
 
 #include <math.h>
 
 /// By which the share of a type may change with the number of particles: rare types are rounded,
 /// and keep two beads.
-static const double most_distortion = 0.2;
+static const double max_distortion = 0.2;
 
 /// As many particles as are asked for, at the densities of the scene.
 static enum status choose_size(struct inversion_state *state) {
@@ -26,14 +26,14 @@ static enum status choose_size(struct inversion_state *state) {
         mf_box_scaled(&scene->box, (double)mf_composition_particles(&state->composition) /
                                        (double)mf_composition_particles(&scene->composition));
     const double distortion = mf_composition_distortion(&scene->composition, &state->composition);
-    if (distortion <= most_distortion)
+    if (distortion <= max_distortion)
         return STATUS_OK;
     return mf_status_fail(
         STATUS_BAD_INPUT,
         "method.particles: %lld change the share of a type by %.0f %%; %lld are the "
         "next that keep all shares",
         (long long)wanted, 100 * distortion,
-        (long long)mf_composition_least_particles(&scene->composition, wanted, most_distortion));
+        (long long)mf_composition_min_particles(&scene->composition, wanted, max_distortion));
 }
 
 /// No potential of pairs empties a shell in the midst of a liquid: an empty bin beyond one that is
@@ -68,7 +68,7 @@ static enum status allocate(struct inversion_state *state) {
     NEW_ARRAY(target->unit, bins);
     NEW_ARRAY(target->counts, bins);
     NEW_ARRAY(target->error, bins);
-    NEW_ARRAY(target->least, bins);
+    NEW_ARRAY(target->min, bins);
     NEW_ARRAY(target->common, known);
     NEW_ARRAY(target->shape, state->grid.blocks);
     NEW_ARRAY(state->groups, state->grid.groups);
@@ -104,7 +104,7 @@ enum status mf_inversion_state_init(struct inversion_state *state,
                               "meet it; with \"fitted\": \"no\" it is compared with");
     if (coefficients)
         return mf_inversion_basis_init(&state->basis, &state->grid, coefficients);
-    return state->grid.blocks > 1 ? mf_inversion_coarse_init(state) : STATUS_OK;
+    return state->grid.blocks > 1 ? mf_inversion_low_rank_init(state) : STATUS_OK;
 }
 
 enum status mf_inversion_tabulate(struct inversion_state *state) {
@@ -153,15 +153,15 @@ void mf_inversion_state_clear(struct inversion_state *state) {
     mf_potential_grid_molecules_clear(&state->grid, &state->interaction.molecules);
     mf_potential_grid_clear(&state->grid);
     mf_inversion_basis_clear(&state->basis);
-    mf_inversion_basis_clear(&state->coarse);
+    mf_inversion_basis_clear(&state->low_rank);
     mf_inversion_kirkwood_buff_clear(&state->kirkwood_buff);
     mf_inversion_response_clear(&state->response);
     mf_memory_free(state->target.shape);
     mf_memory_free(state->groups);
-    double *arrays[] = {state->target.ideal,  state->target.unit,  state->target.counts,
-                        state->target.error,  state->target.least, state->target.common,
-                        state->excess,        state->variance,     state->pool.excess,
-                        state->pool.variance, state->pool.phi,     state->pressure.slope,
+    double *arrays[] = {state->target.ideal,  state->target.unit, state->target.counts,
+                        state->target.error,  state->target.min,  state->target.common,
+                        state->excess,        state->variance,    state->pool.excess,
+                        state->pool.variance, state->pool.phi,    state->pressure.slope,
                         state->inside.g};
     for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
         mf_memory_free(arrays[k]);
@@ -182,7 +182,7 @@ size_t mf_inversion_state_spans(struct inversion_state *state, struct memory_spa
     span[n++] = (struct memory_span){response->mean, bytes};
     span[n++] = (struct memory_span){response->phi, bytes};
     span[n++] = (struct memory_span){response->covariance, known * bytes};
-    span[n++] = (struct memory_span){&state->inside.least, sizeof state->inside.least};
+    span[n++] = (struct memory_span){&state->inside.min, sizeof state->inside.min};
     span[n++] = (struct memory_span){state->inside.g,
                                      state->grid.pairs * state->grid.bins * sizeof(double)};
     if (state->kirkwood_buff.pairs > 0)

@@ -4,8 +4,8 @@
 ///
 /// A state has a problem of its own: targets, temperature, density, composition; the potentials are
 /// those of all states. Samples double until their noise is small against the error, or as small as
-/// was asked for, and until they are those of equilibrium (inversion/inversion_settled.h), or what
-/// is not is small against the error: for a step, and for no more.
+/// was asked for, and until they are those of equilibrium (inversion/inversion_equilibrium.h), or
+/// what is not is small against the error: for a step, and for no more.
 #pragma once
 
 #include "inversion/imc_solve.h"
@@ -13,13 +13,13 @@
 #include "inversion/inversion_kirkwood_buff.h"
 #include "inversion/inversion_pressure.h"
 #include "inversion/inversion_response.h"
-#include "inversion/inversion_verdict.h"
+#include "inversion/inversion_assessment.h"
 #include "inversion/replicas.h"
 #include "problem/potential_grid.h"
 
 /// Bins of all pair types. There are some 20 matrices of bins by bins: 2.5 GB with so many, and
 /// minutes to solve.
-enum { INVERSION_MOST_BINS = 4000 };
+enum { INVERSION_MAX_BINS = 4000 };
 
 /// The parameters of all inversions, the first of each method's own.
 struct inversion_parameters {
@@ -38,7 +38,7 @@ struct inversion_target {
     double *ideal;           ///< S if g were 1, or p its mean over the known bins
     double *unit;            ///< S for a value of 1 of the target
     double *counts, *error;  ///< S of the target and its error
-    double *least;           ///< S/ideal that counts as none
+    double *min;             ///< S/ideal that counts as none
     double *common;          ///< error of S* by the factor of its pair type, shape [known]
     struct imc_shape *shape; ///< of each block
 };
@@ -75,14 +75,14 @@ struct inversion_state {
     struct inversion_pool pool;
     struct inversion_pressure pressure;
     struct inversion_kirkwood_buff kirkwood_buff;
-    struct inversion_verdict verdict;
+    struct inversion_assessment assessment;
     struct {
-        double *g;    ///< of the pairs that molecules exclude, shape [pairs, bins of a pair]
-        double least; ///< mf_hnc_closure_least_inside; 0: not known
-    } inside;         ///< molecules by themselves, inversion/inversion_inside.h
-    struct inversion_basis basis;  ///< of methods that go by the gradient; else its count is 0
-    struct inversion_basis coarse; ///< of steps far from the targets, of fits with groups
-    double gradient;               ///< of coefficients in its noise, when it was measured last
+        double *g;  ///< of the pairs that molecules exclude, shape [pairs, bins of a pair]
+        double min; ///< mf_hnc_closure_min_intramolecular; 0: not known
+    } inside;       ///< molecules by themselves, inversion/inversion_intramolecular.h
+    struct inversion_basis basis;    ///< of methods that go by the gradient; else its count is 0
+    struct inversion_basis low_rank; ///< of steps far from the targets, of fits with groups
+    double gradient;                 ///< of coefficients in its noise, when it was measured last
     struct inversion_work {
         uint64_t evaluations, sweeps; ///< so far
         bool mixed; ///< since they were placed the replicas have agreed but for their noise

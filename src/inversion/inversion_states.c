@@ -5,8 +5,8 @@
 
 #include <stdio.h>
 
-static void tell_worst(const struct inversion *inversion, const struct inversion_worst *worst,
-                       const char *why, char reason[INVERSE_REASON_SIZE]) {
+static void report_worst(const struct inversion *inversion, const struct inversion_worst *worst,
+                         const char *why, char reason[INVERSE_REASON_SIZE]) {
     snprintf(reason, INVERSE_REASON_SIZE, "%s%s of \"%s\" is off by %.1f times its noise", why,
              mf_targets_name(worst->kind), inversion->state[worst->state].problem->name,
              worst->noises);
@@ -15,23 +15,23 @@ static void tell_worst(const struct inversion *inversion, const struct inversion
 void mf_inversion_states_end(struct inversion *inversion, struct inverse_step *step) {
     static const double progress = 0.95;
     static const uint32_t patience = 5;
-    struct inversion_standstill *still = &inversion->standstill;
+    struct inversion_stagnation *still = &inversion->stagnation;
     const struct inversion_worst worst =
         mf_inversion_states_worst(inversion->state, inversion->states);
     const double distance = mf_inversion_states_distance(inversion->state, inversion->states);
-    const bool better = step->iteration == 0 || distance < progress * still->least;
+    const bool better = step->iteration == 0 || distance < progress * still->min;
     const bool met = worst.noises <= mf_inverse_noise_margin;
-    still->least = better ? distance : still->least;
+    still->min = better ? distance : still->min;
     still->iterations = better ? 0 : still->iterations + 1;
     if (met || step->converged)
         return;
     if (!step->finished && still->iterations >= patience) {
         step->finished = true;
-        tell_worst(inversion, &worst,
-                   "no step makes all states better together; they seem to have no potential in "
-                   "common: ",
-                   step->reason);
+        report_worst(inversion, &worst,
+                     "no step makes all states better together; they seem to have no potential in "
+                     "common: ",
+                     step->reason);
     } else if (step->finished) {
-        tell_worst(inversion, &worst, "", step->reason);
+        report_worst(inversion, &worst, "", step->reason);
     }
 }

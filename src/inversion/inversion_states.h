@@ -2,7 +2,7 @@
 /// @file What several states that share the potentials say together.
 #pragma once
 
-#include "inversion/inversion_verdict.h"
+#include "inversion/inversion_assessment.h"
 
 struct inversion;
 struct inversion_state;
@@ -11,8 +11,8 @@ struct inversion_state;
 /// off by its noise, with the noise of the least exact; the distance of g, and of each kind of
 /// groups, the rms over the states; and those of the pressure and of integrals as many times the
 /// first state's noise as that of the worst state. They have settled if all have.
-void mf_inversion_states_verdict(const struct inversion_state *state, size_t states,
-                                 struct inversion_verdict *all);
+void mf_inversion_states_assess(const struct inversion_state *state, size_t states,
+                                struct inversion_assessment *all);
 
 /// The target of a state that is farthest off.
 struct inversion_worst {
@@ -29,8 +29,8 @@ struct inversion_worst mf_inversion_states_worst(const struct inversion_state *s
 double mf_inversion_states_distance(const struct inversion_state *state, size_t states);
 
 /// Whether the states still come nearer to their targets together.
-struct inversion_standstill {
-    double least;        ///< mf_inversion_states_distance so far
+struct inversion_stagnation {
+    double min;          ///< mf_inversion_states_distance so far
     uint32_t iterations; ///< since it was lower by more than a little
 };
 
@@ -39,13 +39,13 @@ struct inversion_standstill {
 /// carry the noise of C into the step. Says which target is farthest off.
 void mf_inversion_states_end(struct inversion *inversion, struct inverse_step *step);
 
-/// The mean of the states' steps of mf_inversion_coarse_step, each bin weighted by 1/(k_B T
+/// The mean of the states' steps of mf_inversion_low_rank_step, each bin weighted by 1/(k_B T
 /// σ_a/S_a)² of the states, 0 where a state has not seen it. U of a group is known but for a
 /// constant, which is another one in each state: what the states differ by over the bins that all
 /// know is taken off before. Then the ramp by which the pressures are met, if they are asked for:
 /// by least squares. The step is made only far from the targets.
-/// @param[in,out] state  shape [states]; their `coarse` is overwritten
+/// @param[in,out] state  shape [states]; their `low_rank` is overwritten
 /// @param[out] step  shape [points]
 /// Fails: NO_MEMORY. Tested: test_inversion_states.
-enum status mf_inversion_states_coarse_step(struct inversion_state *state, size_t states,
-                                            double *step) MUST_USE;
+enum status mf_inversion_states_low_rank_step(struct inversion_state *state, size_t states,
+                                              double *step) MUST_USE;

@@ -41,13 +41,13 @@ static void find_path(const struct inversion_state *state, size_t pair, const ch
 static enum status allocate_columns(const struct inversion_state *state, double **memory,
                                     double *column[COLUMNS]) {
     enum status status = STATUS_OK;
-    size_t most = state->grid.bins;
+    size_t max = state->grid.bins;
     for (size_t g = 0; g < state->grid.groups; g++)
-        if (state->grid.group[g].own.unknown->bins.count > most)
-            most = state->grid.group[g].own.unknown->bins.count;
-    NEW_ARRAY(*memory, COLUMNS * most);
+        if (state->grid.group[g].own.unknown->bins.count > max)
+            max = state->grid.group[g].own.unknown->bins.count;
+    NEW_ARRAY(*memory, COLUMNS * max);
     for (size_t c = 0; c < COLUMNS; c++)
-        column[c] = *memory + c * most;
+        column[c] = *memory + c * max;
 done:
     return status;
 }
@@ -139,7 +139,7 @@ done:
 static enum status write_excess(const struct inversion *inversion,
                                 const struct inverse_folder *folder) {
     const struct inversion_state *first = inversion->state;
-    const struct inversion_trail *trail = &inversion->trail;
+    const struct inversion_history *history = &inversion->history;
     const size_t bins = first->grid.bins;
     char path[OUTPUT_PATH_SIZE];
     for (size_t pair = 0; pair < first->grid.pairs; pair++) {
@@ -148,8 +148,8 @@ static enum status write_excess(const struct inversion *inversion,
         const struct data_column r = {
             "r[lambda]", first->grid.r + mf_potential_grid_block(&first->grid, pair), NULL};
         find_path(first, pair, "excess", "_history.tsv", folder, path);
-        TRY(write_iterations(path, folder->units, r, trail->excess + pair * bins, trail->bins,
-                             trail->iterations, bins));
+        TRY(write_iterations(path, folder->units, r, history->excess + pair * bins, history->bins,
+                             history->iterations, bins));
     }
     return STATUS_OK;
 }

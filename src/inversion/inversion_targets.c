@@ -27,7 +27,7 @@ static void count_pairs(struct inversion_state *state) {
             const size_t bin = first + k;
             const double ideal =
                 mf_rdf_ideal_pairs_of(bins, k, &state->box, &state->composition, pair);
-            state->target.least[bin] = problem->core_threshold;
+            state->target.min[bin] = problem->core_threshold;
             state->target.ideal[bin] = state->target.unit[bin] = ideal > 0 ? ideal : 1;
             if (!(ideal > 0))
                 continue; // no pairs are counted, and none are wanted
@@ -74,20 +74,20 @@ static void count_group(struct inversion_state *state, const struct potential_gr
         state->target.ideal[bin] = unit * mean;
         state->target.counts[bin] = unit * group->own.target[k];
         state->target.error[bin] = unit * error[k];
-        state->target.least[bin] = mf_bonded_distribution_seen * peak / mean;
+        state->target.min[bin] = mf_bonded_distribution_seen * peak / mean;
     }
 }
 
 /// Another section.
 static struct inversion_section *add_section(struct inversion_state *state, int kind) {
-    struct inversion_section *section = &state->verdict.section[state->verdict.sections];
-    if (state->verdict.sections > 0) {
+    struct inversion_section *section = &state->assessment.section[state->assessment.sections];
+    if (state->assessment.sections > 0) {
         const struct inversion_section *last = section - 1;
         section->bin = last->bin + last->bins;
         section->known = last->known + last->known_count;
     }
     section->kind = kind;
-    state->verdict.sections++;
+    state->assessment.sections++;
     return section;
 }
 

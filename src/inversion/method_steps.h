@@ -20,8 +20,8 @@ void mf_ibi_step(const struct inversion_state *state, double *step);
 enum status mf_hnc_step(const struct inversion_state *state, double *step) MUST_USE;
 
 /// The regularised Newton step of the equations, or, with groups whose C is not known well enough,
-/// that of mf_inversion_coarse_step. `extra` are strength, misfit and directions, of the latter 0.
-/// Sets `most_probable`. Fails: NO_MEMORY.
+/// that of mf_inversion_low_rank_step. `extra` are strength, misfit and directions, of the latter
+/// 0. Sets `most_probable`. Fails: NO_MEMORY.
 enum status mf_imc_step(struct inversion *inversion, double *step, double extra[3]) MUST_USE;
 
 /// Whether C is known well enough for a Newton step in so many directions, or the targets are near.

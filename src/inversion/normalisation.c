@@ -30,17 +30,17 @@ static const double core_end = 0.5;
 static const double evidence = 6;
 
 /// Standard errors that ν must be away from 1, too: a wide minimum says little.
-static const double least_errors = 2;
+static const double min_errors = 2;
 
 /// What the theory does not know of a factor: of 45 fluids with exact g(r), soft, hard and
 /// attractive, the longest-ranged came out at 0.997 and 0.998.
 static const double theory_error = 1e-3;
 
 /// A g(r) that ends before so many mean distances of particles has no tail.
-static const double least_range = 1.8;
+static const double min_range = 1.8;
 
 /// The bins of a target are joined until they are no more than this.
-enum { MOST_CELLS = 100 };
+enum { MAX_CELLS = 100 };
 
 /// The least cost is looked for so many widths about 1, in so many steps a width, then by halving
 /// the interval around it so often; its error in steps a few times finer.
@@ -102,7 +102,7 @@ static enum status fill_cells(struct work *work, const struct rdf_bins *bins, co
                               const struct composition *composition, const double *g,
                               const double *error) {
     enum status status = STATUS_OK;
-    const size_t join = (bins->count - 1) / MOST_CELLS + 1;
+    const size_t join = (bins->count - 1) / MAX_CELLS + 1;
     const size_t core = (size_t)ceil(bins->low / (bins->width * (double)join) - 1e-6);
     work->cells = core + (bins->count - 1) / join + 1;
     const double density = (double)mf_composition_particles(composition) / mf_box_volume(box);
@@ -195,9 +195,9 @@ static enum status find_noise(struct work *work, double factor) {
         mf_statistics_add(&logarithms, log(work->compressibility));
     }
     // Where noise alone leaves no liquid, the target tells nothing.
-    const bool told = tails.count > DRAWS / 2;
-    work->tail_noise = told ? tails.squares / (tails.count - 1) : INFINITY;
-    work->compressibility_noise = told ? logarithms.squares / (logarithms.count - 1) : INFINITY;
+    const bool reported = tails.count > DRAWS / 2;
+    work->tail_noise = reported ? tails.squares / (tails.count - 1) : INFINITY;
+    work->compressibility_noise = reported ? logarithms.squares / (logarithms.count - 1) : INFINITY;
 done:
     if (g)
         memcpy(work->g, g, work->cells * sizeof *g);
@@ -206,16 +206,16 @@ done:
 }
 
 /// The least cost of a grid about 1.
-static enum status scan(struct work *work, double *best, double *least) {
-    *least = INFINITY;
+static enum status scan(struct work *work, double *best, double *min) {
+    *min = INFINITY;
     for (int n = -WIDTHS * STEPS; n <= WIDTHS * STEPS; n++) {
         const double factor = 1 + n * work->width / STEPS;
         double cost;
         if (!(factor > 0))
             continue;
         TRY(find_cost(work, factor, &cost));
-        if (cost < *least) {
-            *least = cost;
+        if (cost < *min) {
+            *min = cost;
             *best = factor;
         }
     }
@@ -223,7 +223,7 @@ static enum status scan(struct work *work, double *best, double *least) {
 }
 
 /// Closer to the least.
-static enum status refine(struct work *work, double *best, double *least) {
+static enum status refine(struct work *work, double *best, double *min) {
     double step = work->width / STEPS;
     for (int n = 0; n < HALVINGS; n++) {
         step *= 0.5;
@@ -232,8 +232,8 @@ static enum status refine(struct work *work, double *best, double *least) {
             const double factor = centre + sign * step;
             double cost;
             TRY(find_cost(work, factor, &cost));
-            if (cost < *least) {
-                *least = cost;
+            if (cost < *min) {
+                *min = cost;
                 *best = factor;
             }
         }
@@ -243,13 +243,13 @@ static enum status refine(struct work *work, double *best, double *least) {
 
 /// Standard error of a factor: how far to each side the cost, which is χ², is within 1 of it; the
 /// larger of both, since on one there may be no liquid, and never more than the width.
-static enum status find_error(struct work *work, double best, double least, double *error) {
+static enum status find_error(struct work *work, double best, double min, double *error) {
     const double step = work->width / (STEPS * FINER);
     *error = step;
     for (int sign = -1; sign <= 1; sign += 2) {
-        double cost = least;
+        double cost = min;
         int n = 0;
-        while (cost < least + 1 && n < STEPS * FINER)
+        while (cost < min + 1 && n < STEPS * FINER)
             TRY(find_cost(work, best + sign * ++n * step, &cost));
         *error = fmax(*error, n * step);
     }
@@ -258,25 +258,25 @@ static enum status find_error(struct work *work, double best, double least, doub
 }
 
 /// Whether 1 is given up, and for what.
-static enum status judge(struct work *work, struct normalisation *normalisation) {
-    double one, least, best = 1, error;
+static enum status assess(struct work *work, struct normalisation *normalisation) {
+    double one, min, best = 1, error;
     TRY(find_cost(work, 1, &one));
     normalisation->compressibility = work->compressibility;
     if (one < evidence)
         return find_error(work, 1, one, &normalisation->error);
-    TRY(scan(work, &best, &least));
-    if (!isfinite(least))
+    TRY(scan(work, &best, &min));
+    if (!isfinite(min))
         return STATUS_OK;
     // Noise is to be seen where the target would be a liquid; with it, once more.
     TRY(find_noise(work, best));
     TRY(find_cost(work, 1, &one));
-    TRY(scan(work, &best, &least));
-    TRY(refine(work, &best, &least));
-    TRY(find_error(work, best, least, &error));
-    if (!(one - least > evidence) || !(fabs(best - 1) > least_errors * error))
+    TRY(scan(work, &best, &min));
+    TRY(refine(work, &best, &min));
+    TRY(find_error(work, best, min, &error));
+    if (!(one - min > evidence) || !(fabs(best - 1) > min_errors * error))
         return STATUS_OK;
     *normalisation = (struct normalisation){.factor = best, .error = error, .found = true};
-    TRY(find_cost(work, best, &least));
+    TRY(find_cost(work, best, &min));
     normalisation->compressibility = work->compressibility;
     return STATUS_OK;
 }
@@ -289,11 +289,11 @@ enum status mf_normalisation_find(const struct rdf_bins *bins, const struct box 
     struct work work = {.width = width};
     *normalisation = (struct normalisation){.factor = 1, .error = width, .compressibility = NAN};
     const double density = (double)mf_composition_particles(composition) / mf_box_volume(box);
-    if (box->dimensions != 3 || mf_rdf_bins_range(bins) < least_range / cbrt(density))
+    if (box->dimensions != 3 || mf_rdf_bins_range(bins) < min_range / cbrt(density))
         return STATUS_OK;
     CHECK(fill_cells(&work, bins, box, composition, g, error));
     work.expected = expect_compressibility(&work);
-    CHECK(judge(&work, normalisation));
+    CHECK(assess(&work, normalisation));
 done:
     work_clear(&work);
     return status;

@@ -15,7 +15,7 @@ static const double ranges = 6;
 /// The solution is good enough when h is met within this, rms over the cells.
 static const double tolerance = 1e-6;
 
-enum { MOST_STEPS = 40, MOST_HALVINGS = 12 };
+enum { MAX_STEPS = 40, MAX_HALVINGS = 12 };
 
 double mf_ornstein_zernike_ball(double q, double edge) {
     const double x = q * edge;
@@ -133,11 +133,11 @@ enum status mf_ornstein_zernike_solve(struct ornstein_zernike *oz, const double 
     *compressibility = NAN;
     shrink(oz, h, rest);
     double error = find_rest(oz, h, oz->c, rest, squares);
-    for (int n = 0; n < MOST_STEPS && error > tolerance; n++) {
+    for (int n = 0; n < MAX_STEPS && error > tolerance; n++) {
         if (!find_step(oz, squares, rest, scaled, jacobian, step))
             goto done;
         double share = 1, here = INFINITY;
-        for (int half = 0; half < MOST_HALVINGS && !(here < error); half++, share *= 0.5) {
+        for (int half = 0; half < MAX_HALVINGS && !(here < error); half++, share *= 0.5) {
             for (size_t k = 0; k < cells; k++)
                 next[k] = oz->c[k] + share * step[k];
             here = find_rest(oz, h, next, rest, squares);

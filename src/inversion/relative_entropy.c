@@ -13,9 +13,9 @@
 #define MEMBER(name) .offset = offsetof(struct inversion_basis_size, name)
 static const struct field own_fields[] = {
     {"coefficients", FIELD_INTEGER, MEMBER(coefficients), .initial = 20, .minimum = 1,
-     .maximum = INVERSION_MOST_BINS, .unit = "", .help = "cubic B-splines of each pair potential"},
+     .maximum = INVERSION_MAX_BINS, .unit = "", .help = "cubic B-splines of each pair potential"},
     {"group_coefficients", FIELD_INTEGER, MEMBER(group_coefficients), .initial = 8, .minimum = 1,
-     .maximum = INVERSION_MOST_BINS, .unit = "",
+     .maximum = INVERSION_MAX_BINS, .unit = "",
      .help = "coefficients of each group: cubic B-splines, of a dihedral sines and cosines"},
     FIELD_END,
 };

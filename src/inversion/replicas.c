@@ -112,11 +112,11 @@ static size_t list_sampled(void *context, size_t k, struct memory_span *span) {
     return n + mf_sampler_spans(&replica->sampler, span + n);
 }
 
-static void tell_one(void *context, size_t k, const void *result) {
+static void report_one(void *context, size_t k, const void *result) {
     struct work *work = context;
     (void)k, (void)result;
     work->progress.done++;
-    work->listener->tell(work->listener->context, &work->progress);
+    work->listener->report(work->listener->context, &work->progress);
 }
 
 /// Run all, each by `one`.
@@ -130,7 +130,7 @@ run_all(struct replicas *replicas, const struct replicas_plan *plan, int threads
     TRY(mf_parallel_try(&(struct parallel_tasks){.count = replicas->count,
                                                  .threads = threads,
                                                  .run = run_member,
-                                                 .take = tell_one,
+                                                 .take = report_one,
                                                  .context = &work,
                                                  .spans = list_sampled}));
     mf_comoments_reset(&replicas->counts);

@@ -7,7 +7,7 @@
 #include "problem/inverse.h"
 #include "inversion/sampler.h"
 
-enum { REPLICAS_MOST = 64 };
+enum { REPLICAS_MAX = 64 };
 
 /// Consecutive parts of each sampler's samples; their scatter gives the statistical error.
 enum { REPLICAS_BLOCKS = 4 }; // even, so that they can be joined in pairs
@@ -20,7 +20,7 @@ struct replicas {
         double *sample;          ///< of mf_sampler_sample
         double *block;           ///< shape [REPLICAS_BLOCKS, numbers]: means of each block
         double acceptance;       ///< part of the moves that were taken, since the last begin
-    } member[REPLICAS_MOST];
+    } member[REPLICAS_MAX];
     struct comoments counts; ///< of all, as a sample has them
 };
 

@@ -18,7 +18,7 @@ struct writer {
 };
 
 /// Write errors are remembered by the stream and found by mf_output_commit.
-static void put(struct writer *writer, const void *memory, size_t bytes) {
+static void append(struct writer *writer, const void *memory, size_t bytes) {
     if (bytes == 0) // of no memory, perhaps
         return;
     fwrite(memory, 1, bytes, writer->stream);
@@ -30,12 +30,12 @@ enum status mf_checkpoint_save(const char *file, uint64_t digest, const struct m
     struct output output;
     TRY(mf_output_open(&output, file));
     struct writer writer = {output.stream, DIGEST_OF_NOTHING};
-    put(&writer, magic, sizeof magic);
-    put(&writer, &digest, sizeof digest);
+    append(&writer, magic, sizeof magic);
+    append(&writer, &digest, sizeof digest);
     for (size_t k = 0; k < count; k++) {
         const uint64_t bytes = spans[k].bytes;
-        put(&writer, &bytes, sizeof bytes);
-        put(&writer, spans[k].memory, spans[k].bytes);
+        append(&writer, &bytes, sizeof bytes);
+        append(&writer, spans[k].memory, spans[k].bytes);
     }
     fwrite(&writer.checksum, sizeof writer.checksum, 1, output.stream);
     return mf_output_commit(&output);

@@ -5,7 +5,7 @@
 
 #include <stdio.h>
 
-enum { TYPES_SIZE = COMPOSITION_MOST_TYPES * (COMPOSITION_NAME_SIZE + 24) };
+enum { TYPES_SIZE = COMPOSITION_MAX_TYPES * (COMPOSITION_NAME_SIZE + 24) };
 
 static void list_types(const struct composition *composition, char text[TYPES_SIZE]) {
     int length = snprintf(text, TYPES_SIZE, "types:");

@@ -60,8 +60,8 @@ static bool are_units(const struct data_line *line, char separator) {
 }
 
 /// Put in the words of `line`, each with its word of `units`, if there is such a line.
-static void put_names(const struct data_line *line, const struct data_line *units, char separator,
-                      uint64_t label, char *heading) {
+static void write_names(const struct data_line *line, const struct data_line *units, char separator,
+                        uint64_t label, char *heading) {
     struct data_word name = mf_data_word_first(line, separator), unit = {0};
     const char *const begin = heading;
     size_t column = 0;
@@ -69,7 +69,7 @@ static void put_names(const struct data_line *line, const struct data_line *unit
     if (units)
         unit = mf_data_word_first(units, separator);
     for (; more; column++) {
-        if (column >= DATA_HEADING_MOST || !(label >> column & 1)) {
+        if (column >= DATA_HEADING_MAX || !(label >> column & 1)) {
             const struct data_word text = inside(unit);
             heading += sprintf(heading, "%s%.*s", heading > begin ? "\t" : "", (int)name.length,
                                name.begin);
@@ -119,7 +119,7 @@ void mf_data_heading_make(const struct data_line *before, const struct data_line
     const struct data_line *names = units ? &above : &line;
     const bool parted = mf_data_word_count(names, between) == columns;
     if (parted && (units || label || between != ' ')) {
-        put_names(names, units ? &line : NULL, between, label, heading);
+        write_names(names, units ? &line : NULL, between, label, heading);
         bracket_units(heading);
         join_words(heading);
     } else {

@@ -7,7 +7,7 @@
 #include <stdint.h>
 
 /// Columns that may be text.
-enum { DATA_HEADING_MOST = 64 };
+enum { DATA_HEADING_MAX = 64 };
 
 /// Make one line of names, "r[nm]\tg", of the last lines before the rows, comments or not.
 ///

@@ -42,7 +42,7 @@ size_t mf_data_line_copy(const struct data_line *line, const char *begin, char *
 }
 
 /// Behind a word in quotes, which may have any separator; `at` if none begins there.
-static const char *behind_quotes(const struct data_line *line, const char *at) {
+static const char *after_quotes(const struct data_line *line, const char *at) {
     const char *close =
         at < line->end && *at == '"' ? memchr(at + 1, '"', (size_t)(line->end - at - 1)) : NULL;
     return close ? close + 1 : at;
@@ -51,9 +51,9 @@ static const char *behind_quotes(const struct data_line *line, const char *at) {
 /// The next place of `character` outside quotes, or NULL.
 static const char *find_outside(const struct data_line *line, const char *at, char character) {
     for (; at < line->end; at++) {
-        const char *behind = behind_quotes(line, at);
-        at = behind > at ? behind - 1 : at;
-        if (*at == character && behind <= at)
+        const char *past = after_quotes(line, at);
+        at = past > at ? past - 1 : at;
+        if (*at == character && past <= at)
             return at;
     }
     return NULL;
@@ -65,10 +65,10 @@ char mf_data_line_separator(const struct data_line *line) {
     if (find_outside(line, line->begin, ',') == NULL)
         return ' ';
     for (const char *at = mf_data_line_start(line); at < line->end; at++) {
-        const char *behind = behind_quotes(line, at), *after = at + strspn(at, blanks);
+        const char *past = after_quotes(line, at), *after = at + strspn(at, blanks);
         if (after > at && after < line->end && at[-1] != ',' && *after != ',')
             return ' ';
-        at = behind > at ? behind - 1 : at;
+        at = past > at ? past - 1 : at;
     }
     return ',';
 }
@@ -81,7 +81,7 @@ bool mf_data_line_may_have_commas(const struct data_line *line, char separator) 
 
 static struct data_word take_word(const struct data_line *line, char separator, const char *begin) {
     const char stop[] = {separator, '\n', '\0'};
-    const char *quoted = behind_quotes(line, begin);
+    const char *quoted = after_quotes(line, begin);
     if (quoted > begin)
         return (struct data_word){begin + 1, (size_t)(quoted - begin - 2), quoted, true};
     size_t length = strcspn(begin, separator == ' ' ? " \t\r\f\v\n" : stop);
@@ -97,7 +97,7 @@ struct data_word mf_data_word_first(const struct data_line *line, char separator
 }
 
 bool mf_data_word_next(const struct data_line *line, char separator, struct data_word *word) {
-    const char *at = word->behind + strspn(word->behind, blanks);
+    const char *at = word->past + strspn(word->past, blanks);
     if (separator != ' ' && *at == separator)
         at += 1 + strspn(at + 1, blanks);
     *word = take_word(line, separator, at);

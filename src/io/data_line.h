@@ -39,7 +39,7 @@ bool mf_data_line_may_have_commas(const struct data_line *line, char separator);
 struct data_word {
     const char *begin;
     size_t length;
-    const char *behind; ///< it, its quotes and blanks
+    const char *past; ///< it, its quotes and blanks
     bool quoted;
 };
 

@@ -12,7 +12,7 @@
 #include <strings.h>
 
 /// What is asked of a file, and what its text turns out to be.
-struct demand {
+struct layout {
     size_t columns;   ///< at least, and strictly numbers
     bool flagged;     ///< a letter ends each row
     char separator;   ///< of the first row
@@ -23,12 +23,12 @@ struct demand {
     const char *rows; ///< where the first begins: before are names and comments
 };
 
-static bool is_label(const struct demand *demand, size_t column) {
-    return column < DATA_HEADING_MOST && (demand->label >> column & 1);
+static bool is_label(const struct layout *layout, size_t column) {
+    return column < DATA_HEADING_MAX && (layout->label >> column & 1);
 }
 
-static bool is_row(const struct demand *demand, const struct data_line *line) {
-    return line->begin >= demand->rows && mf_data_line_is_data(line);
+static bool is_row(const struct layout *layout, const struct data_line *line) {
+    return line->begin >= layout->rows && mf_data_line_is_data(line);
 }
 
 /// Text, but none of the flags of VOTCA's tables, which say what is no measurement.
@@ -44,7 +44,7 @@ static uint64_t find_text(const struct data_line *line, char separator, size_t *
     size_t column = 0;
     *numbers = 0;
     do {
-        if (column < DATA_HEADING_MOST && is_text(&word))
+        if (column < DATA_HEADING_MAX && is_text(&word))
             text |= (uint64_t)1 << column;
         else
             ++*numbers;
@@ -54,28 +54,28 @@ static uint64_t find_text(const struct data_line *line, char separator, size_t *
 }
 
 /// Columns of labels are text in the last two lines.
-static void find_labels(struct demand *demand, const struct data_line last[2]) {
+static void find_labels(struct layout *layout, const struct data_line last[2]) {
     size_t numbers, before;
-    if (demand->flagged || last[1].begin == NULL)
+    if (layout->flagged || last[1].begin == NULL)
         return;
     const char separator = mf_data_line_separator(&last[0]);
     const uint64_t text =
         find_text(&last[0], separator, &numbers) & find_text(&last[1], separator, &before);
-    if (numbers < demand->columns || before < demand->columns)
+    if (numbers < layout->columns || before < layout->columns)
         return;
-    demand->label = text;
-    for (size_t column = 0; column < DATA_HEADING_MOST; column++)
-        demand->labels += is_label(demand, column);
+    layout->label = text;
+    for (size_t column = 0; column < DATA_HEADING_MAX; column++)
+        layout->labels += is_label(layout, column);
 }
 
 /// Whether a line before the rows is text: it does not begin as a row does.
-static bool is_heading(const struct demand *demand, const struct data_line *line) {
+static bool is_heading(const struct layout *layout, const struct data_line *line) {
     const char separator = mf_data_line_separator(line);
     struct data_word word = mf_data_word_first(line, separator);
     size_t column = 0;
-    while (is_label(demand, column) && mf_data_word_next(line, separator, &word))
+    while (is_label(layout, column) && mf_data_word_next(line, separator, &word))
         column++;
-    return is_label(demand, column) || !mf_data_word_is_numeric(&word);
+    return is_label(layout, column) || !mf_data_word_is_numeric(&word);
 }
 
 /// End the text where its first set of data ends, by a line "&" as xmgrace has it, and find its
@@ -95,69 +95,69 @@ static void end_set(char *text, struct data_line last[2]) {
 }
 
 /// Find where the rows begin, their separator, and columns of labels.
-static void recognise(struct demand *demand, char *text) {
+static void recognise(struct layout *layout, char *text) {
     struct data_line last[2] = {0};
     end_set(text, last);
-    find_labels(demand, last);
+    find_labels(layout, last);
     struct data_line line = mf_data_line_first(text);
-    demand->rows = text + strlen(text);
+    layout->rows = text + strlen(text);
     do {
-        if (!mf_data_line_is_data(&line) || is_heading(demand, &line))
+        if (!mf_data_line_is_data(&line) || is_heading(layout, &line))
             continue;
-        demand->rows = line.begin;
-        demand->separator = mf_data_line_separator(&line);
-        demand->commas = mf_data_line_may_have_commas(&line, demand->separator);
+        layout->rows = line.begin;
+        layout->separator = mf_data_line_separator(&line);
+        layout->commas = mf_data_line_may_have_commas(&line, layout->separator);
         return;
     } while (mf_data_line_next(&line));
 }
 
 /// Count the rows and take the number of columns from the first one.
 static enum status measure(struct data_table *table, const char *file, const char *text,
-                           const struct demand *demand) {
-    const size_t least = demand->columns + demand->flagged;
+                           const struct layout *layout) {
+    const size_t min = layout->columns + layout->flagged;
     struct data_line line = mf_data_line_first(text);
     do {
-        if (!is_row(demand, &line))
+        if (!is_row(layout, &line))
             continue;
         if (table->rows++ == 0)
-            table->columns = mf_data_word_count(&line, demand->separator) - demand->labels;
-        if (table->columns < least)
+            table->columns = mf_data_word_count(&line, layout->separator) - layout->labels;
+        if (table->columns < min)
             return mf_status_fail(STATUS_BAD_INPUT,
                                   "%s:%zu: %zu columns, at least %zu are needed (blanks, commas or "
                                   "semicolons separate columns)",
-                                  file, line.number, table->columns, least);
+                                  file, line.number, table->columns, min);
     } while (mf_data_line_next(&line));
     if (table->rows == 0)
         return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: the file ends without a row of numbers",
                               file, line.number);
-    table->columns -= demand->flagged;
+    table->columns -= layout->flagged;
     return STATUS_OK;
 }
 
 /// What a person can do about a word that is no number.
-static const char *find_remedy(const struct data_word *word, const struct demand *demand) {
+static const char *find_remedy(const struct data_word *word, const struct layout *layout) {
     const bool comma = word->length > 0 && memchr(word->begin, ',', word->length) &&
                        strspn(word->begin, "0123456789+-.,eE") >= word->length;
-    if (comma && demand->decimal == '.')
+    if (comma && layout->decimal == '.')
         return ": a decimal comma? other decimals of the file begin with a point";
     if (comma)
         return ": a decimal comma? separate columns by semicolons or tabs, or write decimals with "
                "a point";
-    if (demand->decimal == ',' && word->length > 0 && memchr(word->begin, '.', word->length))
+    if (layout->decimal == ',' && word->length > 0 && memchr(word->begin, '.', word->length))
         return ": other decimals of the file begin with a comma";
     return is_text(word) ? ": begin lines of text with #" : "";
 }
 
 /// Read the number that is exactly `word`; "nan" where it is allowed.
 static enum status read_number(const char *file, size_t line, size_t column,
-                               const struct data_word *word, struct demand *demand, size_t number,
+                               const struct data_word *word, struct layout *layout, size_t number,
                                double *value) {
-    if (mf_data_word_is_number(word, demand->commas, &demand->decimal, value) ||
-        (number >= demand->columns && word->length == 3 && strncasecmp(word->begin, "nan", 3) == 0))
+    if (mf_data_word_is_number(word, layout->commas, &layout->decimal, value) ||
+        (number >= layout->columns && word->length == 3 && strncasecmp(word->begin, "nan", 3) == 0))
         return STATUS_OK;
     return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: column %zu: \"%.*s\" is not a finite number%s",
                           file, line, column + 1, word->length > 40 ? 40 : (int)word->length,
-                          word->begin, find_remedy(word, demand));
+                          word->begin, find_remedy(word, layout));
 }
 
 /// The letter that is exactly `word`.
@@ -174,33 +174,33 @@ static enum status read_flag(const char *file, const struct data_line *line,
 
 /// A column of text must not have numbers, too, which would be lost.
 static enum status check_label(const char *file, const struct data_line *line, size_t column,
-                               const struct data_word *word, const struct demand *demand) {
+                               const struct data_word *word, const struct layout *layout) {
     double value;
-    char decimal = demand->decimal;
-    if (!mf_data_word_is_number(word, demand->commas, &decimal, &value))
+    char decimal = layout->decimal;
+    if (!mf_data_word_is_number(word, layout->commas, &decimal, &value))
         return STATUS_OK;
     return mf_status_fail(STATUS_BAD_INPUT,
                           "%s:%zu: column %zu: %g is a number, and the last rows have text there",
                           file, line->number, column + 1, value);
 }
 
-static enum status read_row(const struct data_table *table, const char *file, struct demand *demand,
+static enum status read_row(const struct data_table *table, const char *file, struct layout *layout,
                             const struct data_line *line, size_t row) {
-    const size_t words = mf_data_word_count(line, demand->separator);
-    const size_t wanted = table->columns + demand->flagged + demand->labels;
-    struct data_word word = mf_data_word_first(line, demand->separator);
+    const size_t words = mf_data_word_count(line, layout->separator);
+    const size_t wanted = table->columns + layout->flagged + layout->labels;
+    struct data_word word = mf_data_word_first(line, layout->separator);
     size_t number = 0;
     for (size_t column = 0; column < words && column < wanted; column++) {
-        if (is_label(demand, column)) {
-            TRY(check_label(file, line, column, &word, demand));
+        if (is_label(layout, column)) {
+            TRY(check_label(file, line, column, &word, layout));
         } else if (number < table->columns) {
-            TRY(read_number(file, line->number, column, &word, demand, number,
+            TRY(read_number(file, line->number, column, &word, layout, number,
                             &table->values[row * table->columns + number]));
             number++;
         } else {
             TRY(read_flag(file, line, &word, &table->flags[row]));
         }
-        mf_data_word_next(line, demand->separator, &word);
+        mf_data_word_next(line, layout->separator, &word);
     }
     if (words != wanted)
         return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: %zu columns, the first row has %zu", file,
@@ -208,25 +208,25 @@ static enum status read_row(const struct data_table *table, const char *file, st
     return STATUS_OK;
 }
 
-static enum status read_rows(struct data_table *table, const char *file, struct demand *demand,
+static enum status read_rows(struct data_table *table, const char *file, struct layout *layout,
                              const char *text) {
     struct data_line line = mf_data_line_first(text);
     size_t row = 0;
     do {
-        if (!is_row(demand, &line))
+        if (!is_row(layout, &line))
             continue;
         table->line[row] = line.number;
-        TRY(read_row(table, file, demand, &line, row));
+        TRY(read_row(table, file, layout, &line, row));
         row++;
     } while (mf_data_line_next(&line));
     return STATUS_OK;
 }
 
 /// Keep the comments before the rows, and of all lines there the last one as the names of columns.
-static void read_comments(struct data_table *table, const struct demand *demand, const char *text) {
+static void read_comments(struct data_table *table, const struct layout *layout, const char *text) {
     struct data_line line = mf_data_line_first(text), last = {0}, before = {0};
     char *end = table->comments;
-    for (bool more = true; more && !is_row(demand, &line); more = mf_data_line_next(&line)) {
+    for (bool more = true; more && !is_row(layout, &line); more = mf_data_line_next(&line)) {
         if (mf_data_line_start(&line) == line.end)
             continue;
         before = last;
@@ -236,26 +236,26 @@ static void read_comments(struct data_table *table, const struct demand *demand,
         end += mf_data_line_copy(&line, line.begin, end);
         *end++ = '\n';
     }
-    mf_data_heading_make(&before, &last, demand->separator, demand->label,
-                         table->columns + demand->labels, table->header);
+    mf_data_heading_make(&before, &last, layout->separator, layout->label,
+                         table->columns + layout->labels, table->header);
 }
 
-static enum status read_table(struct data_table *table, const char *file, struct demand *demand) {
+static enum status read_table(struct data_table *table, const char *file, struct layout *layout) {
     enum status status = STATUS_OK;
     char *text = NULL;
     size_t length = 0;
     *table = (struct data_table){0};
     CHECK(mf_text_file_read(file, &text, &length));
-    recognise(demand, text);
-    CHECK(measure(table, file, text, demand));
+    recognise(layout, text);
+    CHECK(measure(table, file, text, layout));
     NEW_ARRAY(table->values, table->rows * table->columns);
     NEW_ARRAY(table->line, table->rows);
-    if (demand->flagged)
+    if (layout->flagged)
         NEW_ARRAY(table->flags, table->rows);
     NEW_ARRAY(table->header, 2 * length + 2);
     NEW_ARRAY(table->comments, length + 2);
-    CHECK(read_rows(table, file, demand, text));
-    read_comments(table, demand, text);
+    CHECK(read_rows(table, file, layout, text));
+    read_comments(table, layout, text);
 done:
     mf_memory_free(text);
     if (status != STATUS_OK)
@@ -263,13 +263,13 @@ done:
     return status;
 }
 
-enum status mf_data_table_read(struct data_table *table, const char *file, size_t least_columns) {
-    return read_table(table, file, &(struct demand){.columns = least_columns});
+enum status mf_data_table_read(struct data_table *table, const char *file, size_t min_columns) {
+    return read_table(table, file, &(struct layout){.columns = min_columns});
 }
 
 enum status mf_data_table_read_flagged(struct data_table *table, const char *file,
-                                       size_t least_columns) {
-    return read_table(table, file, &(struct demand){.columns = least_columns, .flagged = true});
+                                       size_t min_columns) {
+    return read_table(table, file, &(struct layout){.columns = min_columns, .flagged = true});
 }
 
 void mf_data_table_clear(struct data_table *table) {
@@ -296,15 +296,15 @@ size_t mf_data_table_find(const struct data_table *table, const char *name) {
 }
 
 enum status mf_data_table_check_increasing(const struct data_table *table, const char *file,
-                                           size_t column, double least) {
+                                           size_t column, double min) {
     if (column >= table->columns)
         return mf_status_fail(STATUS_BAD_INPUT, "%s: there is no column %zu", file, column + 1);
     for (size_t row = 0; row < table->rows; row++) {
         const double value = table->values[row * table->columns + column];
         const size_t line = table->line[row];
-        if (row == 0 && !(value >= least))
+        if (row == 0 && !(value >= min))
             return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: column %zu: %.15g is below %.15g",
-                                  file, line, column + 1, value, least);
+                                  file, line, column + 1, value, min);
         const double before = row ? table->values[(row - 1) * table->columns + column] : -INFINITY;
         if (!(value > before))
             return mf_status_fail(STATUS_BAD_INPUT,

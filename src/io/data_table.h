@@ -26,21 +26,21 @@ struct data_table {
 };
 
 /// Read a file. BAD_INPUT with file:line for a word that is not a finite number, a row of another
-/// length than the first, fewer than `least_columns` columns, or no row at all. Only beyond the
-/// first `least_columns` may a word be "nan": what the caller did not ask for may be unknown.
+/// length than the first, fewer than `min_columns` columns, or no row at all. Only beyond the
+/// first `min_columns` may a word be "nan": what the caller did not ask for may be unknown.
 enum status mf_data_table_read(struct data_table *table, const char *file,
-                               size_t least_columns) MUST_USE;
+                               size_t min_columns) MUST_USE;
 
 /// The same for rows that end with a letter, such as "0.24 28.4 i"; it is not among the columns.
 enum status mf_data_table_read_flagged(struct data_table *table, const char *file,
-                                       size_t least_columns) MUST_USE;
+                                       size_t min_columns) MUST_USE;
 
 void mf_data_table_clear(struct data_table *table);
 
-/// Check that column `column` grows strictly and starts at `least` or above.
+/// Check that column `column` grows strictly and starts at `min` or above.
 /// BAD_INPUT with file:line of the first row that does not.
 enum status mf_data_table_check_increasing(const struct data_table *table, const char *file,
-                                           size_t column, double least) MUST_USE;
+                                           size_t column, double min) MUST_USE;
 
 /// Number, from 1, of the column that the line of names calls `name`, units in brackets aside; 0 if
 /// there is none, or if that line has not as many names as there are columns. Tested:

@@ -11,22 +11,22 @@ enum { NAME_SIZE = 256 };
 static const char gaps[] = " \t,;";
 
 /// Behind a "[…]", whatever stands in it.
-static const char *behind_brackets(const char *open) {
+static const char *after_brackets(const char *open) {
     const char *close = strchr(open, ']');
     return close ? close + 1 : open + strlen(open);
 }
 
 /// Step over a word of the line of names, and over "[nm]" in it or behind it.
-static const char *behind_word(const char *word) {
+static const char *after_word(const char *word) {
     for (word += strcspn(word, " \t,;["); *word == '['; word += strcspn(word, " \t,;["))
-        word = behind_brackets(word);
+        word = after_brackets(word);
     const char *next = word + strspn(word, " \t");
-    return *next == '[' ? behind_brackets(next) : word;
+    return *next == '[' ? after_brackets(next) : word;
 }
 
 /// The first name of a column: a "columns:" before it is none.
 static const char *first_name(const struct data_table *table) {
-    const char *word = table->header + strspn(table->header, gaps), *end = behind_word(word);
+    const char *word = table->header + strspn(table->header, gaps), *end = after_word(word);
     return end > word && end[-1] == ':' ? end + strspn(end, gaps) : word;
 }
 
@@ -35,7 +35,7 @@ static bool heading_unit(const struct data_table *table, size_t column, char uni
     const char *word = first_name(table), *found = NULL;
     size_t words = 0, length = 0;
     while (*word) {
-        const char *end = behind_word(word);
+        const char *end = after_word(word);
         if (words++ == column) {
             snprintf(unit, NAME_SIZE, "%.*s", (int)(end - word), word);
             found = mf_units_text_in_brackets(unit, &length);
@@ -93,17 +93,17 @@ enum status mf_data_table_convert(struct data_table *table, const char *file, si
                                   const char *unit, const struct units *units) {
     char given[NAME_SIZE];
     double factor = 1;
-    if (!mf_units_speaks(units))
+    if (!mf_units_are_physical(units))
         return check_reduced(table, file, column, unit, units);
     const bool named = find_unit(table, column, given);
     const enum status status = named ? mf_units_from(units, given, unit, &factor) : STATUS_OK;
     if (status != STATUS_OK)
         return mf_status_prefix(status, "%s: column %zu", file, column + 1);
-    const double spoken = mf_units_factor(units, unit);
+    const double physical = mf_units_factor(units, unit);
     for (size_t row = 0; row < table->rows; row++) {
         double *value = &table->values[row * table->columns + column];
         // As numbers of the file itself are converted, to the same bits.
-        const double reduced = named ? *value * factor : *value / spoken;
+        const double reduced = named ? *value * factor : *value / physical;
         if (isinf(reduced))
             return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: column %zu: %g is too large", file,
                                   table->line[row], column + 1, *value);
@@ -120,7 +120,7 @@ static const char *format_of(const struct data_column *column) {
 
 double mf_data_table_translate(const struct units *units, const char *heading, char *name,
                                size_t size) {
-    char unit[UNITS_NAME_SIZE], spoken[UNITS_NAME_SIZE];
+    char unit[UNITS_NAME_SIZE], physical[UNITS_NAME_SIZE];
     size_t length;
     const char *found = mf_units_text_in_brackets(heading, &length);
     snprintf(name, size, "%s", heading);
@@ -129,13 +129,13 @@ double mf_data_table_translate(const struct units *units, const char *heading, c
     snprintf(unit, sizeof unit, "%.*s", (int)length, found);
     const double factor = mf_units_factor(units, unit);
     snprintf(name, size, "%.*s%s]", (int)(found - heading), heading,
-             mf_units_name(units, unit, spoken));
+             mf_units_name(units, unit, physical));
     return factor;
 }
 
 void mf_data_table_name(const struct units *units, const char *name, const char *unit,
                         char *heading, size_t size) {
-    if (!mf_units_speaks(units))
+    if (!mf_units_are_physical(units))
         snprintf(heading, size, "%s", name);
     else
         snprintf(heading, size, "%s[%s]", name, unit);
@@ -145,27 +145,27 @@ enum status mf_data_table_write_in(const char *file, const struct units *units, 
                                    const struct data_column *columns, size_t column_count,
                                    size_t rows) {
     enum status status = STATUS_OK;
-    struct data_column *told = NULL;
+    struct data_column *converted = NULL;
     double *values = NULL;
     char(*names)[NAME_SIZE] = NULL;
-    if (!mf_units_speaks(units))
+    if (!mf_units_are_physical(units))
         return mf_data_table_write(file, comment, columns, column_count, rows);
-    NEW_ARRAY(told, column_count);
+    NEW_ARRAY(converted, column_count);
     NEW_ARRAY(names, column_count);
     NEW_ARRAY(values, column_count * rows + 1);
     for (size_t c = 0; c < column_count; c++) {
         const double factor = mf_data_table_translate(units, columns[c].name, names[c], NAME_SIZE);
-        told[c] = (struct data_column){names[c], columns[c].values, columns[c].format};
+        converted[c] = (struct data_column){names[c], columns[c].values, columns[c].format};
         if (factor == 1)
             continue;
         for (size_t k = 0; k < rows; k++)
-            values[c * rows + k] = mf_units_spoken(columns[c].values[k], factor);
-        told[c].values = values + c * rows;
-        told[c].format = format_of(&columns[c]);
+            values[c * rows + k] = mf_units_file_value(columns[c].values[k], factor);
+        converted[c].values = values + c * rows;
+        converted[c].format = format_of(&columns[c]);
     }
-    status = mf_data_table_write(file, comment, told, column_count, rows);
+    status = mf_data_table_write(file, comment, converted, column_count, rows);
 done:
-    mf_memory_free(told);
+    mf_memory_free(converted);
     mf_memory_free(names);
     mf_memory_free(values);
     return status;

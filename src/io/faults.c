@@ -15,7 +15,7 @@ static char *find_line(struct faults *faults, const char *words) {
 }
 
 void mf_faults_take_back(struct faults *faults, const char *words) {
-    char *line = faults->told > 0 ? find_line(faults, words) : NULL;
+    char *line = faults->reported > 0 ? find_line(faults, words) : NULL;
     if (line == NULL)
         return;
     char *next = line + strcspn(line, "\n");
@@ -25,33 +25,34 @@ void mf_faults_take_back(struct faults *faults, const char *words) {
         line--; // the last one takes the end of the line before with it
     memmove(line, next, strlen(next) + 1);
     faults->length = strlen(faults->text);
-    faults->told--;
+    faults->reported--;
     faults->count--;
     faults->full = false;
 }
 
 void mf_faults_add(struct faults *faults, const char *line) {
-    const char *same = faults->told > 0 ? find_line(faults, line) : NULL;
+    const char *same = faults->reported > 0 ? find_line(faults, line) : NULL;
     if (same && strchr("\n", same[strlen(line)]))
         return;
     faults->count++;
     if (faults->full)
         return;
     char *end = faults->text + faults->length;
-    const size_t room = FAULTS_SIZE - faults->length;
-    const size_t length = (size_t)snprintf(end, room, "%s%s", faults->told ? "\n" : "", line);
-    if (length >= room) {
+    const size_t capacity = FAULTS_SIZE - faults->length;
+    const size_t length =
+        (size_t)snprintf(end, capacity, "%s%s", faults->reported ? "\n" : "", line);
+    if (length >= capacity) {
         *end = '\0'; // half a line would mislead
         faults->full = true;
         return;
     }
     faults->length += length;
-    faults->told++;
-    faults->full = faults->told == FAULTS_TOLD;
+    faults->reported++;
+    faults->full = faults->reported == FAULTS_REPORTED;
 }
 
 enum status mf_faults_status(const struct faults *faults) {
-    const size_t left_out = faults->count - faults->told;
+    const size_t left_out = faults->count - faults->reported;
     if (faults->count == 0)
         return STATUS_OK;
     if (left_out == 0)

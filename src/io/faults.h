@@ -8,19 +8,19 @@
 #include <stddef.h>
 
 enum {
-    FAULTS_TOLD = 20,   ///< more than that have one cause, not twenty
-    FAULTS_SIZE = 8000, ///< below the size of a status message, with room for "… and 99 more"
+    FAULTS_REPORTED = 20, ///< more than that have one cause, not twenty
+    FAULTS_SIZE = 8000,   ///< below the size of a status message, with room for "… and 99 more"
 };
 
 /// Start from {0}. Nothing to free.
 struct faults {
-    size_t count, told;
+    size_t count, reported;
     bool full;
     size_t length;
     char text[FAULTS_SIZE]; ///< one told fault a line
 };
 
-/// Add one line, unless it is told already. After FAULTS_TOLD lines, or when the text is full,
+/// Add one line, unless it is told already. After FAULTS_REPORTED lines, or when the text is full,
 /// faults are only counted.
 void mf_faults_add(struct faults *faults, const char *line);
 

@@ -34,18 +34,18 @@ enum status mf_input_open(FILE **stream, const char *file) {
     return mf_status_fail(STATUS_IO, "%s: is %s, not a file", file, kind);
 }
 
-static enum status make_room(struct input_files *inputs) {
+static enum status reserve(struct input_files *inputs) {
     enum status status = STATUS_OK;
     struct input_file *larger = NULL;
-    const size_t room = inputs->room ? 2 * inputs->room : 16;
-    if (inputs->count < inputs->room)
+    const size_t capacity = inputs->capacity ? 2 * inputs->capacity : 16;
+    if (inputs->count < inputs->capacity)
         return STATUS_OK;
-    NEW_ARRAY(larger, room);
+    NEW_ARRAY(larger, capacity);
     if (inputs->count > 0)
         memcpy(larger, inputs->file, inputs->count * sizeof *larger);
     mf_memory_free(inputs->file);
     inputs->file = larger;
-    inputs->room = room;
+    inputs->capacity = capacity;
 done:
     return status;
 }
@@ -54,7 +54,7 @@ enum status mf_input_files_add(struct input_files *inputs, const char *name) {
     struct stat about;
     if (stat(name, &about) != 0)
         return STATUS_OK;
-    TRY(make_room(inputs));
+    TRY(reserve(inputs));
     char *copy = mf_memory_zeroed(strlen(name) + 1, 1);
     if (copy == NULL)
         return STATUS_NO_MEMORY;
@@ -63,7 +63,7 @@ enum status mf_input_files_add(struct input_files *inputs, const char *name) {
     return STATUS_OK;
 }
 
-enum status mf_input_files_spare(const struct input_files *inputs, const char *path) {
+enum status mf_input_files_protect(const struct input_files *inputs, const char *path) {
     struct stat about;
     if (stat(path, &about) != 0)
         return STATUS_OK;

@@ -20,13 +20,13 @@ struct input_files {
         ino_t number;
         char *name;
     } * file;
-    size_t count, room;
+    size_t count, capacity;
 };
 
 /// Add a file; one that is not there is none. Fails: NO_MEMORY.
 enum status mf_input_files_add(struct input_files *inputs, const char *name) MUST_USE;
 
 /// Fails: BAD_INPUT, naming both, if `path` is one of the files, or a link to one.
-enum status mf_input_files_spare(const struct input_files *inputs, const char *path) MUST_USE;
+enum status mf_input_files_protect(const struct input_files *inputs, const char *path) MUST_USE;
 
 void mf_input_files_clear(struct input_files *inputs);

@@ -120,7 +120,7 @@ enum status mf_json_collect_files(struct json_document *document, struct input_f
     return mf_input_files_add(inputs, document->file);
 }
 
-void mf_json_speak(struct json_document *document, const struct units *units) {
+void mf_json_set_units(struct json_document *document, const struct units *units) {
     document->units = *units;
 }
 
@@ -192,7 +192,7 @@ static bool was_refused(const struct json_object *object, const char *key) {
     return is_among(object->refused, object->refused_count, key);
 }
 
-const void *mf_json_ask(struct json_object *object, const char *key) {
+const void *mf_json_get(struct json_object *object, const char *key) {
     if (!was_asked(object, key)) {
         if (object->asked_count < JSON_MAX_KEYS)
             object->asked[object->asked_count++] = key;
@@ -216,7 +216,7 @@ struct json_object mf_json_child(struct json_object *parent, const char *key, bo
 
 struct json_object mf_json_child_of(struct json_object *parent, const char *key, bool required,
                                     const char *chief) {
-    const cJSON *item = mf_json_ask(parent, key);
+    const cJSON *item = mf_json_get(parent, key);
     struct json_object child = view(parent->document, NULL);
     join_path(child.path, sizeof child.path, parent->path, key);
     if (cJSON_IsObject(item))
@@ -229,7 +229,7 @@ struct json_object mf_json_child_of(struct json_object *parent, const char *key,
 }
 
 bool mf_json_has(struct json_object *object, const char *key) {
-    return mf_json_ask(object, key) != NULL;
+    return mf_json_get(object, key) != NULL;
 }
 
 bool mf_json_is_object(const struct json_object *object, const char *key) {
@@ -255,7 +255,7 @@ static bool refuses(struct json_object *object, const char *key) {
 }
 
 /// Whether a text or a number is this one.
-static bool is_said(const cJSON *item, const char *fixed) {
+static bool is_printed(const cJSON *item, const char *fixed) {
     char number[32];
     const char *text = cJSON_GetStringValue(item);
     if (cJSON_IsNumber(item)) {
@@ -270,10 +270,10 @@ static void fault_retired(struct json_object *object, const char *key, const cha
     struct json_document *document = object->document;
     struct json_object root = view(document, NULL);
     char *all = document->retired, path[2 * JSON_PATH_SIZE], words[LINE_SIZE];
-    const size_t before = strlen(all), room = sizeof document->retired - before;
+    const size_t before = strlen(all), capacity = sizeof document->retired - before;
     join_path(path, sizeof path, object->path, key);
     if (before == 0) {
-        snprintf(all, room, "%s", path);
+        snprintf(all, capacity, "%s", path);
         mf_json_fault(object, key, "no longer a key: %s", reason);
         return;
     }
@@ -281,14 +281,14 @@ static void fault_retired(struct json_object *object, const char *key, const cha
     mf_faults_take_back(&document->faults, words);
     snprintf(words, sizeof words, "%.1024s: no longer keys: ", document->file);
     mf_faults_take_back(&document->faults, words);
-    snprintf(all + before, room, ", %s", path);
+    snprintf(all + before, capacity, ", %s", path);
     mf_json_fault(&root, NULL, "no longer keys: %s; leave them out", all);
 }
 
 void mf_json_retired(struct json_object *object, const char *old, const char *fixed,
                      const char *reason) {
     const cJSON *item = cJSON_GetObjectItemCaseSensitive(object->item, old);
-    if (refuses(object, old) && !(fixed && is_said(item, fixed)))
+    if (refuses(object, old) && !(fixed && is_printed(item, fixed)))
         fault_retired(object, old, reason);
 }
 

@@ -19,7 +19,7 @@
 
 struct json_document;
 
-enum { JSON_PATH_SIZE = 256, JSON_MAX_KEYS = 128, JSON_MOST_MEMBERS = 1000, JSON_DEEPEST = 64 };
+enum { JSON_PATH_SIZE = 256, JSON_MAX_KEYS = 128, JSON_MAX_MEMBERS = 1000, JSON_DEEPEST = 64 };
 
 /// One object of a document while it is read. Plain data; lives on the reader's stack.
 struct json_object {
@@ -32,7 +32,7 @@ struct json_object {
     size_t refused_count;
 };
 
-/// Parse `file`. Malformed text is BAD_INPUT with file:line:column; more than JSON_MOST_MEMBERS
+/// Parse `file`. Malformed text is BAD_INPUT with file:line:column; more than JSON_MAX_MEMBERS
 /// keys in an object, or JSON_DEEPEST objects and arrays one in the other, are BAD_INPUT.
 /// On success the caller owns *document (mf_json_close).
 enum status mf_json_open(struct json_document **document, const char *file) MUST_USE;
@@ -44,7 +44,7 @@ enum status mf_json_collect_files(struct json_document *document,
 
 /// Say in which units the numbers of the document are, which is reduced until then. Tested:
 /// test_units.
-void mf_json_speak(struct json_document *document, const struct units *units);
+void mf_json_set_units(struct json_document *document, const struct units *units);
 
 /// In which units the numbers of the object are.
 const struct units *mf_json_units(const struct json_object *object);
@@ -101,15 +101,15 @@ void mf_json_refuse(struct json_object *object, const char *key, const char *rea
 bool mf_json_refuse_choice(struct json_object *object, const char *key, const char *old,
                            const char *reason);
 
-/// The number, or the list of up to `most` numbers, at `key` as they stand there; 0 if there are
+/// The number, or the list of up to `max` numbers, at `key` as they stand there; 0 if there are
 /// none. Counts as nothing, and faults are left to the reader. Tested: test_units.
-int mf_json_numbers(const struct json_object *object, const char *key, double *values, int most);
+int mf_json_numbers(const struct json_object *object, const char *key, double *values, int max);
 
 /// Read the members described by `fields` into `parameters`, defaults where absent. Numbers of the
 /// document's units become numbers of the fields' (mf_units_factor); defaults and ranges are those
 /// of the fields, and messages speak as the document does. FIELD_FILE values are joined to the
 /// folder of the document's file unless absolute. An absent object gives the defaults and no
-/// faults: that it is missing was mf_json_child's to say. null, as mf_json_put_number writes what
+/// faults: that it is missing was mf_json_child's to say. null, as mf_json_write_number writes what
 /// is not known, is allowed for numbers whose default is NAN.
 void mf_json_fields(struct json_object *object, const struct field *fields, void *parameters);
 

@@ -19,7 +19,7 @@ struct json_document {
 };
 
 /// Remember that the reader knows `key`, and find it.
-const void *mf_json_ask(struct json_object *object, const char *key);
+const void *mf_json_get(struct json_object *object, const char *key);
 
 /// Whether what stands at `key`, or the key itself, is UTF-8, as cJSON does not ask; or false and a
 /// fault.

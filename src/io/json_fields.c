@@ -62,14 +62,14 @@ static bool read_whole(struct json_object *object, const char *key, const cJSON 
 void mf_json_range_text(const struct json_object *object, const struct field *field, char *text,
                         size_t size) {
     const double factor = factor_of(object, field);
-    struct field spoken = *field;
+    struct field physical = *field;
     char range[64], name[UNITS_NAME_SIZE];
     // The ends of all numbers stay: they stand for words.
     if (fabs(field->minimum) < DBL_MAX && field->minimum > FIELD_ABOVE_ZERO)
-        spoken.minimum *= factor;
+        physical.minimum *= factor;
     if (field->maximum < DBL_MAX)
-        spoken.maximum *= factor;
-    mf_fields_range_text(&spoken, range, sizeof range);
+        physical.maximum *= factor;
+    mf_fields_range_text(&physical, range, sizeof range);
     mf_units_name(&object->document->units, field->unit ? field->unit : "", name);
     snprintf(text, size, "%s%s%s", range, name[0] ? " " : "", name);
 }
@@ -195,7 +195,7 @@ static void read_field(struct json_object *object, const struct field *field, co
 void mf_json_fields(struct json_object *object, const struct field *fields, void *parameters) {
     mf_fields_set_defaults(fields, parameters);
     for (const struct field *field = fields; field->name; field++) {
-        const cJSON *item = mf_json_ask(object, field->name);
+        const cJSON *item = mf_json_get(object, field->name);
         // A number that is not known is written as null.
         if (cJSON_IsNull(item) && field->type == FIELD_NUMBER && isnan(field->initial))
             continue;
@@ -220,7 +220,7 @@ static void fault_missing_choice(struct json_object *object, const char *key,
 
 const char *mf_json_choice(struct json_object *object, const char *key, const char *const *known,
                            const char *fallback) {
-    const cJSON *item = mf_json_ask(object, key);
+    const cJSON *item = mf_json_get(object, key);
     if (item == NULL) {
         if (fallback == NULL && object->item)
             fault_missing_choice(object, key, known);
@@ -240,14 +240,14 @@ const char *mf_json_choice(struct json_object *object, const char *key, const ch
     return NULL;
 }
 
-int mf_json_numbers(const struct json_object *object, const char *key, double *values, int most) {
+int mf_json_numbers(const struct json_object *object, const char *key, double *values, int max) {
     const cJSON *item = cJSON_GetObjectItemCaseSensitive(object->item, key), *element;
     int count = 0;
     if (cJSON_IsNumber(item) && isfinite(item->valuedouble)) {
         values[0] = item->valuedouble;
         return 1;
     }
-    if (!cJSON_IsArray(item) || cJSON_GetArraySize(item) > most)
+    if (!cJSON_IsArray(item) || cJSON_GetArraySize(item) > max)
         return 0;
     cJSON_ArrayForEach(element, item) {
         if (!cJSON_IsNumber(element) || !isfinite(element->valuedouble))

@@ -42,9 +42,9 @@ static enum status check_below(const char *file, const cJSON *json, int depth) {
         if (member->child)
             TRY(check_below(file, member, depth + 1));
     }
-    if (cJSON_IsObject(json) && count > JSON_MOST_MEMBERS)
+    if (cJSON_IsObject(json) && count > JSON_MAX_MEMBERS)
         return mf_status_fail(STATUS_BAD_INPUT, "%s: an object has %d keys; %d are the most", file,
-                              count, JSON_MOST_MEMBERS);
+                              count, JSON_MAX_MEMBERS);
     return STATUS_OK;
 }
 

@@ -14,7 +14,7 @@ void mf_json_item_describe(const void *item, char *text, size_t size);
 /// ": write {"law": "power"}"; "" for other items, or without a chief key of the object (NULL).
 void mf_json_item_complete(const void *item, const char *chief, char *text, size_t size);
 
-/// BAD_INPUT if an object in it has more than JSON_MOST_MEMBERS keys: cJSON looks for a key from
+/// BAD_INPUT if an object in it has more than JSON_MAX_MEMBERS keys: cJSON looks for a key from
 /// the first member on, so that what is read of an object, and the search for keys that stand
 /// twice, takes as long as the square of their number. Or if it is nested more than JSON_DEEPEST
 /// deep, since readers recurse.

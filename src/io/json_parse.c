@@ -29,7 +29,7 @@ static bool is_open_text(const char *text, const char *end) {
 
 /// Whether cJSON found something else where it looked for a key: it then stops one character
 /// behind that.
-static bool is_behind_key(const char *text, const char *end) {
+static bool is_after_key(const char *text, const char *end) {
     if (end == text || strchr(" \t\r\n[{\"0123456789", end[-1]))
         return false;
     const char *last = find_before(text, end - 1);
@@ -57,11 +57,11 @@ static enum status fail_where_it_ended(const char *file, const char *text, const
         return fail_at(file, text, end - 1, "a text with a '\"' at its end, too");
     if (*end == '\\')
         return fail_at(file, text, end, "an escape such as \\n or \\u00e9");
-    const bool behind_key = is_behind_key(text, end);
-    const char *at = behind_key ? end - 1 : end, *before = find_before(text, at);
+    const bool after_key = is_after_key(text, end);
+    const char *at = after_key ? end - 1 : end, *before = find_before(text, at);
     if (before && *before == ',' && strchr("}]", *at)) // also the end of the file
         return fail_at(file, text, at, "something after the last comma");
-    if (behind_key || (before && *before == '{'))
+    if (after_key || (before && *before == '{'))
         return fail_at(file, text, at, "a key in double quotes");
     if (before == NULL || strchr(":[,", *before))
         return fail_at(file, text, at, "a value");

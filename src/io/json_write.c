@@ -56,7 +56,7 @@ static void note_problem(struct json_writer *writer, const char *key, const char
 }
 
 /// Put `item`, which may be NULL for want of memory, into the current object.
-static void put(struct json_writer *writer, const char *key, cJSON *item) {
+static void append(struct json_writer *writer, const char *key, cJSON *item) {
     cJSON *object = writer->object[writer->depth];
     if (cJSON_GetObjectItemCaseSensitive(object, key))
         note_problem(writer, key, "is given twice");
@@ -89,7 +89,7 @@ static void enter(struct json_writer *writer, const char *key, cJSON *item) {
         cJSON_Delete(item);
         return;
     }
-    put(writer, key, item);
+    append(writer, key, item);
     cJSON *object = cJSON_GetObjectItemCaseSensitive(writer->object[writer->depth], key);
     writer->object[++writer->depth] = object;
 }
@@ -122,94 +122,95 @@ static cJSON *create_number(double value) {
     return cJSON_CreateRaw(text);
 }
 
-void mf_json_put_number(struct json_writer *writer, const char *key, double value) {
-    put(writer, key, create_number(value));
+void mf_json_write_number(struct json_writer *writer, const char *key, double value) {
+    append(writer, key, create_number(value));
 }
 
-void mf_json_writer_speak(struct json_writer *writer, const struct units *units) {
+void mf_json_writer_set_units(struct json_writer *writer, const struct units *units) {
     writer->units = *units;
 }
 
-void mf_json_put_quantity(struct json_writer *writer, const char *key, const char *unit,
-                          double value) {
-    mf_json_put_number(writer, key, mf_units_spoken(value, mf_units_factor(&writer->units, unit)));
+void mf_json_write_quantity(struct json_writer *writer, const char *key, const char *unit,
+                            double value) {
+    mf_json_write_number(writer, key,
+                         mf_units_file_value(value, mf_units_factor(&writer->units, unit)));
 }
 
-void mf_json_put_integer(struct json_writer *writer, const char *key, int64_t value) {
+void mf_json_write_integer(struct json_writer *writer, const char *key, int64_t value) {
     char text[32];
     snprintf(text, sizeof text, "%" PRId64, value);
-    put(writer, key, cJSON_CreateRaw(text));
+    append(writer, key, cJSON_CreateRaw(text));
 }
 
-static void put_seed(struct json_writer *writer, const char *key, uint64_t value) {
+static void write_seed(struct json_writer *writer, const char *key, uint64_t value) {
     char text[32];
     snprintf(text, sizeof text, "%" PRIu64, value);
-    put(writer, key, cJSON_CreateRaw(text));
+    append(writer, key, cJSON_CreateRaw(text));
 }
 
-void mf_json_put_text(struct json_writer *writer, const char *key, const char *value) {
-    put(writer, key, cJSON_CreateString(value));
+void mf_json_write_text(struct json_writer *writer, const char *key, const char *value) {
+    append(writer, key, cJSON_CreateString(value));
 }
 
-void mf_json_put_numbers(struct json_writer *writer, const char *key, const double *values,
-                         size_t count) {
-    mf_json_put_quantities(writer, key, "", values, count);
+void mf_json_write_numbers(struct json_writer *writer, const char *key, const double *values,
+                           size_t count) {
+    mf_json_write_quantities(writer, key, "", values, count);
 }
 
-void mf_json_put_quantities(struct json_writer *writer, const char *key, const char *unit,
-                            const double *values, size_t count) {
+void mf_json_write_quantities(struct json_writer *writer, const char *key, const char *unit,
+                              const double *values, size_t count) {
     const double factor = mf_units_factor(&writer->units, unit);
     cJSON *array = cJSON_CreateArray();
     for (size_t k = 0; array && k < count; k++) {
-        cJSON *item = create_number(mf_units_spoken(values[k], factor));
+        cJSON *item = create_number(mf_units_file_value(values[k], factor));
         if (!cJSON_AddItemToArray(array, item))
             note_problem(writer, key, "does not fit into the memory");
     }
-    put(writer, key, array);
+    append(writer, key, array);
 }
 
-void mf_json_put_texts(struct json_writer *writer, const char *key, const char *const *texts,
-                       size_t count) {
+void mf_json_write_texts(struct json_writer *writer, const char *key, const char *const *texts,
+                         size_t count) {
     cJSON *array = cJSON_CreateArray();
     for (size_t k = 0; array && k < count; k++)
         if (!cJSON_AddItemToArray(array, cJSON_CreateString(texts[k])))
             note_problem(writer, key, "does not fit into the memory");
-    put(writer, key, array);
+    append(writer, key, array);
 }
 
-void mf_json_put_rows(struct json_writer *writer, const char *key, const int *values, size_t rows,
-                      size_t width) {
+void mf_json_write_rows(struct json_writer *writer, const char *key, const int *values, size_t rows,
+                        size_t width) {
     cJSON *array = cJSON_CreateArray();
     for (size_t k = 0; array && k < rows; k++)
         if (!cJSON_AddItemToArray(array, cJSON_CreateIntArray(values + k * width, (int)width)))
             note_problem(writer, key, "does not fit into the memory");
-    put(writer, key, array);
+    append(writer, key, array);
 }
 
-static void put_file(struct json_writer *writer, const char *key, const char *file) {
+static void write_file(struct json_writer *writer, const char *key, const char *file) {
     char folder[OUTPUT_PATH_SIZE], path[OUTPUT_PATH_SIZE + FIELD_TEXT_SIZE];
     if (file[0] == '/') {
-        mf_json_put_text(writer, key, file);
+        mf_json_write_text(writer, key, file);
         return;
     }
     if (getcwd(folder, sizeof folder) == NULL)
         note_problem(writer, key, "lies in a folder without a name");
     else {
         snprintf(path, sizeof path, "%s/%s", folder, file);
-        mf_json_put_text(writer, key, path);
+        mf_json_write_text(writer, key, path);
     }
 }
 
-static void put_choices(struct json_writer *writer, const struct field *field, int chosen) {
+static void write_choices(struct json_writer *writer, const struct field *field, int chosen) {
     cJSON *array = cJSON_CreateArray();
     for (int k = 0; array && field->choices[k]; k++)
         if ((chosen >> k & 1) &&
             !cJSON_AddItemToArray(array, cJSON_CreateString(field->choices[k])))
             note_problem(writer, field->name, "does not fit into the memory");
-    put(writer, field->name, array);
+    append(writer, field->name, array);
 }
 
-static void put_field(struct json_writer *writer, const struct field *field, const char *member) {
+static void write_field(struct json_writer *writer, const struct field *field, const char *member) {
     double number[3];
     int64_t integer;
     uint64_t seed;
@@ -218,44 +219,44 @@ static void put_field(struct json_writer *writer, const struct field *field, con
     switch (field->type) {
     case FIELD_NUMBER:
         memcpy(number, member, sizeof *number);
-        mf_json_put_quantity(writer, field->name, unit, number[0]);
+        mf_json_write_quantity(writer, field->name, unit, number[0]);
         break;
     case FIELD_INTEGER:
         memcpy(&integer, member, sizeof integer);
-        mf_json_put_integer(writer, field->name, integer);
+        mf_json_write_integer(writer, field->name, integer);
         break;
     case FIELD_SEED:
         memcpy(&seed, member, sizeof seed);
-        put_seed(writer, field->name, seed);
+        write_seed(writer, field->name, seed);
         break;
     case FIELD_LENGTHS:
         memcpy(number, member, sizeof number);
         if (field->required || number[0] != 0 || number[1] != 0 || number[2] != 0)
-            mf_json_put_quantities(writer, field->name, unit, number, number[2] != 0 ? 3 : 2);
+            mf_json_write_quantities(writer, field->name, unit, number, number[2] != 0 ? 3 : 2);
         break;
     case FIELD_TEXT:
         if (member[0])
-            mf_json_put_text(writer, field->name, member);
+            mf_json_write_text(writer, field->name, member);
         break;
     case FIELD_FILE:
         if (member[0])
-            put_file(writer, field->name, member);
+            write_file(writer, field->name, member);
         break;
     case FIELD_CHOICE:
         memcpy(&choice, member, sizeof choice);
-        mf_json_put_text(writer, field->name, field->choices[choice]);
+        mf_json_write_text(writer, field->name, field->choices[choice]);
         break;
     case FIELD_CHOICES:
         memcpy(&choice, member, sizeof choice);
-        put_choices(writer, field, choice);
+        write_choices(writer, field, choice);
         break;
     }
 }
 
-void mf_json_put_fields(struct json_writer *writer, const struct field *fields,
-                        const void *parameters) {
+void mf_json_write_fields(struct json_writer *writer, const struct field *fields,
+                          const void *parameters) {
     for (const struct field *field = fields; field->name; field++)
-        put_field(writer, field, (const char *)parameters + field->offset);
+        write_field(writer, field, (const char *)parameters + field->offset);
 }
 
 /// The tree as a text that cJSON_free frees.

@@ -30,31 +30,31 @@ void mf_json_begin_list(struct json_writer *writer, const char *key);
 void mf_json_end(struct json_writer *writer);
 
 /// Say in which units quantities and fields are to be written, which is reduced until then.
-void mf_json_writer_speak(struct json_writer *writer, const struct units *units);
+void mf_json_writer_set_units(struct json_writer *writer, const struct units *units);
 
-void mf_json_put_number(struct json_writer *writer, const char *key, double value);
+void mf_json_write_number(struct json_writer *writer, const char *key, double value);
 /// A number of a reduced unit, as of a field table. Tested: test_units.
-void mf_json_put_quantity(struct json_writer *writer, const char *key, const char *unit,
-                          double value);
+void mf_json_write_quantity(struct json_writer *writer, const char *key, const char *unit,
+                            double value);
 /// All digits are written, but mf_json_fields refuses 2^53 and beyond.
-void mf_json_put_integer(struct json_writer *writer, const char *key, int64_t value);
-void mf_json_put_text(struct json_writer *writer, const char *key, const char *value);
-void mf_json_put_numbers(struct json_writer *writer, const char *key, const double *values,
+void mf_json_write_integer(struct json_writer *writer, const char *key, int64_t value);
+void mf_json_write_text(struct json_writer *writer, const char *key, const char *value);
+void mf_json_write_numbers(struct json_writer *writer, const char *key, const double *values,
+                           size_t count);
+void mf_json_write_quantities(struct json_writer *writer, const char *key, const char *unit,
+                              const double *values, size_t count);
+void mf_json_write_texts(struct json_writer *writer, const char *key, const char *const *texts,
                          size_t count);
-void mf_json_put_quantities(struct json_writer *writer, const char *key, const char *unit,
-                            const double *values, size_t count);
-void mf_json_put_texts(struct json_writer *writer, const char *key, const char *const *texts,
-                       size_t count);
 /// A list of `rows` lists of `width` whole numbers each. @param[in] values  shape [rows, width]
-void mf_json_put_rows(struct json_writer *writer, const char *key, const int *values, size_t rows,
-                      size_t width);
+void mf_json_write_rows(struct json_writer *writer, const char *key, const int *values, size_t rows,
+                        size_t width);
 
 /// Write every member that `fields` describes; FIELD_TEXT and FIELD_FILE that are empty, and
 /// FIELD_LENGTHS that are all 0 and not required, are left out. Reading the result back gives the
 /// same bits, except that a relative FIELD_FILE is written absolute, so that it names the same file
 /// from any folder.
-void mf_json_put_fields(struct json_writer *writer, const struct field *fields,
-                        const void *parameters);
+void mf_json_write_fields(struct json_writer *writer, const struct field *fields,
+                          const void *parameters);
 
 /// Add to an object of a document that is being read what the tree has and the object has not, at
 /// all depths; what the object has stays. Before its keys are read. Fails: NO_MEMORY; IO as

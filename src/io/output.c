@@ -4,7 +4,7 @@
 #include "io/output.h"
 
 #include "base/ranks.h"
-#include "io/own_files.h"
+#include "io/tracked_files.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -78,7 +78,7 @@ static void make_temporary(struct output *output) {
 /// The whole folder may have gone.
 static enum status fail(const struct output *output, int error) {
     if (error == ENOENT)
-        TRY(mf_own_files_claim(output->path));
+        TRY(mf_tracked_files_claim(output->path));
     return mf_status_fail(STATUS_IO, "cannot write %s: %s", output->path, strerror(error));
 }
 
@@ -93,7 +93,7 @@ enum status mf_output_open(struct output *output, const char *path) {
         return output->stream ? STATUS_OK
                               : mf_status_fail(STATUS_IO, "/dev/null: %s", strerror(errno));
     }
-    TRY(mf_own_files_claim(output->path));
+    TRY(mf_tracked_files_claim(output->path));
     make_temporary(output);
     if (output->file >= 0)
         output->stream = fopencookie(
@@ -203,7 +203,7 @@ enum status mf_output_make_folder(const char *path) {
     bool done;
     if (!ranks_lead())
         return STATUS_OK;
-    TRY(mf_own_files_make_folder(path, &done));
+    TRY(mf_tracked_files_make_folder(path, &done));
     if (done)
         return STATUS_OK;
     const int length = snprintf(folder, sizeof folder, "%s", path);

@@ -27,7 +27,7 @@ struct output {
 };
 
 /// Open "path.PROCESS-NUMBER.partial" for writing, a new file that no other process or thread has.
-/// Fails: IO; as mf_own_files_claim, before anything is written.
+/// Fails: IO; as mf_tracked_files_claim, before anything is written.
 enum status mf_output_open(struct output *output, const char *path) MUST_USE;
 
 /// Flush, check every write, bring the bytes to the disk and rename to the final path, so that
@@ -48,5 +48,5 @@ void mf_output_partial(char ending[OUTPUT_PARTIAL_SIZE]);
 size_t mf_output_partial_stem(const char *name);
 
 /// Make a folder and its missing parents; an existing folder is fine. Fails: IO; as
-/// mf_own_files_make_folder.
+/// mf_tracked_files_make_folder.
 enum status mf_output_make_folder(const char *path) MUST_USE;

@@ -2,7 +2,7 @@
 #include "io/snapshot.h"
 
 #include "base/memory.h"
-#include "io/own_files.h"
+#include "io/tracked_files.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -87,8 +87,8 @@ static void copy_molecules(struct snapshot *snapshot, const struct topology *top
 }
 
 /// Behind the others, into the columns that are about them.
-static void copy_companions(struct snapshot *snapshot,
-                            const struct snapshot_companions *companions) {
+static void copy_solvent_particles(struct snapshot *snapshot,
+                                   const struct snapshot_solvent_particles *solvent_particles) {
     for (int n = 0; n < snapshot->columns; n++) {
         struct snapshot_column *column = &snapshot->column[n];
         double *to = snapshot->memory + (column->values - snapshot->memory) + snapshot->own;
@@ -97,30 +97,32 @@ static void copy_companions(struct snapshot *snapshot,
         const bool mass = strcmp(column->name, "mass") == 0;
         column->shared = position || velocity || mass;
         for (int c = 0; c < column->components; c++, to += snapshot->count)
-            for (size_t k = 0; k < companions->count; k++) {
+            for (size_t k = 0; k < solvent_particles->count; k++) {
                 double boxes;
                 if (position)
-                    to[k] = wrap(companions->position[c][k], snapshot->box.length[c], &boxes);
+                    to[k] =
+                        wrap(solvent_particles->position[c][k], snapshot->box.length[c], &boxes);
                 else if (velocity)
-                    to[k] = companions->velocity[c][k];
+                    to[k] = solvent_particles->velocity[c][k];
                 else if (mass)
-                    to[k] = companions->mass;
+                    to[k] = solvent_particles->mass;
             }
     }
 }
 
 enum status mf_snapshot_take(struct snapshot *snapshot, const struct particles *particles,
                              const struct composition *composition,
-                             const struct snapshot_companions *companions, uint64_t step,
-                             double time) {
+                             const struct snapshot_solvent_particles *solvent_particles,
+                             uint64_t step, double time) {
     size_t components = 4 * (size_t)particles->box.dimensions, used = 0;
-    *snapshot = (struct snapshot){.count = particles->count + (companions ? companions->count : 0),
-                                  .own = particles->count,
-                                  .companions = companions ? companions->name : NULL,
-                                  .box = particles->box,
-                                  .composition = composition,
-                                  .step = step,
-                                  .time = time};
+    *snapshot = (struct snapshot){
+        .count = particles->count + (solvent_particles ? solvent_particles->count : 0),
+        .own = particles->count,
+        .solvent_particles = solvent_particles ? solvent_particles->name : NULL,
+        .box = particles->box,
+        .composition = composition,
+        .step = step,
+        .time = time};
     for (int k = 0; k < particles->attributes; k++)
         components += (size_t)particles->attribute[k].components;
     components += particles->topology != NULL;
@@ -135,8 +137,8 @@ enum status mf_snapshot_take(struct snapshot *snapshot, const struct particles *
         copy_attribute(snapshot, particles, &particles->attribute[k], &used);
     if (particles->topology)
         copy_molecules(snapshot, particles->topology, &used);
-    if (companions)
-        copy_companions(snapshot, companions);
+    if (solvent_particles)
+        copy_solvent_particles(snapshot, solvent_particles);
     return STATUS_OK;
 }
 
@@ -168,7 +170,7 @@ int mf_snapshot_type(const struct snapshot *snapshot, size_t particle) {
 
 const char *mf_snapshot_type_name(const struct snapshot *snapshot, size_t particle) {
     if (particle >= snapshot->own)
-        return snapshot->companions;
+        return snapshot->solvent_particles;
     return composition_is_mixed(snapshot->composition)
                ? snapshot->composition->name[mf_snapshot_type(snapshot, particle)]
                : "A";
@@ -209,7 +211,7 @@ static int append(const struct snapshot *snapshot, const struct snapshot_format 
 static enum status write_appended(const struct snapshot *snapshot,
                                   const struct snapshot_format *format, const char *path,
                                   int64_t *size) {
-    TRY(mf_own_files_claim(path));
+    TRY(mf_tracked_files_claim(path));
     const int file = open(path, O_WRONLY | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
     const int error = file < 0 ? errno : append(snapshot, format, file, size);
     if (file >= 0)

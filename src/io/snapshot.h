@@ -23,10 +23,10 @@ struct snapshot_column {
 };
 
 /// Position, velocity, force and image, the attributes, and the molecule.
-enum { SNAPSHOT_MOST_COLUMNS = 6 + PARTICLES_MOST_ATTRIBUTES };
+enum { SNAPSHOT_MAX_COLUMNS = 6 + PARTICLES_MAX_ATTRIBUTES };
 
 /// Particles that belong to an integrator, as a solvent does.
-struct snapshot_companions {
+struct snapshot_solvent_particles {
     const char *name; ///< of their type; no longer than the snapshot is
     size_t count;
     double *const *position, *const *velocity; ///< shape [dimensions][count] [λ], [λ/τ]
@@ -34,9 +34,9 @@ struct snapshot_companions {
 };
 
 struct snapshot {
-    size_t count;           ///< of all particles
-    size_t own;             ///< of those of the scene, which come first
-    const char *companions; ///< type of the others; NULL: there are none
+    size_t count;                  ///< of all particles
+    size_t own;                    ///< of those of the scene, which come first
+    const char *solvent_particles; ///< type of the others; NULL: there are none
     struct box box;
     const struct composition *composition; ///< borrowed
     uint64_t step;
@@ -44,7 +44,7 @@ struct snapshot {
     const char *units; ///< of all numbers, as trajectory_units.h names them
     /// position [λ] in the box, velocity [λ/τ], force [k_B T_0/λ], image [boxes crossed], then all
     /// attributes by their names, then the number of the molecule, from 1 on, if there are any.
-    struct snapshot_column column[SNAPSHOT_MOST_COLUMNS];
+    struct snapshot_column column[SNAPSHOT_MAX_COLUMNS];
     int columns;
     double *memory; ///< shape [numbers]: all values
     size_t numbers;
@@ -56,8 +56,8 @@ struct snapshot {
 /// Fails: NO_MEMORY. Tested: test_snapshot, cli/test_snapshots.
 enum status mf_snapshot_take(struct snapshot *snapshot, const struct particles *particles,
                              const struct composition *composition,
-                             const struct snapshot_companions *companions, uint64_t step,
-                             double time) MUST_USE;
+                             const struct snapshot_solvent_particles *solvent_particles,
+                             uint64_t step, double time) MUST_USE;
 void mf_snapshot_clear(struct snapshot *snapshot);
 
 /// The reduced unit of a column: "lambda" of positions; "" of what the scene does not scale.
@@ -66,7 +66,7 @@ const char *mf_snapshot_unit(const struct snapshot_column *column);
 /// A copy of what `from` holds, in the units that are spoken.
 /// @param[in,out] told  zero or an earlier copy, to be cleared
 /// Fails: NO_MEMORY. Tested: cli/test_units.
-enum status mf_snapshot_translate(struct snapshot *told, const struct snapshot *from,
+enum status mf_snapshot_translate(struct snapshot *converted, const struct snapshot *from,
                                   const struct units *units) MUST_USE;
 
 /// Name of a component of a column: "velocity_x", "orientation"; those of positions are x, y, z.

@@ -54,8 +54,8 @@ static void print(const struct snapshot *snapshot, FILE *stream) {
     }
     fputs("]", stream);
     print_group("particles", snapshot, 0, snapshot->own, stream);
-    if (snapshot->companions)
-        print_group(snapshot->companions, snapshot, snapshot->own, snapshot->count, stream);
+    if (snapshot->solvent_particles)
+        print_group(snapshot->solvent_particles, snapshot, snapshot->own, snapshot->count, stream);
     fputs("\n}\n", stream);
 }
 

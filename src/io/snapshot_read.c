@@ -7,11 +7,11 @@
 #include <string.h>
 
 /// Positions, velocities and attributes.
-enum { MOST_COLUMNS = 6 + ATTRIBUTES_NAMES, HEADER_SIZE = 16 * MOST_COLUMNS };
+enum { MAX_COLUMNS = 6 + ATTRIBUTES_NAMES, HEADER_SIZE = 16 * MAX_COLUMNS };
 
 /// Names of the columns that the particles of a snapshot have, in the order of a placement file.
 static size_t list_columns(struct json_object *particles, int dimensions,
-                           const char *names[MOST_COLUMNS]) {
+                           const char *names[MAX_COLUMNS]) {
     static const char *const position[] = {"x", "y", "z"};
     static const char *const velocity[] = {"velocity_x", "velocity_y", "velocity_z"};
     size_t count = 0;
@@ -28,7 +28,7 @@ static size_t list_columns(struct json_object *particles, int dimensions,
 static enum status read_columns(struct data_table *table, struct json_object *particles,
                                 int dimensions) {
     enum status status = STATUS_OK;
-    const char *names[MOST_COLUMNS];
+    const char *names[MAX_COLUMNS];
     double *column = NULL;
     table->columns = list_columns(particles, dimensions, names);
     table->rows = (size_t)mf_json_count(particles, "x");

@@ -18,33 +18,33 @@ const char *mf_snapshot_unit(const struct snapshot_column *column) {
 }
 
 static const char *name_units(const struct units *units) {
-    if (!mf_units_speaks(units))
+    if (!mf_units_are_physical(units))
         return "lj";
     return units->system == UNITS_NM_PS ? "nm-ps" : "real";
 }
 
-enum status mf_snapshot_translate(struct snapshot *told, const struct snapshot *from,
+enum status mf_snapshot_translate(struct snapshot *converted, const struct snapshot *from,
                                   const struct units *units) {
-    mf_snapshot_clear(told);
-    *told = *from;
-    told->memory = mf_memory_zeroed(from->numbers, sizeof(double));
-    if (told->memory == NULL) {
-        *told = (struct snapshot){0};
+    mf_snapshot_clear(converted);
+    *converted = *from;
+    converted->memory = mf_memory_zeroed(from->numbers, sizeof(double));
+    if (converted->memory == NULL) {
+        *converted = (struct snapshot){0};
         return STATUS_NO_MEMORY;
     }
-    told->units = name_units(units);
-    told->time = mf_units_spoken(from->time, mf_units_factor(units, "tau"));
+    converted->units = name_units(units);
+    converted->time = mf_units_file_value(from->time, mf_units_factor(units, "tau"));
     for (int d = 0; d < from->box.dimensions; d++)
-        told->box.length[d] =
-            mf_units_spoken(from->box.length[d], mf_units_factor(units, "lambda"));
+        converted->box.length[d] =
+            mf_units_file_value(from->box.length[d], mf_units_factor(units, "lambda"));
     for (int n = 0; n < from->columns; n++) {
         const struct snapshot_column *column = &from->column[n];
         const double factor = mf_units_factor(units, mf_snapshot_unit(column));
         const size_t numbers = (size_t)column->components * from->count;
-        double *values = told->memory + (column->values - from->memory);
+        double *values = converted->memory + (column->values - from->memory);
         for (size_t k = 0; k < numbers; k++)
             values[k] = column->values[k] * factor;
-        told->column[n].values = values;
+        converted->column[n].values = values;
     }
     return STATUS_OK;
 }

@@ -27,7 +27,7 @@ static void encode(struct base64 *base64) {
     *base64 = (struct base64){.stream = base64->stream};
 }
 
-static void put(struct base64 *base64, const void *data, size_t size) {
+static void append(struct base64 *base64, const void *data, size_t size) {
     const unsigned char *bytes = data;
     for (size_t k = 0; k < size; k++) {
         base64->bytes[base64->count++] = bytes[k];
@@ -44,7 +44,7 @@ static struct base64 begin_array(FILE *stream, const char *type, const char *nam
             "        <DataArray type=\"%s\" Name=\"%s\" NumberOfComponents=\"%d\" "
             "format=\"binary\">",
             type, name, components);
-    put(&base64, &size, sizeof size);
+    append(&base64, &size, sizeof size);
     return base64;
 }
 
@@ -64,7 +64,7 @@ static void print_column(const struct snapshot *snapshot, const struct snapshot_
         for (int c = 0; c < width; c++) {
             const double value =
                 c < column->components ? column->values[(size_t)c * snapshot->count + k] : 0;
-            put(&base64, &value, sizeof value);
+            append(&base64, &value, sizeof value);
         }
     end_array(&base64);
 }
@@ -75,7 +75,7 @@ static void print_integers(const struct snapshot *snapshot, const char *name, in
     struct base64 base64 = begin_array(stream, "Int64", name, 1, snapshot->count * sizeof(int64_t));
     for (size_t k = 0; k < snapshot->count; k++) {
         const int64_t value = types ? mf_snapshot_type(snapshot, k) : base + step * (int64_t)k;
-        put(&base64, &value, sizeof value);
+        append(&base64, &value, sizeof value);
     }
     end_array(&base64);
 }

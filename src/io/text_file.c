@@ -80,27 +80,28 @@ static enum status check_is_text(const char *file, const char *text, size_t leng
                           file, place.line, place.column);
 }
 
-static _Thread_local const struct text_lent *lent_texts;
-static _Thread_local size_t lent_count;
+static _Thread_local const struct memory_file *memory_file_list;
+static _Thread_local size_t memory_file_count;
 
-void mf_text_file_lend(const struct text_lent *lent, size_t count) {
-    lent_texts = lent;
-    lent_count = count;
+void mf_text_file_set_memory_files(const struct memory_file *memory_files, size_t count) {
+    memory_file_list = memory_files;
+    memory_file_count = count;
 }
 
-static const char *find_lent(const char *file) {
-    for (size_t k = 0; k < lent_count; k++)
-        if (strcmp(lent_texts[k].name, file) == 0)
-            return lent_texts[k].text;
+static const char *find_memory_file(const char *file) {
+    for (size_t k = 0; k < memory_file_count; k++)
+        if (strcmp(memory_file_list[k].name, file) == 0)
+            return memory_file_list[k].text;
     return NULL;
 }
 
-static enum status copy_lent(const char *file, const char *lent, char **text, size_t *length) {
+static enum status copy_memory_file(const char *file, const char *memory_files, char **text,
+                                    size_t *length) {
     enum status status = STATUS_OK;
-    const size_t bytes = strlen(lent);
-    CHECK(check_is_text(file, lent, bytes));
+    const size_t bytes = strlen(memory_files);
+    CHECK(check_is_text(file, memory_files, bytes));
     NEW_ARRAY(*text, bytes + 1);
-    memcpy(*text, lent, bytes + 1);
+    memcpy(*text, memory_files, bytes + 1);
     end_lines(*text, bytes);
     *length = bytes;
 done:
@@ -111,9 +112,9 @@ enum status mf_text_file_read(const char *file, char **text, size_t *length) {
     enum status status = STATUS_OK;
     *text = NULL;
     *length = 0;
-    const char *lent = find_lent(file);
-    if (lent)
-        return copy_lent(file, lent, text, length);
+    const char *memory_files = find_memory_file(file);
+    if (memory_files)
+        return copy_memory_file(file, memory_files, text, length);
     FILE *stream;
     struct stat about;
     TRY(mf_input_open(&stream, file));

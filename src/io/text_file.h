@@ -18,14 +18,14 @@
 enum status mf_text_file_read(const char *file, char **text, size_t *length) MUST_USE;
 
 /// A text in memory that stands for a file.
-struct text_lent {
+struct memory_file {
     const char *name; ///< of the file, exactly as the reader will ask for it
     const char *text;
 };
 
 /// Until the next call, mf_text_file_read of this thread finds these texts in place of files of
 /// their names, for callers who have no files. Borrowed; NULL and 0 end it. Tested: test_library.
-void mf_text_file_lend(const struct text_lent *lent, size_t count);
+void mf_text_file_set_memory_files(const struct memory_file *memory_files, size_t count);
 
 /// Where a byte of a text stands; both count from 1, columns in characters of UTF-8.
 struct text_place {

@@ -48,7 +48,7 @@ static bool can_be_held(const struct units *units) {
            isnormal(mf_units_pressure_bar(units)) && isnormal(mf_units_diffusion_cm2_per_s(units));
 }
 
-static void fault_unholdable(struct json_object *object) {
+static void fault_unrepresentable(struct json_object *object) {
     mf_json_fault(object, "units",
                   "no numbers can hold the units of time, energy, pressure and diffusion that "
                   "these make");
@@ -103,7 +103,7 @@ static void complete(struct system *system, struct json_object *scene) {
 /// "units": "nm-ps", or an object with "system"; false if the file is reduced.
 static bool read_system(struct system *system, struct json_object *root) {
     if (mf_json_is_object(root, "units")) {
-        struct json_object looked = mf_units_look(root, "units");
+        struct json_object looked = mf_units_peek(root, "units");
         if (!mf_json_has(&looked, "system"))
             return false;
         struct json_object object = mf_json_child(root, "units", false);
@@ -117,7 +117,7 @@ static bool read_system(struct system *system, struct json_object *root) {
     return system->kind >= 0;
 }
 
-void mf_units_speak(struct json_object *root, struct json_object *scene) {
+void mf_units_read_document(struct json_object *root, struct json_object *scene) {
     struct system system;
     if (!read_system(&system, root)) {
         if (root->item != scene->item && mf_json_is_object(root, "units") &&
@@ -136,8 +136,8 @@ void mf_units_speak(struct json_object *root, struct json_object *scene) {
                                 .chosen = chosen,
                                 .dimensions = find_dimensions(scene)};
     if (mf_json_fault_count(root->document) == faults && !can_be_held(&units))
-        fault_unholdable(root);
-    mf_json_speak(root->document, &units);
+        fault_unrepresentable(root);
+    mf_json_set_units(root->document, &units);
 }
 
 // The units of a scene ----------------------------------------------------------------------------
@@ -145,9 +145,9 @@ void mf_units_speak(struct json_object *root, struct json_object *scene) {
 void mf_units_read(struct units *units, struct json_object *scene) {
     const bool is_root = scene->path[0] == '\0';
     if (is_root)
-        mf_units_speak(scene, scene);
+        mf_units_read_document(scene, scene);
     *units = *mf_json_units(scene);
-    if (mf_units_speaks(units) || (is_root && !mf_json_is_object(scene, "units"))) {
+    if (mf_units_are_physical(units) || (is_root && !mf_json_is_object(scene, "units"))) {
         if (!is_root)
             mf_json_refuse(scene, "units", "the file's units are at its top; leave them out");
         return;
@@ -160,24 +160,25 @@ void mf_units_read(struct units *units, struct json_object *scene) {
     units->dimensions = find_dimensions(scene);
     mf_json_finish(&object);
     if (mf_json_fault_count(object.document) == faults && !can_be_held(units))
-        fault_unholdable(scene);
+        fault_unrepresentable(scene);
 }
 
 // Written -----------------------------------------------------------------------------------------
 
-static void put_scale(const struct units *units, struct json_writer *writer) {
-    mf_json_put_text(writer, "system", mf_units_systems[units->system]);
-    mf_json_put_number(writer, "length", mf_units_spoken(units->length, lengths(units->system)));
-    mf_json_put_number(writer, "temperature", units->temperature);
-    mf_json_put_number(writer, "mass", mf_units_spoken(units->mass, masses));
+static void write_scale(const struct units *units, struct json_writer *writer) {
+    mf_json_write_text(writer, "system", mf_units_systems[units->system]);
+    mf_json_write_number(writer, "length",
+                         mf_units_file_value(units->length, lengths(units->system)));
+    mf_json_write_number(writer, "temperature", units->temperature);
+    mf_json_write_number(writer, "mass", mf_units_file_value(units->mass, masses));
 }
 
 void mf_units_write(const struct units *units, struct json_writer *writer) {
-    if (!mf_units_speaks(units))
+    if (!mf_units_are_physical(units))
         return;
-    mf_json_writer_speak(writer, units);
+    mf_json_writer_set_units(writer, units);
     mf_json_begin(writer, "units");
-    put_scale(units, writer);
+    write_scale(units, writer);
     mf_json_end(writer);
 }
 
@@ -187,30 +188,30 @@ void mf_units_write_summary(const struct units *units, struct json_writer *write
                                              {"pressure", "k_B T_0/lambda^d"},
                                              {"friction", "mu/tau"},
                                              {"diffusion", "lambda^2/tau"}};
-    if (!mf_units_speaks(units))
+    if (!mf_units_are_physical(units))
         return;
-    mf_json_writer_speak(writer, units);
+    mf_json_writer_set_units(writer, units);
     mf_json_begin(writer, "units");
-    put_scale(units, writer);
+    write_scale(units, writer);
     for (size_t k = 0; k < sizeof derived / sizeof *derived; k++)
-        mf_json_put_quantity(writer, derived[k][0], derived[k][1], 1);
+        mf_json_write_quantity(writer, derived[k][0], derived[k][1], 1);
     if (units->dimensions == 2) // of pressure, which is then of an area
-        mf_json_put_integer(writer, "dimensions", 2);
+        mf_json_write_integer(writer, "dimensions", 2);
     mf_json_end(writer);
 }
 
-void mf_units_put(const struct units *units, struct json_writer *writer, double energy,
-                  double pressure) {
-    if (!mf_units_beside(units))
+void mf_units_write_results(const struct units *units, struct json_writer *writer, double energy,
+                            double pressure) {
+    if (!mf_units_have_second_columns(units))
         return;
     mf_json_begin(writer, "physical");
-    mf_json_put_number(writer, "length_unit_nm", units->length);
-    mf_json_put_number(writer, "time_unit_ps", mf_units_time_ps(units));
-    mf_json_put_number(writer, "energy_unit_kJ_per_mol", mf_units_energy_kj_per_mol(units));
-    mf_json_put_number(writer, "diffusion_unit_cm2_per_s", mf_units_diffusion_cm2_per_s(units));
-    mf_json_put_number(writer, "potential_energy_kJ_per_mol",
-                       energy * mf_units_energy_kj_per_mol(units));
+    mf_json_write_number(writer, "length_unit_nm", units->length);
+    mf_json_write_number(writer, "time_unit_ps", mf_units_time_ps(units));
+    mf_json_write_number(writer, "energy_unit_kJ_per_mol", mf_units_energy_kj_per_mol(units));
+    mf_json_write_number(writer, "diffusion_unit_cm2_per_s", mf_units_diffusion_cm2_per_s(units));
+    mf_json_write_number(writer, "potential_energy_kJ_per_mol",
+                         energy * mf_units_energy_kj_per_mol(units));
     if (units->dimensions != 2) // there it is energy over an area
-        mf_json_put_number(writer, "pressure_bar", pressure * mf_units_pressure_bar(units));
+        mf_json_write_number(writer, "pressure_bar", pressure * mf_units_pressure_bar(units));
     mf_json_end(writer);
 }

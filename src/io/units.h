@@ -22,11 +22,11 @@ extern const struct field mf_units_fields[], mf_units_system_fields[];
 /// mean mass of its beads, 1 u if it says none, and λ is such that λ³, in two dimensions λ², holds
 /// three beads. Faults: a temperature that is missing or 0; units whose time, energy, pressure or
 /// diffusion no number can hold. Tested: test_units.
-void mf_units_speak(struct json_object *root, struct json_object *scene);
+void mf_units_read_document(struct json_object *root, struct json_object *scene);
 
-/// The units of a scene: those in which its document speaks, as mf_units_speak finds them if the
-/// scene is all of the file, or "units" of a reduced one. Units whose time, energy, pressure or
-/// diffusion no number can hold are a fault. Tested: test_units.
+/// The units of a scene: those in which its document speaks, as mf_units_read_document finds them
+/// if the scene is all of the file, or "units" of a reduced one. Units whose time, energy, pressure
+/// or diffusion no number can hold are a fault. Tested: test_units.
 void mf_units_read(struct units *units, struct json_object *scene);
 
 /// Write "units" at the top of a file in physical units, and let the writer speak in them from now
@@ -40,5 +40,5 @@ void mf_units_write_summary(const struct units *units, struct json_writer *write
 /// nothing if not known.
 /// @param[in] energy    of a particle [k_B T_0]
 /// @param[in] pressure  [k_B T_0/λ³]
-void mf_units_put(const struct units *units, struct json_writer *writer, double energy,
-                  double pressure);
+void mf_units_write_results(const struct units *units, struct json_writer *writer, double energy,
+                            double pressure);

@@ -9,7 +9,7 @@ struct found {
     double count, sum;       ///< sum of the masses
 };
 
-struct json_object mf_units_look(const struct json_object *parent, const char *key) {
+struct json_object mf_units_peek(const struct json_object *parent, const char *key) {
     struct json_object looked = *parent;
     return mf_json_is_object(parent, key) ? mf_json_child(&looked, key, false)
                                           : (struct json_object){.document = parent->document};
@@ -17,7 +17,7 @@ struct json_object mf_units_look(const struct json_object *parent, const char *k
 
 /// A number, or the middle of the range in which it is looked for; 0 if there is none.
 static double find_mass(const struct json_object *parent, const char *key) {
-    const struct json_object range = mf_units_look(parent, key);
+    const struct json_object range = mf_units_peek(parent, key);
     double mass, minimum, maximum;
     if (mf_json_numbers(parent, key, &mass, 1) == 1)
         return mass;
@@ -45,8 +45,8 @@ static void add_beads(struct found *found, const struct json_object *object, dou
 static void add_molecules(struct found *found, const struct json_object *molecules) {
     const char *kind;
     for (size_t n = 0; (kind = mf_json_key(molecules, n)); n++) {
-        const struct json_object molecule = mf_units_look(molecules, kind);
-        const struct json_object chain = mf_units_look(&molecule, "chain");
+        const struct json_object molecule = mf_units_peek(molecules, kind);
+        const struct json_object chain = mf_units_peek(&molecule, "chain");
         const char *const type = mf_json_list_text(&chain, "type", 0);
         double count, length;
         if (mf_json_numbers(&molecule, "count", &count, 1) != 1)
@@ -59,10 +59,10 @@ static void add_molecules(struct found *found, const struct json_object *molecul
 }
 
 double mf_units_beads(const struct json_object *scene, double *mean_mass) {
-    const struct json_object particles = mf_units_look(scene, "particles");
-    const struct json_object types = mf_units_look(&particles, "types");
-    const struct json_object molecules = mf_units_look(scene, "molecules");
-    struct found found = {.mass = mf_units_look(&particles, "mass")};
+    const struct json_object particles = mf_units_peek(scene, "particles");
+    const struct json_object types = mf_units_peek(&particles, "types");
+    const struct json_object molecules = mf_units_peek(scene, "molecules");
+    struct found found = {.mass = mf_units_peek(&particles, "mass")};
     const char *type;
     double number;
     for (size_t n = 0; (type = mf_json_key(&types, n)); n++)

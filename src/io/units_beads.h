@@ -5,7 +5,7 @@
 #include "io/json.h"
 
 /// An object if one stands there: what else does is the reader's to say.
-struct json_object mf_units_look(const struct json_object *parent, const char *key);
+struct json_object mf_units_peek(const struct json_object *parent, const char *key);
 
 /// How many beads there are, single ones and those of molecules that stand in the scene itself; 0
 /// if a fault will tell why it is not known.

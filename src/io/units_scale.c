@@ -11,7 +11,7 @@
 
 const char *const mf_units_systems[] = {"reduced", "nm-ps", "angstrom-fs", NULL};
 
-bool mf_units_speaks(const struct units *units) {
+bool mf_units_are_physical(const struct units *units) {
     return units && units->system != UNITS_REDUCED;
 }
 
@@ -19,8 +19,8 @@ bool mf_units_known(const struct units *units) {
     return units->length > 0;
 }
 
-bool mf_units_beside(const struct units *units) {
-    return mf_units_known(units) && !mf_units_speaks(units);
+bool mf_units_have_second_columns(const struct units *units) {
+    return mf_units_known(units) && !mf_units_are_physical(units);
 }
 
 double mf_units_energy_kj_per_mol(const struct units *units) {
@@ -53,12 +53,12 @@ double *mf_units_column(const double *values, size_t count, double factor) {
 /// What the spoken names are made of, in the order in which they stand in a name.
 enum quantity { ENERGY, MASS, LENGTH, TIME, TEMPERATURE, QUANTITIES };
 
-struct spoken {
+struct physical {
     const char *name[QUANTITIES], *pressure;
     double nanometre, picosecond, kilojoule, bar; ///< in the spoken units
 };
 
-static const struct spoken spoken[] = {
+static const struct physical physical[] = {
     [UNITS_NM_PS] = {{"kJ/mol", "u", "nm", "ps", "K"}, "bar", 1, 1, 1, 1},
     [UNITS_ANGSTROM_FS] =
         {{"kcal/mol", "g/mol", "angstrom", "fs", "K"}, "atm", 10, 1e3, 1 / 4.184, 1 / 1.01325},
@@ -76,7 +76,7 @@ static bool find_dimension(const struct units *units, const char *text,
                            struct dimension *dimension) {
     struct units_text unit;
     bool scaled = false;
-    if (!mf_units_speaks(units) || !mf_units_text_parse(&unit, text, units->dimensions))
+    if (!mf_units_are_physical(units) || !mf_units_text_parse(&unit, text, units->dimensions))
         return false;
     for (int base = 0; base < UNITS_BASES; base++) {
         if (base >= UNITS_SCALED && unit.exponent[base] != 0)
@@ -99,7 +99,7 @@ double mf_units_factor(const struct units *units, const char *unit) {
     struct dimension dimension;
     if (!find_dimension(units, unit, &dimension))
         return 1;
-    const struct spoken *to = &spoken[units->system];
+    const struct physical *to = &physical[units->system];
     if (dimension.is_pressure)
         return mf_units_pressure_bar(units) * to->bar;
     const double scale[QUANTITIES] = {[ENERGY] = mf_units_energy_kj_per_mol(units) * to->kilojoule,
@@ -134,7 +134,7 @@ const char *mf_units_name(const struct units *units, const char *unit, char *nam
         snprintf(name, UNITS_NAME_SIZE, "%s", unit);
         return name;
     }
-    const struct spoken *to = &spoken[units->system];
+    const struct physical *to = &physical[units->system];
     if (dimension.is_pressure) {
         snprintf(name, UNITS_NAME_SIZE, "%s", to->pressure);
         return name;
@@ -158,7 +158,7 @@ const char *mf_units_name(const struct units *units, const char *unit, char *nam
 
 const char *mf_units_suffix(const struct units *units, const char *unit, char *name) {
     name[0] = name[1] = '\0';
-    if (!mf_units_speaks(units))
+    if (!mf_units_are_physical(units))
         return name;
     char text[UNITS_NAME_SIZE];
     mf_units_name(units, unit, text);
@@ -166,7 +166,7 @@ const char *mf_units_suffix(const struct units *units, const char *unit, char *n
     return name;
 }
 
-double mf_units_spoken(double reduced, double factor) {
+double mf_units_file_value(double reduced, double factor) {
     const double near = reduced * factor;
     char text[32];
     if (!isfinite(near) || factor == 1)
@@ -232,16 +232,16 @@ enum status mf_units_from(const struct units *units, const char *from, const cha
     return STATUS_OK;
 }
 
-enum status mf_units_mark(const struct units *units, enum status status) {
+enum status mf_units_add_to_message(const struct units *units, enum status status) {
     char message[1024], line[UNITS_LINE_SIZE];
-    if (status == STATUS_OK || !mf_units_speaks(units))
+    if (status == STATUS_OK || !mf_units_are_physical(units))
         return status;
-    mf_units_tell(units, line);
+    mf_units_print(units, line);
     snprintf(message, sizeof message, "%s", mf_status_message());
     return mf_status_fail(status, "%s (numbers in units of %s)", message, strchr(line, ' ') + 1);
 }
 
-void mf_units_tell(const struct units *units, char line[UNITS_LINE_SIZE]) {
+void mf_units_print(const struct units *units, char line[UNITS_LINE_SIZE]) {
     static const char *const symbol[] = {"lambda", "T_0", "mu", "tau", "k_B T_0"};
     int length = snprintf(line, UNITS_LINE_SIZE, "%s:", mf_units_systems[units->system]);
     for (size_t k = 0; k < sizeof symbol / sizeof *symbol; k++) {

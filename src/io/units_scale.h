@@ -37,14 +37,14 @@ struct units {
 };
 
 /// Whether files and results speak other units than the reduced ones. NULL: they do not.
-bool mf_units_speaks(const struct units *units);
+bool mf_units_are_physical(const struct units *units);
 
 /// Names of the systems as files have them: "reduced", "nm-ps", "angstrom-fs"; NULL-terminated.
 extern const char *const mf_units_systems[];
 
 bool mf_units_known(const struct units *units);
 /// Whether tables in reduced units have columns in physical ones beside.
-bool mf_units_beside(const struct units *units);
+bool mf_units_have_second_columns(const struct units *units);
 double mf_units_energy_kj_per_mol(const struct units *units);   ///< k_B T_0 [kJ/mol]
 double mf_units_time_ps(const struct units *units);             ///< λ sqrt(μ / k_B T_0) [ps]
 double mf_units_pressure_bar(const struct units *units);        ///< k_B T_0 / λ³ [bar]
@@ -68,11 +68,11 @@ const char *mf_units_suffix(const struct units *units, const char *unit, char *n
 
 /// The engine speaks in reduced units: add the scale to the message of the calling thread if the
 /// file does not, and return `status` unchanged.
-enum status mf_units_mark(const struct units *units, enum status status);
+enum status mf_units_add_to_message(const struct units *units, enum status status);
 
 /// The number that a file says for `reduced`: factor · reduced, or, where rounding allows it, the
 /// number nearest to that which reads back to the same bits, 15 digits or fewer if they do.
-double mf_units_spoken(double reduced, double factor);
+double mf_units_file_value(double reduced, double factor);
 
 /// What makes the reduced `unit` of a number in units of `from`, which a heading names.
 /// Fails: BAD_INPUT if `from` is no unit, one of something else, or of a λ that the program chose.
@@ -80,7 +80,7 @@ enum status mf_units_from(const struct units *units, const char *from, const cha
                           double *factor) MUST_USE;
 
 /// "nm-ps: lambda = 0.465 nm, …", the scale in one line.
-void mf_units_tell(const struct units *units, char line[UNITS_LINE_SIZE]);
+void mf_units_print(const struct units *units, char line[UNITS_LINE_SIZE]);
 
 /// A column of a table in another unit: factor · values; the caller frees it. NULL: no memory.
 double *mf_units_column(const double *values, size_t count, double factor);

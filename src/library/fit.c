@@ -7,7 +7,7 @@
 #include "library/fit.h"
 #include "library/fit_text.h"
 #include "library/guard.h"
-#include "library/lend.h"
+#include "library/memory_files.h"
 #include "library/scene_text.h"
 
 #include <math.h>
@@ -15,7 +15,7 @@
 /// Name of a text that is no file, in messages.
 static const char in_memory[] = "run";
 
-static void tell(void *context, const struct inverse_progress *p) {
+static void report(void *context, const struct inverse_progress *p) {
     struct mesofit_fit *fit = context;
     if (fit->progress && fit->progress(fit->context, p->iteration, p->done, p->total) != 0)
         atomic_store(&fit->cancel, true);
@@ -83,12 +83,12 @@ struct mesofit_fit *mesofit_fit_parse(const char *text, const struct mesofit_tab
                                       size_t table_count, int threads,
                                       mesofit_fit_progress *progress, void *context) {
     struct mesofit_fit *fit = NULL;
-    struct lend lend;
+    struct memory_files memory_files;
     mf_guard_enter();
-    if (mf_lend_begin(&lend, in_memory, text, tables, table_count) == STATUS_OK) {
+    if (mf_memory_files_begin(&memory_files, in_memory, text, tables, table_count) == STATUS_OK) {
         if (open_run(&fit, in_memory, NULL, threads, progress, context) != STATUS_OK)
             fit = NULL;
-        mf_lend_end(&lend);
+        mf_memory_files_end(&memory_files);
     }
     mf_guard_leave();
     return fit;
@@ -97,14 +97,15 @@ struct mesofit_fit *mesofit_fit_parse(const char *text, const struct mesofit_tab
 struct mesofit_fit *mesofit_fit_create(const struct mesofit_fit_options *options) {
     struct mesofit_fit *fit = NULL;
     struct fit_text run;
-    struct lend lend;
+    struct memory_files memory_files;
     mf_guard_enter();
     if (mf_fit_text_write(&run, options) == STATUS_OK &&
-        mf_lend_begin(&lend, in_memory, run.text, run.table, run.tables) == STATUS_OK) {
+        mf_memory_files_begin(&memory_files, in_memory, run.text, run.table, run.tables) ==
+            STATUS_OK) {
         if (open_run(&fit, in_memory, &options->scene, options->scene.threads, options->progress,
                      options->context) != STATUS_OK)
             fit = NULL;
-        mf_lend_end(&lend);
+        mf_memory_files_end(&memory_files);
     }
     mf_fit_text_clear(&run);
     mf_guard_leave();
@@ -136,7 +137,7 @@ static void describe(struct mesofit_fit *fit, struct mesofit_fit_state *state) {
 }
 
 enum mesofit_status mesofit_fit_iterate(struct mesofit_fit *fit, struct mesofit_fit_state *state) {
-    const struct inverse_listener listener = {tell, fit};
+    const struct inverse_listener listener = {report, fit};
     enum status status = STATUS_OK;
     mf_guard_enter();
     if (!fit->step.finished)
@@ -166,13 +167,13 @@ static double known(const struct target_distance *distance, double value) {
 
 static enum status verify(struct mesofit_fit *fit, struct mesofit_verification *out) {
     enum status status = STATUS_OK;
-    const struct inverse_listener listener = {tell, fit};
+    const struct inverse_listener listener = {report, fit};
     struct unknowns_laws laws = {0};
     struct verification v = {0};
-    double number[INVERSE_MOST_NUMBERS];
+    double number[INVERSE_MAX_NUMBERS];
     if (!fit->iterated)
         return mf_status_fail(STATUS_BAD_INPUT, "there is nothing to verify before an iteration");
-    for (int n = 0; n < INVERSE_MOST_NUMBERS; n++)
+    for (int n = 0; n < INVERSE_MAX_NUMBERS; n++)
         number[n] = fit->step.number[n].value;
     CHECK(mf_unknowns_laws_make(&fit->unknowns, fit->step.curve, number, &laws));
     CHECK(mf_verify(&laws.problem, laws.table[UNKNOWN_POTENTIAL], laws.table[UNKNOWN_OMEGA],

@@ -4,7 +4,7 @@
 #include "base/memory.h"
 #include "io/json.h"
 #include "library/guard.h"
-#include "library/lend.h"
+#include "library/memory_files.h"
 #include "optimise/optimiser.h"
 
 struct mesofit_optimiser {
@@ -18,8 +18,8 @@ struct mesofit_optimiser {
 static enum status read_settings(const struct optimiser *kind, const char *text, void *parameters) {
     static const char in_memory[] = "settings";
     struct json_document *document;
-    struct lend lend;
-    TRY(mf_lend_begin(&lend, in_memory, text ? text : "{}", NULL, 0));
+    struct memory_files memory_files;
+    TRY(mf_memory_files_begin(&memory_files, in_memory, text ? text : "{}", NULL, 0));
     enum status status = mf_json_open(&document, in_memory);
     if (status == STATUS_OK) {
         struct json_object root = mf_json_root(document);
@@ -28,7 +28,7 @@ static enum status read_settings(const struct optimiser *kind, const char *text,
         mf_json_finish(&root);
         status = mf_json_close(document, STATUS_OK);
     }
-    mf_lend_end(&lend);
+    mf_memory_files_end(&memory_files);
     return status;
 }
 
@@ -112,7 +112,7 @@ enum mesofit_status mesofit_optimiser_tell(struct mesofit_optimiser *optimiser,
 
 int mesofit_optimiser_best(const struct mesofit_optimiser *optimiser, double *best) {
     mf_guard_enter();
-    const bool known = optimiser->kind->incumbent(optimiser->state, best);
+    const bool known = optimiser->kind->best_candidate(optimiser->state, best);
     mf_guard_leave();
     return known;
 }

@@ -2,11 +2,11 @@
 #include "mesofit/simulation.h"
 
 #include "base/memory.h"
-#include "dynamics/own_force.h"
+#include "dynamics/user_force.h"
 #include "scene/heading.h"
 #include "scene/scene.h"
 #include "library/guard.h"
-#include "library/lend.h"
+#include "library/memory_files.h"
 #include "library/scene_text.h"
 #include "observe/measure.h"
 #include "observe/rdf_observable.h"
@@ -18,7 +18,7 @@
 struct mesofit_simulation {
     struct scene scene;
     struct simulation engine;
-    struct own_force force;
+    struct user_force force;
 };
 
 /// Name of a text that is no file, in messages.
@@ -59,7 +59,7 @@ static enum status open_scene(struct mesofit_simulation **simulation, const char
     CHECK(begin(*simulation));
     CHECK(mf_simulation_add_interaction(
         &(*simulation)->engine,
-        &(struct interaction_choice){&mf_own_force, &(*simulation)->force}));
+        &(struct interaction_choice){&mf_user_force, &(*simulation)->force}));
 done:
     if (status != STATUS_OK) {
         mesofit_simulation_free(*simulation);
@@ -78,12 +78,12 @@ struct mesofit_simulation *mesofit_simulation_open(const char *file) {
 struct mesofit_simulation *
 mesofit_simulation_parse(const char *text, const struct mesofit_table *tables, size_t table_count) {
     struct mesofit_simulation *simulation = NULL;
-    struct lend lend;
+    struct memory_files memory_files;
     mf_guard_enter();
-    if (mf_lend_begin(&lend, in_memory, text, tables, table_count) == STATUS_OK) {
+    if (mf_memory_files_begin(&memory_files, in_memory, text, tables, table_count) == STATUS_OK) {
         if (open_scene(&simulation, in_memory, NULL) != STATUS_OK)
             simulation = NULL;
-        mf_lend_end(&lend);
+        mf_memory_files_end(&memory_files);
     }
     mf_guard_leave();
     return simulation;
@@ -104,13 +104,13 @@ static char *write_text(const struct mesofit_scene *scene) {
 
 struct mesofit_simulation *mesofit_simulation_create(const struct mesofit_scene *scene) {
     struct mesofit_simulation *simulation = NULL;
-    struct lend lend;
+    struct memory_files memory_files;
     mf_guard_enter();
     char *text = write_text(scene);
-    if (mf_lend_begin(&lend, in_memory, text, NULL, 0) == STATUS_OK) {
+    if (mf_memory_files_begin(&memory_files, in_memory, text, NULL, 0) == STATUS_OK) {
         if (open_scene(&simulation, in_memory, scene) != STATUS_OK)
             simulation = NULL;
-        mf_lend_end(&lend);
+        mf_memory_files_end(&memory_files);
     }
     free(text);
     mf_guard_leave();
@@ -127,7 +127,7 @@ void mesofit_simulation_free(struct mesofit_simulation *simulation) {
 
 void mesofit_simulation_set_force(struct mesofit_simulation *simulation, mesofit_force *force,
                                   void *context) {
-    simulation->force = (struct own_force){force, context};
+    simulation->force = (struct user_force){force, context};
 }
 
 static enum status check_force(const struct mesofit_simulation *simulation) {

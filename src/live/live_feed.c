@@ -36,7 +36,7 @@ void mf_live_feed_close(struct live_feed *feed) {
     pthread_mutex_unlock(&feed->lock);
 }
 
-void mf_live_feed_put(struct live_feed *feed, enum live_slot slot, const char *text) {
+void mf_live_feed_push(struct live_feed *feed, enum live_slot slot, const char *text) {
     char *copy = strdup(text);
     if (copy == NULL)
         return;
@@ -64,7 +64,7 @@ static bool has_news(const struct live_feed *feed, uint64_t seen) {
 }
 
 /// An event of the text/event-stream of HTML's section 9.2: each line of the text is a line "data".
-static void put_event(FILE *stream, const char *name, const char *text) {
+static void insert_event(FILE *stream, const char *name, const char *text) {
     fprintf(stream, "event: %s\n", name);
     for (const char *line = text; line;) {
         const char *end = strchr(line, '\n');
@@ -83,7 +83,7 @@ static char *events_since(const struct live_feed *feed, uint64_t seen) {
         return NULL;
     for (int slot = 0; slot < LIVE_SLOTS; slot++)
         if (feed->slot[slot].serial > seen)
-            put_event(stream, names[slot], feed->slot[slot].text);
+            insert_event(stream, names[slot], feed->slot[slot].text);
     if (fclose(stream) == 0)
         return events;
     free(events);
@@ -119,7 +119,7 @@ int mf_live_feed_streams(struct live_feed *feed) {
     return streams;
 }
 
-void mf_live_feed_put_particles(struct live_feed *feed, struct live_bytes *bytes) {
+void mf_live_feed_push_particles(struct live_feed *feed, struct live_bytes *bytes) {
     pthread_mutex_lock(&feed->lock);
     const struct live_bytes old = feed->particles;
     feed->particles = *bytes;

@@ -24,7 +24,7 @@ enum live_slot {
 /// Bytes of one moment, counted.
 struct live_bytes {
     unsigned char *bytes;
-    size_t size, room;
+    size_t size, capacity;
     uint64_t serial; ///< 0: there are none
 };
 
@@ -50,7 +50,7 @@ void mf_live_feed_clear(struct live_feed *feed);
 void mf_live_feed_close(struct live_feed *feed);
 
 /// Replace a text. Without memory the old one stays.
-void mf_live_feed_put(struct live_feed *feed, enum live_slot slot, const char *text);
+void mf_live_feed_push(struct live_feed *feed, enum live_slot slot, const char *text);
 
 /// A copy of a text, to be freed with free(); NULL if there is none.
 char *mf_live_feed_get(struct live_feed *feed, enum live_slot slot);
@@ -67,7 +67,7 @@ int mf_live_feed_streams(struct live_feed *feed);
 
 /// Exchange the published particles for new ones: `bytes` is given away, and has afterwards the
 /// memory of the old ones.
-void mf_live_feed_put_particles(struct live_feed *feed, struct live_bytes *bytes);
+void mf_live_feed_push_particles(struct live_feed *feed, struct live_bytes *bytes);
 
 /// A copy of the particles newer than `seen`, which notes that somebody wants them, perhaps with
 /// their energies; size 0 if there are none. `bytes` is to be freed with free().

@@ -45,7 +45,7 @@ static int refuse(const char *path) {
     return -1;
 }
 
-static int tell_error(const char *path) {
+static int report_error(const char *path) {
     mf_status_fail(STATUS_IO, "%.200s: %s", path,
                    errno == ELOOP ? "links are not followed" : strerror(errno));
     return -1;
@@ -70,7 +70,7 @@ static int go_down(int root, const char *path, size_t length) {
 
 static int descend(int root, const char *path, size_t length) {
     const int folder = go_down(root, path, length);
-    return folder >= 0 ? folder : tell_error(path);
+    return folder >= 0 ? folder : report_error(path);
 }
 
 int mf_live_folder_enter(int root, const char *path) {
@@ -105,7 +105,7 @@ static int open_regular(int folder, const char *name, size_t *size) {
     struct stat status;
     const int file = openat(folder, name, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
     if (file < 0)
-        return tell_error(name);
+        return report_error(name);
     if (fstat(file, &status) == 0 && S_ISREG(status.st_mode)) {
         *size = (size_t)status.st_size;
         return file;
@@ -202,21 +202,21 @@ enum status mf_live_folder_write(int root, const char *path, const void *bytes, 
 /// Names of a folder that a plain path can have, sorted; −1 with a message.
 static int scan(int folder, const char *path, struct dirent ***entries) {
     const int count = scandirat(folder, ".", entries, NULL, alphasort);
-    return count >= 0 ? count : tell_error(path);
+    return count >= 0 ? count : report_error(path);
 }
 
-static void put_entry(struct json_writer *writer, int folder, const char *name) {
+static void insert_entry(struct json_writer *writer, int folder, const char *name) {
     struct stat status;
     if (!is_plain_name(name, strlen(name)) ||
         fstatat(folder, name, &status, AT_SYMLINK_NOFOLLOW) != 0 ||
         (!S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode)))
         return;
     mf_json_begin(writer, NULL);
-    mf_json_put_text(writer, "name", name);
-    mf_json_put_integer(writer, "folder", S_ISDIR(status.st_mode));
-    mf_json_put_integer(writer, "size", status.st_size);
-    mf_json_put_number(writer, "seconds",
-                       (double)status.st_mtim.tv_sec + 1e-9 * (double)status.st_mtim.tv_nsec);
+    mf_json_write_text(writer, "name", name);
+    mf_json_write_integer(writer, "folder", S_ISDIR(status.st_mode));
+    mf_json_write_integer(writer, "size", status.st_size);
+    mf_json_write_number(writer, "seconds",
+                         (double)status.st_mtim.tv_sec + 1e-9 * (double)status.st_mtim.tv_nsec);
     mf_json_end(writer);
 }
 
@@ -229,7 +229,7 @@ enum status mf_live_folder_list(int root, const char *path, FILE *stream) {
     struct json_writer *writer = mf_json_writer_create_list();
     for (int k = 0; k < count; k++) {
         if (writer)
-            put_entry(writer, folder, entries[k]->d_name);
+            insert_entry(writer, folder, entries[k]->d_name);
         free(entries[k]);
     }
     if (count >= 0)

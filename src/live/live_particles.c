@@ -30,29 +30,29 @@ static unsigned find_parts(const struct simulation *simulation, bool energies) {
 static size_t find_size(const struct particles *particles, unsigned parts) {
     const size_t numbers =
         4 + (parts & LIVE_PARTICLES_POLARITY ? 2 : 0) + (parts & LIVE_PARTICLES_ENERGY ? 1 : 0);
-    return LIVE_PARTICLES_HEAD + COMPOSITION_MOST_TYPES * sizeof(uint32_t) +
+    return LIVE_PARTICLES_HEAD + COMPOSITION_MAX_TYPES * sizeof(uint32_t) +
            particles->count * numbers * sizeof(float);
 }
 
-static bool make_room(struct live_bytes *bytes, size_t size) {
+static bool reserve(struct live_bytes *bytes, size_t size) {
     bytes->size = 0;
-    if (bytes->room < size) {
+    if (bytes->capacity < size) {
         unsigned char *more = realloc(bytes->bytes, size);
         if (more == NULL)
             return false;
         bytes->bytes = more;
-        bytes->room = size;
+        bytes->capacity = size;
     }
     bytes->size = size;
     return true;
 }
 
-static unsigned char *put_head(const struct simulation *simulation, unsigned parts,
-                               unsigned char *to) {
+static unsigned char *write_head(const struct simulation *simulation, unsigned parts,
+                                 unsigned char *to) {
     const struct composition *composition = &simulation->setup.composition;
     const struct box *box = &simulation->particles.box;
     const int types = composition->types > 1 ? composition->types : 1;
-    uint32_t counts[COMPOSITION_MOST_TYPES] = {0};
+    uint32_t counts[COMPOSITION_MAX_TYPES] = {0};
     struct head head = {.name = "MFP1",
                         .count = (uint32_t)simulation->particles.count,
                         .dimensions = (uint32_t)box->dimensions,
@@ -71,7 +71,7 @@ static unsigned char *put_head(const struct simulation *simulation, unsigned par
 
 /// Between two sorts particles may have left the box. By truncation a frame of 10,125 beads takes
 /// 64 µs, by floor 84: at a five-hundredth of the time, 31 or 24 of them a second.
-static void put_places(const struct particles *particles, float *to) {
+static void write_places(const struct particles *particles, float *to) {
     for (int d = 0; d < particles->box.dimensions; d++) {
         const double length = particles->box.length[d];
         for (size_t k = 0; k < particles->count; k++) {
@@ -85,18 +85,18 @@ static void put_places(const struct particles *particles, float *to) {
         to[3 * k + 2] = 0;
 }
 
-static void put_speeds(const struct simulation *simulation, float *to) {
+static void write_speeds(const struct simulation *simulation, float *to) {
     const struct particles *particles = &simulation->particles;
-    const bool flies = simulation_has_velocities(&simulation->setup);
+    const bool has_velocities = simulation_has_velocities(&simulation->setup);
     for (size_t k = 0; k < particles->count; k++) {
         double square = 0;
         for (int d = 0; d < particles->box.dimensions; d++)
             square += particles->velocity[d][k] * particles->velocity[d][k];
-        to[particles->id[k]] = flies ? (float)sqrt(square) : NAN;
+        to[particles->id[k]] = has_velocities ? (float)sqrt(square) : NAN;
     }
 }
 
-static void put_polarities(const struct particles *particles, float *to) {
+static void write_polarities(const struct particles *particles, float *to) {
     const struct orientation orientation = mf_orientation_of(particles);
     for (size_t k = 0; k < particles->count; k++)
         for (int d = 0; d < 2; d++)
@@ -107,15 +107,15 @@ void mf_live_particles_write(const struct simulation *simulation, bool energies,
                              struct live_bytes *bytes) {
     const struct particles *particles = &simulation->particles;
     const unsigned parts = find_parts(simulation, energies);
-    if (!make_room(bytes, find_size(particles, parts)))
+    if (!reserve(bytes, find_size(particles, parts)))
         return;
-    float *to = (float *)(void *)put_head(simulation, parts, bytes->bytes);
-    put_places(particles, to);
+    float *to = (float *)(void *)write_head(simulation, parts, bytes->bytes);
+    write_places(particles, to);
     to += 3 * particles->count;
-    put_speeds(simulation, to);
+    write_speeds(simulation, to);
     to += particles->count;
     if (parts & LIVE_PARTICLES_POLARITY) {
-        put_polarities(particles, to);
+        write_polarities(particles, to);
         to += 2 * particles->count;
     }
     if (parts & LIVE_PARTICLES_ENERGY)

@@ -18,7 +18,7 @@ enum { LIVE_PARTICLES_HEAD = 64 };
 /// this machine's bytes:
 ///   head: "MFP1"; count, dimensions, parts, types, four words of 32 bits; step and time, doubles;
 ///   box, three numbers; and zeros up to LIVE_PARTICLES_HEAD;
-///   counts of the types, COMPOSITION_MOST_TYPES words; places, shape [count, 3] within the box;
+///   counts of the types, COMPOSITION_MAX_TYPES words; places, shape [count, 3] within the box;
 ///   speeds [count], NaN without velocities; with LIVE_PARTICLES_POLARITY polarities [count, 2];
 ///   with LIVE_PARTICLES_ENERGY energies [count] of mf_reference_energies [k_B T_0].
 /// @param[in]     energies  tell them if there is a potential of pairs

@@ -194,13 +194,13 @@ static const struct field wish_fields[] = {
 };
 
 static enum status read_wish(const struct live_request *request, struct wished *wished) {
-    const struct text_lent lent = {"the wish", request->body};
+    const struct memory_file memory_files = {"the wish", request->body};
     struct json_document *document;
     if (strlen(request->body) != request->size)
         return mf_status_fail(STATUS_BAD_INPUT, "the request has a NUL byte");
-    mf_text_file_lend(&lent, 1);
-    const enum status status = mf_json_open(&document, lent.name);
-    mf_text_file_lend(NULL, 0);
+    mf_text_file_set_memory_files(&memory_files, 1);
+    const enum status status = mf_json_open(&document, memory_files.name);
+    mf_text_file_set_memory_files(NULL, 0);
     TRY(status);
     struct json_object root = mf_json_root(document);
     mf_json_fields(&root, wish_fields, wished);

@@ -25,11 +25,11 @@ static bool is_own(const char *path) {
 
 /// What has a list and no process is left over.
 static void remove_if_left(const char *path) {
-    struct own_files own = {.open = false};
-    if (is_own(path) && mf_own_files_open(&own, path, OWN_FILES_OF_LIVE) == STATUS_OK &&
-        own.list.there && mf_own_files_lock(&own) == STATUS_OK)
-        mf_own_files_remove_all(&own);
-    mf_own_files_close(&own);
+    struct tracked_files own = {.open = false};
+    if (is_own(path) && mf_tracked_files_open(&own, path, TRACKED_FILES_OF_LIVE) == STATUS_OK &&
+        own.list.there && mf_tracked_files_lock(&own) == STATUS_OK)
+        mf_tracked_files_remove_all(&own);
+    mf_tracked_files_close(&own);
 }
 
 static void remove_left_over(const char *place) {
@@ -50,9 +50,10 @@ static bool try_to_make(struct live_scratch *scratch, const char *place) {
     return snprintf(scratch->path, sizeof scratch->path, "%s/%sXXXXXX", place, stem) <
                (int)sizeof scratch->path &&
            mkdtemp(scratch->path) &&
-           mf_own_files_open(&scratch->own, scratch->path, OWN_FILES_OF_LIVE) == STATUS_OK &&
-           mf_own_files_lock(&scratch->own) == STATUS_OK &&
-           mf_own_files_begin(&scratch->own, 0) == STATUS_OK;
+           mf_tracked_files_open(&scratch->own, scratch->path, TRACKED_FILES_OF_LIVE) ==
+               STATUS_OK &&
+           mf_tracked_files_lock(&scratch->own) == STATUS_OK &&
+           mf_tracked_files_begin(&scratch->own, 0) == STATUS_OK;
 }
 
 void mf_live_scratch_make(struct live_scratch *scratch) {
@@ -61,13 +62,13 @@ void mf_live_scratch_make(struct live_scratch *scratch) {
     if (try_to_make(scratch, place))
         return;
     if (scratch->own.open)
-        mf_own_files_remove_all(&scratch->own);
+        mf_tracked_files_remove_all(&scratch->own);
     scratch->path[0] = '\0';
 }
 
 void mf_live_scratch_remove(struct live_scratch *scratch) {
     if (scratch->path[0] == '\0')
         return;
-    mf_own_files_remove_all(&scratch->own);
+    mf_tracked_files_remove_all(&scratch->own);
     scratch->path[0] = '\0';
 }

@@ -27,7 +27,7 @@ static const char *const heads[][2] = {
 /// A request while its body arrives.
 struct exchange {
     char *body;
-    size_t size, room;
+    size_t size, capacity;
     bool too_large;
 };
 
@@ -48,7 +48,7 @@ static const char *find_head(struct MHD_Connection *connection, const char *name
 
 // Answers -----------------------------------------------------------------------------------------
 
-static ssize_t send_stream(void *context, uint64_t position, char *to, size_t room) {
+static ssize_t send_stream(void *context, uint64_t position, char *to, size_t capacity) {
     struct sending *sending = context;
     (void)position;
     while (sending->sent == sending->size) {
@@ -59,7 +59,7 @@ static ssize_t send_stream(void *context, uint64_t position, char *to, size_t ro
         if (sending->piece == NULL)
             return MHD_CONTENT_READER_END_OF_STREAM;
     }
-    const size_t left = sending->size - sending->sent, now = left < room ? left : room;
+    const size_t left = sending->size - sending->sent, now = left < capacity ? left : capacity;
     memcpy(to, sending->piece + sending->sent, now);
     sending->sent += now;
     return (ssize_t)now;
@@ -163,14 +163,14 @@ static int find_socket(struct MHD_Connection *connection) {
 }
 
 /// A connection begins or is about to be closed.
-static void note_guest(void *context, struct MHD_Connection *connection, void **memory,
-                       enum MHD_ConnectionNotificationCode what) {
+static void note_client(void *context, struct MHD_Connection *connection, void **memory,
+                        enum MHD_ConnectionNotificationCode what) {
     struct live_server *server = context;
     (void)memory;
     if (what == MHD_CONNECTION_NOTIFY_STARTED)
-        mf_live_guests_enter(&server->guests, find_socket(connection));
+        mf_live_clients_add(&server->clients, find_socket(connection));
     else
-        mf_live_guests_leave(&server->guests, find_socket(connection));
+        mf_live_clients_remove(&server->clients, find_socket(connection));
 }
 
 /// Why a request is refused before anything of it is read, and its code; NULL: it is not.
@@ -203,14 +203,14 @@ static void keep(struct exchange *exchange, const char *bytes, size_t size) {
         exchange->too_large = true;
         return;
     }
-    if (exchange->size + size + 1 > exchange->room) {
-        const size_t room = 2 * (exchange->size + size + 1);
-        char *body = realloc(exchange->body, room);
+    if (exchange->size + size + 1 > exchange->capacity) {
+        const size_t capacity = 2 * (exchange->size + size + 1);
+        char *body = realloc(exchange->body, capacity);
         exchange->too_large = body == NULL;
         if (body == NULL)
             return;
         exchange->body = body;
-        exchange->room = room;
+        exchange->capacity = capacity;
     }
     memcpy(exchange->body + exchange->size, bytes, size);
     exchange->size += size;
@@ -242,7 +242,7 @@ static enum MHD_Result take(void *context, struct MHD_Connection *connection, co
         if (fault)
             return refuse(connection, code, fault);
         if (!server->answerer.open(server->answerer.context, &request))
-            mf_live_guests_know(&server->guests, find_socket(connection));
+            mf_live_clients_set_known(&server->clients, find_socket(connection));
         *memory = calloc(1, sizeof(struct exchange));
         return *memory ? MHD_YES : MHD_NO;
     }
@@ -267,7 +267,7 @@ static void forget(void *context, struct MHD_Connection *connection, void **memo
 }
 
 /// What libmicrohttpd says of requests that are none is of no use to who looks at the run.
-static void say_nothing(void *context, const char *format, va_list arguments) {
+static void print_nothing(void *context, const char *format, va_list arguments) {
     (void)context;
     (void)format;
     (void)arguments;
@@ -277,16 +277,16 @@ enum status mf_live_server_start(struct live_server *server, int port) {
     const struct sockaddr_in address = {.sin_family = AF_INET,
                                         .sin_port = htons((uint16_t)port),
                                         .sin_addr = {htonl(INADDR_LOOPBACK)}};
-    mf_live_guests_init(&server->guests);
+    mf_live_clients_init(&server->clients);
     errno = 0;
     struct MHD_Daemon *daemon = MHD_start_daemon(
         MHD_USE_INTERNAL_POLLING_THREAD | MHD_USE_THREAD_PER_CONNECTION | MHD_USE_POLL |
             MHD_USE_ERROR_LOG,
-        0, NULL, NULL, take, server, MHD_OPTION_EXTERNAL_LOGGER, say_nothing, NULL,
+        0, NULL, NULL, take, server, MHD_OPTION_EXTERNAL_LOGGER, print_nothing, NULL,
         MHD_OPTION_SOCK_ADDR, (const struct sockaddr *)&address, MHD_OPTION_CONNECTION_LIMIT,
         (unsigned)LIVE_GUESTS_ROOM, MHD_OPTION_CONNECTION_TIMEOUT, (unsigned)LIVE_SERVER_PATIENCE,
-        MHD_OPTION_NOTIFY_COMPLETED, forget, NULL, MHD_OPTION_NOTIFY_CONNECTION, note_guest, server,
-        MHD_OPTION_END);
+        MHD_OPTION_NOTIFY_COMPLETED, forget, NULL, MHD_OPTION_NOTIFY_CONNECTION, note_client,
+        server, MHD_OPTION_END);
     if (daemon == NULL)
         return mf_status_fail(STATUS_IO, "port %d of 127.0.0.1: %s", port,
                               errno ? strerror(errno) : "no server can be started");
@@ -299,7 +299,7 @@ enum status mf_live_server_start(struct live_server *server, int port) {
 void mf_live_server_stop(struct live_server *server) {
     if (server->daemon) {
         MHD_stop_daemon(server->daemon);
-        mf_live_guests_clear(&server->guests);
+        mf_live_clients_clear(&server->clients);
     }
     server->daemon = NULL;
 }

@@ -8,7 +8,7 @@
 
 #include "base/status.h"
 #include "live/live_guard.h"
-#include "live/live_guests.h"
+#include "live/live_clients.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -61,7 +61,7 @@ struct live_server {
     const char *token;
     struct live_answerer answerer;
     int port; ///< that it listens on
-    struct live_guests guests;
+    struct live_clients clients;
     void *daemon; ///< of libmicrohttpd
 };
 

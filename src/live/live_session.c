@@ -16,7 +16,7 @@
 #include <sys/stat.h>
 
 /// A page that is open gets so long to fetch the last tables, and its stream to end [s].
-static const double farewell = 3, end_of_stream = 1;
+static const double last_visit_wait = 3, end_of_stream = 1;
 
 struct session {
     const struct live_options *options;
@@ -33,7 +33,7 @@ static bool is_folder(const char *path) {
 
 /// The file's own text stands for it, or what the page has made of it.
 static enum status run(struct session *session, const struct live_order *order) {
-    const struct text_lent lent = {order->file, order->text};
+    const struct memory_file memory_files = {order->file, order->text};
     struct run_options options = session->options->run;
     bool is_fit;
     TRY(mf_live_view_is_fit(order->file, order->text, &is_fit));
@@ -42,10 +42,10 @@ static enum status run(struct session *session, const struct live_order *order) 
     options.force = (options.force || order->force) && !options.resume;
     if (order->folder[0])
         options.folder = order->folder;
-    mf_text_file_lend(&lent, 1);
+    mf_text_file_set_memory_files(&memory_files, 1);
     const enum status status =
         is_fit ? mf_fit_run(order->file, &options) : mf_simulate_file(order->file, &options);
-    mf_text_file_lend(NULL, 0);
+    mf_text_file_set_memory_files(NULL, 0);
     return status;
 }
 
@@ -60,7 +60,7 @@ static enum status carry_out(struct session *session, struct live_order *order) 
     const bool ran = session->watch.run.folder != NULL;
     const char *message = status == STATUS_OK ? "" : mf_status_message();
     mf_live_watch_end(&session->watch);
-    mf_live_view_put_tables(view);
+    mf_live_view_write_tables(view);
     mf_live_view_set_phase(view, stopped ? LIVE_STOPPED : ran ? LIVE_ENDED : LIVE_REFUSED, message);
     return status;
 }
@@ -72,7 +72,7 @@ static void wait_for_pages(struct session *session, double seconds) {
 }
 
 /// What a run without a page says at its end, for the terminal: the program goes on.
-static void tell_end(enum status status) {
+static void report_end(enum status status) {
     if (status != STATUS_OK)
         fprintf(stderr, "mesofit: %s\n", mf_status_message());
 }
@@ -91,10 +91,10 @@ static enum status serve(struct session *session) {
             return status;
         const bool refused = status == STATUS_BAD_INPUT || status == STATUS_IO;
         if (session->view.stays || stopped || (refused && !session->options->start)) {
-            tell_end(status);
+            report_end(status);
             continue;
         }
-        wait_for_pages(session, farewell);
+        wait_for_pages(session, last_visit_wait);
         return status;
     }
     return STATUS_OK;

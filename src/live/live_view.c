@@ -53,16 +53,16 @@ void mf_live_view_publish(struct live_view *view, enum live_slot slot, struct js
     const enum status status =
         stream ? mf_json_write_stream(writer, stream, "the live view") : STATUS_NO_MEMORY;
     if (stream && fclose(stream) == 0 && status == STATUS_OK)
-        mf_live_feed_put(&view->feed, slot, text);
+        mf_live_feed_push(&view->feed, slot, text);
     free(text);
     mf_json_writer_free(writer);
 }
 
 /// A path as a person can read it: JSON is UTF-8, and names of files need not be.
-static void put_path(struct json_writer *writer, const char *key, const char *path) {
+static void write_path(struct json_writer *writer, const char *key, const char *path) {
     char shown[OUTPUT_PATH_SIZE];
     mf_visible_copy(shown, sizeof shown, path, "");
-    mf_json_put_text(writer, key, shown);
+    mf_json_write_text(writer, key, shown);
 }
 
 /// The lock is held.
@@ -70,16 +70,16 @@ static void publish_state(struct live_view *view) {
     struct json_writer *writer = mf_json_writer_create();
     if (writer == NULL)
         return;
-    mf_json_put_text(writer, "phase", phases[view->phase]);
-    mf_json_put_text(writer, "kind",
-                     view->file[0] == '\0' ? (view->folder[0] ? "results" : "")
-                     : view->is_fit        ? "fit"
-                                           : "simulation");
-    put_path(writer, "file", view->file);
-    put_path(writer, "folder", view->folder);
-    mf_json_put_text(writer, "message", view->message);
-    mf_json_put_integer(writer, "stays", view->stays);
-    mf_json_put_text(writer, "version", MESOFIT_VERSION);
+    mf_json_write_text(writer, "phase", phases[view->phase]);
+    mf_json_write_text(writer, "kind",
+                       view->file[0] == '\0' ? (view->folder[0] ? "results" : "")
+                       : view->is_fit        ? "fit"
+                                             : "simulation");
+    write_path(writer, "file", view->file);
+    write_path(writer, "folder", view->folder);
+    mf_json_write_text(writer, "message", view->message);
+    mf_json_write_integer(writer, "stays", view->stays);
+    mf_json_write_text(writer, "version", MESOFIT_VERSION);
     mf_live_view_publish(view, LIVE_STATE, writer);
 }
 
@@ -102,11 +102,11 @@ bool mf_live_view_is_busy(struct live_view *view) {
 }
 
 enum status mf_live_view_is_fit(const char *file, const char *text, bool *is_fit) {
-    const struct text_lent lent = {file, text};
+    const struct memory_file memory_files = {file, text};
     struct json_document *document;
-    mf_text_file_lend(&lent, 1);
+    mf_text_file_set_memory_files(&memory_files, 1);
     const enum status status = mf_json_open(&document, file);
-    mf_text_file_lend(NULL, 0);
+    mf_text_file_set_memory_files(NULL, 0);
     TRY(status);
     struct json_object root = mf_json_root(document);
     *is_fit = mf_json_has(&root, "target") || mf_json_has(&root, "states");
@@ -152,12 +152,12 @@ enum status mf_live_view_show_folder(struct live_view *view, const char *folder,
     snprintf(view->folder, sizeof view->folder, "%s", folder);
     publish_state(view);
     pthread_mutex_unlock(&view->lock);
-    mf_live_view_put_tables(view);
+    mf_live_view_write_tables(view);
     return STATUS_OK;
 }
 
 /// The tables of a simulation that runs, else those of the results.
-void mf_live_view_put_tables(struct live_view *view) {
+void mf_live_view_write_tables(struct live_view *view) {
     pthread_mutex_lock(&view->lock);
     const enum live_root shown = view->root[LIVE_NOW] >= 0 ? LIVE_NOW : LIVE_RESULT;
     const int folder = view->root[shown] >= 0 ? dup(view->root[shown]) : -1;
@@ -171,7 +171,7 @@ void mf_live_view_put_tables(struct live_view *view) {
             folder >= 0 ? mf_live_folder_list(folder, "", stream) : STATUS_IO;
         fprintf(stream, "%s}", status == STATUS_OK ? "" : "[]");
         if (fclose(stream) == 0)
-            mf_live_feed_put(&view->feed, LIVE_TABLES, text);
+            mf_live_feed_push(&view->feed, LIVE_TABLES, text);
     }
     free(text);
     if (folder >= 0)

@@ -65,7 +65,7 @@ bool mf_live_view_is_busy(struct live_view *view);
 void mf_live_view_publish(struct live_view *view, enum live_slot slot, struct json_writer *writer);
 
 /// Publish which tables there are.
-void mf_live_view_put_tables(struct live_view *view);
+void mf_live_view_write_tables(struct live_view *view);
 
 /// One of the folders under a number of its own, to be closed; −1 with a message if there is none.
 /// @param[in] name  "work", "result" or "now"; NULL is "work"

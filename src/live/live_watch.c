@@ -47,12 +47,12 @@ static void publish_progress(struct live_watch *watch, const struct watcher_prog
         mf_json_writer_free(writer);
         return;
     }
-    mf_json_put_integer(writer, "done", (int64_t)progress->done);
-    mf_json_put_integer(writer, "total", (int64_t)progress->total);
-    mf_json_put_text(writer, "unit", progress->unit);
-    mf_json_put_text(writer, "text", progress->text);
-    mf_json_put_number(writer, "rate", rate);
-    mf_json_put_number(writer, "left", left);
+    mf_json_write_integer(writer, "done", (int64_t)progress->done);
+    mf_json_write_integer(writer, "total", (int64_t)progress->total);
+    mf_json_write_text(writer, "unit", progress->unit);
+    mf_json_write_text(writer, "text", progress->text);
+    mf_json_write_number(writer, "rate", rate);
+    mf_json_write_number(writer, "left", left);
     mf_live_view_publish(watch->view, LIVE_PROGRESS, writer);
     set_pace(&watch->progress, begun, progress_interval);
 }
@@ -68,7 +68,7 @@ static void publish_particles(struct live_watch *watch, bool forced) {
     watch->frame_energies = mf_live_feed_wants_energies(feed);
     mf_live_particles_write(watch->run.simulation, watch->frame_energies, &watch->bytes);
     if (watch->bytes.size > 0)
-        mf_live_feed_put_particles(feed, &watch->bytes);
+        mf_live_feed_push_particles(feed, &watch->bytes);
     set_pace(&watch->particles, begun, particles_interval);
 }
 
@@ -79,12 +79,12 @@ static void show_held_particles(struct live_watch *watch) {
         publish_particles(watch, true);
 }
 
-static void put_number(struct json_writer *writer, const struct live_watch *watch, const char *name,
-                       const char *unit, double value) {
+static void write_number(struct json_writer *writer, const struct live_watch *watch,
+                         const char *name, const char *unit, double value) {
     char text[UNITS_NAME_SIZE];
     mf_json_begin(writer, name);
-    mf_json_put_number(writer, "value", value * mf_units_factor(watch->run.units, unit));
-    mf_json_put_text(writer, "unit", mf_units_name(watch->run.units, unit, text));
+    mf_json_write_number(writer, "value", value * mf_units_factor(watch->run.units, unit));
+    mf_json_write_text(writer, "unit", mf_units_name(watch->run.units, unit, text));
     mf_json_end(writer);
 }
 
@@ -96,18 +96,18 @@ static const struct thermodynamics *find_samples(const struct live_watch *watch)
     return NULL;
 }
 
-static void put_samples(struct json_writer *writer, const struct live_watch *watch) {
+static void write_samples(struct json_writer *writer, const struct live_watch *watch) {
     const struct thermodynamics *samples = find_samples(watch);
     if (samples == NULL || samples->series.count == 0)
         return;
     const size_t last = samples->series.count - 1;
     const double squares = mf_thermodynamics_series(samples, THERMODYNAMICS_FORCE_SQUARES)[last];
     const double laplacian = mf_thermodynamics_series(samples, THERMODYNAMICS_LAPLACIAN)[last];
-    put_number(writer, watch, "potential energy of a bead", "k_B T_0",
-               mf_thermodynamics_series(samples, THERMODYNAMICS_POTENTIAL_ENERGY)[last]);
-    put_number(writer, watch, "pressure", "k_B T_0/lambda^d",
-               mf_thermodynamics_series(samples, THERMODYNAMICS_PRESSURE)[last]);
-    put_number(writer, watch, "configurational temperature", "T_0", squares / laplacian);
+    write_number(writer, watch, "potential energy of a bead", "k_B T_0",
+                 mf_thermodynamics_series(samples, THERMODYNAMICS_POTENTIAL_ENERGY)[last]);
+    write_number(writer, watch, "pressure", "k_B T_0/lambda^d",
+                 mf_thermodynamics_series(samples, THERMODYNAMICS_PRESSURE)[last]);
+    write_number(writer, watch, "configurational temperature", "T_0", squares / laplacian);
 }
 
 static void publish_numbers(struct live_watch *watch, bool forced) {
@@ -117,17 +117,17 @@ static void publish_numbers(struct live_watch *watch, bool forced) {
     if ((!forced && !is_due(&watch->numbers)) || (writer = mf_json_writer_create()) == NULL)
         return;
     const double time = (double)simulation->step * simulation->setup.time_step;
-    put_number(writer, watch, "step", "", (double)simulation->step);
+    write_number(writer, watch, "step", "", (double)simulation->step);
     if (!simulation->setup.integrator->samples) {
-        put_number(writer, watch, "time", "tau", time);
-        put_number(writer, watch, "time step", "tau", simulation->setup.time_step);
+        write_number(writer, watch, "time", "tau", time);
+        write_number(writer, watch, "time step", "tau", simulation->setup.time_step);
     }
-    put_number(writer, watch, "set temperature", "T_0", simulation->setup.temperature);
-    put_number(writer, watch, "beads", "", (double)simulation->particles.count);
-    put_number(writer, watch, "steps a second", "", watch->rate);
+    write_number(writer, watch, "set temperature", "T_0", simulation->setup.temperature);
+    write_number(writer, watch, "beads", "", (double)simulation->particles.count);
+    write_number(writer, watch, "steps a second", "", watch->rate);
     if (simulation_has_velocities(&simulation->setup) && simulation->particles.count > 1)
-        put_number(writer, watch, "temperature", "T_0", mf_simulation_temperature(simulation));
-    put_samples(writer, watch);
+        write_number(writer, watch, "temperature", "T_0", mf_simulation_temperature(simulation));
+    write_samples(writer, watch);
     mf_live_view_publish(watch->view, LIVE_NUMBERS, writer);
     set_pace(&watch->numbers, begun, numbers_interval);
 }
@@ -146,7 +146,7 @@ static void publish_tables(struct live_watch *watch) {
     for (const struct observable_use *use = run->observables; use->observable; use++)
         if (use->observable->write && use->observable->write(use->state, &results) != STATUS_OK)
             break;
-    mf_live_view_put_tables(watch->view);
+    mf_live_view_write_tables(watch->view);
     set_pace(&watch->tables, begun, tables_interval);
 }
 
@@ -205,7 +205,7 @@ static void review_change(struct live_watch *watch) {
                                           : mf_status_message());
 }
 
-static struct live_pause obey(struct live_watch *watch) {
+static struct live_pause apply_control(struct live_watch *watch) {
     struct live_pause pause;
     while ((pause = mf_live_control_wait(&watch->view->control)).paused &&
            !mf_interrupt_requested()) {
@@ -244,7 +244,7 @@ static void begin(void *context, const struct watcher_run *run) {
         mf_live_view_set_phase(watch->view, LIVE_RUNNING, mf_status_message());
 }
 
-static void tell(void *context, const struct watcher_progress *progress) {
+static void report(void *context, const struct watcher_progress *progress) {
     struct live_watch *watch = context;
     const uint64_t before = watch->last_step;
     if (watch->run.simulation) {
@@ -254,12 +254,12 @@ static void tell(void *context, const struct watcher_progress *progress) {
         publish_simulation(watch, watch->paused || progress->done == progress->total);
     }
     publish_progress(watch, progress);
-    const struct live_pause pause = obey(watch);
+    const struct live_pause pause = apply_control(watch);
     if (watch->run.simulation && pause.speed > 0)
         keep_speed(watch, pause.speed, watch->last_step - before);
 }
 
-static void say(void *context, const char *line) {
+static void print(void *context, const char *line) {
     struct live_watch *watch = context;
     const size_t before = watch->log ? strlen(watch->log) : 0, size = before + strlen(line) + 2;
     char *log = realloc(watch->log, size);
@@ -270,12 +270,12 @@ static void say(void *context, const char *line) {
     if (cut)
         memmove(log, cut + 1, strlen(cut));
     watch->log = log;
-    mf_live_feed_put(&watch->view->feed, LIVE_LOG, log);
+    mf_live_feed_push(&watch->view->feed, LIVE_LOG, log);
 }
 
 static void show_tables(void *context) {
     struct live_watch *watch = context;
-    mf_live_view_put_tables(watch->view);
+    mf_live_view_write_tables(watch->view);
 }
 
 static int64_t find_steps(void *context) {
@@ -304,7 +304,7 @@ static bool take_change(void *context, struct simulation_change *change) {
 void mf_live_watch_init(struct live_watch *watch, struct live_view *view) {
     *watch = (struct live_watch){
         .view = view,
-        .watcher = {watch, begin, tell, say, show_tables, find_steps, take_change},
+        .watcher = {watch, begin, report, print, show_tables, find_steps, take_change},
     };
 }
 

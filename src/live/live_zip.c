@@ -10,7 +10,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { MOST_MEMBERS = 4096, DEEPEST = 3, LARGEST = 256 << 20 };
+enum { MAX_MEMBERS = 4096, DEEPEST = 3, LARGEST = 256 << 20 };
 
 struct member {
     char *name;
@@ -22,7 +22,7 @@ struct zip {
     uint32_t table[256]; ///< of the CRC-32
     uint32_t written;
     size_t count;
-    struct member member[MOST_MEMBERS];
+    struct member member[MAX_MEMBERS];
 };
 
 /// CRC-32 of ISO 3309, polynomial 0xEDB88320 reflected, as zip wants it.
@@ -42,29 +42,29 @@ static uint32_t find_check(const uint32_t table[256], const unsigned char *bytes
 }
 
 /// A number of `bytes` bytes, the lowest first.
-static void put(struct zip *zip, uint32_t number, int bytes) {
+static void append(struct zip *zip, uint32_t number, int bytes) {
     for (int k = 0; k < bytes; k++)
         fputc((int)(number >> (8 * k) & 255), zip->stream);
     zip->written += (uint32_t)bytes;
 }
 
-static void put_bytes(struct zip *zip, const void *bytes, size_t size) {
+static void write_bytes(struct zip *zip, const void *bytes, size_t size) {
     fwrite(bytes, 1, size, zip->stream);
     zip->written += (uint32_t)size;
 }
 
 /// What local and central headers share: version 2.0, names in UTF-8, stored, 1 January 1980.
-static void put_header(struct zip *zip, const struct member *member) {
-    put(zip, 20, 2);
-    put(zip, 1 << 11, 2);
-    put(zip, 0, 2);
-    put(zip, 0, 2);
-    put(zip, 33, 2);
-    put(zip, member->check, 4);
-    put(zip, member->size, 4);
-    put(zip, member->size, 4);
-    put(zip, (uint32_t)strlen(member->name), 2);
-    put(zip, 0, 2);
+static void write_header(struct zip *zip, const struct member *member) {
+    append(zip, 20, 2);
+    append(zip, 1 << 11, 2);
+    append(zip, 0, 2);
+    append(zip, 0, 2);
+    append(zip, 33, 2);
+    append(zip, member->check, 4);
+    append(zip, member->size, 4);
+    append(zip, member->size, 4);
+    append(zip, (uint32_t)strlen(member->name), 2);
+    append(zip, 0, 2);
 }
 
 static enum status read_whole(int file, unsigned char *bytes, size_t size, const char *name) {
@@ -84,7 +84,7 @@ static enum status add(void *context, int file, size_t size, const char *name) {
     struct zip *zip = context;
     enum status status = STATUS_OK;
     unsigned char *bytes = NULL;
-    if (zip->count == MOST_MEMBERS || zip->written > LARGEST || size > LARGEST - zip->written)
+    if (zip->count == MAX_MEMBERS || zip->written > LARGEST || size > LARGEST - zip->written)
         return mf_status_fail(STATUS_BAD_INPUT, "the folder is too large to be downloaded");
     NEW_ARRAY(bytes, size + 1);
     CHECK(read_whole(file, bytes, size, name));
@@ -93,37 +93,37 @@ static enum status add(void *context, int file, size_t size, const char *name) {
                               zip->written};
     CHECK(member->name ? STATUS_OK : STATUS_NO_MEMORY);
     zip->count++;
-    put(zip, 0x04034b50, 4);
-    put_header(zip, member);
-    put_bytes(zip, member->name, strlen(member->name));
-    put_bytes(zip, bytes, size);
+    append(zip, 0x04034b50, 4);
+    write_header(zip, member);
+    write_bytes(zip, member->name, strlen(member->name));
+    write_bytes(zip, bytes, size);
 done:
     mf_memory_free(bytes);
     return status;
 }
 
-static void put_directory(struct zip *zip) {
+static void write_directory(struct zip *zip) {
     const uint32_t begin = zip->written;
     for (size_t k = 0; k < zip->count; k++) {
         const struct member *member = &zip->member[k];
-        put(zip, 0x02014b50, 4);
-        put(zip, 20, 2);
-        put_header(zip, member);
-        put(zip, 0, 2);
-        put(zip, 0, 2);
-        put(zip, 0, 2);
-        put(zip, 0, 4);
-        put(zip, member->offset, 4);
-        put_bytes(zip, member->name, strlen(member->name));
+        append(zip, 0x02014b50, 4);
+        append(zip, 20, 2);
+        write_header(zip, member);
+        append(zip, 0, 2);
+        append(zip, 0, 2);
+        append(zip, 0, 2);
+        append(zip, 0, 4);
+        append(zip, member->offset, 4);
+        write_bytes(zip, member->name, strlen(member->name));
     }
     const uint32_t size = zip->written - begin;
-    put(zip, 0x06054b50, 4);
-    put(zip, 0, 4);
-    put(zip, (uint32_t)zip->count, 2);
-    put(zip, (uint32_t)zip->count, 2);
-    put(zip, size, 4);
-    put(zip, begin, 4);
-    put(zip, 0, 2);
+    append(zip, 0x06054b50, 4);
+    append(zip, 0, 4);
+    append(zip, (uint32_t)zip->count, 2);
+    append(zip, (uint32_t)zip->count, 2);
+    append(zip, size, 4);
+    append(zip, begin, 4);
+    append(zip, 0, 2);
 }
 
 enum status mf_live_zip_write(int root, const char *path, FILE *stream) {
@@ -133,7 +133,7 @@ enum status mf_live_zip_write(int root, const char *path, FILE *stream) {
     zip->stream = stream;
     make_table(zip->table);
     CHECK(mf_live_folder_each(root, path, DEEPEST, add, zip));
-    put_directory(zip);
+    write_directory(zip);
     if (ferror(stream))
         status = mf_status_fail(STATUS_IO, "%.200s: %s", path, strerror(errno));
 done:

@@ -141,7 +141,7 @@ static enum status allocate(struct formulas_state *state) {
     NEW_ARRAY(state->curve, points);
     NEW_ARRAY(state->curve_error, points);
     NEW_ARRAY(state->target, state->features);
-    NEW_ARRAY(state->found, (PROGRAMMING_MOST_NODES + 1) * state->features);
+    NEW_ARRAY(state->found, (PROGRAMMING_MAX_NODES + 1) * state->features);
     state->points.y = state->y;
     state->points.offset = state->offset;
     state->points.softness = state->softness;
@@ -187,7 +187,7 @@ static enum status create(void *memory, const struct inverse_method *method,
 /// What a difference from the inversion's curve by 1 k_B T costs, where g(r) knows it, as if g(r)
 /// were off by as much. g(r) hardly sees changes that are smooth; without this a formula for water
 /// was 4 k_B T away, its pressure 20 times that of the curve.
-static const double rein = 0.004;
+static const double curve_penalty = 0.004;
 
 /// The residuals of a potential become those of g(r): δg_a = −Σ_b C_ab δΦ_b/(k_B T S_ideal,a);
 /// behind them stand the differences from the curve. Both count half of the rows.
@@ -201,7 +201,7 @@ static void take_response(struct formulas_state *state, const struct inverse_res
     for (size_t a = 0; a < state->count; a++) {
         const double g = state->target[state->first + a];
         state->response[(state->count + a) * state->count + a] =
-            M_SQRT2 * rein / temperature * fmin(1, fmax(0, g));
+            M_SQRT2 * curve_penalty / temperature * fmin(1, fmax(0, g));
     }
 }
 
@@ -245,7 +245,7 @@ static enum status find_curve(struct formulas_state *state,
 /// The best formula so far, whatever its length, until simulations say more.
 static void show_best(struct formulas_state *state) {
     const struct programming_member *best = NULL;
-    for (int length = 1; length <= PROGRAMMING_MOST_NODES; length++) {
+    for (int length = 1; length <= PROGRAMMING_MAX_NODES; length++) {
         const struct programming_member *other = &state->programming.best[length];
         if (isfinite(other->error) && (best == NULL || other->error < best->error))
             best = other;
@@ -268,8 +268,8 @@ static enum status breed(struct formulas_state *state) {
 
 static void conclude(const struct formulas_state *state, struct inverse_step *step) {
     step->finished = true;
-    step->used_up = state->progress.chosen > 0;
-    if (step->used_up)
+    step->exhausted = state->progress.chosen > 0;
+    if (step->exhausted)
         snprintf(step->reason, sizeof step->reason,
                  "the shortest formula within %d standard errors of the best one of at most %lld "
                  "nodes; its error is %.2g (%.2g by statistics)",
@@ -343,7 +343,7 @@ static size_t spans(void *memory, struct memory_span *span) {
     span[n++] = (struct memory_span){state->response, 2 * state->count * of_curve};
     span[n++] = (struct memory_span){state->curve, points * sizeof(double)};
     span[n++] = (struct memory_span){state->curve_error, points * sizeof(double)};
-    span[n++] = (struct memory_span){state->found, (PROGRAMMING_MOST_NODES + 1) * state->features *
+    span[n++] = (struct memory_span){state->found, (PROGRAMMING_MAX_NODES + 1) * state->features *
                                                        sizeof(double)};
     n += mf_programming_spans(&state->programming, span + n);
     if (state->inner.created)

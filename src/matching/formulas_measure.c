@@ -13,7 +13,7 @@
 
 /// Formulas whose g(r) would be off by more than this, or by so many times that of the best, are
 /// not simulated: the first may be no liquid.
-static const double hopeless = 1, too_far = 2;
+static const double worst_error = 1, too_far = 2;
 
 void mf_formulas_make_curve(const struct formulas_state *state, const struct expression *expression,
                             double *curve) {
@@ -29,14 +29,14 @@ void mf_formulas_make_curve(const struct formulas_state *state, const struct exp
         mf_potential_grid_complete(&state->unknowns.potential, curve);
 }
 
-enum { MOST_CANDIDATES = 2 * PROGRAMMING_MOST_NODES };
+enum { MAX_CANDIDATES = 2 * PROGRAMMING_MAX_NODES };
 
 /// Formulas to be simulated, each as often as "checks" says.
 struct work {
     struct formulas_state *state;
     const struct inverse_listener *listener;
     size_t candidates, done;
-    struct formulas_member candidate[MOST_CANDIDATES];
+    struct formulas_member candidate[MAX_CANDIDATES];
     struct evaluate_result *result; ///< shape [candidates, checks]
     double *features;               ///< shape [candidates, checks, features]
 };
@@ -80,7 +80,7 @@ static size_t list_measured(void *context, size_t task, struct memory_span *span
     return 2;
 }
 
-static void tell_one(void *context, size_t task, const void *unused) {
+static void report_one(void *context, size_t task, const void *unused) {
     struct work *work = context;
     const struct formulas_state *state = work->state;
     (void)task, (void)unused;
@@ -90,10 +90,10 @@ static void tell_one(void *context, size_t task, const void *unused) {
         .done = ++work->done,
         .total = work->candidates * (size_t)state->own.checks,
         .best = state->progress.error,
-        .least = NAN,
+        .min = NAN,
         .mean = NAN,
     };
-    work->listener->tell(work->listener->context, &progress);
+    work->listener->report(work->listener->context, &progress);
 }
 
 /// Mean of a formula's simulations, and of what they found; it takes its place in the front if it
@@ -170,22 +170,22 @@ done:
 /// The front as it was bred, and what is best of what was simulated before with other constants.
 static enum status find_candidates(struct work *work) {
     struct formulas_state *state = work->state;
-    struct programming_member front[PROGRAMMING_MOST_NODES];
+    struct programming_member front[PROGRAMMING_MAX_NODES];
     size_t members;
     TRY(mf_programming_front(&state->programming, front, &members));
-    const double most = members > 0 && state->kind == UNKNOWN_POTENTIAL
-                            ? fmin(hopeless, too_far * front[members - 1].error)
-                            : INFINITY;
+    const double max = members > 0 && state->kind == UNKNOWN_POTENTIAL
+                           ? fmin(worst_error, too_far * front[members - 1].error)
+                           : INFINITY;
     for (size_t k = 0; k < members; k++) {
         const int length = front[k].expression.length;
         const struct formulas_member member = {.formula = front[k], .error = OPTIMISER_FAILED};
-        if (front[k].error <= most)
+        if (front[k].error <= max)
             work->candidate[work->candidates++] = member;
         else if (!state->front[length].measured)
             state->front[length] = member;
     }
     const double best = state->front[state->progress.nearest].error;
-    for (int length = 1; length <= PROGRAMMING_MOST_NODES && state->progress.nearest > 0; length++)
+    for (int length = 1; length <= PROGRAMMING_MAX_NODES && state->progress.nearest > 0; length++)
         if (is_known(state, length) && state->front[length].error < too_far * best)
             TRY(refine(state, length, &work->candidate[work->candidates++]));
     return STATUS_OK;
@@ -204,7 +204,7 @@ static enum status measure(struct formulas_state *state, const struct inverse_li
     CHECK(mf_parallel_try(&(struct parallel_tasks){.count = tasks,
                                                    .threads = state->problem->threads,
                                                    .run = measure_one,
-                                                   .take = tell_one,
+                                                   .take = report_one,
                                                    .context = work,
                                                    .spans = list_measured}));
     for (size_t k = 0; k < work->candidates; k++)
@@ -221,17 +221,17 @@ done:
 /// The best formula by simulations, and the least error that the response expects of one; 0 if none
 /// could be simulated.
 static int find_nearest(const struct formulas_state *state, double *expected) {
-    double least = OPTIMISER_FAILED;
+    double min = OPTIMISER_FAILED;
     int nearest = 0;
     *expected = INFINITY;
-    for (int length = 1; length <= PROGRAMMING_MOST_NODES; length++) {
+    for (int length = 1; length <= PROGRAMMING_MAX_NODES; length++) {
         const struct formulas_member *member = &state->front[length];
         if (!is_known(state, length))
             continue;
         *expected = fmin(*expected, member->formula.error);
-        if (member->error < least)
+        if (member->error < min)
             nearest = length;
-        least = fmin(least, member->error);
+        min = fmin(min, member->error);
     }
     return nearest;
 }

@@ -51,8 +51,8 @@ struct formulas_state {
     double *found;               ///< shape [lengths, features]: as simulated
     struct programming_points points;
     struct programming programming;
-    struct formulas_member front[PROGRAMMING_MOST_NODES + 1]; ///< by length; of length 0: none yet
-    char formula[FIELD_TEXT_SIZE];                            ///< the chosen, as text
+    struct formulas_member front[PROGRAMMING_MAX_NODES + 1]; ///< by length; of length 0: none yet
+    char formula[FIELD_TEXT_SIZE];                           ///< the chosen, as text
     struct formulas_progress {
         uint32_t iteration, stage, cycle;
         int chosen, nearest; ///< lengths in the front; 0: none. The shortest, and the best

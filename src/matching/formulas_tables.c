@@ -15,21 +15,22 @@ static enum status open_in(const struct inverse_folder *folder, const char *name
 }
 
 /// A formula of the front as its tables tell it, with what it is shifted by.
-struct told {
+struct converted {
     struct expression expression;
     double shift;
 };
 
-static struct told tell(const struct formulas_state *state, int nodes,
-                        const struct inverse_folder *folder) {
+static struct converted convert(const struct formulas_state *state, int nodes,
+                                const struct inverse_folder *folder) {
     const double length = mf_units_factor(folder->units, "lambda");
     const double unit = mf_units_factor(folder->units, mf_unknowns_unit(state->kind));
-    struct told told = {.expression = state->front[nodes].formula.expression};
+    struct converted converted = {.expression = state->front[nodes].formula.expression};
     if (!isnan(state->points.zero))
-        told.shift = unit * mf_expression_value(&told.expression, state->points.zero, NULL);
+        converted.shift =
+            unit * mf_expression_value(&converted.expression, state->points.zero, NULL);
     if (length != 1 || unit != 1)
-        mf_expression_scale(&told.expression, length, unit);
-    return told;
+        mf_expression_scale(&converted.expression, length, unit);
+    return converted;
 }
 
 /// formulas.tsv: a row a formula; the last column is text.
@@ -38,14 +39,14 @@ static enum status write_front(const struct formulas_state *state,
     struct output output;
     TRY(open_in(folder, "formulas.tsv", &output));
     fprintf(output.stream, "# nodes\tchosen\texpected\terror[1]\terror_error[1]\tformula\n");
-    for (int k = 1; k <= PROGRAMMING_MOST_NODES; k++) {
+    for (int k = 1; k <= PROGRAMMING_MAX_NODES; k++) {
         const struct formulas_member *member = &state->front[k];
         if (member->formula.expression.length == 0)
             continue;
         const bool known = member->measured && member->error < OPTIMISER_FAILED;
         char text[EXPRESSION_TEXT_SIZE];
-        const struct told told = tell(state, k, folder);
-        mf_expression_print(&told.expression, EXPRESSION_PLAIN, text);
+        const struct converted converted = convert(state, k, folder);
+        mf_expression_print(&converted.expression, EXPRESSION_PLAIN, text);
         fprintf(output.stream, "%d\t%d\t%.6g\t%.6g\t%.3g\t%s\n", member->formula.expression.length,
                 known && k == state->progress.chosen, member->formula.error,
                 known ? member->error : NAN, known ? sqrt(member->variance) : NAN, text);
@@ -59,14 +60,14 @@ static enum status write_latex(const struct formulas_state *state,
     const char *symbol = state->kind == UNKNOWN_POTENTIAL ? "\\Phi" : "\\omega";
     struct output output;
     TRY(open_in(folder, "formulas.tex", &output));
-    for (int k = 1; k <= PROGRAMMING_MOST_NODES; k++) {
+    for (int k = 1; k <= PROGRAMMING_MAX_NODES; k++) {
         const struct expression *expression = &state->front[k].formula.expression;
         if (expression->length == 0)
             continue;
-        const struct told told = tell(state, k, folder);
-        const double shift = told.shift;
+        const struct converted converted = convert(state, k, folder);
+        const double shift = converted.shift;
         char text[EXPRESSION_TEXT_SIZE];
-        mf_expression_print(&told.expression, EXPRESSION_LATEX, text);
+        mf_expression_print(&converted.expression, EXPRESSION_LATEX, text);
         fprintf(output.stream, "%% %d nodes\n\\begin{equation}\n  %s(r) = %s", expression->length,
                 symbol, text);
         if (shift != 0)
@@ -85,17 +86,18 @@ static enum status write_c(const struct formulas_state *state,
     struct output output;
     TRY(open_in(folder, "formulas.h", &output));
     fprintf(output.stream, "#include <math.h>\n");
-    for (int k = 1; k <= PROGRAMMING_MOST_NODES; k++) {
+    for (int k = 1; k <= PROGRAMMING_MAX_NODES; k++) {
         const struct expression *expression = &state->front[k].formula.expression;
         if (expression->length == 0)
             continue;
         char text[EXPRESSION_TEXT_SIZE];
-        const struct told told = tell(state, k, folder);
-        mf_expression_print(&told.expression, EXPRESSION_C, text);
+        const struct converted converted = convert(state, k, folder);
+        mf_expression_print(&converted.expression, EXPRESSION_C, text);
         fprintf(output.stream,
                 "\n/* For %.10g <= r < %.10g. */\nstatic inline double formula_%d(double r) {\n"
                 "    return %s - (%.17g);\n}\n",
-                length * state->points.r[0], length * last, expression->length, text, told.shift);
+                length * state->points.r[0], length * last, expression->length, text,
+                converted.shift);
     }
     return mf_output_commit(&output);
 }

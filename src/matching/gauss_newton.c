@@ -62,7 +62,7 @@ struct state {
         bool known;                    ///< whether the best has been measured
         double reach;                  ///< radius of the region [variable]
         double error, variance, noise; ///< of the best
-        double least;                  ///< of the errors that the best has had
+        double min;                    ///< of the errors that the best has had
         uint32_t at_noise;             ///< iterations since the error is no more than noise
         uint32_t idle;                 ///< since it fell by more than chance,
         double reference;              ///< from this
@@ -73,11 +73,11 @@ struct state {
 static const struct field own_fields[] = {
     {"iterations", FIELD_INTEGER, OWN(iterations), .initial = 20, .minimum = 1, .maximum = 10000,
      .unit = "", .help = "most iterations"},
-    {"spread", FIELD_INTEGER, OWN(spread), .initial = 0, .minimum = 0, .maximum = POPULATION_MOST,
+    {"spread", FIELD_INTEGER, OWN(spread), .initial = 0, .minimum = 0, .maximum = POPULATION_MAX,
      .unit = "", .help = "candidates around the best in an iteration; 0: 1.5 for each variable"},
     {"reach", FIELD_NUMBER, OWN(reach), .initial = 0.15, .minimum = FIELD_ABOVE_ZERO, .maximum = 1,
      .unit = "", .help = "initial trust radius, as a fraction of the range"},
-    {"checks", FIELD_INTEGER, OWN(checks), .initial = 4, .minimum = 1, .maximum = POPULATION_MOST,
+    {"checks", FIELD_INTEGER, OWN(checks), .initial = 4, .minimum = 1, .maximum = POPULATION_MAX,
      .unit = "", .help = "measurements of the model's optimum"},
     {"tolerance", FIELD_NUMBER, OWN(tolerance), .initial = 0.1, .minimum = FIELD_ABOVE_ZERO,
      .maximum = 1, .unit = "", .help = "trust radius at the end, as a fraction of the first"},
@@ -96,16 +96,16 @@ static size_t round_size(const struct state *state) {
     const size_t wanted =
         state->own.spread > 0 ? (size_t)state->own.spread : (3 * variables + 1) / 2;
     // Some may fail.
-    const size_t least =
-        state->progress.iteration == 0 ? 11 * mf_surrogate_least_rows(variables) / 10 : 4;
-    return ((wanted > least ? wanted : least) + 1) / 2 * 2;
+    const size_t min =
+        state->progress.iteration == 0 ? 11 * mf_surrogate_min_rows(variables) / 10 : 4;
+    return ((wanted > min ? wanted : min) + 1) / 2 * 2;
 }
 
-static size_t most_candidates(const struct state *state) {
+static size_t max_candidates(const struct state *state) {
     const size_t variables = state->parametrisation.variables,
-                 least = 11 * mf_surrogate_least_rows(variables) / 10;
+                 min = 11 * mf_surrogate_min_rows(variables) / 10;
     const size_t wanted = state->own.spread > 0 ? (size_t)state->own.spread : 2 * variables;
-    return ((wanted > least ? wanted : least) + 1) / 2 * 2;
+    return ((wanted > min ? wanted : min) + 1) / 2 * 2;
 }
 
 static void destroy(void *memory) {
@@ -141,19 +141,19 @@ static enum status create(void *memory, const struct inverse_method *method,
     state->progress = (struct progress){.reach = state->own.reach,
                                         .error = NAN,
                                         .noise = NAN,
-                                        .least = INFINITY,
+                                        .min = INFINITY,
                                         .reference = INFINITY};
     CHECK(mf_parametrisation_init(&state->parametrisation, problem));
-    if (most_candidates(state) > POPULATION_MOST) {
+    if (max_candidates(state) > POPULATION_MAX) {
         status =
             mf_status_fail(STATUS_BAD_INPUT,
                            "method.name: \"gauss-newton\" needs %zu candidates in a round for %zu "
                            "variables, and %d are the most",
-                           mf_surrogate_least_rows(state->parametrisation.variables),
-                           state->parametrisation.variables, POPULATION_MOST);
+                           mf_surrogate_min_rows(state->parametrisation.variables),
+                           state->parametrisation.variables, POPULATION_MAX);
         goto done;
     }
-    NEW_ARRAY(state->round, most_candidates(state) * state->parametrisation.variables);
+    NEW_ARRAY(state->round, max_candidates(state) * state->parametrisation.variables);
     NEW_ARRAY(state->proposal, state->parametrisation.variables);
     NEW_ARRAY(state->best, state->parametrisation.variables);
     CHECK(mf_parametrisation_curves_init(&state->parametrisation, &state->curves));
@@ -191,16 +191,16 @@ static void move(struct state *state, const double *variables,
     progress->error = check->error;
     progress->noise = check->noise;
     progress->variance = check->variance;
-    progress->least = fmin(progress->least, check->error);
+    progress->min = fmin(progress->min, check->error);
 }
 
 /// Compare the proposal's measurement with the best's: go there unless it failed or is worse by
 /// more than chance than the least so far, and trust the model in a wider or narrower region. By
 /// chance alone, taken from one best to the next, a fit would climb step by step.
-static void judge(struct state *state, const struct population_check *check) {
+static void assess(struct state *state, const struct population_check *check) {
     struct progress *progress = &state->progress;
     const double chance = sqrt(check->variance + progress->variance);
-    const bool better = !progress->known || check->error < progress->least + chance;
+    const bool better = !progress->known || check->error < progress->min + chance;
     if (check->error < OPTIMISER_FAILED && better) {
         if (progress->known && check->error < progress->error - chance)
             progress->reach = fmin(widest, widen * progress->reach);
@@ -246,7 +246,7 @@ static enum status propose(struct state *state) {
         struct population_check check;
         CHECK(mf_population_check(&state->population, state->proposal, (size_t)state->own.checks, 1,
                                   &check));
-        judge(state, &check);
+        assess(state, &check);
         if (state->progress.known)
             watch(&state->progress, step);
     }
@@ -259,7 +259,7 @@ done:
 }
 
 /// Why there is no result, or why it is not the last word.
-static void tell_reason(const struct state *state, char reason[INVERSE_REASON_SIZE]) {
+static void report_reason(const struct state *state, char reason[INVERSE_REASON_SIZE]) {
     const struct progress *progress = &state->progress;
     char why[128];
     if (progress->known) {
@@ -278,8 +278,8 @@ static void tell_reason(const struct state *state, char reason[INVERSE_REASON_SI
             "too few for a linear model of %zu variables, which needs %zu: more \"iterations\" or "
             "\"spread\" would do",
             state->parametrisation.variables,
-            mf_surrogate_least_rows(state->parametrisation.variables));
-    mf_population_tell_failure(&state->population, why, reason);
+            mf_surrogate_min_rows(state->parametrisation.variables));
+    mf_population_report_failure(&state->population, why, reason);
 }
 
 /// Whether some potential meets all that is fitted: g(r) and the pressure, and the distributions of
@@ -313,7 +313,7 @@ static void settle(const struct state *state, struct inverse_step *step) {
     char why[64] = "its steps have become small";
     step->finished = true;
     step->converged = progress->error <= mf_inverse_noise_margin * progress->noise;
-    step->used_up = !step->converged && !can_be_met(state->problem);
+    step->exhausted = !step->converged && !can_be_met(state->problem);
     if (step->converged)
         return;
     if (!has_narrowed(state))
@@ -323,7 +323,7 @@ static void settle(const struct state *state, struct inverse_step *step) {
         "%s, but %s %.2g, %.2g by statistics: more \"coefficients\", a wider range of the curve or "
         "another start may lead on%s",
         why, what, progress->error, progress->noise,
-        step->used_up ? ", if the target can be met at all" : "");
+        step->exhausted ? ", if the target can be met at all" : "");
 }
 
 static void describe(struct state *state, struct inverse_step *step) {
@@ -340,14 +340,14 @@ static void describe(struct state *state, struct inverse_step *step) {
         .error = progress->error,
         .noise = progress->noise,
         .variance = progress->variance,
-        .extra = {survey->least, survey->alive.count > 0 ? survey->alive.mean : NAN,
-                  progress->reach, (double)survey->failures},
+        .extra = {survey->min, survey->alive.count > 0 ? survey->alive.mean : NAN, progress->reach,
+                  (double)survey->failures},
         .finished = last || has_narrowed(state),
     };
     if (settled)
         settle(state, step);
     else if (step->finished)
-        tell_reason(state, step->reason);
+        report_reason(state, step->reason);
     mf_parametrisation_curves_show(&state->parametrisation, state->best, &state->curves, step);
 }
 
@@ -365,7 +365,7 @@ static enum status iterate(void *memory, struct inverse_step *step,
     TRY(propose(state));
     describe(state, step);
     mf_population_next_round(population);
-    mf_population_forget_survey(population);
+    mf_population_reset_survey(population);
     state->progress.iteration++;
     return STATUS_OK;
 }

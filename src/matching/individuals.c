@@ -11,7 +11,7 @@
 enum { ITERATION, ERROR, PARENT, OTHER_PARENT };
 
 /// Numbers that are kept: 4 MiB, which are 5000 individuals of a hundred genes.
-enum { MOST_NUMBERS = 1 << 19, NAME_SIZE = UNKNOWNS_NAME_SIZE + INVERSE_NUMBER_NAME_SIZE };
+enum { MAX_NUMBERS = 1 << 19, NAME_SIZE = UNKNOWNS_NAME_SIZE + INVERSE_NUMBER_NAME_SIZE };
 
 static double *row_of(const struct individuals *individuals, uint64_t number) {
     const size_t width = INDIVIDUALS_HEAD + individuals->variables;
@@ -22,7 +22,7 @@ enum status mf_individuals_init(struct individuals *individuals, size_t variable
     enum status status = STATUS_OK;
     const size_t width = INDIVIDUALS_HEAD + variables;
     *individuals =
-        (struct individuals){.variables = variables, .capacity = 1 + MOST_NUMBERS / width};
+        (struct individuals){.variables = variables, .capacity = 1 + MAX_NUMBERS / width};
     NEW_ARRAY(individuals->row, individuals->capacity * width);
 done:
     return status;
@@ -87,7 +87,7 @@ static void name_all(const struct parametrisation *parametrisation, const struct
                            sizeof number->name);
     }
     for (size_t n = 0; n < parametrisation->variables; n++) {
-        gene[n].minimum = parametrisation->least[n];
+        gene[n].minimum = parametrisation->min[n];
         gene[n].range = parametrisation->range[n];
     }
 }

@@ -46,7 +46,7 @@ struct state {
     struct parametrisation parametrisation;
     struct population population;
     struct individuals individuals;
-    double *incumbent;                    ///< shape [variables]: what is thought best
+    double *best_candidate;               ///< shape [variables]: what is thought best
     double *best;                         ///< shape [variables]: the best by fresh measurements
     struct parametrisation_curves curves; ///< of the best, with errors by the linear model
     struct progress {
@@ -69,8 +69,8 @@ static const struct field own_fields[] = {
     {"racing", FIELD_NUMBER, MEMBER(population.evaluate.racing), .initial = 0, .minimum = 0,
      .maximum = 100, .unit = "standard errors",
      .help = "significance at which a losing simulation is stopped; 0: never"},
-    {"checks", FIELD_INTEGER, MEMBER(checks), .initial = 2, .minimum = 1,
-     .maximum = POPULATION_MOST, .unit = "", .help = "repeated measurements of an apparent best"},
+    {"checks", FIELD_INTEGER, MEMBER(checks), .initial = 2, .minimum = 1, .maximum = POPULATION_MAX,
+     .unit = "", .help = "repeated measurements of an apparent best"},
     {"check_length", FIELD_INTEGER, MEMBER(check_length), .initial = 1, .minimum = 1,
      .maximum = 1000, .unit = "", .help = "length of these simulations, in units of a round's"},
     {"surrogate", FIELD_CHOICE, MEMBER(surrogate), .choices = surrogates, .initial = TRIED,
@@ -84,17 +84,17 @@ static_assert(offsetof(struct parameters, population) == 0, "the first, says pop
 static const char *const columns[] = {"least[1]", "mean[1]", "diversity[1]", "failures", NULL};
 
 /// Evaluations of an iteration whose rounds are of one candidate, so that a history stays readable.
-static const size_t least_evaluations = 10;
+static const size_t min_evaluations = 10;
 
 /// How far the linear model may go from what was measured, as a part of a variable's range.
 static const double reach = 0.3;
 
 /// Rounds, of which an iteration takes at least one, and a last iteration for the incumbent.
-static uint32_t most_iterations(const struct inverse_method *method,
-                                const struct inverse_problem *problem, const void *parameters) {
+static uint32_t max_iterations(const struct inverse_method *method,
+                               const struct inverse_problem *problem, const void *parameters) {
     const struct driven *driven = method->own;
-    return driven->optimiser->most_rounds((const char *)parameters + driven->parameters,
-                                          mf_parametrisation_count(problem)) +
+    return driven->optimiser->max_rounds((const char *)parameters + driven->parameters,
+                                         mf_parametrisation_count(problem)) +
            1;
 }
 
@@ -106,7 +106,7 @@ static void destroy(void *memory) {
     mf_population_clear(&state->population);
     mf_individuals_clear(&state->individuals);
     mf_parametrisation_clear(&state->parametrisation);
-    mf_memory_free(state->incumbent);
+    mf_memory_free(state->best_candidate);
     mf_memory_free(state->best);
     mf_parametrisation_curves_clear(&state->curves);
 }
@@ -124,7 +124,7 @@ static enum status create_optimiser(struct state *state, const void *parameters)
         .maximum = 1,
         .start = start,
         .seed = state->problem->seed,
-        .most = POPULATION_MOST,
+        .max = POPULATION_MAX,
         .blocks = mf_parametrisation_blocks(&state->parametrisation, block),
         .block = block};
     state->optimiser_state = mf_memory_zeroed(1, state->optimiser->state_size);
@@ -147,22 +147,22 @@ static enum status create(void *memory, const struct inverse_method *method,
     state->optimiser = driven->optimiser;
     state->progress.error = NAN;
     CHECK(mf_parametrisation_init(&state->parametrisation, problem));
-    NEW_ARRAY(state->incumbent, state->parametrisation.variables);
+    NEW_ARRAY(state->best_candidate, state->parametrisation.variables);
     NEW_ARRAY(state->best, state->parametrisation.variables);
     CHECK(mf_parametrisation_curves_init(&state->parametrisation, &state->curves));
     CHECK(create_optimiser(state, (const char *)parameters + driven->parameters));
     CHECK(mf_population_init(&state->population, &state->parametrisation,
                              &state->parameters.population));
     CHECK(mf_individuals_init(&state->individuals, state->parametrisation.variables));
-    state->population.singles = least_evaluations;
-    state->population.iterations = most_iterations(method, problem, parameters);
+    state->population.singles = min_evaluations;
+    state->population.iterations = max_iterations(method, problem, parameters);
 done:
     return status;
 }
 
 /// Whether an iteration has the evaluations that it should.
 static bool is_full(const struct population_survey *survey, size_t next_round) {
-    return survey->evaluations >= (next_round == 1 ? least_evaluations : 1);
+    return survey->evaluations >= (next_round == 1 ? min_evaluations : 1);
 }
 
 /// Keep the round for individuals.tsv, with its parents, of which telling makes others.
@@ -193,7 +193,7 @@ static enum status take_round(struct state *state, const struct optimiser_round 
 /// in ten goes into such measurements but for the last.
 static bool wants_check(const struct state *state, bool last) {
     const size_t bytes = state->parametrisation.variables * sizeof(double);
-    if (state->progress.known && memcmp(state->incumbent, state->best, bytes) == 0)
+    if (state->progress.known && memcmp(state->best_candidate, state->best, bytes) == 0)
         return false;
     const uint64_t since = state->population.totals.evaluations - state->progress.checked;
     return last || !state->progress.known || since >= 10 * (uint64_t)state->parameters.checks;
@@ -201,15 +201,16 @@ static bool wants_check(const struct state *state, bool last) {
 
 /// Measure the incumbent afresh and keep it if it is better than the best so far, or as good within
 /// `slack` standard errors.
-static enum status check_incumbent(struct state *state, double slack) {
+static enum status check_best_candidate(struct state *state, double slack) {
     struct population_check check;
-    TRY(mf_population_check(&state->population, state->incumbent, (size_t)state->parameters.checks,
-                            state->parameters.check_length, &check));
+    TRY(mf_population_check(&state->population, state->best_candidate,
+                            (size_t)state->parameters.checks, state->parameters.check_length,
+                            &check));
     if (check.error >= OPTIMISER_FAILED ||
         (state->progress.known &&
          check.error > state->progress.error + slack * sqrt(check.variance)))
         return STATUS_OK;
-    memcpy(state->best, state->incumbent, state->parametrisation.variables * sizeof(double));
+    memcpy(state->best, state->best_candidate, state->parametrisation.variables * sizeof(double));
     if (!state->progress.known || check.error < state->progress.error)
         state->progress.last_better = state->progress.iteration;
     state->progress.known = true;
@@ -232,10 +233,10 @@ static enum status try_surrogate(struct state *state) {
                                           known ? model.covariance : NULL, &state->curves));
     if (!known || !state->parameters.surrogate)
         goto done;
-    memcpy(state->incumbent, model.best, state->parametrisation.variables * sizeof(double));
-    CHECK(check_incumbent(state, 1));
+    memcpy(state->best_candidate, model.best, state->parametrisation.variables * sizeof(double));
+    CHECK(check_best_candidate(state, 1));
     if (state->parameters.surrogate == JOINS && state->optimiser->suggest)
-        state->optimiser->suggest(state->optimiser_state, state->incumbent);
+        state->optimiser->suggest(state->optimiser_state, state->best_candidate);
 done:
     mf_surrogate_model_clear(&model);
     return status;
@@ -246,15 +247,15 @@ static void conclude(const struct state *state, struct inverse_step *step) {
     const struct optimiser *optimiser = state->optimiser;
     step->finished = true;
     if (!state->progress.known)
-        mf_population_tell_failure(&state->population,
-                                   "but what seemed best failed when it was measured again",
-                                   step->reason);
+        mf_population_report_failure(&state->population,
+                                     "but what seemed best failed when it was measured again",
+                                     step->reason);
     else if (optimiser->settled && optimiser->settled(state->optimiser_state))
         step->converged = true;
     else if (optimiser->gave_up && optimiser->gave_up(state->optimiser_state))
         mf_inverse_give_up(step);
     else
-        mf_inverse_use_up(step, optimiser->budget, state->progress.last_better);
+        mf_inverse_exhaust(step, optimiser->budget, state->progress.last_better);
 }
 
 static void describe(struct state *state, struct inverse_step *step, bool finished) {
@@ -266,7 +267,7 @@ static void describe(struct state *state, struct inverse_step *step, bool finish
         .error = state->progress.error,
         .noise = state->progress.noise,
         .variance = state->progress.variance,
-        .extra = {survey->least, survey->alive.count > 0 ? survey->alive.mean : NAN,
+        .extra = {survey->min, survey->alive.count > 0 ? survey->alive.mean : NAN,
                   state->optimiser->spread(state->optimiser_state), (double)survey->failures},
     };
     if (finished)
@@ -281,12 +282,12 @@ static void describe(struct state *state, struct inverse_step *step, bool finish
 static enum status check(struct state *state, bool last) {
     enum { NOTHING, INCUMBENT, SURROGATE };
     struct progress *progress = &state->progress;
-    if (!state->optimiser->incumbent(state->optimiser_state, state->incumbent))
+    if (!state->optimiser->best_candidate(state->optimiser_state, state->best_candidate))
         return STATUS_OK;
     if (progress->stage == NOTHING && wants_check(state, last))
         progress->stage = INCUMBENT;
     if (progress->stage == INCUMBENT) {
-        TRY(check_incumbent(state, 0));
+        TRY(check_best_candidate(state, 0));
         progress->stage = SURROGATE;
     }
     if (progress->stage == SURROGATE) {
@@ -324,7 +325,7 @@ static enum status iterate(void *memory, struct inverse_step *step,
     const bool finished = round.count == 0;
     TRY(check(state, finished));
     describe(state, step, finished);
-    mf_population_forget_survey(&state->population);
+    mf_population_reset_survey(&state->population);
     state->progress.iteration++;
     return STATUS_OK;
 }

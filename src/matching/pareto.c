@@ -13,10 +13,10 @@
 
 #define OWN(name) .offset = offsetof(struct pareto_parameters, name)
 static const struct field own_fields[] = {
-    {"checks", FIELD_INTEGER, OWN(checks), .initial = 2, .minimum = 1, .maximum = POPULATION_MOST,
+    {"checks", FIELD_INTEGER, OWN(checks), .initial = 2, .minimum = 1, .maximum = POPULATION_MAX,
      .unit = "", .help = "repeated measurements of the chosen one"},
     {"surrogate", FIELD_INTEGER, OWN(surrogate), .initial = 4, .minimum = 0,
-     .maximum = NSGA2_PLANTED, .unit = "",
+     .maximum = NSGA2_INJECTED, .unit = "",
      .help = "children of a generation from linear models of the simulations"},
     FIELD_END,
 };
@@ -78,13 +78,13 @@ static enum status create(void *memory, const struct inverse_method *method,
                               method->name);
     CHECK(mf_parametrisation_init(&state->parametrisation, problem));
     CHECK(create_nsga2(state));
-    NEW_ARRAY(state->value, POPULATION_MOST * state->objectives);
+    NEW_ARRAY(state->value, POPULATION_MAX * state->objectives);
     NEW_ARRAY(state->log, log_rows(state) * mf_pareto_log_width(state));
     CHECK(mf_parametrisation_curves_init(&state->parametrisation, &state->curves));
     CHECK(mf_population_init(&state->population, &state->parametrisation, &state->own.population));
     state->population.iterations =
         (uint32_t)((const struct pareto_parameters *)parameters)->nsga2.generations;
-    state->progress.least = OPTIMISER_FAILED;
+    state->progress.min = OPTIMISER_FAILED;
 done:
     return status;
 }
@@ -146,15 +146,15 @@ static bool is_checked(const struct pareto_state *state, size_t parent) {
 
 /// Member of the front of the least error; false if there is none.
 static bool find_best(const struct pareto_state *state, size_t *best) {
-    double least = OPTIMISER_FAILED;
+    double min = OPTIMISER_FAILED;
     for (size_t k = 0; k < mf_nsga2_parents(&state->nsga2); k++) {
         const double error = mf_pareto_error(state, mf_pareto_value(state, k));
-        if (!mf_pareto_is_member(state, k) || error >= least)
+        if (!mf_pareto_is_member(state, k) || error >= min)
             continue;
-        least = error;
+        min = error;
         *best = k;
     }
-    return least < OPTIMISER_FAILED;
+    return min < OPTIMISER_FAILED;
 }
 
 /// Measure a parent until it is checked.
@@ -183,8 +183,8 @@ static enum status choose(struct pareto_state *state) {
     struct progress *progress = &state->progress;
     progress->known = find_best(state, &best);
     progress->chosen = best;
-    if (progress->known && mf_pareto_error(state, mf_pareto_value(state, best)) < progress->least) {
-        progress->least = mf_pareto_error(state, mf_pareto_value(state, best));
+    if (progress->known && mf_pareto_error(state, mf_pareto_value(state, best)) < progress->min) {
+        progress->min = mf_pareto_error(state, mf_pareto_value(state, best));
         progress->last_better = progress->iteration;
     }
     return STATUS_OK;
@@ -205,7 +205,7 @@ static enum status ask_surrogate(struct pareto_state *state) {
             CHECK(mf_parametrisation_curves_bands(&state->parametrisation, chosen, model.covariance,
                                                   &state->curves));
         if (known && k < state->own.surrogate)
-            mf_nsga2_plant(&state->nsga2, model.best);
+            mf_nsga2_inject(&state->nsga2, model.best);
     }
 done:
     mf_surrogate_model_clear(&model);
@@ -223,16 +223,16 @@ static void describe(struct pareto_state *state, struct inverse_step *step) {
                                  : NAN,
         .noise = progress->known ? mf_pareto_error(state, progress->noise) : NAN,
         .variance = progress->variance,
-        .extra = {survey->least, survey->alive.count > 0 ? survey->alive.mean : NAN,
+        .extra = {survey->min, survey->alive.count > 0 ? survey->alive.mean : NAN,
                   mf_nsga2_diversity(&state->nsga2), (double)survey->failures},
         .finished = mf_nsga2_is_over(&state->nsga2),
     };
     if (step->finished && progress->known)
-        mf_inverse_use_up(step, "generations", progress->last_better);
+        mf_inverse_exhaust(step, "generations", progress->last_better);
     else if (step->finished)
-        mf_population_tell_failure(&state->population,
-                                   "but what seemed best failed when it was measured again",
-                                   step->reason);
+        mf_population_report_failure(&state->population,
+                                     "but what seemed best failed when it was measured again",
+                                     step->reason);
     mf_parametrisation_curves_show(&state->parametrisation,
                                    progress->known
                                        ? mf_nsga2_parent(&state->nsga2, progress->chosen)
@@ -255,7 +255,7 @@ static enum status iterate(void *memory, struct inverse_step *step,
     enum { ROUND, CHOICE };
     struct pareto_state *state = memory;
     state->population.iteration = state->progress.iteration;
-    state->population.best = state->progress.least < OPTIMISER_FAILED ? state->progress.least : NAN;
+    state->population.best = state->progress.min < OPTIMISER_FAILED ? state->progress.min : NAN;
     if (state->progress.stage == ROUND) {
         TRY(take_round(state, listener));
         state->progress.stage = CHOICE;
@@ -264,7 +264,7 @@ static enum status iterate(void *memory, struct inverse_step *step,
     TRY(ask_surrogate(state));
     log_front(state);
     describe(state, step);
-    mf_population_forget_survey(&state->population);
+    mf_population_reset_survey(&state->population);
     state->progress.stage = ROUND;
     state->progress.iteration++;
     return STATUS_OK;

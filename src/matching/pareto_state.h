@@ -37,7 +37,7 @@ struct pareto_state {
         double noise[TARGETS]; ///< of one simulation's distances, by objective
         double variance;       ///< of the error of what was checked last
         uint32_t last_better;  ///< iteration in which the least error fell last
-        double least;          ///< chosen so far
+        double min;            ///< chosen so far
     } progress;
 };
 

@@ -64,7 +64,7 @@ static void fill_front(const struct pareto_state *state, const struct line *line
             value[EXTRA_COLUMNS + m][k] = mf_pareto_value(state, parent)[m];
             value[EXTRA_COLUMNS + objectives + m][k] = state->progress.noise[m];
         }
-        struct inverse_parameter found[INVERSE_MOST_NUMBERS];
+        struct inverse_parameter found[INVERSE_MAX_NUMBERS];
         mf_parametrisation_numbers(&state->parametrisation, mf_nsga2_parent(&state->nsga2, parent),
                                    NULL, found);
         for (size_t n = 0; n < state->problem->numbers; n++)
@@ -79,13 +79,13 @@ static enum status write_front(const struct pareto_state *state,
     enum status status = STATUS_OK;
     const size_t objectives = state->objectives, of_targets = EXTRA_COLUMNS + 2 * objectives;
     const struct inverse_problem *problem = state->problem;
-    const size_t most = of_targets + problem->numbers;
+    const size_t max = of_targets + problem->numbers;
     char names[2 * TARGETS][NAME_SIZE], path[OUTPUT_PATH_SIZE];
     struct data_column *column = NULL;
     double *memory = NULL;
-    NEW_ARRAY(column, most);
-    NEW_ARRAY(memory, most * (rows + 1));
-    double *value[EXTRA_COLUMNS + 2 * TARGETS + INVERSE_MOST_NUMBERS];
+    NEW_ARRAY(column, max);
+    NEW_ARRAY(memory, max * (rows + 1));
+    double *value[EXTRA_COLUMNS + 2 * TARGETS + INVERSE_MAX_NUMBERS];
     static const char *const extra[EXTRA_COLUMNS] = {"member", "rank", "chosen", "measured",
                                                      "error[1]"};
     for (size_t n = 0; n < problem->numbers; n++)
@@ -102,7 +102,7 @@ static enum status write_front(const struct pareto_state *state,
     }
     fill_front(state, lines, rows, value);
     folder->file(folder->context, "pareto.tsv", path);
-    CHECK(mf_data_table_write_in(path, folder->units, NULL, column, most, rows));
+    CHECK(mf_data_table_write_in(path, folder->units, NULL, column, max, rows));
 done:
     mf_memory_free(column);
     mf_memory_free(memory);

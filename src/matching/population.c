@@ -59,26 +59,26 @@ enum status mf_population_init(struct population *population,
     enum status status = STATUS_OK;
     *population = (struct population){
         .parametrisation = parametrisation, .parameters = *parameters, .best = NAN};
-    NEW_ARRAY(population->errors, POPULATION_MOST);
-    NEW_ARRAY(population->variances, POPULATION_MOST);
-    NEW_ARRAY(population->distances, POPULATION_MOST * TARGETS);
+    NEW_ARRAY(population->errors, POPULATION_MAX);
+    NEW_ARRAY(population->variances, POPULATION_MAX);
+    NEW_ARRAY(population->distances, POPULATION_MAX * TARGETS);
     NEW_ARRAY(population->first, parametrisation->variables);
-    NEW_ARRAY(population->shown, POPULATION_MOST * parametrisation->variables);
-    NEW_ARRAY(population->shown_error, POPULATION_MOST);
+    NEW_ARRAY(population->shown, POPULATION_MAX * parametrisation->variables);
+    NEW_ARRAY(population->shown_error, POPULATION_MAX);
     const struct targets *targets = &parametrisation->unknowns.problem->targets;
     const size_t features = mf_targets_features(targets);
-    NEW_ARRAY(population->features, POPULATION_MOST * features);
+    NEW_ARRAY(population->features, POPULATION_MAX * features);
     NEW_ARRAY(population->target, features);
     NEW_ARRAY(population->target_error, features);
     NEW_ARRAY(population->excess, features);
     mf_targets_take_features(targets, NULL, population->target, population->target_error);
     CHECK(mf_surrogate_init(&population->surrogate, parametrisation->variables, features,
-                            POPULATION_MOST, population->target, population->target_error,
+                            POPULATION_MAX, population->target, population->target_error,
                             population->excess));
     NEW_ARRAY(population->position, mf_population_coordinates(population));
     NEW_ARRAY(population->best_position, mf_population_coordinates(population));
     mf_population_next_round(population);
-    mf_population_forget_survey(population);
+    mf_population_reset_survey(population);
     population->totals.rounds = 0;
 done:
     return status;
@@ -103,7 +103,7 @@ void mf_population_clear(struct population *population) {
 
 void mf_population_next_round(struct population *population) {
     struct population_totals *totals = &population->totals;
-    for (size_t k = 0; k < POPULATION_MOST; k++)
+    for (size_t k = 0; k < POPULATION_MAX; k++)
         population->errors[k] = UNMEASURED;
     if (population->parameters.warm_start && totals->best_error < OPTIMISER_FAILED) {
         memcpy(population->position, population->best_position,
@@ -114,8 +114,8 @@ void mf_population_next_round(struct population *population) {
     totals->rounds++;
 }
 
-void mf_population_forget_survey(struct population *population) {
-    population->survey = (struct population_survey){.least = INFINITY};
+void mf_population_reset_survey(struct population *population) {
+    population->survey = (struct population_survey){.min = INFINITY};
 }
 
 /// Columns of positions, one a dimension.
@@ -161,7 +161,7 @@ static void add(struct population_survey *survey, double error) {
     else
         mf_statistics_add(&survey->alive, error);
     if (error < OPTIMISER_FAILED)
-        survey->least = fmin(survey->least, error);
+        survey->min = fmin(survey->min, error);
 }
 
 /// Tell what this iteration knows.
@@ -178,11 +178,11 @@ static void report(const struct population *population, size_t count,
         .done = survey.evaluations - (single ? 0 : population->survey.evaluations),
         .total = single ? population->singles : count,
         .best = population->best,
-        .least = survey.least,
+        .min = survey.min,
         .mean = survey.alive.count > 0 ? survey.alive.mean : NAN,
         .failures = survey.failures,
     };
-    to->tell(to->context, &progress);
+    to->report(to->context, &progress);
 }
 
 /// Take over a measurement. Called by one thread at a time, in any order.
@@ -231,7 +231,7 @@ struct work {
     const struct inverse_listener *listener;
     double discard_above;
     int threads; ///< inside a simulation
-    size_t count, index[POPULATION_MOST];
+    size_t count, index[POPULATION_MAX];
 };
 
 static enum status measure_one(void *context, size_t task, void *memory) {
@@ -272,10 +272,10 @@ static size_t list_features(void *context, size_t task, struct memory_span *span
 /// threads have met.
 static int threads_inside(const struct inverse_problem *problem) {
     enum { PARTICLES_PER_THREAD = 1000 };
-    const int64_t most = problem->scene.placement.count / PARTICLES_PER_THREAD;
-    if (most < 1)
+    const int64_t max = problem->scene.placement.count / PARTICLES_PER_THREAD;
+    if (max < 1)
         return 1;
-    return most < problem->threads ? (int)most : problem->threads;
+    return max < problem->threads ? (int)max : problem->threads;
 }
 
 void mf_population_remember(struct population *population, const double *variables, double error,
@@ -286,12 +286,12 @@ void mf_population_remember(struct population *population, const double *variabl
 
 /// Keep a round to be written, but for copies, which are a challenger measured again.
 static void show(struct population *population, const struct optimiser_round *round) {
-    enum { LEAST = 8 };
+    enum { MIN = 8 };
     const size_t bytes = population->parametrisation->variables * sizeof(double);
     size_t distinct = 0;
     for (size_t k = 0; k < round->count; k++)
         distinct += copies_before(round, population->parametrisation->variables, k) == 0;
-    if (distinct < LEAST)
+    if (distinct < MIN)
         return;
     population->shown_count = 0;
     for (size_t k = 0; k < round->count; k++) {
@@ -308,9 +308,9 @@ enum status mf_population_measure(struct population *population,
                                   const struct inverse_listener *listener) {
     const struct inverse_problem *problem = population->parametrisation->unknowns.problem;
     struct work work = {population, round, listener, discard_above, 1, 0, {0}};
-    if (round->count > POPULATION_MOST)
+    if (round->count > POPULATION_MAX)
         return mf_status_fail(STATUS_BAD_INPUT, "a round of %zu candidates: at most %d",
-                              round->count, POPULATION_MOST);
+                              round->count, POPULATION_MAX);
     if (round->count == 1)
         work.threads = threads_inside(problem);
     memcpy(population->first, round->variables,
@@ -339,21 +339,21 @@ enum status mf_population_measure(struct population *population,
 
 size_t mf_population_spans(struct population *population, struct memory_span *span) {
     const size_t positions = mf_population_coordinates(population) * sizeof(double);
-    const size_t errors = POPULATION_MOST * sizeof(double);
+    const size_t errors = POPULATION_MAX * sizeof(double);
     size_t n = 0;
     span[n++] = (struct memory_span){&population->survey, sizeof population->survey};
     span[n++] = (struct memory_span){&population->totals, sizeof population->totals};
     span[n++] = (struct memory_span){population->errors, errors};
     span[n++] = (struct memory_span){population->variances, errors};
     span[n++] = (struct memory_span){population->distances,
-                                     POPULATION_MOST * TARGETS * sizeof *population->distances};
+                                     POPULATION_MAX * TARGETS * sizeof *population->distances};
     span[n++] = (struct memory_span){population->position, positions};
     span[n++] = (struct memory_span){population->best_position, positions};
     span[n++] = (struct memory_span){population->first,
                                      population->parametrisation->variables * sizeof(double)};
     span[n++] = (struct memory_span){
-        population->features, POPULATION_MOST * population->surrogate.features * sizeof(double)};
-    span[n++] = (struct memory_span){population->shown, POPULATION_MOST *
+        population->features, POPULATION_MAX * population->surrogate.features * sizeof(double)};
+    span[n++] = (struct memory_span){population->shown, POPULATION_MAX *
                                                             population->parametrisation->variables *
                                                             sizeof(double)};
     span[n++] = (struct memory_span){population->shown_error, errors};

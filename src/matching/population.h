@@ -8,7 +8,7 @@
 #include "matching/surrogate.h"
 #include "optimise/optimiser.h"
 
-enum { POPULATION_MOST = 1024 }; ///< in a round
+enum { POPULATION_MAX = 1024 }; ///< in a round
 
 /// What the run file says of how candidates are measured: the first member of the parameters of
 /// every method of the kind INVERSE_MATCHING.
@@ -25,10 +25,10 @@ extern const char *const mf_population_no_or_yes[];
 /// For `struct inverse_method`.
 struct inverse_sampling mf_population_sampling(const void *parameters);
 
-/// What was measured since mf_population_forget_survey.
+/// What was measured since mf_population_reset_survey.
 struct population_survey {
     size_t evaluations;
-    double least; ///< error; infinite if there is none
+    double min; ///< error; infinite if there is none
     struct running_mean alive;
     uint64_t failures;
 };
@@ -43,9 +43,9 @@ struct population_failures {
 struct population {
     const struct parametrisation *parametrisation;
     struct population_parameters parameters;
-    double *errors, *variances; ///< shape [POPULATION_MOST]; an error is negative if not measured
-    struct target_distance *distances; ///< shape [POPULATION_MOST, TARGETS]; not set of what failed
-    double *features;                  ///< shape [POPULATION_MOST, features] of the targets
+    double *errors, *variances; ///< shape [POPULATION_MAX]; an error is negative if not measured
+    struct target_distance *distances; ///< shape [POPULATION_MAX, TARGETS]; not set of what failed
+    double *features;                  ///< shape [POPULATION_MAX, features] of the targets
     struct surrogate surrogate;        ///< that remembers them
     double *target, *target_error;     ///< shape [features]
     double *excess;                    ///< shape [features]: see mf_population_expect
@@ -135,7 +135,7 @@ void mf_population_expect(struct population *population, double error, double no
 enum status mf_population_write(const struct population *population,
                                 const struct inverse_folder *folder) MUST_USE;
 
-void mf_population_forget_survey(struct population *population);
+void mf_population_reset_survey(struct population *population);
 
 /// @name What failed, and why (matching/population_failures.c)
 
@@ -145,8 +145,8 @@ void mf_population_add_failure(struct population_failures *failures,
 
 /// Say into `reason` how many simulations succeeded, but `why` there is no result, and what most of
 /// those that failed have failed of. Tested: test_population_failures.
-void mf_population_tell_failure(const struct population *population, const char *why,
-                                char reason[INVERSE_REASON_SIZE]);
+void mf_population_report_failure(const struct population *population, const char *why,
+                                  char reason[INVERSE_REASON_SIZE]);
 
 enum { CANDIDATES_SPANS = 12 + SURROGATE_SPANS };
 size_t mf_population_spans(struct population *population, struct memory_span *spans);

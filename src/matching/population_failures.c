@@ -37,8 +37,8 @@ static void describe(const struct population_failures *failures, enum evaluate_f
                  failures->coldest, failures->hottest);
 }
 
-void mf_population_tell_failure(const struct population *population, const char *why,
-                                char reason[INVERSE_REASON_SIZE]) {
+void mf_population_report_failure(const struct population *population, const char *why,
+                                  char reason[INVERSE_REASON_SIZE]) {
     const struct population_failures *failures = &population->totals.failures;
     const unsigned long long all = population->totals.evaluations;
     unsigned long long failed = 0;

@@ -33,7 +33,7 @@ enum { PARTS = 2 }; // UNKNOWN_POTENTIAL and UNKNOWN_OMEGA
 /// What is known of a part.
 struct outcome {
     double error, noise, variance; ///< as in struct inverse_step
-    bool converged, used_up;
+    bool converged, exhausted;
     uint64_t evaluations, engine_steps;
     char reason[INVERSE_REASON_SIZE];
 };
@@ -198,7 +198,7 @@ static void take(struct state *state, enum unknown_kind kind, const struct inver
                                 .noise = step->noise,
                                 .variance = step->variance,
                                 .converged = step->converged,
-                                .used_up = step->used_up,
+                                .exhausted = step->exhausted,
                                 .evaluations = step->evaluations,
                                 .engine_steps = step->engine_steps};
     memcpy(outcome->reason, step->reason, sizeof outcome->reason);
@@ -243,8 +243,8 @@ static void conclude(const struct state *state, struct inverse_step *step) {
                          *second = &state->progress.outcome[UNKNOWN_OMEGA];
     step->finished = true;
     step->converged = first->converged && second->converged;
-    step->used_up = !step->converged && (first->converged || first->used_up) &&
-                    (second->converged || second->used_up);
+    step->exhausted = !step->converged && (first->converged || first->exhausted) &&
+                      (second->converged || second->exhausted);
     const bool both = first->reason[0] && second->reason[0];
     snprintf(step->reason, sizeof step->reason, "%s%.100s%s%s%.100s",
              first->reason[0] ? "the potential: " : "", first->reason, both ? "; " : "",
@@ -293,15 +293,15 @@ struct listening {
     const struct state *state;
 };
 
-static void tell(void *context, const struct inverse_progress *progress) {
+static void report(void *context, const struct inverse_progress *progress) {
     const struct listening *listening = context;
     struct inverse_progress own = *progress;
     own.iteration += listening->state->progress.begun;
     own.iterations += listening->state->progress.begun;
     own.best = among_all(listening->state, own.best);
-    own.least = among_all(listening->state, own.least);
+    own.min = among_all(listening->state, own.min);
     own.mean = among_all(listening->state, own.mean);
-    listening->listener->tell(listening->listener->context, &own);
+    listening->listener->report(listening->listener->context, &own);
 }
 
 static enum status iterate(void *memory, struct inverse_step *step,
@@ -311,7 +311,7 @@ static enum status iterate(void *memory, struct inverse_step *step,
     const int stage = progress->stage;
     const struct part *part = &state->part[stage];
     struct listening listening = {listener, state};
-    const struct inverse_listener own = {tell, &listening};
+    const struct inverse_listener own = {report, &listening};
     struct inverse_step inner;
     if (stage == UNKNOWN_OMEGA && !state->has_table) {
         TRY(mf_potential_grid_table(&state->unknowns.potential, state->curve[UNKNOWN_POTENTIAL],

@@ -8,13 +8,13 @@
 #include <string.h>
 
 /// Rows of a fit for each variable, at least and at most, and besides.
-enum { ROWS_PER_GENE = 3, MOST_ROWS_PER_GENE = 10, MORE_ROWS = 10 };
+enum { ROWS_PER_GENE = 3, MAX_ROWS_PER_GENE = 10, MORE_ROWS = 10 };
 
 /// Standard deviation of a variable that the target leaves open: uniform in [0, 1].
 static const double prior_width = 0.28867513459481287;
 
 /// Standard error below which a feature is not believed.
-static const double least_error = 1e-4;
+static const double min_error = 1e-4;
 
 enum status mf_surrogate_init(struct surrogate *surrogate, size_t variables, size_t features,
                               size_t capacity, const double *target, const double *target_error,
@@ -48,7 +48,7 @@ void mf_surrogate_add(struct surrogate *surrogate, const double *variables,
            surrogate->features * sizeof *features);
 }
 
-size_t mf_surrogate_least_rows(size_t variables) {
+size_t mf_surrogate_min_rows(size_t variables) {
     return ROWS_PER_GENE * variables + MORE_ROWS;
 }
 
@@ -56,7 +56,7 @@ size_t mf_surrogate_least_rows(size_t variables) {
 static double feature_weight(const struct surrogate_work *work, size_t j) {
     const double target = work->surrogate->target_error[j];
     return 1 / (work->scatter[j] + target * target + work->surrogate->excess[j] +
-                least_error * least_error);
+                min_error * min_error);
 }
 
 /// H = Jᵀ W J + damping.
@@ -128,7 +128,7 @@ static void add_noise(const struct surrogate_work *work, double *covariance) {
     for (size_t k = 0; k < work->rows; k++)
         weights += work->weight[k];
     for (size_t j = 0; j < s->features; j++)
-        work->scale[j] = s->target_error[j] / sqrt(work->scatter[j] + least_error * least_error);
+        work->scale[j] = s->target_error[j] / sqrt(work->scatter[j] + min_error * min_error);
     for (size_t k = 0; k < work->rows; k++) {
         const double *residual = work->residual + k * s->features;
         const double share =
@@ -256,19 +256,19 @@ static void transform(const struct directions *d, double *covariance) {
 /// Fuller, Measurement Error Models (1987), section 1.2. In a direction in which they stand well
 /// above it, errors grow by μ/(μ − margin); one in which they do not is as wide as the prior.
 static enum status correct(const struct surrogate_work *work, double *covariance) {
-    static const double margin = 2, least_share = 0.1;
+    static const double margin = 2, min_share = 0.1;
     enum status status = STATUS_OK;
     struct directions d;
     const size_t n = work->surrogate->variables;
     CHECK(find_directions(work, &d));
     for (size_t v = 0; v < n; v++) {
         const double share = 1 - margin / gsl_vector_get(d.value, v);
-        d.factor[v] = share > least_share ? 1 / share : 1;
+        d.factor[v] = share > min_share ? 1 / share : 1;
     }
     map(&d);
     transform(&d, covariance);
     for (size_t v = 0; v < n; v++)
-        d.factor[v] = 1 - margin / gsl_vector_get(d.value, v) > least_share ? 0 : 1;
+        d.factor[v] = 1 - margin / gsl_vector_get(d.value, v) > min_share ? 0 : 1;
     map(&d);
     for (size_t a = 0; a < n; a++)
         for (size_t b = 0; b < n; b++)
@@ -326,16 +326,16 @@ static void take_damped_step(const struct surrogate_work *work, const double *he
 static bool hold_one(const struct surrogate_work *work, const double *centre, double *held) {
     const struct surrogate *s = work->surrogate;
     size_t farthest = 0;
-    double most = 0, bound = 0;
+    double max = 0, bound = 0;
     for (size_t a = 0; a < s->variables; a++) {
         const double place = centre[a] + work->delta[a], inside = fmin(1, fmax(0, place));
-        if (fabs(place - inside) <= most + 1e-12)
+        if (fabs(place - inside) <= max + 1e-12)
             continue;
-        most = fabs(place - inside);
+        max = fabs(place - inside);
         bound = inside;
         farthest = a;
     }
-    if (most == 0)
+    if (max == 0)
         return false;
     const double step = bound - centre[farthest];
     held[farthest] = step;
@@ -375,9 +375,9 @@ static enum status find_best(const struct surrogate *surrogate, const double *ce
                              double reach, struct surrogate_model *model) {
     struct surrogate_work work = {0};
     double *held = NULL;
-    const size_t most = MOST_ROWS_PER_GENE * surrogate->variables + MORE_ROWS;
+    const size_t max = MAX_ROWS_PER_GENE * surrogate->variables + MORE_ROWS;
     enum status status =
-        mf_surrogate_fit_rows(&work, surrogate, centre, kept, kept < most ? kept : most, false);
+        mf_surrogate_fit_rows(&work, surrogate, centre, kept, kept < max ? kept : max, false);
     CHECK(status);
     NEW_ARRAY(held, surrogate->variables);
     take_step(&work, centre, held, reach);
@@ -413,7 +413,7 @@ enum status mf_surrogate_fit(const struct surrogate *surrogate, const double *ce
     const size_t variables = surrogate->variables, added = (size_t)surrogate->rows.added;
     const size_t kept = added < surrogate->capacity ? added : surrogate->capacity;
     *model = (struct surrogate_model){.variables = variables};
-    *known = kept >= mf_surrogate_least_rows(variables);
+    *known = kept >= mf_surrogate_min_rows(variables);
     if (!*known)
         return STATUS_OK;
     NEW_ARRAY(model->best, variables);

@@ -45,7 +45,7 @@ void mf_surrogate_clear(struct surrogate *surrogate);
 void mf_surrogate_add(struct surrogate *surrogate, const double *variables, const double *features);
 
 /// Rows that a model of so many variables needs at least.
-size_t mf_surrogate_least_rows(size_t variables);
+size_t mf_surrogate_min_rows(size_t variables);
 
 /// What the model says at a centre.
 struct surrogate_model {

@@ -178,7 +178,7 @@ done:
     return status;
 }
 
-static void forget_fit(struct surrogate_work *work) {
+static void reset_fit(struct surrogate_work *work) {
     const size_t terms = work->terms, features = work->surrogate->features;
     memset(work->normal, 0, terms * terms * sizeof *work->normal);
     memset(work->spread, 0, terms * terms * sizeof *work->spread);
@@ -202,7 +202,7 @@ enum status mf_surrogate_fit_rows(struct surrogate_work *work, const struct surr
         for (size_t k = 0; k < rows; k++)
             work->weight[k] = near_weight(work, k);
         TRY(weigh_down(work));
-        forget_fit(work);
+        reset_fit(work);
         fit_weighted(work);
     }
     for (size_t j = 0; j < surrogate->features; j++)

@@ -41,14 +41,14 @@ enum status mf_frame_box_find(struct frame_box *box, const struct trajectory_fra
     return STATUS_OK;
 }
 
-double mf_frame_box_least_height(const struct frame_box *box) {
+double mf_frame_box_min_height(const struct frame_box *box) {
     return fmin(box->height[0], fmin(box->height[1], box->height[2]));
 }
 
 enum status mf_frame_box_check_range(const struct frame_box *box,
                                      const struct trajectory_frame *frame, double range,
                                      const char *what) {
-    const double half = 0.5 * mf_frame_box_least_height(box);
+    const double half = 0.5 * mf_frame_box_min_height(box);
     if (range <= half)
         return STATUS_OK;
     return mf_status_fail(STATUS_BAD_INPUT,
@@ -58,14 +58,14 @@ enum status mf_frame_box_check_range(const struct frame_box *box,
 }
 
 /// Boxes beyond which a fraction is none (box_fraction): no digit of the place in a box is left.
-static const double most_boxes = 0x1p19;
+static const double max_boxes = 0x1p19;
 
 enum status mf_frame_box_places(const struct frame_box *box, const struct trajectory_frame *frame,
                                 int32_t *const place[3]) {
     for (int i = 0; i < 3; i++)
         for (size_t k = 0; k < frame->atoms; k++) {
             const double boxes = product(frame->position[k], box->inverse[i]);
-            if (!(fabs(boxes) < most_boxes))
+            if (!(fabs(boxes) < max_boxes))
                 return mf_status_fail(STATUS_BAD_INPUT,
                                       "%s: frame %zu: bead %zu is %.3g boxes away, so that its "
                                       "place in a box is lost",

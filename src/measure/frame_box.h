@@ -29,7 +29,7 @@ struct frame_box {
 enum status mf_frame_box_find(struct frame_box *box, const struct trajectory_frame *frame) MUST_USE;
 
 /// The least of the heights [nm].
-double mf_frame_box_least_height(const struct frame_box *box);
+double mf_frame_box_min_height(const struct frame_box *box);
 
 /// Fails: BAD_INPUT, naming the frame, if `range` is beyond half the least height; `what` says
 /// whose range it is. Tested: test_frame_pairs.

@@ -2,7 +2,7 @@
 #include "measure/frame_features.h"
 
 #include "base/memory.h"
-#include "observe/settled_start.h"
+#include "observe/equilibration.h"
 
 #include <math.h>
 #include <string.h>
@@ -100,8 +100,8 @@ static void keep(struct frame_features_slowest *slowest, struct frame_features_s
 }
 
 /// Ranges that are empty in the second half; returns how many.
-static size_t judge_core(struct look *look, size_t first, struct frame_features_slowest now,
-                         struct frame_features_slowest *slowest) {
+static size_t assess_core(struct look *look, size_t first, struct frame_features_slowest now,
+                          struct frame_features_slowest *slowest) {
     const size_t each = look->features->each;
     size_t empty = 0;
     begin(look);
@@ -116,23 +116,23 @@ static size_t judge_core(struct look *look, size_t first, struct frame_features_
         add(look, first + range);
     for (size_t b = 0; b < look->blocks; b++)
         look->series[b] *= (double)each;
-    now.frames = each * mf_settled_start_of_events(look->series, look->blocks);
+    now.frames = each * mf_equilibration_length_of_events(look->series, look->blocks);
     now.to = now.from + (double)empty * now.to;
     keep(slowest, now);
     return empty;
 }
 
 /// The ranges of one pair type. @param[in] now  what it is, with `to` the width of a range
-static void judge_pair(struct look *look, size_t first, struct frame_features_slowest now,
-                       struct frame_features_slowest *slowest) {
+static void assess_pair(struct look *look, size_t first, struct frame_features_slowest now,
+                        struct frame_features_slowest *slowest) {
     const double width = now.to;
-    size_t from = judge_core(look, first, now, slowest);
+    size_t from = assess_core(look, first, now, slowest);
     begin(look);
     for (size_t range = from; range < FEATURE_RANGES; range++) {
         add(look, first + range);
         if (later_mean(look) < enough)
             continue;
-        now.frames = look->features->each * mf_settled_start(look->series, look->blocks);
+        now.frames = look->features->each * mf_equilibration_length(look->series, look->blocks);
         now.from = (double)from * width;
         now.to = (double)(range + 1) * width;
         keep(slowest, now);
@@ -141,17 +141,18 @@ static void judge_pair(struct look *look, size_t first, struct frame_features_sl
     }
 }
 
-static void judge_volume(struct look *look, struct frame_features_slowest *slowest) {
+static void assess_volume(struct look *look, struct frame_features_slowest *slowest) {
     begin(look);
     add(look, 0);
-    keep(slowest, (struct frame_features_slowest){
-                      .frames = look->features->each * mf_settled_start(look->series, look->blocks),
-                      .volume = true});
+    keep(slowest,
+         (struct frame_features_slowest){
+             .frames = look->features->each * mf_equilibration_length(look->series, look->blocks),
+             .volume = true});
 }
 
-enum status mf_frame_features_judge(const struct frame_features *features,
-                                    const struct frame_pairs_plan *plan,
-                                    struct frame_features_slowest *slowest) {
+enum status mf_frame_features_assess(const struct frame_features *features,
+                                     const struct frame_pairs_plan *plan,
+                                     struct frame_features_slowest *slowest) {
     enum status status = STATUS_OK;
     struct look look = {.features = features};
     *slowest = (struct frame_features_slowest){0};
@@ -159,15 +160,15 @@ enum status mf_frame_features_judge(const struct frame_features *features,
         return STATUS_OK;
     look.blocks = features->frames / features->each;
     NEW_ARRAY(look.series, look.blocks);
-    judge_volume(&look, slowest);
+    assess_volume(&look, slowest);
     const size_t types = (size_t)mf_composition_pairs(&plan->composition);
     const size_t series = (features->features - 1) / FEATURE_RANGES;
     for (size_t k = 0; k < series; k++)
-        judge_pair(&look, 1 + k * FEATURE_RANGES,
-                   (struct frame_features_slowest){.pair = (int)(k % types),
-                                                   .within = k >= types,
-                                                   .to = plan->range / FEATURE_RANGES},
-                   slowest);
+        assess_pair(&look, 1 + k * FEATURE_RANGES,
+                    (struct frame_features_slowest){.pair = (int)(k % types),
+                                                    .within = k >= types,
+                                                    .to = plan->range / FEATURE_RANGES},
+                    slowest);
 done:
     mf_memory_free(look.series);
     return status;

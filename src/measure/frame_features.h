@@ -30,7 +30,7 @@ void mf_frame_features_clear(struct frame_features *features);
 
 /// What is the last to reach equilibrium.
 struct frame_features_slowest {
-    size_t frames;   ///< at the beginning that are not in equilibrium (observe/settled_start.h)
+    size_t frames;   ///< at the beginning that are not in equilibrium (observe/equilibration.h)
     bool volume;     ///< it is the volume; else pairs
     bool within;     ///< of one molecule
     int pair;        ///< of these types
@@ -38,6 +38,6 @@ struct frame_features_slowest {
 };
 
 /// Fails: NO_MEMORY. Tested: test_frame_features.
-enum status mf_frame_features_judge(const struct frame_features *features,
-                                    const struct frame_pairs_plan *plan,
-                                    struct frame_features_slowest *slowest) MUST_USE;
+enum status mf_frame_features_assess(const struct frame_features *features,
+                                     const struct frame_pairs_plan *plan,
+                                     struct frame_features_slowest *slowest) MUST_USE;

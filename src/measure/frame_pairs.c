@@ -51,11 +51,11 @@ done:
 /// the range is near half the box, the search becomes that of all pairs.
 static void choose_cells(struct frame_pairs *pairs, size_t beads, double range,
                          const struct frame_box *box, int count[3]) {
-    const double most = fmax(1, floor(cbrt((double)beads)));
+    const double max = fmax(1, floor(cbrt((double)beads)));
     for (int i = 0; i < 3; i++) {
         const double share = range / box->height[i];
-        count[i] = cells_fit(2, share, most);
-        pairs->reach[i] = (int)fmin(CELLS_MOST_REACH, ceil(count[i] * share));
+        count[i] = cells_fit(2, share, max);
+        pairs->reach[i] = (int)fmin(CELLS_MAX_REACH, ceil(count[i] * share));
     }
 }
 
@@ -157,7 +157,7 @@ static void aim(struct work *work, size_t i, size_t begin) {
 }
 
 /// Where the pairs of bead i with each type are counted.
-static void list_offsets(const struct work *work, size_t i, size_t offset[COMPOSITION_MOST_TYPES]) {
+static void list_offsets(const struct work *work, size_t i, size_t offset[COMPOSITION_MAX_TYPES]) {
     const struct composition *composition = &work->plan->composition;
     for (int type = 0; type < composition->types; type++)
         offset[type] = (size_t)mf_composition_pair(composition, work->pairs->type[i], type) *
@@ -187,7 +187,7 @@ static void count_batch(const struct work *work, size_t i, size_t begin, size_t 
                         const int32_t *bin) {
     uint64_t *counts = work->pairs->counts;
     const int32_t *type = work->pairs->type + begin;
-    size_t offset[COMPOSITION_MOST_TYPES];
+    size_t offset[COMPOSITION_MAX_TYPES];
     if (!composition_is_mixed(&work->plan->composition)) {
         for (size_t k = 0; k < count; k++)
             counts[bin[k]]++;
@@ -248,8 +248,8 @@ void mf_frame_pairs_exclude(struct frame_pairs *pairs, const struct frame_pairs_
         pairs->within[n] += pairs->counts[n];
 }
 
-static enum status grow_array(uint32_t **array, size_t count, size_t room) {
-    uint32_t *larger = mf_memory_uncleared(room, sizeof *larger);
+static enum status grow_array(uint32_t **array, size_t count, size_t capacity) {
+    uint32_t *larger = mf_memory_uncleared(capacity, sizeof *larger);
     if (larger == NULL)
         return STATUS_NO_MEMORY;
     if (count > 0)
@@ -260,10 +260,10 @@ static enum status grow_array(uint32_t **array, size_t count, size_t room) {
 }
 
 static enum status grow(struct frame_pairs *pairs) {
-    const size_t room = pairs->near_room ? 2 * pairs->near_room : 4096;
-    TRY(grow_array(&pairs->first, pairs->near_count, room));
-    TRY(grow_array(&pairs->second, pairs->near_count, room));
-    pairs->near_room = room;
+    const size_t capacity = pairs->near_capacity ? 2 * pairs->near_capacity : 4096;
+    TRY(grow_array(&pairs->first, pairs->near_count, capacity));
+    TRY(grow_array(&pairs->second, pairs->near_count, capacity));
+    pairs->near_capacity = capacity;
     return STATUS_OK;
 }
 
@@ -271,7 +271,7 @@ static void keep(struct work *work, size_t i, size_t j) {
     struct frame_pairs *pairs = work->pairs;
     if (work->plan->molecule && pairs->molecule[i] == pairs->molecule[j])
         return;
-    if (pairs->near_count == pairs->near_room && work->status == STATUS_OK)
+    if (pairs->near_count == pairs->near_capacity && work->status == STATUS_OK)
         work->status = grow(pairs);
     if (work->status != STATUS_OK)
         return;
@@ -307,13 +307,13 @@ enum status mf_frame_pairs_possible(const struct frame_pairs_plan *plan, double 
     enum status status = STATUS_OK;
     const struct composition *composition = &plan->composition;
     const size_t beads = find_beads(plan), pairs = (size_t)mf_composition_pairs(composition);
-    uint32_t(*seen)[COMPOSITION_MOST_TYPES] = NULL; // of each molecule, so far
-    uint32_t most = 0;
+    uint32_t(*seen)[COMPOSITION_MAX_TYPES] = NULL; // of each molecule, so far
+    uint32_t max = 0;
     for (size_t pair = 0; pair < pairs; pair++)
         possible[pair] = mf_composition_possible_pairs(composition, (int)pair);
     for (size_t k = 0; plan->molecule && k < beads; k++)
-        most = plan->molecule[k] > most ? plan->molecule[k] : most;
-    NEW_ARRAY(seen, (size_t)most + 1);
+        max = plan->molecule[k] > max ? plan->molecule[k] : max;
+    NEW_ARRAY(seen, (size_t)max + 1);
     for (size_t k = 0; plan->molecule && k < beads; k++) {
         uint32_t *own = seen[plan->molecule[k]];
         const int type = mf_composition_type(composition, (uint32_t)k);

@@ -26,7 +26,7 @@ struct frame_pairs {
     uint64_t *counts;         ///< shape [pair types, bins + 1]; the last bin is of what is left out
     uint64_t *within;         ///< the same of pairs of one molecule, if these are counted
     uint32_t *first, *second; ///< shape [near_count]: beads of pairs that are near
-    size_t near_count, near_room;
+    size_t near_count, near_capacity;
 };
 
 void mf_frame_pairs_clear(struct frame_pairs *pairs);

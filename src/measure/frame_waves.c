@@ -23,7 +23,7 @@ void mf_frame_waves_clear(struct frame_waves *waves) {
     *waves = (struct frame_waves){0};
 }
 
-static void tell_angle(const void *context, size_t bead, double angle[3]) {
+static void report_angle(const void *context, size_t bead, double angle[3]) {
     int32_t *const *const place = context;
     for (int i = 0; i < 3; i++)
         angle[i] = turn * 0x1p-32 * place[i][bead];
@@ -31,7 +31,7 @@ static void tell_angle(const void *context, size_t bead, double angle[3]) {
 
 enum status mf_frame_waves_find(struct frame_waves *waves, const struct density_waves_plan *plan,
                                 const struct frame_box *box, int32_t *const place[3]) {
-    const struct density_angles angles = {tell_angle, place};
+    const struct density_angles angles = {report_angle, place};
     double lattice[3][3], length[3];
     for (int i = 0; i < 3; i++) {
         length[i] = hypot(box->edge[i][0], hypot(box->edge[i][1], box->edge[i][2]));

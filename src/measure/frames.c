@@ -14,7 +14,7 @@
 
 /// Frames of a batch for each thread, and at least: a batch is called for when half of it is there,
 /// and the first has two frames.
-enum { FRAMES_A_THREAD = 2, LEAST_SLOTS = 4 };
+enum { FRAMES_A_THREAD = 2, MIN_SLOTS = 4 };
 
 /// Times are written in single precision: two that differ by so much, one or two of its last
 /// digits, may be the same [ps].
@@ -32,7 +32,7 @@ static enum status note(struct frames *frames, const char *format, ...) {
     vsnprintf(line, sizeof line, format, arguments);
     va_end(arguments);
     const size_t length = strlen(line);
-    TRY(mf_source_room(&frames->notes, length + 2));
+    TRY(mf_source_capacity(&frames->notes, length + 2));
     memcpy(frames->notes.data + frames->notes.size, line, length);
     memcpy(frames->notes.data + frames->notes.size + length, "\n", 2);
     frames->notes.size += length + 1;
@@ -72,7 +72,7 @@ enum status mf_frames_open(struct frames *frames, const struct frames_plan *plan
                               .structure = structure,
                               .structure_file = structure_file,
                               .slots = (size_t)(FRAMES_A_THREAD * plan->threads)};
-    frames->slots = frames->slots < LEAST_SLOTS ? LEAST_SLOTS : frames->slots;
+    frames->slots = frames->slots < MIN_SLOTS ? MIN_SLOTS : frames->slots;
     NEW_ARRAY(frames->source, plan->files);
     NEW_ARRAY(frames->frame, frames->slots);
     for (size_t k = 0; k < plan->files; k++) {
@@ -179,8 +179,8 @@ static bool is_wanted(const struct frames *frames, double time) {
            fabs(steps - rint(steps)) < share + time_tolerance(time) / plan->every;
 }
 
-static enum status judge_time(struct frames *frames, const struct trajectory_frame *frame,
-                              bool *use) {
+static enum status assess_time(struct frames *frames, const struct trajectory_frame *frame,
+                               bool *use) {
     const struct frames_plan *const plan = &frames->plan;
     const double time = frame->time;
     *use = true;
@@ -197,8 +197,8 @@ static enum status judge_time(struct frames *frames, const struct trajectory_fra
     return STATUS_OK;
 }
 
-static enum status judge(struct frames *frames, const struct trajectory_frame *frame, bool *use) {
-    TRY(judge_time(frames, frame, use));
+static enum status assess(struct frames *frames, const struct trajectory_frame *frame, bool *use) {
+    TRY(assess_time(frames, frame, use));
     if (*use && frames->skipped < frames->plan.skip) {
         frames->skipped++;
         *use = false;
@@ -213,7 +213,7 @@ struct batch {
     struct frames *frames;
     bool *decoded;         ///< shape [slots]
     size_t first, fetched; ///< frames first … fetched − 1 are new
-    bool judged;           ///< only those to be used were kept, by times that took no decoding
+    bool assessed;         ///< only those to be used were kept, by times that took no decoding
     bool over;             ///< the file has no further frame, or is damaged
 };
 
@@ -241,10 +241,10 @@ static enum status fetch(struct batch *batch) {
             break;
         mf_digest_add(&source->digest, frame->raw.data, frame->raw.size);
         source->read++;
-        batch->judged = mf_trajectory_peek(&frames->trajectory, frame);
+        batch->assessed = mf_trajectory_peek(&frames->trajectory, frame);
         bool use = true;
-        if (batch->judged)
-            TRY(judge(frames, frame, &use));
+        if (batch->assessed)
+            TRY(assess(frames, frame, &use));
         batch->fetched += use;
     }
     return STATUS_OK;
@@ -284,9 +284,9 @@ static enum status choose(struct batch *batch, size_t *count) {
     struct frames *const frames = batch->frames;
     struct frames_source *const source = &frames->source[frames->at];
     for (size_t k = batch->first; k < batch->fetched; k++) {
-        bool use = batch->judged;
-        if (!batch->judged)
-            TRY(judge(frames, &frames->frame[k], &use));
+        bool use = batch->assessed;
+        if (!batch->assessed)
+            TRY(assess(frames, &frames->frame[k], &use));
         if (!use)
             continue;
         if (*count != k)

@@ -25,9 +25,9 @@ static struct box cube_of(double volume) {
 static enum status find_composition(const struct mapping *mapping,
                                     struct composition *composition) {
     const bool mixed = mapping->types > 1;
-    if (mapping->types > COMPOSITION_MOST_TYPES)
+    if (mapping->types > COMPOSITION_MAX_TYPES)
         return mf_status_fail(STATUS_BAD_INPUT, "the map has %zu types of beads; there may be %d",
-                              mapping->types, COMPOSITION_MOST_TYPES);
+                              mapping->types, COMPOSITION_MAX_TYPES);
     *composition = (struct composition){.types = (int)mapping->types};
     for (size_t type = 0; type < mapping->types; type++) {
         const char *name = mapping->type_name[type];
@@ -98,13 +98,12 @@ static enum status find_bins(struct measured *measured, const struct frame_box *
                              const struct trajectory_frame *first) {
     struct measured_plan *const plan = &measured->plan;
     if (plan->range == 0)
-        plan->range =
-            usual_width * floor(usual_part * mf_frame_box_least_height(box) / usual_width);
+        plan->range = usual_width * floor(usual_part * mf_frame_box_min_height(box) / usual_width);
     if (!(plan->range > 0))
         return mf_status_fail(STATUS_BAD_INPUT,
                               "%s: frame %zu: the box is too small for a g(r): its shortest height "
                               "is %g nm; --range and --bins say what is wanted",
-                              first->file, first->number, mf_frame_box_least_height(box));
+                              first->file, first->number, mf_frame_box_min_height(box));
     if (plan->bins == 0)
         plan->bins = (int64_t)fmax(1, rint(plan->range / usual_width));
     measured->pairs.range = plan->range;
@@ -122,7 +121,7 @@ static void plan_waves(struct measured *measured, const struct frame_box *box) {
     measured->waves = (struct density_waves_plan){.composition = measured->pairs.composition,
                                                   .q_maximum = plan->q_maximum,
                                                   .bins = WAVE_BINS,
-                                                  .most = (size_t)plan->waves};
+                                                  .max = (size_t)plan->waves};
 }
 
 static bool is_without_box(const struct trajectory_frame *frame) {
@@ -158,9 +157,9 @@ enum status mf_measured_begin(struct measured *measured, const struct measured_p
                                   .count = measured->pairs.bins};
     CHECK(mf_rdf_init_endless(&measured->rdf.counted, &bins, &cube, &measured->pairs.composition));
     if (measured->molecules.molecules) {
-        CHECK(mf_rdf_init_endless(&measured->apart.counted, &bins, &cube,
+        CHECK(mf_rdf_init_endless(&measured->intermolecular.counted, &bins, &cube,
                                   &measured->pairs.composition));
-        measured->apart.counted.apart = &measured->molecules.molecules->topology;
+        measured->intermolecular.counted.intermolecular = &measured->molecules.molecules->topology;
     }
 done:
     if (status != STATUS_OK)
@@ -185,7 +184,7 @@ void mf_measured_clear(struct measured *measured) {
     clear_slots(measured);
     mf_memory_free(measured->molecule);
     mf_rdf_clear(&measured->rdf.counted);
-    mf_rdf_clear(&measured->apart.counted);
+    mf_rdf_clear(&measured->intermolecular.counted);
     mf_measured_molecules_clear(&measured->molecules);
     mf_structure_factor_clear(&measured->factor);
     mf_measured_motion_clear(&measured->motion);
@@ -259,14 +258,14 @@ static enum status look_at(void *context, size_t task, void *result) {
 
 static void add_pairs(struct measured *measured, const struct measured_slot *slot) {
     struct rdf *const rdf = &measured->rdf.counted;
-    double weight[COMPOSITION_MOST_PAIRS];
+    double weight[COMPOSITION_MAX_PAIRS];
     for (size_t pair = 0; pair < rdf->pairs; pair++)
         weight[pair] = slot->box.volume / mf_box_volume(&rdf->box) / measured->share[pair];
     const bool within = measured->pairs.within;
     const size_t stride = measured->pairs.bins + 1;
     mf_rdf_add(rdf, within ? slot->pairs.within : slot->pairs.counts, stride, weight);
     if (within)
-        mf_rdf_add(&measured->apart.counted, slot->pairs.counts, stride, weight);
+        mf_rdf_add(&measured->intermolecular.counted, slot->pairs.counts, stride, weight);
 }
 
 static enum status add_one(struct measured *measured, const struct measured_slot *slot) {

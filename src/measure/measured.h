@@ -29,8 +29,8 @@ struct measured {
     bool in_vacuum;                ///< there is no box: nothing but molecules is measured
     const struct mapping *mapping; ///< borrowed
     struct frame_pairs_plan pairs;
-    double share[COMPOSITION_MOST_PAIRS]; ///< of a type's pairs that are not of one molecule
-    uint32_t *molecule;                   ///< shape [beads], of what has several beads
+    double share[COMPOSITION_MAX_PAIRS]; ///< of a type's pairs that are not of one molecule
+    uint32_t *molecule;                  ///< shape [beads], of what has several beads
     struct measured_slot {
         struct trajectory_frame beads;
         struct frame_box box;
@@ -39,9 +39,9 @@ struct measured {
         struct frame_waves waves;
     } * slot; ///< one for each frame of a batch
     size_t slots;
-    struct rdf_observed rdf;   ///< with `molecules` of all pairs that they do not exclude, else of
-                               ///< beads of different residues or molecules
-    struct rdf_observed apart; ///< of beads of different molecules, with `molecules`
+    struct rdf_observed rdf; ///< with `molecules` of all pairs that they do not exclude, else of
+                             ///< beads of different residues or molecules
+    struct rdf_observed intermolecular; ///< of beads of different molecules, with `molecules`
     struct measured_molecules molecules;
     struct density_waves_plan waves;
     struct structure_factor factor;

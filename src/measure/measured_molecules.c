@@ -17,13 +17,13 @@ static enum status plan_walks(struct measured_molecules *measured) {
     enum status status = STATUS_OK;
     const struct topology *topology = &measured->molecules->topology;
     for (int k = 0; k < topology->kinds; k++)
-        if ((size_t)topology->kind[k].beads > measured->most_beads)
-            measured->most_beads = (size_t)topology->kind[k].beads;
-    NEW_ARRAY(measured->order, (size_t)topology->kinds * measured->most_beads);
-    NEW_ARRAY(measured->parent, (size_t)topology->kinds * measured->most_beads);
+        if ((size_t)topology->kind[k].beads > measured->max_beads)
+            measured->max_beads = (size_t)topology->kind[k].beads;
+    NEW_ARRAY(measured->order, (size_t)topology->kinds * measured->max_beads);
+    NEW_ARRAY(measured->parent, (size_t)topology->kinds * measured->max_beads);
     for (int k = 0; k < topology->kinds; k++)
-        mf_topology_walk(&topology->kind[k], measured->order + (size_t)k * measured->most_beads,
-                         measured->parent + (size_t)k * measured->most_beads);
+        mf_topology_walk(&topology->kind[k], measured->order + (size_t)k * measured->max_beads,
+                         measured->parent + (size_t)k * measured->max_beads);
 done:
     return status;
 }
@@ -100,8 +100,8 @@ done:
 static void make_whole(struct measured_molecules *measured, const struct trajectory_frame *beads,
                        double reciprocal[3][3], int k, int64_t m) {
     const struct topology_kind *kind = &measured->molecules->topology.kind[k];
-    const int *order = measured->order + (size_t)k * measured->most_beads;
-    const int *parent = measured->parent + (size_t)k * measured->most_beads;
+    const int *order = measured->order + (size_t)k * measured->max_beads;
+    const int *parent = measured->parent + (size_t)k * measured->max_beads;
     double *const *position = measured->shell->particles.position;
     for (int n = 0; n < kind->beads; n++) {
         const int from = parent[order[n]] < 0 ? order[0] : parent[order[n]];
@@ -143,7 +143,7 @@ struct lengths {
 };
 
 static void add_lengths(const struct measured_molecules *measured,
-                        struct lengths found[MOLECULES_MOST_GROUPS]) {
+                        struct lengths found[MOLECULES_MAX_GROUPS]) {
     const struct topology *topology = &measured->molecules->topology;
     for (int k = 0; k < topology->kinds; k++) {
         const struct topology_kind *kind = &topology->kind[k];
@@ -175,7 +175,7 @@ static void rest_at(const struct bonded_curve *curve, double mean) {
 
 static void find_rest(struct measured_molecules *measured) {
     const struct molecules *molecules = measured->molecules;
-    struct lengths found[MOLECULES_MOST_GROUPS] = {{0}};
+    struct lengths found[MOLECULES_MAX_GROUPS] = {{0}};
     add_lengths(measured, found);
     for (int g = 0; g < molecules->groups[BONDED_BOND]; g++)
         if (found[g].count > 0)

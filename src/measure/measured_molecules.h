@@ -15,7 +15,7 @@ struct measured_molecules_plan {
     const char *file;
 };
 
-enum { MEASURED_MOLECULES_MOST = (int)BONDED_KINDS + 1 };
+enum { MEASURED_MOLECULES_MAX = (int)BONDED_KINDS + 1 };
 
 /// All zero: there are none.
 struct measured_molecules {
@@ -23,11 +23,11 @@ struct measured_molecules {
     const struct mapping *mapping;
     struct molecule_match match;
     struct simulation *shell;
-    size_t most_beads;       ///< of a molecule
-    int *order, *parent;     ///< shape [kinds, most_beads]: mf_topology_walk
+    size_t max_beads;        ///< of a molecule
+    int *order, *parent;     ///< shape [kinds, max_beads]: mf_topology_walk
     uint32_t (*excluded)[2]; ///< shape [excluded_count]: pairs of beads, as the mapping has them
     size_t excluded_count;
-    struct observable_use use[MEASURED_MOLECULES_MOST + 1]; ///< ended by one without an observable
+    struct observable_use use[MEASURED_MOLECULES_MAX + 1]; ///< ended by one without an observable
 };
 
 /// Find the molecules among the beads. Fails: as mf_molecule_match.

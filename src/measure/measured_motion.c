@@ -81,7 +81,7 @@ static enum status begin_etd(struct measured_motion *motion, const struct motion
                              size_t beads, const struct trajectory_frame *first,
                              const struct frame_box *box) {
     const double spacing = cbrt(box->volume / (double)beads),
-                 half = 0.5 * mf_frame_box_least_height(box);
+                 half = 0.5 * mf_frame_box_min_height(box);
     const double wish = motion->plan.escape;
     const double far = wish > 0 ? wish : 0.01 * floor(100 * fmin(usual_far * spacing, 0.9 * half));
     const struct etd_grid grid = {.r_minimum = 0.01 * rint(100 * usual_near / usual_far * far),
@@ -239,9 +239,9 @@ void mf_measured_motion_end(struct measured_motion *motion) {
     if (motion->frames < 2)
         return;
     const double intervals = (double)(motion->frames - 1);
-    const double most = fmax(fabs(motion->first_time), fabs(motion->last_time));
+    const double max = fmax(fabs(motion->first_time), fabs(motion->last_time));
     motion->interval = shorten((motion->last_time - motion->first_time) / intervals,
-                               (double)FLT_EPSILON * most / intervals);
+                               (double)FLT_EPSILON * max / intervals);
     motion->motion.time_step = motion->interval;
     if (motion->path.differences)
         correct_differences(motion);

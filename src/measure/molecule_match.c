@@ -23,7 +23,7 @@ struct work {
     size_t *begin;       ///< shape [groups + 1]: first entry of each
     int *kind;           ///< shape [groups]: NO_KIND for a single bead
     size_t groups;
-    int64_t count[TOPOLOGY_MOST_KINDS]; ///< found so far
+    int64_t count[TOPOLOGY_MAX_KINDS]; ///< found so far
 };
 
 static int by_group(const void *a, const void *b) {
@@ -97,7 +97,7 @@ static bool take_group(struct work *work, size_t group, const struct topology_ki
     return true;
 }
 
-static bool has_room(const struct work *work, int k) {
+static bool has_capacity(const struct work *work, int k) {
     const int64_t wanted = work->topology->kind[k].count;
     return wanted == 0 || work->count[k] < wanted;
 }
@@ -119,7 +119,7 @@ static bool match_groups(struct work *work) {
     for (size_t group = 0; group < work->groups; group++) {
         int k = 0;
         while (k < work->topology->kinds &&
-               !(has_room(work, k) && take_group(work, group, &work->topology->kind[k])))
+               !(has_capacity(work, k) && take_group(work, group, &work->topology->kind[k])))
             k++;
         work->kind[group] = k < work->topology->kinds ? k : NO_KIND;
         if (work->kind[group] != NO_KIND)
@@ -191,8 +191,8 @@ static void keep_counts(struct work *work) {
 static enum status number_beads(const struct work *work, const struct composition *composition,
                                 struct molecule_match *match) {
     enum status status = STATUS_OK;
-    int64_t found[TOPOLOGY_MOST_KINDS] = {0};
-    size_t single[COMPOSITION_MOST_TYPES] = {0};
+    int64_t found[TOPOLOGY_MAX_KINDS] = {0};
+    size_t single[COMPOSITION_MAX_TYPES] = {0};
     NEW_ARRAY(match->bead, work->mapping->beads);
     for (int type = 0; type < composition->types; type++)
         for (int before = 0; before <= type; before++)

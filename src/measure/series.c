@@ -8,16 +8,16 @@
 #include <string.h>
 
 enum status mf_series_add(struct series *series, double value) {
-    if (series->count == series->room) {
-        const size_t room = series->room ? 2 * series->room : 1024;
-        double *values = mf_memory_uncleared(room, sizeof *values);
+    if (series->count == series->capacity) {
+        const size_t capacity = series->capacity ? 2 * series->capacity : 1024;
+        double *values = mf_memory_uncleared(capacity, sizeof *values);
         if (values == NULL)
             return STATUS_NO_MEMORY;
         if (series->count > 0)
             memcpy(values, series->value, series->count * sizeof *values);
         mf_memory_free(series->value);
         series->value = values;
-        series->room = room;
+        series->capacity = capacity;
     }
     series->value[series->count++] = value;
     return STATUS_OK;

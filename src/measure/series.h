@@ -9,7 +9,7 @@
 /// All zero is none.
 struct series {
     double *value; ///< shape [count]
-    size_t count, room;
+    size_t count, capacity;
 };
 
 /// Fails: NO_MEMORY.

@@ -14,7 +14,7 @@
 
 #include <math.h>
 
-enum { COLUMNS = 3, MOST_PARTS = 20 };
+enum { COLUMNS = 3, MAX_PARTS = 20 };
 
 static const struct field fields[] = {
     {"bins", FIELD_INTEGER, .offset = offsetof(struct bonded_settings, bins), .initial = 100,
@@ -101,7 +101,7 @@ static enum status begin(struct bonded_state *s, int order, const struct bonded_
         s->first[g + 1] = s->first[g] + s->bins[g].count;
     }
     s->parts = (size_t)molecules->topology.molecules;
-    s->parts = s->parts < MOST_PARTS ? s->parts : MOST_PARTS;
+    s->parts = s->parts < MAX_PARTS ? s->parts : MAX_PARTS;
     NEW_ARRAY(s->counts, s->blocks.count * s->first[molecules->groups[order]]);
     NEW_ARRAY(s->of_part, s->parts * s->first[molecules->groups[order]]);
 done:
@@ -141,7 +141,7 @@ static void count_term(int order, const struct bonded_bins *bins, const struct p
     const int beads = mf_bonded_kinds[order]->beads;
     const double unit = 1 / mf_bonded_kinds[order]->scale;
     for (int64_t m = 0; m < kind->count; m += BONDED_BATCH) {
-        int32_t place[BONDED_MOST_TERM_BEADS * BONDED_BATCH];
+        int32_t place[BONDED_MAX_TERM_BEADS * BONDED_BATCH];
         double q[BONDED_BATCH];
         const int64_t left = kind->count - m;
         const size_t some = left < BONDED_BATCH ? (size_t)left : BONDED_BATCH;
@@ -225,7 +225,7 @@ static void find_errors_of_parts(const struct bonded_state *const *states, size_
                                  double *error) {
     const struct bonded_state *s = states[0];
     const size_t all = s->first[s->molecules->groups[s->order]], bins = s->bins[group].count;
-    double terms[MOST_PARTS] = {0};
+    double terms[MAX_PARTS] = {0};
     for (size_t part = 0; part < s->parts; part++)
         terms[part] = terms_of_part(s, group, part);
     for (size_t bin = 0; bin < bins; bin++) {
@@ -282,7 +282,7 @@ static enum status find_columns(const struct bonded_state *s, int group, double 
     }
     for (size_t bin = 0; bin < own->count && largest > 0; bin++)
         values[2 * own->count + bin] /= largest;
-    mf_statistics_forget_errors(values + own->count, own->count);
+    mf_statistics_mark_unknown_errors(values + own->count, own->count);
     return STATUS_OK;
 }
 
@@ -300,13 +300,13 @@ static enum status result(const void *const *states, size_t count,
 /// q, then p, error and p over the Jacobian of each group under its name. All have the same bins.
 static enum status write_table(const struct bonded_state *s, const char *file,
                                const struct observable_results *results) {
-    enum { MOST = 1 + COLUMNS * MOLECULES_MOST_GROUPS };
+    enum { MAX = 1 + COLUMNS * MOLECULES_MAX_GROUPS };
     static const char *const endings[COLUMNS] = {"", "_error", "_boltzmann"};
     enum status status = STATUS_OK;
     const int groups = s->molecules->groups[s->order];
     const size_t bins = s->bins[0].count;
-    struct data_column columns[MOST];
-    char names[MOST][TOPOLOGY_NAME_SIZE + 32], path[OUTPUT_PATH_SIZE];
+    struct data_column columns[MAX];
+    char names[MAX][TOPOLOGY_NAME_SIZE + 32], path[OUTPUT_PATH_SIZE];
     double *values = NULL;
     NEW_ARRAY(values, (1 + COLUMNS * (size_t)groups) * bins);
     for (size_t bin = 0; bin < bins; bin++)

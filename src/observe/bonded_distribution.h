@@ -25,7 +25,7 @@ struct bonded_settings {
     int64_t bins; ///< of all groups; 0: those of `target`
     /// Of each group of a target; a count of 0: not measured. The values of the target are those of
     /// these groups, one behind the other.
-    struct bonded_bins target[MOLECULES_MOST_GROUPS];
+    struct bonded_bins target[MOLECULES_MAX_GROUPS];
 };
 
 /// The observable of an order of terms, and the number of its target among all kinds.

@@ -18,7 +18,7 @@ static double count_all(const struct bonded_state *s, int group, size_t bin) {
 /// of the normal distribution with the same ∫ p² dq, which is known, however narrow it is, by how
 /// many pairs of counts fall into the same bin, if they do.
 static double wanted_width(const struct bonded_state *s, int group) {
-    static const double fewest = 2, most = 5, scott = 3.49, enough = 40;
+    static const double fewest = 2, max = 5, scott = 3.49, enough = 40;
     const struct bonded_bins *bins = &s->bins[group];
     double all = 0, pairs = 0, mean = 0, square = 0;
     for (size_t bin = 0; bin < bins->count; bin++) {
@@ -35,16 +35,16 @@ static double wanted_width(const struct bonded_state *s, int group) {
     if (pairs > enough)
         deviation = fmin(deviation, all * (all - 1) * bins->width / (2 * sqrt(M_PI) * pairs));
     return fmax(deviation, mf_bonded_distribution_narrow(s->order, mean)) /
-           fmin(most, fmax(fewest, cbrt(all) / scott));
+           fmin(max, fmax(fewest, cbrt(all) / scott));
 }
 
 /// The largest number of fine bins that make a whole number of bins and are not wider than wanted.
 static size_t bins_to_join(const struct bonded_state *s) {
-    enum { LEAST = 100 };
+    enum { MIN = 100 };
     double width = INFINITY;
     for (int g = 0; g < s->molecules->groups[s->order]; g++)
         width = fmin(width, wanted_width(s, g));
-    size_t of = s->bins[0].count / LEAST;
+    size_t of = s->bins[0].count / MIN;
     while (of > 1 && (s->bins[0].count % of != 0 || (double)of * s->bins[0].width > width))
         of--;
     return of;

@@ -5,12 +5,12 @@
 #include "observe/bonded_state.h"
 
 size_t mf_bonded_series_blocks(const struct bonded_state *const *states, size_t count) {
-    size_t least = SIZE_MAX;
+    size_t min = SIZE_MAX;
     for (size_t k = 0; k < count; k++) {
         const size_t blocks = mf_sample_blocks_whole(&states[k]->blocks);
-        least = blocks < least ? blocks : least;
+        min = blocks < min ? blocks : min;
     }
-    return least;
+    return min;
 }
 
 void mf_bonded_series_find(const struct bonded_state *const *states, size_t count, int group,

@@ -10,11 +10,11 @@ struct bonded_state {
     int order;
     int dimensions;
     struct sample_blocks blocks;
-    struct bonded_bins bins[MOLECULES_MOST_GROUPS]; ///< of each group
-    size_t first[MOLECULES_MOST_GROUPS + 1];        ///< bin of each group among those of all
-    double *counts;                                 ///< shape [blocks, bins of all groups]
-    size_t parts;                                   ///< of the molecules
-    double *of_part;                                ///< shape [parts, bins of all groups]
+    struct bonded_bins bins[MOLECULES_MAX_GROUPS]; ///< of each group
+    size_t first[MOLECULES_MAX_GROUPS + 1];        ///< bin of each group among those of all
+    double *counts;                                ///< shape [blocks, bins of all groups]
+    size_t parts;                                  ///< of the molecules
+    double *of_part;                               ///< shape [parts, bins of all groups]
 };
 
 /// Blocks that all states have.

@@ -106,8 +106,8 @@ static size_t spans(void *state, struct memory_span *spans) {
     return n + 1;
 }
 
-static enum status make_room(void *state) {
-    return mf_sample_series_make_room(&((struct state *)state)->series);
+static enum status reserve(void *state) {
+    return mf_sample_series_reserve(&((struct state *)state)->series);
 }
 
 /// clusters.tsv: sizes that were seen, the share of particles in clusters of each, and how many
@@ -143,23 +143,23 @@ static double mean_of(const double *values, size_t samples) {
     return sum / (double)samples;
 }
 
-static void put_mean(struct json_writer *writer, const char *name,
-                     const struct sample_series *series, size_t column) {
+static void write_mean(struct json_writer *writer, const char *name,
+                       const struct sample_series *series, size_t column) {
     char key[64];
     const double *values = sample_series_column(series, column);
     double error = mf_statistics_correlated_error(values, series->count, 1);
-    mf_statistics_forget_errors(&error, 1);
+    mf_statistics_mark_unknown_errors(&error, 1);
     snprintf(key, sizeof key, "%s_error", name);
-    mf_json_put_number(writer, name, mean_of(values, series->count));
-    mf_json_put_number(writer, key, error);
+    mf_json_write_number(writer, name, mean_of(values, series->count));
+    mf_json_write_number(writer, key, error);
 }
 
-static void put(const void *state, const struct observable_results *results,
-                struct json_writer *writer) {
+static void write_summary(const void *state, const struct observable_results *results,
+                          struct json_writer *writer) {
     const struct state *s = state;
     (void)results;
-    put_mean(writer, "cluster_size", &s->series, MEAN);
-    put_mean(writer, "largest_cluster", &s->series, LARGEST);
+    write_mean(writer, "cluster_size", &s->series, MEAN);
+    write_mean(writer, "largest_cluster", &s->series, LARGEST);
 }
 
 /// Nanoseconds of an entry of the list.
@@ -193,9 +193,9 @@ const struct observable mf_clusters = {
     .clear = clear,
     .sample = sample,
     .spans = spans,
-    .make_room = make_room,
+    .reserve = reserve,
     .write = write,
-    .put = put,
+    .write_summary = write_summary,
     .explain = explain,
     .stage = "clusters",
     .files = files,

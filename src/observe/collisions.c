@@ -241,8 +241,8 @@ static size_t spans(void *state, struct memory_span *spans) {
     return n + mf_maxwell_spans(&c->maxwell, spans + n);
 }
 
-static enum status make_room(void *state) {
-    return mf_sample_series_make_room(&((struct collisions *)state)->series);
+static enum status reserve(void *state) {
+    return mf_sample_series_reserve(&((struct collisions *)state)->series);
 }
 
 // Results -----------------------------------------------------------------------------------------
@@ -261,7 +261,7 @@ static struct result result_of(const struct collisions *c, enum quantity quantit
         mf_statistics_add(&mean, series(c, quantity)[k]);
     struct result result = {
         mean.mean, mf_statistics_correlated_error(series(c, quantity), c->series.count, 1)};
-    mf_statistics_forget_errors(&result.error, 1);
+    mf_statistics_mark_unknown_errors(&result.error, 1);
     return result;
 }
 
@@ -272,39 +272,39 @@ static struct result free_path(const struct collisions *c) {
     return (struct result){path, path * hypot(rate.error / rate.mean, speed.error / speed.mean)};
 }
 
-static void put_result(struct json_writer *writer, const char *name, const char *unit,
-                       struct result result, double theory) {
+static void write_result(struct json_writer *writer, const char *name, const char *unit,
+                         struct result result, double theory) {
     char key[64];
-    mf_json_put_quantity(writer, name, unit, result.mean);
+    mf_json_write_quantity(writer, name, unit, result.mean);
     snprintf(key, sizeof key, "%s_error", name);
-    mf_json_put_quantity(writer, key, unit, result.error);
+    mf_json_write_quantity(writer, key, unit, result.error);
     snprintf(key, sizeof key, "%s_theory", name);
     if (!isnan(theory))
-        mf_json_put_quantity(writer, key, unit, theory);
+        mf_json_write_quantity(writer, key, unit, theory);
 }
 
-static void put(const void *state, const struct observable_results *results,
-                struct json_writer *writer) {
+static void write_summary(const void *state, const struct observable_results *results,
+                          struct json_writer *writer) {
     const struct collisions *c = state;
     const struct maxwell_summary maxwell = mf_maxwell_result(&c->maxwell);
     (void)results;
-    mf_json_put_number(writer, "packing_fraction", c->theory.eta);
-    put_result(writer, "compressibility_factor", "", result_of(c, FACTOR),
-               c->theory.compressibility_factor);
+    mf_json_write_number(writer, "packing_fraction", c->theory.eta);
+    write_result(writer, "compressibility_factor", "", result_of(c, FACTOR),
+                 c->theory.compressibility_factor);
     if (c->walls)
-        put_result(writer, "compressibility_factor_walls", "", result_of(c, WALL_FACTOR), NAN);
-    put_result(writer, "collision_rate", "1/tau", result_of(c, RATE), c->theory.collision_rate);
-    put_result(writer, "mean_free_path", "lambda", free_path(c), c->theory.mean_free_path);
-    mf_json_put_number(writer, "speeds_tested", maxwell.numbers);
-    mf_json_put_number(writer, "speeds_independent", maxwell.independent);
-    mf_json_put_number(writer, "speeds_kolmogorov_smirnov", maxwell.statistic);
-    mf_json_put_number(writer, "speeds_p_value", maxwell.probability);
-    mf_json_put_number(writer, "collisions", (double)c->last.collisions);
-    mf_json_put_quantity(writer, "deepest_overlap", "lambda", c->last.overlap);
+        write_result(writer, "compressibility_factor_walls", "", result_of(c, WALL_FACTOR), NAN);
+    write_result(writer, "collision_rate", "1/tau", result_of(c, RATE), c->theory.collision_rate);
+    write_result(writer, "mean_free_path", "lambda", free_path(c), c->theory.mean_free_path);
+    mf_json_write_number(writer, "speeds_tested", maxwell.numbers);
+    mf_json_write_number(writer, "speeds_independent", maxwell.independent);
+    mf_json_write_number(writer, "speeds_kolmogorov_smirnov", maxwell.statistic);
+    mf_json_write_number(writer, "speeds_p_value", maxwell.probability);
+    mf_json_write_number(writer, "collisions", (double)c->last.collisions);
+    mf_json_write_quantity(writer, "deepest_overlap", "lambda", c->last.overlap);
 }
 
-static void say(const void *state, const struct observable_results *results, char *line,
-                size_t size) {
+static void print(const void *state, const struct observable_results *results, char *line,
+                  size_t size) {
     (void)results;
     const struct collisions *c = state;
     const struct result factor = result_of(c, FACTOR);
@@ -418,10 +418,10 @@ const struct observable mf_collisions = {
     .due = due,
     .sample = sample,
     .spans = spans,
-    .make_room = make_room,
+    .reserve = reserve,
     .write = write,
-    .put = put,
-    .say = say,
+    .write_summary = write_summary,
+    .print = print,
     .explain = explain,
     .stage = "collisions",
     .files = files,

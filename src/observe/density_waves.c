@@ -65,9 +65,9 @@ static double find_length(const struct density_waves *waves, const int n[3]) {
     return sqrt(square);
 }
 
-/// Whether the next wave of a bin is taken, if `all` are counted and `taken` of `most` are: evenly.
-static bool is_next(size_t all, size_t taken, size_t members, size_t most) {
-    return most == 0 || members <= most || all * most >= taken * members;
+/// Whether the next wave of a bin is taken, if `all` are counted and `taken` of `max` are: evenly.
+static bool is_next(size_t all, size_t taken, size_t members, size_t max) {
+    return max == 0 || members <= max || all * max >= taken * members;
 }
 
 /// Go through the waves up to q_maximum, and either count those of each bin, or list what is taken
@@ -84,7 +84,7 @@ static void go_through(struct density_waves *waves, size_t *seen, const size_t *
                 size_t bin = (size_t)(q / plan->q_maximum * (double)plan->bins);
                 bin = bin < plan->bins ? bin : plan->bins - 1;
                 const size_t taken = (size_t)waves->members[bin];
-                if (members && is_next(seen[bin], taken, members[bin], plan->most)) {
+                if (members && is_next(seen[bin], taken, members[bin], plan->max)) {
                     waves->wave[waves->vectors++] = (struct density_wave){{a, b, c}, bin};
                     waves->q[bin] += q;
                     waves->members[bin] += 1;
@@ -93,30 +93,30 @@ static void go_through(struct density_waves *waves, size_t *seen, const size_t *
             }
 }
 
-static enum status make_room_for_waves(struct density_waves *waves, size_t all) {
+static enum status reserve_for_waves(struct density_waves *waves, size_t all) {
     enum status status = STATUS_OK;
-    if (all <= waves->room)
+    if (all <= waves->capacity)
         return STATUS_OK;
     mf_memory_free(waves->wave);
     mf_memory_free(waves->amplitude);
-    waves->wave = NULL, waves->amplitude = NULL, waves->room = 0;
+    waves->wave = NULL, waves->amplitude = NULL, waves->capacity = 0;
     NEW_ARRAY(waves->wave, all);
     NEW_ARRAY(waves->amplitude, all * (size_t)waves->plan.composition.types * 2);
-    waves->room = all;
+    waves->capacity = all;
 done:
     return status;
 }
 
-static enum status make_room_for_phases(struct density_waves *waves) {
+static enum status reserve_for_phases(struct density_waves *waves) {
     enum status status = STATUS_OK;
     for (int i = 0; i < 3; i++) {
         const size_t along = (size_t)waves->largest[i] + 1;
-        if (along <= waves->phase_room[i])
+        if (along <= waves->phase_capacity[i])
             continue;
         mf_memory_free(waves->phase[i]);
-        waves->phase[i] = NULL, waves->phase_room[i] = 0;
+        waves->phase[i] = NULL, waves->phase_capacity[i] = 0;
         NEW_ARRAY(waves->phase[i], along * 2 * STRETCH);
-        waves->phase_room[i] = along;
+        waves->phase_capacity[i] = along;
     }
 done:
     return status;
@@ -126,23 +126,23 @@ static enum status fail_of_many(const struct density_waves *waves, double all) {
     return mf_status_fail(STATUS_BAD_INPUT,
                           "q_maximum %g has about %.2g wave vectors of the box; at most %d are "
                           "measured",
-                          waves->plan.q_maximum, all, DENSITY_WAVES_MOST);
+                          waves->plan.q_maximum, all, DENSITY_WAVES_MAX);
 }
 
 /// Room for all waves that are to be taken. @param[in] members  shape [bins]: those that there are
-static enum status make_room(struct density_waves *waves, const size_t *members) {
-    const size_t most = waves->plan.most;
+static enum status reserve(struct density_waves *waves, const size_t *members) {
+    const size_t max = waves->plan.max;
     size_t all = 0;
     for (size_t bin = 0; bin < waves->plan.bins; bin++)
-        all += most > 0 && members[bin] > most ? most : members[bin];
+        all += max > 0 && members[bin] > max ? max : members[bin];
     if (all == 0)
         return mf_status_fail(STATUS_BAD_INPUT,
                               "q_maximum %g is below that of the longest wave in the box",
                               waves->plan.q_maximum);
-    if (all > DENSITY_WAVES_MOST)
+    if (all > DENSITY_WAVES_MAX)
         return fail_of_many(waves, (double)all);
-    TRY(make_room_for_waves(waves, all));
-    return make_room_for_phases(waves);
+    TRY(reserve_for_waves(waves, all));
+    return reserve_for_phases(waves);
 }
 
 /// The box's own n, and nothing of another box.
@@ -160,18 +160,18 @@ static void begin_list(struct density_waves *waves, const double lattice[3][3],
 enum status mf_density_waves_list(struct density_waves *waves, const double lattice[3][3],
                                   const double length[3]) {
     enum status status = STATUS_OK;
-    static const double most_looked_at = 1e3 * DENSITY_WAVES_MOST;
+    static const double max_tested = 1e3 * DENSITY_WAVES_MAX;
     const double all = mf_density_waves_expected(waves->plan.q_maximum, length);
     size_t *seen = NULL, *members = NULL;
     if (waves->vectors > 0 && memcmp(waves->lattice, lattice, sizeof waves->lattice) == 0)
         return STATUS_OK;
-    if (all > most_looked_at)
+    if (all > max_tested)
         return fail_of_many(waves, all);
     NEW_ARRAY(seen, waves->plan.bins);
     NEW_ARRAY(members, waves->plan.bins);
     begin_list(waves, lattice, length);
     go_through(waves, members, NULL);
-    CHECK(make_room(waves, members));
+    CHECK(reserve(waves, members));
     go_through(waves, seen, members);
 done:
     mf_memory_free(seen);
@@ -194,7 +194,7 @@ static void find_phases(void *context, size_t begin, size_t end) {
     struct density_waves *const waves = stretch->waves;
     for (size_t k = begin; k < end; k++) {
         double angle[3];
-        stretch->angles->tell(stretch->angles->context, stretch->first + k, angle);
+        stretch->angles->report(stretch->angles->context, stretch->first + k, angle);
         for (int i = 0; i < 3; i++) {
             const double c = cos(angle[i]), s = sin(angle[i]);
             double *phase = waves->phase[i] + k;

@@ -20,26 +20,26 @@ struct density_waves_plan {
     struct composition composition; ///< beads stand in the order of their types
     double q_maximum;               ///< [1/length]
     size_t bins;                    ///< of |q|, from 0 on
-    size_t most; ///< waves of a bin: of more, as many that are evenly spread; 0: all are taken
+    size_t max; ///< waves of a bin: of more, as many that are evenly spread; 0: all are taken
 };
 
 struct density_waves {
     struct density_waves_plan plan;
-    size_t count, curves; ///< of beads; S, and in a mixture those of all pair types
-    double lattice[3][3]; ///< b_i, one a row, of the box that the waves are listed for
-    int largest[3];       ///< |n| along each vector
-    size_t vectors, room; ///< waves, and how many there could be
+    size_t count, curves;     ///< of beads; S, and in a mixture those of all pair types
+    double lattice[3][3];     ///< b_i, one a row, of the box that the waves are listed for
+    int largest[3];           ///< |n| along each vector
+    size_t vectors, capacity; ///< waves, and how many there could be
     struct density_wave {
         int n[3];
         size_t bin;
-    } * wave;             ///< shape [vectors]
-    double *q, *members;  ///< shape [bins]: Σ |q| of a bin's waves, and their number
-    double *phase[3];     ///< shape [largest + 1, 2, beads of a stretch]: cos and sin of n φ
-    size_t phase_room[3]; ///< waves along each vector that there is room for
-    double *amplitude;    ///< shape [vectors, types, 2]: ρ
+    } * wave;                 ///< shape [vectors]
+    double *q, *members;      ///< shape [bins]: Σ |q| of a bin's waves, and their number
+    double *phase[3];         ///< shape [largest + 1, 2, beads of a stretch]: cos and sin of n φ
+    size_t phase_capacity[3]; ///< waves along each vector that there is room for
+    double *amplitude;        ///< shape [vectors, types, 2]: ρ
 };
 
-enum { DENSITY_WAVES_MOST = 1000000 };
+enum { DENSITY_WAVES_MAX = 1000000 };
 
 /// Fails: NO_MEMORY. What has failed is cleared.
 enum status mf_density_waves_init(struct density_waves *waves,
@@ -54,7 +54,7 @@ double mf_density_waves_expected(double q_maximum, const double length[3]);
 /// List the waves of a box, unless it is that of the last call.
 /// @param[in] lattice  b_i, one a row; 0 where there is no wave
 /// @param[in] length   of the box's own vectors, 0 likewise
-/// Fails: BAD_INPUT, without a place, for more than DENSITY_WAVES_MOST that are taken, or for none;
+/// Fails: BAD_INPUT, without a place, for more than DENSITY_WAVES_MAX that are taken, or for none;
 /// NO_MEMORY.
 /// Tested: test_frame_waves, test_structure_factor.
 enum status mf_density_waves_list(struct density_waves *waves, const double lattice[3][3],
@@ -62,7 +62,7 @@ enum status mf_density_waves_list(struct density_waves *waves, const double latt
 
 /// Where a bead is: angles φ of it along the box's vectors.
 struct density_angles {
-    void (*tell)(const void *context, size_t bead, double angle[3]);
+    void (*report)(const void *context, size_t bead, double angle[3]);
     const void *context;
 };
 

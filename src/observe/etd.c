@@ -70,7 +70,7 @@ static enum status allocate(struct etd *etd, size_t count) {
     for (int d = 0; d < 3; d++)
         NEW_ARRAY(etd->place[d], count);
     NEW_ARRAY(etd->squares, count + BATCH);
-    status = mf_etd_make_room(etd);
+    status = mf_etd_reserve(etd);
 done:
     return status;
 }
@@ -89,7 +89,7 @@ enum status mf_etd_init(struct etd *etd, const struct etd_grid *grid, const stru
         etd->edge[d][d] = d < box->dimensions ? box->length[d] : 0;
     }
     CHECK(mf_particles_init(&etd->own_particles, box, count));
-    CHECK(mf_neighbours_init(&etd->own_list, NEIGHBOURS_HALF, box, count, grid->r_maximum, 0));
+    CHECK(mf_neighbours_init(&etd->manifest, NEIGHBOURS_HALF, box, count, grid->r_maximum, 0));
 done:
     if (status != STATUS_OK)
         mf_etd_clear(etd);
@@ -122,7 +122,7 @@ void mf_etd_clear(struct etd *etd) {
     }
     mf_memory_free(etd->squares);
     mf_particles_clear(&etd->own_particles);
-    mf_neighbours_clear(&etd->own_list);
+    mf_neighbours_clear(&etd->manifest);
     *etd = (struct etd){0};
 }
 
@@ -267,8 +267,8 @@ static enum status begin_pair(struct etd *etd, size_t slot, uint32_t a, uint32_t
     if (r < low)
         return STATUS_OK;
     const int64_t place = (int64_t)((r - low) / (high - low) * (double)etd->grid.bins);
-    const int64_t most = etd->grid.bins - 1; // the quotient may be rounded up
-    const uint16_t bin = (uint16_t)(place < most ? place : most);
+    const int64_t max = etd->grid.bins - 1; // the quotient may be rounded up
+    const uint16_t bin = (uint16_t)(place < max ? place : max);
     etd->bin[record * etd->slots + slot] = bin;
     etd->open[slot * etd_cells(etd) + bin]++;
     return STATUS_OK;
@@ -295,31 +295,31 @@ static enum status search_list(struct etd *etd, size_t slot, const struct neighb
 /// list's range when it was built.
 static bool covers(const struct neighbours *neighbours, const struct particles *particles,
                    double range) {
-    double most = 0;
+    double max = 0;
     for (size_t k = 0; k < particles->count; k++) {
         double square = 0;
         for (int d = 0; d < particles->box.dimensions; d++) {
             const double moved = particles->position[d][k] - neighbours->built[d][k];
             square += moved * moved;
         }
-        most = square > most ? square : most;
+        max = square > max ? square : max;
     }
-    return range + 2 * sqrt(most) <= neighbours->range;
+    return range + 2 * sqrt(max) <= neighbours->range;
 }
 
 static enum status search_own_list(struct etd *etd, size_t slot,
                                    const struct particles *particles) {
     struct particles *own = &etd->own_particles;
     // `order` of the search is free until it is used: from ids to the simulation's order.
-    uint32_t *order = etd->own_list.cells.order;
+    uint32_t *order = etd->manifest.cells.order;
     for (size_t k = 0; k < particles->count; k++)
         order[particles->id[k]] = (uint32_t)k;
     for (int d = 0; d < particles->box.dimensions; d++)
         for (size_t k = 0; k < own->count; k++)
             own->position[d][k] = particles->position[d][order[own->id[k]]];
     TRY(mf_particles_join(own, particles->topology));
-    TRY(mf_neighbours_sort_and_build(&etd->own_list, own));
-    return search_list(etd, slot, &etd->own_list, own->id);
+    TRY(mf_neighbours_sort_and_build(&etd->manifest, own));
+    return search_list(etd, slot, &etd->manifest, own->id);
 }
 
 bool mf_etd_opens(const struct etd *etd, uint64_t sample) {

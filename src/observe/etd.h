@@ -51,8 +51,8 @@ struct etd {
     size_t slots;           ///< windows that are open at the same time
     struct {
         uint64_t samples, followed;
-    } state;     ///< samples so far, records (those of escaped pairs until the next origin)
-    size_t room; ///< for records
+    } state;         ///< samples so far, records (those of escaped pairs until the next origin)
+    size_t capacity; ///< for records
     uint32_t *first, *second; ///< shape [room]: ids, the lower first; equal: the pair has escaped
     uint16_t *bin;            ///< shape [room, slots]: of r_0 at each open origin, or none
     uint64_t *began;          ///< shape [slots]: samples before the origin
@@ -64,7 +64,7 @@ struct etd {
     uint32_t *bucket, *next; ///< shapes [buckets], [room]: records by the hash of their pair
     size_t buckets;
     struct particles own_particles; ///< for when the simulation's list is too short
-    struct neighbours own_list;
+    struct neighbours manifest;
 };
 
 /// Cells of a matrix of times and bins.
@@ -137,9 +137,9 @@ enum status mf_etd_result(const struct etd *const *replicas, size_t count, doubl
                           double *error, uint64_t *pairs) MUST_USE;
 
 /// What goes with a checkpoint. The first span is `state`: read it before the others and call
-/// mf_etd_make_room, since their lengths depend on it.
+/// mf_etd_reserve, since their lengths depend on it.
 enum { ETD_SPANS = 7 };
 size_t mf_etd_spans(struct etd *etd, struct memory_span *spans);
 
 /// Room for state.followed records. Fails: NO_MEMORY.
-enum status mf_etd_make_room(struct etd *etd) MUST_USE;
+enum status mf_etd_reserve(struct etd *etd) MUST_USE;

@@ -28,8 +28,8 @@ static size_t spans(void *state, struct memory_span *spans) {
     return mf_etd_spans(state, spans);
 }
 
-static enum status make_room(void *state) {
-    return mf_etd_make_room(state);
+static enum status reserve(void *state) {
+    return mf_etd_reserve(state);
 }
 
 // Tables ------------------------------------------------------------------------------------------
@@ -97,7 +97,7 @@ done:
 }
 
 /// Tables without a number are not written, and that is told.
-static enum status judge(const void *state, const struct simulation_setup *setup) {
+static enum status assess(const void *state, const struct simulation_setup *setup) {
     const struct etd *etd = state;
     (void)setup;
     return mf_etd_pairs(etd) > 0
@@ -131,13 +131,13 @@ done:
     return status;
 }
 
-static void put(const void *state, const struct observable_results *results,
-                struct json_writer *writer) {
+static void write_summary(const void *state, const struct observable_results *results,
+                          struct json_writer *writer) {
     const struct etd *etd = state;
     mf_json_begin(writer, "etd");
-    mf_json_put_integer(writer, "origins", (int64_t)mf_etd_complete(etd));
-    mf_json_put_integer(writer, "pairs", (int64_t)mf_etd_pairs(etd));
-    mf_json_put_quantity(writer, "interval", "tau", interval(etd, results));
+    mf_json_write_integer(writer, "origins", (int64_t)mf_etd_complete(etd));
+    mf_json_write_integer(writer, "pairs", (int64_t)mf_etd_pairs(etd));
+    mf_json_write_quantity(writer, "interval", "tau", interval(etd, results));
     mf_json_end(writer);
 }
 
@@ -189,10 +189,10 @@ const struct observable mf_etd_observable = {
     .due = due,
     .sample = sample,
     .spans = spans,
-    .make_room = make_room,
+    .reserve = reserve,
     .write = write,
-    .judge = judge,
-    .put = put,
+    .assess = assess,
+    .write_summary = write_summary,
     .explain = explain,
     .stage = "escape times",
     .files = files,

@@ -45,19 +45,19 @@ void mf_etd_records_compact(struct etd *etd) {
 static enum status grow(struct etd *etd) {
     enum status status = STATUS_OK;
     struct etd larger = *etd;
-    larger.room = etd->room ? 2 * etd->room : 1024;
-    larger.buckets = 2 * larger.room;
+    larger.capacity = etd->capacity ? 2 * etd->capacity : 1024;
+    larger.buckets = 2 * larger.capacity;
     larger.first = larger.second = larger.bucket = larger.next = NULL;
     larger.bin = NULL;
-    NEW_ARRAY(larger.first, larger.room);
-    NEW_ARRAY(larger.second, larger.room);
-    NEW_ARRAY(larger.bin, larger.room * larger.slots);
+    NEW_ARRAY(larger.first, larger.capacity);
+    NEW_ARRAY(larger.second, larger.capacity);
+    NEW_ARRAY(larger.bin, larger.capacity * larger.slots);
     NEW_ARRAY(larger.bucket, larger.buckets);
-    NEW_ARRAY(larger.next, larger.room);
-    if (etd->room > 0) {
-        memcpy(larger.first, etd->first, etd->room * sizeof *etd->first);
-        memcpy(larger.second, etd->second, etd->room * sizeof *etd->second);
-        memcpy(larger.bin, etd->bin, etd->room * etd->slots * sizeof *etd->bin);
+    NEW_ARRAY(larger.next, larger.capacity);
+    if (etd->capacity > 0) {
+        memcpy(larger.first, etd->first, etd->capacity * sizeof *etd->first);
+        memcpy(larger.second, etd->second, etd->capacity * sizeof *etd->second);
+        memcpy(larger.bin, etd->bin, etd->capacity * etd->slots * sizeof *etd->bin);
         mf_etd_records_clear(etd);
     }
     *etd = larger;
@@ -67,8 +67,8 @@ done:
     return status;
 }
 
-enum status mf_etd_make_room(struct etd *etd) {
-    while (etd->room == 0 || etd->state.followed > etd->room)
+enum status mf_etd_reserve(struct etd *etd) {
+    while (etd->capacity == 0 || etd->state.followed > etd->capacity)
         TRY(grow(etd));
     return STATUS_OK;
 }
@@ -79,7 +79,7 @@ enum status mf_etd_records_find(struct etd *etd, uint32_t low, uint32_t high, si
             *record = p;
             return STATUS_OK;
         }
-    if (etd->state.followed == etd->room) {
+    if (etd->state.followed == etd->capacity) {
         TRY(grow(etd));
         mf_etd_records_compact(etd);
     }

@@ -10,7 +10,7 @@ enum { RANGES = 16 };
 static const double shortest_range = 0.7;
 
 /// Of N: a larger s is no small correction.
-static const double most = 0.05;
+static const double max = 0.05;
 
 double mf_finite_size_factor(double s, double from, double to) {
     return (1 + (s - 1) / from) / (1 + (s - 1) / to);
@@ -21,12 +21,13 @@ static double ordered_pairs(const struct composition *composition, const int typ
     return (double)composition->count[type[0]] * (double)composition->count[type[1]];
 }
 
-double mf_finite_size_inside(const struct finite_size_fluid *fluid, int pair) {
+double mf_finite_size_intramolecular(const struct finite_size_fluid *fluid, int pair) {
     int type[2];
     if (fluid->topology == NULL)
         return 0;
     mf_composition_pair_types(fluid->composition, pair, type);
-    const double inside = mf_topology_pairs_inside(fluid->topology, type, !fluid->apart);
+    const double inside =
+        mf_topology_intramolecular_pairs(fluid->topology, type, !fluid->intermolecular);
     return mf_box_volume(fluid->box) * inside / ordered_pairs(fluid->composition, type);
 }
 
@@ -40,7 +41,7 @@ double mf_finite_size_rigid(const struct finite_size_fluid *fluid, int pair) {
     if (topology == NULL)
         return 0;
     mf_composition_pair_types(composition, pair, type);
-    double single[2], filled[2], room = all, together = 0;
+    double single[2], filled[2], capacity = all, together = 0;
     for (int t = 0; t < 2; t++)
         filled[t] = single[t] = (double)composition->count[type[t]];
     for (int k = 0; k < topology->kinds; k++) {
@@ -52,11 +53,12 @@ double mf_finite_size_rigid(const struct finite_size_fluid *fluid, int pair) {
             single[t] -= count * own[t];
             filled[t] += count * (beads - 1) * own[t];
         }
-        room += count * beads * (beads - 1);
+        capacity += count * beads * (beads - 1);
         together += count * own[0] * own[1];
     }
     const bool alike = type[0] == type[1];
-    const double fluctuation = together + (alike ? single[0] : 0) - filled[0] * filled[1] / room;
+    const double fluctuation =
+        together + (alike ? single[0] : 0) - filled[0] * filled[1] / capacity;
     const double self = alike ? (double)composition->count[type[0]] : 0;
     return 1 + all * (fluctuation - self) / ordered_pairs(composition, type);
 }
@@ -81,7 +83,7 @@ static double measure(const struct rdf_bins *bins, const double *g, const double
 }
 
 /// The least s of a pair type: fluctuations of a number, 1 + ρ_a G_aa, are not negative.
-static double least(const struct composition *composition, int pair) {
+static double min(const struct composition *composition, int pair) {
     int type[2];
     mf_composition_pair_types(composition, pair, type);
     const double share =
@@ -99,12 +101,12 @@ double mf_finite_size_factor_of(const struct rdf_bins *bins, const double *g, co
     if (fluid->box->dimensions == 3) {
         const double share = from / (double)mf_composition_particles(fluid->composition);
         const struct box measured = mf_box_scaled(fluid->box, share);
-        const double inside = mf_finite_size_inside(fluid, pair);
+        const double inside = mf_finite_size_intramolecular(fluid, pair);
         const double seen =
             fmax(measure(bins, g, error, &measured, (size_t)from, inside, &variance),
-                 least(fluid->composition, pair));
+                 min(fluid->composition, pair));
         const double away = seen - rigid;
-        if (variance < away * away && fabs(seen) < most * from)
+        if (variance < away * away && fabs(seen) < max * from)
             s = rigid + (away - variance / away);
     }
     return mf_finite_size_factor(s, from, to);

@@ -34,11 +34,11 @@ struct finite_size_fluid {
     const struct box *box;
     const struct composition *composition;
     const struct topology *topology; ///< of molecules, or NULL
-    bool apart;                      ///< g is of different molecules alone
+    bool intermolecular;             ///< g is of different molecules alone
 };
 
 /// What the pairs that g leaves out add to the G of a pair type [λ³].
-double mf_finite_size_inside(const struct finite_size_fluid *fluid, int pair);
+double mf_finite_size_intramolecular(const struct finite_size_fluid *fluid, int pair);
 
 /// The s of a pair type in a liquid that yields no more, whose molecules take the room of their
 /// beads and mix as if they did not know each other: 0 of single beads. Of one kind of molecule no

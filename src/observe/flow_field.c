@@ -121,8 +121,8 @@ static size_t spans(void *state, struct memory_span *spans) {
     return n;
 }
 
-static enum status make_room(void *state) {
-    return mf_sample_series_make_room(&((struct flow_field *)state)->series);
+static enum status reserve(void *state) {
+    return mf_sample_series_reserve(&((struct flow_field *)state)->series);
 }
 
 // Results -----------------------------------------------------------------------------------------
@@ -210,7 +210,7 @@ static double average(const double *values, size_t count, double *error) {
     for (size_t k = 0; k < count; k++)
         sum += values[k];
     *error = mf_statistics_correlated_error(values, count, 1);
-    mf_statistics_forget_errors(error, 1);
+    mf_statistics_mark_unknown_errors(error, 1);
     return count > 0 ? sum / (double)count : NAN;
 }
 
@@ -236,22 +236,22 @@ struct flow_field_summary mf_flow_field_result(const void *state) {
 }
 
 /// The object "flow_field"; of an obstacle the drag, beside the force on the whole solvent.
-static void put(const void *state, const struct observable_results *results,
-                struct json_writer *writer) {
+static void write_summary(const void *state, const struct observable_results *results,
+                          struct json_writer *writer) {
     const struct flow_field *f = state;
     const struct flow_field_summary found = mf_flow_field_result(f);
     (void)results;
     mf_json_begin(writer, "flow_field");
     if (f->parameters.wave_acceleration == 0) { // whose noise lets the whole solvent wander
-        mf_json_put_quantity(writer, "mean_velocity", "lambda/tau", found.velocity);
-        mf_json_put_quantity(writer, "mean_velocity_error", "lambda/tau", found.velocity_error);
+        mf_json_write_quantity(writer, "mean_velocity", "lambda/tau", found.velocity);
+        mf_json_write_quantity(writer, "mean_velocity_error", "lambda/tau", found.velocity_error);
     }
     if (f->parameters.obstacle_radius > 0) {
-        mf_json_put_quantity(writer, "drag", "k_B T_0/lambda", found.drag);
-        mf_json_put_quantity(writer, "drag_error", "k_B T_0/lambda", found.drag_error);
-        mf_json_put_quantity(writer, "driving_force", "k_B T_0/lambda", found.driving_force);
-        mf_json_put_number(writer, "drag_coefficient", found.coefficient);
-        mf_json_put_number(writer, "reynolds_number", found.reynolds);
+        mf_json_write_quantity(writer, "drag", "k_B T_0/lambda", found.drag);
+        mf_json_write_quantity(writer, "drag_error", "k_B T_0/lambda", found.drag_error);
+        mf_json_write_quantity(writer, "driving_force", "k_B T_0/lambda", found.driving_force);
+        mf_json_write_number(writer, "drag_coefficient", found.coefficient);
+        mf_json_write_number(writer, "reynolds_number", found.reynolds);
     }
     mf_json_end(writer);
 }
@@ -282,9 +282,9 @@ const struct observable mf_flow_field = {
     .clear = clear,
     .sample = sample,
     .spans = spans,
-    .make_room = make_room,
+    .reserve = reserve,
     .write = write,
-    .put = put,
+    .write_summary = write_summary,
     .explain = explain,
     .stage = "flow field",
     .files = files,

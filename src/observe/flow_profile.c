@@ -11,7 +11,7 @@
 
 #include <math.h>
 
-enum { MOST_BLOCKS = 32 };
+enum { MAX_BLOCKS = 32 };
 
 struct settings {
     int64_t bins;
@@ -29,13 +29,13 @@ struct profile {
     double height, interval; ///< interval of time between samples
     uint64_t samples;
     struct bin *sums; ///< shape [blocks, bins]
-    double energy[MOST_BLOCKS], degrees[MOST_BLOCKS];
+    double energy[MAX_BLOCKS], degrees[MAX_BLOCKS];
     double *now; ///< shape [bins, 4]: Σ 1, Σ v of a sample
     /// Across the flow, where a wave does not carry them: places of the beads when the block began,
     /// shape [axes, beads] by id, and the mean square of their ways over a block, along an axis.
     size_t beads;
     double bead_mass; ///< of all; NaN if they differ
-    double *before, square[MOST_BLOCKS];
+    double *before, square[MAX_BLOCKS];
 };
 
 static const struct field fields[] = {
@@ -72,7 +72,7 @@ static double peak_shape(const struct profile *p) {
 
 static enum status begin(void *state, const void *settings, const struct simulation *simulation,
                          const struct measure_plan *plan) {
-    enum { LEAST_BINS = 3 }; // two of a parabola are as fast
+    enum { MIN_BINS = 3 }; // two of a parabola are as fast
     enum status status = STATUS_OK;
     const struct solvent *solvent = mf_collision_dynamics_solvent(simulation);
     struct profile *p = state;
@@ -86,13 +86,13 @@ static enum status begin(void *state, const void *settings, const struct simulat
     p->setup.integrator_parameters = &p->parameters;
     p->height = solvent->box.length[1];
     p->bins = given->bins > 0 ? (size_t)given->bins : (size_t)rint(p->height / p->parameters.cell);
-    if (peak_shape(p) > 0 && p->bins < LEAST_BINS)
+    if (peak_shape(p) > 0 && p->bins < MIN_BINS)
         return mf_status_fail(
             STATUS_BAD_INPUT,
             "flow_profile.bins: %zu along y are too few for a viscosity; expected at least %d",
-            p->bins, LEAST_BINS);
+            p->bins, MIN_BINS);
     p->interval = (double)plan->every * simulation->setup.time_step;
-    p->each = ((size_t)plan->samples + MOST_BLOCKS - 1) / MOST_BLOCKS;
+    p->each = ((size_t)plan->samples + MAX_BLOCKS - 1) / MAX_BLOCKS;
     p->blocks = (size_t)plan->samples / p->each;
     NEW_ARRAY(p->sums, p->blocks * p->bins);
     NEW_ARRAY(p->now, 4 * p->bins);
@@ -224,7 +224,7 @@ struct flow_profile_summary mf_flow_profile_result(const void *state) {
     const double window = 2 * p->interval * (double)(p->each - 1);
     const struct line all = fit(p, 0, blocks);
     const double peak = peak_shape(p);
-    double slopes[MOST_BLOCKS], bases[MOST_BLOCKS], temperatures[MOST_BLOCKS];
+    double slopes[MAX_BLOCKS], bases[MAX_BLOCKS], temperatures[MAX_BLOCKS];
     double energy = 0, degrees = 0, squares = 0;
     for (size_t block = 0; block < blocks; block++) {
         const struct line one = fit(p, block, block + 1);
@@ -270,7 +270,7 @@ static enum status write(const void *state, const struct observable_results *res
     double *y = values, *v = y + p->bins, *error = v + p->bins, *fitted = error + p->bins,
            *count = fitted + p->bins;
     for (size_t bin = 0; bin < p->bins; bin++) {
-        double means[MOST_BLOCKS], momentum = 0;
+        double means[MAX_BLOCKS], momentum = 0;
         for (size_t block = 0; block < blocks; block++) {
             const struct bin *sum = &p->sums[block * p->bins + bin];
             means[block] = sum->momentum / sum->count;
@@ -283,7 +283,7 @@ static enum status write(const void *state, const struct observable_results *res
         fitted[bin] = is_driven(p) ? line.base + line.slope * shape(p, bin) : NAN;
         count[bin] /= (double)(blocks * p->each);
     }
-    mf_statistics_forget_errors(error, p->bins);
+    mf_statistics_mark_unknown_errors(error, p->bins);
     const struct data_column columns[] = {{"y[lambda]", y, NULL},
                                           {"v_x[lambda/tau]", v, "%.8g"},
                                           {"v_x_error[lambda/tau]", error, "%.3g"},
@@ -296,42 +296,43 @@ done:
     return status;
 }
 
-static void put(const void *state, const struct observable_results *results,
-                struct json_writer *writer) {
+static void write_summary(const void *state, const struct observable_results *results,
+                          struct json_writer *writer) {
     const struct profile *p = state;
     struct flow_profile_summary found = mf_flow_profile_result(p);
     (void)results;
     if (is_driven(p)) {
-        mf_statistics_forget_errors(&found.viscosity_error, 1);
-        mf_json_put_quantity(writer, "viscosity", "lambda^2/tau", found.viscosity);
-        mf_json_put_quantity(writer, "viscosity_error", "lambda^2/tau", found.viscosity_error);
+        mf_statistics_mark_unknown_errors(&found.viscosity_error, 1);
+        mf_json_write_quantity(writer, "viscosity", "lambda^2/tau", found.viscosity);
+        mf_json_write_quantity(writer, "viscosity_error", "lambda^2/tau", found.viscosity_error);
         if (p->parameters.grid_shift)
-            mf_json_put_quantity(writer, "viscosity_theory", "lambda^2/tau",
-                                 mf_collision_dynamics_viscosity(&p->setup));
+            mf_json_write_quantity(writer, "viscosity_theory", "lambda^2/tau",
+                                   mf_collision_dynamics_viscosity(&p->setup));
     }
     if (is_driven(p) && p->parameters.walls == COLLISION_PLATES) {
-        mf_statistics_forget_errors(&found.slip_error, 1);
-        mf_json_put_number(writer, "slip", found.slip);
-        mf_json_put_number(writer, "slip_error", found.slip_error);
+        mf_statistics_mark_unknown_errors(&found.slip_error, 1);
+        mf_json_write_number(writer, "slip", found.slip);
+        mf_json_write_number(writer, "slip_error", found.slip_error);
     }
     if (isfinite(found.diffusion)) {
-        mf_json_put_quantity(writer, "bead_diffusion", "lambda^2/tau", found.diffusion);
-        mf_json_put_quantity(writer, "bead_diffusion_error", "lambda^2/tau", found.diffusion_error);
+        mf_json_write_quantity(writer, "bead_diffusion", "lambda^2/tau", found.diffusion);
+        mf_json_write_quantity(writer, "bead_diffusion_error", "lambda^2/tau",
+                               found.diffusion_error);
         if (p->setup.potential == NULL && p->setup.interactions == 0)
-            mf_json_put_quantity(writer, "bead_diffusion_theory", "lambda^2/tau",
-                                 mf_collision_dynamics_diffusion(&p->setup, p->bead_mass));
+            mf_json_write_quantity(writer, "bead_diffusion_theory", "lambda^2/tau",
+                                   mf_collision_dynamics_diffusion(&p->setup, p->bead_mass));
     }
     if (is_driven(p) && isfinite(found.schmidt)) {
-        mf_json_put_number(writer, "schmidt_number", found.schmidt);
-        mf_json_put_number(writer, "schmidt_number_error", found.schmidt_error);
+        mf_json_write_number(writer, "schmidt_number", found.schmidt);
+        mf_json_write_number(writer, "schmidt_number_error", found.schmidt_error);
     }
-    mf_statistics_forget_errors(&found.temperature_error, 1);
-    mf_json_put_quantity(writer, "solvent_temperature", "T_0", found.temperature);
-    mf_json_put_quantity(writer, "solvent_temperature_error", "T_0", found.temperature_error);
+    mf_statistics_mark_unknown_errors(&found.temperature_error, 1);
+    mf_json_write_quantity(writer, "solvent_temperature", "T_0", found.temperature);
+    mf_json_write_quantity(writer, "solvent_temperature_error", "T_0", found.temperature_error);
 }
 
-static void say(const void *state, const struct observable_results *results, char *line,
-                size_t size) {
+static void print(const void *state, const struct observable_results *results, char *line,
+                  size_t size) {
     const struct profile *p = state;
     const struct flow_profile_summary found = mf_flow_profile_result(p);
     const struct units *units = results->units;
@@ -352,11 +353,11 @@ static void say(const void *state, const struct observable_results *results, cha
 }
 
 /// A flow that still grows, or hardly differs from the noise, gives any viscosity.
-static enum status judge(const void *state, const struct simulation_setup *setup) {
-    static const double most = 0.2;
+static enum status assess(const void *state, const struct simulation_setup *setup) {
+    static const double max = 0.2;
     const struct flow_profile_summary found = mf_flow_profile_result(state);
     (void)setup;
-    if (!is_driven(state) || fabs(found.viscosity_error) <= most * fabs(found.viscosity))
+    if (!is_driven(state) || fabs(found.viscosity_error) <= max * fabs(found.viscosity))
         return STATUS_OK;
     return mf_status_fail(
         STATUS_UNSTABLE,
@@ -410,9 +411,9 @@ const struct observable mf_flow_profile = {
     .sample = sample,
     .spans = spans,
     .write = write,
-    .put = put,
-    .say = say,
-    .judge = judge,
+    .write_summary = write_summary,
+    .print = print,
+    .assess = assess,
     .explain = explain,
     .stage = "flow profile",
     .files = files,

@@ -70,9 +70,9 @@ void mf_force_covariance_sample(struct force_covariance *covariance,
                                 const struct simulation *simulation) {
     const struct particles *particles = &simulation->particles;
     const struct neighbours *neighbours = &simulation->neighbours;
-    const size_t most = FORCE_COVARIANCE_BLOCKS - 1, sample = covariance->samples++;
+    const size_t max = FORCE_COVARIANCE_BLOCKS - 1, sample = covariance->samples++;
     const size_t fair = sample * FORCE_COVARIANCE_BLOCKS / covariance->planned;
-    const size_t first = (fair < most ? fair : most) * covariance->bins;
+    const size_t first = (fair < max ? fair : max) * covariance->bins;
     for (size_t i = 0; i < particles->count; i++)
         for (size_t k = neighbours->start[i]; k < neighbours->stop[i]; k++) {
             const size_t j = (size_t)neighbours->list[k];

@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-enum { MOST_BLOCKS = 32, MOST_WINDOWS = 24, SHORTEST_WINDOW = 4 };
+enum { MAX_BLOCKS = 32, MAX_WINDOWS = 24, SHORTEST_WINDOW = 4 };
 
 /// The window that is taken is so many times doubled from the first one that agrees with the
 /// longer ones.
@@ -21,7 +21,7 @@ enum status mf_green_kubo_init(struct green_kubo *green_kubo, size_t lags, size_
                               "raise \"samples\" of \"measure\"",
                               samples, lags);
     const size_t origins = samples - lags;
-    green_kubo->each = (origins + MOST_BLOCKS - 1) / MOST_BLOCKS;
+    green_kubo->each = (origins + MAX_BLOCKS - 1) / MAX_BLOCKS;
     green_kubo->blocks = origins / green_kubo->each;
     NEW_ARRAY(green_kubo->last, (lags + 1) * components);
     NEW_ARRAY(green_kubo->products, green_kubo->blocks * (lags + 1));
@@ -92,7 +92,7 @@ struct estimate {
 };
 
 static struct estimate difference(const double *values, const double *others, size_t blocks) {
-    double all[MOST_BLOCKS];
+    double all[MAX_BLOCKS];
     struct running_mean mean = {0};
     for (size_t b = 0; b < blocks; b++) {
         all[b] = values[b] - (others ? others[b] : 0);
@@ -103,7 +103,7 @@ static struct estimate difference(const double *values, const double *others, si
 
 /// Of windows from the shortest to the longest, the number of the first one that agrees with all
 /// that follow.
-static size_t choose(double (*values)[MOST_BLOCKS], size_t windows, size_t blocks) {
+static size_t choose(double (*values)[MAX_BLOCKS], size_t windows, size_t blocks) {
     for (size_t w = 0; w + 1 < windows; w++) {
         bool agrees = true;
         for (size_t longer = w + 1; longer < windows; longer++) {
@@ -117,7 +117,7 @@ static size_t choose(double (*values)[MOST_BLOCKS], size_t windows, size_t block
 }
 
 /// Whether the longest window differs from the one before by less than two errors.
-static bool is_at_rest(double (*values)[MOST_BLOCKS], size_t windows, size_t blocks) {
+static bool is_at_rest(double (*values)[MAX_BLOCKS], size_t windows, size_t blocks) {
     if (windows < 2)
         return false;
     const struct estimate d = difference(values[windows - 1], values[windows - 2], blocks);
@@ -126,7 +126,7 @@ static bool is_at_rest(double (*values)[MOST_BLOCKS], size_t windows, size_t blo
 
 static void write_curves(const struct green_kubo *green_kubo, size_t blocks,
                          const struct green_kubo_curves *curves) {
-    double integral[MOST_BLOCKS] = {0}, here[MOST_BLOCKS];
+    double integral[MAX_BLOCKS] = {0}, here[MAX_BLOCKS];
     for (size_t lag = 0; lag <= green_kubo->lags; lag++) {
         for (size_t b = 0; b < blocks; b++) {
             here[b] = correlation(green_kubo, b, lag);
@@ -143,10 +143,10 @@ static void write_curves(const struct green_kubo *green_kubo, size_t blocks,
 
 struct green_kubo_summary mf_green_kubo_result(const struct green_kubo *green_kubo,
                                                const struct green_kubo_curves *curves) {
-    double values[MOST_WINDOWS][MOST_BLOCKS];
-    size_t window[MOST_WINDOWS], windows = 1;
+    double values[MAX_WINDOWS][MAX_BLOCKS];
+    size_t window[MAX_WINDOWS], windows = 1;
     const size_t blocks = complete_blocks(green_kubo);
-    while (windows < MOST_WINDOWS && green_kubo->lags >> windows >= SHORTEST_WINDOW)
+    while (windows < MAX_WINDOWS && green_kubo->lags >> windows >= SHORTEST_WINDOW)
         windows++;
     for (size_t w = 0; w < windows; w++) {
         window[w] = green_kubo->lags >> (windows - 1 - w);

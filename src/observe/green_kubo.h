@@ -23,7 +23,7 @@
 
 #include <stdbool.h>
 
-enum { GREEN_KUBO_MOST_COMPONENTS = 6, GREEN_KUBO_SPANS = 3 };
+enum { GREEN_KUBO_MAX_COMPONENTS = 6, GREEN_KUBO_SPANS = 3 };
 
 struct green_kubo {
     size_t lags, components;

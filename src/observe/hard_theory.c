@@ -27,8 +27,8 @@ static struct fluid fluid_of(int dimensions, double volume, double temperature,
 }
 
 static double contact_of_discs(double eta) {
-    const double room = 1 - eta;
-    return (1 - 7 * eta / 16) / (room * room) - pow(eta, 3) / 128 / pow(room, 4);
+    const double capacity = 1 - eta;
+    return (1 - 7 * eta / 16) / (capacity * capacity) - pow(eta, 3) / 128 / pow(capacity, 4);
 }
 
 /// What Kolafa adds to the contact value of Carnahan and Starling.
@@ -37,23 +37,25 @@ static double kolafa(double eta) {
 }
 
 static double compressibility_factor(const struct fluid *fluid) {
-    const double *m = fluid->moment, eta = fluid->eta, room = 1 - eta;
+    const double *m = fluid->moment, eta = fluid->eta, capacity = 1 - eta;
     if (fluid->dimensions == 2) {
         const double alike = m[1] * m[1] / m[2];
-        return (1 - alike) / room + alike * (1 + 2 * eta * contact_of_discs(eta));
+        return (1 - alike) / capacity + alike * (1 + 2 * eta * contact_of_discs(eta));
     }
     const double unit = pi / 6 * fluid->density, xi = unit * m[2]; // ξ_0 = unit
     const double alike = pow(m[2], 3) / (m[3] * m[3]);
-    return 1 / room + 3 * m[1] * xi / (room * room) +
-           xi * xi * xi * (3 - eta) / (unit * room * room * room) + alike * 4 * eta * kolafa(eta);
+    return 1 / capacity + 3 * m[1] * xi / (capacity * capacity) +
+           xi * xi * xi * (3 - eta) / (unit * capacity * capacity * capacity) +
+           alike * 4 * eta * kolafa(eta);
 }
 
 static double contact_value(const struct fluid *fluid, double a, double b) {
-    const double *m = fluid->moment, room = 1 - fluid->eta, tau = a * b / (a + b);
+    const double *m = fluid->moment, capacity = 1 - fluid->eta, tau = a * b / (a + b);
     if (fluid->dimensions == 2)
-        return 1 / room + (contact_of_discs(fluid->eta) - 1 / room) * 2 * tau * m[1] / m[2];
+        return 1 / capacity + (contact_of_discs(fluid->eta) - 1 / capacity) * 2 * tau * m[1] / m[2];
     const double xi = pi / 6 * fluid->density * m[2] * tau;
-    return 1 / room + 3 * xi / (room * room) + 2 * xi * xi / (room * room * room) +
+    return 1 / capacity + 3 * xi / (capacity * capacity) +
+           2 * xi * xi / (capacity * capacity * capacity) +
            kolafa(fluid->eta) * pow(2 * tau * m[2] / m[3], 2);
 }
 
@@ -72,13 +74,13 @@ static double mean_speed(const struct fluid *fluid, double mass) {
 
 /// Sort the particles into species; 0 if they are too many.
 static int find_species(const double *radius, const double *mass, size_t count,
-                        struct hard_theory_species species[HARD_THEORY_MOST_SPECIES]) {
+                        struct hard_theory_species species[HARD_THEORY_MAX_SPECIES]) {
     int found = 0;
     for (size_t k = 0; k < count; k++) {
         int n = 0;
         while (n < found && (species[n].radius != radius[k] || species[n].mass != mass[k]))
             n++;
-        if (n == HARD_THEORY_MOST_SPECIES)
+        if (n == HARD_THEORY_MAX_SPECIES)
             return 0;
         if (n == found)
             species[found++] = (struct hard_theory_species){radius[k], mass[k], 0};
@@ -90,7 +92,7 @@ static int find_species(const double *radius, const double *mass, size_t count,
 struct hard_theory mf_hard_theory(int dimensions, double volume, double temperature,
                                   const double *radius, const double *mass, size_t count) {
     const struct fluid fluid = fluid_of(dimensions, volume, temperature, radius, count);
-    struct hard_theory_species species[HARD_THEORY_MOST_SPECIES];
+    struct hard_theory_species species[HARD_THEORY_MAX_SPECIES];
     const int found = find_species(radius, mass, count, species);
     double meetings = 0, speeds = 0; // of all particles
     for (int a = 0; a < found; a++) {

@@ -32,7 +32,7 @@ struct hard_theory_species {
 };
 
 /// At most so many are told apart; the rates of more are not known.
-enum { HARD_THEORY_MOST_SPECIES = 16 };
+enum { HARD_THEORY_MAX_SPECIES = 16 };
 
 struct hard_theory {
     double eta;

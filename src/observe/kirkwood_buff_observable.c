@@ -86,9 +86,9 @@ static size_t spans(void *state, struct memory_span *spans) {
 
 /// G of a pair type and its error; NaN before the first block is whole.
 static void find(const struct state *s, size_t pair, double *value, double *error) {
-    enum { MOST_BLOCKS = 64 };
+    enum { MAX_BLOCKS = 64 };
     const size_t whole = mf_sample_blocks_whole(&s->blocks);
-    double means[MOST_BLOCKS], sum = 0, samples = 0;
+    double means[MAX_BLOCKS], sum = 0, samples = 0;
     for (size_t block = 0; block < whole; block++) {
         const double own = s->sums[block * s->pairs + pair];
         means[block] = own / s->blocks.samples[block];
@@ -122,43 +122,43 @@ done:
 }
 
 /// A number that is known.
-static void put_known(struct json_writer *writer, const char *what, const char *error,
-                      const char *pair, double value) {
+static void write_known(struct json_writer *writer, const char *what, const char *error,
+                        const char *pair, double value) {
     char key[COMPOSITION_PAIR_NAME_SIZE + 40];
     snprintf(key, sizeof key, "%s%s%s%s", what, error, pair[0] ? "_" : "", pair);
     if (isfinite(value))
-        mf_json_put_quantity(writer, key, unit, value);
+        mf_json_write_quantity(writer, key, unit, value);
 }
 
-void mf_kirkwood_buff_put(struct json_writer *writer, const char *what,
-                          const struct composition *components, size_t pair, double value,
-                          double error) {
+void mf_kirkwood_buff_write(struct json_writer *writer, const char *what,
+                            const struct composition *components, size_t pair, double value,
+                            double error) {
     char name[COMPOSITION_PAIR_NAME_SIZE];
     mf_composition_pair_name(components, (int)pair, name);
-    put_known(writer, what, "", name, value);
-    put_known(writer, what, "_error", name, error > 0 ? error : NAN);
+    write_known(writer, what, "", name, value);
+    write_known(writer, what, "_error", name, error > 0 ? error : NAN);
 }
 
-static void put(const void *state, const struct observable_results *results,
-                struct json_writer *writer) {
+static void write_summary(const void *state, const struct observable_results *results,
+                          struct json_writer *writer) {
     (void)results;
     const struct state *s = state;
     double value, error;
     for (size_t pair = 0; pair < s->pairs; pair++) {
         find(s, pair, &value, &error);
-        mf_kirkwood_buff_put(writer, "kirkwood_buff", mf_kirkwood_buff_waves_components(&s->waves),
-                             pair, value, error);
+        mf_kirkwood_buff_write(writer, "kirkwood_buff",
+                               mf_kirkwood_buff_waves_components(&s->waves), pair, value, error);
     }
     if (s->pairs == 1) {
-        mf_json_put_number(writer, "compressibility", 1 + s->density * value);
-        mf_json_put_number(writer, "compressibility_error", s->density * error);
+        mf_json_write_number(writer, "compressibility", 1 + s->density * value);
+        mf_json_write_number(writer, "compressibility_error", s->density * error);
     }
-    mf_json_put_quantity(writer, "kirkwood_buff_q_maximum", "1/lambda", s->waves.q_maximum);
-    mf_json_put_number(writer, "kirkwood_buff_waves", (double)s->waves.waves.waves.vectors);
+    mf_json_write_quantity(writer, "kirkwood_buff_q_maximum", "1/lambda", s->waves.q_maximum);
+    mf_json_write_number(writer, "kirkwood_buff_waves", (double)s->waves.waves.waves.vectors);
 }
 
-static void say(const void *state, const struct observable_results *results, char *line,
-                size_t size) {
+static void print(const void *state, const struct observable_results *results, char *line,
+                  size_t size) {
     const struct state *s = state;
     const double factor = mf_units_factor(results->units, unit);
     char suffix[UNITS_NAME_SIZE];
@@ -213,8 +213,8 @@ const struct observable mf_kirkwood_buff_observable = {
     .clear = clear,
     .sample = sample,
     .spans = spans,
-    .put = put,
-    .say = say,
+    .write_summary = write_summary,
+    .print = print,
     .explain = explain,
     .stage = "Kirkwood-Buff integrals",
     .targets = targets,

@@ -15,9 +15,9 @@ extern const struct observable mf_kirkwood_buff_observable;
 /// "kirkwood_buff_error_A-B"; without types "kirkwood_buff" and "kirkwood_buff_error". What is not
 /// known is left out.
 /// @param[in] what  "kirkwood_buff", or what begins so
-void mf_kirkwood_buff_put(struct json_writer *writer, const char *what,
-                          const struct composition *components, size_t pair, double value,
-                          double error);
+void mf_kirkwood_buff_write(struct json_writer *writer, const char *what,
+                            const struct composition *components, size_t pair, double value,
+                            double error);
 
 /// Its target's number (mf_observable_kind): one value a pair of components, in their order.
 int mf_kirkwood_buff_kind(void);

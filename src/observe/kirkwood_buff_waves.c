@@ -9,10 +9,10 @@
 /// beads.
 static double guess_size(const struct box *box, size_t beads, const struct topology *topology) {
     const double step = pow(mf_box_volume(box) / (double)beads, 1.0 / box->dimensions);
-    int most = 1;
+    int max = 1;
     for (int k = 0; topology && k < topology->kinds; k++)
-        most = topology->kind[k].beads > most ? topology->kind[k].beads : most;
-    return step * sqrt(most / 6.0);
+        max = topology->kind[k].beads > max ? topology->kind[k].beads : max;
+    return step * sqrt(max / 6.0);
 }
 
 double mf_kirkwood_buff_waves_maximum(const struct box *box, size_t sites, size_t beads,

@@ -39,14 +39,14 @@ static enum status begin(void *state, const void *settings, const struct simulat
                         .cells = {1, 1, 1},
                         .total = 1,
                         .count = simulation->particles.count};
-    const double most = 4 * (double)s->count + 64;
+    const double max = 4 * (double)s->count + 64;
     double total = 1;
     for (int d = 0; d < box->dimensions; d++) {
         const double fit = fmax(1, round(box->length[d] / s->settings.cell));
         total *= fit;
-        s->cells[d] = (int)fmin(fit, most);
+        s->cells[d] = (int)fmin(fit, max);
     }
-    if (total > most)
+    if (total > max)
         return mf_status_fail(STATUS_BAD_INPUT,
                               "local_density.cell: %g makes %.3g cells for %zu particles",
                               s->settings.cell, total, s->count);

@@ -8,11 +8,11 @@
 #include <math.h>
 
 /// Blocks of time.
-enum { MOST_BLOCKS = 512 };
+enum { MAX_BLOCKS = 512 };
 
 enum status mf_maxwell_init(struct maxwell *maxwell, size_t planned) {
     enum status status = STATUS_OK;
-    *maxwell = (struct maxwell){.each = planned / MOST_BLOCKS + 1};
+    *maxwell = (struct maxwell){.each = planned / MAX_BLOCKS + 1};
     maxwell->blocks = planned / maxwell->each + 1;
     NEW_ARRAY(maxwell->counts, MAXWELL_BINS);
     NEW_ARRAY(maxwell->cells, maxwell->blocks * MAXWELL_CELLS);
@@ -88,7 +88,7 @@ static void find_series(const struct maxwell *maxwell, size_t blocks, double *se
 static double find_inefficiency(const struct maxwell *maxwell, double total) {
     static const double edges = 3.4;
     const size_t blocks = (size_t)maxwell->taken / maxwell->each;
-    double series[EDGES * (MOST_BLOCKS + 1)], error[EDGES], found = 0;
+    double series[EDGES * (MAX_BLOCKS + 1)], error[EDGES], found = 0;
     if (blocks < 2)
         return 1;
     find_series(maxwell, blocks, series);

@@ -21,10 +21,10 @@ uint64_t mf_measure_steps(const struct measure_plan *plan) {
     return (uint64_t)(plan->equilibration + plan->samples * plan->every);
 }
 
-static void tell(const struct measure_listener *listener, const struct simulation *simulation,
-                 const struct measure_plan *plan) {
+static void report(const struct measure_listener *listener, const struct simulation *simulation,
+                   const struct measure_plan *plan) {
     if (listener)
-        listener->tell(listener->context, simulation, simulation->step, mf_measure_steps(plan));
+        listener->report(listener->context, simulation, simulation->step, mf_measure_steps(plan));
 }
 
 /// Bead-steps between two words to the listener: less than a second of one thread, whatever the
@@ -34,9 +34,9 @@ enum { STEPS_A_WORD = 1 << 21 };
 
 static int64_t find_piece(const struct simulation *simulation,
                           const struct measure_listener *listener) {
-    const int64_t most = 1 + STEPS_A_WORD / (int64_t)simulation_moved(&simulation->setup);
+    const int64_t max = 1 + STEPS_A_WORD / (int64_t)simulation_moved(&simulation->setup);
     const int64_t wanted = listener && listener->steps ? listener->steps(listener->context) : 0;
-    return wanted > 0 && wanted < most ? wanted : most;
+    return wanted > 0 && wanted < max ? wanted : max;
 }
 
 /// Forces, sums and the list of the present configuration, of which sweeps of Monte Carlo compute
@@ -55,7 +55,7 @@ static enum status run_until(struct simulation *simulation, int64_t step,
         const int64_t steps = step - now <= piece ? step - now : piece;
         TRY(mf_simulation_run(simulation, (uint64_t)steps));
         if (now + steps < step || piece == 1)
-            tell(listener, simulation, plan);
+            report(listener, simulation, plan);
     }
     return STATUS_OK;
 }
@@ -108,7 +108,7 @@ enum status mf_measure_settle(struct simulation *simulation, const struct measur
             TRY(mf_thermodynamics_temperature(simulation, &ratios.above[last],
                                               &ratios.below[last]));
         }
-        tell(listener, simulation, plan);
+        report(listener, simulation, plan);
     }
     const struct simulation_setup *setup = &simulation->setup;
     *temperature = simulation_has_velocities(setup) ? kinetic(&ratios)
@@ -226,7 +226,7 @@ static enum status take_samples(struct simulation *simulation, const struct meas
             else if (observable->due == NULL)
                 TRY(observable->sample(use->state, simulation));
         }
-        tell(listener, simulation, plan);
+        report(listener, simulation, plan);
     }
     return STATUS_OK;
 }

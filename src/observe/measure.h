@@ -19,7 +19,8 @@ uint64_t mf_measure_steps(const struct measure_plan *plan);
 /// Told after each sample, and every second or so between them; `done` of `total` steps. NULL for
 /// none.
 struct measure_listener {
-    void (*tell)(void *context, const struct simulation *simulation, uint64_t done, uint64_t total);
+    void (*report)(void *context, const struct simulation *simulation, uint64_t done,
+                   uint64_t total);
     void *context;
     /// Steps until the next word at most, asked for after each; 0, or NULL: every second or so.
     /// With 1 it is told after every step, of some twice.

@@ -13,10 +13,10 @@
 
 struct state {
     const struct molecules *molecules;
-    size_t most;                               ///< molecules of a kind
-    struct motion motion[TOPOLOGY_MOST_KINDS]; ///< of each kind
-    double *centres;                           ///< shape [2, dimensions, most]: of a kind
-    double together[3];                        ///< centre of mass of all particles [λ]
+    size_t max;                               ///< molecules of a kind
+    struct motion motion[TOPOLOGY_MAX_KINDS]; ///< of each kind
+    double *centres;                          ///< shape [2, dimensions, most]: of a kind
+    double together[3];                       ///< centre of mass of all particles [λ]
 };
 
 static enum status begin(void *state, const void *settings, const struct simulation *simulation,
@@ -30,19 +30,19 @@ static enum status begin(void *state, const void *settings, const struct simulat
     const struct topology *topology = &s->molecules->topology;
     for (int k = 0; k < topology->kinds; k++) {
         const size_t count = (size_t)topology->kind[k].count;
-        s->most = count > s->most ? count : s->most;
+        s->max = count > s->max ? count : s->max;
         status = mf_motion_init_points(&s->motion[k], settings, simulation, count,
                                        plan->equilibration, plan->samples * plan->every);
         CHECK(status != STATUS_OK ? mf_status_prefix(status, "molecule_motion") : STATUS_OK);
     }
-    NEW_ARRAY(s->centres, 2 * (size_t)setup->box.dimensions * s->most);
+    NEW_ARRAY(s->centres, 2 * (size_t)setup->box.dimensions * s->max);
 done:
     return status;
 }
 
 static void clear(void *state) {
     struct state *s = state;
-    for (int k = 0; k < TOPOLOGY_MOST_KINDS; k++)
+    for (int k = 0; k < TOPOLOGY_MAX_KINDS; k++)
         mf_motion_clear(&s->motion[k]);
     mf_memory_free(s->centres);
     *s = (struct state){0};
@@ -109,7 +109,7 @@ static size_t spans(void *state, struct memory_span *spans) {
 
 // Results -----------------------------------------------------------------------------------------
 
-enum { MOST_COLUMNS = 1 + 2 * TOPOLOGY_MOST_KINDS, HEAD_SIZE = TOPOLOGY_NAME_SIZE + 32 };
+enum { MAX_COLUMNS = 1 + 2 * TOPOLOGY_MAX_KINDS, HEAD_SIZE = TOPOLOGY_NAME_SIZE + 32 };
 
 /// molecule_motion.tsv: time, MSD and error of each kind.
 static enum status write(const void *state, const struct observable_results *results) {
@@ -118,8 +118,8 @@ static enum status write(const void *state, const struct observable_results *res
     const struct topology *topology = &s->molecules->topology;
     const struct motion *first = &s->motion[0];
     const size_t rows = (size_t)first->plan.lags + 1, kinds = (size_t)topology->kinds;
-    struct data_column columns[MOST_COLUMNS];
-    char names[MOST_COLUMNS][HEAD_SIZE], path[OUTPUT_PATH_SIZE];
+    struct data_column columns[MAX_COLUMNS];
+    char names[MAX_COLUMNS][HEAD_SIZE], path[OUTPUT_PATH_SIZE];
     double *values = NULL;
     size_t n = 0;
     NEW_ARRAY(values, (1 + 4 * kinds) * rows);
@@ -130,7 +130,7 @@ static enum status write(const void *state, const struct observable_results *res
         double *own = values + (1 + 4 * k) * rows;
         mf_motion_result(&s->motion[k],
                          &(struct motion_curves){own, own + rows, own + 2 * rows, own + 3 * rows});
-        mf_statistics_forget_errors(own + rows, rows);
+        mf_statistics_mark_unknown_errors(own + rows, rows);
         for (size_t which = 0; which < 2; which++) {
             snprintf(names[n], HEAD_SIZE, "%s%s[lambda^2]", topology->kind[k].name,
                      which == 0 ? "" : "_error");
@@ -146,27 +146,27 @@ done:
     return status;
 }
 
-static void put(const void *state, const struct observable_results *results,
-                struct json_writer *writer) {
+static void write_summary(const void *state, const struct observable_results *results,
+                          struct json_writer *writer) {
     const struct state *s = state;
     (void)results;
     mf_json_begin(writer, "molecule_motion");
     for (int k = 0; k < s->molecules->topology.kinds; k++) {
         struct motion_summary found = mf_motion_result(&s->motion[k], NULL);
-        mf_statistics_forget_errors(&found.msd_error, 1);
+        mf_statistics_mark_unknown_errors(&found.msd_error, 1);
         mf_json_begin(writer, s->molecules->topology.kind[k].name);
-        mf_json_put_quantity(writer, "diffusion", "lambda^2/tau", found.msd);
-        mf_json_put_quantity(writer, "diffusion_error", "lambda^2/tau", found.msd_error);
-        mf_json_put_quantity(writer, "fit_begin", "tau", found.fit_begin);
-        mf_json_put_quantity(writer, "fit_end", "tau", found.fit_end);
+        mf_json_write_quantity(writer, "diffusion", "lambda^2/tau", found.msd);
+        mf_json_write_quantity(writer, "diffusion_error", "lambda^2/tau", found.msd_error);
+        mf_json_write_quantity(writer, "fit_begin", "tau", found.fit_begin);
+        mf_json_write_quantity(writer, "fit_end", "tau", found.fit_end);
         mf_json_end(writer);
     }
     mf_json_end(writer);
 }
 
 /// D of the first kind.
-static void say(const void *state, const struct observable_results *results, char *line,
-                size_t size) {
+static void print(const void *state, const struct observable_results *results, char *line,
+                  size_t size) {
     const struct state *s = state;
     const struct motion_summary found = mf_motion_result(&s->motion[0], NULL);
     const double factor = mf_units_factor(results->units, "lambda^2/tau");
@@ -207,8 +207,8 @@ const struct observable mf_molecule_motion = {
     .sample = sample,
     .spans = spans,
     .write = write,
-    .put = put,
-    .say = say,
+    .write_summary = write_summary,
+    .print = print,
     .explain = explain,
     .stage = "diffusion of molecules",
     .files = files,

@@ -22,7 +22,7 @@
 enum { GYRATION, END, NUMBERS };
 
 /// Of a kind's molecules, for errors.
-enum { MOST_PARTS = 20 };
+enum { MAX_PARTS = 20 };
 
 struct settings {
     int64_t lags;
@@ -38,7 +38,7 @@ struct state {
     double *ends;     ///< shape [lags + 1, molecules, 3]: the last end-to-end vectors [λ]
     double *products; ///< shape [blocks, kinds, lags + 1]: sums of R(t)·R(0) [λ²]
     double *origins;  ///< shape [blocks, lags + 1]: samples in them
-    /// Shape [kinds, MOST_PARTS, NUMBERS + lags + 1]: sums of the numbers and of the products over
+    /// Shape [kinds, MAX_PARTS, NUMBERS + lags + 1]: sums of the numbers and of the products over
     /// samples and every so manieth molecule of a kind.
     double *of_part;
     struct whole_molecules whole;
@@ -95,7 +95,7 @@ static enum status begin(void *state, const void *settings, const struct simulat
     NEW_ARRAY(s->ends, 3 * (s->lags + 1) * (size_t)topology->molecules);
     NEW_ARRAY(s->products, s->blocks.count * kinds * (s->lags + 1));
     NEW_ARRAY(s->origins, s->blocks.count * (s->lags + 1));
-    NEW_ARRAY(s->of_part, kinds * MOST_PARTS * (NUMBERS + s->lags + 1));
+    NEW_ARRAY(s->of_part, kinds * MAX_PARTS * (NUMBERS + s->lags + 1));
     CHECK(mf_whole_molecules_init(&s->whole, topology));
 done:
     return status;
@@ -120,11 +120,11 @@ static double *vectors_of(const struct state *s, size_t sample) {
 /// Parts of a kind's molecules, and the sums of one of them.
 static size_t parts_of(const struct state *s, int k) {
     const size_t count = (size_t)s->molecules->topology.kind[k].count;
-    return count < MOST_PARTS ? count : MOST_PARTS;
+    return count < MAX_PARTS ? count : MAX_PARTS;
 }
 
 static double *part_of(const struct state *s, int k, size_t molecule) {
-    const size_t part = (size_t)k * MOST_PARTS + molecule % parts_of(s, k);
+    const size_t part = (size_t)k * MAX_PARTS + molecule % parts_of(s, k);
     return s->of_part + part * (NUMBERS + s->lags + 1);
 }
 
@@ -170,7 +170,7 @@ static enum status sample(void *state, struct simulation *simulation) {
     struct state *s = state;
     const struct topology *topology = &s->molecules->topology;
     const size_t number = s->blocks.taken;
-    double *vectors = vectors_of(s, number), numbers[NUMBERS * TOPOLOGY_MOST_KINDS];
+    double *vectors = vectors_of(s, number), numbers[NUMBERS * TOPOLOGY_MAX_KINDS];
     const size_t block = begin_sample(s);
     for (int k = 0; k < topology->kinds; k++) {
         const struct topology_kind *kind = &topology->kind[k];
@@ -205,17 +205,17 @@ static size_t spans(void *state, struct memory_span *spans) {
     spans[n++] = (struct memory_span){s->products, blocks * kinds * row * sizeof *s->products};
     spans[n++] = (struct memory_span){s->origins, blocks * row * sizeof *s->origins};
     spans[n++] =
-        (struct memory_span){s->of_part, kinds * MOST_PARTS * (NUMBERS + row) * sizeof *s->of_part};
+        (struct memory_span){s->of_part, kinds * MAX_PARTS * (NUMBERS + row) * sizeof *s->of_part};
     return n + mf_sample_blocks_spans(&s->blocks, spans + n);
 }
 
-static enum status make_room(void *state) {
-    return mf_sample_series_make_room(&((struct state *)state)->series);
+static enum status reserve(void *state) {
+    return mf_sample_series_reserve(&((struct state *)state)->series);
 }
 
 // Results -----------------------------------------------------------------------------------------
 
-enum { MOST_COLUMNS = 1 + 2 * TOPOLOGY_MOST_KINDS, HEAD_SIZE = TOPOLOGY_NAME_SIZE + 32 };
+enum { MAX_COLUMNS = 1 + 2 * TOPOLOGY_MAX_KINDS, HEAD_SIZE = TOPOLOGY_NAME_SIZE + 32 };
 
 static const double *series_of(const struct state *s, int k, int which) {
     return sample_series_column(&s->series, (size_t)(NUMBERS * k + which));
@@ -225,8 +225,8 @@ static const double *series_of(const struct state *s, int k, int which) {
 static enum status write_sizes(const struct state *s, const struct observable_results *results) {
     enum status status = STATUS_OK;
     const struct topology *topology = &s->molecules->topology;
-    struct data_column columns[MOST_COLUMNS];
-    char names[MOST_COLUMNS][HEAD_SIZE], path[OUTPUT_PATH_SIZE];
+    struct data_column columns[MAX_COLUMNS];
+    char names[MAX_COLUMNS][HEAD_SIZE], path[OUTPUT_PATH_SIZE];
     double *time = NULL;
     size_t n = 0;
     NEW_ARRAY(time, s->blocks.taken);
@@ -304,7 +304,7 @@ static enum status find_correlation(const struct state *s, int k, double *values
             blocks > 1 ? error_of_parts(s, k, NUMBERS + lag, origins, values[lag]) / square : 0;
     }
     mf_statistics_take_larger(values + row, of_parts, row);
-    mf_statistics_forget_errors(values + row, row);
+    mf_statistics_mark_unknown_errors(values + row, row);
 done:
     mf_memory_free(products);
     mf_memory_free(squares);
@@ -318,8 +318,8 @@ static enum status write_correlation(const struct state *s,
     enum status status = STATUS_OK;
     const struct topology *topology = &s->molecules->topology;
     const size_t row = s->lags + 1, rows = row < s->blocks.taken ? row : s->blocks.taken;
-    struct data_column columns[MOST_COLUMNS];
-    char names[MOST_COLUMNS][HEAD_SIZE], path[OUTPUT_PATH_SIZE];
+    struct data_column columns[MAX_COLUMNS];
+    char names[MAX_COLUMNS][HEAD_SIZE], path[OUTPUT_PATH_SIZE];
     double *values = NULL;
     size_t n = 0;
     NEW_ARRAY(values, (1 + 2 * (size_t)topology->kinds) * row);
@@ -362,27 +362,27 @@ static double mean_of(const struct state *s, int k, int which, double *error) {
     return sum / (double)s->blocks.taken;
 }
 
-static void put(const void *state, const struct observable_results *results,
-                struct json_writer *writer) {
+static void write_summary(const void *state, const struct observable_results *results,
+                          struct json_writer *writer) {
     const struct state *s = state;
     (void)results;
     mf_json_begin(writer, "molecule_sizes");
     for (int k = 0; k < s->molecules->topology.kinds; k++) {
         double error, mean = mean_of(s, k, GYRATION, &error);
         mf_json_begin(writer, s->molecules->topology.kind[k].name);
-        mf_json_put_quantity(writer, "gyration_squared", "lambda^2", mean);
-        mf_json_put_quantity(writer, "gyration_squared_error", "lambda^2", error);
+        mf_json_write_quantity(writer, "gyration_squared", "lambda^2", mean);
+        mf_json_write_quantity(writer, "gyration_squared_error", "lambda^2", error);
         mean = mean_of(s, k, END, &error);
-        mf_json_put_quantity(writer, "end_to_end_squared", "lambda^2", mean);
-        mf_json_put_quantity(writer, "end_to_end_squared_error", "lambda^2", error);
+        mf_json_write_quantity(writer, "end_to_end_squared", "lambda^2", mean);
+        mf_json_write_quantity(writer, "end_to_end_squared_error", "lambda^2", error);
         mf_json_end(writer);
     }
     mf_json_end(writer);
 }
 
 /// The sizes of the first kind.
-static void say(const void *state, const struct observable_results *results, char *line,
-                size_t size) {
+static void print(const void *state, const struct observable_results *results, char *line,
+                  size_t size) {
     const struct state *s = state;
     const double factor = mf_units_factor(results->units, "lambda^2");
     char end[NUMBER_TEXT_SIZE], gyration[NUMBER_TEXT_SIZE], unit[UNITS_NAME_SIZE];
@@ -419,10 +419,10 @@ const struct observable mf_molecule_sizes = {
     .clear = clear,
     .sample = sample,
     .spans = spans,
-    .make_room = make_room,
+    .reserve = reserve,
     .write = write,
-    .put = put,
-    .say = say,
+    .write_summary = write_summary,
+    .print = print,
     .explain = explain,
     .stage = "sizes of molecules",
     .files = files,

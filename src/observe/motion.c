@@ -21,7 +21,7 @@ const struct field mf_motion_plan_fields[] = {
     FIELD_END,
 };
 
-enum { MOST_BLOCKS = 64 };
+enum { MAX_BLOCKS = 64 };
 
 /// Origins whose windows have ended by the sample number `last`.
 static size_t complete_origins(const struct motion_plan *plan, size_t last) {
@@ -31,7 +31,7 @@ static size_t complete_origins(const struct motion_plan *plan, size_t last) {
 
 /// Without velocities, and for beads in a solvent, the momentum of the particles is not conserved.
 static bool keeps_momentum(const struct simulation_setup *setup) {
-    return simulation_has_velocities(setup) && setup->integrator->companions == NULL;
+    return simulation_has_velocities(setup) && setup->integrator->solvent_particles == NULL;
 }
 
 /// Number of the last sample.
@@ -74,7 +74,7 @@ enum status mf_motion_init_points(struct motion *motion, const struct motion_pla
             "measurement; lower \"lags\", or raise \"samples\" of \"measure\"",
             (long long)plan->lags, (long long)plan->every, (long long)steps);
     // Blocks of the same size: the mean over them is the mean over their origins.
-    motion->each = (origins + MOST_BLOCKS - 1) / MOST_BLOCKS;
+    motion->each = (origins + MAX_BLOCKS - 1) / MAX_BLOCKS;
     motion->blocks = origins / motion->each;
     return allocate(motion);
 }
@@ -82,18 +82,18 @@ enum status mf_motion_init_points(struct motion *motion, const struct motion_pla
 enum status mf_motion_init(struct motion *motion, const struct motion_plan *plan,
                            const struct simulation *simulation, int64_t begin, int64_t steps) {
     TRY(mf_motion_init_points(motion, plan, simulation, simulation->particles.count, begin, steps));
-    motion->flies = simulation_has_velocities(&simulation->setup);
+    motion->has_velocities = simulation_has_velocities(&simulation->setup);
     return STATUS_OK;
 }
 
 enum status mf_motion_init_endless(struct motion *motion, const struct motion_plan *plan,
-                                   size_t count, double interval, bool flies) {
+                                   size_t count, double interval, bool has_velocities) {
     *motion = (struct motion){.plan = *plan,
                               .dimensions = 3,
                               .count = count,
                               .time_step = interval,
-                              .flies = flies,
-                              .blocks = MOST_BLOCKS,
+                              .has_velocities = has_velocities,
+                              .blocks = MAX_BLOCKS,
                               .each = 1,
                               .endless = true};
     return allocate(motion);
@@ -159,8 +159,8 @@ static void gather(struct motion *motion, const struct simulation *simulation) {
         }
     }
     double *angles = motion->polar ? gather_angles(motion, particles) : NULL;
-    if (integrator->forget)
-        integrator->forget(simulation, motion->now, angles);
+    if (integrator->remove_correlated)
+        integrator->remove_correlated(simulation, motion->now, angles);
     for (size_t k = 0; angles && k < count; k++)
         orientation_polarity(angles[k], angles - count + k, angles + k);
 }
@@ -219,7 +219,7 @@ static void correlate(struct motion *motion, size_t origin, int threads) {
     motion->squares[place] +=
         mf_parallel_sum(motion->count, threads, sum_squares, &positions) / count;
     motion->products[place] +=
-        motion->flies || motion->polar
+        motion->has_velocities || motion->polar
             ? mf_parallel_sum(motion->count, threads, sum_products, &velocities) / count
             : NAN;
 }
@@ -362,7 +362,7 @@ size_t mf_motion_blocks(const struct motion *motion) {
 static void average(const struct motion *motion, const double *sums,
                     double (*read)(const struct motion *motion, const double *curve, size_t lag),
                     size_t lag, double *mean, double *error) {
-    double values[MOST_BLOCKS];
+    double values[MAX_BLOCKS];
     struct running_mean all = {0};
     const size_t blocks = mf_motion_blocks(motion), curve = (size_t)motion->plan.lags + 1;
     for (size_t b = 0; b < blocks; b++) {
@@ -414,7 +414,7 @@ bool mf_motion_is_coarse(const struct motion_summary *s) {
     return s->green_kubo_sampling > fmax(coarse * fabs(s->green_kubo), s->green_kubo_error);
 }
 
-enum status mf_motion_judge(const struct motion_summary *summary) {
+enum status mf_motion_assess(const struct motion_summary *summary) {
     static const double deviations = 4;
     const struct motion_summary *s = summary;
     const double error = mf_motion_green_kubo_uncertainty(s);

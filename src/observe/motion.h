@@ -13,8 +13,8 @@
 /// Dynamics without velocities conserve no momentum: positions are those in the box, since the
 /// centre of mass diffuses as the particles do, and without its share D would be (1 − 1/N) too
 /// small. A drift, such as that of a uniform force, is in their MSD. They are read where the noise
-/// of the last step has been taken off (`forget` of the integrator), so that the MSD of free
-/// particles is 2 d D t at every lag. They have no VACF, and all that comes of it is NaN.
+/// of the last step has been taken off (`remove_correlated` of the integrator), so that the MSD of
+/// free particles is 2 d D t at every lag. They have no VACF, and all that comes of it is NaN.
 #pragma once
 
 #include "base/fields.h"
@@ -35,7 +35,7 @@ struct motion {
     int dimensions;
     size_t count; ///< of particles
     double time_step;
-    bool flies;    ///< has velocities
+    bool has_velocities; ///< has velocities
     bool together; ///< momentum is conserved: displacements are relative to the centre of mass
     bool polar;    ///< polarities stand in the place of velocities (observe/polarity.h)
     int64_t begin; ///< step of the first sample
@@ -66,11 +66,11 @@ enum status mf_motion_init_points(struct motion *motion, const struct motion_pla
                                   int64_t steps) MUST_USE;
 
 /// Prepare for samples that others take (mf_motion_add), `interval` apart, as many as there will
-/// be, of particles in three dimensions; `flies` if they come with velocities. The plan's `every`
-/// is
+/// be, of particles in three dimensions; `has_velocities` if they come with velocities. The plan's
+/// `every` is
 /// 1. Fails: NO_MEMORY.
 enum status mf_motion_init_endless(struct motion *motion, const struct motion_plan *plan,
-                                   size_t count, double interval, bool flies) MUST_USE;
+                                   size_t count, double interval, bool has_velocities) MUST_USE;
 void mf_motion_clear(struct motion *motion);
 
 /// Blocks of time origins whose windows are complete.
@@ -135,4 +135,4 @@ bool mf_motion_is_coarse(const struct motion_summary *summary);
 /// Whether D of the VACF can be trusted: its sampling is off by less than 3 % or its statistical
 /// error, and it agrees with D of the MSD within four combined errors. Fails: UNCONVERGED with the
 /// numbers in the message. Tested: test_motion.
-enum status mf_motion_judge(const struct motion_summary *summary) MUST_USE;
+enum status mf_motion_assess(const struct motion_summary *summary) MUST_USE;

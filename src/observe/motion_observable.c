@@ -37,7 +37,7 @@ static enum status write(const void *state, const struct observable_results *res
     const struct motion *motion = state;
     const struct units *units = results->units;
     const size_t rows = (size_t)motion->plan.lags + 1;
-    const bool known = mf_units_beside(units);
+    const bool known = mf_units_have_second_columns(units);
     const double ps = known ? mf_units_time_ps(units) : 1, nm2 = units->length * units->length;
     double *time = NULL, *values = NULL, *picoseconds = NULL, *physical = NULL;
     char path[OUTPUT_PATH_SIZE];
@@ -46,8 +46,8 @@ static enum status write(const void *state, const struct observable_results *res
     const struct motion_curves curves = {values, values + rows, values + 2 * rows,
                                          values + 3 * rows};
     mf_motion_result(motion, &curves);
-    mf_statistics_forget_errors(curves.msd_error, rows);
-    mf_statistics_forget_errors(curves.vacf_error, rows);
+    mf_statistics_mark_unknown_errors(curves.msd_error, rows);
+    mf_statistics_mark_unknown_errors(curves.vacf_error, rows);
     for (size_t k = 0; k < rows; k++)
         time[k] = (double)k * (double)motion->plan.every * motion->time_step;
     picoseconds = mf_units_column(time, rows, ps);
@@ -76,56 +76,56 @@ done:
 }
 
 /// D of an infinite box, where the viscosity is known.
-static void put_infinite(const struct motion_summary *s, const struct observable_results *results,
-                         struct json_writer *writer) {
+static void write_infinite(const struct motion_summary *s, const struct observable_results *results,
+                           struct json_writer *writer) {
     double diffusion = s->msd, error = s->msd_error;
     if (!mf_shear_viscosity_correct(results, &diffusion, &error))
         return;
-    mf_json_put_quantity(writer, "diffusion_infinite", "lambda^2/tau", diffusion);
-    mf_json_put_quantity(writer, "diffusion_infinite_error", "lambda^2/tau", error);
+    mf_json_write_quantity(writer, "diffusion_infinite", "lambda^2/tau", diffusion);
+    mf_json_write_quantity(writer, "diffusion_infinite_error", "lambda^2/tau", error);
 }
 
 /// The object "motion": diffusion coefficients with errors, in cm²/s too when the units are known,
 /// and the test of the velocities.
-static void put(const void *state, const struct observable_results *results,
-                struct json_writer *writer) {
+static void write_summary(const void *state, const struct observable_results *results,
+                          struct json_writer *writer) {
     const struct units *units = results->units;
     struct motion_summary s = mf_motion_result(state, NULL);
     mf_json_begin(writer, "motion");
-    mf_statistics_forget_errors(&s.msd_error, 1);
-    if (mf_units_mark(units, mf_motion_judge(&s)) != STATUS_OK)
-        mf_json_put_text(writer, "warning", mf_status_message());
-    mf_json_put_quantity(writer, "diffusion_msd", "lambda^2/tau", s.msd);
-    mf_json_put_quantity(writer, "diffusion_msd_error", "lambda^2/tau", s.msd_error);
-    put_infinite(&s, results, writer);
-    mf_json_put_quantity(writer, "diffusion_green_kubo", "lambda^2/tau", s.green_kubo);
+    mf_statistics_mark_unknown_errors(&s.msd_error, 1);
+    if (mf_units_add_to_message(units, mf_motion_assess(&s)) != STATUS_OK)
+        mf_json_write_text(writer, "warning", mf_status_message());
+    mf_json_write_quantity(writer, "diffusion_msd", "lambda^2/tau", s.msd);
+    mf_json_write_quantity(writer, "diffusion_msd_error", "lambda^2/tau", s.msd_error);
+    write_infinite(&s, results, writer);
+    mf_json_write_quantity(writer, "diffusion_green_kubo", "lambda^2/tau", s.green_kubo);
     const double error = mf_motion_green_kubo_uncertainty(&s);
-    mf_json_put_quantity(writer, "diffusion_green_kubo_error", "lambda^2/tau", error);
-    mf_json_put_quantity(writer, "diffusion_green_kubo_sampling", "lambda^2/tau",
-                         s.green_kubo_sampling);
-    mf_json_put_quantity(writer, "diffusion_green_kubo_truncation", "lambda^2/tau",
-                         s.green_kubo_truncation);
+    mf_json_write_quantity(writer, "diffusion_green_kubo_error", "lambda^2/tau", error);
+    mf_json_write_quantity(writer, "diffusion_green_kubo_sampling", "lambda^2/tau",
+                           s.green_kubo_sampling);
+    mf_json_write_quantity(writer, "diffusion_green_kubo_truncation", "lambda^2/tau",
+                           s.green_kubo_truncation);
     if (mf_units_known(units)) {
         const double unit = mf_units_diffusion_cm2_per_s(units);
-        mf_json_put_number(writer, "diffusion_msd_cm2_per_s", s.msd * unit);
-        mf_json_put_number(writer, "diffusion_msd_error_cm2_per_s", s.msd_error * unit);
-        mf_json_put_number(writer, "diffusion_green_kubo_cm2_per_s", s.green_kubo * unit);
-        mf_json_put_number(writer, "diffusion_green_kubo_error_cm2_per_s", error * unit);
+        mf_json_write_number(writer, "diffusion_msd_cm2_per_s", s.msd * unit);
+        mf_json_write_number(writer, "diffusion_msd_error_cm2_per_s", s.msd_error * unit);
+        mf_json_write_number(writer, "diffusion_green_kubo_cm2_per_s", s.green_kubo * unit);
+        mf_json_write_number(writer, "diffusion_green_kubo_error_cm2_per_s", error * unit);
     }
-    mf_json_put_quantity(writer, "fit_begin", "tau", s.fit_begin);
-    mf_json_put_quantity(writer, "fit_end", "tau", s.fit_end);
+    mf_json_write_quantity(writer, "fit_begin", "tau", s.fit_begin);
+    mf_json_write_quantity(writer, "fit_end", "tau", s.fit_end);
     if (s.maxwell.numbers > 0) {
-        mf_json_put_number(writer, "velocities_tested", s.maxwell.numbers);
-        mf_json_put_number(writer, "velocities_independent", s.maxwell.independent);
-        mf_json_put_number(writer, "velocities_kolmogorov_smirnov", s.maxwell.statistic);
-        mf_json_put_number(writer, "velocities_p_value", s.maxwell.probability);
+        mf_json_write_number(writer, "velocities_tested", s.maxwell.numbers);
+        mf_json_write_number(writer, "velocities_independent", s.maxwell.independent);
+        mf_json_write_number(writer, "velocities_kolmogorov_smirnov", s.maxwell.statistic);
+        mf_json_write_number(writer, "velocities_p_value", s.maxwell.probability);
     }
     mf_json_end(writer);
 }
 
 /// Both diffusion coefficients; without velocities there is one.
-static void say(const void *state, const struct observable_results *results, char *line,
-                size_t size) {
+static void print(const void *state, const struct observable_results *results, char *line,
+                  size_t size) {
     const struct motion *motion = state;
     char msd[NUMBER_TEXT_SIZE], green_kubo[NUMBER_TEXT_SIZE];
     const struct motion_summary s = mf_motion_result(motion, NULL);
@@ -138,14 +138,15 @@ static void say(const void *state, const struct observable_results *results, cha
                    green_kubo);
     snprintf(line, size, "D = %s%s by the MSD from %.4g to %.4g %s%s%s%s", msd,
              mf_units_suffix(units, "lambda^2/tau", unit), time * s.fit_begin, time * s.fit_end,
-             mf_units_name(units, "tau", time_unit), motion->flies ? ", " : "",
-             motion->flies ? green_kubo : "", motion->flies ? " by Green and Kubo" : "");
+             mf_units_name(units, "tau", time_unit), motion->has_velocities ? ", " : "",
+             motion->has_velocities ? green_kubo : "",
+             motion->has_velocities ? " by Green and Kubo" : "");
 }
 
-static enum status judge(const void *state, const struct simulation_setup *setup) {
+static enum status assess(const void *state, const struct simulation_setup *setup) {
     (void)setup;
     const struct motion_summary s = mf_motion_result(state, NULL);
-    return mf_motion_judge(&s);
+    return mf_motion_assess(&s);
 }
 
 /// Nanoseconds of a particle and sample, and of each of its time origins.
@@ -224,9 +225,9 @@ const struct observable mf_motion_observable = {
     .sample = sample,
     .spans = spans,
     .write = write,
-    .put = put,
-    .say = say,
-    .judge = judge,
+    .write_summary = write_summary,
+    .print = print,
+    .assess = assess,
     .explain = explain,
     .stage = "diffusion",
     .files = files,

@@ -23,7 +23,7 @@ struct observable_use;
 /// The script that draws all columns of the first file but errors, and what ends with _boltzmann.
 #define OBSERVABLE_FIGURE_OF_GROUPS "groups"
 
-enum { OBSERVABLES_MOST = 24, OBSERVABLE_MOST_SPANS = 80 };
+enum { OBSERVABLES_MAX = 24, OBSERVABLE_MAX_SPANS = 80 };
 
 /// Where and of what results are written.
 struct observable_results {
@@ -92,21 +92,21 @@ struct observable {
     /// Add the present configuration, with the forces of its step. Fails: NO_MEMORY.
     enum status (*sample)(void *state, struct simulation *simulation);
 
-    /// What goes with a checkpoint, at most OBSERVABLE_MOST_SPANS; returns their number.
+    /// What goes with a checkpoint, at most OBSERVABLE_MAX_SPANS; returns their number.
     size_t (*spans)(void *state, struct memory_span *spans);
     /// If lengths of the spans depend on the state: the first span, alone, is restored before.
-    enum status (*make_room)(void *state);
+    enum status (*reserve)(void *state);
 
     /// Write its tables. Fails: IO, NO_MEMORY.
     enum status (*write)(const void *state, const struct observable_results *results);
     /// Add its numbers to summary.json.
-    void (*put)(const void *state, const struct observable_results *results,
-                struct json_writer *writer);
+    void (*write_summary)(const void *state, const struct observable_results *results,
+                          struct json_writer *writer);
     /// A line for the person.
-    void (*say)(const void *state, const struct observable_results *results, char *line,
-                size_t size);
+    void (*print)(const void *state, const struct observable_results *results, char *line,
+                  size_t size);
     /// Whether its results can be trusted; the message is a warning if not.
-    enum status (*judge)(const void *state, const struct simulation_setup *setup);
+    enum status (*assess)(const void *state, const struct simulation_setup *setup);
 
     /// Its stages of `--explain`, `every` being the steps between the plan's samples.
     void (*explain)(const void *settings, const struct simulation_setup *setup, double every,

@@ -28,7 +28,7 @@ void mf_particle_waves_clear(struct particle_waves *waves) {
     *waves = (struct particle_waves){0};
 }
 
-static void tell_angle(const void *context, size_t site, double angle[3]) {
+static void report_angle(const void *context, size_t site, double angle[3]) {
     const struct particle_waves *const w = context;
     for (int d = 0; d < 3; d++)
         angle[d] = w->unit[d] > 0 ? w->unit[d] * w->sites.site[d][site] : 0;
@@ -36,7 +36,7 @@ static void tell_angle(const void *context, size_t site, double angle[3]) {
 
 void mf_particle_waves_find(struct particle_waves *waves, const struct particles *particles,
                             int threads) {
-    const struct density_angles angles = {tell_angle, waves};
+    const struct density_angles angles = {report_angle, waves};
     mf_component_sites_find(&waves->sites, particles);
     mf_density_waves_find(&waves->waves, &angles, threads);
 }

@@ -11,7 +11,7 @@ struct law {
     double diffusion, square_speed, turning, misfit;
 };
 
-enum { MOST_BLOCKS = 64, GRID = 48, REFINED = 40 };
+enum { MAX_BLOCKS = 64, GRID = 48, REFINED = 40 };
 
 /// A curve of MSD without time 0, its times, and of a law its two basis functions.
 struct displacements {
@@ -96,7 +96,7 @@ static void find_numbers(const struct law *law, double number[3]) {
 /// The pseudo-values of M. H. Quenouille (Biometrika 43, 353 (1956)) are a series like any other.
 static void find_errors(const struct motion *motion, size_t blocks, struct displacements *curve,
                         const double number[3], double error[3]) {
-    double series[3][MOST_BLOCKS], part[3];
+    double series[3][MAX_BLOCKS], part[3];
     for (size_t b = 0; b < blocks; b++) {
         take_curve(motion, blocks, b, curve);
         const struct law law = fit_law(curve);

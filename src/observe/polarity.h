@@ -15,7 +15,7 @@ struct polarity {
     struct motion motion;
     struct sample_series order; ///< |⟨n⟩|
     /// What is known exactly: no interaction but self-propulsion.
-    bool lone;
+    bool noninteracting;
     struct brownian_free free;
 };
 

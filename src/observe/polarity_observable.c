@@ -11,11 +11,11 @@
 // Sampling ----------------------------------------------------------------------------------------
 
 /// Whether nothing but self-propulsion acts.
-static bool is_lone(const struct simulation_setup *setup) {
-    bool lone = setup->potential == NULL;
+static bool is_noninteracting(const struct simulation_setup *setup) {
+    bool noninteracting = setup->potential == NULL;
     for (int k = 0; k < setup->interactions; k++)
-        lone = lone && setup->interaction[k].kind == &mf_self_propulsion;
-    return lone;
+        noninteracting = noninteracting && setup->interaction[k].kind == &mf_self_propulsion;
+    return noninteracting;
 }
 
 static enum status begin(void *state, const void *settings, const struct simulation *simulation,
@@ -30,7 +30,7 @@ static enum status begin(void *state, const void *settings, const struct simulat
     CHECK(mf_motion_init(&polarity->motion, settings, simulation, plan->equilibration, steps));
     polarity->motion.polar = true;
     polarity->order.columns = 1;
-    polarity->lone = is_lone(&simulation->setup);
+    polarity->noninteracting = is_noninteracting(&simulation->setup);
     polarity->free = mf_brownian_free(&simulation->setup);
 done:
     return status;
@@ -71,8 +71,8 @@ static size_t spans(void *state, struct memory_span *spans) {
     return n + mf_motion_spans(&polarity->motion, spans + n);
 }
 
-static enum status make_room(void *state) {
-    return mf_sample_series_make_room(&((struct polarity *)state)->order);
+static enum status reserve(void *state) {
+    return mf_sample_series_reserve(&((struct polarity *)state)->order);
 }
 
 static const double *orders_of(const struct polarity *polarity) {
@@ -99,8 +99,8 @@ static enum status write_curves(const struct polarity *polarity,
     const struct motion_curves curves = {values, values + rows, values + 2 * rows,
                                          values + 3 * rows};
     mf_motion_result(motion, &curves);
-    mf_statistics_forget_errors(curves.msd_error, rows);
-    mf_statistics_forget_errors(curves.vacf_error, rows);
+    mf_statistics_mark_unknown_errors(curves.msd_error, rows);
+    mf_statistics_mark_unknown_errors(curves.vacf_error, rows);
     for (size_t k = 0; k < rows; k++) {
         time[k] = (double)k * interval(motion);
         exact[k] = exp(-polarity->free.orientation_diffusion * time[k]);
@@ -114,8 +114,8 @@ static enum status write_curves(const struct polarity *polarity,
                                           {"correlation_theory[1]", exact, "%.8g"},
                                           {"msd_theory[lambda^2]", exact_msd, "%.8g"}};
     mf_observable_file(results, "polarity.tsv", path);
-    CHECK(
-        mf_data_table_write_in(path, results->units, NULL, columns, polarity->lone ? 7 : 5, rows));
+    CHECK(mf_data_table_write_in(path, results->units, NULL, columns,
+                                 polarity->noninteracting ? 7 : 5, rows));
 done:
     mf_memory_free(values);
     return status;
@@ -150,30 +150,31 @@ static double mean_order(const struct polarity *polarity, double *error) {
     return sum / (double)samples;
 }
 
-static void put(const void *state, const struct observable_results *results,
-                struct json_writer *writer) {
+static void write_summary(const void *state, const struct observable_results *results,
+                          struct json_writer *writer) {
     const struct polarity *polarity = state;
     const struct polarity_fit fit = mf_polarity_fit(polarity);
     double error;
     (void)results;
-    mf_json_put_number(writer, "polar_order", mean_order(polarity, &error));
-    mf_json_put_number(writer, "polar_order_error", error);
-    mf_json_put_number(writer, "polar_order_last", orders_of(polarity)[polarity->order.count - 1]);
-    mf_json_put_quantity(writer, "effective_diffusion", "lambda^2/tau", fit.effective_diffusion);
-    mf_json_put_quantity(writer, "effective_diffusion_error", "lambda^2/tau",
-                         fit.effective_diffusion_error);
-    if (polarity->lone)
-        mf_json_put_quantity(writer, "effective_diffusion_theory", "lambda^2/tau",
-                             mf_brownian_free_long_time(&polarity->free));
-    mf_json_put_quantity(writer, "msd_speed", "lambda/tau", fit.speed);
-    mf_json_put_quantity(writer, "msd_speed_error", "lambda/tau", fit.speed_error);
-    mf_json_put_quantity(writer, "msd_orientation_diffusion", "1/tau", fit.orientation_diffusion);
-    mf_json_put_quantity(writer, "msd_orientation_diffusion_error", "1/tau",
-                         fit.orientation_diffusion_error);
+    mf_json_write_number(writer, "polar_order", mean_order(polarity, &error));
+    mf_json_write_number(writer, "polar_order_error", error);
+    mf_json_write_number(writer, "polar_order_last",
+                         orders_of(polarity)[polarity->order.count - 1]);
+    mf_json_write_quantity(writer, "effective_diffusion", "lambda^2/tau", fit.effective_diffusion);
+    mf_json_write_quantity(writer, "effective_diffusion_error", "lambda^2/tau",
+                           fit.effective_diffusion_error);
+    if (polarity->noninteracting)
+        mf_json_write_quantity(writer, "effective_diffusion_theory", "lambda^2/tau",
+                               mf_brownian_free_long_time(&polarity->free));
+    mf_json_write_quantity(writer, "msd_speed", "lambda/tau", fit.speed);
+    mf_json_write_quantity(writer, "msd_speed_error", "lambda/tau", fit.speed_error);
+    mf_json_write_quantity(writer, "msd_orientation_diffusion", "1/tau", fit.orientation_diffusion);
+    mf_json_write_quantity(writer, "msd_orientation_diffusion_error", "1/tau",
+                           fit.orientation_diffusion_error);
 }
 
-static void say(const void *state, const struct observable_results *results, char *line,
-                size_t size) {
+static void print(const void *state, const struct observable_results *results, char *line,
+                  size_t size) {
     const struct polarity *polarity = state;
     const struct polarity_fit fit = mf_polarity_fit(polarity);
     char order[NUMBER_TEXT_SIZE], diffusion[NUMBER_TEXT_SIZE];
@@ -279,10 +280,10 @@ const struct observable mf_polarity_observable = {
     .due = due,
     .sample = sample,
     .spans = spans,
-    .make_room = make_room,
+    .reserve = reserve,
     .write = write,
-    .put = put,
-    .say = say,
+    .write_summary = write_summary,
+    .print = print,
     .explain = explain,
     .stage = "polarity",
     .files = files,

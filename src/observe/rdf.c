@@ -40,7 +40,7 @@ struct counting {
     const struct rdf_bins *bins;
     const struct composition *composition; ///< of a mixture
     double *histogram;
-    const struct topology *apart; ///< of which pairs in a molecule are left out, or NULL
+    const struct topology *intermolecular; ///< of which pairs in a molecule are left out, or NULL
 };
 
 static void count_batch(void *context, const float *squared_distances, size_t count) {
@@ -69,8 +69,8 @@ static void count_batch_of(void *context, const struct neighbours_batch *batch) 
         const double place = (sqrt((double)batch->squared[k]) - bins->low) * inverse_width;
         const int pair =
             mf_composition_pair_of_ids(counting->composition, batch->id_i[k], batch->id_j[k]);
-        if (counting->apart &&
-            counting->apart->molecule[batch->id_i[k]] == counting->apart->molecule[batch->id_j[k]])
+        if (counting->intermolecular && counting->intermolecular->molecule[batch->id_i[k]] ==
+                                            counting->intermolecular->molecule[batch->id_j[k]])
             continue;
         if (place >= 0 && place < (double)bins->count)
             counting->histogram[(size_t)pair * bins->count + (size_t)place] += 1;
@@ -111,7 +111,7 @@ enum status mf_rdf_init_mixture(struct rdf *rdf, const struct rdf_bins *bins, co
     NEW_ARRAY(rdf->histogram, rdf->blocks * rdf->pairs * bins->count);
     NEW_ARRAY(rdf->block_samples, rdf->blocks);
     rdf->counted = (struct pair_histogram){bins->low, bins->width, bins->count, rdf->pairs, NULL};
-    NEW_ARRAY(rdf->counted.counts, NEIGHBOURS_MOST_PARTS * pair_histogram_size(&rdf->counted));
+    NEW_ARRAY(rdf->counted.counts, NEIGHBOURS_MAX_PARTS * pair_histogram_size(&rdf->counted));
     if (rdf->needs_own_list) {
         if (mf_box_shortest(box) < 2 * mf_rdf_bins_range(bins)) {
             status =
@@ -123,7 +123,7 @@ enum status mf_rdf_init_mixture(struct rdf *rdf, const struct rdf_bins *bins, co
             goto done;
         }
         CHECK(mf_particles_init(&rdf->own_particles, box, particle_count));
-        CHECK(mf_neighbours_init(&rdf->own_list, NEIGHBOURS_HALF, box, particle_count,
+        CHECK(mf_neighbours_init(&rdf->manifest, NEIGHBOURS_HALF, box, particle_count,
                                  mf_rdf_bins_range(bins), 0));
     }
 done:
@@ -156,7 +156,7 @@ void mf_rdf_clear(struct rdf *rdf) {
     mf_memory_free(rdf->block_samples);
     mf_memory_free(rdf->counted.counts);
     mf_particles_clear(&rdf->own_particles);
-    mf_neighbours_clear(&rdf->own_list);
+    mf_neighbours_clear(&rdf->manifest);
     *rdf = (struct rdf){0};
 }
 
@@ -172,7 +172,7 @@ static enum status make_own_list(struct rdf *rdf, const struct particles *partic
                particles->count * sizeof *particles->position[d]);
     memcpy(rdf->own_particles.id, particles->id, particles->count * sizeof *particles->id);
     TRY(mf_particles_join(&rdf->own_particles, particles->topology));
-    return mf_neighbours_sort_and_build(&rdf->own_list, &rdf->own_particles);
+    return mf_neighbours_sort_and_build(&rdf->manifest, &rdf->own_particles);
 }
 
 /// Make of every two blocks one, of twice the samples.
@@ -208,24 +208,23 @@ static double *next_block(struct rdf *rdf) {
 }
 
 const struct pair_histogram *mf_rdf_histogram(struct rdf *rdf) {
-    if (rdf->needs_own_list || rdf->apart)
+    if (rdf->needs_own_list || rdf->intermolecular)
         return NULL;
     memset(rdf->counted.counts, 0,
-           NEIGHBOURS_MOST_PARTS * pair_histogram_size(&rdf->counted) *
-               sizeof *rdf->counted.counts);
+           NEIGHBOURS_MAX_PARTS * pair_histogram_size(&rdf->counted) * sizeof *rdf->counted.counts);
     return &rdf->counted;
 }
 
 void mf_rdf_sample_counted(struct rdf *rdf) {
     double *histogram = next_block(rdf);
-    for (size_t part = 0; part < NEIGHBOURS_MOST_PARTS; part++)
+    for (size_t part = 0; part < NEIGHBOURS_MAX_PARTS; part++)
         for (size_t k = 0; k < all_bins(rdf); k++)
             histogram[k] += rdf->counted.counts[part * pair_histogram_size(&rdf->counted) + k];
 }
 
-static void count_apart(const struct rdf *rdf, const struct particles *particles,
-                        const struct neighbours *neighbours, double *histogram) {
-    struct counting counting = {&rdf->bins, &rdf->composition, histogram, rdf->apart};
+static void count_intermolecular(const struct rdf *rdf, const struct particles *particles,
+                                 const struct neighbours *neighbours, double *histogram) {
+    struct counting counting = {&rdf->bins, &rdf->composition, histogram, rdf->intermolecular};
     mf_neighbours_visit_pairs(neighbours, particles, mf_rdf_bins_range(&rdf->bins), count_batch_of,
                               &counting);
 }
@@ -236,10 +235,10 @@ enum status mf_rdf_sample(struct rdf *rdf, const struct particles *particles,
     if (rdf->needs_own_list) {
         TRY(make_own_list(rdf, particles));
         particles = &rdf->own_particles;
-        neighbours = &rdf->own_list;
+        neighbours = &rdf->manifest;
     }
-    if (rdf->apart)
-        count_apart(rdf, particles, neighbours, histogram);
+    if (rdf->intermolecular)
+        count_intermolecular(rdf, particles, neighbours, histogram);
     else
         mf_rdf_count_pairs_of(&rdf->bins, &rdf->composition, particles, neighbours, histogram);
     return STATUS_OK;
@@ -270,12 +269,12 @@ static double ideal_at(const struct rdf *rdf, size_t k) {
 /// Blocks with samples, and all of them if their number was not planned, of the replica that has
 /// fewest.
 static size_t filled_blocks(const struct rdf *replicas, size_t count) {
-    size_t least = replicas->blocks;
+    size_t min = replicas->blocks;
     for (size_t r = 0; r < count; r++)
-        for (size_t b = 0; b < least; b++)
+        for (size_t b = 0; b < min; b++)
             if (replicas[r].block_samples[b] < fmax(1, (double)replicas[r].each))
-                least = b;
-    return least;
+                min = b;
+    return min;
 }
 
 /// g of every block, shape [pairs, bins, count, blocks]. Fails: NO_MEMORY.

@@ -52,14 +52,14 @@ struct rdf {
     size_t pairs;                   ///< pair types
     size_t planned, samples;
     size_t blocks;
-    size_t each;                   ///< samples of a block if nothing is planned, else 0
-    double *histogram;             ///< shape [blocks, pairs, bins.count]
-    double *block_samples;         ///< shape [blocks]
-    bool needs_own_list;           ///< the range exceeds that of the simulation's list
-    const struct topology *apart;  ///< count pairs of different molecules alone; NULL: all
-    struct pair_histogram counted; ///< by the force pass
+    size_t each;                           ///< samples of a block if nothing is planned, else 0
+    double *histogram;                     ///< shape [blocks, pairs, bins.count]
+    double *block_samples;                 ///< shape [blocks]
+    bool needs_own_list;                   ///< the range exceeds that of the simulation's list
+    const struct topology *intermolecular; ///< count pairs of different molecules alone; NULL: all
+    struct pair_histogram counted;         ///< by the force pass
     struct particles own_particles;
-    struct neighbours own_list;
+    struct neighbours manifest;
 };
 
 /// Prepare for `planned` samples of a system of particles, whatever their types, whose list is

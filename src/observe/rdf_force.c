@@ -18,13 +18,13 @@ enum { POOLED = 2 };
 
 const char *const mf_rdf_force_estimators[] = {"histogram", "force", NULL};
 
-static const double least_barrier = 10; // [k_B T]
+static const double min_barrier = 10; // [k_B T]
 
 bool mf_rdf_force_applies(const struct table *potential, double temperature) {
     double barrier = 0;
     if (potential)
         mf_table_evaluate(potential, 0, &barrier, NULL, NULL);
-    return barrier >= least_barrier * temperature;
+    return barrier >= min_barrier * temperature;
 }
 
 enum status mf_rdf_force_init(struct rdf_force *force, const struct rdf_bins *bins,
@@ -53,7 +53,7 @@ enum status mf_rdf_force_init(struct rdf_force *force, const struct rdf_bins *bi
     NEW_ARRAY(force->force, particle_count);
     CHECK(mf_particles_init(&force->own_particles, box, particle_count));
     if (force->needs_own_list)
-        CHECK(mf_neighbours_init(&force->own_list, NEIGHBOURS_HALF, box, particle_count,
+        CHECK(mf_neighbours_init(&force->manifest, NEIGHBOURS_HALF, box, particle_count,
                                  fmax(range, potential->cutoff), 0));
 done:
     if (status != STATUS_OK)
@@ -67,7 +67,7 @@ void mf_rdf_force_clear(struct rdf_force *force) {
     mf_memory_free(force->pairs);
     mf_memory_free(force->force);
     mf_particles_clear(&force->own_particles);
-    mf_neighbours_clear(&force->own_list);
+    mf_neighbours_clear(&force->manifest);
     *force = (struct rdf_force){0};
 }
 
@@ -126,8 +126,8 @@ place_pairs(struct columns *columns, const struct rdf_bins *bins, int dimensions
         const float power = dimensions == 3 ? r * square : square;
         columns->flux[k] = power > 0 ? columns->virial[k] / power : 0;
         const float place = (r - low) * inverse_width + 1;
-        const float least = place < 0 ? 0 : place; // not fminf, which minds NaN
-        columns->bin[k] = (int32_t)(power > 0 && least < beyond ? least : beyond);
+        const float min = place < 0 ? 0 : place; // not fminf, which minds NaN
+        columns->bin[k] = (int32_t)(power > 0 && min < beyond ? min : beyond);
     }
 }
 
@@ -161,9 +161,9 @@ static enum status add_own_pairs(struct rdf_force *force, const struct particles
         memcpy(own->position[d], particles->position[d],
                particles->count * sizeof *particles->position[d]);
     own->threads = particles->threads;
-    TRY(mf_neighbours_sort_and_build(&force->own_list, own));
-    find_forces(force, own, &force->own_list);
-    add_pairs(force, own, &force->own_list);
+    TRY(mf_neighbours_sort_and_build(&force->manifest, own));
+    find_forces(force, own, &force->manifest);
+    add_pairs(force, own, &force->manifest);
     return STATUS_OK;
 }
 
@@ -309,12 +309,12 @@ static double estimate(const struct pool *pool, enum rdf_force_version version, 
 
 /// Blocks with samples, of the replica that has fewest.
 static size_t filled_blocks(const struct rdf_force *replicas, size_t count) {
-    size_t least = replicas->blocks;
+    size_t min = replicas->blocks;
     for (size_t r = 0; r < count; r++)
-        for (size_t b = 0; b < least; b++)
+        for (size_t b = 0; b < min; b++)
             if (replicas[r].totals[b].samples == 0)
-                least = b;
-    return least;
+                min = b;
+    return min;
 }
 
 /// Errors by leaving out each block in turn (jackknife), with the correlation of blocks that all

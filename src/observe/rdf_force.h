@@ -83,7 +83,7 @@ struct rdf_force {
     float (*force)[4];               ///< shape [particle_count]: of the potential alone
     bool needs_own_list;             ///< the range exceeds that of the simulation's list
     struct particles own_particles;
-    struct neighbours own_list;
+    struct neighbours manifest;
 };
 
 /// Whether a potential keeps particles apart, so that g(0) = 0: Φ(0) ≥ 10 k_B T. Groot and Warren's

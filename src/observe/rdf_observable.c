@@ -83,16 +83,16 @@ static enum status begin(void *state, const void *settings, const struct simulat
 }
 
 /// Of beads of different molecules, and of single ones.
-static enum status begin_apart(void *state, const void *settings,
-                               const struct simulation *simulation,
-                               const struct measure_plan *plan) {
+static enum status begin_intermolecular(void *state, const void *settings,
+                                        const struct simulation *simulation,
+                                        const struct measure_plan *plan) {
     struct rdf_observed *observed = state;
     struct rdf_settings counted = *(const struct rdf_settings *)settings;
     counted.estimator = RDF_FORCE_NOT_USED;
     if (simulation->particles.topology == NULL)
         return mf_status_fail(STATUS_BAD_INPUT, "intermolecular_rdf: the scene has no molecules");
     TRY(begin(state, &counted, simulation, plan));
-    observed->counted.apart = simulation->particles.topology;
+    observed->counted.intermolecular = simulation->particles.topology;
     return STATUS_OK;
 }
 
@@ -175,17 +175,17 @@ static enum status write(const void *state, const struct observable_results *res
         size_t count = force ? 5 : 3;
         if (!mf_composition_has_pairs(&rdf->composition, (int)pair))
             continue;
-        mf_statistics_forget_errors(counted_error + first, bins->count);
-        mf_statistics_forget_errors(error, force ? bins->count : 0);
+        mf_statistics_mark_unknown_errors(counted_error + first, bins->count);
+        mf_statistics_mark_unknown_errors(error, force ? bins->count : 0);
         struct data_column columns[6] = {
             {"r[lambda]", r, NULL},
             {"g[1]", force ? g : counted + first, "%.8g"},
             {"g_error[1]", force ? error : counted_error + first, "%.3g"},
             {"g_histogram[1]", counted + first, "%.8g"},
             {"g_histogram_error[1]", counted_error + first, "%.3g"}};
-        if (mf_units_beside(units))
+        if (mf_units_have_second_columns(units))
             columns[count++] = (struct data_column){"r[nm]", nanometres, NULL};
-        mf_rdf_observable_file(results->folder, rdf->apart ? "intermolecular_rdf" : "rdf",
+        mf_rdf_observable_file(results->folder, rdf->intermolecular ? "intermolecular_rdf" : "rdf",
                                &rdf->composition, (int)pair, path);
         CHECK(mf_data_table_write_in(path, results->units, NULL, columns, count, bins->count));
     }
@@ -200,7 +200,7 @@ done:
 }
 
 /// A table without a number is not written, and that is told.
-static enum status judge(const void *state, const struct simulation_setup *setup) {
+static enum status assess(const void *state, const struct simulation_setup *setup) {
     const struct rdf *rdf = &((const struct rdf_observed *)state)->counted;
     char name[COMPOSITION_PAIR_NAME_SIZE];
     (void)setup;
@@ -297,7 +297,7 @@ const struct observable mf_rdf_observable = {
     .sample = sample,
     .spans = spans,
     .write = write,
-    .judge = judge,
+    .assess = assess,
     .explain = explain,
     .stage = "g(r)",
     .targets = targets,
@@ -308,15 +308,15 @@ const struct observable mf_rdf_observable = {
 /// Nanoseconds of a pair and sample, one by one.
 static const double visit_cost = 6;
 
-static void explain_apart(const void *settings, const struct simulation_setup *setup, double every,
-                          struct stages *stages) {
+static void explain_intermolecular(const void *settings, const struct simulation_setup *setup,
+                                   double every, struct stages *stages) {
     const double range = range_of(settings, setup);
     mf_stages_add(stages, "g(r) between molecules", true,
                   visit_cost * mf_stages_pairs_within(setup, range) / every,
                   "visits all pairs, one step in %.0f", every);
 }
 
-static const struct field apart_fields[] = {
+static const struct field intermolecular_fields[] = {
     {"range", FIELD_NUMBER, MEMBER(range), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
      .unit = "lambda", .help = "range of g(r); 0: the cutoff of the forces"},
     {"bins", FIELD_INTEGER, MEMBER(bins), .initial = 100, .minimum = 1, .maximum = 100000,
@@ -324,31 +324,31 @@ static const struct field apart_fields[] = {
     FIELD_END,
 };
 
-static const struct observable_target apart_targets[] = {
+static const struct observable_target intermolecular_targets[] = {
     {.name = "intermolecular_rdf",
      .summary = "g(r) of beads of different molecules; in a mixture one for each pair type",
      .form = OBSERVABLE_OWN_FORM},
     {.name = NULL}};
 
-static const char *const apart_files[] = {"intermolecular_rdf.tsv", "intermolecular_rdf_*-*.tsv",
-                                          NULL};
+static const char *const intermolecular_files[] = {"intermolecular_rdf.tsv",
+                                                   "intermolecular_rdf_*-*.tsv", NULL};
 
 const struct observable mf_rdf_intermolecular = {
     .name = "intermolecular_rdf",
     .summary = "g(r) of beads of different molecules, normalised as that of all",
-    .fields = apart_fields,
+    .fields = intermolecular_fields,
     .settings_size = sizeof(struct rdf_settings),
     .state_size = sizeof(struct rdf_observed),
-    .begin = begin_apart,
+    .begin = begin_intermolecular,
     .clear = clear,
     .sample = sample,
     .spans = spans,
     .write = write,
-    .explain = explain_apart,
+    .explain = explain_intermolecular,
     .stage = "g(r) between molecules",
-    .targets = apart_targets,
+    .targets = intermolecular_targets,
     .result = result,
-    .files = apart_files,
+    .files = intermolecular_files,
 };
 
 int mf_rdf_intermolecular_kind(void) {

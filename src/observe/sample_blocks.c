@@ -45,9 +45,9 @@ size_t mf_sample_blocks_take(struct sample_blocks *blocks) {
 }
 
 size_t mf_sample_blocks_whole(const struct sample_blocks *blocks) {
-    const double least = blocks->each > 0 ? (double)blocks->each : 1;
+    const double min = blocks->each > 0 ? (double)blocks->each : 1;
     size_t whole = 0;
-    while (whole < blocks->count && blocks->samples[whole] >= least)
+    while (whole < blocks->count && blocks->samples[whole] >= min)
         whole++;
     return whole;
 }

@@ -13,29 +13,30 @@ void mf_sample_series_clear(struct sample_series *series) {
 /// Twice the room, or more, so that it is made seldom.
 static enum status grow(struct sample_series *series, size_t wanted) {
     enum status status = STATUS_OK;
-    size_t room = series->room > 0 ? series->room : FIRST_ROOM;
+    size_t capacity = series->capacity > 0 ? series->capacity : FIRST_ROOM;
     double *values = NULL;
-    while (room < wanted)
-        room *= 2;
-    NEW_ARRAY(values, series->columns * room);
-    for (size_t c = 0; c < series->columns && series->room > 0; c++)
-        memcpy(values + c * room, sample_series_column(series, c), series->room * sizeof *values);
+    while (capacity < wanted)
+        capacity *= 2;
+    NEW_ARRAY(values, series->columns * capacity);
+    for (size_t c = 0; c < series->columns && series->capacity > 0; c++)
+        memcpy(values + c * capacity, sample_series_column(series, c),
+               series->capacity * sizeof *values);
     mf_memory_free(series->values);
     series->values = values;
-    series->room = room;
+    series->capacity = capacity;
 done:
     return status;
 }
 
-enum status mf_sample_series_make_room(struct sample_series *series) {
-    return series->count > series->room ? grow(series, series->count) : STATUS_OK;
+enum status mf_sample_series_reserve(struct sample_series *series) {
+    return series->count > series->capacity ? grow(series, series->count) : STATUS_OK;
 }
 
 enum status mf_sample_series_add(struct sample_series *series, const double *numbers) {
-    if (series->count == series->room)
+    if (series->count == series->capacity)
         TRY(grow(series, series->count + 1));
     for (size_t c = 0; c < series->columns; c++)
-        series->values[c * series->room + series->count] = numbers[c];
+        series->values[c * series->capacity + series->count] = numbers[c];
     series->count++;
     return STATUS_OK;
 }

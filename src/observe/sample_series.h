@@ -6,10 +6,10 @@
 #include "base/memory.h"
 
 struct sample_series {
-    size_t columns; ///< set by whom it belongs to; all else is 0 at the beginning
-    size_t count;   ///< samples so far
-    size_t room;    ///< for samples
-    double *values; ///< shape [columns, room]
+    size_t columns;  ///< set by whom it belongs to; all else is 0 at the beginning
+    size_t count;    ///< samples so far
+    size_t capacity; ///< for samples
+    double *values;  ///< shape [columns, room]
 };
 
 void mf_sample_series_clear(struct sample_series *series);
@@ -19,10 +19,10 @@ enum status mf_sample_series_add(struct sample_series *series, const double *num
 
 /// One series, shape [count]; the next sample may move it.
 static inline double *sample_series_column(const struct sample_series *series, size_t column) {
-    return series->room > 0 ? series->values + column * series->room : NULL;
+    return series->capacity > 0 ? series->values + column * series->capacity : NULL;
 }
 
 /// What goes with a checkpoint: 1 + columns spans. The lengths of all but the first depend on it:
 /// after it was restored there is to be made room.
 size_t mf_sample_series_spans(struct sample_series *series, struct memory_span *spans);
-enum status mf_sample_series_make_room(struct sample_series *series) MUST_USE;
+enum status mf_sample_series_reserve(struct sample_series *series) MUST_USE;

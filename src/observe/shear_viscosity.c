@@ -15,7 +15,7 @@
 
 #include <math.h>
 
-enum { MOST_BLOCKS = 4096, SYMMETRIC = 5, UNSYMMETRIC = 6 };
+enum { MAX_BLOCKS = 4096, SYMMETRIC = 5, UNSYMMETRIC = 6 };
 
 static const char unit[] = "k_B T_0 tau/lambda^3";
 
@@ -36,8 +36,8 @@ struct viscosity {
     double heat; ///< Σ of the kinetic temperature [k_B T_0]
     struct transfer transfer;
     struct green_kubo green_kubo;
-    size_t each;                  ///< samples in a block of what follows
-    double velocity[MOST_BLOCKS]; ///< Σ over its samples of V
+    size_t each;                 ///< samples in a block of what follows
+    double velocity[MAX_BLOCKS]; ///< Σ over its samples of V
 };
 
 static const struct field fields[] = {
@@ -66,7 +66,7 @@ static enum status check(const struct simulation *simulation, bool driven) {
         if (!conserves_momentum(setup->interaction[k].kind))
             return mf_status_fail(STATUS_BAD_INPUT, "shear_viscosity: \"interactions\" other than "
                                                     "\"shear-wave\" do not conserve momentum");
-    if (driven && (setup->integrator->companions || !simulation_has_velocities(setup) ||
+    if (driven && (setup->integrator->solvent_particles || !simulation_has_velocities(setup) ||
                    !simulation_holds_temperature(setup)))
         return mf_status_fail(STATUS_BAD_INPUT,
                               "shear_viscosity: a wave heats the fluid, and \"%s\" has no friction "
@@ -105,7 +105,7 @@ static enum status begin(void *state, const void *settings, const struct simulat
                             .acceleration = wave ? wave->acceleration : 0,
                             .wave_number = shear_wave_number(&setup->box)};
     v->planned = (size_t)(plan->samples * plan->every / v->settings.every);
-    v->each = (v->planned + MOST_BLOCKS - 1) / MOST_BLOCKS;
+    v->each = (v->planned + MAX_BLOCKS - 1) / MAX_BLOCKS;
     if (v->planned < 2)
         return mf_status_fail(STATUS_BAD_INPUT,
                               "shear_viscosity.every: the measurement has no two intervals of %lld "
@@ -197,7 +197,7 @@ static struct shear_viscosity_summary result_at_rest(const struct viscosity *v) 
 }
 
 static struct shear_viscosity_summary result_of_wave(const struct viscosity *v) {
-    double values[MOST_BLOCKS];
+    double values[MAX_BLOCKS];
     struct running_mean mean = {0};
     const size_t blocks = v->samples / v->each;
     for (size_t b = 0; b < blocks; b++) {
@@ -244,7 +244,7 @@ bool mf_shear_viscosity_correct(const struct observable_results *results, double
     return true;
 }
 
-static enum status judge_wave(const struct viscosity *v, const struct shear_viscosity_summary *s) {
+static enum status assess_wave(const struct viscosity *v, const struct shear_viscosity_summary *s) {
     static const double hot = 0.02, fast = 0.5, settled = 3;
     const double wanted = v->setup.temperature;
     const double rest = (double)v->begin * v->setup.time_step;
@@ -268,12 +268,12 @@ static enum status judge_wave(const struct viscosity *v, const struct shear_visc
 }
 
 /// Whether the integral has come to rest, or the flow is a weak one that has settled.
-static enum status judge(const void *state, const struct simulation_setup *setup) {
+static enum status assess(const void *state, const struct simulation_setup *setup) {
     const struct viscosity *v = state;
     const struct shear_viscosity_summary s = mf_shear_viscosity_result(v);
     (void)setup;
     if (v->driven)
-        return judge_wave(v, &s);
+        return assess_wave(v, &s);
     if (s.reached)
         return STATUS_OK;
     return mf_status_fail(STATUS_UNCONVERGED,
@@ -308,8 +308,8 @@ static enum status write(const void *state, const struct observable_results *res
         correlation[k] *= scale_of(v) / interval;
         correlation_error[k] *= scale_of(v) / interval;
     }
-    mf_statistics_forget_errors(error, rows);
-    mf_statistics_forget_errors(correlation_error, rows);
+    mf_statistics_mark_unknown_errors(error, rows);
+    mf_statistics_mark_unknown_errors(correlation_error, rows);
     const struct data_column columns[] = {
         {"time[tau]", time, NULL},
         {"shear_viscosity[k_B.T_0.tau/lambda^3]", integral, "%.8g"},
@@ -330,35 +330,35 @@ static double millipascal_seconds(const struct units *units) {
     return mf_units_pressure_bar(units) * mf_units_time_ps(units) * of_bar_ps;
 }
 
-static void put(const void *state, const struct observable_results *results,
-                struct json_writer *writer) {
+static void write_summary(const void *state, const struct observable_results *results,
+                          struct json_writer *writer) {
     const struct viscosity *v = state;
     struct shear_viscosity_summary s = mf_shear_viscosity_result(v);
     mf_json_begin(writer, "shear_viscosity");
-    if (mf_units_mark(results->units, judge(v, results->setup)) != STATUS_OK)
-        mf_json_put_text(writer, "warning", mf_status_message());
-    mf_statistics_forget_errors(&s.error, 1);
-    mf_json_put_text(writer, "by", s.driven ? "shear-wave" : "green-kubo");
-    mf_json_put_quantity(writer, "value", unit, s.value);
-    mf_json_put_quantity(writer, "error", unit, s.error);
+    if (mf_units_add_to_message(results->units, assess(v, results->setup)) != STATUS_OK)
+        mf_json_write_text(writer, "warning", mf_status_message());
+    mf_statistics_mark_unknown_errors(&s.error, 1);
+    mf_json_write_text(writer, "by", s.driven ? "shear-wave" : "green-kubo");
+    mf_json_write_quantity(writer, "value", unit, s.value);
+    mf_json_write_quantity(writer, "error", unit, s.error);
     if (mf_units_known(results->units)) {
-        mf_json_put_number(writer, "value_mPa_s", s.value * millipascal_seconds(results->units));
-        mf_json_put_number(writer, "error_mPa_s", s.error * millipascal_seconds(results->units));
+        mf_json_write_number(writer, "value_mPa_s", s.value * millipascal_seconds(results->units));
+        mf_json_write_number(writer, "error_mPa_s", s.error * millipascal_seconds(results->units));
     }
     if (s.driven) {
-        mf_json_put_quantity(writer, "wave_number", "1/lambda", s.wave_number);
-        mf_json_put_quantity(writer, "velocity", "lambda/tau", s.velocity);
-        mf_json_put_quantity(writer, "velocity_error", "lambda/tau", s.velocity_error);
-        mf_json_put_quantity(writer, "temperature", "T_0", s.temperature);
-        mf_json_put_quantity(writer, "settling_time", "tau", s.settling);
+        mf_json_write_quantity(writer, "wave_number", "1/lambda", s.wave_number);
+        mf_json_write_quantity(writer, "velocity", "lambda/tau", s.velocity);
+        mf_json_write_quantity(writer, "velocity_error", "lambda/tau", s.velocity_error);
+        mf_json_write_quantity(writer, "temperature", "T_0", s.temperature);
+        mf_json_write_quantity(writer, "settling_time", "tau", s.settling);
     } else {
-        mf_json_put_quantity(writer, "window", "tau", s.window);
+        mf_json_write_quantity(writer, "window", "tau", s.window);
     }
     mf_json_end(writer);
 }
 
-static void say(const void *state, const struct observable_results *results, char *line,
-                size_t size) {
+static void print(const void *state, const struct observable_results *results, char *line,
+                  size_t size) {
     const struct shear_viscosity_summary s = mf_shear_viscosity_result(state);
     const struct units *units = results->units;
     const bool known = mf_units_known(units);
@@ -382,7 +382,7 @@ static const double carry_cost = 3, force_cost = 0.5, friction_cost = 9, wave_co
 static void explain(const void *settings, const struct simulation_setup *setup, double every,
                     struct stages *stages) {
     const struct settings *own = settings;
-    const bool rubs = setup->omega || pair_memory_acts(&setup->memory);
+    const bool has_friction = setup->omega || pair_memory_acts(&setup->memory);
     const double pairs = mf_stages_pairs_within(setup, mf_simulation_range(setup));
     (void)every;
     if (mf_shear_wave_find(setup->interaction, setup->interactions))
@@ -390,7 +390,7 @@ static void explain(const void *settings, const struct simulation_setup *setup, 
                       "the flow of the wave, one step in %lld", (long long)own->every);
     else
         mf_stages_add(stages, "viscosity", true,
-                      carry_cost + (rubs ? friction_cost : force_cost) * pairs,
+                      carry_cost + (has_friction ? friction_cost : force_cost) * pairs,
                       "the momentum that pairs exchange, every step");
 }
 
@@ -434,9 +434,9 @@ const struct observable mf_shear_viscosity = {
     .sample = sample,
     .spans = spans,
     .write = write,
-    .put = put,
-    .say = say,
-    .judge = judge,
+    .write_summary = write_summary,
+    .print = print,
+    .assess = assess,
     .explain = explain,
     .stage = "viscosity",
     .files = files,

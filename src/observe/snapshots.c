@@ -31,18 +31,18 @@ static enum status take(struct state *s, const struct simulation *simulation) {
     struct simulation look;
     const double time = (double)simulation->step * simulation->setup.time_step;
     const struct solvent *solvent = mf_collision_dynamics_solvent(simulation);
-    struct snapshot_companions companions = {.name = "solvent"};
+    struct snapshot_solvent_particles solvent_particles = {.name = "solvent"};
     if (s->settings.solvent) {
-        companions.count = solvent->count;
-        companions.position = solvent->position;
-        companions.velocity = solvent->velocity;
-        companions.mass = solvent->parameters.mass;
+        solvent_particles.count = solvent->count;
+        solvent_particles.position = solvent->position;
+        solvent_particles.velocity = solvent->velocity;
+        solvent_particles.mass = solvent->parameters.mass;
     }
     mf_snapshot_clear(&s->last);
     TRY(mf_simulation_look(simulation, &look));
     const enum status status =
         mf_snapshot_take(&s->last, &look.particles, &simulation->setup.composition,
-                         s->settings.solvent ? &companions : NULL, simulation->step, time);
+                         s->settings.solvent ? &solvent_particles : NULL, simulation->step, time);
     mf_simulation_clear(&look);
     return status;
 }
@@ -84,14 +84,14 @@ static int64_t due(const void *state) {
 static enum status write_formats(struct state *s) {
     enum status status = STATUS_OK;
     char folder[OUTPUT_PATH_SIZE];
-    struct snapshot told = {0};
+    struct snapshot converted = {0};
     mf_observable_file(&s->results, SNAPSHOT_FOLDER, folder);
-    CHECK(mf_snapshot_translate(&told, &s->last, s->results.units));
+    CHECK(mf_snapshot_translate(&converted, &s->last, s->results.units));
     for (int k = 0; mf_snapshot_formats[k]; k++)
         if (s->settings.formats >> k & 1)
-            CHECK(mf_snapshot_write(&told, mf_snapshot_formats[k], folder, &s->size[k]));
+            CHECK(mf_snapshot_write(&converted, mf_snapshot_formats[k], folder, &s->size[k]));
 done:
-    mf_snapshot_clear(&told);
+    mf_snapshot_clear(&converted);
     return status;
 }
 
@@ -105,11 +105,11 @@ static bool is_given(const struct snapshot_column *column) {
 
 /// configuration.tsv: the last snapshot as a placement file, with which another scene can begin.
 static enum status write(const void *state, const struct observable_results *results) {
-    enum { MOST = 3 * SNAPSHOT_MOST_COLUMNS };
+    enum { MAX = 3 * SNAPSHOT_MAX_COLUMNS };
     const struct state *s = state;
     const struct snapshot *snapshot = &s->last;
-    struct data_column columns[MOST];
-    char names[MOST][SNAPSHOT_NAME_SIZE + 16], path[OUTPUT_PATH_SIZE], bonds[OUTPUT_PATH_SIZE];
+    struct data_column columns[MAX];
+    char names[MAX][SNAPSHOT_NAME_SIZE + 16], path[OUTPUT_PATH_SIZE], bonds[OUTPUT_PATH_SIZE];
     size_t n = 0;
     if (snapshot->own == 0)
         return STATUS_OK; // a solvent starts no scene
@@ -150,10 +150,10 @@ static size_t spans(void *state, struct memory_span *spans) {
     return 3;
 }
 
-static void put(const void *state, const struct observable_results *results,
-                struct json_writer *writer) {
+static void write_summary(const void *state, const struct observable_results *results,
+                          struct json_writer *writer) {
     (void)results;
-    mf_json_put_number(writer, "snapshots", (double)((const struct state *)state)->taken);
+    mf_json_write_number(writer, "snapshots", (double)((const struct state *)state)->taken);
 }
 
 /// Nanoseconds of a particle in a snapshot and format.
@@ -203,7 +203,7 @@ const struct observable mf_snapshots = {
     .sample = sample,
     .spans = spans,
     .write = write,
-    .put = put,
+    .write_summary = write_summary,
     .explain = explain,
     .stage = "snapshots",
     .files = files,

@@ -8,7 +8,7 @@ const struct stages_cost mf_stages_cost = {.sort = 28, .build = 0.9, .go_through
 
 void mf_stages_add(struct stages *stages, const char *name, bool on, double nanoseconds,
                    const char *format, ...) {
-    if (stages->count == STAGES_MOST)
+    if (stages->count == STAGES_MAX)
         return;
     struct stage *stage = &stages->stage[stages->count++];
     *stage = (struct stage){.name = name, .on = on, .nanoseconds = on ? nanoseconds : 0};

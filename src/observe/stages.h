@@ -14,7 +14,7 @@ struct stages_cost {
 };
 extern const struct stages_cost mf_stages_cost;
 
-enum { STAGES_MOST = 40 };
+enum { STAGES_MAX = 40 };
 
 struct stage {
     const char *name;
@@ -25,12 +25,12 @@ struct stage {
 
 struct stages {
     const struct units *units; ///< in which they speak of lengths
-    struct stage stage[STAGES_MOST];
+    struct stage stage[STAGES_MAX];
     int count;
 };
 
 /// Add a stage that takes so many nanoseconds of a particle and step, if it is on. Beyond
-/// STAGES_MOST nothing is added.
+/// STAGES_MAX nothing is added.
 void mf_stages_add(struct stages *stages, const char *name, bool on, double nanoseconds,
                    const char *format, ...) __attribute__((format(printf, 5, 6)));
 

@@ -72,7 +72,7 @@ static double find_independent(const struct contrasts *all, double within) {
 }
 
 /// Chance of a ratio of variances.
-static double find_chance(double ratio, double above, double below) {
+static double find_p_value(double ratio, double above, double below) {
     return isfinite(ratio) ? gsl_cdf_fdist_Q(ratio, above, below) : 0;
 }
 
@@ -81,7 +81,7 @@ static double divide(double above, double below, double rounding) {
     return below > rounding ? above / below : above > rounding ? INFINITY : 1;
 }
 
-static void judge(const struct contrasts *all, struct stationary *result) {
+static void assess(const struct contrasts *all, struct stationary *result) {
     const double chains = (double)all->chains;
     const double freedom = (CONTRASTS - 1) * (chains - 1);
     const double *slope = all->common + SLOPE * all->count;
@@ -95,9 +95,9 @@ static void judge(const struct contrasts *all, struct stationary *result) {
     const double independent = within > 0 ? find_independent(all, within) : 1;
     result->drift_ratio = divide(drift, within / freedom, rounding);
     result->memory_ratio = divide(between, within / freedom, rounding);
-    result->drift = find_chance(result->drift_ratio, independent, independent * freedom);
+    result->drift = find_p_value(result->drift_ratio, independent, independent * freedom);
     result->memory =
-        find_chance(result->memory_ratio, independent * (chains - 1), independent * freedom);
+        find_p_value(result->memory_ratio, independent * (chains - 1), independent * freedom);
     if (!(drift + between + within > rounding))
         *result = (struct stationary){1, 1, 1, 1};
 }
@@ -112,14 +112,15 @@ enum status mf_stationary_test(const struct stationary_numbers *numbers,
     NEW_ARRAY(all.own, CONTRASTS * all.chains * all.count);
     NEW_ARRAY(all.common, CONTRASTS * all.count);
     fill(numbers, &all);
-    judge(&all, result);
+    assess(&all, result);
 done:
     mf_memory_free(all.own);
     mf_memory_free(all.common);
     return status;
 }
 
-void mf_stationary_tell(const char *name, const struct stationary *is, char *text, size_t size) {
+void mf_stationary_describe(const char *name, const struct stationary *is, char *text,
+                            size_t size) {
     const bool drifts = is->drift < is->memory;
     snprintf(text, size, "%s %s, %.2g times as much as its noise explains", name,
              drifts ? "still changes" : "differs between replicas",

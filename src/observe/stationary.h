@@ -24,7 +24,7 @@
 #include <stddef.h>
 
 /// Parts of the samples of a simulation.
-enum { STATIONARY_PARTS = 4, STATIONARY_MOST_CHAINS = 1024 };
+enum { STATIONARY_PARTS = 4, STATIONARY_MAX_CHAINS = 1024 };
 
 /// Numbers that are judged together.
 struct stationary_numbers {
@@ -48,10 +48,10 @@ enum status mf_stationary_test(const struct stationary_numbers *numbers,
                                struct stationary *result) MUST_USE;
 
 /// The smaller of both chances.
-static inline double stationary_chance(const struct stationary *is) {
+static inline double stationary_p_value(const struct stationary *is) {
     return is->drift < is->memory ? is->drift : is->memory;
 }
 
 /// "g(r) still changes, 5.2 times as much as its noise explains".
 /// @param[in] name  "g(r)"
-void mf_stationary_tell(const char *name, const struct stationary *is, char *text, size_t size);
+void mf_stationary_describe(const char *name, const struct stationary *is, char *text, size_t size);

@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { MOST_BLOCKS = 64 };
+enum { MAX_BLOCKS = 64 };
 
 enum status mf_structure_factor_init(struct structure_factor *factor,
                                      const struct density_waves_plan *plan, size_t planned) {
@@ -20,8 +20,8 @@ enum status mf_structure_factor_init(struct structure_factor *factor,
             composition_is_mixed(composition) ? 1 + (size_t)mf_composition_pairs(composition) : 1,
         .bins = plan->bins,
         .endless = planned == 0};
-    factor->each = planned > 0 ? (planned + MOST_BLOCKS - 1) / MOST_BLOCKS : 1;
-    factor->blocks = planned > 0 ? planned / factor->each : MOST_BLOCKS;
+    factor->each = planned > 0 ? (planned + MAX_BLOCKS - 1) / MAX_BLOCKS : 1;
+    factor->blocks = planned > 0 ? planned / factor->each : MAX_BLOCKS;
     NEW_ARRAY(factor->sums, factor->blocks * mf_structure_factor_numbers(factor));
 done:
     return status;
@@ -85,7 +85,7 @@ static double sum_at(const struct structure_factor *factor, size_t block, size_t
 static void find_point(const struct structure_factor *factor, size_t curve, size_t bin,
                        double *value, double *error) {
     const size_t blocks = mf_structure_factor_blocks(factor);
-    double means[MOST_BLOCKS], sum = 0, all = 0;
+    double means[MAX_BLOCKS], sum = 0, all = 0;
     size_t count = 0;
     for (size_t b = 0; b < blocks; b++) {
         const double members = sum_at(factor, b, factor->curves + 1, bin);
@@ -147,8 +147,8 @@ enum status mf_structure_factor_write(const struct structure_factor *factor,
                                       const struct observable_results *results) {
     enum status status = STATUS_OK;
     struct structure_factor_curves curves = {0};
-    struct data_column columns[4 + 2 * (1 + COMPOSITION_MOST_PAIRS)];
-    char names[2 * (1 + COMPOSITION_MOST_PAIRS)][COMPOSITION_PAIR_NAME_SIZE + 16];
+    struct data_column columns[4 + 2 * (1 + COMPOSITION_MAX_PAIRS)];
+    char names[2 * (1 + COMPOSITION_MAX_PAIRS)][COMPOSITION_PAIR_NAME_SIZE + 16];
     char path[OUTPUT_PATH_SIZE];
     double *nanometres = NULL;
     size_t n = 0;
@@ -159,7 +159,7 @@ enum status mf_structure_factor_write(const struct structure_factor *factor,
         double *const value = curves.value + curve * factor->bins, *const error =
                                                                        curves.error +
                                                                        curve * factor->bins;
-        mf_statistics_forget_errors(error, curves.bins);
+        mf_statistics_mark_unknown_errors(error, curves.bins);
         if (curve > 0) {
             mf_composition_pair_name(&factor->composition, (int)curve - 1, pair);
             snprintf(brackets, sizeof brackets, "(%s)", pair);
@@ -170,10 +170,11 @@ enum status mf_structure_factor_write(const struct structure_factor *factor,
         columns[n++] = (struct data_column){names[2 * curve + 1], error, "%.3g"};
     }
     columns[n++] = (struct data_column){"vectors[1]", curves.members, "%.7g"};
-    nanometres = mf_units_column(curves.q, curves.bins,
-                                 mf_units_beside(results->units) ? 1 / results->units->length : 0);
+    nanometres = mf_units_column(
+        curves.q, curves.bins,
+        mf_units_have_second_columns(results->units) ? 1 / results->units->length : 0);
     CHECK(nanometres ? STATUS_OK : STATUS_NO_MEMORY);
-    if (mf_units_beside(results->units))
+    if (mf_units_have_second_columns(results->units))
         columns[n++] = (struct data_column){"q[1/nm]", nanometres, NULL};
     mf_observable_file(results, "structure_factor.tsv", path);
     CHECK(mf_data_table_write_in(path, results->units, NULL, columns, n, curves.bins));

@@ -8,7 +8,7 @@
 #include <math.h>
 
 /// Longer series are averaged in blocks first, so that their autocovariances stay cheap.
-enum { MOST_BLOCKS = 4096 };
+enum { MAX_BLOCKS = 4096 };
 
 void mf_thermodynamics_init(struct thermodynamics *thermodynamics) {
     *thermodynamics = (struct thermodynamics){.series.columns = THERMODYNAMICS_QUANTITIES};
@@ -28,7 +28,7 @@ static enum status configurational(const struct simulation *simulation, double *
     const bool alone = simulation->interactions == 1;
     for (int d = 0; d < particles->box.dimensions && !alone; d++)
         NEW_ARRAY(beside[d], particles->count);
-    CHECK(mf_simulation_forces_beside(simulation, beside));
+    CHECK(mf_simulation_interaction_forces(simulation, beside));
     CHECK(mf_reference_configurational(
         simulation->law.potential, &simulation->law.composition, simulation->setup.temperature,
         particles, &simulation->neighbours, alone ? NULL : beside, squares, laplacian));
@@ -107,13 +107,13 @@ static double mean_of(const struct thermodynamics *replicas, size_t count, int q
 static size_t ratio(const struct thermodynamics *replicas, size_t count,
                     enum thermodynamics_quantity numerator, int denominator, double *mean,
                     double *error) {
-    double deviations[MOST_BLOCKS];
+    double deviations[MAX_BLOCKS];
     const double below = mean_of(replicas, count, denominator);
     *mean = mean_of(replicas, count, numerator) / below;
     size_t shortest = replicas[0].series.count;
     for (size_t r = 1; r < count; r++)
         shortest = replicas[r].series.count < shortest ? replicas[r].series.count : shortest;
-    const size_t each = (shortest * count + MOST_BLOCKS - 1) / MOST_BLOCKS;
+    const size_t each = (shortest * count + MAX_BLOCKS - 1) / MAX_BLOCKS;
     const size_t blocks = each ? shortest / each : 0;
     for (size_t r = 0; r < count; r++)
         for (size_t b = 0; b < blocks; b++) {
@@ -148,7 +148,7 @@ static const double band = 0.1;
 static const double deviations = 4;
 
 /// Blocks to know a temperature by.
-enum { LEAST_BLOCKS = 5 };
+enum { MIN_BLOCKS = 5 };
 
 /// So many times the temperature, or none at all, is no chance, however large the error that goes
 /// with it: steps that are far too long give -613(242) and 3625(9341) for 1.
@@ -164,24 +164,25 @@ static bool is_absurd(double temperature, double wanted) {
 
 /// Walls and obstacles of a solvent push beads by no force that the positions would tell of.
 static bool shows_forces(const struct simulation_setup *setup) {
-    return setup->integrator->companions == NULL;
+    return setup->integrator->solvent_particles == NULL;
 }
 
-enum status mf_thermodynamics_judge(const struct thermodynamics_summary *summary,
-                                    const struct simulation_setup *setup) {
+enum status mf_thermodynamics_assess(const struct thermodynamics_summary *summary,
+                                     const struct simulation_setup *setup) {
     const struct thermodynamics_summary *s = summary;
-    const bool flies = simulation_has_velocities(setup);
+    const bool has_velocities = simulation_has_velocities(setup);
     const bool positions = !isnan(s->temperature_configurational) && shows_forces(setup);
     const double wanted = simulation_holds_temperature(setup) ? setup->temperature : s->temperature;
-    const bool nobody = setup->integrator->companions && isnan(s->temperature); // a solvent alone
-    if (s->blocks < LEAST_BLOCKS || nobody || !mf_simulation_is_thermal(setup))
+    const bool nobody =
+        setup->integrator->solvent_particles && isnan(s->temperature); // a solvent alone
+    if (s->blocks < MIN_BLOCKS || nobody || !mf_simulation_is_thermal(setup))
         return STATUS_OK;
-    if ((!flies || agrees(s->temperature, s->temperature_error, wanted)) &&
+    if ((!has_velocities || agrees(s->temperature, s->temperature_error, wanted)) &&
         (!positions ||
          (agrees(s->temperature_configurational, s->temperature_configurational_error, wanted) &&
-          (flies || !is_absurd(s->temperature_configurational, wanted)))))
+          (has_velocities || !is_absurd(s->temperature_configurational, wanted)))))
         return STATUS_OK;
-    if (!flies)
+    if (!has_velocities)
         return mf_status_fail(STATUS_UNSTABLE,
                               "the temperature is %.3g by the positions, not %.3g: %sequilibrate "
                               "for longer",
@@ -196,16 +197,16 @@ enum status mf_thermodynamics_judge(const struct thermodynamics_summary *summary
 
 /// Whether a temperature is off by more than little and by more than chance.
 static bool is_off(double temperature, double error, double wanted) {
-    static const double least = 0.025, errors = 3;
-    return fabs(temperature - wanted) > fmax(least * wanted, errors * error);
+    static const double min = 0.025, errors = 3;
+    return fabs(temperature - wanted) > fmax(min * wanted, errors * error);
 }
 
-enum status mf_thermodynamics_judge_fit(const struct thermodynamics_summary *summary,
-                                        const struct simulation_setup *setup) {
+enum status mf_thermodynamics_assess_fit(const struct thermodynamics_summary *summary,
+                                         const struct simulation_setup *setup) {
     const struct thermodynamics_summary *s = summary;
     const bool held = simulation_holds_temperature(setup);
-    TRY(mf_thermodynamics_judge(summary, setup));
-    if (!mf_simulation_is_thermal(setup) || s->blocks < LEAST_BLOCKS)
+    TRY(mf_thermodynamics_assess(summary, setup));
+    if (!mf_simulation_is_thermal(setup) || s->blocks < MIN_BLOCKS)
         return STATUS_OK;
     if (!held && !agrees(s->temperature, s->temperature_error, setup->temperature))
         return mf_status_fail(STATUS_UNSTABLE,
@@ -213,18 +214,19 @@ enum status mf_thermodynamics_judge_fit(const struct thermodynamics_summary *sum
                               "scene \"dissipative\", friction and noise",
                               s->temperature, setup->temperature);
     const double wanted = held ? setup->temperature : s->temperature;
-    const bool flies = is_off(s->temperature, s->temperature_error, wanted);
+    const bool has_velocities = is_off(s->temperature, s->temperature_error, wanted);
     const bool rests = shows_forces(setup) && is_off(s->temperature_configurational,
                                                      s->temperature_configurational_error, wanted);
-    if (!flies && !rests)
+    if (!has_velocities && !rests)
         return STATUS_OK;
-    const double found = flies ? s->temperature : s->temperature_configurational;
-    const double error = flies ? s->temperature_error : s->temperature_configurational_error;
+    const double found = has_velocities ? s->temperature : s->temperature_configurational;
+    const double error =
+        has_velocities ? s->temperature_error : s->temperature_configurational_error;
     return mf_status_fail(
         STATUS_UNSTABLE,
         "the %s temperature is %.3f(%.0f), %.1f %% off: the time step is long for this potential, "
         "or its force ends abruptly; test it by a shorter \"verification.time_step\"",
-        flies ? "kinetic" : "configurational", found, ceil(1e3 * error),
+        has_velocities ? "kinetic" : "configurational", found, ceil(1e3 * error),
         100 * (found - wanted) / wanted);
 }
 
@@ -239,7 +241,7 @@ struct thermodynamics_off mf_thermodynamics_off(const struct thermodynamics_summ
          s->temperature_configurational_error / wanted, 0}};
     struct thermodynamics_off off = {.known = false};
     double farthest = -1, within = 0;
-    if (s->blocks < LEAST_BLOCKS || !mf_simulation_is_thermal(setup))
+    if (s->blocks < MIN_BLOCKS || !mf_simulation_is_thermal(setup))
         return off;
     for (int k = 0; k < (shows_forces(setup) ? 2 : 1); k++) {
         const double error = is_absurd(each[k].share + 1, 1) ? 0 : each[k].error; // no chance

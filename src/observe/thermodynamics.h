@@ -63,15 +63,15 @@ struct thermodynamics_summary mf_thermodynamics_result(const struct thermodynami
 /// the structure wrong: velocity Verlet (λ = ½) of the standard fluid with γ = 200 and Δt = 0.01
 /// has 1.03 and 0.75. Fails: UNSTABLE with the temperatures in the message. Tested:
 /// test_thermodynamics.
-enum status mf_thermodynamics_judge(const struct thermodynamics_summary *summary,
-                                    const struct simulation_setup *setup) MUST_USE;
+enum status mf_thermodynamics_assess(const struct thermodynamics_summary *summary,
+                                     const struct simulation_setup *setup) MUST_USE;
 
 /// A stricter look at what was fitted: one of the temperatures off by more than 2.5 % and three
 /// standard errors says that the potential and its time step do not belong together. Without
 /// friction the kinetic one must be near that of the setup, too, for which the target holds. Fails:
 /// UNSTABLE with the numbers in the message. Tested: test_thermodynamics.
-enum status mf_thermodynamics_judge_fit(const struct thermodynamics_summary *summary,
-                                        const struct simulation_setup *setup) MUST_USE;
+enum status mf_thermodynamics_assess_fit(const struct thermodynamics_summary *summary,
+                                         const struct simulation_setup *setup) MUST_USE;
 
 /// How far off the temperatures of a summary are, relative to the one that they should have: that
 /// of the setup or, where nothing holds it, the kinetic one. Of both the one that is farther off by

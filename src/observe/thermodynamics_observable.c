@@ -3,7 +3,7 @@
 #include "io/data_table.h"
 #include "observe/measure.h"
 #include "observe/pooled.h"
-#include "observe/settled.h"
+#include "observe/equilibrium.h"
 #include "observe/thermodynamics.h"
 
 #include <math.h>
@@ -27,8 +27,8 @@ static size_t spans(void *state, struct memory_span *spans) {
     return mf_sample_series_spans(&((struct thermodynamics *)state)->series, spans);
 }
 
-static enum status make_room(void *state) {
-    return mf_sample_series_make_room(&((struct thermodynamics *)state)->series);
+static enum status reserve(void *state) {
+    return mf_sample_series_reserve(&((struct thermodynamics *)state)->series);
 }
 
 /// thermodynamics.tsv: a row for each sample.
@@ -53,7 +53,7 @@ static enum status write(const void *state, const struct observable_results *res
                              mf_thermodynamics_series(t, THERMODYNAMICS_LAPLACIAN)[k];
     }
     // bar is a force on an area.
-    const bool known = mf_units_beside(units), in_space = setup->box.dimensions == 3;
+    const bool known = mf_units_have_second_columns(units), in_space = setup->box.dimensions == 3;
     physical[0] = mf_units_column(time, t->series.count, known ? mf_units_time_ps(units) : 0);
     physical[1] =
         mf_units_column(energy, t->series.count, known ? mf_units_energy_kj_per_mol(units) : 0);
@@ -87,44 +87,45 @@ done:
 }
 
 /// Temperatures first: a step that is too long tells more than the drift that it makes.
-static enum status judge(const void *state, const struct simulation_setup *setup) {
+static enum status assess(const void *state, const struct simulation_setup *setup) {
     const struct thermodynamics *t = state;
     const struct thermodynamics_summary s = mf_thermodynamics_result(t, 1);
-    TRY(mf_thermodynamics_judge(&s, setup));
-    TRY(mf_settled_judge("potential energy",
-                         mf_thermodynamics_series(t, THERMODYNAMICS_POTENTIAL_ENERGY),
-                         t->series.count));
-    return mf_settled_judge("pressure", mf_thermodynamics_series(t, THERMODYNAMICS_PRESSURE),
-                            t->series.count);
+    TRY(mf_thermodynamics_assess(&s, setup));
+    TRY(mf_equilibrium_check("potential energy",
+                             mf_thermodynamics_series(t, THERMODYNAMICS_POTENTIAL_ENERGY),
+                             t->series.count));
+    return mf_equilibrium_check("pressure", mf_thermodynamics_series(t, THERMODYNAMICS_PRESSURE),
+                                t->series.count);
 }
 
 /// One sample tells no error: null.
-static void put_error(struct json_writer *writer, const char *name, const char *unit,
-                      const struct thermodynamics_summary *summary, double error) {
-    mf_json_put_quantity(writer, name, unit, summary->blocks > 1 ? error : NAN);
+static void write_error(struct json_writer *writer, const char *name, const char *unit,
+                        const struct thermodynamics_summary *summary, double error) {
+    mf_json_write_quantity(writer, name, unit, summary->blocks > 1 ? error : NAN);
 }
 
 /// Means with errors, and the object "physical" when the units are known.
-static void put(const void *state, const struct observable_results *results,
-                struct json_writer *writer) {
+static void write_summary(const void *state, const struct observable_results *results,
+                          struct json_writer *writer) {
     const struct thermodynamics_summary s = mf_thermodynamics_result(state, 1);
-    if (mf_units_mark(results->units, judge(state, results->setup)) != STATUS_OK)
-        mf_json_put_text(writer, "warning", mf_status_message());
-    mf_json_put_quantity(writer, "temperature", "T_0", s.temperature);
-    put_error(writer, "temperature_error", "T_0", &s, s.temperature_error);
+    if (mf_units_add_to_message(results->units, assess(state, results->setup)) != STATUS_OK)
+        mf_json_write_text(writer, "warning", mf_status_message());
+    mf_json_write_quantity(writer, "temperature", "T_0", s.temperature);
+    write_error(writer, "temperature_error", "T_0", &s, s.temperature_error);
     if (isfinite(s.temperature_configurational)) {
-        mf_json_put_quantity(writer, "temperature_configurational", "T_0",
-                             s.temperature_configurational);
-        put_error(writer, "temperature_configurational_error", "T_0", &s,
-                  s.temperature_configurational_error);
+        mf_json_write_quantity(writer, "temperature_configurational", "T_0",
+                               s.temperature_configurational);
+        write_error(writer, "temperature_configurational_error", "T_0", &s,
+                    s.temperature_configurational_error);
     }
-    mf_json_put_quantity(writer, "potential_energy", "k_B T_0", s.potential_energy);
-    put_error(writer, "potential_energy_error", "k_B T_0", &s, s.potential_energy_error);
-    mf_json_put_quantity(writer, "pressure", "k_B T_0/lambda^d", s.pressure);
-    put_error(writer, "pressure_error", "k_B T_0/lambda^d", &s, s.pressure_error);
-    if (!simulation_holds_temperature(results->setup) && !results->setup->integrator->companions)
-        mf_json_put_number(writer, "energy_drift", mf_thermodynamics_energy_drift(state));
-    mf_units_put(results->units, writer, s.potential_energy, s.pressure);
+    mf_json_write_quantity(writer, "potential_energy", "k_B T_0", s.potential_energy);
+    write_error(writer, "potential_energy_error", "k_B T_0", &s, s.potential_energy_error);
+    mf_json_write_quantity(writer, "pressure", "k_B T_0/lambda^d", s.pressure);
+    write_error(writer, "pressure_error", "k_B T_0/lambda^d", &s, s.pressure_error);
+    if (!simulation_holds_temperature(results->setup) &&
+        !results->setup->integrator->solvent_particles)
+        mf_json_write_number(writer, "energy_drift", mf_thermodynamics_energy_drift(state));
+    mf_units_write_results(results->units, writer, s.potential_energy, s.pressure);
 }
 
 /// Nanoseconds of a pair and sample: of the sums, and of the configurational temperature.
@@ -167,10 +168,10 @@ const struct observable mf_thermodynamics_observable = {
     .sums = true,
     .sample = sample,
     .spans = spans,
-    .make_room = make_room,
+    .reserve = reserve,
     .write = write,
-    .put = put,
-    .judge = judge,
+    .write_summary = write_summary,
+    .assess = assess,
     .explain = explain,
     .stage = sums_stage,
     .files = files,

@@ -67,11 +67,11 @@ struct thermodynamics_shift mf_thermodynamics_shift(const struct thermodynamics 
                                                     size_t count,
                                                     const struct thermodynamics_summary *summary,
                                                     const struct simulation_setup *setup) {
-    enum { LEAST_SAMPLES = 100 };
+    enum { MIN_SAMPLES = 100 };
     const double particles = (double)setup->placement.count, temperature = setup->temperature;
     const double degrees = setup->box.dimensions * particles;
     const struct fluctuations f = find_fluctuations(replicas, count, particles);
-    if (f.samples < LEAST_SAMPLES || !is_known(setup))
+    if (f.samples < MIN_SAMPLES || !is_known(setup))
         return (struct thermodynamics_shift){NAN, NAN};
     const double off = response(&f, SQUARES, temperature, degrees) / f.mean[SQUARES] -
                        response(&f, LAPLACIAN, temperature, degrees) / f.mean[LAPLACIAN];

@@ -35,7 +35,7 @@ const struct field mf_cmaes_fields[] = {
 };
 
 /// Usual population times this is the most that noise makes of it.
-enum { MOST_GROWTH = 16 };
+enum { MAX_GROWTH = 16 };
 
 /// Constants of the reaction to noise. On a sphere of 10 variables with noise of 0.01, 10,000
 /// measurements lead to 0.0055 without a reaction, to 0.0007 with these, and to 0.009 with a longer
@@ -47,12 +47,12 @@ struct state {
     struct optimiser_space space;
     struct cmaes_distribution distribution;
     struct cmaes_strategy strategy;
-    size_t most;       ///< candidates of a round, at most; there is room for them
+    size_t max;        ///< candidates of a round, at most; there is room for them
     double *steps;     ///< of the candidates, shape [most, variables]
     double *variables; ///< the candidates, shape [most, variables]
     double *errors;    ///< shape [most]: scratch
     double *record;    ///< variables of `record_error`, shape [variables]
-    double *history;   ///< least errors of the last rounds, a ring, shape [most_history]
+    double *history;   ///< least errors of the last rounds, a ring, shape [max_history]
     uint64_t sampled;  ///< the round whose candidates these are, counted from 1; 0: none yet
     struct progress {
         uint64_t rounds; ///< told
@@ -74,11 +74,11 @@ static size_t history_rounds(const struct state *state, size_t population) {
     return 10 + (size_t)ceil(30 * (double)state->space.variables / (double)population);
 }
 
-static size_t most_history(const struct state *state) {
+static size_t max_history(const struct state *state) {
     return history_rounds(state, usual_population(&state->parameters, state->space.variables));
 }
 
-static uint32_t most_rounds(const void *parameters, size_t variables) {
+static uint32_t max_rounds(const void *parameters, size_t variables) {
     (void)variables;
     return (uint32_t)((const struct cmaes_parameters *)parameters)->rounds;
 }
@@ -137,15 +137,15 @@ static enum status create(void *memory, const struct optimiser_space *space,
     state->space.start = NULL;
     const size_t usual = usual_population(&state->parameters, space->variables);
     CHECK(mf_optimiser_check_round(space, usual));
-    state->most = MOST_GROWTH * usual;
-    if (space->most > 0 && state->most > space->most)
-        state->most = space->most;
-    NEW_ARRAY(state->strategy.weights, state->most);
-    NEW_ARRAY(state->steps, state->most * space->variables);
-    NEW_ARRAY(state->variables, state->most * space->variables);
-    NEW_ARRAY(state->errors, state->most);
+    state->max = MAX_GROWTH * usual;
+    if (space->max > 0 && state->max > space->max)
+        state->max = space->max;
+    NEW_ARRAY(state->strategy.weights, state->max);
+    NEW_ARRAY(state->steps, state->max * space->variables);
+    NEW_ARRAY(state->variables, state->max * space->variables);
+    NEW_ARRAY(state->errors, state->max);
     NEW_ARRAY(state->record, space->variables);
-    NEW_ARRAY(state->history, most_history(state));
+    NEW_ARRAY(state->history, max_history(state));
     CHECK(mf_cmaes_init(&state->distribution, space->variables));
     state->progress.record_error = state->progress.discard_above = HUGE_VAL;
     state->progress.population = (double)usual;
@@ -192,7 +192,7 @@ static void react_to_noise(struct state *state) {
     struct progress *p = &state->progress;
     const double usual = (double)usual_population(&state->parameters, state->space.variables);
     if (p->noise > noise_grows)
-        p->population = fmin(p->population * growth, (double)state->most);
+        p->population = fmin(p->population * growth, (double)state->max);
     else if (p->noise < noise_shrinks)
         p->population = fmax(p->population / growth, usual);
 }
@@ -221,7 +221,7 @@ static void survey(struct state *state) {
     const struct cmaes_strategy *s = &state->strategy;
     qsort(state->errors, s->population, sizeof(double), compare_numbers);
     p->discard_above = state->errors[s->parents - 1];
-    state->history[p->history_count++ % most_history(state)] = state->errors[0];
+    state->history[p->history_count++ % max_history(state)] = state->errors[0];
 }
 
 /// Whether errors of this round, sorted, and the least of the last ones are all the same.
@@ -230,28 +230,28 @@ static bool stands_still(const struct state *state) {
     const size_t rounds = history_rounds(state, state->strategy.population);
     if (p->history_count < rounds)
         return false;
-    double least = state->errors[0], most = state->errors[state->strategy.population - 1];
+    double min = state->errors[0], max = state->errors[state->strategy.population - 1];
     for (size_t k = 1; k <= rounds; k++) {
-        const double error = state->history[(p->history_count - k) % most_history(state)];
-        least = fmin(least, error);
-        most = fmax(most, error);
+        const double error = state->history[(p->history_count - k) % max_history(state)];
+        min = fmin(min, error);
+        max = fmax(max, error);
     }
-    return most - least <= state->parameters.tolerance;
+    return max - min <= state->parameters.tolerance;
 }
 
 /// Largest standard deviation of a variable.
 static double widest(const struct state *state) {
-    double most = 0;
+    double max = 0;
     for (size_t k = 0; k < state->space.variables; k++)
-        most = fmax(most, mf_cmaes_deviation(&state->distribution, k));
-    return most;
+        max = fmax(max, mf_cmaes_deviation(&state->distribution, k));
+    return max;
 }
 
 /// No variable spreads beyond its whole range: mirrors would only hide it.
 static void limit_step(struct state *state) {
-    const double most = widest(state);
-    if (most > 1)
-        state->distribution.moments.sigma /= most;
+    const double max = widest(state);
+    if (max > 1)
+        state->distribution.moments.sigma /= max;
 }
 
 /// Whether the distribution has become too narrow or too oblong for double precision.
@@ -272,12 +272,12 @@ static enum status tell(void *memory, const double *errors, const double *varian
     struct state *state = memory;
     sample(state);
     const size_t population = state->strategy.population;
-    double least = OPTIMISER_FAILED;
+    double min = OPTIMISER_FAILED;
     for (size_t k = 0; k < population; k++) {
         state->errors[k] = optimiser_error(errors[k]);
-        least = fmin(least, state->errors[k]);
+        min = fmin(min, state->errors[k]);
     }
-    if (least < OPTIMISER_FAILED) { // a round in which all failed says nothing
+    if (min < OPTIMISER_FAILED) { // a round in which all failed says nothing
         TRY(mf_cmaes_update(&state->distribution, &state->strategy, state->steps, state->errors));
         limit_step(state);
         state->progress.known = true;
@@ -292,7 +292,7 @@ static enum status tell(void *memory, const double *errors, const double *varian
 
 // What it knows -----------------------------------------------------------------------------------
 
-static bool incumbent(const void *memory, double *variables) {
+static bool best_candidate(const void *memory, double *variables) {
     const struct state *state = memory;
     const struct progress *p = &state->progress;
     if (!p->known)
@@ -328,7 +328,7 @@ static size_t spans(void *memory, struct memory_span *span) {
     state->sampled = 0; // another round may be read into the spans
     span[count++] = (struct memory_span){&state->progress, sizeof state->progress};
     span[count++] = (struct memory_span){&d->moments, sizeof d->moments};
-    span[count++] = (struct memory_span){state->history, most_history(state) * sizeof(double)};
+    span[count++] = (struct memory_span){state->history, max_history(state) * sizeof(double)};
     span[count++] = (struct memory_span){state->record, row};
     span[count++] = (struct memory_span){d->mean, row};
     span[count++] = (struct memory_span){d->path_sigma, row};
@@ -345,12 +345,12 @@ const struct optimiser mf_cmaes_optimiser = {
     .parameters_size = sizeof(struct cmaes_parameters),
     .state_size = sizeof(struct state),
     .budget = "rounds",
-    .most_rounds = most_rounds,
+    .max_rounds = max_rounds,
     .create = create,
     .destroy = destroy,
     .ask = ask,
     .tell = tell,
-    .incumbent = incumbent,
+    .best_candidate = best_candidate,
     .spread = spread,
     .discard_above = discard_above,
     .settled = settled,

@@ -249,10 +249,10 @@ double mf_cmaes_deviation(const struct cmaes_distribution *d, size_t variable) {
 }
 
 double mf_cmaes_axis_ratio(const struct cmaes_distribution *d) {
-    double least = d->lengths[0], most = d->lengths[0];
+    double min = d->lengths[0], max = d->lengths[0];
     for (size_t k = 1; k < d->variables; k++) {
-        least = fmin(least, d->lengths[k]);
-        most = fmax(most, d->lengths[k]);
+        min = fmin(min, d->lengths[k]);
+        max = fmax(max, d->lengths[k]);
     }
-    return most / least;
+    return max / min;
 }

@@ -36,10 +36,10 @@ static void scale_weights(struct cmaes_strategy *s, double n, double effective_n
     const double by_rates = 1 + s->rank_one / s->rank_mu;
     const double by_effective = 1 + 2 * effective_negative / (s->effective + 2);
     const double by_definiteness = (1 - s->rank_one - s->rank_mu) / (n * s->rank_mu);
-    const double least = fmin(by_rates, fmin(by_effective, by_definiteness));
+    const double min = fmin(by_rates, fmin(by_effective, by_definiteness));
     s->weights_sum = 0;
     for (size_t k = 0; k < s->population; k++) {
-        s->weights[k] *= s->weights[k] >= 0 ? 1 / positive : least / negative;
+        s->weights[k] *= s->weights[k] >= 0 ? 1 / positive : min / negative;
         s->weights_sum += s->weights[k];
     }
 }

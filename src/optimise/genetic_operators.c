@@ -86,7 +86,7 @@ static double normal(double u, double v) {
 static const double mutated_genes = 0.1, additive_share = 0.1, added = 0.1;
 
 /// Least spread that steps are taken from, as a share of the range.
-static const double least_spread = 1e-4;
+static const double min_spread = 1e-4;
 
 void mf_genetic_mutate_scale(double *genes, const struct genetic_parameters *parameters,
                              double probability, double additive, struct rng_sequence *random) {
@@ -134,7 +134,7 @@ void mf_genetic_mutate_walk(double *genes, const struct genetic *genetic,
     for (size_t b = 0; b < genetic->blocks; b++) {
         const double u = mf_rng_sequence_uniform(random), v = mf_rng_sequence_uniform(random);
         const double octaves = 1 - 5 * mf_rng_sequence_uniform(random);
-        const double spread = fmax(genetic->spread[b], least_spread);
+        const double spread = fmax(genetic->spread[b], min_spread);
         mf_genetic_walk(genes, (int64_t)genetic->block[b],
                         range * spread * fabs(normal(u, v)) * exp2(octaves), random);
         genes += genetic->block[b];

@@ -16,7 +16,7 @@ struct state {
     double *challenger; ///< shape [genes]: scratch
 };
 
-static uint32_t most_rounds(const void *parameters, size_t genes) {
+static uint32_t max_rounds(const void *parameters, size_t genes) {
     (void)genes;
     return (uint32_t)((const struct genetic_parameters *)parameters)->generations + 1;
 }
@@ -87,7 +87,7 @@ static enum status ask(void *memory, struct optimiser_round *round) {
 }
 
 /// Offer the challenger the place of the elite for the mean of its fresh measurements.
-static void judge_challenger(struct genetic *genetic, const double *fresh) {
+static void assess_challenger(struct genetic *genetic, const double *fresh) {
     double mean = 0;
     for (int k = 0; k < GENETIC_REMEASUREMENTS; k++)
         mean += fresh[k] / GENETIC_REMEASUREMENTS;
@@ -104,12 +104,12 @@ static bool is_elite(const struct genetic *genetic, int64_t row) {
 /// are left out: they would win by a lucky draw of the same genes.
 static int64_t find_challenger(const struct genetic *genetic, const double *errors) {
     int64_t best = -1;
-    double least = genetic->elite_error;
+    double min = genetic->elite_error;
     for (int64_t k = 0; k < genetic->parameters.population; k++) {
-        if (errors[k] >= least || is_elite(genetic, k))
+        if (errors[k] >= min || is_elite(genetic, k))
             continue;
         best = k;
-        least = errors[k];
+        min = errors[k];
     }
     return best;
 }
@@ -128,13 +128,13 @@ static void add_challenger(struct state *state, uint64_t number) {
     }
 }
 
-static void tell_generation(struct state *state) {
+static void report_generation(struct state *state) {
     struct genetic *genetic = &state->genetic;
     const int64_t population = genetic->parameters.population;
     if (genetic->elite_measured > 0)
         mf_genetic_remeasure_elite(genetic, state->errors[0]);
     if (has_challenger(genetic))
-        judge_challenger(genetic, state->errors + population);
+        assess_challenger(genetic, state->errors + population);
     const int64_t challenger = find_challenger(genetic, state->errors);
     if (challenger >= 0)
         memcpy(state->challenger, mf_genetic_individual(genetic, challenger),
@@ -160,9 +160,9 @@ static enum status tell(void *memory, const double *errors, const double *varian
     for (int64_t k = 0; k < count; k++)
         state->errors[k] = optimiser_error(errors[k]);
     if (!is_over(genetic)) {
-        tell_generation(state);
+        report_generation(state);
     } else if (has_challenger(genetic)) {
-        judge_challenger(genetic, state->errors);
+        assess_challenger(genetic, state->errors);
         genetic->measured += (uint64_t)count;
         genetic->rows = genetic->parameters.population;
         // If it has won, patience begins anew, with it in the place of the elite.
@@ -172,7 +172,7 @@ static enum status tell(void *memory, const double *errors, const double *varian
     return STATUS_OK;
 }
 
-static bool incumbent(const void *memory, double *genes) {
+static bool best_candidate(const void *memory, double *genes) {
     const struct genetic *genetic = &((const struct state *)memory)->genetic;
     const bool has_elite = genetic->elite_measured > 0;
     if (!has_elite && !has_challenger(genetic))
@@ -239,12 +239,12 @@ const struct optimiser mf_genetic_optimiser = {
     .parameters_size = sizeof(struct genetic_parameters),
     .state_size = sizeof(struct state),
     .budget = "generations",
-    .most_rounds = most_rounds,
+    .max_rounds = max_rounds,
     .create = create,
     .destroy = destroy,
     .ask = ask,
     .tell = tell,
-    .incumbent = incumbent,
+    .best_candidate = best_candidate,
     .spread = spread,
     .discard_above = discard_above,
     .suggest = suggest,

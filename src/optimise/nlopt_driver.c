@@ -13,7 +13,7 @@
 
 #include <string.h>
 
-enum { MOST_EVALUATIONS = 1000000 };
+enum { MAX_EVALUATIONS = 1000000 };
 
 /// Parallel to the names of the field.
 static const struct algorithm {
@@ -37,7 +37,7 @@ const struct field mf_nlopt_fields[] = {
     {"algorithm", FIELD_CHOICE, MEMBER(algorithm), .choices = names, .initial = SBPLX, .unit = "",
      .help = "algorithm; GN_: global, LN_: local"},
     {"evaluations", FIELD_INTEGER, MEMBER(evaluations), .initial = 1000, .minimum = 1,
-     .maximum = MOST_EVALUATIONS, .unit = "", .help = "most evaluations"},
+     .maximum = MAX_EVALUATIONS, .unit = "", .help = "most evaluations"},
     {"step", FIELD_NUMBER, MEMBER(step), .initial = 0.2, .minimum = FIELD_ABOVE_ZERO,
      .maximum = 0.5, .unit = "", .help = "first step of LN_, as a fraction of the range"},
     {"tolerance", FIELD_NUMBER, MEMBER(tolerance), .initial = 1e-6, .minimum = 0, .maximum = 1,
@@ -73,19 +73,19 @@ struct call {
     struct coroutine *self;
     nlopt_opt optimiser;
     bool models;
-    double least, most; ///< of the errors that could be measured
+    double min, max; ///< of the errors that could be measured
 };
 
 /// A failed candidate tells a model that it is as far above the worst as that is above the best:
 /// 1e9 would bend the whole model.
 static double seen_error(struct call *call, double error) {
     if (error < OPTIMISER_FAILED) {
-        call->least = fmin(call->least, error);
-        call->most = fmax(call->most, error);
+        call->min = fmin(call->min, error);
+        call->max = fmax(call->max, error);
         return error;
     }
-    const bool measured = call->most >= call->least;
-    return call->models && measured ? 2 * call->most - call->least : OPTIMISER_FAILED;
+    const bool measured = call->max >= call->min;
+    return call->models && measured ? 2 * call->max - call->min : OPTIMISER_FAILED;
 }
 
 static double measure(unsigned variables, const double *x, double *gradient, void *context) {
@@ -121,14 +121,14 @@ static nlopt_opt prepare(const struct state *state, struct call *call) {
 /// `result` tells whether its steps had become small.
 static void body(struct coroutine *self, void *context) {
     struct state *state = context;
-    struct call call = {.self = self, .least = HUGE_VAL, .most = -HUGE_VAL};
+    struct call call = {.self = self, .min = HUGE_VAL, .max = -HUGE_VAL};
     nlopt_opt optimiser = prepare(state, &call);
     const struct rng_block seed = mf_rng_philox(state->space.seed, RNG_INITIAL, 0, 0, 0);
-    double *x = mf_memory_zeroed(state->space.variables, sizeof *x), least;
+    double *x = mf_memory_zeroed(state->space.variables, sizeof *x), min;
     if (optimiser && x) {
         memcpy(x, state->start, state->space.variables * sizeof *x);
         nlopt_srand(seed.word[0]); // it takes 32 bits: all 64 are mixed into them
-        state->result = nlopt_optimize(optimiser, x, &least);
+        state->result = nlopt_optimize(optimiser, x, &min);
     }
     mf_memory_free(x);
     nlopt_destroy(optimiser);
@@ -136,7 +136,7 @@ static void body(struct coroutine *self, void *context) {
 
 // Outside -----------------------------------------------------------------------------------------
 
-static uint32_t most_rounds(const void *parameters, size_t variables) {
+static uint32_t max_rounds(const void *parameters, size_t variables) {
     (void)variables;
     return (uint32_t)((const struct nlopt_parameters *)parameters)->evaluations;
 }
@@ -224,7 +224,7 @@ static enum status tell(void *memory, const double *errors, const double *varian
     return STATUS_OK;
 }
 
-static bool incumbent(const void *memory, double *variables) {
+static bool best_candidate(const void *memory, double *variables) {
     const struct state *state = memory;
     if (state->progress.best_error >= OPTIMISER_FAILED)
         return false;
@@ -289,12 +289,12 @@ const struct optimiser mf_nlopt_optimiser = {
     .parameters_size = sizeof(struct nlopt_parameters),
     .state_size = sizeof(struct state),
     .budget = "evaluations",
-    .most_rounds = most_rounds,
+    .max_rounds = max_rounds,
     .create = create,
     .destroy = destroy,
     .ask = ask,
     .tell = tell,
-    .incumbent = incumbent,
+    .best_candidate = best_candidate,
     .spread = spread,
     .discard_above = discard_above,
     .settled = settled,

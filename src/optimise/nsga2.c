@@ -25,7 +25,7 @@ const struct field mf_nsga2_fields[] = {
 static const double crossover = 0.9, crossover_exponent = 15, mutation = 1, remeasured = 0.25;
 
 /// Widths of the first population about the start: from this part of `spread` to all of it.
-static const double least_spread = 0.1;
+static const double min_spread = 0.1;
 
 static double *row(const struct nsga2 *nsga2, size_t index) {
     return nsga2->x + index * nsga2->genes;
@@ -58,7 +58,7 @@ static void make_first(struct nsga2 *nsga2, const double *start) {
     for (size_t k = 0; k < nsga2->population; k++) {
         struct rng_sequence random =
             mf_rng_sequence_begin(nsga2->seed, RNG_INITIAL, (uint32_t)k, 0);
-        const double width = spread * pow(least_spread, mf_rng_sequence_uniform(&random));
+        const double width = spread * pow(min_spread, mf_rng_sequence_uniform(&random));
         double *x = row(nsga2, nsga2->population + k);
         for (size_t n = 0; n < nsga2->genes; n++) {
             const double u = mf_rng_sequence_uniform(&random), v = mf_rng_sequence_uniform(&random);
@@ -89,7 +89,7 @@ enum status mf_nsga2_init(struct nsga2 *nsga2, const struct nsga2_parameters *pa
     NEW_ARRAY(nsga2->rank, 2 * population);
     NEW_ARRAY(nsga2->crowding, 2 * population);
     NEW_ARRAY(nsga2->again, population);
-    NEW_ARRAY(nsga2->planted, NSGA2_PLANTED * space->genes);
+    NEW_ARRAY(nsga2->injected, NSGA2_INJECTED * space->genes);
     make_first(nsga2, space->start);
     nsga2->progress.is_made = 1;
 done:
@@ -103,7 +103,7 @@ void mf_nsga2_clear(struct nsga2 *nsga2) {
     mf_memory_free(nsga2->rank);
     mf_memory_free(nsga2->crowding);
     mf_memory_free(nsga2->again);
-    mf_memory_free(nsga2->planted);
+    mf_memory_free(nsga2->injected);
     *nsga2 = (struct nsga2){0};
 }
 
@@ -156,10 +156,10 @@ static void make_children(struct nsga2 *nsga2) {
         mutate(nsga2, a, &random);
         mutate(nsga2, b, &random);
     }
-    const size_t planted = nsga2->progress.planted;
-    memcpy(row(nsga2, 2 * nsga2->population - planted), nsga2->planted,
-           planted * nsga2->genes * sizeof *nsga2->planted);
-    nsga2->progress.planted = 0;
+    const size_t injected = nsga2->progress.injected;
+    memcpy(row(nsga2, 2 * nsga2->population - injected), nsga2->injected,
+           injected * nsga2->genes * sizeof *nsga2->injected);
+    nsga2->progress.injected = 0;
 }
 
 static bool is_chosen_again(const struct nsga2 *nsga2, size_t parent) {
@@ -171,21 +171,21 @@ static bool is_chosen_again(const struct nsga2 *nsga2, size_t parent) {
 
 /// Member of the first front that was measured least, of those not chosen yet; `population` if
 /// there is none.
-static size_t least_measured(const struct nsga2 *nsga2) {
-    size_t least = nsga2->population;
+static size_t min_measured(const struct nsga2 *nsga2) {
+    size_t min = nsga2->population;
     for (size_t k = 0; k < nsga2->population; k++)
         if (nsga2->rank[k] == 1 && value_of(nsga2, k)[0] < OPTIMISER_FAILED &&
             !is_chosen_again(nsga2, k) &&
-            (least == nsga2->population || nsga2->measured[k] < nsga2->measured[least]))
-            least = k;
-    return least;
+            (min == nsga2->population || nsga2->measured[k] < nsga2->measured[min]))
+            min = k;
+    return min;
 }
 
 static void choose_again(struct nsga2 *nsga2) {
-    const size_t most = (size_t)ceil(remeasured * (double)nsga2->population);
+    const size_t max = (size_t)ceil(remeasured * (double)nsga2->population);
     nsga2->progress.again = 0;
-    while (nsga2->progress.again < most) {
-        const size_t parent = least_measured(nsga2);
+    while (nsga2->progress.again < max) {
+        const size_t parent = min_measured(nsga2);
         if (parent == nsga2->population)
             break;
         memcpy(row(nsga2, 2 * nsga2->population + nsga2->progress.again), row(nsga2, parent),
@@ -206,13 +206,13 @@ struct optimiser_round mf_nsga2_ask(struct nsga2 *nsga2) {
                                     nsga2->population + nsga2->progress.again};
 }
 
-void mf_nsga2_plant(struct nsga2 *nsga2, const double *genes) {
-    const size_t planted = nsga2->progress.planted;
-    if (planted >= NSGA2_PLANTED || planted >= nsga2->population / 2)
+void mf_nsga2_inject(struct nsga2 *nsga2, const double *genes) {
+    const size_t injected = nsga2->progress.injected;
+    if (injected >= NSGA2_INJECTED || injected >= nsga2->population / 2)
         return;
     for (size_t n = 0; n < nsga2->genes; n++)
-        nsga2->planted[planted * nsga2->genes + n] = fmin(1, fmax(0, genes[n]));
-    nsga2->progress.planted++;
+        nsga2->injected[injected * nsga2->genes + n] = fmin(1, fmax(0, genes[n]));
+    nsga2->progress.injected++;
 }
 
 // Selection ---------------------------------------------------------------------------------------
@@ -326,6 +326,7 @@ size_t mf_nsga2_spans(struct nsga2 *nsga2, struct memory_span *span) {
     span[n++] = (struct memory_span){nsga2->rank, rows * sizeof *nsga2->rank};
     span[n++] = (struct memory_span){nsga2->crowding, rows * sizeof(double)};
     span[n++] = (struct memory_span){nsga2->again, nsga2->population * sizeof *nsga2->again};
-    span[n++] = (struct memory_span){nsga2->planted, NSGA2_PLANTED * nsga2->genes * sizeof(double)};
+    span[n++] =
+        (struct memory_span){nsga2->injected, NSGA2_INJECTED * nsga2->genes * sizeof(double)};
     return n;
 }

@@ -29,7 +29,7 @@ struct nsga2_space {
     uint64_t seed;
 };
 
-enum { NSGA2_PLANTED = 16 }; ///< children of a round, at most
+enum { NSGA2_INJECTED = 16 }; ///< children of a round, at most
 
 struct nsga2 {
     struct nsga2_parameters parameters;
@@ -41,11 +41,11 @@ struct nsga2 {
     uint32_t *rank;   ///< shape [2 population]: front, from 1; of the parents alone after a tell
     double *crowding; ///< shape [2 population]: room on it; infinite at its ends
     uint32_t *again;  ///< shape [population]: parents that the round measures again
-    double *planted;  ///< shape [NSGA2_PLANTED, genes]
+    double *injected; ///< shape [NSGA2_INJECTED, genes]
     struct nsga2_progress {
         uint32_t generation; ///< that have been told
         uint32_t is_made;    ///< whether the next round is
-        uint32_t again, planted;
+        uint32_t again, injected;
     } progress;
 };
 
@@ -69,8 +69,8 @@ enum status mf_nsga2_add_measurement(struct nsga2 *nsga2, size_t parent,
                                      const double *value) MUST_USE;
 
 /// Let the next round have a child of these genes; once the round has been asked for, the one
-/// after. More than NSGA2_PLANTED, or than half the population, are forgotten.
-void mf_nsga2_plant(struct nsga2 *nsga2, const double *genes);
+/// after. More than NSGA2_INJECTED, or than half the population, are forgotten.
+void mf_nsga2_inject(struct nsga2 *nsga2, const double *genes);
 
 /// Parents: none before the first tell. And the genes of one, shape [genes].
 size_t mf_nsga2_parents(const struct nsga2 *nsga2);

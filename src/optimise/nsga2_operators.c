@@ -2,9 +2,9 @@
 #include "base/rng.h"
 #include "optimise/nsga2.h"
 
-/// Spread factor β of a uniform number u, when the nearest bound allows β = `most` at last.
-static double spread_factor(double u, double most, double exponent) {
-    const double inside = 2 - pow(most, -(exponent + 1));
+/// Spread factor β of a uniform number u, when the nearest bound allows β = `max` at last.
+static double spread_factor(double u, double max, double exponent) {
+    const double inside = 2 - pow(max, -(exponent + 1));
     if (u <= 1 / inside)
         return pow(u * inside, 1 / (exponent + 1));
     return pow(1 / (2 - u * inside), 1 / (exponent + 1));
@@ -35,8 +35,8 @@ void mf_nsga2_cross(double *a, double *b, size_t genes, double exponent,
 double mf_nsga2_mutate(double gene, double exponent, struct rng_sequence *random) {
     const double u = mf_rng_sequence_uniform(random), power = exponent + 1;
     const bool down = u < 0.5;
-    const double room = pow(down ? 1 - gene : gene, power);
+    const double capacity = pow(down ? 1 - gene : gene, power);
     if (down)
-        return within(gene + pow(2 * u + (1 - 2 * u) * room, 1 / power) - 1);
-    return within(gene + 1 - pow(2 * (1 - u) + (2 * u - 1) * room, 1 / power));
+        return within(gene + pow(2 * u + (1 - 2 * u) * capacity, 1 / power) - 1);
+    return within(gene + 1 - pow(2 * (1 - u) + (2 * u - 1) * capacity, 1 / power));
 }

@@ -27,11 +27,11 @@ enum status mf_optimiser_check_space(const struct optimiser_space *space) {
 }
 
 enum status mf_optimiser_check_round(const struct optimiser_space *space, size_t count) {
-    if (space->most == 0 || count <= space->most)
+    if (space->max == 0 || count <= space->max)
         return STATUS_OK;
     return mf_status_fail(STATUS_BAD_INPUT,
                           "\"population\" makes rounds of %zu candidates, and %zu are the most",
-                          count, space->most);
+                          count, space->max);
 }
 
 double mf_optimiser_reflect(double x) {

@@ -23,7 +23,7 @@ struct optimiser_space {
     double minimum, maximum; ///< of every variable: no candidate is ever beyond
     const double *start; ///< shape [variables]: where to begin, or NULL for the optimiser's choice
     uint64_t seed;
-    size_t most; ///< candidates that a round may have; 0: any number
+    size_t max; ///< candidates that a round may have; 0: any number
     /// Variables that belong together, as those of a curve, shape [blocks], adding up to all of
     /// them; 0: all are one.
     size_t blocks;
@@ -45,7 +45,7 @@ struct optimiser {
     size_t state_size;
     const char *budget; ///< the parameter that ends it if nothing else does
     /// Upper bound of rounds.
-    uint32_t (*most_rounds)(const void *parameters, size_t variables);
+    uint32_t (*max_rounds)(const void *parameters, size_t variables);
     /// Begin in zeroed memory of `state_size`; nothing of `space` or `parameters` is kept.
     /// Fails: BAD_INPUT for an empty box, or a population beyond space.most; NO_MEMORY; `destroy`
     /// must follow all the same.
@@ -58,7 +58,7 @@ struct optimiser {
     enum status (*tell)(void *state, const double *errors, const double *variances);
     /// The variables that it believes best now, shape [variables]; false, and nothing written,
     /// before anything has been measured.
-    bool (*incumbent)(const void *state, double *variables);
+    bool (*best_candidate)(const void *state, double *variables);
     /// Diversity of the candidates: a standard deviation as a fraction of the range.
     double (*spread)(const void *state);
     /// Error beyond which a candidate hardly changes what happens next, by the round told last;

@@ -14,10 +14,10 @@
 #define MEMBER(name) .offset = offsetof(struct programming_parameters, name)
 const struct field mf_programming_fields[] = {
     {"nodes", FIELD_INTEGER, MEMBER(nodes), .initial = 12, .minimum = 1,
-     .maximum = PROGRAMMING_MOST_NODES, .unit = "",
+     .maximum = PROGRAMMING_MAX_NODES, .unit = "",
      .help = "most nodes of a formula: constants, r, operators, powers and exp"},
     {"islands", FIELD_INTEGER, MEMBER(islands), .initial = 8, .minimum = 1,
-     .maximum = PROGRAMMING_MOST_ISLANDS, .unit = "", .help = "number of subpopulations"},
+     .maximum = PROGRAMMING_MAX_ISLANDS, .unit = "", .help = "number of subpopulations"},
     {"rounds", FIELD_INTEGER, MEMBER(rounds), .initial = 12, .minimum = 1, .maximum = 10000,
      .unit = "", .help = "rounds of breeding"},
     {"children", FIELD_INTEGER, MEMBER(children), .initial = 1000, .minimum = 1, .maximum = 1e7,
@@ -26,7 +26,7 @@ const struct field mf_programming_fields[] = {
 };
 
 /// Levels of a formula.
-enum { MOST_DEPTH = 7 };
+enum { MAX_DEPTH = 7 };
 
 /// Steps of the fit of a child's constants, from the best of so many starts; of those whose error
 /// is then this multiple of what is kept at least; and of the members of a front. Measured: of
@@ -45,7 +45,7 @@ static const double mutates = 0.6, is_new = 0.03;
 enum { ROUNDS_APART = 12 };
 
 static void clear_island(struct programming_island *island) {
-    for (int length = 0; length <= PROGRAMMING_MOST_NODES; length++)
+    for (int length = 0; length <= PROGRAMMING_MAX_NODES; length++)
         for (int k = 0; k < PROGRAMMING_KEPT; k++)
             island->member[length][k].error = INFINITY;
 }
@@ -61,7 +61,7 @@ enum status mf_programming_init(struct programming *programming,
                                         .threads = threads,
                                         .cancel = cancel};
     NEW_ARRAY(programming->island, (size_t)parameters->islands);
-    for (int length = 0; length <= PROGRAMMING_MOST_NODES; length++)
+    for (int length = 0; length <= PROGRAMMING_MAX_NODES; length++)
         programming->best[length].error = INFINITY;
     for (int64_t k = 0; k < parameters->islands; k++)
         clear_island(&programming->island[k]);
@@ -136,8 +136,7 @@ static bool is_allowed(const struct programming_parameters *parameters,
     bool depends = false;
     for (int k = 0; k < child->length; k++)
         depends = depends || child->node[k].kind == EXPRESSION_DISTANCE;
-    return depends && child->length <= parameters->nodes &&
-           mf_expression_depth(child) <= MOST_DEPTH;
+    return depends && child->length <= parameters->nodes && mf_expression_depth(child) <= MAX_DEPTH;
 }
 
 /// Whether a formula has no pole between the points.
@@ -231,7 +230,7 @@ static size_t list_island(void *context, size_t task, struct memory_span *span) 
 /// The best of each length over all islands, and now and then to all of them.
 static void mix(struct programming *programming) {
     const size_t islands = (size_t)programming->parameters.islands;
-    for (int length = 1; length <= PROGRAMMING_MOST_NODES; length++)
+    for (int length = 1; length <= PROGRAMMING_MAX_NODES; length++)
         for (size_t k = 0; k < islands; k++) {
             const struct programming_member *member = &programming->island[k].member[length][0];
             if (member->error < programming->best[length].error)
@@ -239,7 +238,7 @@ static void mix(struct programming *programming) {
         }
     if (programming->round % ROUNDS_APART != 0)
         return;
-    for (int length = 1; length <= PROGRAMMING_MOST_NODES; length++)
+    for (int length = 1; length <= PROGRAMMING_MAX_NODES; length++)
         for (size_t k = 0; k < islands && isfinite(programming->best[length].error); k++)
             keep(&programming->island[k], &programming->best[length]);
 }
@@ -265,7 +264,7 @@ static enum status reconsider(void *context, size_t task, void *result) {
     NEW_ARRAY(before, 1);
     *before = *island;
     clear_island(island);
-    for (int n = 0; n < (PROGRAMMING_MOST_NODES + 1) * PROGRAMMING_KEPT; n++) {
+    for (int n = 0; n < (PROGRAMMING_MAX_NODES + 1) * PROGRAMMING_KEPT; n++) {
         struct programming_member *member = &before->member[0][0] + n;
         if (!isfinite(member->error))
             continue;
@@ -286,7 +285,7 @@ enum status mf_programming_reconsider(struct programming *programming) {
                                                  .run = reconsider,
                                                  .context = programming,
                                                  .spans = list_island}));
-    for (int length = 0; length <= PROGRAMMING_MOST_NODES; length++)
+    for (int length = 0; length <= PROGRAMMING_MAX_NODES; length++)
         programming->best[length].error = INFINITY;
     mix(programming);
     return STATUS_OK;
@@ -310,15 +309,16 @@ static double size_of(const struct programming_points *points,
 static bool settle_constant(const struct programming_points *points,
                             struct programming_scratch *scratch, int node, double value,
                             double allowed, bool *held, struct programming_member *member) {
-    struct programming_member tidy = *member;
-    tidy.expression.node[node].constant = value;
+    struct programming_member simplified = *member;
+    simplified.expression.node[node].constant = value;
     held[node] = true;
-    tidy.error = mf_programming_fit(points, scratch, &tidy.expression, held, FRONT_STEPS);
-    if (!(tidy.error <= allowed) || !is_regular(points, &tidy.expression)) {
+    simplified.error =
+        mf_programming_fit(points, scratch, &simplified.expression, held, FRONT_STEPS);
+    if (!(simplified.error <= allowed) || !is_regular(points, &simplified.expression)) {
         held[node] = false;
         return false;
     }
-    *member = tidy;
+    *member = simplified;
     return true;
 }
 
@@ -337,9 +337,9 @@ static double allowed_error(const struct programming_points *points,
 }
 
 /// Whole exponents first, then few digits, constant after constant.
-static void tidy(const struct programming_points *points, struct programming_scratch *scratch,
-                 struct programming_member *member) {
-    bool held[EXPRESSION_MOST] = {false};
+static void simplified(const struct programming_points *points, struct programming_scratch *scratch,
+                       struct programming_member *member) {
+    bool held[EXPRESSION_MAX] = {false};
     const struct expression *e = &member->expression;
     double allowed = allowed_error(points, scratch, member->error, exponent_share);
     for (int k = 0; k < e->length; k++)
@@ -364,7 +364,7 @@ enum status mf_programming_polish(const struct programming_points *points,
         fitted = *member;
         fitted.error = mf_programming_fit_error(points, &scratch, &fitted.expression);
     }
-    tidy(points, &scratch, &fitted);
+    simplified(points, &scratch, &fitted);
     // A power may have become a first one.
     mf_expression_simplify(&fitted.expression);
     drop_shift(points, &fitted.expression);
@@ -379,18 +379,18 @@ enum status mf_programming_front(const struct programming *programming,
                                  struct programming_member *front, size_t *members) {
     enum status status = STATUS_OK;
     struct programming_scratch scratch;
-    double least = INFINITY;
+    double min = INFINITY;
     *members = 0;
     CHECK(mf_programming_fit_init(&scratch, programming->points));
     const double floor = nothing * size_of(programming->points, &scratch);
-    for (int length = 1; length <= programming->parameters.nodes && least > floor; length++) {
-        if (!(programming->best[length].error < (1 - gain) * least))
+    for (int length = 1; length <= programming->parameters.nodes && min > floor; length++) {
+        if (!(programming->best[length].error < (1 - gain) * min))
             continue;
         front[*members] = programming->best[length];
         CHECK(mf_programming_polish(programming->points, &front[*members]));
-        if (!(front[*members].error < (1 - gain) * least))
+        if (!(front[*members].error < (1 - gain) * min))
             continue;
-        least = front[(*members)++].error;
+        min = front[(*members)++].error;
     }
 done:
     mf_programming_fit_clear(&scratch);

@@ -35,7 +35,7 @@ struct programming_points {
     double noise; ///< of the residuals, rms; 0: not known
 };
 
-enum { PROGRAMMING_MOST_NODES = 30, PROGRAMMING_KEPT = 16, PROGRAMMING_MOST_ISLANDS = 64 };
+enum { PROGRAMMING_MAX_NODES = 30, PROGRAMMING_KEPT = 16, PROGRAMMING_MAX_ISLANDS = 64 };
 
 struct programming_parameters {
     int64_t nodes, islands, rounds, children;
@@ -51,7 +51,7 @@ struct programming_member {
 
 /// The best few of each length, best first.
 struct programming_island {
-    struct programming_member member[PROGRAMMING_MOST_NODES + 1][PROGRAMMING_KEPT];
+    struct programming_member member[PROGRAMMING_MAX_NODES + 1][PROGRAMMING_KEPT];
 };
 
 struct programming {
@@ -60,8 +60,8 @@ struct programming {
     uint64_t seed;
     int threads;
     const atomic_bool *cancel;
-    struct programming_island *island;                          ///< shape [islands]
-    struct programming_member best[PROGRAMMING_MOST_NODES + 1]; ///< of each length
+    struct programming_island *island;                         ///< shape [islands]
+    struct programming_member best[PROGRAMMING_MAX_NODES + 1]; ///< of each length
     uint64_t round;
 };
 
@@ -84,7 +84,7 @@ enum status mf_programming_reconsider(struct programming *programming) MUST_USE;
 /// The front of error against length: each member is better than all shorter ones by more than
 /// 2 %. Exponents that may as well be whole numbers within the noise are, and constants have no
 /// more digits than make the error smaller by 1 %, or by half of the noise as squares add.
-/// @param[out] front  shape [PROGRAMMING_MOST_NODES]
+/// @param[out] front  shape [PROGRAMMING_MAX_NODES]
 /// @return members, shortest first. Fails: NO_MEMORY. Tested: test_programming.
 enum status mf_programming_front(const struct programming *programming,
                                  struct programming_member *front, size_t *members) MUST_USE;

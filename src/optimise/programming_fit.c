@@ -11,13 +11,13 @@ enum status mf_programming_fit_init(struct programming_scratch *scratch,
                                     const struct programming_points *points) {
     enum status status = STATUS_OK;
     *scratch = (struct programming_scratch){0};
-    NEW_ARRAY(scratch->value, EXPRESSION_MOST * (points->count + 1));
-    NEW_ARRAY(scratch->adjoint, EXPRESSION_MOST * (points->count + 1));
+    NEW_ARRAY(scratch->value, EXPRESSION_MAX * (points->count + 1));
+    NEW_ARRAY(scratch->adjoint, EXPRESSION_MAX * (points->count + 1));
     NEW_ARRAY(scratch->difference, points->count);
     NEW_ARRAY(scratch->slope, points->count);
-    NEW_ARRAY(scratch->jacobian, EXPRESSION_MOST * points->count);
+    NEW_ARRAY(scratch->jacobian, EXPRESSION_MAX * points->count);
     NEW_ARRAY(scratch->residual, points->rows);
-    NEW_ARRAY(scratch->columns, EXPRESSION_MOST * points->rows);
+    NEW_ARRAY(scratch->columns, EXPRESSION_MAX * points->rows);
 done:
     return status;
 }
@@ -216,7 +216,7 @@ static void find_columns(const struct programming_points *points,
 
 struct normal_equations {
     int constants;
-    double matrix[EXPRESSION_MOST][EXPRESSION_MOST], right[EXPRESSION_MOST];
+    double matrix[EXPRESSION_MAX][EXPRESSION_MAX], right[EXPRESSION_MAX];
 };
 
 static void find_normal(const struct programming_points *points,
@@ -240,7 +240,7 @@ static void find_normal(const struct programming_points *points,
 
 /// Solve with the diagonal 1 + damping times as large (J. L. Cholesky). False if it is singular.
 static bool solve(const struct normal_equations *normal, double damping, double *step) {
-    double l[EXPRESSION_MOST][EXPRESSION_MOST];
+    double l[EXPRESSION_MAX][EXPRESSION_MAX];
     const int n = normal->constants;
     for (int a = 0; a < n; a++) {
         for (int b = 0; b <= a; b++) {
@@ -274,9 +274,9 @@ static bool move(const struct expression *from, const int *constant, int constan
     for (int n = 0; n < constants; n++) {
         double *value = &to->node[constant[n]].constant;
         *value += step[n];
-        const double most =
+        const double max =
             mf_expression_is_exponent(to, constant[n]) ? largest_exponent : largest_constant;
-        if (!(fabs(*value) <= most))
+        if (!(fabs(*value) <= max))
             return false;
     }
     return true;
@@ -287,7 +287,7 @@ static double try_steps(const struct programming_points *points,
                         struct programming_scratch *scratch, const struct normal_equations *normal,
                         const int *constant, double squares, double *damping,
                         struct expression *expression) {
-    double step[EXPRESSION_MOST];
+    double step[EXPRESSION_MAX];
     struct expression next;
     for (; *damping < 1e10; *damping *= 8) {
         if (!solve(normal, *damping, step) ||
@@ -341,7 +341,7 @@ static double descend(const struct programming_points *points, struct programmin
 double mf_programming_fit(const struct programming_points *points,
                           struct programming_scratch *scratch, struct expression *expression,
                           const bool *held, int iterations) {
-    int constant[EXPRESSION_MOST];
+    int constant[EXPRESSION_MAX];
     const int constants = find_constants(expression, held, constant);
     const double squares = descend(points, scratch, expression, constant, constants, iterations);
     return sqrt(squares / (double)points->rows);

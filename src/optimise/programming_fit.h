@@ -6,10 +6,10 @@
 
 /// Scratch of one thread.
 struct programming_scratch {
-    double *value, *adjoint;    ///< shape [EXPRESSION_MOST, count + 1]: of each node at each point
+    double *value, *adjoint;    ///< shape [EXPRESSION_MAX, count + 1]: of each node at each point
     double *difference, *slope; ///< shape [count]: softened f − y, and its derivative by f
-    double *jacobian;           ///< shape [EXPRESSION_MOST, count]: ∂f by each constant
-    double *residual, *columns; ///< shape [rows], [EXPRESSION_MOST, rows]
+    double *jacobian;           ///< shape [EXPRESSION_MAX, count]: ∂f by each constant
+    double *residual, *columns; ///< shape [rows], [EXPRESSION_MAX, rows]
 };
 
 /// Fails: NO_MEMORY.

@@ -9,7 +9,7 @@
 struct expression mf_programming_random(struct rng_sequence *random, int depth);
 
 /// A child: the first with a part of the second in the place of one of its own, or the first
-/// changed by a mutation. One that does not fit into EXPRESSION_MOST nodes is the first itself.
+/// changed by a mutation. One that does not fit into EXPRESSION_MAX nodes is the first itself.
 struct expression mf_programming_cross(struct rng_sequence *random, const struct expression *first,
                                        const struct expression *second);
 struct expression mf_programming_mutate(struct rng_sequence *random,

@@ -13,7 +13,7 @@ enum { FEWEST_BINS = BONDED_GRID_FEWEST_BINS };
 
 /// The slope at an end is that of the chord to where U is this much lower [k_B T], that noise may
 /// not turn it, and at least so much over the known range.
-static const double chord = 2, least_rise = 10;
+static const double chord = 2, min_rise = 10;
 
 static bool is_periodic(const struct bonded_grid *grid) {
     return mf_bonded_kinds[grid->unknown->order]->periodic;
@@ -78,7 +78,7 @@ static void find_known(struct bonded_grid *grid, const struct inverse_problem *p
 /// Half of the known range on both sides, as far as q can be.
 static void find_margins(struct bonded_grid *grid) {
     const struct bonded_bins *bins = &grid->unknown->bins;
-    const size_t most = grid->known / 2 + FEWEST_BINS;
+    const size_t max = grid->known / 2 + FEWEST_BINS;
     size_t above = 0;
     if (is_periodic(grid)) {
         grid->points = grid->known + 1;
@@ -86,9 +86,9 @@ static void find_margins(struct bonded_grid *grid) {
     }
     const double low = bonded_bins_centre(bins, grid->first);
     const double high = bonded_bins_centre(bins, grid->first + grid->known - 1);
-    while (grid->below < most && is_possible(grid, low - (double)(grid->below + 1) * bins->width))
+    while (grid->below < max && is_possible(grid, low - (double)(grid->below + 1) * bins->width))
         grid->below++;
-    while (above < most && is_possible(grid, high + (double)(above + 1) * bins->width))
+    while (above < max && is_possible(grid, high + (double)(above + 1) * bins->width))
         above++;
     grid->points = grid->below + grid->known + above;
 }
@@ -197,11 +197,11 @@ static struct bonded_grid seen_by_itself(const struct bonded_grid *grid) {
 }
 
 void mf_bonded_grid_level(const struct bonded_grid *grid, double *energy) {
-    double least = INFINITY, *known = energy + grid->below;
+    double min = INFINITY, *known = energy + grid->below;
     for (size_t k = 0; k < grid->known; k++)
-        least = fmin(least, known[k]);
+        min = fmin(min, known[k]);
     for (size_t k = 0; k < grid->known; k++)
-        known[k] -= least;
+        known[k] -= min;
 }
 
 void mf_bonded_grid_start(const struct bonded_grid *grid, double *energy) {
@@ -221,23 +221,23 @@ void mf_bonded_grid_start(const struct bonded_grid *grid, double *energy) {
     mf_bonded_grid_complete(&own, energy);
 }
 
-/// Go on with `count` values beyond an end, by steps of `way`, 1 or −1, through the array.
-static void extend(const struct bonded_grid *grid, double *end, ptrdiff_t way, size_t count,
+/// Go on with `count` values beyond an end, by steps of `direction`, 1 or −1, through the array.
+static void extend(const struct bonded_grid *grid, double *end, ptrdiff_t direction, size_t count,
                    bool at_bound) {
     const size_t last = grid->known - 1;
     size_t lower = 1, lowest = 1;
-    while (lower < last && end[0] - end[-way * (ptrdiff_t)lower] < chord * grid->temperature)
+    while (lower < last && end[0] - end[-direction * (ptrdiff_t)lower] < chord * grid->temperature)
         lower++;
     for (size_t k = 1; k <= last; k++)
-        if (end[-way * (ptrdiff_t)k] < end[-way * (ptrdiff_t)lowest])
+        if (end[-direction * (ptrdiff_t)k] < end[-direction * (ptrdiff_t)lowest])
             lowest = k;
-    double slope = (end[0] - end[-way * (ptrdiff_t)lower]) / (double)lower, bend = 0;
+    double slope = (end[0] - end[-direction * (ptrdiff_t)lower]) / (double)lower, bend = 0;
     if (!at_bound) {
-        slope = fmax(slope, least_rise * grid->temperature / (double)grid->known);
+        slope = fmax(slope, min_rise * grid->temperature / (double)grid->known);
         bend = slope / (double)lowest;
     }
     for (size_t k = 1; k <= count; k++)
-        end[way * (ptrdiff_t)k] = end[0] + (double)k * (slope + 0.5 * bend * (double)k);
+        end[direction * (ptrdiff_t)k] = end[0] + (double)k * (slope + 0.5 * bend * (double)k);
 }
 
 void mf_bonded_grid_complete(const struct bonded_grid *grid, double *energy) {

@@ -13,7 +13,7 @@ static const double deviations = 4;
 /// Parts of the samples after each of which a simulation may be stopped, and samples and windows of
 /// the longest target that it must have by then, so that their errors mean something: one window of
 /// a VACF has none.
-enum { PARTS = 16, LEAST_SAMPLES = 4, LEAST_WINDOWS = 4 };
+enum { PARTS = 16, MIN_SAMPLES = 4, MIN_WINDOWS = 4 };
 
 static bool has_collapsed(const struct simulation *simulation) {
     const struct neighbours *neighbours = &simulation->neighbours;
@@ -73,14 +73,14 @@ static enum status sample(struct measurement *measurement, double discard_above,
                           struct evaluate_result *result) {
     const struct measure_plan *plan = &parameters->plan;
     enum target_kind longest;
-    const int64_t least_steps =
-        LEAST_WINDOWS * mf_measurement_window(measurement->targets,
-                                              measurement->simulation.setup.time_step, &longest);
+    const int64_t min_steps =
+        MIN_WINDOWS * mf_measurement_window(measurement->targets,
+                                            measurement->simulation.setup.time_step, &longest);
     const bool may_stop = parameters->racing > 0 || parameters->precision > 0;
     for (int part = may_stop ? 1 : PARTS; part < PARTS; part++) {
         struct measure_plan so_far = *plan;
         so_far.samples = plan->samples * part / PARTS;
-        if (so_far.samples < LEAST_SAMPLES || so_far.samples * plan->every < least_steps)
+        if (so_far.samples < MIN_SAMPLES || so_far.samples * plan->every < min_steps)
             continue;
         TRY(mf_measure_sample(&measurement->simulation, &so_far, measurement->use, NULL));
         TRY(score(measurement, observed, result));

@@ -114,7 +114,7 @@ const struct inverse_method *const mf_inverse_methods[] = {INVERSE_METHODS(INVER
 static const double recent = 0.25;
 
 void mf_inverse_give_up(struct inverse_step *step) {
-    step->used_up = true;
+    step->exhausted = true;
     snprintf(
         step->reason, sizeof step->reason,
         "the algorithm found no next step before its steps were small, as the noise of errors may "
@@ -122,9 +122,9 @@ void mf_inverse_give_up(struct inverse_step *step) {
         step->error, step->noise);
 }
 
-void mf_inverse_use_up(struct inverse_step *step, const char *parameter, uint32_t last_better) {
+void mf_inverse_exhaust(struct inverse_step *step, const char *parameter, uint32_t last_better) {
     const uint32_t iterations = step->iteration + 1, since = step->iteration - last_better;
-    step->used_up = true;
+    step->exhausted = true;
     if (since <= recent * iterations)
         snprintf(step->reason, sizeof step->reason,
                  "its \"%s\" are used up; the error still fell, to %.2g (%.2g by statistics)",

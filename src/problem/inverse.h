@@ -19,7 +19,7 @@ enum unknown_kind {
     UNKNOWN_POTENTIAL,
     UNKNOWN_OMEGA,
     UNKNOWN_MEMORY, ///< of the first mode; those of the others follow
-    UNKNOWN_TRANSVERSE = UNKNOWN_MEMORY + PAIR_MEMORY_MOST_MODES,
+    UNKNOWN_TRANSVERSE = UNKNOWN_MEMORY + PAIR_MEMORY_MAX_MODES,
     UNKNOWN_BONDED, ///< of all groups that are to be found, one behind the other
     UNKNOWNS,
 };
@@ -74,7 +74,7 @@ struct unknown {
     bool wanted;
     struct unknown_parameters parameters;
     /// To begin with, or NULL: of a potential for each pair type, of a friction weight for all.
-    const struct curve *start[COMPOSITION_MOST_PAIRS];
+    const struct curve *start[COMPOSITION_MAX_PAIRS];
     /// What the curve of the coefficients is added to, shape [points of mf_unknowns_points]; NULL:
     /// nothing. It has the detail of the target that few smooth coefficients cannot have.
     const double *base;
@@ -93,7 +93,7 @@ enum inverse_place {
     INVERSE_OF_INTERACTION,
 };
 
-enum { INVERSE_MOST_NUMBERS = 16, INVERSE_NUMBER_NAME_SIZE = 96 };
+enum { INVERSE_MAX_NUMBERS = 16, INVERSE_NUMBER_NAME_SIZE = 96 };
 
 /// A scalar of the scene that is to be found.
 struct inverse_number {
@@ -108,10 +108,10 @@ struct inverse_number {
 
 /// The number of a group among those of all orders, and back.
 static inline int inverse_group(int order, int group) {
-    return (int)order * (int)MOLECULES_MOST_GROUPS + group;
+    return (int)order * (int)MOLECULES_MAX_GROUPS + group;
 }
 static inline int inverse_order(int group) {
-    return (group / (int)MOLECULES_MOST_GROUPS);
+    return (group / (int)MOLECULES_MAX_GROUPS);
 }
 
 /// The curves of a law of the scene. Borrowed.
@@ -137,9 +137,9 @@ struct bonded_unknown {
     struct bonded_shape shape;
 };
 
-enum { INVERSE_MOST_BONDED = (int)BONDED_KINDS * (int)MOLECULES_MOST_GROUPS };
+enum { INVERSE_MAX_BONDED = (int)BONDED_KINDS * (int)MOLECULES_MAX_GROUPS };
 
-enum { INVERSE_MOST_STATES = 16 };
+enum { INVERSE_MAX_STATES = 16 };
 
 /// What is to be fitted. Borrowed by the methods.
 struct inverse_problem {
@@ -152,14 +152,14 @@ struct inverse_problem {
     struct targets compared; ///< by the verification: those and others
     struct unknown unknown[UNKNOWNS];
     size_t numbers;
-    struct inverse_number number[INVERSE_MOST_NUMBERS];
+    struct inverse_number number[INVERSE_MAX_NUMBERS];
     struct inverse_law law[UNKNOWNS]; ///< those of the scene that are known
     size_t bonded;                    ///< groups of which U(q) is to be found
-    struct bonded_unknown group[INVERSE_MOST_BONDED];
-    const char *mode[PAIR_MEMORY_MOST_MODES]; ///< names of the modes of memory; borrowed
-    struct simulation_setup scene;            ///< all but the unknowns; its composition is set
-    double core_threshold;                    ///< g* beyond the core is above this, and two errors
-    double core_stiffness;                    ///< of the core (mf_core_fill) [k_B T_0/λ²]
+    struct bonded_unknown group[INVERSE_MAX_BONDED];
+    const char *mode[PAIR_MEMORY_MAX_MODES]; ///< names of the modes of memory; borrowed
+    struct simulation_setup scene;           ///< all but the unknowns; its composition is set
+    double core_threshold;                   ///< g* beyond the core is above this, and two errors
+    double core_stiffness;                   ///< of the core (mf_core_fill) [k_B T_0/λ²]
     uint64_t seed;
     int threads;
     bool trial; ///< a method is made only to refuse what it cannot fit, and makes no more than that
@@ -179,13 +179,13 @@ enum { INVERSE_EXTRA = 12, INVERSE_REASON_SIZE = 640 };
 
 /// What g(r) leaves open of a potential: the ramp A (1 − r/r_c).
 struct inverse_ramp {
-    double error;         ///< standard error of A [k_B T_0]; 0: not known
-    double way;           ///< of A that the target still asks for [k_B T_0]; part of the error
-    double pressure_way;  ///< the same of the pressure [k_B T_0/λ^d]
-    double pressure;      ///< ∂P/∂A [1/λ^d]
-    double pressure_open; ///< standard error of the pressure by g(r) alone [k_B T_0/λ^d]
-    double directions;    ///< of the potential that the data determine,
-    double bins;          ///< out of so many
+    double error;          ///< standard error of A [k_B T_0]; 0: not known
+    double drift;          ///< of A that the target still asks for [k_B T_0]; part of the error
+    double pressure_drift; ///< the same of the pressure [k_B T_0/λ^d]
+    double pressure;       ///< ∂P/∂A [1/λ^d]
+    double pressure_open;  ///< standard error of the pressure by g(r) alone [k_B T_0/λ^d]
+    double directions;     ///< of the potential that the data determine,
+    double bins;           ///< out of so many
 };
 
 /// Linear response of the pairs S in each bin to the potential, as an inversion samples it: ∂⟨S_a⟩/
@@ -202,8 +202,8 @@ struct inverse_step {
     uint64_t engine_steps; ///< time steps or Monte Carlo sweeps so far, over all replicas
     double error; ///< mf_targets_error of the best curves so far, as the method measured it
     double noise; ///< what the statistical errors alone would give
-    double noise_of_state[INVERSE_MOST_STATES]; ///< the same of each state by its own targets, of
-                                                ///< inversions
+    double noise_of_state[INVERSE_MAX_STATES]; ///< the same of each state by its own targets, of
+                                               ///< inversions
     double variance;               ///< of error by the noise of what was measured; 0: not known
     double extra[INVERSE_EXTRA];   ///< columns of the method's own
     const double *curve[UNKNOWNS]; ///< on the unknown's points, best so far; NULL: not fitted
@@ -219,11 +219,11 @@ struct inverse_step {
     const char *formula; ///< of the curve, as a scene's law "expression" has it; NULL: it is none
     struct inverse_parameter
         parameter[INVERSE_PARAMETERS]; ///< of a friction weight that is a formula
-    struct inverse_parameter number[INVERSE_MOST_NUMBERS]; ///< of the problem, the best so far
+    struct inverse_parameter number[INVERSE_MAX_NUMBERS]; ///< of the problem, the best so far
     const char *begins; ///< another part of the fit that begins behind this step, in words; or NULL
     bool finished;
     bool converged; ///< it has settled: by its own measure it can do no better
-    bool used_up;   ///< it finished since all was used that it was to use, as populations do, or at
+    bool exhausted; ///< it finished since all was used that it was to use, as populations do, or at
                     ///< a standstill away from a target that may be out of reach
     char reason[INVERSE_REASON_SIZE]; ///< why it finished without having converged; or ""
 };
@@ -231,14 +231,14 @@ struct inverse_step {
 /// The same for an optimiser that gave up before that.
 void mf_inverse_give_up(struct inverse_step *step);
 
-/// Finish a step of a method that uses up what "parameter" gives it: `used_up`, and a reason that
+/// Finish a step of a method that uses up what "parameter" gives it: `exhausted`, and a reason that
 /// says whether the error still fell.
 /// @param[in] last_better  iteration in which it fell last
-void mf_inverse_use_up(struct inverse_step *step, const char *parameter, uint32_t last_better);
+void mf_inverse_exhaust(struct inverse_step *step, const char *parameter, uint32_t last_better);
 
 /// Samples that are taken again, as many as there are, until they are as exact as is wanted.
 struct inverse_doubling {
-    int number, most;     ///< which doubling of this iteration, of how many at most; 0: none
+    int number, max;      ///< which doubling of this iteration, of how many at most; 0: none
     double noise, wanted; ///< the standard error that is farthest from what it is to be
     const char *unit;     ///< of both, reduced
 };
@@ -249,13 +249,13 @@ struct inverse_progress {
     uint32_t iterations;  ///< at most
     uint64_t done, total; ///< parts of this iteration
     double best;          ///< error of the best so far; not finite if not known yet
-    double least, mean;   ///< of this iteration's candidates; not finite without
+    double min, mean;     ///< of this iteration's candidates; not finite without
     uint64_t failures;    ///< simulations that left their temperature or blew up
     struct inverse_doubling doubling;
 };
 
 struct inverse_listener {
-    void (*tell)(void *context, const struct inverse_progress *progress);
+    void (*report)(void *context, const struct inverse_progress *progress);
     void *context;
 };
 

@@ -149,7 +149,7 @@ size_t mf_measurement_spans(struct measurement *measurement, struct memory_span 
     spans[n++] = (struct memory_span){&simulation->step, sizeof simulation->step};
     n += mf_particles_spans(&simulation->particles, spans + n);
     for (const struct observable_use *use = measurement->use; use->observable; use++) {
-        if (use->observable->make_room && use->observable->make_room(use->state) != STATUS_OK)
+        if (use->observable->reserve && use->observable->reserve(use->state) != STATUS_OK)
             return 0;
         n += use->observable->spans(use->state, spans + n);
     }

@@ -8,7 +8,7 @@
 struct measurement {
     const struct targets *targets; ///< borrowed
     struct simulation simulation;
-    struct observable_use use[OBSERVABLES_MOST + 1];
+    struct observable_use use[OBSERVABLES_MAX + 1];
 };
 
 /// What a simulation is to have.
@@ -27,7 +27,7 @@ struct measurement_setup {
 
 /// List the observables that `setup` asks for with their settings, in simulations with steps of
 /// `time_step` [τ]; none has a state yet. `uses` must be cleared, also after a failure.
-/// @param[out] uses  shape [OBSERVABLES_MOST + 1]
+/// @param[out] uses  shape [OBSERVABLES_MAX + 1]
 /// Fails: NO_MEMORY.
 enum status mf_measurement_list(const struct measurement_setup *setup, double time_step,
                                 struct observable_use *uses) MUST_USE;

@@ -29,7 +29,7 @@ static enum status tabulate(const struct inverse_problem *problem, enum inverse_
                             const double *value, struct table *table) {
     enum status status = STATUS_OK;
     const struct inverse_law *law = &problem->law[kind];
-    struct table part[COMPOSITION_MOST_PAIRS] = {{0}};
+    struct table part[COMPOSITION_MAX_PAIRS] = {{0}};
     unsigned char *parameters = NULL;
     for (int pair = 0; pair < law->curves; pair++) {
         const struct curve_family *family = law->curve[pair].family;
@@ -81,8 +81,8 @@ static enum status copy(const void **parameters, size_t size, void **own) {
 }
 
 /// Write a number that is no parameter of a law to where the scene has it.
-static enum status put(const struct inverse_number *number, double value,
-                       struct simulation_setup *scene, struct numbers_own *own) {
+static enum status append(const struct inverse_number *number, double value,
+                          struct simulation_setup *scene, struct numbers_own *own) {
     char *to = NULL;
     if (number->place == INVERSE_OF_SETUP) {
         to = (char *)scene;
@@ -110,7 +110,7 @@ static enum status change_molecules(const struct inverse_problem *problem, const
         if (number->place != INVERSE_OF_BONDED)
             continue;
         struct bonded_curve *curve =
-            &own->molecules.group[inverse_order(number->part)][number->part % MOLECULES_MOST_GROUPS]
+            &own->molecules.group[inverse_order(number->part)][number->part % MOLECULES_MAX_GROUPS]
                  .curve;
         const void *parameters = curve->parameters;
         TRY(copy(&parameters, curve->law->size, &own->bonded[number->part]));
@@ -140,7 +140,7 @@ enum status mf_numbers_apply(const struct inverse_problem *problem, const double
                              struct inverse_problem *changed, struct numbers_own *own) {
     *changed = *problem;
     for (size_t n = 0; n < problem->numbers; n++)
-        TRY(put(&problem->number[n], value[n], &changed->scene, own));
+        TRY(append(&problem->number[n], value[n], &changed->scene, own));
     for (int place = 0; place < UNKNOWN_BONDED; place++)
         if (concerns(problem, place)) {
             TRY(tabulate(problem, place, value, &own->table[place]));
@@ -154,9 +154,9 @@ enum status mf_numbers_apply(const struct inverse_problem *problem, const double
 void mf_numbers_own_clear(struct numbers_own *own) {
     for (int place = 0; place < UNKNOWNS; place++)
         mf_table_clear(&own->table[place]);
-    for (int k = 0; k < INTERACTION_MOST; k++)
+    for (int k = 0; k < INTERACTION_MAX; k++)
         mf_memory_free(own->interaction[k]);
-    for (int group = 0; group < INVERSE_MOST_BONDED; group++)
+    for (int group = 0; group < INVERSE_MAX_BONDED; group++)
         mf_memory_free(own->bonded[group]);
     mf_memory_free(own->dynamics);
     *own = (struct numbers_own){0};

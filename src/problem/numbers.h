@@ -18,9 +18,9 @@ const struct table **mf_numbers_table_of(struct simulation_setup *scene, int law
 /// the molecules, whose groups have parameters of their own where a number belongs to them.
 struct numbers_own {
     struct table table[UNKNOWNS];
-    void *dynamics, *interaction[INTERACTION_MOST];
+    void *dynamics, *interaction[INTERACTION_MAX];
     struct molecules molecules;
-    void *bonded[INVERSE_MOST_BONDED]; ///< parameters, by inverse_group
+    void *bonded[INVERSE_MAX_BONDED]; ///< parameters, by inverse_group
 };
 
 /// The problem whose scene has these values: settings are replaced, and the table of a law with a

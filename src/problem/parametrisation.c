@@ -129,25 +129,25 @@ static enum status find_ranges(struct parametrisation *parametrisation) {
     enum status status = STATUS_OK;
     const struct inverse_problem *problem = parametrisation->unknowns.problem;
     size_t n = 0;
-    NEW_ARRAY(parametrisation->least, parametrisation->variables);
+    NEW_ARRAY(parametrisation->min, parametrisation->variables);
     NEW_ARRAY(parametrisation->range, parametrisation->variables);
     for (int kind = 0; kind < UNKNOWNS; kind++)
         for (size_t curve = 0; curve < curves_of(problem, kind); curve++) {
             const struct unknown_parameters *p = &problem->unknown[kind].parameters;
-            const double most = kind == UNKNOWN_BONDED ? problem->group[curve].shape.maximum : 0;
-            const double least = is_formula(parametrisation, kind) ? 0
-                                 : kind == UNKNOWN_BONDED          ? -most
-                                                                   : p->minimum;
+            const double max = kind == UNKNOWN_BONDED ? problem->group[curve].shape.maximum : 0;
+            const double min = is_formula(parametrisation, kind) ? 0
+                               : kind == UNKNOWN_BONDED          ? -max
+                                                                 : p->minimum;
             const double range = is_formula(parametrisation, kind) ? 1
-                                 : kind == UNKNOWN_BONDED          ? 2 * most
+                                 : kind == UNKNOWN_BONDED          ? 2 * max
                                                                    : p->maximum - p->minimum;
             for (size_t k = 0; k < coefficients_of(problem, kind, curve); k++, n++) {
-                parametrisation->least[n] = least;
+                parametrisation->min[n] = min;
                 parametrisation->range[n] = range;
             }
         }
     for (size_t k = 0; k < problem->numbers; k++, n++) {
-        parametrisation->least[n] = problem->number[k].minimum;
+        parametrisation->min[n] = problem->number[k].minimum;
         parametrisation->range[n] = problem->number[k].maximum - problem->number[k].minimum;
     }
 done:
@@ -195,7 +195,7 @@ void mf_parametrisation_clear(struct parametrisation *parametrisation) {
     mf_unknowns_clear(&parametrisation->unknowns);
     for (int kind = 0; kind < UNKNOWNS; kind++)
         mf_memory_free(parametrisation->basis[kind]);
-    mf_memory_free(parametrisation->least);
+    mf_memory_free(parametrisation->min);
     mf_memory_free(parametrisation->range);
     mf_memory_free(parametrisation->bonded);
     *parametrisation = (struct parametrisation){0};
@@ -212,14 +212,14 @@ static double base_of(const struct parametrisation *parametrisation, enum unknow
 /// The base and Σ of basis and variables, in the unknown's unit.
 static void linear_curve(const struct parametrisation *parametrisation, enum unknown_kind kind,
                          const double *x, double *curve) {
-    const double *least = parametrisation->least + parametrisation->first[kind],
+    const double *min = parametrisation->min + parametrisation->first[kind],
                  *range = parametrisation->range + parametrisation->first[kind];
     const size_t count = mf_parametrisation_variables(parametrisation, kind);
     for (size_t k = 0; k < mf_unknowns_points(&parametrisation->unknowns, kind); k++) {
         const double *row = parametrisation->basis[kind] + k * count;
         double sum = base_of(parametrisation, kind, k);
         for (size_t n = 0; n < count; n++)
-            sum += row[n] * (least[n] + x[n] * range[n]);
+            sum += row[n] * (min[n] + x[n] * range[n]);
         curve[k] = unknown_is_omega(kind) ? fmax(0, sum) : sum;
     }
 }
@@ -253,9 +253,8 @@ void mf_parametrisation_numbers(const struct parametrisation *parametrisation,
     const struct inverse_problem *problem = parametrisation->unknowns.problem;
     for (size_t n = 0; n < problem->numbers; n++) {
         const size_t variable = parametrisation->first_number + n;
-        const double least = parametrisation->least[variable],
-                     range = parametrisation->range[variable];
-        number[n] = (struct inverse_parameter){least + range * variables[variable], NAN};
+        const double min = parametrisation->min[variable], range = parametrisation->range[variable];
+        number[n] = (struct inverse_parameter){min + range * variables[variable], NAN};
         if (covariance)
             number[n].error = range * sqrt(covariance[variable * (parametrisation->variables + 1)]);
     }
@@ -264,8 +263,8 @@ void mf_parametrisation_numbers(const struct parametrisation *parametrisation,
 enum status mf_parametrisation_laws(const struct parametrisation *parametrisation,
                                     const double *variables, struct unknowns_laws *laws) {
     enum status status = STATUS_OK;
-    double *curve[UNKNOWNS] = {NULL}, value[INVERSE_MOST_NUMBERS];
-    struct inverse_parameter number[INVERSE_MOST_NUMBERS];
+    double *curve[UNKNOWNS] = {NULL}, value[INVERSE_MAX_NUMBERS];
+    struct inverse_parameter number[INVERSE_MAX_NUMBERS];
     *laws = (struct unknowns_laws){0};
     mf_parametrisation_numbers(parametrisation, variables, NULL, number);
     for (size_t n = 0; n < parametrisation->unknowns.problem->numbers; n++)
@@ -357,7 +356,7 @@ enum status mf_parametrisation_start(const struct parametrisation *parametrisati
             TRY(start_of(parametrisation, kind, variables + parametrisation->first[kind]));
     for (size_t n = 0; n < problem->numbers; n++) {
         const size_t variable = parametrisation->first_number + n;
-        variables[variable] = (problem->number[n].start - parametrisation->least[variable]) /
+        variables[variable] = (problem->number[n].start - parametrisation->min[variable]) /
                               parametrisation->range[variable];
     }
     return STATUS_OK;

@@ -14,7 +14,7 @@ struct parametrisation {
     size_t first[UNKNOWNS];  ///< variable of each
     double *basis[UNKNOWNS]; ///< shape [points, variables of it]: curve = base + basis · c, with
                              ///< the base of the problem; NULL: a formula
-    double *least, *range;   ///< shape [variables]: c = least + range · x, and of numbers; of a
+    double *min, *range;     ///< shape [variables]: c = least + range · x, and of numbers; of a
                              ///< formula 0 and 1
     double *bonded;          ///< base of the groups (problem/parametrisation_bonded.h)
 };
@@ -92,7 +92,7 @@ struct parametrisation_curves {
     double *value[UNKNOWNS], *error[UNKNOWNS]; ///< shape [points]; NULL for what is known
     double *flat[UNKNOWNS];                    ///< as curve_flat of an inverse_step
     struct inverse_parameter parameter[INVERSE_PARAMETERS];
-    struct inverse_parameter number[INVERSE_MOST_NUMBERS];
+    struct inverse_parameter number[INVERSE_MAX_NUMBERS];
 };
 enum status mf_parametrisation_curves_init(const struct parametrisation *parametrisation,
                                            struct parametrisation_curves *curves) MUST_USE;

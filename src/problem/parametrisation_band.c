@@ -118,8 +118,8 @@ static void find_errors(const double *slopes, const double *covariance, size_t p
 }
 
 /// A core is set: it has no error. Nor has what goes on beyond what a group's target knows.
-static void forget_core(const struct parametrisation *parametrisation, enum unknown_kind kind,
-                        double *values) {
+static void clear_core(const struct parametrisation *parametrisation, enum unknown_kind kind,
+                       double *values) {
     for (size_t k = 0; k < mf_unknowns_points(&parametrisation->unknowns, kind); k++)
         if ((kind == UNKNOWN_POTENTIAL &&
              mf_potential_grid_in_core(&parametrisation->unknowns.potential, k)) ||
@@ -181,9 +181,9 @@ enum status mf_parametrisation_band(const struct parametrisation *parametrisatio
         CHECK(add_rough(parametrisation, error));
     for (size_t n = 0; n < INVERSE_FLAT; n++)
         CHECK(find_flat(slopes, own, points, count, flat, n, flat + n * points));
-    forget_core(parametrisation, kind, error);
+    clear_core(parametrisation, kind, error);
     for (size_t n = 0; n < INVERSE_FLAT; n++)
-        forget_core(parametrisation, kind, flat + n * points);
+        clear_core(parametrisation, kind, flat + n * points);
 done:
     mf_memory_free(slopes);
     mf_memory_free(own);

@@ -52,14 +52,14 @@ enum status mf_parametrisation_bonded_basis(const struct bonded_grid *grid, size
 /// (k_B T σ/p)², of what was not seen that of what is hardly seen.
 static void find_variances(const struct bonded_grid *grid, const double *target_error,
                            double *variance) {
-    static const double least = 1e-12;
+    static const double min = 1e-12;
     double peak = 0;
     for (size_t k = 0; k < grid->known; k++)
         peak = fmax(peak, grid->target[grid->first + k]);
     for (size_t k = 0; k < grid->known; k++) {
         const double p = fmax(grid->target[grid->first + k], mf_bonded_distribution_seen * peak);
         const double error = target_error[grid->first + k];
-        variance[k] = fmax(least, pow(grid->temperature * (isfinite(error) ? error : 0) / p, 2));
+        variance[k] = fmax(min, pow(grid->temperature * (isfinite(error) ? error : 0) / p, 2));
     }
 }
 

@@ -11,7 +11,7 @@ enum status mf_parametrisation_curves_init(const struct parametrisation *paramet
     *curves = (struct parametrisation_curves){0};
     for (int k = 0; k < INVERSE_PARAMETERS; k++)
         curves->parameter[k].error = NAN;
-    for (int n = 0; n < INVERSE_MOST_NUMBERS; n++)
+    for (int n = 0; n < INVERSE_MAX_NUMBERS; n++)
         curves->number[n].error = NAN;
     for (int kind = 0; kind < UNKNOWNS; kind++) {
         const size_t points = mf_unknowns_points(&parametrisation->unknowns, kind);
@@ -49,7 +49,7 @@ void mf_parametrisation_curves_show(const struct parametrisation *parametrisatio
     for (int k = 0; k < INVERSE_PARAMETERS; k++)
         step->parameter[k].error = curves->parameter[k].error;
     mf_parametrisation_numbers(parametrisation, variables, NULL, step->number);
-    for (int n = 0; n < INVERSE_MOST_NUMBERS; n++)
+    for (int n = 0; n < INVERSE_MAX_NUMBERS; n++)
         step->number[n].error = curves->number[n].error;
 }
 

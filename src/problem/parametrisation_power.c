@@ -14,7 +14,7 @@ static const double largest_exponent = 4, inner_part = 0.5;
 
 /// What a parameter of the formula is where its variable is 0, and how much more where it is 1.
 struct span {
-    double least, range;
+    double min, range;
 };
 
 static struct span parameter_span(const struct unknown_parameters *p, int parameter) {
@@ -29,7 +29,7 @@ const char *mf_parametrisation_parameter_bound(const struct unknown_parameters *
                                                double value) {
     static const double near = 1e-3;
     const struct span span = parameter_span(p, parameter);
-    const double part = (value - span.least) / span.range;
+    const double part = (value - span.min) / span.range;
     if (!isnan(p->fixed[parameter]))
         return NULL;
     return part < near ? "minimum" : part > 1 - near ? "maximum" : NULL;
@@ -51,7 +51,7 @@ void mf_parametrisation_parameters(const struct parametrisation *parametrisation
             parameter[k] = (struct inverse_parameter){p->fixed[k], 0};
             continue;
         }
-        parameter[k].value = span.least + span.range * variables[variable];
+        parameter[k].value = span.min + span.range * variables[variable];
         if (covariance)
             parameter[k].error =
                 span.range * sqrt(covariance[variable * (parametrisation->variables + 1)]);
@@ -90,6 +90,6 @@ void mf_parametrisation_power_start(const struct parametrisation *parametrisatio
     for (int k = 0; k < INVERSE_PARAMETERS; k++) {
         const struct span span = parameter_span(p, k);
         if (isnan(p->fixed[k]))
-            *variables++ = fmin(1, fmax(0, (value[k] - span.least) / span.range));
+            *variables++ = fmin(1, fmax(0, (value[k] - span.min) / span.range));
     }
 }

@@ -9,11 +9,11 @@
 #include <string.h>
 
 /// g of a bin, of several states the largest: what one of them tells is known.
-static double most_pairs(const struct inverse_problem *problem, size_t bin) {
-    double most = problem->targets.target[TARGET_RDF].value[bin];
+static double max_pairs(const struct inverse_problem *problem, size_t bin) {
+    double max = problem->targets.target[TARGET_RDF].value[bin];
     for (size_t s = 0; s < problem->states; s++)
-        most = fmax(most, problem->state[s]->targets.target[TARGET_RDF].value[bin]);
-    return most;
+        max = fmax(max, problem->state[s]->targets.target[TARGET_RDF].value[bin]);
+    return max;
 }
 
 /// Whether a target knows that there are pairs in a bin. A single pair of a whole measurement does
@@ -37,7 +37,7 @@ static bool one_knows_pairs(const struct inverse_problem *problem, size_t bin) {
 static const double well = 0.1;
 
 /// Fewer known bins than this are no curve.
-enum { LEAST_KNOWN = 3 };
+enum { MIN_KNOWN = 3 };
 
 /// The core ends where the bins begin that know of pairs, without a gap up to the first that is
 /// well known, or to the last one: few pairs nearer than that tell nothing of the bins between.
@@ -51,18 +51,18 @@ static enum status find_core(struct potential_grid *grid, const struct inverse_p
         return STATUS_OK;
     }
     while (*core < grid->bins &&
-           (most_pairs(problem, first + *core) <= well || !one_knows_pairs(problem, first + *core)))
+           (max_pairs(problem, first + *core) <= well || !one_knows_pairs(problem, first + *core)))
         (*core)++;
     while (*core > 0 && one_knows_pairs(problem, first + *core - 1))
         (*core)--;
-    if (*core + LEAST_KNOWN > grid->bins)
+    if (*core + MIN_KNOWN > grid->bins)
         for (*core = 0;
-             *core < grid->bins && most_pairs(problem, first + *core) <= problem->core_threshold;)
+             *core < grid->bins && max_pairs(problem, first + *core) <= problem->core_threshold;)
             (*core)++;
     size_t *empty = &grid->empty[pair];
-    while (*empty < *core && most_pairs(problem, first + *empty) <= problem->core_threshold)
+    while (*empty < *core && max_pairs(problem, first + *empty) <= problem->core_threshold)
         (*empty)++;
-    if (*core + LEAST_KNOWN > grid->bins) {
+    if (*core + MIN_KNOWN > grid->bins) {
         char name[COMPOSITION_PAIR_NAME_SIZE];
         mf_composition_pair_name(&problem->scene.composition, (int)pair, name);
         return mf_status_fail(STATUS_BAD_INPUT, "the target%s%s is nowhere above %g",
@@ -90,7 +90,7 @@ static void index_known(struct potential_grid *grid, const struct inverse_proble
         for (size_t k = grid->core[pair]; k < grid->bins; k++, n++) {
             grid->known_point[n] = mf_potential_grid_block(grid, pair) + k;
             grid->known_bin[n] = pair * grid->bins + k;
-            grid->well_known[n] = most_pairs(problem, grid->known_bin[n]) > well;
+            grid->well_known[n] = max_pairs(problem, grid->known_bin[n]) > well;
             grid->seen[n] = k >= seen;
         }
     }
@@ -254,7 +254,7 @@ static enum status make_part(const struct potential_grid *grid, const double *ph
 enum status mf_potential_grid_table(const struct potential_grid *grid, const double *phi,
                                     struct table *table) {
     enum status status = STATUS_OK;
-    struct table part[COMPOSITION_MOST_PAIRS] = {{0}};
+    struct table part[COMPOSITION_MAX_PAIRS] = {{0}};
     if (grid->pairs == 1)
         return make_part(grid, phi, 0, table);
     for (size_t pair = 0; pair < grid->pairs; pair++)

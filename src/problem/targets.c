@@ -10,7 +10,7 @@ const char *mf_targets_name(int kind) {
 
 /// Values of an observable that count as independent, for the variance of its rms: bins of g(r) and
 /// cells of E(t, r_0) next to each other see the same pairs.
-static const double most_independent = 10;
+static const double max_independent = 10;
 
 /// Weight of a target without errors: as if they were this [unit of the target].
 static const double assumed_error = 0.01;
@@ -23,7 +23,7 @@ size_t mf_targets_count(const struct targets *targets) {
 }
 
 double mf_targets_rms_variance(double rms, double square, double count) {
-    const double independent = fmin(count, most_independent);
+    const double independent = fmin(count, max_independent);
     return (square + 0.5 * square * square / fmax(rms * rms, 1e-300)) / independent;
 }
 
@@ -134,7 +134,7 @@ static size_t features_of(const struct target *target) {
 }
 
 size_t mf_targets_blocks(const double *value, size_t count, size_t first,
-                         size_t block[TARGETS_MOST_BLOCKS]) {
+                         size_t block[TARGETS_MAX_BLOCKS]) {
     double whole = 0, own = 0;
     size_t blocks = 0;
     bool full = true;
@@ -144,7 +144,7 @@ size_t mf_targets_blocks(const double *value, size_t count, size_t first,
         if (full)
             block[blocks++] = first + k;
         own = full ? value[k] : own + value[k];
-        full = own * TARGETS_MOST_BLOCKS >= whole * (1 - 1e-9);
+        full = own * TARGETS_MAX_BLOCKS >= whole * (1 - 1e-9);
     }
     // What is left at the end belongs to the block before.
     return blocks > 1 && !full ? blocks - 1 : blocks;

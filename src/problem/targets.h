@@ -47,7 +47,7 @@ struct targets {
     double motion_interval; ///< of VACF, MSD and D [τ]
     size_t motion_lags;     ///< intervals in the window of VACF, MSD and D
     /// Of the other observables, by their places in the list, or NULL of one without. Borrowed.
-    const void *settings[OBSERVABLES_MOST];
+    const void *settings[OBSERVABLES_MAX];
 };
 
 /// Distance of measured values from one target.
@@ -100,9 +100,9 @@ double mf_targets_noise(const struct targets *targets, const struct target_dista
 /// @param[in]  value  shape [count]
 /// @param[out] block  the first value of each, counted from `first`; at most 50
 /// Tested: test_targets.
-enum { TARGETS_MOST_BLOCKS = 50 };
+enum { TARGETS_MAX_BLOCKS = 50 };
 size_t mf_targets_blocks(const double *value, size_t count, size_t first,
-                         size_t block[TARGETS_MOST_BLOCKS]);
+                         size_t block[TARGETS_MAX_BLOCKS]);
 
 size_t mf_targets_features(const struct targets *targets);
 

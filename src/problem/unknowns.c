@@ -89,7 +89,7 @@ const char *mf_unknowns_unit(enum unknown_kind kind) {
 void mf_unknowns_kind_name(const struct unknowns *unknowns, enum unknown_kind kind,
                            char name[UNKNOWNS_NAME_SIZE]) {
     const int mode = kind - UNKNOWN_MEMORY;
-    const bool remembers = mode >= 0 && mode < PAIR_MEMORY_MOST_MODES;
+    const bool remembers = mode >= 0 && mode < PAIR_MEMORY_MAX_MODES;
     snprintf(name, UNKNOWNS_NAME_SIZE, "%s%s%s", mf_inverse_unknown_names[kind],
              remembers ? "_" : "", remembers ? unknowns->problem->mode[mode] : "");
 }
@@ -182,7 +182,7 @@ void mf_unknowns_laws_clear(struct unknowns_laws *laws) {
 
 enum status mf_unknowns_laws_start(const struct unknowns *unknowns, struct unknowns_laws *laws) {
     enum status status = STATUS_OK;
-    double *curve[UNKNOWNS] = {NULL}, number[INVERSE_MOST_NUMBERS];
+    double *curve[UNKNOWNS] = {NULL}, number[INVERSE_MAX_NUMBERS];
     *laws = (struct unknowns_laws){0};
     mf_numbers_start(unknowns->problem, number);
     for (int kind = 0; kind < UNKNOWNS; kind++)

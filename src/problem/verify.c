@@ -95,11 +95,11 @@ static enum status run_replica(void *context, size_t number, void *result) {
     return mf_measure_sample(&replica->simulation, &parameters->plan, replica->use, NULL);
 }
 
-static void tell_one(void *context, size_t number, const void *result) {
+static void report_one(void *context, size_t number, const void *result) {
     struct work *work = context;
     (void)number, (void)result;
     work->progress.done++;
-    work->listener->tell(work->listener->context, &work->progress);
+    work->listener->report(work->listener->context, &work->progress);
 }
 
 static size_t list_measured(void *context, size_t number, struct memory_span *spans) {
@@ -113,14 +113,14 @@ static enum status run_replicas(struct work *work) {
     work->progress = (struct inverse_progress){.done = work->progress.done,
                                                .total = work->progress.done + count,
                                                .best = NAN,
-                                               .least = NAN,
+                                               .min = NAN,
                                                .mean = NAN};
     TRY(mf_parallel_try(&(struct parallel_tasks){
         .count = count, .threads = work->problem->threads, .run = begin_replica, .context = work}));
     return mf_parallel_try(&(struct parallel_tasks){.count = count,
                                                     .threads = work->problem->threads,
                                                     .run = run_replica,
-                                                    .take = tell_one,
+                                                    .take = report_one,
                                                     .context = work,
                                                     .spans = list_measured});
 }
@@ -177,7 +177,7 @@ static enum status find_rdf_error(const struct measurement *replicas, size_t cou
     CHECK(mf_rdf_distance(rdf, count, targets->target[TARGET_RDF].value,
                           &verification->distance[TARGET_RDF].rms,
                           &verification->distance_error[TARGET_RDF]));
-    mf_statistics_forget_errors(&verification->distance_error[TARGET_RDF], 1);
+    mf_statistics_mark_unknown_errors(&verification->distance_error[TARGET_RDF], 1);
 done:
     mf_memory_free(rdf);
     return status;
@@ -230,7 +230,7 @@ static enum status summarise(struct measurement *replicas, size_t count,
     verification->thermodynamics = mf_thermodynamics_result(thermodynamics, count);
     verification->shift = mf_thermodynamics_shift(
         thermodynamics, count, &verification->thermodynamics, &replicas->simulation.setup);
-    if (mf_thermodynamics_judge_fit(&verification->thermodynamics, &replicas->simulation.setup) !=
+    if (mf_thermodynamics_assess_fit(&verification->thermodynamics, &replicas->simulation.setup) !=
         STATUS_OK)
         snprintf(verification->warning, sizeof verification->warning, "%s", mf_status_message());
     const struct simulation_setup *setup = &replicas->simulation.setup;
@@ -250,8 +250,8 @@ static enum status summarise(struct measurement *replicas, size_t count,
     CHECK(find_errors(replicas, count, verification));
     CHECK(find_rdf_error(replicas, count, verification));
     for (int kind = 0; kind < TARGETS; kind++)
-        mf_statistics_forget_errors(verification->observed.error[kind],
-                                    targets->target[kind].count);
+        mf_statistics_mark_unknown_errors(verification->observed.error[kind],
+                                          targets->target[kind].count);
 done:
     mf_memory_free(thermodynamics);
     return status;
@@ -304,14 +304,14 @@ done:
 
 /// Run them until they have settled, or twice again: what has not is equilibration, and goes on.
 static enum status run_until_settled(struct work *work, struct verification *verification) {
-    enum { MOST_ATTEMPTS = 3 };
+    enum { MAX_ATTEMPTS = 3 };
     const size_t count = (size_t)work->parameters.replicas;
     for (int attempt = 1;; attempt++) {
         TRY(run_replicas(work));
-        TRY(mf_verify_settled(work->replicas, count, verification->unsettled));
+        TRY(mf_verify_equilibrium(work->replicas, count, verification->unequilibrated));
         for (size_t k = 0; k < count; k++)
             verification->engine_steps += work->replicas[k].simulation.step;
-        if (verification->unsettled[0] == '\0' || attempt == MOST_ATTEMPTS)
+        if (verification->unequilibrated[0] == '\0' || attempt == MAX_ATTEMPTS)
             return STATUS_OK;
         work->parameters.plan.every *= 2;
         TRY(go_on(work));

@@ -4,7 +4,7 @@
 
 #include "observe/thermodynamics.h"
 #include "problem/verify_agreement.h"
-#include "problem/verify_settled.h"
+#include "problem/verify_equilibrium.h"
 #include "problem/verify_step.h"
 
 struct verify_parameters {
@@ -29,8 +29,8 @@ struct verification {
     double diffusion_begin, diffusion_end; ///< times between which D is the MSD's slope [τ]; or 0
     char warning[512]; ///< why its temperatures are not to be trusted; "" if they are
     struct verify_step step;
-    char unsettled[VERIFY_UNSETTLED_SIZE]; ///< what is not in equilibrium; "" if all is
-    uint64_t engine_steps;                 ///< of those that had not settled, too
+    char unequilibrated[VERIFY_EQUILIBRIUM_SIZE]; ///< what is not in equilibrium; "" if all is
+    uint64_t engine_steps;                        ///< of those that had not settled, too
     size_t particles;
     size_t sampled; ///< particles of the samples that the fit ended with; 0: it has none of its own
     /// Where the first replica ended: positions, then velocities, by id, shape [6, particles];

@@ -153,9 +153,9 @@ static double target_variance(const struct target *target, size_t k, double valu
 
 /// χ² with the covariance σ_a² δ_ab + c_a c_b, of which c is the error that bins have in common:
 /// Σ x²/σ² − (Σ c x/σ²)²/(1 + Σ c²/σ²).
-static struct verify_agreement judge(const struct targets *targets,
-                                     const struct verify_section *section,
-                                     const struct observed *observed, double share) {
+static struct verify_agreement assess(const struct targets *targets,
+                                      const struct verify_section *section,
+                                      const struct observed *observed, double share) {
     const struct target *const target = &targets->target[section->kind];
     const double *const value = observed->value[section->kind], *const error =
                                                                     observed->error[section->kind];
@@ -191,7 +191,7 @@ void mf_verify_agree(const struct targets *targets, const struct verify_sections
         agreement[kind] = (struct verify_agreement){0};
     for (size_t s = 0; s < sections->count; s++) {
         struct verify_agreement *const worst = &agreement[sections->section[s].kind];
-        const struct verify_agreement own = judge(targets, &sections->section[s], observed, share);
+        const struct verify_agreement own = assess(targets, &sections->section[s], observed, share);
         if (worst->probable == 0 || own.misfit * worst->probable > worst->misfit * own.probable)
             *worst = own;
     }

@@ -22,11 +22,11 @@ struct verify_section {
     struct statistics_independence known;
 };
 
-enum { VERIFY_MOST_SECTIONS = COMPOSITION_MOST_PAIRS + INVERSE_MOST_BONDED };
+enum { VERIFY_MAX_SECTIONS = COMPOSITION_MAX_PAIRS + INVERSE_MAX_BONDED };
 
 struct verify_sections {
     size_t count;
-    struct verify_section section[VERIFY_MOST_SECTIONS];
+    struct verify_section section[VERIFY_MAX_SECTIONS];
 };
 
 /// Of the section of a kind of targets that is least probable.

@@ -12,7 +12,7 @@ static const double vague = 0.1;
 bool mf_verify_step_can_shorten(const struct simulation_setup *setup) {
     const struct integrator *integrator = setup->integrator;
     return !integrator->events && !integrator->samples && !integrator->model_time_step &&
-           integrator->companions == NULL;
+           integrator->solvent_particles == NULL;
 }
 
 /// g of a pair type where the potential is looked at: of the target, or of a gas.
@@ -76,8 +76,8 @@ struct verify_step mf_verify_step_begin(const struct inverse_problem *problem,
 
 /// Whether what is left is more than half of what there was with twice the step, and not by chance:
 /// of an error of the step a quarter would be left, or less.
-static bool is_blameless(const struct thermodynamics_off *before,
-                         const struct thermodynamics_off *now) {
+static bool is_not_the_cause(const struct thermodynamics_off *before,
+                             const struct thermodynamics_off *now) {
     static const double deviations = 2, small = 0.3; // where an error is as a power of the step
     const double chance = hypot(now->error, 0.5 * before->error);
     return before->known && before->kinetic == now->kinetic && fabs(before->share) < small &&
@@ -93,7 +93,7 @@ static void find_what_would_hold(struct verify_step *step) {
     step->would_hold = fmin(step->would_hold, 0.9 * step->used);
 }
 
-static enum verify_step_verdict judge(const struct verify_step *step,
+static enum verify_step_result assess(const struct verify_step *step,
                                       const struct thermodynamics_off *before) {
     const struct thermodynamics_off *now = &step->off;
     if (step->blew_up)
@@ -102,8 +102,8 @@ static enum verify_step_verdict judge(const struct verify_step *step,
         return VERIFY_STEP_UNKNOWN;
     if (fabs(now->share) <= fmax(allowed, errors * now->error))
         return errors * now->error > vague ? VERIFY_STEP_UNKNOWN : VERIFY_STEP_HOLDS;
-    return step->halvings > 0 && is_blameless(before, now) ? VERIFY_STEP_BLAMELESS
-                                                           : VERIFY_STEP_LONG;
+    return step->halvings > 0 && is_not_the_cause(before, now) ? VERIFY_STEP_NOT_THE_CAUSE
+                                                               : VERIFY_STEP_LONG;
 }
 
 bool mf_verify_step_again(struct verify_step *step, const struct thermodynamics_off *off,
@@ -115,8 +115,8 @@ bool mf_verify_step_again(struct verify_step *step, const struct thermodynamics_
         step->first_off = *off;
         step->first_blew_up = blew_up;
     }
-    step->verdict = judge(step, &before);
-    if (step->verdict != VERIFY_STEP_LONG)
+    step->result = assess(step, &before);
+    if (step->result != VERIFY_STEP_LONG)
         return false;
     if (!step->shortens || step->halvings == VERIFY_STEP_HALVINGS) {
         find_what_would_hold(step);

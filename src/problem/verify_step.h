@@ -18,11 +18,11 @@
 /// So often is a step halved at most: to a sixteenth.
 enum { VERIFY_STEP_HALVINGS = 4 };
 
-enum verify_step_verdict {
-    VERIFY_STEP_UNKNOWN,   ///< too few samples to tell
-    VERIFY_STEP_HOLDS,     ///< both temperatures are right
-    VERIFY_STEP_LONG,      ///< they are not
-    VERIFY_STEP_BLAMELESS, ///< they are not, and with twice the step it was the same
+enum verify_step_result {
+    VERIFY_STEP_UNKNOWN,       ///< too few samples to tell
+    VERIFY_STEP_HOLDS,         ///< both temperatures are right
+    VERIFY_STEP_LONG,          ///< they are not
+    VERIFY_STEP_NOT_THE_CAUSE, ///< they are not, and with twice the step it was the same
 };
 
 struct verify_step {
@@ -33,7 +33,7 @@ struct verify_step {
     double tried;                        ///< [τ]
     bool blew_up, first_blew_up;
     double would_hold; ///< what would be right by what was seen, if the step is too long [τ]
-    enum verify_step_verdict verdict;
+    enum verify_step_result result;
     bool shortens; ///< whether it is halved
     int halvings;  ///< of `first`
 };

@@ -3,7 +3,7 @@
 
 #include "base/memory.h"
 #include "io/data_table.h"
-#include "io/own_files.h"
+#include "io/tracked_files.h"
 #include "report/compare_table.h"
 #include "report/figures.h"
 
@@ -108,12 +108,12 @@ static void write_header(FILE *stream, const struct block *block,
                          const struct result_summary *summary) {
     const char *name = block->header;
     while (*name) {
-        char reduced[64], spoken[256];
+        char reduced[64], translated[256];
         const size_t length = strcspn(name, "\t");
         snprintf(reduced, sizeof reduced, "%.*s", (int)length, name);
-        mf_data_table_translate(&summary->units, reduced, spoken, sizeof spoken);
+        mf_data_table_translate(&summary->units, reduced, translated, sizeof translated);
         name += length + (name[length] == '\t');
-        fprintf(stream, "%s%c", spoken, *name ? '\t' : '\n');
+        fprintf(stream, "%s%c", translated, *name ? '\t' : '\n');
     }
 }
 
@@ -148,27 +148,28 @@ enum { BLOCKS = sizeof blocks / sizeof blocks[0] };
 
 /// Nothing is written if something may not be. The figure is reserved, too: if it fails, the tables
 /// are there all the same.
-static enum status reserve(struct own_files *own, const struct compared *fits, size_t count) {
-    TRY(mf_own_files_reserve(own, "figures/"));
-    TRY(mf_own_files_reserve(own, "figures/compare.svg"));
-    TRY(mf_own_files_reserve(own, "figures/compare.png"));
-    TRY(mf_own_files_reserve(own, "compare.tsv"));
+static enum status reserve(struct tracked_files *own, const struct compared *fits, size_t count) {
+    TRY(mf_tracked_files_reserve(own, "figures/"));
+    TRY(mf_tracked_files_reserve(own, "figures/compare.svg"));
+    TRY(mf_tracked_files_reserve(own, "figures/compare.png"));
+    TRY(mf_tracked_files_reserve(own, "compare.tsv"));
     for (size_t k = 0; k < BLOCKS; k++)
         if (is_wanted(&blocks[k], fits, count))
-            TRY(mf_own_files_reserve(own, blocks[k].name));
+            TRY(mf_tracked_files_reserve(own, blocks[k].name));
     return STATUS_OK;
 }
 
 /// What an earlier comparison left, and this one does not write, goes.
-static enum status write_tables(struct own_files *own, const struct compared *fits, size_t count) {
-    TRY(mf_own_files_lock(own));
+static enum status write_tables(struct tracked_files *own, const struct compared *fits,
+                                size_t count) {
+    TRY(mf_tracked_files_lock(own));
     TRY(reserve(own, fits, count));
-    TRY(mf_own_files_begin(own, 0));
+    TRY(mf_tracked_files_begin(own, 0));
     TRY(mf_compare_table_write(own->folder, fits, count));
     for (size_t k = 0; k < BLOCKS; k++)
         if (is_wanted(&blocks[k], fits, count))
             TRY(write_blocks(own->folder, &blocks[k], fits, count));
-    return mf_own_files_sweep(own);
+    return mf_tracked_files_remove_earlier(own);
 }
 
 /// What a folder calls 1 of a reduced unit, in nm, ps, u and so on.
@@ -195,8 +196,8 @@ static void convert_table(struct result_table *table, const char *header, const 
 static void convert(struct compared *fit, const struct units *to) {
     struct result_summary *summary = &fit->result.summary;
     const struct field *field;
-    struct result_field room;
-    for (size_t n = 0; (field = mf_result_summary_field(n, &room)); n++)
+    struct result_field capacity;
+    for (size_t n = 0; (field = mf_result_summary_field(n, &capacity)); n++)
         if (field->type == FIELD_NUMBER) {
             char *member = (char *)summary + field->offset;
             double value;
@@ -225,7 +226,7 @@ static enum status bring_together(struct compared *fits, size_t count, const cha
                                   folders[0], mf_units_systems[first->system], folders[k],
                                   mf_units_systems[other->system]);
         convert(&fits[k], first);
-        if (!mf_units_speaks(first))
+        if (!mf_units_are_physical(first))
             fits[k].result.summary.length_unit_nm = first->length;
     }
     return STATUS_OK;
@@ -273,7 +274,7 @@ enum status mf_compare_folders(const char *const *folders, size_t count, const c
                                bool force, bool quiet) {
     enum status status = STATUS_OK;
     struct compared *fits = NULL;
-    struct own_files own = {.open = false};
+    struct tracked_files own = {.open = false};
     if (count == 0)
         return mf_status_fail(STATUS_BAD_INPUT, "compare: give the folder of at least one fit");
     NEW_ARRAY(fits, count);
@@ -286,7 +287,7 @@ enum status mf_compare_folders(const char *const *folders, size_t count, const c
     if (!quiet)
         warn_of_lengths(fits, count, folders);
     name_fits(fits, count);
-    CHECK(mf_own_files_make(&own, out, OWN_FILES_OF_COMPARISON));
+    CHECK(mf_tracked_files_make(&own, out, TRACKED_FILES_OF_COMPARISON));
     own.force = force;
     CHECK(write_tables(&own, fits, count));
     if (!quiet)
@@ -294,7 +295,7 @@ enum status mf_compare_folders(const char *const *folders, size_t count, const c
     if (mf_figures_draw_comparison(out) != STATUS_OK)
         fprintf(stderr, "mesofit: warning: %s\n", mf_status_message());
 done:
-    mf_own_files_close(&own);
+    mf_tracked_files_close(&own);
     for (size_t k = 0; fits && k < count; k++)
         mf_result_clear(&fits[k].result);
     mf_memory_free(fits);

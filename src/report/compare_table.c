@@ -11,9 +11,9 @@
 
 enum {
     PATH_SIZE = OUTPUT_PATH_SIZE + 64,
-    CELL_SIZE = 64,     ///< one entry of the printed table
-    MOST_NUMBERS = 128, ///< in a summary
-    HEADER_SIZE = 96,   ///< of one column of compare.tsv
+    CELL_SIZE = 64,    ///< one entry of the printed table
+    MAX_NUMBERS = 128, ///< in a summary
+    HEADER_SIZE = 96,  ///< of one column of compare.tsv
 };
 
 // Columns of the printed table --------------------------------------------------------------------
@@ -235,19 +235,19 @@ static bool fill_numbers(double *values, const struct field *field, const struct
 
 enum status mf_compare_table_write(const char *out, const struct compared *fits, size_t count) {
     enum status status = STATUS_OK;
-    char file[PATH_SIZE], headers[MOST_NUMBERS][HEADER_SIZE], *comment = NULL;
-    struct data_column written[MOST_NUMBERS] = {{.name = "index[1]"}};
+    char file[PATH_SIZE], headers[MAX_NUMBERS][HEADER_SIZE], *comment = NULL;
+    struct data_column written[MAX_NUMBERS] = {{.name = "index[1]"}};
     const struct units units = fits[0].result.summary.units;
     const struct field *field;
-    struct result_field room;
+    struct result_field capacity;
     double *values = NULL;
     size_t used = 1;
-    NEW_ARRAY(values, MOST_NUMBERS * count);
+    NEW_ARRAY(values, MAX_NUMBERS * count);
     for (size_t k = 0; k < count; k++)
         values[k] = (double)k;
     written[0].values = values;
-    for (size_t n = 0; (field = mf_result_summary_field(n, &room)); n++) {
-        if (used == MOST_NUMBERS || !fill_numbers(values + used * count, field, fits, count))
+    for (size_t n = 0; (field = mf_result_summary_field(n, &capacity)); n++) {
+        if (used == MAX_NUMBERS || !fill_numbers(values + used * count, field, fits, count))
             continue;
         char reduced[HEADER_SIZE];
         snprintf(reduced, sizeof reduced, "%s[%s]", field->name, field->unit);

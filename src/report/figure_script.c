@@ -2,7 +2,7 @@
 #include "report/figure_script.h"
 
 #include "io/input.h"
-#include "io/own_files.h"
+#include "io/tracked_files.h"
 #include "report/program.h"
 
 #include <errno.h>
@@ -88,7 +88,7 @@ static enum status publish(const char *folder, const char *name, const char *end
         find_figure(folder, name, kind, path);
         find_temporary(folder, name, kind, ending, temporary);
         remove(temporary);
-        mf_own_files_remove(path);
+        mf_tracked_files_remove(path);
     }
     return status;
 }
@@ -100,12 +100,12 @@ static enum status claim(const char *folder, const char *name) {
     TRY(mf_output_make_folder(path));
     for (int kind = 0; kind < KINDS; kind++) {
         find_figure(folder, name, kind, path);
-        TRY(mf_own_files_claim(path));
+        TRY(mf_tracked_files_claim(path));
     }
     return STATUS_OK;
 }
 
-static enum status tell(const char *name, const char *text) {
+static enum status report(const char *name, const char *text) {
     return setenv(name, text, 1) == 0 ? STATUS_OK
                                       : mf_status_fail(STATUS_NO_MEMORY, "out of memory");
 }
@@ -116,10 +116,10 @@ static enum status draw(const char *folder, const char *plots, const char *scrip
     snprintf(file, sizeof file, "%s/%s.gp", plots, script);
     mf_output_partial(ending);
     TRY(claim(folder, figure));
-    TRY(tell("MESOFIT_PLOTS", plots));
-    TRY(tell("MESOFIT_TABLE", table));
-    TRY(tell("MESOFIT_FIGURE", figure));
-    TRY(tell("MESOFIT_PARTIAL", ending));
+    TRY(report("MESOFIT_PLOTS", plots));
+    TRY(report("MESOFIT_TABLE", table));
+    TRY(report("MESOFIT_FIGURE", figure));
+    TRY(report("MESOFIT_PARTIAL", ending));
     enum status status = run_gnuplot(folder, file);
     if (status == STATUS_OK)
         status = check_figure(folder, figure, ending);

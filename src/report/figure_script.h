@@ -13,6 +13,6 @@ enum status mf_figure_script_find(char plots[FIGURE_SCRIPT_PATH_SIZE]) MUST_USE;
 /// Draw figures/`figure`.svg and .png in `folder` with the script `plots`/`script`.gp, which finds
 /// the names of the table and of the figure in MESOFIT_TABLE and MESOFIT_FIGURE, and what the names
 /// of its files end with while it is drawn in MESOFIT_PARTIAL. A figure that fails is not there at
-/// all. Fails: IO with one line, NO_MEMORY; as mf_own_files_claim. Tested: test_figures.
+/// all. Fails: IO with one line, NO_MEMORY; as mf_tracked_files_claim. Tested: test_figures.
 enum status mf_figure_script_draw(const char *folder, const char *plots, const char *script,
                                   const char *table, const char *figure) MUST_USE;

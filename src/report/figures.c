@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "report/figures.h"
 
-#include "io/own_files.h"
+#include "io/tracked_files.h"
 #include "observe/observable.h"
 #include "report/figure_script.h"
 #include "system/composition.h"
@@ -262,13 +262,13 @@ enum status mf_figures_draw(const char *folder) {
 }
 
 enum status mf_figures_draw_again(const char *folder, bool force) {
-    struct own_files own;
+    struct tracked_files own;
     size_t count = 0;
     TRY(check_access(folder));
-    TRY(mf_own_files_open(&own, folder, OWN_FILES_OF_RUN));
+    TRY(mf_tracked_files_open(&own, folder, TRACKED_FILES_OF_RUN));
     own.force = force;
     const enum status status = draw_all(folder, &count);
-    mf_own_files_close(&own);
+    mf_tracked_files_close(&own);
     TRY(status);
     return count > 0 ? STATUS_OK
                      : mf_status_fail(STATUS_BAD_INPUT,

@@ -17,7 +17,7 @@ enum status mf_figures_draw(const char *folder) MUST_USE;
 
 /// The same for a person who asks for them, in the folder of a run: figures that are of the run and
 /// that nobody has changed are replaced, others with `force` alone. BAD_INPUT if there is no table
-/// to draw. Tested: test_bad_lines_are_refused_with_a_hint, test_own_files.
+/// to draw. Tested: test_bad_lines_are_refused_with_a_hint, test_tracked_files.
 enum status mf_figures_draw_again(const char *folder, bool force) MUST_USE;
 
 /// Draw figures/compare.svg and .png from the tables that mf_compare_folders wrote to `folder`.

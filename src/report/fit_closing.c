@@ -67,23 +67,24 @@ static double find_farthest(const struct fit_file *fit, const struct fit_result 
 }
 
 /// Whether it worked.
-static void say_verdict(struct progress *to, const struct fit_file *fit,
-                        const struct fit_result *result) {
+static void print_verdict(struct progress *to, const struct fit_file *fit,
+                          const struct fit_result *result) {
     static const double within = 1.7; // as inversions end
     const char *name = "";
     const double farthest = find_farthest(fit, result, &name);
     if (result->status != STATUS_OK)
-        mf_progress_say(to, "so: it has not worked as it is: the reason follows");
+        mf_progress_print(to, "so: it has not worked as it is: the reason follows");
     else if (isnan(farthest))
-        mf_progress_say(to, "so: whether it worked is not known: the verification has no errors");
+        mf_progress_print(to, "so: whether it worked is not known: the verification has no errors");
     else if (farthest <= within)
-        mf_progress_say(to, "so: it worked: independent simulations meet the targets as exactly as "
-                            "these are known");
+        mf_progress_print(to,
+                          "so: it worked: independent simulations meet the targets as exactly as "
+                          "these are known");
     else
-        mf_progress_say(to,
-                        "so: it %s: independent simulations meet the targets within %.2g times "
-                        "what statistics alone explain (%s)",
-                        result->settled ? "worked" : "ended", farthest, name);
+        mf_progress_print(to,
+                          "so: it %s: independent simulations meet the targets within %.2g times "
+                          "what statistics alone explain (%s)",
+                          result->settled ? "worked" : "ended", farthest, name);
 }
 
 /// "1350 +- 180": rounded to two digits of the error.
@@ -95,8 +96,8 @@ static void print_open(double value, double error, char text[NUMBER_TEXT_SIZE]) 
 }
 
 /// The pressure, if g(r) does not fix it.
-static void say_pressure(struct progress *to, const struct fit_file *fit,
-                         const struct fit_result *result) {
+static void print_pressure(struct progress *to, const struct fit_file *fit,
+                           const struct fit_result *result) {
     const struct units *units = &fit->scene.units;
     const struct thermodynamics_summary *found = &result->verification->thermodynamics;
     const double open = result->ramp.pressure_open,
@@ -107,14 +108,14 @@ static void say_pressure(struct progress *to, const struct fit_file *fit,
         targets_ask(&fit->problem.compared, TARGET_PRESSURE))
         return;
     print_open(bar * found->pressure, bar * hypot(open, found->pressure_error), range);
-    mf_progress_say(to,
-                    "not known: g alone does not fix the pressure: %s%s; give \"pressure\" as a "
-                    "second target to fix it",
-                    range, mf_units_suffix(units, "k_B T_0/lambda^d", unit));
+    mf_progress_print(to,
+                      "not known: g alone does not fix the pressure: %s%s; give \"pressure\" as a "
+                      "second target to fix it",
+                      range, mf_units_suffix(units, "k_B T_0/lambda^d", unit));
 }
 
-static void say_friction(struct progress *to, const struct fit_file *fit,
-                         const struct unknowns *unknowns, const struct fit_result *result) {
+static void print_friction(struct progress *to, const struct fit_file *fit,
+                           const struct unknowns *unknowns, const struct fit_result *result) {
     static const double well = 0.1;
     const struct units *units = &fit->scene.units;
     char unit[UNITS_NAME_SIZE], name[UNKNOWNS_NAME_SIZE];
@@ -126,26 +127,26 @@ static void say_friction(struct progress *to, const struct fit_file *fit,
         const double factor = mf_units_factor(units, mf_unknowns_unit(kind));
         mf_unknowns_kind_name(unknowns, kind, name);
         if (isfinite(known.seen) && known.error > well * known.rms)
-            mf_progress_say(to, "not known: %s better than within %.2g%s rms, %.0f %% of it", name,
-                            factor * known.error,
-                            mf_units_suffix(units, mf_unknowns_unit(kind), unit),
-                            100 * known.error / known.rms);
+            mf_progress_print(to, "not known: %s better than within %.2g%s rms, %.0f %% of it",
+                              name, factor * known.error,
+                              mf_units_suffix(units, mf_unknowns_unit(kind), unit),
+                              100 * known.error / known.rms);
     }
 }
 
-void mf_fit_closing_say(struct progress *to, const struct fit_file *fit,
-                        const struct unknowns *unknowns, const struct fit_result *result,
-                        const char *folder) {
-    say_verdict(to, fit, result);
-    say_pressure(to, fit, result);
-    say_friction(to, fit, unknowns, result);
+void mf_fit_closing_print(struct progress *to, const struct fit_file *fit,
+                          const struct unknowns *unknowns, const struct fit_result *result,
+                          const char *folder) {
+    print_verdict(to, fit, result);
+    print_pressure(to, fit, result);
+    print_friction(to, fit, unknowns, result);
     if (result->status == STATUS_OK)
-        mf_progress_say(to,
-                        "next: figures and summary.json are in %s; mesofit export %s writes "
-                        "the model for another engine",
-                        folder, folder);
+        mf_progress_print(to,
+                          "next: figures and summary.json are in %s; mesofit export %s writes "
+                          "the model for another engine",
+                          folder, folder);
     else
-        mf_progress_say(
+        mf_progress_print(
             to,
             "next: figures and summary.json are in %s; docs/fit.md has a remedy for each reason",
             folder);

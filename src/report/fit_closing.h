@@ -24,6 +24,6 @@ bool mf_fit_closing_is_noise(const struct unknowns *unknowns, const double *cons
                              char reason[INVERSE_REASON_SIZE]);
 
 /// Say them.
-void mf_fit_closing_say(struct progress *to, const struct fit_file *fit,
-                        const struct unknowns *unknowns, const struct fit_result *result,
-                        const char *folder);
+void mf_fit_closing_print(struct progress *to, const struct fit_file *fit,
+                          const struct unknowns *unknowns, const struct fit_result *result,
+                          const char *folder);

@@ -61,7 +61,7 @@ static enum status write_potential(const struct fit_file *fit, const struct unkn
                                                 result->without_ramp + first, "%.3g"};
     if (mf_scene_law_curve(&fit->unknown[UNKNOWN_POTENTIAL].truth, (int)pair))
         columns[count++] = (struct data_column){"truth[k_B.T_0]", truth, "%.8g"};
-    if (mf_units_beside(units)) {
+    if (mf_units_have_second_columns(units)) {
         columns[count++] = (struct data_column){"r[nm]", nanometres, NULL};
         columns[count++] = (struct data_column){"phi[kJ/mol]", energy, NULL};
     }
@@ -109,7 +109,7 @@ static enum status write_omega(const struct fit_file *fit, const struct unknowns
     size_t count = 3;
     if (truth_known)
         columns[count++] = (struct data_column){"truth[sqrt(mu/tau)]", truth, "%.8g"};
-    if (mf_units_beside(units))
+    if (mf_units_have_second_columns(units))
         columns[count++] = (struct data_column){"r[nm]", nanometres, NULL};
     curve_file(unknowns, kind, 0, ".tsv", folder, path);
     if (truth && nanometres)
@@ -153,8 +153,9 @@ static enum status write_group(const struct fit_file *fit, const struct unknowns
     enum status status = STATUS_OK;
     const struct unknowns_part part = mf_unknowns_part(unknowns, UNKNOWN_BONDED, group);
     const double *energy = result->curve[UNKNOWN_BONDED] + part.first;
-    const double unit =
-        mf_units_beside(&fit->scene.units) ? mf_units_energy_kj_per_mol(&fit->scene.units) : 0;
+    const double unit = mf_units_have_second_columns(&fit->scene.units)
+                            ? mf_units_energy_kj_per_mol(&fit->scene.units)
+                            : 0;
     double *beside = mf_units_column(energy, part.points, unit);
     char path[OUTPUT_PATH_SIZE];
     const struct data_column columns[] = {
@@ -187,14 +188,14 @@ enum status mf_fit_output_curves(const struct fit_file *fit, const struct unknow
     return STATUS_OK;
 }
 
-enum { PLACES = 2, VALUES = 4, MOST_COLUMNS = 2 * (PLACES + VALUES) + 1 };
+enum { PLACES = 2, VALUES = 4, MAX_COLUMNS = 2 * (PLACES + VALUES) + 1 };
 
 /// Columns of a table in reduced units, and what is made for them.
 struct columns {
     size_t count;
-    struct data_column column[MOST_COLUMNS];
-    char name[MOST_COLUMNS][64];
-    double *own[MOST_COLUMNS]; ///< NULL: the values are somebody else's
+    struct data_column column[MAX_COLUMNS];
+    char name[MAX_COLUMNS][64];
+    double *own[MAX_COLUMNS]; ///< NULL: the values are somebody else's
 };
 
 static void add_column(struct columns *columns, const char *name, const double *values,
@@ -250,7 +251,7 @@ static enum status write_table(const struct fit_file *fit, int kind,
     const char *unit = mf_observable_kind(kind).target->unit;
     const double *const values[VALUES] = {target->value, target->error, observed->value[kind],
                                           observed->error[kind]};
-    const bool beside = table->beside && mf_units_beside(&fit->scene.units);
+    const bool beside = table->beside && mf_units_have_second_columns(&fit->scene.units);
     struct columns columns = {.count = 0};
     char path[OUTPUT_PATH_SIZE], name[64], file[8 + sizeof table->name];
     CHECK(add_places(&columns, &fit->files, kind, table));
@@ -274,7 +275,7 @@ static enum status write_table(const struct fit_file *fit, int kind,
     CHECK(mf_data_table_write_in(path, &fit->scene.units, NULL, columns.column, columns.count,
                                  table->count));
 done:
-    for (size_t n = 0; n < MOST_COLUMNS; n++)
+    for (size_t n = 0; n < MAX_COLUMNS; n++)
         mf_memory_free(columns.own[n]);
     return status;
 }

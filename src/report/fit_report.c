@@ -20,7 +20,7 @@ void mf_fit_report_formula(const struct fit_file *fit, const char *formula,
     char printed[EXPRESSION_TEXT_SIZE] = "";
     if (formula)
         snprintf(printed, sizeof printed, "%s", formula);
-    if (formula && mf_units_speaks(units) &&
+    if (formula && mf_units_are_physical(units) &&
         mf_expression_parse(&expression, formula) == STATUS_OK &&
         mf_expression_scale(&expression, mf_units_factor(units, "lambda"),
                             mf_units_factor(units, mf_unknowns_unit(kind))))
@@ -29,8 +29,8 @@ void mf_fit_report_formula(const struct fit_file *fit, const char *formula,
 }
 
 /// "omega: sigma = 6.00(4) (at its maximum), exponent = 1 (fixed), inner_cutoff = 0.02(1)".
-static void say_parameters(struct progress *to, const struct fit_file *fit,
-                           const struct inverse_parameter *parameter) {
+static void print_parameters(struct progress *to, const struct fit_file *fit,
+                             const struct inverse_parameter *parameter) {
     const struct unknown_parameters *p = &fit->unknown[UNKNOWN_OMEGA].parameters;
     char line[256], name[UNITS_NAME_SIZE];
     int length = snprintf(line, sizeof line, "%s:", mf_inverse_unknown_names[UNKNOWN_OMEGA]);
@@ -51,12 +51,12 @@ static void say_parameters(struct progress *to, const struct fit_file *fit,
                            k > 0 ? "," : "", mf_inverse_fixed_fields[k].name, text,
                            mf_units_suffix(&fit->scene.units, unit, name), mark);
     }
-    mf_progress_say(to, "%s", line);
+    mf_progress_print(to, "%s", line);
 }
 
 /// "dissipative.sigma = 3.02(4)"; what is no result does not look like one.
-static void say_numbers(struct progress *to, const struct fit_file *fit,
-                        const struct inverse_parameter *found) {
+static void print_numbers(struct progress *to, const struct fit_file *fit,
+                          const struct inverse_parameter *found) {
     for (size_t n = 0; n < fit->numbers; n++) {
         const struct inverse_number *number = &fit->number[n];
         char text[NUMBER_TEXT_SIZE], mark[32] = "";
@@ -68,24 +68,25 @@ static void say_numbers(struct progress *to, const struct fit_file *fit,
         mf_units_suffix(&fit->scene.units, number->unit, unit);
         mf_number_text(factor * found[n].value, factor * found[n].error, text);
         if (mf_numbers_undetermined(number, &found[n]))
-            mf_progress_say(to, "%s: undetermined by the targets, between %g and %g%s",
-                            number->name, factor * number->minimum, factor * number->maximum, unit);
+            mf_progress_print(to, "%s: undetermined by the targets, between %g and %g%s",
+                              number->name, factor * number->minimum, factor * number->maximum,
+                              unit);
         else
-            mf_progress_say(to, "%s = %s%s%s%s", number->name, text, unit, mark,
-                            isnan(found[n].error) ? ", of unknown error" : "");
+            mf_progress_print(to, "%s = %s%s%s%s", number->name, text, unit, mark,
+                              isnan(found[n].error) ? ", of unknown error" : "");
     }
 }
 
 /// "potential: well -0.354 k_B T_0 at 0.99 lambda (-0.451 at 0.99 at first), changed by 0.05 rms".
-static void say_changes(struct progress *to, const struct units *units,
-                        const struct unknowns *unknowns, const struct fit_result *result) {
+static void print_changes(struct progress *to, const struct units *units,
+                          const struct unknowns *unknowns, const struct fit_result *result) {
     const double energy = mf_units_factor(units, "k_B T_0");
     const double length = mf_units_factor(units, "lambda");
     if (isfinite(result->first_error))
-        mf_progress_say(to, "error of the fit: %.4g at first, %.4g at the end", result->first_error,
-                        result->error);
+        mf_progress_print(to, "error of the fit: %.4g at first, %.4g at the end",
+                          result->first_error, result->error);
     else if (isfinite(result->error))
-        mf_progress_say(to, "error of the fit: %.4g at the end", result->error);
+        mf_progress_print(to, "error of the fit: %.4g at the end", result->error);
     for (int kind = 0; kind < UNKNOWNS; kind++)
         for (size_t n = 0; result->first[kind] && n < mf_unknowns_curve_count(unknowns, kind);
              n++) {
@@ -108,8 +109,8 @@ static void say_changes(struct progress *to, const struct units *units,
                     snprintf(well, sizeof well, " %.2g%.16s rms, known within %.2g,",
                              factor * known.rms, unit, factor * known.error);
             }
-            mf_progress_say(to, "%s:%s changed by %.2g%s rms", name, well, factor * change.rms,
-                            unit);
+            mf_progress_print(to, "%s:%s changed by %.2g%s rms", name, well, factor * change.rms,
+                              unit);
         }
 }
 
@@ -125,8 +126,8 @@ static size_t values_of(const struct target *target) {
     return known;
 }
 
-static void say_distances(struct progress *to, const struct fit_file *fit,
-                          const struct verification *v) {
+static void print_distances(struct progress *to, const struct fit_file *fit,
+                            const struct verification *v) {
     for (int kind = 0; kind < TARGETS; kind++) {
         char rms[NUMBER_TEXT_SIZE];
         if (!fit->files.given[kind])
@@ -144,29 +145,29 @@ static void say_distances(struct progress *to, const struct fit_file *fit,
         if (v->distance[kind].count < known)
             snprintf(of, sizeof of, ", of %zu of its %zu values: no others were measured",
                      v->distance[kind].count, known);
-        mf_progress_say(to, "verified: rms of %s - target = %s%s, statistics alone %.2g%s%s",
-                        mf_targets_name(kind), rms, name, factor * v->distance[kind].noise, of,
-                        !(noises > missed) ? ""
-                        : fitted           ? ": not met: nothing better was found"
-                                           : ": not fitted, only compared");
+        mf_progress_print(to, "verified: rms of %s - target = %s%s, statistics alone %.2g%s%s",
+                          mf_targets_name(kind), rms, name, factor * v->distance[kind].noise, of,
+                          !(noises > missed) ? ""
+                          : fitted           ? ": not met: nothing better was found"
+                                             : ": not fitted, only compared");
     }
 }
 
-static void say_diffusion(struct progress *to, const struct units *units,
-                          const struct verification *v) {
+static void print_diffusion(struct progress *to, const struct units *units,
+                            const struct verification *v) {
     const double factor = mf_units_factor(units, "lambda^2/tau");
     const double time = mf_units_factor(units, "tau");
     char diffusion[NUMBER_TEXT_SIZE], unit[UNITS_NAME_SIZE], times[UNITS_NAME_SIZE];
     mf_number_text(factor * *v->observed.value[TARGET_DIFFUSION],
                    factor * *v->observed.error[TARGET_DIFFUSION], diffusion);
-    mf_progress_say(to, "D = %s%s, the slope of the MSD from %.4g to %.4g %s", diffusion,
-                    mf_units_suffix(units, "lambda^2/tau", unit), time * v->diffusion_begin,
-                    time * v->diffusion_end, mf_units_name(units, "tau", times));
+    mf_progress_print(to, "D = %s%s, the slope of the MSD from %.4g to %.4g %s", diffusion,
+                      mf_units_suffix(units, "lambda^2/tau", unit), time * v->diffusion_begin,
+                      time * v->diffusion_end, mf_units_name(units, "tau", times));
 }
 
 /// "G of A-B = -0.31(2) lambda^3, target -0.30(1)".
-static void say_integrals(struct progress *to, const struct fit_file *fit,
-                          const struct verification *v) {
+static void print_integrals(struct progress *to, const struct fit_file *fit,
+                            const struct verification *v) {
     const int kind = mf_kirkwood_buff_kind();
     const struct target *target = &fit->problem.compared.target[kind];
     const double factor = mf_units_factor(&fit->scene.units, "lambda^d");
@@ -180,13 +181,14 @@ static void say_integrals(struct progress *to, const struct fit_file *fit,
         mf_number_text(factor * v->observed.value[kind][pair],
                        factor * v->observed.error[kind][pair], found);
         mf_number_text(factor * target->value[pair], factor * target->error[pair], wanted);
-        mf_progress_say(to, "Kirkwood-Buff integral%s%s = %s%s, target %s", name[0] ? " of " : "",
-                        name, found, mf_units_suffix(&fit->scene.units, "lambda^d", unit), wanted);
+        mf_progress_print(to, "Kirkwood-Buff integral%s%s = %s%s, target %s", name[0] ? " of " : "",
+                          name, found, mf_units_suffix(&fit->scene.units, "lambda^d", unit),
+                          wanted);
     }
 }
 
 /// " (at this time step; about +0.12(2) without it)".
-static void tell_shift(const struct verification *v, double scale, char *text, size_t size) {
+static void report_shift(const struct verification *v, double scale, char *text, size_t size) {
     char shift[NUMBER_TEXT_SIZE];
     mf_number_text(scale * fabs(v->shift.pressure), scale * v->shift.error, shift);
     if (mf_fit_step_shifts_pressure(v))
@@ -194,8 +196,8 @@ static void tell_shift(const struct verification *v, double scale, char *text, s
                  v->shift.pressure < 0 ? "+" : "-", shift);
 }
 
-static void say_thermodynamics(struct progress *to, const struct units *units,
-                               const struct verification *v) {
+static void print_thermodynamics(struct progress *to, const struct units *units,
+                                 const struct verification *v) {
     const struct thermodynamics_summary *t = &v->thermodynamics;
     const double factor = mf_units_factor(units, "T_0");
     const double scale = mf_units_factor(units, "k_B T_0/lambda^d");
@@ -206,71 +208,71 @@ static void say_thermodynamics(struct progress *to, const struct units *units,
                    factor * t->temperature_configurational_error, configurational);
     mf_number_text(scale * t->pressure, scale * t->pressure_error, found);
     mf_units_suffix(units, "T_0", kelvin);
-    tell_shift(v, scale, shift, sizeof shift);
+    report_shift(v, scale, shift, sizeof shift);
     snprintf(pressure, sizeof pressure, "pressure %s%s%s", found,
              mf_units_suffix(units, "k_B T_0/lambda^d", unit), shift);
     if (isnan(t->temperature) && isnan(t->temperature_configurational)) // no particles
         return;
     if (isnan(t->temperature)) // no velocities
-        mf_progress_say(to, "configurational T = %s%s, %s", configurational, kelvin, pressure);
+        mf_progress_print(to, "configurational T = %s%s, %s", configurational, kelvin, pressure);
     else if (isnan(t->temperature_configurational)) // no potential of pairs
-        mf_progress_say(to, "T = %s%s, %s", kinetic, kelvin, pressure);
+        mf_progress_print(to, "T = %s%s, %s", kinetic, kelvin, pressure);
     else
-        mf_progress_say(to, "T = %s%s, configurational %s%s, %s", kinetic, kelvin, configurational,
-                        kelvin, pressure);
+        mf_progress_print(to, "T = %s%s, configurational %s%s, %s", kinetic, kelvin,
+                          configurational, kelvin, pressure);
 }
 
 /// With which time step a state was verified, and that a fit by simulations had another one.
-static void say_step(struct progress *to, const struct fit_file *fit,
-                     const struct verification *v) {
+static void print_step(struct progress *to, const struct fit_file *fit,
+                       const struct verification *v) {
     const struct units *units = &fit->scene.units;
     char text[FIT_STEP_TEXT_SIZE], unit[UNITS_NAME_SIZE];
     mf_fit_step_text(v, units, text);
     if (text[0])
-        mf_progress_say(to, "%s", text);
+        mf_progress_print(to, "%s", text);
     if (fit->method->kind == INVERSE_MATCHING && mf_fit_step_was_shortened(v))
-        mf_progress_say(to,
-                        "mesofit: warning: the fit simulated its candidates with the longer time "
-                        "step, whose error is part of what it found: \"time_step\": %.3g%s in "
-                        "the scene, and fit again",
-                        mf_units_factor(units, "tau") * v->step.used,
-                        mf_units_suffix(units, "tau", unit));
+        mf_progress_print(to,
+                          "mesofit: warning: the fit simulated its candidates with the longer time "
+                          "step, whose error is part of what it found: \"time_step\": %.3g%s in "
+                          "the scene, and fit again",
+                          mf_units_factor(units, "tau") * v->step.used,
+                          mf_units_suffix(units, "tau", unit));
 }
 
 /// What was found of a state, or of the only one.
-static void say_state(struct progress *to, const struct fit_file *fit,
-                      const struct verification *v) {
+static void print_state(struct progress *to, const struct fit_file *fit,
+                        const struct verification *v) {
     const struct units *units = &fit->scene.units;
     if (fit->name[0])
-        mf_progress_say(to, "state \"%s\":", fit->name);
-    say_distances(to, fit, v);
+        mf_progress_print(to, "state \"%s\":", fit->name);
+    print_distances(to, fit, v);
     if (targets_ask(&fit->problem.compared, TARGET_DIFFUSION))
-        say_diffusion(to, units, v);
-    say_integrals(to, fit, v);
-    say_thermodynamics(to, units, v);
-    say_step(to, fit, v);
+        print_diffusion(to, units, v);
+    print_integrals(to, fit, v);
+    print_thermodynamics(to, units, v);
+    print_step(to, fit, v);
 }
 
 /// "converged after 8 iterations, 111 s".
-static void say_end(struct progress *to, const struct fit_result *result) {
-    const bool used_up = result->status == STATUS_OK && !result->settled;
-    mf_progress_say(to, "%s after %llu iterations, %.1f s%s%s",
-                    used_up                       ? "finished"
-                    : result->status == STATUS_OK ? "converged"
-                                                  : "not converged",
-                    (unsigned long long)result->iterations, result->seconds, used_up ? ": " : "",
-                    used_up ? result->reason : "");
+static void print_end(struct progress *to, const struct fit_result *result) {
+    const bool exhausted = result->status == STATUS_OK && !result->settled;
+    mf_progress_print(to, "%s after %llu iterations, %.1f s%s%s",
+                      exhausted                     ? "finished"
+                      : result->status == STATUS_OK ? "converged"
+                                                    : "not converged",
+                      (unsigned long long)result->iterations, result->seconds,
+                      exhausted ? ": " : "", exhausted ? result->reason : "");
 }
 
-void mf_fit_report_say(struct progress *to, const struct fit_file *fit,
-                       const struct unknowns *unknowns, const struct fit_result *result) {
+void mf_fit_report_print(struct progress *to, const struct fit_file *fit,
+                         const struct unknowns *unknowns, const struct fit_result *result) {
     const struct units *units = &fit->scene.units;
-    say_end(to, result);
-    say_changes(to, units, unknowns, result);
+    print_end(to, result);
+    print_changes(to, units, unknowns, result);
     if (result->formula[0])
-        mf_progress_say(to, "formula: %s", result->formula);
-    say_parameters(to, fit, result->parameter);
-    say_numbers(to, fit, result->number);
+        mf_progress_print(to, "formula: %s", result->formula);
+    print_parameters(to, fit, result->parameter);
+    print_numbers(to, fit, result->number);
     for (size_t s = 0; s <= fit->others; s++)
-        say_state(to, s == 0 ? fit : &fit->other[s - 1], &result->verification[s]);
+        print_state(to, s == 0 ? fit : &fit->other[s - 1], &result->verification[s]);
 }

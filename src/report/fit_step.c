@@ -56,19 +56,19 @@ void mf_fit_step_cause(const struct verification *verification, const struct uni
     off_text(&step->off, step->blew_up, off);
     time_text(units, step->used, used);
     text[0] = '\0';
-    if (step->verdict == VERIFY_STEP_BLAMELESS)
+    if (step->result == VERIFY_STEP_NOT_THE_CAUSE)
         snprintf(
             text, FIT_STEP_TEXT_SIZE,
             "%s, and was so with twice the time step: that is not the cause, but friction that "
             "does not hold the temperature, a force that ends abruptly, or too short an "
             "\"equilibration\"",
             off);
-    else if (step->verdict == VERIFY_STEP_LONG && step->shortens)
+    else if (step->result == VERIFY_STEP_LONG && step->shortens)
         snprintf(text, FIT_STEP_TEXT_SIZE,
                  "%s even with %s, %s of the time step chosen, and no shorter one is tried: the "
                  "potential is too rough; wider bins of g(r) (\"bin_width\") make it smooth",
                  off, used, part_text(step->halvings));
-    else if (step->verdict == VERIFY_STEP_LONG)
+    else if (step->result == VERIFY_STEP_LONG)
         snprintf(text, FIT_STEP_TEXT_SIZE,
                  "%s: the time step, %s, is too long for this potential; about %s "
                  "would hold",
@@ -80,13 +80,13 @@ void mf_fit_step_text(const struct verification *verification, const struct unit
     const struct verify_step *step = &verification->step;
     char used[TIME_SIZE], first[TIME_SIZE], off[OFF_SIZE], why[OFF_SIZE + TIME_SIZE + 8], bound[64];
     text[0] = '\0';
-    if (step->verdict == VERIFY_STEP_LONG || step->verdict == VERIFY_STEP_BLAMELESS) {
+    if (step->result == VERIFY_STEP_LONG || step->result == VERIFY_STEP_NOT_THE_CAUSE) {
         mf_fit_step_cause(verification, units, text);
         return;
     }
     if (!step->shortens)
         return;
-    if (step->verdict == VERIFY_STEP_UNKNOWN)
+    if (step->result == VERIFY_STEP_UNKNOWN)
         snprintf(bound, sizeof bound, "too few samples to check it");
     else
         snprintf(bound, sizeof bound, "both temperatures are right within %.2g %%",

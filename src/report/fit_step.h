@@ -12,7 +12,7 @@ void mf_fit_step_text(const struct verification *verification, const struct unit
                       char text[FIT_STEP_TEXT_SIZE]);
 
 /// Why temperatures are off, as far as other time steps tell, and what helps; "" if they do not
-/// tell. Tested: test_fit_verdict.
+/// tell. Tested: test_fit_verification.
 void mf_fit_step_cause(const struct verification *verification, const struct units *units,
                        char text[FIT_STEP_TEXT_SIZE]);
 

@@ -54,15 +54,15 @@ static double omega_truth(const struct fit_file *fit, const struct unknowns *unk
 }
 
 /// A number that is not known is left out.
-static void put_known(struct json_writer *writer, const char *key, double value) {
+static void write_known(struct json_writer *writer, const char *key, double value) {
     if (isfinite(value))
-        mf_json_put_number(writer, key, value);
+        mf_json_write_number(writer, key, value);
 }
 
-static void put_quantity(struct json_writer *writer, const char *key, const char *unit,
-                         double value) {
+static void write_quantity(struct json_writer *writer, const char *key, const char *unit,
+                           double value) {
     if (isfinite(value))
-        mf_json_put_quantity(writer, key, unit, value);
+        mf_json_write_quantity(writer, key, unit, value);
 }
 
 /// One sample tells no error.
@@ -71,46 +71,46 @@ static double known_error(double error) {
 }
 
 /// "etd_rmse", "etd_rmse_error", "etd_noise", and so on for every target.
-static void put_distances(struct json_writer *writer, const struct fit_file *fit,
-                          const struct verification *v) {
+static void write_distances(struct json_writer *writer, const struct fit_file *fit,
+                            const struct verification *v) {
     char key[64];
     for (int kind = 0; kind < TARGETS; kind++) {
         if (!fit->files.given[kind])
             continue;
         const char *own = mf_observable_kind(kind).target->unit, *unit = own ? own : "";
         snprintf(key, sizeof key, "%s_rmse", mf_targets_name(kind));
-        put_quantity(writer, key, unit, v->distance[kind].rms);
+        write_quantity(writer, key, unit, v->distance[kind].rms);
         snprintf(key, sizeof key, "%s_rmse_error", mf_targets_name(kind));
-        put_quantity(writer, key, unit, v->distance_error[kind]);
+        write_quantity(writer, key, unit, v->distance_error[kind]);
         snprintf(key, sizeof key, "%s_noise", mf_targets_name(kind));
-        mf_json_put_quantity(writer, key, unit, v->distance[kind].noise);
+        mf_json_write_quantity(writer, key, unit, v->distance[kind].noise);
     }
 }
 
-static void put_diffusion(struct json_writer *writer, const struct fit_file *fit,
-                          const struct verification *v) {
+static void write_diffusion(struct json_writer *writer, const struct fit_file *fit,
+                            const struct verification *v) {
     const struct units *units = &fit->scene.units;
     if (!targets_ask(&fit->problem.compared, TARGET_DIFFUSION))
         return;
     const double value = *v->observed.value[TARGET_DIFFUSION];
     const double error = *v->observed.error[TARGET_DIFFUSION];
-    put_quantity(writer, "diffusion", "lambda^2/tau", value);
+    write_quantity(writer, "diffusion", "lambda^2/tau", value);
     if (error > 0) // one replica of one window has none
-        put_quantity(writer, "diffusion_error", "lambda^2/tau", error);
-    mf_json_put_quantity(writer, "diffusion_fit_begin", "tau", v->diffusion_begin);
-    mf_json_put_quantity(writer, "diffusion_fit_end", "tau", v->diffusion_end);
+        write_quantity(writer, "diffusion_error", "lambda^2/tau", error);
+    mf_json_write_quantity(writer, "diffusion_fit_begin", "tau", v->diffusion_begin);
+    mf_json_write_quantity(writer, "diffusion_fit_end", "tau", v->diffusion_end);
     if (mf_units_known(units)) {
         const double unit = mf_units_diffusion_cm2_per_s(units);
-        mf_json_put_number(writer, "diffusion_cm2_per_s", value * unit);
+        mf_json_write_number(writer, "diffusion_cm2_per_s", value * unit);
         if (error > 0)
-            put_known(writer, "diffusion_error_cm2_per_s", error * unit);
+            write_known(writer, "diffusion_error_cm2_per_s", error * unit);
     }
 }
 
 /// What part of a curve's variance its widest direction is, and of a potential's how much of that
 /// is the ramp 1 − r/r_c, which moves the pressure and hardly g(r).
-static void put_flat(struct json_writer *writer, enum unknown_kind kind,
-                     const struct unknowns *unknowns, const struct fit_result *result) {
+static void write_flat(struct json_writer *writer, enum unknown_kind kind,
+                       const struct unknowns *unknowns, const struct fit_result *result) {
     const size_t points = mf_unknowns_points(unknowns, kind);
     const double *r = mf_unknowns_r(unknowns, kind), *flat = result->curve_flat[kind];
     double all = 0, widest = 0, ramps = 0, product = 0;
@@ -128,42 +128,43 @@ static void put_flat(struct json_writer *writer, enum unknown_kind kind,
         return;
     mf_unknowns_kind_name(unknowns, kind, name);
     snprintf(key, sizeof key, "%s_flat_share", name);
-    mf_json_put_number(writer, key, fmin(1, widest / all));
+    mf_json_write_number(writer, key, fmin(1, widest / all));
     if (kind == UNKNOWN_POTENTIAL)
-        mf_json_put_number(writer, "potential_flat_is_ramp", product * product / (widest * ramps));
+        mf_json_write_number(writer, "potential_flat_is_ramp",
+                             product * product / (widest * ramps));
 }
 
 /// What g(r) leaves open.
-static void put_ramp(struct json_writer *writer, const struct inverse_ramp *ramp) {
+static void write_ramp(struct json_writer *writer, const struct inverse_ramp *ramp) {
     if (!(ramp->error > 0))
         return;
-    put_quantity(writer, "ramp_error", "k_B T_0", ramp->error);
-    put_quantity(writer, "ramp_pressure", "1/lambda^d", ramp->pressure);
-    put_quantity(writer, "pressure_left_open", "k_B T_0/lambda^d", ramp->pressure_open);
-    put_known(writer, "directions", ramp->directions);
-    put_known(writer, "directions_of", ramp->bins);
+    write_quantity(writer, "ramp_error", "k_B T_0", ramp->error);
+    write_quantity(writer, "ramp_pressure", "1/lambda^d", ramp->pressure);
+    write_quantity(writer, "pressure_left_open", "k_B T_0/lambda^d", ramp->pressure_open);
+    write_known(writer, "directions", ramp->directions);
+    write_known(writer, "directions_of", ramp->bins);
 }
 
-static void put_parameter(struct json_writer *writer, const char *name, const char *unit,
-                          const struct inverse_parameter *parameter, bool fixed, const char *bound,
-                          bool undetermined) {
+static void write_parameter(struct json_writer *writer, const char *name, const char *unit,
+                            const struct inverse_parameter *parameter, bool fixed,
+                            const char *bound, bool undetermined) {
     mf_json_begin(writer, name);
-    put_quantity(writer, "value", unit, parameter->value);
+    write_quantity(writer, "value", unit, parameter->value);
     if (fixed)
-        mf_json_put_text(writer, "fixed", "yes");
+        mf_json_write_text(writer, "fixed", "yes");
     else
-        put_quantity(writer, "error", unit, parameter->error);
+        write_quantity(writer, "error", unit, parameter->error);
     if (bound)
-        mf_json_put_text(writer, "bound", bound);
+        mf_json_write_text(writer, "bound", bound);
     if (undetermined)
-        mf_json_put_text(writer, "undetermined", "yes");
+        mf_json_write_text(writer, "undetermined", "yes");
     mf_json_end(writer);
 }
 
 /// "parameters": {"omega": {"sigma": {"value": 3.0, "error": 0.1}, …}, "conservative.a": {"value":
 /// 25.1, "error": 0.3}}: of a friction weight that is a formula, and numbers of the scene.
-static void put_parameters(struct json_writer *writer, const struct fit_file *fit,
-                           const struct fit_result *result) {
+static void write_parameters(struct json_writer *writer, const struct fit_file *fit,
+                             const struct fit_result *result) {
     const struct unknown_parameters *p = &fit->unknown[UNKNOWN_OMEGA].parameters;
     const bool formula = fit->unknown[UNKNOWN_OMEGA].wanted && p->shape == INVERSE_CURVE_POWER;
     if (!formula && fit->numbers == 0)
@@ -172,25 +173,26 @@ static void put_parameters(struct json_writer *writer, const struct fit_file *fi
     if (formula)
         mf_json_begin(writer, mf_inverse_unknown_names[UNKNOWN_OMEGA]);
     for (int k = 0; formula && k < INVERSE_PARAMETERS; k++)
-        put_parameter(writer, mf_inverse_fixed_fields[k].name, mf_inverse_fixed_fields[k].unit,
-                      &result->parameter[k], !isnan(p->fixed[k]),
-                      mf_parametrisation_parameter_bound(p, k, result->parameter[k].value), false);
+        write_parameter(writer, mf_inverse_fixed_fields[k].name, mf_inverse_fixed_fields[k].unit,
+                        &result->parameter[k], !isnan(p->fixed[k]),
+                        mf_parametrisation_parameter_bound(p, k, result->parameter[k].value),
+                        false);
     if (formula)
         mf_json_end(writer);
     for (size_t n = 0; n < fit->numbers; n++)
-        put_parameter(writer, fit->number[n].name, fit->number[n].unit, &result->number[n], false,
-                      mf_numbers_bound(&fit->number[n], result->number[n].value),
-                      mf_numbers_undetermined(&fit->number[n], &result->number[n]));
+        write_parameter(writer, fit->number[n].name, fit->number[n].unit, &result->number[n], false,
+                        mf_numbers_bound(&fit->number[n], result->number[n].value),
+                        mf_numbers_undetermined(&fit->number[n], &result->number[n]));
     mf_json_end(writer);
 }
 
 /// "start": {"error": 0.11, "potential": {"change": 0.05, "well": -0.45, "well_at": 0.99}, …}, the
 /// first iteration, and what the fit changed by since.
-static void put_start(struct json_writer *writer, const struct unknowns *unknowns,
-                      const struct fit_result *result) {
+static void write_start(struct json_writer *writer, const struct unknowns *unknowns,
+                        const struct fit_result *result) {
     char name[UNKNOWNS_NAME_SIZE];
     mf_json_begin(writer, "start");
-    put_known(writer, "error", result->first_error);
+    write_known(writer, "error", result->first_error);
     for (int kind = 0; kind < UNKNOWNS; kind++)
         for (size_t n = 0; result->first[kind] && n < mf_unknowns_curve_count(unknowns, kind);
              n++) {
@@ -198,12 +200,12 @@ static void put_start(struct json_writer *writer, const struct unknowns *unknown
                 mf_fit_change_find(unknowns, kind, n, result->first[kind], result->curve[kind]);
             mf_unknowns_curve_name(unknowns, kind, n, name);
             mf_json_begin(writer, name);
-            put_quantity(writer, "change", mf_unknowns_unit(kind), change.rms);
+            write_quantity(writer, "change", mf_unknowns_unit(kind), change.rms);
             if (kind == UNKNOWN_POTENTIAL) {
-                put_quantity(writer, "well", "k_B T_0", change.first_well);
-                put_quantity(writer, "well_at", "lambda", change.first_well_at);
-                put_quantity(writer, "well_now", "k_B T_0", change.well);
-                put_quantity(writer, "well_now_at", "lambda", change.well_at);
+                write_quantity(writer, "well", "k_B T_0", change.first_well);
+                write_quantity(writer, "well_at", "lambda", change.first_well_at);
+                write_quantity(writer, "well_now", "k_B T_0", change.well);
+                write_quantity(writer, "well_now_at", "lambda", change.well_at);
             }
             mf_json_end(writer);
         }
@@ -211,8 +213,8 @@ static void put_start(struct json_writer *writer, const struct unknowns *unknown
 }
 
 /// "truth_rms" and so on, in a mixture "truth_rms_A-B".
-static void put_potential_truth(struct json_writer *writer, const struct fit_file *fit,
-                                const struct unknowns *unknowns, const double *phi, size_t pair) {
+static void write_potential_truth(struct json_writer *writer, const struct fit_file *fit,
+                                  const struct unknowns *unknowns, const double *phi, size_t pair) {
     static const char *const names[] = {"truth_rms", "truth_ramp", "truth_rms_without_ramp"};
     const struct fit_truth truth = mf_fit_output_truth(fit, unknowns, phi, pair);
     const double values[] = {truth.rms, truth.ramp, truth.rms_without_ramp};
@@ -220,55 +222,55 @@ static void put_potential_truth(struct json_writer *writer, const struct fit_fil
     mf_composition_pair_name(&fit->scene.setup.composition, (int)pair, kind);
     for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
         snprintf(key, sizeof key, "%s%s%s", names[k], kind[0] ? "_" : "", kind);
-        put_quantity(writer, key, mf_unknowns_unit(UNKNOWN_POTENTIAL), values[k]);
+        write_quantity(writer, key, mf_unknowns_unit(UNKNOWN_POTENTIAL), values[k]);
     }
 }
 
-static void put_truth(struct json_writer *writer, const struct fit_file *fit,
-                      const struct unknowns *unknowns, const struct fit_result *result) {
+static void write_truth(struct json_writer *writer, const struct fit_file *fit,
+                        const struct unknowns *unknowns, const struct fit_result *result) {
     const double *phi = result->curve[UNKNOWN_POTENTIAL];
     char name[UNKNOWNS_NAME_SIZE], key[UNKNOWNS_NAME_SIZE + 16];
     for (size_t pair = 0; phi && pair < unknowns->potential.pairs; pair++)
         if (mf_scene_law_curve(&fit->unknown[UNKNOWN_POTENTIAL].truth, (int)pair))
-            put_potential_truth(writer, fit, unknowns, phi, pair);
+            write_potential_truth(writer, fit, unknowns, phi, pair);
     for (int kind = 0; kind < UNKNOWNS; kind++) {
         const double *omega = result->curve[kind];
         if (!unknown_is_omega(kind) || omega == NULL || fit->unknown[kind].truth.curves == 0)
             continue;
         mf_unknowns_kind_name(unknowns, kind, name);
         snprintf(key, sizeof key, "%s_truth_rms", name);
-        put_known(writer, key, omega_truth(fit, unknowns, kind, omega));
+        write_known(writer, key, omega_truth(fit, unknowns, kind, omega));
     }
 }
 
 /// What the targets g(r) were divided by. In a mixture those that the file states are left out.
-static void put_normalisation(struct json_writer *writer, const struct fit_file *fit) {
+static void write_normalisation(struct json_writer *writer, const struct fit_file *fit) {
     const struct normalisation *found = &fit->files.normalisation;
     const double given = target_files_rdf(&fit->files)->member[0].parameters.normalisation;
     const bool mixed = composition_is_mixed(&fit->scene.setup.composition);
     if (!fit->files.given[TARGET_RDF])
         return;
-    mf_json_put_number(writer, "normalisation", !mixed && given > 0 ? given : found->factor);
-    mf_json_put_number(writer, "normalisation_error", !mixed && given > 0 ? 0 : found->error);
+    mf_json_write_number(writer, "normalisation", !mixed && given > 0 ? given : found->factor);
+    mf_json_write_number(writer, "normalisation_error", !mixed && given > 0 ? 0 : found->error);
 }
 
 /// Those of the target "kirkwood_buff" and of the result.
-static void put_integrals(struct json_writer *writer, const struct fit_file *fit,
-                          const struct verification *v) {
+static void write_integrals(struct json_writer *writer, const struct fit_file *fit,
+                            const struct verification *v) {
     const int kind = mf_kirkwood_buff_kind();
     const struct composition *components = &target_files_kirkwood_buff(&fit->files)->components;
     const struct target *target = &fit->problem.compared.target[kind];
     for (size_t pair = 0; pair < target->count; pair++) {
-        mf_kirkwood_buff_put(writer, "target_kirkwood_buff", components, pair, target->value[pair],
-                             target->error[pair]);
-        mf_kirkwood_buff_put(writer, "kirkwood_buff", components, pair,
-                             v->observed.value[kind][pair], v->observed.error[kind][pair]);
+        mf_kirkwood_buff_write(writer, "target_kirkwood_buff", components, pair,
+                               target->value[pair], target->error[pair]);
+        mf_kirkwood_buff_write(writer, "kirkwood_buff", components, pair,
+                               v->observed.value[kind][pair], v->observed.error[kind][pair]);
     }
 }
 
 /// S(0) of the target and of the result, in three dimensions and of beads that are alike.
-static void put_compressibility(struct json_writer *writer, const struct fit_file *fit,
-                                const struct verification *v) {
+static void write_compressibility(struct json_writer *writer, const struct fit_file *fit,
+                                  const struct verification *v) {
     const struct box *box = &fit->scene.setup.box;
     const struct rdf_bins *bins = target_pairs_bins(target_files_rdf(&fit->files));
     const size_t count = (size_t)fit->scene.setup.placement.count;
@@ -281,65 +283,65 @@ static void put_compressibility(struct json_writer *writer, const struct fit_fil
                                    target_files_rdf(&fit->files)->error, box, count, 0);
     const struct kirkwood_buff found = mf_kirkwood_buff_integrate(
         bins, v->observed.value[TARGET_RDF], v->observed.error[TARGET_RDF], box, count, 0);
-    put_quantity(writer, "target_kirkwood_buff", "lambda^d", target.integral);
-    put_quantity(writer, "target_kirkwood_buff_error", "lambda^d", target.integral_error);
-    put_quantity(writer, "kirkwood_buff", "lambda^d", found.integral);
-    put_quantity(writer, "kirkwood_buff_error", "lambda^d", known_error(found.integral_error));
-    put_known(writer, "target_compressibility", target.compressibility);
-    put_known(writer, "target_compressibility_error", target.compressibility_error);
-    put_known(writer, "compressibility", found.compressibility);
-    put_known(writer, "compressibility_error", known_error(found.compressibility_error));
+    write_quantity(writer, "target_kirkwood_buff", "lambda^d", target.integral);
+    write_quantity(writer, "target_kirkwood_buff_error", "lambda^d", target.integral_error);
+    write_quantity(writer, "kirkwood_buff", "lambda^d", found.integral);
+    write_quantity(writer, "kirkwood_buff_error", "lambda^d", known_error(found.integral_error));
+    write_known(writer, "target_compressibility", target.compressibility);
+    write_known(writer, "target_compressibility_error", target.compressibility_error);
+    write_known(writer, "compressibility", found.compressibility);
+    write_known(writer, "compressibility_error", known_error(found.compressibility_error));
 }
 
 /// "verification_time_step", and what there is to be said of it.
-static void put_step(struct json_writer *writer, const struct units *units,
-                     const struct verification *v) {
+static void write_step(struct json_writer *writer, const struct units *units,
+                       const struct verification *v) {
     char text[FIT_STEP_TEXT_SIZE];
-    mf_json_put_quantity(writer, "verification_time_step", "tau", v->step.used);
+    mf_json_write_quantity(writer, "verification_time_step", "tau", v->step.used);
     mf_fit_step_text(v, units, text);
     if (text[0])
-        mf_json_put_text(writer, "verification_time_step_note", text);
+        mf_json_write_text(writer, "verification_time_step_note", text);
 }
 
-static void put_verification(struct json_writer *writer, const struct fit_file *fit,
-                             const struct verification *v) {
+static void write_verification(struct json_writer *writer, const struct fit_file *fit,
+                               const struct verification *v) {
     const struct thermodynamics_summary *t = &v->thermodynamics;
     if (v->warning[0])
-        mf_json_put_text(writer, "warning", v->warning);
-    put_distances(writer, fit, v);
-    put_diffusion(writer, fit, v);
+        mf_json_write_text(writer, "warning", v->warning);
+    write_distances(writer, fit, v);
+    write_diffusion(writer, fit, v);
     if (targets_ask(&fit->problem.compared, mf_kirkwood_buff_kind()))
-        put_integrals(writer, fit, v);
+        write_integrals(writer, fit, v);
     else
-        put_compressibility(writer, fit, v);
-    mf_json_put_quantity(writer, "temperature", "T_0", t->temperature);
-    mf_json_put_quantity(writer, "temperature_error", "T_0", known_error(t->temperature_error));
-    put_quantity(writer, "temperature_configurational", "T_0", t->temperature_configurational);
-    put_quantity(writer, "temperature_configurational_error", "T_0",
-                 known_error(t->temperature_configurational_error));
-    mf_json_put_quantity(writer, "potential_energy", "k_B T_0", t->potential_energy);
-    mf_json_put_quantity(writer, "potential_energy_error", "k_B T_0",
-                         known_error(t->potential_energy_error));
-    mf_json_put_quantity(writer, "pressure", "k_B T_0/lambda^d", t->pressure);
-    mf_json_put_quantity(writer, "pressure_error", "k_B T_0/lambda^d",
-                         known_error(t->pressure_error));
-    put_quantity(writer, "pressure_of_time_step", "k_B T_0/lambda^d", v->shift.pressure);
-    put_quantity(writer, "pressure_of_time_step_error", "k_B T_0/lambda^d", v->shift.error);
-    mf_json_put_number(writer, "verification_steps", (double)v->engine_steps);
-    put_step(writer, &fit->scene.units, v);
-    mf_units_put(&fit->scene.units, writer, t->potential_energy, t->pressure);
+        write_compressibility(writer, fit, v);
+    mf_json_write_quantity(writer, "temperature", "T_0", t->temperature);
+    mf_json_write_quantity(writer, "temperature_error", "T_0", known_error(t->temperature_error));
+    write_quantity(writer, "temperature_configurational", "T_0", t->temperature_configurational);
+    write_quantity(writer, "temperature_configurational_error", "T_0",
+                   known_error(t->temperature_configurational_error));
+    mf_json_write_quantity(writer, "potential_energy", "k_B T_0", t->potential_energy);
+    mf_json_write_quantity(writer, "potential_energy_error", "k_B T_0",
+                           known_error(t->potential_energy_error));
+    mf_json_write_quantity(writer, "pressure", "k_B T_0/lambda^d", t->pressure);
+    mf_json_write_quantity(writer, "pressure_error", "k_B T_0/lambda^d",
+                           known_error(t->pressure_error));
+    write_quantity(writer, "pressure_of_time_step", "k_B T_0/lambda^d", v->shift.pressure);
+    write_quantity(writer, "pressure_of_time_step_error", "k_B T_0/lambda^d", v->shift.error);
+    mf_json_write_number(writer, "verification_steps", (double)v->engine_steps);
+    write_step(writer, &fit->scene.units, v);
+    mf_units_write_results(&fit->scene.units, writer, t->potential_energy, t->pressure);
 }
 
 /// "states": {"dilute": {"rdf_rmse": …}, …}: those of the first stand above, too.
-static void put_states(struct json_writer *writer, const struct fit_file *fit,
-                       const struct verification *verification) {
+static void write_states(struct json_writer *writer, const struct fit_file *fit,
+                         const struct verification *verification) {
     if (fit->name[0] == '\0')
         return;
     mf_json_begin(writer, "states");
     for (size_t s = 0; s <= fit->others; s++) {
         const struct fit_file *state = s == 0 ? fit : &fit->other[s - 1];
         mf_json_begin(writer, state->name);
-        put_verification(writer, state, &verification[s]);
+        write_verification(writer, state, &verification[s]);
         mf_json_end(writer);
     }
     mf_json_end(writer);
@@ -351,39 +353,39 @@ enum status mf_fit_output_summary(const struct fit_file *fit, const struct unkno
     struct json_writer *writer = mf_json_writer_create();
     char path[OUTPUT_PATH_SIZE];
     mf_units_write_summary(&fit->scene.units, writer);
-    mf_json_put_text(writer, "status",
-                     result->status != STATUS_OK ? mf_status_name(result->status)
-                     : result->settled           ? "converged"
-                                                 : "finished");
+    mf_json_write_text(writer, "status",
+                       result->status != STATUS_OK ? mf_status_name(result->status)
+                       : result->settled           ? "converged"
+                                                   : "finished");
     if (result->reason[0])
-        mf_json_put_text(writer, "reason", result->reason);
-    mf_json_put_text(writer, "method", fit->method->name);
-    mf_json_put_text(writer, "method_summary", fit->method->summary);
-    mf_json_put_number(writer, "seconds", result->seconds);
-    mf_json_put_number(writer, "threads", fit->problem.threads);
-    mf_json_put_number(writer, "iterations", (double)result->iterations);
-    mf_json_put_number(writer, "evaluations", (double)result->evaluations);
-    mf_json_put_number(writer, "engine_steps", (double)result->engine_steps);
-    put_known(writer, "error", result->error);
+        mf_json_write_text(writer, "reason", result->reason);
+    mf_json_write_text(writer, "method", fit->method->name);
+    mf_json_write_text(writer, "method_summary", fit->method->summary);
+    mf_json_write_number(writer, "seconds", result->seconds);
+    mf_json_write_number(writer, "threads", fit->problem.threads);
+    mf_json_write_number(writer, "iterations", (double)result->iterations);
+    mf_json_write_number(writer, "evaluations", (double)result->evaluations);
+    mf_json_write_number(writer, "engine_steps", (double)result->engine_steps);
+    write_known(writer, "error", result->error);
     if (result->formula[0])
-        mf_json_put_text(writer, "formula", result->formula);
+        mf_json_write_text(writer, "formula", result->formula);
     if (result->verification)
-        put_verification(writer, fit, result->verification);
+        write_verification(writer, fit, result->verification);
     if (result->verification)
-        put_states(writer, fit, result->verification);
-    put_normalisation(writer, fit);
-    put_truth(writer, fit, unknowns, result);
+        write_states(writer, fit, result->verification);
+    write_normalisation(writer, fit);
+    write_truth(writer, fit, unknowns, result);
     for (int kind = 0; kind < UNKNOWNS; kind++)
         if (result->curve[kind])
-            put_flat(writer, kind, unknowns, result);
-    put_ramp(writer, &result->ramp);
-    put_parameters(writer, fit, result);
-    put_start(writer, unknowns, result);
+            write_flat(writer, kind, unknowns, result);
+    write_ramp(writer, &result->ramp);
+    write_parameters(writer, fit, result);
+    write_start(writer, unknowns, result);
     if (fit->files.given[TARGET_ETD])
-        mf_json_put_number(writer, "etd_cells_left_out",
-                           (double)target_files_etd(&fit->files)->left_out);
-    mf_json_put_number(writer, "seed", (double)fit->heading.seed);
-    mf_json_put_text(writer, "version", MESOFIT_VERSION);
+        mf_json_write_number(writer, "etd_cells_left_out",
+                             (double)target_files_etd(&fit->files)->left_out);
+    mf_json_write_number(writer, "seed", (double)fit->heading.seed);
+    mf_json_write_text(writer, "version", MESOFIT_VERSION);
     mf_run_folder_file(folder, "summary.json", path);
     const enum status status = mf_json_write(writer, path);
     mf_json_writer_free(writer);

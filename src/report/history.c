@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { COMMON = 5, MOST_COLUMNS = COMMON + INVERSE_EXTRA, FIRST_ROOM = 32 };
+enum { COMMON = 5, MAX_COLUMNS = COMMON + INVERSE_EXTRA, FIRST_ROOM = 32 };
 
 void mf_history_init(struct history *history, const struct inverse_method *method,
                      const size_t points[UNKNOWNS], const struct inverse_problem *problem) {
@@ -19,12 +19,12 @@ void mf_history_init(struct history *history, const struct inverse_method *metho
 }
 
 /// Move rows of `row` numbers to where there is room for more.
-static enum status enlarge(double **values, size_t row, size_t used, size_t room) {
+static enum status enlarge(double **values, size_t row, size_t used, size_t capacity) {
     enum status status = STATUS_OK;
     double *larger = NULL;
     if (row == 0)
         return STATUS_OK;
-    NEW_ARRAY(larger, row * room);
+    NEW_ARRAY(larger, row * capacity);
     if (used > 0)
         memcpy(larger, *values, row * used * sizeof *larger);
     mf_memory_free(*values);
@@ -35,21 +35,21 @@ done:
 
 /// Twice the room, or more, so that it is made seldom.
 static enum status grow(struct history *history, size_t wanted) {
-    const size_t used = history->room;
-    size_t room = used > 0 ? used : FIRST_ROOM;
-    while (room < wanted)
-        room *= 2;
-    TRY(enlarge(&history->rows, COMMON + history->extra, used, room));
-    TRY(enlarge(&history->seconds, 1, used, room));
-    TRY(enlarge(&history->numbers, 2 * history->problem->numbers, used, room));
+    const size_t used = history->capacity;
+    size_t capacity = used > 0 ? used : FIRST_ROOM;
+    while (capacity < wanted)
+        capacity *= 2;
+    TRY(enlarge(&history->rows, COMMON + history->extra, used, capacity));
+    TRY(enlarge(&history->seconds, 1, used, capacity));
+    TRY(enlarge(&history->numbers, 2 * history->problem->numbers, used, capacity));
     for (int kind = 0; kind < UNKNOWNS; kind++)
-        TRY(enlarge(&history->curve[kind], history->points[kind], used, room));
-    history->room = room;
+        TRY(enlarge(&history->curve[kind], history->points[kind], used, capacity));
+    history->capacity = capacity;
     return STATUS_OK;
 }
 
-enum status mf_history_make_room(struct history *history) {
-    return history->iterations > history->room ? grow(history, history->iterations) : STATUS_OK;
+enum status mf_history_reserve(struct history *history) {
+    return history->iterations > history->capacity ? grow(history, history->iterations) : STATUS_OK;
 }
 
 double mf_history_first_error(const struct history *history) {
@@ -67,7 +67,7 @@ void mf_history_clear(struct history *history) {
 
 enum status mf_history_add(struct history *history, const struct inverse_step *step,
                            double seconds) {
-    if (history->iterations == history->room)
+    if (history->iterations == history->capacity)
         TRY(grow(history, history->iterations + 1));
     const size_t k = history->iterations++;
     double *row = history->rows + k * (COMMON + history->extra);
@@ -126,8 +126,8 @@ static const char *find_unit(const char *name) {
 
 static enum status write_history(const struct history *history, const struct inverse_method *method,
                                  const struct units *units, const struct run_folder *folder) {
-    const char *names[MOST_COLUMNS] = {"iteration", "evaluations", "engine_steps", "error[1]",
-                                       "noise[1]"};
+    const char *names[MAX_COLUMNS] = {"iteration", "evaluations", "engine_steps", "error[1]",
+                                      "noise[1]"};
     char path[OUTPUT_PATH_SIZE], headings[INVERSE_EXTRA][48];
     for (size_t k = 0; k < history->extra; k++) {
         const char *unit = find_unit(method->columns[k]);
@@ -170,8 +170,8 @@ static enum status write_numbers(const struct history *history, const struct uni
                                  const struct run_folder *folder) {
     enum { NAME_SIZE = INVERSE_NUMBER_NAME_SIZE + 40 };
     const struct inverse_problem *problem = history->problem;
-    char names[2 * INVERSE_MOST_NUMBERS][NAME_SIZE], path[OUTPUT_PATH_SIZE];
-    const char *name[2 * INVERSE_MOST_NUMBERS];
+    char names[2 * INVERSE_MAX_NUMBERS][NAME_SIZE], path[OUTPUT_PATH_SIZE];
+    const char *name[2 * INVERSE_MAX_NUMBERS];
     enum status status = STATUS_OK;
     double *iteration = NULL;
     NEW_ARRAY(iteration, history->iterations);

@@ -10,7 +10,7 @@
 #include "report/run_folder.h"
 
 struct history {
-    size_t iterations, room;
+    size_t iterations, capacity;
     size_t extra;            ///< columns of the method's own
     size_t points[UNKNOWNS]; ///< of the curves; 0: not fitted
     double *rows;            ///< shape [room, 5 + extra]: iteration, evaluations, engine_steps, …
@@ -40,4 +40,4 @@ enum status mf_history_write(const struct history *history, const struct inverse
 /// it: after it was restored there is to be made room.
 enum { HISTORY_SPANS = 4 + UNKNOWNS };
 size_t mf_history_spans(struct history *history, struct memory_span *spans);
-enum status mf_history_make_room(struct history *history) MUST_USE;
+enum status mf_history_reserve(struct history *history) MUST_USE;

@@ -78,8 +78,8 @@ static bool read_tail(int file, double end, char *text, size_t size) {
             continue;
         if (count <= 0)
             return true;
-        const size_t room = size - 1 - (size_t)count;
-        const size_t kept = used < room ? used : room;
+        const size_t capacity = size - 1 - (size_t)count;
+        const size_t kept = used < capacity ? used : capacity;
         memmove(text, text + used - kept, kept);
         memcpy(text + kept, chunk, (size_t)count);
         used = kept + (size_t)count;
@@ -112,7 +112,7 @@ static bool wait_for(pid_t child, double end, int *state) {
 }
 
 /// What became of a program that has ended.
-static enum status judge(const char *name, int state, char *text) {
+static enum status assess(const char *name, int state, char *text) {
     if (WIFEXITED(state) && WEXITSTATUS(state) == 0)
         return STATUS_OK;
     if (WIFSIGNALED(state))
@@ -153,7 +153,7 @@ enum status mf_program_run(const char *folder, const char *const *words, enum pr
         return mf_status_fail(STATUS_IO, "%s had not ended after %g s and was stopped", words[0],
                               seconds);
     }
-    return judge(words[0], state, text);
+    return assess(words[0], state, text);
 }
 
 // Where this program's files are ------------------------------------------------------------------

@@ -4,7 +4,7 @@
 #include "base/clock.h"
 #include "base/terminal.h"
 #include "io/json_write.h"
-#include "io/own_files.h"
+#include "io/tracked_files.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -54,13 +54,13 @@ static void write_file(struct progress *progress, const struct watcher_progress 
     if (progress->folder == NULL || begun < progress->next)
         return;
     struct json_writer *writer = mf_json_writer_create();
-    mf_json_put_integer(writer, "done", (int64_t)now->done);
-    mf_json_put_integer(writer, "total", (int64_t)now->total);
-    mf_json_put_text(writer, "unit", now->unit);
-    mf_json_put_number(writer, "rate", now->rate);
+    mf_json_write_integer(writer, "done", (int64_t)now->done);
+    mf_json_write_integer(writer, "total", (int64_t)now->total);
+    mf_json_write_text(writer, "unit", now->unit);
+    mf_json_write_number(writer, "rate", now->rate);
     if (left[0])
-        mf_json_put_text(writer, "left", left);
-    mf_json_put_text(writer, "text", now->text);
+        mf_json_write_text(writer, "left", left);
+    mf_json_write_text(writer, "text", now->text);
     find_file(progress, path);
     const bool written = mf_json_write(writer, path) == STATUS_OK;
     mf_json_writer_free(writer);
@@ -73,24 +73,25 @@ void mf_progress_end(const struct progress *progress) {
     if (progress->folder == NULL)
         return;
     find_file(progress, path);
-    mf_own_files_remove(path);
+    mf_tracked_files_remove(path);
 }
 
 /// One line a while, the last one always.
-static void write_line(struct progress *progress, const struct watcher_progress *told,
+static void write_line(struct progress *progress, const struct watcher_progress *reported,
                        const char *left) {
     const double now = clock_seconds();
     const double interval = progress->terminal ? terminal_interval : pipe_interval;
-    const bool ends = told->done == told->total && progress->written != told->total;
+    const bool ends = reported->done == reported->total && progress->written != reported->total;
     if (progress->quiet || (now - progress->last < interval && !ends))
         return;
     progress->last = now;
-    progress->written = told->done;
+    progress->written = reported->done;
     if (progress->terminal)
         mf_terminal_clear_line();
-    fprintf(stderr, "%s  %3.0f %%", told->text, 100 * (double)told->done / (double)told->total);
-    if (!told->open)
-        fprintf(stderr, "  %.3g %s/s", told->rate, told->unit);
+    fprintf(stderr, "%s  %3.0f %%", reported->text,
+            100 * (double)reported->done / (double)reported->total);
+    if (!reported->open)
+        fprintf(stderr, "  %.3g %s/s", reported->rate, reported->unit);
     if (left[0])
         fprintf(stderr, "  %s left", left);
     if (!progress->terminal)
@@ -99,33 +100,34 @@ static void write_line(struct progress *progress, const struct watcher_progress 
 }
 
 /// Tell everybody, with rate and time left, unless what is left is of a size that nobody knows.
-static void tell_all(struct progress *progress, struct watcher_progress told) {
+static void report_all(struct progress *progress, struct watcher_progress reported) {
     const double now = clock_seconds();
     const struct watcher *watcher = progress->watcher;
     char time[32], left[48] = "";
     if (progress->pace.period == 0)
         progress->pace = mf_progress_pace_begin(progress->started, progress->done_before, 1);
-    mf_progress_pace_tell(&progress->pace, now, told.done);
-    told.rate = mf_progress_pace_rate(&progress->pace, now, told.done);
-    const double seconds = mf_progress_pace_left(&progress->pace, now, told.done, told.total);
-    if (!told.open && !isnan(seconds)) {
+    mf_progress_pace_update(&progress->pace, now, reported.done);
+    reported.rate = mf_progress_pace_rate(&progress->pace, now, reported.done);
+    const double seconds =
+        mf_progress_pace_left(&progress->pace, now, reported.done, reported.total);
+    if (!reported.open && !isnan(seconds)) {
         format_duration(seconds, time);
         snprintf(left, sizeof left, "%s%s", progress->may_end_early ? "at most " : "", time);
     }
-    write_file(progress, &told, left);
+    write_file(progress, &reported, left);
     if (watcher)
-        watcher->tell(watcher->context, &told);
-    write_line(progress, &told, left);
+        watcher->report(watcher->context, &reported);
+    write_line(progress, &reported, left);
 }
 
-void mf_progress_tell(struct progress *progress, uint64_t done, uint64_t total, const char *unit,
-                      const char *text) {
-    tell_all(progress,
-             (struct watcher_progress){.done = done, .total = total, .unit = unit, .text = text});
+void mf_progress_report(struct progress *progress, uint64_t done, uint64_t total, const char *unit,
+                        const char *text) {
+    report_all(progress,
+               (struct watcher_progress){.done = done, .total = total, .unit = unit, .text = text});
 }
 
-void mf_progress_tell_iteration(struct progress *progress, const struct inverse_progress *now,
-                                const char *text) {
+void mf_progress_report_iteration(struct progress *progress, const struct inverse_progress *now,
+                                  const char *text) {
     if (progress->round == 0) {
         progress->round = now->total;
         progress->done_before = now->iteration * now->total + now->done - 1;
@@ -135,16 +137,16 @@ void mf_progress_tell_iteration(struct progress *progress, const struct inverse_
     const uint64_t done =
         now->iteration * progress->round + progress->round * now->done / now->total;
     const uint64_t total = now->iterations * progress->round;
-    progress->told = done > progress->told ? done : progress->told;
-    tell_all(progress,
-             (struct watcher_progress){.done = progress->told,
-                                       .total = total > progress->told ? total : progress->told,
-                                       .unit = "simulations",
-                                       .text = text,
-                                       .open = now->doubling.number > 0});
+    progress->reported = done > progress->reported ? done : progress->reported;
+    report_all(progress, (struct watcher_progress){
+                             .done = progress->reported,
+                             .total = total > progress->reported ? total : progress->reported,
+                             .unit = "simulations",
+                             .text = text,
+                             .open = now->doubling.number > 0});
 }
 
-void mf_progress_say(struct progress *progress, const char *format, ...) {
+void mf_progress_print(struct progress *progress, const char *format, ...) {
     const struct watcher *watcher = progress->watcher;
     char line[1024];
     va_list arguments;
@@ -152,7 +154,7 @@ void mf_progress_say(struct progress *progress, const char *format, ...) {
     vsnprintf(line, sizeof line, format, arguments);
     va_end(arguments);
     if (watcher)
-        watcher->say(watcher->context, line);
+        watcher->print(watcher->context, line);
     if (progress->quiet)
         return;
     if (progress->open_line)
@@ -161,13 +163,13 @@ void mf_progress_say(struct progress *progress, const char *format, ...) {
     fprintf(stderr, "%s\n", line);
 }
 
-void mf_progress_tell_run(struct progress *progress, const struct watcher_run *run) {
+void mf_progress_report_run(struct progress *progress, const struct watcher_run *run) {
     progress->folder = run->folder;
     if (progress->watcher)
         progress->watcher->begin(progress->watcher->context, run);
 }
 
-void mf_progress_tell_written(const struct progress *progress) {
+void mf_progress_report_written(const struct progress *progress) {
     if (progress->watcher)
         progress->watcher->write(progress->watcher->context);
 }
@@ -177,9 +179,9 @@ bool mf_progress_ask_change(const struct progress *progress, struct simulation_c
     return watcher && watcher->change(watcher->context, change);
 }
 
-void mf_progress_say_scale(struct progress *progress, const struct units *units) {
+void mf_progress_print_scale(struct progress *progress, const struct units *units) {
     char line[UNITS_LINE_SIZE];
-    mf_units_tell(units, line);
-    if (mf_units_speaks(units))
-        mf_progress_say(progress, "%s", line);
+    mf_units_print(units, line);
+    if (mf_units_are_physical(units))
+        mf_progress_print(progress, "%s", line);
 }

@@ -21,7 +21,7 @@ struct progress {
     double next;                   ///< clock of the next one [s]
     uint64_t done_before;          ///< parts that a run before a restart had done
     struct progress_pace pace;     ///< from the first word on
-    uint64_t round, told;          ///< of a fit: parts of an iteration, and the most that were told
+    uint64_t round, reported;      ///< of a fit: parts of an iteration, and the most that were told
     bool open_line;                ///< the terminal's line has no end yet
     bool may_end_early;            ///< the time left is the most that it may take
     const struct watcher *watcher; ///< told of the same, or NULL; borrowed
@@ -35,30 +35,30 @@ double mf_progress_seconds(const struct progress *progress);
 
 /// Tell that `done` of `total` parts are done; `text` says the rest. Adds rate and, once a part is
 /// done, time left.
-void mf_progress_tell(struct progress *progress, uint64_t done, uint64_t total, const char *unit,
-                      const char *text);
+void mf_progress_report(struct progress *progress, uint64_t done, uint64_t total, const char *unit,
+                        const char *text);
 
 /// The same of a fit inside an iteration, whose passes or rounds may be of any size: an iteration
 /// counts as many simulations as its first one, and what is done never becomes less. While samples
 /// are doubled no time left is told: what is done stands still, for nobody knows how long.
 /// Tested: test_progress.
-void mf_progress_tell_iteration(struct progress *progress, const struct inverse_progress *now,
-                                const char *text);
+void mf_progress_report_iteration(struct progress *progress, const struct inverse_progress *now,
+                                  const char *text);
 
 /// Remove progress.json, if there is a folder for it: nothing works there any more.
 void mf_progress_end(const struct progress *progress);
 
 /// End the updating line, if there is one, and print a line of its own unless quiet.
-void mf_progress_say(struct progress *progress, const char *format, ...)
+void mf_progress_print(struct progress *progress, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
 /// Tell who watches, if anybody does, what has begun, and that tables of the folder are new. From
 /// now on there is progress.json in the folder.
-void mf_progress_tell_run(struct progress *progress, const struct watcher_run *run);
-void mf_progress_tell_written(const struct progress *progress);
+void mf_progress_report_run(struct progress *progress, const struct watcher_run *run);
+void mf_progress_report_written(const struct progress *progress);
 
 /// Whether who watches wants a simulation to go on with another temperature or time step.
 bool mf_progress_ask_change(const struct progress *progress, struct simulation_change *change);
 
 /// Say what the scale of a file in physical units is.
-void mf_progress_say_scale(struct progress *progress, const struct units *units);
+void mf_progress_print_scale(struct progress *progress, const struct units *units);

@@ -9,7 +9,7 @@ struct progress_pace mf_progress_pace_begin(double clock, uint64_t done, uint64_
     return (struct progress_pace){period, now, now, now, now};
 }
 
-void mf_progress_pace_tell(struct progress_pace *pace, double clock, uint64_t done) {
+void mf_progress_pace_update(struct progress_pace *pace, double clock, uint64_t done) {
     const struct progress_mark now = {clock, done};
     if (done / pace->period == pace->last.done / pace->period)
         return;

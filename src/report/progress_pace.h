@@ -23,7 +23,7 @@ struct progress_pace {
 struct progress_pace mf_progress_pace_begin(double clock, uint64_t done, uint64_t period);
 
 /// Tell how many parts are done; they never become fewer.
-void mf_progress_pace_tell(struct progress_pace *pace, double clock, uint64_t done);
+void mf_progress_pace_update(struct progress_pace *pace, double clock, uint64_t done);
 
 /// Parts a second, over the same time as what is left is reckoned from.
 double mf_progress_pace_rate(const struct progress_pace *pace, double clock, uint64_t done);

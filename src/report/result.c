@@ -72,7 +72,7 @@ static void write_unit(const char *unit, char text[UNITS_NAME_SIZE]) {
     text[length] = '\0';
 }
 
-const struct field *mf_result_summary_field(size_t n, struct result_field *room) {
+const struct field *mf_result_summary_field(size_t n, struct result_field *capacity) {
     static const struct field of_target[] = {
         {.name = "rmse", .offset = offsetof(struct result_distance, rmse)},
         {.name = "rmse_error", .offset = offsetof(struct result_distance, rmse_error)},
@@ -89,17 +89,17 @@ const struct field *mf_result_summary_field(size_t n, struct result_field *room)
     const size_t kind = (n - BEFORE) / OF_TARGET;
     const struct field *of = &of_target[(n - BEFORE) % OF_TARGET];
     const struct observable_kind about = mf_observable_kind((int)kind);
-    snprintf(room->name, sizeof room->name, "%s_%s", about.target->name, of->name);
-    write_unit(about.target->unit ? about.target->unit : "1", room->unit);
-    room->field = (struct field){.name = room->name,
-                                 .type = FIELD_NUMBER,
-                                 .offset = offsetof(struct result_summary, distance) +
-                                           kind * sizeof(struct result_distance) + of->offset,
-                                 .initial = NAN,
-                                 .minimum = -DBL_MAX,
-                                 .maximum = DBL_MAX,
-                                 .unit = room->unit};
-    return &room->field;
+    snprintf(capacity->name, sizeof capacity->name, "%s_%s", about.target->name, of->name);
+    write_unit(about.target->unit ? about.target->unit : "1", capacity->unit);
+    capacity->field = (struct field){.name = capacity->name,
+                                     .type = FIELD_NUMBER,
+                                     .offset = offsetof(struct result_summary, distance) +
+                                               kind * sizeof(struct result_distance) + of->offset,
+                                     .initial = NAN,
+                                     .minimum = -DBL_MAX,
+                                     .maximum = DBL_MAX,
+                                     .unit = capacity->unit};
+    return &capacity->field;
 }
 
 /// Say what is wrong with the folder before a reader complains of a file in it.
@@ -222,7 +222,7 @@ static void read_units(struct json_object *root, struct units *units) {
     for (int k = 0; name && mf_units_systems[k]; k++)
         if (strcmp(mf_units_systems[k], name) == 0)
             units->system = k;
-    if (!mf_units_speaks(units)) {
+    if (!mf_units_are_physical(units)) {
         read_scale_beside(root, units);
         return;
     }
@@ -235,8 +235,8 @@ static void read_units(struct json_object *root, struct units *units) {
 
 static void read_fields(const struct json_object *root, struct result_summary *summary) {
     const struct field *field;
-    struct result_field room;
-    for (size_t n = 0; (field = mf_result_summary_field(n, &room)); n++) {
+    struct result_field capacity;
+    for (size_t n = 0; (field = mf_result_summary_field(n, &capacity)); n++) {
         struct json_object own = *root; // asked for this alone
         mf_json_fields(&own, (const struct field[]){*field, FIELD_END}, summary);
     }
@@ -276,34 +276,34 @@ static bool is_data(const char *line) {
 }
 
 /// A column of a table that is to be read.
-struct wish {
+struct wanted_column {
     const char *name; ///< in the header, without its unit; NULL: go by the place
     size_t place;     ///< from 1, if the header has no such name; 0: then it is nan
 };
 
 /// Places of the columns whose names the header has.
-static void find_places(struct wish *wishes, size_t count, const char *header) {
+static void find_places(struct wanted_column *wanted, size_t count, const char *header) {
     size_t place = 0;
     for (const char *word = header + 1 + strspn(header + 1, " "); *word;) {
         const size_t length = strcspn(word, "[\t\r");
         place++;
         for (size_t k = 0; k < count; k++)
-            if (wishes[k].name && strlen(wishes[k].name) == length &&
-                strncmp(wishes[k].name, word, length) == 0) {
-                wishes[k].place = place;
-                wishes[k].name = NULL; // the first one counts
+            if (wanted[k].name && strlen(wanted[k].name) == length &&
+                strncmp(wanted[k].name, word, length) == 0) {
+                wanted[k].place = place;
+                wanted[k].name = NULL; // the first one counts
             }
         word += strcspn(word, "\t");
         word += *word == '\t';
     }
 }
 
-static enum status read_row(double *row, const struct wish *wishes, size_t count, const char *line,
-                            const char *file, size_t number) {
+static enum status read_row(double *row, const struct wanted_column *wanted, size_t count,
+                            const char *line, const char *file, size_t number) {
     size_t last = 0;
     for (size_t k = 0; k < count; k++) {
         row[k] = NAN;
-        last = wishes[k].place > last ? wishes[k].place : last;
+        last = wanted[k].place > last ? wanted[k].place : last;
     }
     for (size_t place = 1; place <= last; place++) {
         char *end;
@@ -312,32 +312,32 @@ static enum status read_row(double *row, const struct wish *wishes, size_t count
             return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: column %zu is not a number", file,
                                   number, place);
         for (size_t k = 0; k < count; k++)
-            if (wishes[k].place == place)
+            if (wanted[k].place == place)
                 row[k] = value;
         line = end;
     }
     return STATUS_OK;
 }
 
-/// Read the columns that `wishes` says, which learns from the header; others are left alone.
+/// Read the columns that `wanted` says, which learns from the header; others are left alone.
 static enum status read_table(struct result_table *table, const char *folder, const char *name,
-                              struct wish *wishes, size_t count) {
+                              struct wanted_column *wanted, size_t count) {
     enum status status = STATUS_OK;
     char file[PATH_SIZE], *text = NULL, *line;
-    size_t length = 0, most_rows = 1, number = 0;
+    size_t length = 0, max_rows = 1, number = 0;
     snprintf(file, sizeof file, "%s/%s", folder, name);
     CHECK(mf_text_file_read(file, &text, &length));
     for (size_t k = 0; k < length; k++)
-        most_rows += text[k] == '\n';
+        max_rows += text[k] == '\n';
     table->columns = count;
-    NEW_ARRAY(table->values, most_rows * count);
+    NEW_ARRAY(table->values, max_rows * count);
     for (char *rest = text; (line = take_line(&rest));) {
         number++;
         if (is_data(line))
             CHECK(
-                read_row(table->values + count * table->rows++, wishes, count, line, file, number));
+                read_row(table->values + count * table->rows++, wanted, count, line, file, number));
         else if (line[0] == '#')
-            find_places(wishes, count, line);
+            find_places(wanted, count, line);
     }
     if (table->rows == 0)
         status = mf_status_fail(STATUS_BAD_INPUT, "%s: there is no row of numbers", file);
@@ -354,26 +354,26 @@ static bool is_there(const char *folder, const char *name) {
 
 /// That of a simulation is r, g, g_error: a result without a target.
 static enum status read_rdf(struct result_table *table, const char *folder, bool simulated) {
-    struct wish fitted[] = {{NULL, 1}, {NULL, 2}, {NULL, 3}, {NULL, 4}, {NULL, 5}};
-    struct wish counted[] = {{NULL, 1}, {NULL, 0}, {NULL, 0}, {NULL, 2}, {NULL, 3}};
+    struct wanted_column fitted[] = {{NULL, 1}, {NULL, 2}, {NULL, 3}, {NULL, 4}, {NULL, 5}};
+    struct wanted_column counted[] = {{NULL, 1}, {NULL, 0}, {NULL, 0}, {NULL, 2}, {NULL, 3}};
     return is_there(folder, "rdf.tsv")
                ? read_table(table, folder, "rdf.tsv", simulated ? counted : fitted, 5)
                : STATUS_OK;
 }
 
 static enum status read_potential(struct result_table *table, const char *folder) {
-    struct wish wishes[] = {{NULL, 1}, {NULL, 2}, {"phi_error", 0}, {"truth", 0}};
-    return is_there(folder, "potential.tsv") ? read_table(table, folder, "potential.tsv", wishes, 4)
+    struct wanted_column wanted[] = {{NULL, 1}, {NULL, 2}, {"phi_error", 0}, {"truth", 0}};
+    return is_there(folder, "potential.tsv") ? read_table(table, folder, "potential.tsv", wanted, 4)
                                              : STATUS_OK;
 }
 
 /// A friction weight without a column of errors was not fitted.
 static enum status read_omega(struct result_table *table, const char *folder) {
-    struct wish wishes[] = {{NULL, 1}, {NULL, 2}, {"omega_error", 0}, {"truth", 0}};
+    struct wanted_column wanted[] = {{NULL, 1}, {NULL, 2}, {"omega_error", 0}, {"truth", 0}};
     if (!is_there(folder, "omega.tsv"))
         return STATUS_OK;
-    TRY(read_table(table, folder, "omega.tsv", wishes, 4));
-    if (wishes[2].place == 0) {
+    TRY(read_table(table, folder, "omega.tsv", wanted, 4));
+    if (wanted[2].place == 0) {
         mf_memory_free(table->values);
         *table = (struct result_table){0};
     }
@@ -392,9 +392,10 @@ static enum status read_course(struct result_table *table, const char *folder) {
     enum { SECONDS = 3 };
     enum status status = STATUS_OK;
     struct result_table timing = {0};
-    struct wish wishes[] = {{NULL, 1}, {NULL, 2}, {NULL, 3}, {NULL, 0}, {NULL, 4}, {NULL, 5}};
-    struct wish times[] = {{NULL, 1}, {NULL, 2}};
-    CHECK(read_table(table, folder, "history.tsv", wishes, 6));
+    struct wanted_column wanted[] = {{NULL, 1}, {NULL, 2}, {NULL, 3},
+                                     {NULL, 0}, {NULL, 4}, {NULL, 5}};
+    struct wanted_column times[] = {{NULL, 1}, {NULL, 2}};
+    CHECK(read_table(table, folder, "history.tsv", wanted, 6));
     CHECK(read_table(&timing, folder, "timing.tsv", times, 2));
     for (size_t row = 0; row < table->rows; row++) {
         double *values = table->values + row * table->columns;

@@ -32,13 +32,14 @@ struct result_summary {
     struct units units;    ///< in which all of them are; no scale: unknown
 };
 
-/// Number or text n of summary.json, which may be made in `room`; NULL beyond the last. Distances
-/// are called "rdf_rmse", "rdf_rmse_error", "rdf_noise", and so on for every kind of targets.
+/// Number or text n of summary.json, which may be made in `capacity`; NULL beyond the last.
+/// Distances are called "rdf_rmse", "rdf_rmse_error", "rdf_noise", and so on for every kind of
+/// targets.
 struct result_field {
     char name[64], unit[UNITS_NAME_SIZE];
     struct field field;
 };
-const struct field *mf_result_summary_field(size_t n, struct result_field *room);
+const struct field *mf_result_summary_field(size_t n, struct result_field *capacity);
 
 /// Some columns of a table; no rows if there is no such table. Unlike a measurement, a result may
 /// hold nan: not known.

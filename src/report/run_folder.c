@@ -5,7 +5,7 @@
 #include "base/ranks.h"
 #include "io/checkpoint.h"
 #include "io/json.h"
-#include "io/own_file.h"
+#include "io/tracked_file.h"
 #include "io/snapshot.h"
 #include "report/figures.h"
 
@@ -40,8 +40,8 @@ static bool says(const struct run_folder *folder, const char *name, const char *
     struct json_object root = mf_json_root(document);
     bool found = mf_json_has(&root, key);
     if (found && text) {
-        const char *said = mf_json_choice(&root, key, NULL, NULL);
-        found = said && strcmp(said, text) == 0;
+        const char *value = mf_json_choice(&root, key, NULL, NULL);
+        found = value && strcmp(value, text) == 0;
     }
     return mf_json_close(document, STATUS_OK) == STATUS_OK && found;
 }
@@ -57,11 +57,11 @@ static bool is_measurement(const struct run_folder *folder) {
 
 /// A file of the run's that somebody has changed since, or NULL.
 static const char *find_changed(const struct run_folder *folder) {
-    const struct own_list *list = &folder->own.list;
+    const struct manifest *list = &folder->own.list;
     for (size_t k = 0; k < list->count; k++) {
-        const struct own_entry *entry = &list->entry[k];
-        if (!mf_own_file_is_folder(entry->name) &&
-            mf_own_file_look(list->place, entry->name, entry) == OWN_FILE_OTHER)
+        const struct manifest_entry *entry = &list->entry[k];
+        if (!mf_tracked_file_is_folder(entry->name) &&
+            mf_tracked_file_state(list->place, entry->name, entry) == TRACKED_FILE_OTHER)
             return entry->name;
     }
     return NULL;
@@ -79,8 +79,8 @@ static enum status refuse(const struct run_folder *folder, const char *what, con
 static enum status check_replaced(const struct run_folder *folder, enum run_kind kind) {
     static const char replaces[] = "--force replaces it, -o OTHER keeps it",
                       resumes[] = "--resume continues it, --force starts again";
-    const bool summary = mf_own_files_has(&folder->own, "summary.json");
-    const bool saved = mf_own_files_has(&folder->own, checkpoint);
+    const bool summary = mf_tracked_files_has(&folder->own, "summary.json");
+    const bool saved = mf_tracked_files_has(&folder->own, checkpoint);
     if (!summary && !saved)
         return STATUS_OK;
     if (is_measurement(folder))
@@ -98,9 +98,9 @@ static enum status check_replaced(const struct run_folder *folder, enum run_kind
 /// Results that are in no list, as in a copy without it, and of version 0.2.0: what else is of that
 /// run is not known.
 static enum status check_listed(const struct run_folder *folder) {
-    if (!exists(folder, "used.json") || mf_own_files_has(&folder->own, "used.json"))
+    if (!exists(folder, "used.json") || mf_tracked_files_has(&folder->own, "used.json"))
         return STATUS_OK;
-    return refuse(folder, "results without a list of files (" OWN_FILES_OF_RUN ")",
+    return refuse(folder, "results without a list of files (" TRACKED_FILES_OF_RUN ")",
                   exists(folder, checkpoint) ? "--resume may continue it, -o OTHER keeps them"
                                              : "write elsewhere with -o");
 }
@@ -155,24 +155,24 @@ enum status mf_run_folder_open(struct run_folder *folder, enum run_kind kind, co
         return STATUS_OK;
     if (options->resume)
         TRY(check_resumed(folder));
-    TRY(mf_own_files_make(&folder->own, folder->path, OWN_FILES_OF_RUN));
+    TRY(mf_tracked_files_make(&folder->own, folder->path, TRACKED_FILES_OF_RUN));
     folder->own.inputs = inputs;
     folder->own.force = options->force;
     if (options->resume)
         folder->own.goes_on_from = checkpoint;
     TRY(check_writable(folder));
-    TRY(mf_own_files_lock(&folder->own));
+    TRY(mf_tracked_files_lock(&folder->own));
     if (!options->resume)
         TRY(check_listed(folder));
-    TRY(mf_own_files_spare_inputs(&folder->own, options->resume ? read : NULL));
+    TRY(mf_tracked_files_protect_inputs(&folder->own, options->resume ? read : NULL));
     if (!options->resume && !options->force)
         TRY(check_replaced(folder, kind));
-    TRY(mf_own_files_check(&folder->own, options->resume ? read : NULL));
+    TRY(mf_tracked_files_check(&folder->own, options->resume ? read : NULL));
     return reserve_all(folder, options->resume);
 }
 
 enum status mf_run_folder_reserve(struct run_folder *folder, const char *name) {
-    return folder->own.open ? mf_own_files_reserve(&folder->own, name) : STATUS_OK;
+    return folder->own.open ? mf_tracked_files_reserve(&folder->own, name) : STATUS_OK;
 }
 
 // From one run to the next ------------------------------------------------------------------------
@@ -198,7 +198,7 @@ static enum status prepare_settings(struct run_folder *folder) {
 }
 
 enum status mf_run_folder_begin(struct run_folder *folder, uint64_t digest) {
-    TRY(mf_own_files_begin(&folder->own, digest));
+    TRY(mf_tracked_files_begin(&folder->own, digest));
     return folder->settings ? prepare_settings(folder) : STATUS_OK;
 }
 
@@ -206,7 +206,7 @@ enum status mf_run_folder_take_over(struct run_folder *folder) {
     if (folder->settings)
         TRY(mf_output_publish(&folder->used));
     folder->own.goes_on_from = checkpoint;
-    return mf_own_files_sweep(&folder->own);
+    return mf_tracked_files_remove_earlier(&folder->own);
 }
 
 /// The run has read its checkpoint, which is thus its own, and so are its settings, whether or not
@@ -214,20 +214,20 @@ enum status mf_run_folder_take_over(struct run_folder *folder) {
 enum status mf_run_folder_resume(struct run_folder *folder, uint64_t digest) {
     char path[OUTPUT_PATH_SIZE];
     uint64_t found, wanted = DIGEST_OF_NOTHING;
-    TRY(mf_own_files_resume(&folder->own, digest));
+    TRY(mf_tracked_files_resume(&folder->own, digest));
     if (exists(folder, checkpoint))
-        TRY(mf_own_files_adopt(&folder->own, checkpoint));
+        TRY(mf_tracked_files_adopt(&folder->own, checkpoint));
     mf_run_folder_file(folder, "used.json", path);
     mf_digest_add(&wanted, folder->settings, folder->settings_size);
     if (mf_checkpoint_digest(path, &found) == STATUS_OK && found == wanted)
-        return mf_own_files_adopt(&folder->own, "used.json");
+        return mf_tracked_files_adopt(&folder->own, "used.json");
     TRY(prepare_settings(folder));
     return mf_output_publish(&folder->used);
 }
 
 void mf_run_folder_close(struct run_folder *folder) {
     mf_output_abandon(&folder->used);
-    mf_own_files_close(&folder->own);
+    mf_tracked_files_close(&folder->own);
     free(folder->settings);
     folder->settings = NULL;
 }

@@ -6,7 +6,7 @@
 #include "scene/run_options.h"
 #include "io/input.h"
 #include "io/json_write.h"
-#include "io/own_files.h"
+#include "io/tracked_files.h"
 #include "io/output.h"
 
 #include <stdbool.h>
@@ -26,7 +26,7 @@ enum run_kind { RUN_SIMULATION, RUN_FIT, RUN_MEASUREMENT };
 /// moved.
 struct run_folder {
     char path[OUTPUT_PATH_SIZE];
-    struct own_files own;
+    struct tracked_files own;
     struct output used; ///< used.json, until the run has begun
     char *settings;     ///< what stands in it
     size_t settings_size;
@@ -58,7 +58,7 @@ enum status mf_run_folder_keep_settings(struct run_folder *folder, const struct 
                                         uint64_t *digest) MUST_USE;
 
 /// Begin a run that is not resumed: its results will be its own, what is there is of an earlier
-/// one. There is room for used.json. Fails: IO; as mf_own_files_claim.
+/// one. There is room for used.json. Fails: IO; as mf_tracked_files_claim.
 enum status mf_run_folder_begin(struct run_folder *folder, uint64_t digest) MUST_USE;
 
 /// The run has begun, its checkpoint is there if it has one: give used.json its name, and remove
@@ -66,7 +66,7 @@ enum status mf_run_folder_begin(struct run_folder *folder, uint64_t digest) MUST
 enum status mf_run_folder_take_over(struct run_folder *folder) MUST_USE;
 
 /// The run goes on from its checkpoint: finish what it may have begun to take over, and leave
-/// used.json alone if it is there. Fails: IO; as mf_own_files_claim.
+/// used.json alone if it is there. Fails: IO; as mf_tracked_files_claim.
 enum status mf_run_folder_resume(struct run_folder *folder, uint64_t digest) MUST_USE;
 
 /// Unlock it.

@@ -35,9 +35,9 @@ struct watcher {
     void *context;
     void (*begin)(void *context, const struct watcher_run *run);
     /// From one thread at a time, of a simulation between two of its steps.
-    void (*tell)(void *context, const struct watcher_progress *progress);
-    void (*say)(void *context, const char *line); ///< a line for the person
-    void (*write)(void *context);                 ///< tables of the folder are new
+    void (*report)(void *context, const struct watcher_progress *progress);
+    void (*print)(void *context, const char *line); ///< a line for the person
+    void (*write)(void *context);                   ///< tables of the folder are new
     /// Steps of a simulation until the next word at most; 0: as many as it likes.
     int64_t (*steps)(void *context);
     /// Whether a simulation is to go on with another temperature or time step, asked for after each

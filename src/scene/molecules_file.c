@@ -16,7 +16,7 @@ static void read_types(struct json_object *root, struct composition *types) {
     if (!mf_json_is_object(&particles, "types"))
         return;
     struct json_object object = mf_json_child(&particles, "types", false);
-    for (size_t n = 0; (name = mf_json_key(&object, n)) && n < COMPOSITION_MOST_TYPES; n++)
+    for (size_t n = 0; (name = mf_json_key(&object, n)) && n < COMPOSITION_MAX_TYPES; n++)
         if (mf_composition_is_name(name))
             strcpy(types->name[types->types++], name);
 }
@@ -34,7 +34,7 @@ static enum status read_topology(struct scene_molecules *molecules, struct compo
     enum status status =
         mf_gromacs_topology_read(&molecules->molecules, types, file, &nanometres, &note);
     if (status == STATUS_OK)
-        status = mf_scene_groups_forget_tables(&molecules->molecules);
+        status = mf_scene_groups_clear_tables(&molecules->molecules);
     if (status != STATUS_OK)
         mf_scene_molecules_clear(molecules);
     return status;

@@ -5,7 +5,7 @@
 
 static void fault_unknown(struct json_object *object, const struct composition *composition,
                           const char *key) {
-    char names[COMPOSITION_MOST_PAIRS * (COMPOSITION_PAIR_NAME_SIZE + 2)] = "";
+    char names[COMPOSITION_MAX_PAIRS * (COMPOSITION_PAIR_NAME_SIZE + 2)] = "";
     for (int pair = 0; pair < mf_composition_pairs(composition); pair++) {
         char name[COMPOSITION_PAIR_NAME_SIZE];
         mf_composition_pair_name(composition, pair, name);
@@ -16,10 +16,10 @@ static void fault_unknown(struct json_object *object, const struct composition *
 }
 
 bool mf_pair_names_find(struct json_object *object, const struct composition *composition,
-                        const char *key[COMPOSITION_MOST_PAIRS]) {
+                        const char *key[COMPOSITION_MAX_PAIRS]) {
     const char *member;
     bool all = true;
-    for (int pair = 0; pair < COMPOSITION_MOST_PAIRS; pair++)
+    for (int pair = 0; pair < COMPOSITION_MAX_PAIRS; pair++)
         key[pair] = NULL;
     for (size_t n = 0; (member = mf_json_key(object, n)); n++) {
         const int pair = mf_composition_find_pair(composition, member);

@@ -11,7 +11,7 @@
 /// pair, or names one again, is a fault that lists the names; returns false then.
 /// Tested: test_fit_molecules, test_bad_input.
 bool mf_pair_names_find(struct json_object *object, const struct composition *composition,
-                        const char *key[COMPOSITION_MOST_PAIRS]);
+                        const char *key[COMPOSITION_MAX_PAIRS]);
 
 /// Refuse a pair that is named where all are alike, in one line that tells what to write instead.
 /// Returns whether there was one.

@@ -95,7 +95,7 @@ static void read_top(struct scene *scene, struct json_object *object) {
 
 NAMED_RECORD(struct integrator);
 
-static void fault_lonely(const struct scene *scene, struct json_object *object) {
+static void fault_too_few_particles(const struct scene *scene, struct json_object *object) {
     struct json_object particles = mf_json_child(object, "particles", false);
     if (particles.item && mf_json_has(&particles, "count") &&
         mf_json_fault_count(object->document) == 0)
@@ -189,8 +189,8 @@ static enum status read_dynamics(struct scene *scene, struct json_object *object
         mf_json_fault(object, "dynamics",
                       "%s turns no orientations, which \"%s\" is about; use \"%s\"",
                       integrator->name, oriented->name, mf_brownian.name);
-    if (scene->setup.placement.count < 2 && integrator->companions == NULL)
-        fault_lonely(scene, object);
+    if (scene->setup.placement.count < 2 && integrator->solvent_particles == NULL)
+        fault_too_few_particles(scene, object);
     if (unknown && integrator->events)
         mf_json_fault(object, "dynamics",
                       "%s moves hard particles, which have no forces that could be found",
@@ -234,7 +234,7 @@ bool mf_scene_is_hot(const struct scene *scene, char line[SCENE_LINE_SIZE]) {
 
 /// In a reduced file masses of beads are in μ: one that is μ in u was told twice, and a bead would
 /// have its square.
-static void check_mass_told_twice(const struct scene *scene, struct json_object *object) {
+static void check_mass_given_twice(const struct scene *scene, struct json_object *object) {
     static const double alike = 0.01, light = 1.1;
     const struct attributes_range masses =
         mf_attributes_span(&scene->setup.attribute[ATTRIBUTES_MASS]);
@@ -254,7 +254,7 @@ static void check_units(const struct scene *scene, struct json_object *object) {
     const double mass = scene->units.mass;
     if (!mf_units_known(&scene->units) || mf_json_fault_count(object->document) > 0)
         return;
-    const bool reduced = !mf_units_speaks(&scene->units);
+    const bool reduced = !mf_units_are_physical(&scene->units);
     struct json_object units = {0};
     if (reduced)
         units = mf_json_child(object, "units", false);
@@ -264,7 +264,7 @@ static void check_units(const struct scene *scene, struct json_object *object) {
                       setup->temperature, scene->units.temperature,
                       setup->temperature * scene->units.temperature);
     if (reduced)
-        check_mass_told_twice(scene, object);
+        check_mass_given_twice(scene, object);
     const double density = setup->box.dimensions == 3 ? mf_scene_mass_density(scene) : 0;
     if (density > densest && !reduced)
         mf_json_fault(object, "box",
@@ -372,7 +372,7 @@ void mf_scene_write(const struct scene *scene, struct json_writer *writer) {
                       .precision = setup->precision};
     for (int d = 0; d < setup->box.dimensions; d++)
         top.box[d] = setup->box.length[d];
-    mf_json_put_fields(writer, mf_scene_fields, &top);
+    mf_json_write_fields(writer, mf_scene_fields, &top);
     mf_scene_particles_write(scene, writer);
     mf_scene_molecules_write(&scene->molecules, &setup->composition, writer);
     if (scene->potential.curves || finds_friction_alone(scene->unknown))
@@ -382,12 +382,12 @@ void mf_scene_write(const struct scene *scene, struct json_writer *writer) {
     mf_scene_memory_write(&scene->memory, &setup->composition, writer);
     mf_scene_interactions_write(&scene->interactions, writer);
     mf_json_begin(writer, "dynamics");
-    mf_json_put_text(writer, "integrator", setup->integrator->name);
-    mf_json_put_fields(writer, setup->integrator->fields, setup->integrator_parameters);
+    mf_json_write_text(writer, "integrator", setup->integrator->name);
+    mf_json_write_fields(writer, setup->integrator->fields, setup->integrator_parameters);
     mf_json_end(writer);
-    if (mf_units_beside(&scene->units)) {
+    if (mf_units_have_second_columns(&scene->units)) {
         mf_json_begin(writer, "units");
-        mf_json_put_fields(writer, mf_units_fields, &scene->units);
+        mf_json_write_fields(writer, mf_units_fields, &scene->units);
         mf_json_end(writer);
     }
 }

@@ -56,7 +56,7 @@ static bool is_by_type(const struct json_object *particles, const struct field *
 }
 
 /// In physical units the mass of a bead is a matter of μ: where all have that, none has its own.
-static void forget_common_mass(struct attributes_source *mass) {
+static void clear_common_mass(struct attributes_source *mass) {
     static const double rounding = 1e-12;
     const struct attributes_range span = mf_attributes_span(mass);
     if (fabs(span.minimum - 1) < rounding && fabs(span.maximum - 1) < rounding)
@@ -79,8 +79,8 @@ void mf_scene_attributes_read(struct scene *scene, struct json_object *particles
         source->ranges = 1;
         read_range(particles, kind->name, kind, &source->range[0]);
     }
-    if (mf_units_speaks(mf_json_units(particles)))
-        forget_common_mass(&scene->setup.attribute[ATTRIBUTES_MASS]);
+    if (mf_units_are_physical(mf_json_units(particles)))
+        clear_common_mass(&scene->setup.attribute[ATTRIBUTES_MASS]);
 }
 
 /// The name of a column in the line of names, units in brackets aside.
@@ -156,12 +156,12 @@ void mf_scene_attributes_column(struct scene *scene, struct json_object *particl
 static void write_range(struct json_writer *writer, const char *key, const char *unit,
                         const struct attributes_range *range) {
     if (range->minimum == range->maximum) {
-        mf_json_put_quantity(writer, key, unit, range->minimum);
+        mf_json_write_quantity(writer, key, unit, range->minimum);
         return;
     }
     mf_json_begin(writer, key);
-    mf_json_put_quantity(writer, "minimum", unit, range->minimum);
-    mf_json_put_quantity(writer, "maximum", unit, range->maximum);
+    mf_json_write_quantity(writer, "minimum", unit, range->minimum);
+    mf_json_write_quantity(writer, "maximum", unit, range->maximum);
     mf_json_end(writer);
 }
 

@@ -17,7 +17,7 @@ static enum status load_points(struct bonded_curve *curve, int order, struct jso
     double *q = NULL, *energy = NULL;
     size_t count = 0;
     enum status status =
-        mf_scene_read_columns(table->file, unit, bonded_least(order), units, &q, &energy, &count);
+        mf_scene_read_columns(table->file, unit, bonded_min(order), units, &q, &energy, &count);
     if (status != STATUS_OK)
         mf_json_fault(object, "file", "%s", mf_status_message());
     else if ((status = mf_bonded_table_set_points(curve, q, energy, count)) != STATUS_OK)
@@ -57,9 +57,9 @@ bool mf_scene_groups_are_fitted(const struct molecules_group *group) {
 /// A table without points.
 static enum status add_fitted(struct molecules *molecules, int order, const char *name,
                               struct json_object *scene) {
-    if (molecules->groups[order] >= MOLECULES_MOST_GROUPS) {
+    if (molecules->groups[order] >= MOLECULES_MAX_GROUPS) {
         mf_json_fault(scene, mf_bonded_kinds[order]->plural, "there are more than %d groups",
-                      MOLECULES_MOST_GROUPS);
+                      MOLECULES_MAX_GROUPS);
         return STATUS_OK;
     }
     return mf_molecules_add_group(molecules, order, name, mf_bonded_kinds[order]->table);
@@ -73,8 +73,8 @@ static enum status read_known(struct molecules *molecules, int order, struct jso
     if (groups.item == NULL)
         return STATUS_OK;
     for (size_t n = 0; (name = mf_json_key(&groups, n)); n++) {
-        if (n >= MOLECULES_MOST_GROUPS) {
-            mf_json_fault(&groups, name, "there are more than %d groups", MOLECULES_MOST_GROUPS);
+        if (n >= MOLECULES_MAX_GROUPS) {
+            mf_json_fault(&groups, name, "there are more than %d groups", MOLECULES_MAX_GROUPS);
             mf_json_has(&groups, name);
         } else if (!mf_topology_is_name(name)) {
             mf_json_fault(
@@ -103,11 +103,11 @@ static enum status open_group(struct molecules *molecules, struct json_object *o
                               const char *name) {
     if (mf_molecules_group(molecules, order, name))
         return STATUS_OK;
-    if (molecules->groups[order] == MOLECULES_MOST_GROUPS || !mf_topology_is_name(name)) {
+    if (molecules->groups[order] == MOLECULES_MAX_GROUPS || !mf_topology_is_name(name)) {
         mf_json_fault(object, name,
                       "expected at most %d groups with names of up to %d letters, digits, _ and "
                       "-, " NAMES_RESERVED,
-                      MOLECULES_MOST_GROUPS, TOPOLOGY_NAME_SIZE - 1);
+                      MOLECULES_MAX_GROUPS, TOPOLOGY_NAME_SIZE - 1);
         return STATUS_OK;
     }
     return mf_molecules_add_group(molecules, order, name, mf_bonded_kinds[order]->laws[0]);
@@ -130,7 +130,7 @@ enum status mf_scene_groups_open(struct molecules *molecules, struct json_object
 /// A fault of a name that no molecule's terms have.
 static void fault_unused(struct json_object *object, const char *name, int order,
                          const struct molecules *molecules) {
-    const char *known[MOLECULES_MOST_GROUPS];
+    const char *known[MOLECULES_MAX_GROUPS];
     const size_t count = (size_t)molecules->groups[order];
     char hint[1024];
     for (size_t g = 0; g < count; g++)
@@ -169,7 +169,7 @@ done:
     return status;
 }
 
-enum status mf_scene_groups_forget_tables(struct molecules *molecules) {
+enum status mf_scene_groups_clear_tables(struct molecules *molecules) {
     for (int order = 0; order < BONDED_KINDS; order++)
         for (int g = 0; g < molecules->groups[order]; g++) {
             struct molecules_group *group = &molecules->group[order][g];
@@ -182,25 +182,26 @@ enum status mf_scene_groups_forget_tables(struct molecules *molecules) {
 }
 
 /// Whether a group of a topology takes the law that is told; else a fault if it must not be told.
-static bool takes(const struct molecules_group *group, const struct molecules_group *told,
+static bool takes(const struct molecules_group *group, const struct molecules_group *given,
                   const struct scene_fitted *fitted, int order, struct json_object *scene) {
-    const bool looked_for = mf_scene_groups_are_fitted(told);
-    if (mf_scene_groups_are_fitted(group) || (looked_for && fitted->told))
+    const bool looked_for = mf_scene_groups_are_fitted(given);
+    if (mf_scene_groups_are_fitted(group) || (looked_for && fitted->given))
         return true;
     if (!looked_for) {
         struct json_object laws = mf_json_child(scene, mf_bonded_kinds[order]->plural, false);
-        mf_json_fault(&laws, told->name, "the topology of \"molecules\" has its law; leave it out");
+        mf_json_fault(&laws, given->name,
+                      "the topology of \"molecules\" has its law; leave it out");
     }
     return false;
 }
 
-void mf_scene_groups_join(struct molecules *molecules, struct molecules *told,
+void mf_scene_groups_join(struct molecules *molecules, struct molecules *given,
                           const struct scene_fitted *fitted, struct json_object *scene) {
     for (int order = 0; order < BONDED_KINDS; order++) {
         struct json_object laws = mf_json_child(scene, mf_bonded_kinds[order]->plural, false);
-        bool known[MOLECULES_MOST_GROUPS] = {false};
-        for (int n = 0; n < told->groups[order]; n++) {
-            struct molecules_group *own = &told->group[order][n];
+        bool known[MOLECULES_MAX_GROUPS] = {false};
+        for (int n = 0; n < given->groups[order]; n++) {
+            struct molecules_group *own = &given->group[order][n];
             struct molecules_group *group = mf_molecules_group(molecules, order, own->name);
             if (group == NULL && !mf_scene_groups_are_fitted(own))
                 fault_unused(&laws, own->name, order, molecules);
@@ -237,8 +238,8 @@ void mf_scene_groups_write(const struct molecules *molecules, int order,
         if (mf_scene_groups_are_fitted(group))
             continue;
         mf_json_begin(writer, group->name);
-        mf_json_put_text(writer, "law", group->curve.law->name);
-        mf_json_put_fields(writer, group->curve.law->fields, group->curve.parameters);
+        mf_json_write_text(writer, "law", group->curve.law->name);
+        mf_json_write_fields(writer, group->curve.law->fields, group->curve.parameters);
         mf_json_end(writer);
     }
     mf_json_end(writer);

@@ -52,16 +52,16 @@ void mf_scene_interactions_clear(struct scene_interactions *interactions) {
 }
 
 /// Vectors with a number for each axis, be it 0.
-static void put_field(const struct field *field, const char *parameters, int dimensions,
-                      struct json_writer *writer) {
+static void write_field(const struct field *field, const char *parameters, int dimensions,
+                        struct json_writer *writer) {
     const struct field one[] = {*field, FIELD_END};
     double vector[3];
     if (field->type != FIELD_LENGTHS) {
-        mf_json_put_fields(writer, one, parameters);
+        mf_json_write_fields(writer, one, parameters);
         return;
     }
     memcpy(vector, parameters + field->offset, sizeof vector);
-    mf_json_put_quantities(writer, field->name, field->unit, vector, (size_t)dimensions);
+    mf_json_write_quantities(writer, field->name, field->unit, vector, (size_t)dimensions);
 }
 
 void mf_scene_interactions_write(const struct scene_interactions *interactions,
@@ -73,7 +73,7 @@ void mf_scene_interactions_write(const struct scene_interactions *interactions,
         const struct interaction *kind = interactions->choice[k].kind;
         mf_json_begin(writer, kind->name);
         for (const struct field *field = kind->fields; field->name; field++)
-            put_field(field, interactions->parameters[k], interactions->dimensions, writer);
+            write_field(field, interactions->parameters[k], interactions->dimensions, writer);
         mf_json_end(writer);
     }
     mf_json_end(writer);

@@ -8,8 +8,8 @@
 
 /// Owns the numbers of the interactions that a scene names.
 struct scene_interactions {
-    struct interaction_choice choice[INTERACTION_MOST];
-    void *parameters[INTERACTION_MOST];
+    struct interaction_choice choice[INTERACTION_MAX];
+    void *parameters[INTERACTION_MAX];
     int count;
     int dimensions; ///< of the scene: how many numbers a vector has
 };

@@ -13,13 +13,13 @@
 
 // One curve ---------------------------------------------------------------------------------------
 
-enum status mf_scene_read_columns(const char *file, const char *const unit[2], double least,
+enum status mf_scene_read_columns(const char *file, const char *const unit[2], double min,
                                   const struct units *units, double **x, double **value,
                                   size_t *count) {
     struct data_table table = {0};
     enum status status = STATUS_OK;
     CHECK(mf_data_table_read(&table, file, 2));
-    CHECK(mf_data_table_check_increasing(&table, file, 0, least));
+    CHECK(mf_data_table_check_increasing(&table, file, 0, min));
     CHECK(mf_data_table_convert(&table, file, 0, unit[0], units));
     CHECK(mf_data_table_convert(&table, file, 1, unit[1], units));
     NEW_ARRAY(*x, table.rows);
@@ -119,9 +119,9 @@ enum status mf_scene_read_curve(struct curve *curve, struct json_object *parent,
 
 void mf_scene_write_curve(const struct curve *curve, struct json_writer *writer, const char *key) {
     mf_json_begin(writer, key);
-    mf_json_put_text(writer, "law", curve->family ? curve->family->name : "none");
+    mf_json_write_text(writer, "law", curve->family ? curve->family->name : "none");
     if (curve->family)
-        mf_json_put_fields(writer, curve->family->fields, curve->parameters);
+        mf_json_write_fields(writer, curve->family->fields, curve->parameters);
     mf_json_end(writer);
 }
 
@@ -131,8 +131,8 @@ void mf_scene_write_curve(const struct curve *curve, struct json_writer *writer,
 static enum status read_pairs(struct scene_law *law, struct json_object *object,
                               const struct curve_family *const *list,
                               const struct composition *composition, const struct units *units) {
-    char name[COMPOSITION_MOST_PAIRS][COMPOSITION_PAIR_NAME_SIZE];
-    const char *key[COMPOSITION_MOST_PAIRS];
+    char name[COMPOSITION_MAX_PAIRS][COMPOSITION_PAIR_NAME_SIZE];
+    const char *key[COMPOSITION_MAX_PAIRS];
     const bool known = mf_pair_names_find(object, composition, key);
     for (int pair = 0; pair < mf_composition_pairs(composition); pair++) {
         mf_composition_pair_name(composition, pair, name[pair]);
@@ -178,7 +178,7 @@ enum status mf_scene_law_read(struct scene_law *law, struct json_object *parent,
 }
 
 enum status mf_scene_law_tabulate(struct scene_law *law, scene_law_table *tabulate) {
-    struct table part[COMPOSITION_MOST_PAIRS] = {{0}};
+    struct table part[COMPOSITION_MAX_PAIRS] = {{0}};
     enum status status = STATUS_OK;
     if (law->curves <= 1)
         return law->curves ? tabulate(&law->table, &law->curve[0]) : STATUS_OK;
@@ -198,7 +198,7 @@ const struct curve *mf_scene_law_curve(const struct scene_law *law, int pair) {
 }
 
 void mf_scene_law_clear(struct scene_law *law) {
-    for (int pair = 0; pair < COMPOSITION_MOST_PAIRS; pair++)
+    for (int pair = 0; pair < COMPOSITION_MAX_PAIRS; pair++)
         mf_curve_clear(&law->curve[pair]);
     mf_table_clear(&law->table);
 }

@@ -14,8 +14,8 @@
 /// Owns its curves and its table.
 struct scene_law {
     int curves; ///< 0: none; 1: for all pairs; else one for each pair type
-    struct curve curve[COMPOSITION_MOST_PAIRS]; ///< family NULL: none
-    struct table table;                         ///< of the curves, if there are any
+    struct curve curve[COMPOSITION_MAX_PAIRS]; ///< family NULL: none
+    struct table table;                        ///< of the curves, if there are any
 };
 
 /// mf_table_init_potential or mf_table_init_omega.
@@ -49,10 +49,10 @@ enum status mf_scene_read_curve(struct curve *curve, struct json_object *parent,
                                 const struct units *units) MUST_USE;
 void mf_scene_write_curve(const struct curve *curve, struct json_writer *writer, const char *key);
 
-/// The first two columns of a file, of these reduced units, as points whose x grows from `least`
+/// The first two columns of a file, of these reduced units, as points whose x grows from `min`
 /// or above.
 /// @param[out] x, value  shape [count], which the caller frees, also after a failure
 /// Fails: BAD_INPUT, IO, NO_MEMORY.
-enum status mf_scene_read_columns(const char *file, const char *const unit[2], double least,
+enum status mf_scene_read_columns(const char *file, const char *const unit[2], double min,
                                   const struct units *units, double **x, double **value,
                                   size_t *count) MUST_USE;

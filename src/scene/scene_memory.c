@@ -37,12 +37,12 @@ static bool is_plain(const char *name) {
 static enum status read_mode(struct scene_memory *memory, struct json_object *object,
                              const char *name, const struct composition *composition,
                              const struct units *units, bool open) {
-    if (memory->modes == PAIR_MEMORY_MOST_MODES || strlen(name) >= SCENE_MEMORY_NAME_SIZE ||
+    if (memory->modes == PAIR_MEMORY_MAX_MODES || strlen(name) >= SCENE_MEMORY_NAME_SIZE ||
         !is_plain(name)) {
         mf_json_fault(object, name,
                       "expected at most %d modes with names of up to %d letters, digits, - and "
                       "_, " NAMES_RESERVED,
-                      PAIR_MEMORY_MOST_MODES, SCENE_MEMORY_NAME_SIZE - 1);
+                      PAIR_MEMORY_MAX_MODES, SCENE_MEMORY_NAME_SIZE - 1);
         return STATUS_OK;
     }
     struct json_object own = mf_json_child(object, name, true);
@@ -77,7 +77,7 @@ enum status mf_scene_memory_read(struct scene_memory *memory, struct json_object
 }
 
 void mf_scene_memory_clear(struct scene_memory *memory) {
-    for (int m = 0; m < PAIR_MEMORY_MOST_MODES; m++)
+    for (int m = 0; m < PAIR_MEMORY_MAX_MODES; m++)
         mf_scene_law_clear(&memory->omega[m]);
     mf_scene_law_clear(&memory->transverse);
     *memory = (struct scene_memory){0};
@@ -102,7 +102,7 @@ void mf_scene_memory_write(const struct scene_memory *memory, const struct compo
     mf_json_begin(writer, "memory");
     for (int m = 0; m < memory->modes; m++) {
         mf_json_begin(writer, memory->name[m]);
-        mf_json_put_fields(writer, mf_scene_memory_fields, &memory->mode[m]);
+        mf_json_write_fields(writer, mf_scene_memory_fields, &memory->mode[m]);
         if (memory->omega[m].curves)
             mf_scene_law_write(&memory->omega[m], composition, writer, "omega");
         mf_json_end(writer);

@@ -20,9 +20,9 @@ extern const struct field mf_scene_memory_fields[];
 /// Owns its laws; `law` borrows them.
 struct scene_memory {
     int modes;
-    char name[PAIR_MEMORY_MOST_MODES][SCENE_MEMORY_NAME_SIZE];
-    struct scene_memory_mode mode[PAIR_MEMORY_MOST_MODES];
-    struct scene_law omega[PAIR_MEMORY_MOST_MODES];
+    char name[PAIR_MEMORY_MAX_MODES][SCENE_MEMORY_NAME_SIZE];
+    struct scene_memory_mode mode[PAIR_MEMORY_MAX_MODES];
+    struct scene_law omega[PAIR_MEMORY_MAX_MODES];
     struct scene_law transverse;
 };
 

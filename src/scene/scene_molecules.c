@@ -12,21 +12,21 @@
 
 enum { AS_FAR_AS_TERMS = -1 }; ///< of "exclude"
 
-struct told {
+struct given {
     int64_t count, exclude;
 };
-struct told_chain {
+struct chain_input {
     char type[FIELD_TEXT_SIZE];
     int64_t length;
     char group[BONDED_KINDS][FIELD_TEXT_SIZE];
 };
 
-#define MOLECULE(member) .offset = offsetof(struct told, member)
+#define MOLECULE(member) .offset = offsetof(struct given, member)
 const struct field mf_scene_molecule_fields[] = {
     {"count", FIELD_INTEGER, MOLECULE(count), .required = true, .minimum = 1, .maximum = 1e8,
      .unit = "", .help = "number of molecules of this kind"},
     {"exclude", FIELD_INTEGER, MOLECULE(exclude), .initial = AS_FAR_AS_TERMS,
-     .minimum = AS_FAR_AS_TERMS, .maximum = TOPOLOGY_MOST_EXCLUDE, .unit = "",
+     .minimum = AS_FAR_AS_TERMS, .maximum = TOPOLOGY_MAX_EXCLUDE, .unit = "",
      .help = "largest number of bonds between beads without pair interactions; -1: 1, 2 with "
              "angles, 3 with dihedrals, as in VOTCA"},
     FIELD_END,
@@ -37,7 +37,7 @@ enum { MOLECULE_FIELDS = sizeof mf_scene_molecule_fields / sizeof *mf_scene_mole
 #define CHAIN_GROUP(NAME, kind, ...)                                                               \
     {#kind, FIELD_TEXT, CHAIN(group[BONDED_##NAME]), .unit = "",                                   \
      .help = "group of all " #kind "s; none without"},
-#define CHAIN(member) .offset = offsetof(struct told_chain, member)
+#define CHAIN(member) .offset = offsetof(struct chain_input, member)
 const struct field mf_scene_chain_fields[] = {
     {"type", FIELD_TEXT, CHAIN(type), .unit = "",
      .help =
@@ -55,8 +55,8 @@ struct reading {
     struct composition *composition;
     struct json_object object;
     struct topology_kind kind;
-    struct scene_molecule told;
-    bool used[BONDED_KINDS][MOLECULES_MOST_GROUPS];
+    struct scene_molecule given;
+    bool used[BONDED_KINDS][MOLECULES_MAX_GROUPS];
     bool open; ///< groups are those that kinds name, and counts may be missing
     const struct scene_fitted *fitted; ///< or NULL
 };
@@ -67,7 +67,7 @@ struct reading {
 static int find_group(struct reading *reading, struct json_object *object, const char *key,
                       int order, const char *name) {
     const struct molecules *molecules = &reading->molecules->molecules;
-    const char *known[MOLECULES_MOST_GROUPS];
+    const char *known[MOLECULES_MAX_GROUPS];
     char hint[1024];
     for (int g = 0; g < molecules->groups[order]; g++) {
         known[g] = molecules->group[order][g].name;
@@ -78,12 +78,12 @@ static int find_group(struct reading *reading, struct json_object *object, const
     }
     mf_nearest_hint(name, known, (size_t)molecules->groups[order], hint, sizeof hint);
     if (reading->fitted)
-        mf_json_fault(object, key,
-                      "\"%.60s\" has no law in \"scene.%s\" and is not in \"%s.%s\"%s%s", name,
-                      mf_bonded_kinds[order]->plural, reading->fitted->told ? "unknowns" : "target",
-                      reading->fitted->told ? mf_bonded_kinds[order]->plural
-                                            : mf_bonded_distribution_of(order)->name,
-                      molecules->groups[order] ? "; " : "", molecules->groups[order] ? hint : "");
+        mf_json_fault(
+            object, key, "\"%.60s\" has no law in \"scene.%s\" and is not in \"%s.%s\"%s%s", name,
+            mf_bonded_kinds[order]->plural, reading->fitted->given ? "unknowns" : "target",
+            reading->fitted->given ? mf_bonded_kinds[order]->plural
+                                   : mf_bonded_distribution_of(order)->name,
+            molecules->groups[order] ? "; " : "", molecules->groups[order] ? hint : "");
     else
         mf_json_fault(object, key, "\"%.60s\" is not a group of \"%s\"%s%s", name,
                       mf_bonded_kinds[order]->plural, molecules->groups[order] ? "; " : "",
@@ -103,8 +103,8 @@ static int find_type(struct reading *reading, struct json_object *object, const 
             object, key,
             "\"%.60s\": expected a type name of up to %d letters, digits and _, " NAMES_RESERVED,
             name, COMPOSITION_NAME_SIZE - 1);
-    else if (composition->types == COMPOSITION_MOST_TYPES)
-        mf_json_fault(object, key, "\"%s\": more than %d types", name, COMPOSITION_MOST_TYPES);
+    else if (composition->types == COMPOSITION_MAX_TYPES)
+        mf_json_fault(object, key, "\"%s\": more than %d types", name, COMPOSITION_MAX_TYPES);
     else {
         strcpy(composition->name[composition->types], name);
         return composition->types++;
@@ -113,10 +113,10 @@ static int find_type(struct reading *reading, struct json_object *object, const 
 }
 
 static struct scene_molecule no_chain(void) {
-    struct scene_molecule told = {.is_chain = false};
+    struct scene_molecule given = {.is_chain = false};
     for (int order = 0; order < BONDED_KINDS; order++)
-        told.group[order] = -1;
-    return told;
+        given.group[order] = -1;
+    return given;
 }
 
 // Beads and terms ---------------------------------------------------------------------------------
@@ -141,7 +141,7 @@ done:
 }
 
 static enum status read_chain_of_one(struct reading *reading, struct json_object *object,
-                                     const struct told_chain *chain) {
+                                     const struct chain_input *chain) {
     enum status status = STATUS_OK;
     if (mf_json_has(object, "length") && chain->length == 0)
         return STATUS_OK; // out of range, which is told
@@ -194,28 +194,28 @@ static bool is_too_short(const struct reading *reading, struct json_object *chai
 static enum status read_chain(struct reading *reading) {
     const size_t faults = mf_json_fault_count(reading->object.document);
     struct json_object object = mf_json_child(&reading->object, "chain", true);
-    struct told_chain chain;
+    struct chain_input chain;
     if (object.item == NULL)
         return STATUS_OK;
     mf_json_fields(&object, mf_scene_chain_fields, &chain);
-    reading->told.is_chain = true;
-    reading->told.of_one_type = !mf_json_has(&object, "beads");
-    if (reading->told.of_one_type)
+    reading->given.is_chain = true;
+    reading->given.of_one_type = !mf_json_has(&object, "beads");
+    if (reading->given.of_one_type)
         TRY(read_chain_of_one(reading, &object, &chain));
     else
         TRY(read_beads(reading, &object));
     for (const char *const *key = (const char *const[]){"type", "length", NULL}; *key; key++)
-        if (!reading->told.of_one_type && mf_json_has(&object, *key))
+        if (!reading->given.of_one_type && mf_json_has(&object, *key))
             mf_json_fault(&object, *key, "\"beads\" is given, too; leave one of them out");
     for (int order = 0; order < BONDED_KINDS; order++) {
         const char *name = chain.group[order];
         if (name[0] && mf_json_fault_count(object.document) == faults &&
             is_too_short(reading, &object, order))
             break;
-        reading->told.group[order] =
+        reading->given.group[order] =
             name[0] ? find_group(reading, &object, mf_bonded_kinds[order]->name, order, name) : -1;
-        if (reading->told.group[order] >= 0)
-            TRY(link_chain(&reading->kind, order, reading->told.group[order]));
+        if (reading->given.group[order] >= 0)
+            TRY(link_chain(&reading->kind, order, reading->given.group[order]));
     }
     mf_json_finish(&object);
     return STATUS_OK;
@@ -281,7 +281,7 @@ static enum status enter_kind(struct reading *reading, size_t faults) {
     const enum status status = mf_scene_molecules_warn(reading->molecules, &reading->kind);
     for (int k = 0; k < kind->beads; k++)
         reading->composition->count[kind->type[k]] += kind->count;
-    reading->molecules->told[topology->kinds] = reading->told;
+    reading->molecules->given[topology->kinds] = reading->given;
     topology->kind[topology->kinds++] = *kind;
     return status;
 }
@@ -291,20 +291,20 @@ static enum status read_kind(struct reading *reading, struct json_object *molecu
     struct json_object *object = &reading->object;
     const size_t faults = mf_json_fault_count(molecules->document);
     enum status status = STATUS_OK;
-    struct told told;
+    struct given given;
     *object = mf_json_child(molecules, name, true);
     if (object->item == NULL)
         return STATUS_OK;
     reading->kind = (struct topology_kind){0};
-    reading->told = no_chain();
+    reading->given = no_chain();
     struct field fields[MOLECULE_FIELDS];
     memcpy(fields, mf_scene_molecule_fields, sizeof fields);
     fields[0].required = !reading->open;
-    mf_json_fields(object, fields, &told);
+    mf_json_fields(object, fields, &given);
     if (reading->open)
         TRY(mf_scene_groups_open(&reading->molecules->molecules, object));
     snprintf(reading->kind.name, sizeof reading->kind.name, "%s", name);
-    reading->kind.count = told.count;
+    reading->kind.count = given.count;
     if (mf_json_has(object, "chain")) {
         status = read_chain(reading);
     } else {
@@ -313,7 +313,7 @@ static enum status read_kind(struct reading *reading, struct json_object *molecu
             status = read_terms(reading, order);
     }
     reading->kind.exclude =
-        told.exclude == AS_FAR_AS_TERMS ? reach_of(&reading->kind) : (int)told.exclude;
+        given.exclude == AS_FAR_AS_TERMS ? reach_of(&reading->kind) : (int)given.exclude;
     mf_json_finish(object);
     const enum status entered = enter_kind(reading, faults);
     return status == STATUS_OK ? entered : status;
@@ -351,7 +351,7 @@ static enum status read_file(struct reading *reading, struct json_object *object
     if (mf_json_fault_count(object->document) > faults)
         return STATUS_OK;
     for (int k = 0; k < topology->kinds; k++) {
-        own->told[k] = no_chain();
+        own->given[k] = no_chain();
         reading->kind = topology->kind[k]; // borrowed
         TRY(mf_scene_molecules_warn(reading->molecules, &reading->kind));
     }
@@ -366,11 +366,11 @@ static enum status read_kinds(struct reading *reading, struct json_object *scene
     if (scene_molecules_are_of_file(&object))
         return read_file(reading, &object, scene, units);
     for (size_t n = 0; (name = mf_json_key(&object, n)); n++) {
-        if (n >= TOPOLOGY_MOST_KINDS || !mf_topology_is_name(name)) {
+        if (n >= TOPOLOGY_MAX_KINDS || !mf_topology_is_name(name)) {
             mf_json_fault(&object, name,
                           "expected at most %d kinds with names of up to %d letters, digits, _ and "
                           "-, " NAMES_RESERVED,
-                          TOPOLOGY_MOST_KINDS, TOPOLOGY_NAME_SIZE - 1);
+                          TOPOLOGY_MAX_KINDS, TOPOLOGY_NAME_SIZE - 1);
             mf_json_has(&object, name);
         } else {
             TRY(read_kind(reading, &object, name));
@@ -390,7 +390,7 @@ enum status mf_scene_kinds_read(struct scene_molecules *molecules, struct json_o
 enum status mf_scene_molecules_read(struct scene_molecules *molecules, struct json_object *scene,
                                     const struct scene_fitted *fitted,
                                     struct composition *composition, const struct units *units) {
-    static const double most = 1e8;
+    static const double max = 1e8;
     struct reading reading = {.molecules = molecules, .composition = composition, .fitted = fitted};
     const size_t faults = mf_json_fault_count(scene->document);
     for (int order = 0; order < BONDED_KINDS; order++)
@@ -403,9 +403,9 @@ enum status mf_scene_molecules_read(struct scene_molecules *molecules, struct js
     if (mf_json_fault_count(scene->document) == faults)
         check_use(&reading, scene);
     if (mf_json_fault_count(scene->document) == faults &&
-        (double)mf_composition_particles(composition) > most)
+        (double)mf_composition_particles(composition) > max)
         mf_json_fault(scene, "molecules", "they have %g beads; the most are %g",
-                      (double)mf_composition_particles(composition), most);
+                      (double)mf_composition_particles(composition), max);
     if (mf_json_fault_count(scene->document) > faults || !scene_has_molecules(molecules))
         return STATUS_OK;
     return mf_topology_complete(&molecules->molecules.topology, composition);

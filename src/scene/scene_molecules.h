@@ -21,8 +21,8 @@ struct scene_molecule {
 /// Groups whose law a fit looks for, so that the scene does not say it.
 struct scene_fitted {
     int count[BONDED_KINDS];
-    char name[BONDED_KINDS][MOLECULES_MOST_GROUPS][TOPOLOGY_NAME_SIZE];
-    bool told;          ///< by "unknowns"; else what has a target is fitted
+    char name[BONDED_KINDS][MOLECULES_MAX_GROUPS][TOPOLOGY_NAME_SIZE];
+    bool given;         ///< by "unknowns"; else what has a target is fitted
     bool count_follows; ///< a count of beads that the scene does not say is chosen later
     struct json_object from[BONDED_KINDS]; ///< the objects that name them, of those that there are
 };
@@ -30,7 +30,7 @@ struct scene_fitted {
 /// Owns the molecules; a scene's interactions borrow them. All zero: there are none.
 struct scene_molecules {
     struct molecules molecules;
-    struct scene_molecule told[TOPOLOGY_MOST_KINDS];
+    struct scene_molecule given[TOPOLOGY_MAX_KINDS];
     bool scattered; ///< a topology's molecules are not in the order of their kinds
     /// Of a data file of LAMMPS, else NULL: mf_lammps_topology_read; and its units.
     size_t *order;
@@ -109,14 +109,14 @@ enum status mf_scene_groups_check_fitted(const struct scene_fitted *fitted,
 bool mf_scene_groups_are_fitted(const struct molecules_group *group);
 
 /// Let groups of tables without points have a law of strength 0. Fails: NO_MEMORY.
-enum status mf_scene_groups_forget_tables(struct molecules *molecules) MUST_USE;
+enum status mf_scene_groups_clear_tables(struct molecules *molecules) MUST_USE;
 
 /// Give the groups of a topology the laws that the scene or a fit has for them, which are taken out
-/// of `told`: for a table a law of the scene, or none where a fit looks for it; the law of a
+/// of `given`: for a table a law of the scene, or none where a fit looks for it; the law of a
 /// topology stays, unless "unknowns" names the group. Faults, of groups that are not in the
 /// topology, whose law is told twice, and of tables that nobody knows, go to the document.
 /// Tested: cli/test_topologies.
-void mf_scene_groups_join(struct molecules *molecules, struct molecules *told,
+void mf_scene_groups_join(struct molecules *molecules, struct molecules *given,
                           const struct scene_fitted *fitted, struct json_object *scene);
 
 void mf_scene_groups_write(const struct molecules *molecules, int order,

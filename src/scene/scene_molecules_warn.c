@@ -47,7 +47,7 @@ static void warn_of_fene(struct scene_molecules *molecules, const struct topolog
 static enum status warn_of_pieces(struct scene_molecules *molecules,
                                   const struct topology_kind *kind) {
     int bead;
-    TRY(mf_topology_apart(kind, &bead));
+    TRY(mf_topology_find_disconnected(kind, &bead));
     if (bead > 0)
         warn(molecules, "molecules.%s: it is in pieces: no bonds join its beads 1 and %d",
              kind->name, bead + 1);

@@ -9,24 +9,24 @@ static void write_beads(const struct topology_kind *kind, const struct compositi
     const char **names = mf_memory_zeroed((size_t)kind->beads, sizeof *names);
     for (int k = 0; k < kind->beads && names; k++)
         names[k] = composition->name[kind->type[k]];
-    mf_json_put_texts(writer, "beads", names, names ? (size_t)kind->beads : 0);
+    mf_json_write_texts(writer, "beads", names, names ? (size_t)kind->beads : 0);
     mf_memory_free(names);
 }
 
 static void write_chain(const struct molecules *molecules, const struct topology_kind *kind,
-                        const struct scene_molecule *told, const struct composition *composition,
+                        const struct scene_molecule *given, const struct composition *composition,
                         struct json_writer *writer) {
     mf_json_begin(writer, "chain");
-    if (told->of_one_type) {
-        mf_json_put_text(writer, "type", composition->name[kind->type[0]]);
-        mf_json_put_integer(writer, "length", kind->beads);
+    if (given->of_one_type) {
+        mf_json_write_text(writer, "type", composition->name[kind->type[0]]);
+        mf_json_write_integer(writer, "length", kind->beads);
     } else {
         write_beads(kind, composition, writer);
     }
     for (int order = 0; order < BONDED_KINDS; order++)
-        if (told->group[order] >= 0)
-            mf_json_put_text(writer, mf_bonded_kinds[order]->name,
-                             molecules->group[order][told->group[order]].name);
+        if (given->group[order] >= 0)
+            mf_json_write_text(writer, mf_bonded_kinds[order]->name,
+                               molecules->group[order][given->group[order]].name);
     mf_json_end(writer);
 }
 
@@ -46,7 +46,7 @@ static void write_terms(const struct molecules *molecules, const struct topology
                 count++;
             }
         if (count > 0)
-            mf_json_put_rows(writer, molecules->group[order][g].name, rows, count, beads);
+            mf_json_write_rows(writer, molecules->group[order][g].name, rows, count, beads);
     }
     if (kind->terms[order] > 0)
         mf_json_end(writer);
@@ -61,13 +61,13 @@ void mf_scene_kinds_write(const struct scene_molecules *molecules,
     for (int k = 0; k < own->topology.kinds; k++) {
         const struct topology_kind *kind = &own->topology.kind[k];
         mf_json_begin(writer, kind->name);
-        mf_json_put_integer(writer, "count", (int64_t)ceil(share * (double)kind->count));
-        mf_json_put_integer(writer, "exclude", kind->exclude);
-        if (molecules->told[k].is_chain)
-            write_chain(own, kind, &molecules->told[k], composition, writer);
+        mf_json_write_integer(writer, "count", (int64_t)ceil(share * (double)kind->count));
+        mf_json_write_integer(writer, "exclude", kind->exclude);
+        if (molecules->given[k].is_chain)
+            write_chain(own, kind, &molecules->given[k], composition, writer);
         else
             write_beads(kind, composition, writer);
-        for (int order = 0; order < BONDED_KINDS && !molecules->told[k].is_chain; order++)
+        for (int order = 0; order < BONDED_KINDS && !molecules->given[k].is_chain; order++)
             write_terms(own, kind, order, writer);
         mf_json_end(writer);
     }

@@ -12,9 +12,9 @@
 #include <math.h>
 
 /// Coordinates may be unwrapped, but so far outside they are in other units, as nm and pm.
-static const double most_boxes = 100;
+static const double max_boxes = 100;
 
-/// Whether all coordinates of a file are within most_boxes of the box; tells of the first that is
+/// Whether all coordinates of a file are within max_boxes of the box; tells of the first that is
 /// not.
 static bool are_near(const struct scene *scene, const struct data_table *table,
                      struct json_object *particles) {
@@ -23,13 +23,13 @@ static bool are_near(const struct scene *scene, const struct data_table *table,
     for (size_t k = 0; k < table->rows; k++)
         for (int d = 0; d < box->dimensions; d++) {
             const double x = table->values[k * table->columns + (size_t)d];
-            if (fabs(x) <= most_boxes * box->length[d])
+            if (fabs(x) <= max_boxes * box->length[d])
                 continue;
             mf_json_fault(
                 particles, "file",
                 "%s:%zu: the coordinate %g is more than %g boxes of %g away; are the units "
                 "those of \"box\"?",
-                scene->setup.placement.file, table->line[k], x * length, most_boxes,
+                scene->setup.placement.file, table->line[k], x * length, max_boxes,
                 box->length[d] * length);
             return false;
         }
@@ -155,12 +155,12 @@ static void read_types(struct scene *scene, struct json_object *particles, bool 
         mf_json_fault(particles, "count",
                       "is given with \"types\", which has numbers, too: leave one of them out");
     for (const char *name; (name = mf_json_key(&types, n)); n++)
-        if (n < COMPOSITION_MOST_TYPES)
+        if (n < COMPOSITION_MAX_TYPES)
             read_type(scene, &types, name);
-    if (types.item && !counted && (n < fewest || n > COMPOSITION_MOST_TYPES))
+    if (types.item && !counted && (n < fewest || n > COMPOSITION_MAX_TYPES))
         mf_json_fault(particles, "types",
                       "a mixture has %zu to %d types, not %zu; \"count\" is for one", fewest,
-                      COMPOSITION_MOST_TYPES, n);
+                      COMPOSITION_MAX_TYPES, n);
     if (types.item == NULL || mf_json_fault_count(types.document) > faults)
         scene->setup.composition.types = 0; // not known
 }
@@ -224,7 +224,7 @@ enum status mf_scene_particles_read(struct scene *scene, struct json_object *obj
 static void write_single(const struct scene *scene, struct json_writer *writer) {
     const struct composition *composition = &scene->setup.composition;
     const struct topology *topology = &scene->molecules.molecules.topology;
-    int64_t single[COMPOSITION_MOST_TYPES], all = 0;
+    int64_t single[COMPOSITION_MAX_TYPES], all = 0;
     memcpy(single, composition->count, sizeof single);
     for (int k = 0; k < topology->kinds; k++)
         for (int bead = 0; bead < topology->kind[k].beads; bead++)
@@ -236,19 +236,19 @@ static void write_single(const struct scene *scene, struct json_writer *writer) 
     mf_json_begin(writer, "types");
     for (int type = 0; type < composition->types; type++)
         if (single[type] > 0)
-            mf_json_put_integer(writer, composition->name[type], single[type]);
+            mf_json_write_integer(writer, composition->name[type], single[type]);
     mf_json_end(writer);
 }
 
 static void write_count(const struct simulation_setup *setup, struct json_writer *writer) {
     const struct composition *composition = &setup->composition;
     if (!composition_is_mixed(composition)) {
-        mf_json_put_fields(writer, mf_placement_count_fields, &setup->placement);
+        mf_json_write_fields(writer, mf_placement_count_fields, &setup->placement);
         return;
     }
     mf_json_begin(writer, "types");
     for (int type = 0; type < composition->types; type++)
-        mf_json_put_number(writer, composition->name[type], (double)composition->count[type]);
+        mf_json_write_number(writer, composition->name[type], (double)composition->count[type]);
     mf_json_end(writer);
 }
 
@@ -258,7 +258,7 @@ void mf_scene_particles_write(const struct scene *scene, struct json_writer *wri
         write_single(scene, writer);
     else
         write_count(&scene->setup, writer);
-    mf_json_put_fields(writer, mf_placement_fields, &scene->setup.placement);
+    mf_json_write_fields(writer, mf_placement_fields, &scene->setup.placement);
     mf_scene_attributes_write(scene, writer);
     mf_json_end(writer);
 }

@@ -6,18 +6,18 @@
 
 #include <stdio.h>
 
-struct told_file {
+struct topology_file_input {
     char file[FIELD_TEXT_SIZE];
     int64_t exclude;
     int units;
 };
 static const char *const file_units[] = {"auto", "lj", "real", "metal", NULL};
-#define TOLD_FILE(member) .offset = offsetof(struct told_file, member)
+#define TOLD_FILE(member) .offset = offsetof(struct topology_file_input, member)
 const struct field mf_scene_file_fields[] = {
     {"file", FIELD_FILE, TOLD_FILE(file), .required = true, .unit = "",
      .help = "GROMACS topology (.top, .itp) or LAMMPS data file (.data, data.…)"},
-    {"exclude", FIELD_INTEGER, TOLD_FILE(exclude), .initial = TOPOLOGY_MOST_EXCLUDE, .minimum = 0,
-     .maximum = TOPOLOGY_MOST_EXCLUDE, .unit = "",
+    {"exclude", FIELD_INTEGER, TOLD_FILE(exclude), .initial = TOPOLOGY_MAX_EXCLUDE, .minimum = 0,
+     .maximum = TOPOLOGY_MAX_EXCLUDE, .unit = "",
      .help = "LAMMPS: largest number of bonds between beads without pair interactions; 3 as "
              "special_bonds 0 0 0"},
     {"units", FIELD_CHOICE, TOLD_FILE(units), .choices = file_units, .initial = 0, .unit = "",
@@ -27,15 +27,16 @@ const struct field mf_scene_file_fields[] = {
 
 /// A topology of GROMACS.
 static enum status read_top(struct scene_molecules *own, struct json_object *object,
-                            struct composition *composition, const struct told_file *told,
-                            const struct units *units, struct molecules *groups) {
+                            struct composition *composition,
+                            const struct topology_file_input *given, const struct units *units,
+                            struct molecules *groups) {
     struct gromacs_note note;
     *groups = own->molecules;
     own->molecules = (struct molecules){0};
     for (const char *const *key = (const char *const[]){"exclude", "units", NULL}; *key; key++)
         if (mf_json_has(object, *key))
             mf_json_fault(object, *key, "a GROMACS topology defines it; leave it out");
-    TRY(mf_gromacs_topology_read(&own->molecules, composition, told->file, units, &note));
+    TRY(mf_gromacs_topology_read(&own->molecules, composition, given->file, units, &note));
     snprintf(own->warning, sizeof own->warning, "%s", note.text);
     own->scattered = note.scattered;
     return STATUS_OK;
@@ -43,11 +44,12 @@ static enum status read_top(struct scene_molecules *own, struct json_object *obj
 
 /// A data file of LAMMPS, whose atoms keep their order for the file's coordinates.
 static enum status read_data(struct scene_molecules *own, struct composition *composition,
-                             const struct told_file *told, const struct units *units) {
-    TRY(mf_lammps_topology_units(told->file, told->units > 0 ? file_units[told->units] : "", units,
-                                 &own->order_units));
-    return mf_lammps_topology_read(&own->molecules, composition, told->file, units,
-                                   own->order_units, (int)told->exclude, &own->order, own->warning);
+                             const struct topology_file_input *given, const struct units *units) {
+    TRY(mf_lammps_topology_units(given->file, given->units > 0 ? file_units[given->units] : "",
+                                 units, &own->order_units));
+    return mf_lammps_topology_read(&own->molecules, composition, given->file, units,
+                                   own->order_units, (int)given->exclude, &own->order,
+                                   own->warning);
 }
 
 enum status mf_scene_topology_read(struct scene_molecules *molecules, struct json_object *object,
@@ -55,13 +57,13 @@ enum status mf_scene_topology_read(struct scene_molecules *molecules, struct jso
                                    struct composition *composition, const struct units *units) {
     const size_t faults = mf_json_fault_count(object->document);
     enum status status = STATUS_OK;
-    struct told_file told;
+    struct topology_file_input given;
     struct molecules groups = {0};
-    mf_json_fields(object, mf_scene_file_fields, &told);
+    mf_json_fields(object, mf_scene_file_fields, &given);
     if (mf_json_fault_count(object->document) == faults)
-        status = mf_lammps_topology_is(told.file)
-                     ? read_data(molecules, composition, &told, units)
-                     : read_top(molecules, object, composition, &told, units, &groups);
+        status = mf_lammps_topology_is(given.file)
+                     ? read_data(molecules, composition, &given, units)
+                     : read_top(molecules, object, composition, &given, units, &groups);
     mf_json_finish(object);
     if (status == STATUS_OK && molecules->order == NULL &&
         mf_json_fault_count(object->document) == faults)

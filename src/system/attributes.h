@@ -27,7 +27,7 @@ struct attributes_range {
 struct attributes_source {
     int ranges; ///< 0: none; 1: one range for all; else one for each type
     /// Numbers are uniform in it. Of a column: what the column spans.
-    struct attributes_range range[COMPOSITION_MOST_TYPES];
+    struct attributes_range range[COMPOSITION_MAX_TYPES];
     const double *column; ///< of a file, shape [count] by particle id, or NULL; borrowed
 };
 

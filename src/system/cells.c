@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-enum { WIDEST = 2 * CELLS_MOST_REACH + 1, MOST_ROWS = 2 * WIDEST * WIDEST + 2 };
+enum { WIDEST = 2 * CELLS_MAX_REACH + 1, MAX_ROWS = 2 * WIDEST * WIDEST + 2 };
 
 void mf_cells_clear(struct cells *cells) {
     mf_memory_free(cells->start);
@@ -23,10 +23,10 @@ enum status mf_cells_shape(struct cells *cells, const int count[3], size_t parti
         NEW_ARRAY(cells->order, particles);
         cells->particles = particles;
     }
-    if (cells->start == NULL || cells->start_room < total) {
+    if (cells->start == NULL || cells->start_capacity < total) {
         mf_memory_free(cells->start);
         NEW_ARRAY(cells->start, total + 2); // one more for counting
-        cells->start_room = total;
+        cells->start_capacity = total;
     }
     memcpy(cells->count, count, sizeof cells->count);
     cells->total = total;
@@ -50,9 +50,9 @@ void mf_cells_sort(struct cells *cells) {
 
 // Geometry ----------------------------------------------------------------------------------------
 
-void mf_cells_fit_box(const struct box *box, double width, double most, int count[3]) {
+void mf_cells_fit_box(const struct box *box, double width, double max, int count[3]) {
     for (int d = 0; d < 3; d++)
-        count[d] = d < box->dimensions ? cells_fit(box->length[d], width, most) : 1;
+        count[d] = d < box->dimensions ? cells_fit(box->length[d], width, max) : 1;
 }
 
 int mf_cells_around(const int count[3], const int cell[3], int dimensions,
@@ -92,8 +92,8 @@ static void add_row(const struct cells *cells, size_t first_cell, size_t end_cel
 }
 
 /// The cells of a column in reach of cell `at` of its own: one stretch, or two if it goes round.
-/// Cells before `least` are left out.
-static void add_column(const struct cells *cells, size_t column, int reach, int at, int least,
+/// Cells before `min` are left out.
+static void add_column(const struct cells *cells, size_t column, int reach, int at, int min,
                        struct cells_row *rows, size_t *count) {
     const int all = cells->count[2];
     const size_t base = column * (size_t)all;
@@ -107,7 +107,7 @@ static void add_column(const struct cells *cells, size_t column, int reach, int 
             stretch[1][0] = 0, stretch[1][1] = at + reach + 1 - all;
     }
     for (int n = 0; n < 2; n++) {
-        const int begin = stretch[n][0] > least ? stretch[n][0] : least;
+        const int begin = stretch[n][0] > min ? stretch[n][0] : min;
         if (begin < stretch[n][1])
             add_row(cells, base + (size_t)begin, base + (size_t)stretch[n][1], rows, count);
     }
@@ -115,7 +115,7 @@ static void add_column(const struct cells *cells, size_t column, int reach, int 
 
 /// Rows of all cells near this one that come after it, so that each pair is seen once.
 static size_t list_rows(const struct cells *cells, const int reach[3], const int cell[3],
-                        struct cells_row rows[MOST_ROWS]) {
+                        struct cells_row rows[MAX_ROWS]) {
     int first[WIDEST], second[WIDEST];
     size_t count = 0;
     const int own = cell[0] * cells->count[1] + cell[1];
@@ -133,7 +133,7 @@ static size_t list_rows(const struct cells *cells, const int reach[3], const int
 
 static void visit_cell(const struct cells *cells, const int reach[3], const int cell[3],
                        const struct cells_visitor *visitor) {
-    struct cells_row rows[MOST_ROWS];
+    struct cells_row rows[MAX_ROWS];
     const size_t number = cells_number(cells->count, cell);
     const size_t begin = cells->start[number], end = cells->start[number + 1];
     if (begin == end)

@@ -18,10 +18,10 @@
 struct cells {
     int count[3]; ///< along each axis, at least 1; the last is the fastest
     size_t total, particles;
-    uint32_t *start;   ///< shape [total + 1]: number in `order` of the first of each cell
-    uint32_t *of;      ///< shape [particles]: the cell of each, written by the caller
-    uint32_t *order;   ///< shape [particles]: by cell, and in each in the order that they had
-    size_t start_room; ///< cells that `start` has room for
+    uint32_t *start;       ///< shape [total + 1]: number in `order` of the first of each cell
+    uint32_t *of;          ///< shape [particles]: the cell of each, written by the caller
+    uint32_t *order;       ///< shape [particles]: by cell, and in each in the order that they had
+    size_t start_capacity; ///< cells that `start` has room for
 };
 
 /// Make room. Contents are lost. Fails: NO_MEMORY.
@@ -34,12 +34,12 @@ void mf_cells_sort(struct cells *cells);
 // Geometry ----------------------------------------------------------------------------------------
 
 /// Cells at least as wide as `width` that fit into a length, at most so many.
-static inline int cells_fit(double length, double width, double most) {
-    return (int)fmax(1, fmin(most, floor(length / width)));
+static inline int cells_fit(double length, double width, double max) {
+    return (int)fmax(1, fmin(max, floor(length / width)));
 }
 
 /// The same along all axes of a box; 1 along those that it has not.
-void mf_cells_fit_box(const struct box *box, double width, double most, int count[3]);
+void mf_cells_fit_box(const struct box *box, double width, double max, int count[3]);
 
 /// Of `count` cells along an axis the one at a share of its length; outside, the first or the last.
 static inline int cells_along(double share, int count) {
@@ -81,7 +81,7 @@ struct cells_visitor {
 };
 
 /// The most that a search may reach.
-enum { CELLS_MOST_REACH = 3 };
+enum { CELLS_MAX_REACH = 3 };
 
 /// Visit all pairs in cells at most `reach` from each other in a periodic box, each once. Where the
 /// cells in reach are all that there are, rows become all particles. Tested: test_frame_pairs.

@@ -13,9 +13,9 @@
 
 struct component_sites {
     struct composition components;
-    struct whole_molecules whole;            ///< without molecules all zero
-    int kinds;                               ///< of molecules: the first components
-    uint32_t single[COMPOSITION_MOST_TYPES]; ///< id of each component's first single bead
+    struct whole_molecules whole;           ///< without molecules all zero
+    int kinds;                              ///< of molecules: the first components
+    uint32_t single[COMPOSITION_MAX_TYPES]; ///< id of each component's first single bead
     size_t beads;
     uint32_t *place; ///< shape [beads]: of an id among the particles; NULL with molecules
     double *site[3]; ///< shape [sites], component after component [λ]

@@ -15,7 +15,7 @@ int64_t mf_components_single(const struct composition *beads, size_t count,
 
 /// Returns false if there are too many.
 static bool add(struct composition *components, const char *name, int64_t sites) {
-    if (components->types == COMPOSITION_MOST_TYPES)
+    if (components->types == COMPOSITION_MAX_TYPES)
         return false;
     snprintf(components->name[components->types], COMPOSITION_NAME_SIZE, "%.*s",
              COMPOSITION_NAME_SIZE - 1, name);
@@ -27,7 +27,7 @@ static enum status fail_of_many(void) {
     return mf_status_fail(
         STATUS_BAD_INPUT,
         "kinds of molecules and types of single beads are more than %d components",
-        COMPOSITION_MOST_TYPES);
+        COMPOSITION_MAX_TYPES);
 }
 
 /// Two pairs of one name, as those of a kind and a type that are called alike.

@@ -11,7 +11,7 @@
 /// Names of the components and how many sites each has. One component alone needs no name.
 /// @param[in] beads     types and numbers of all beads; `count` of one type where it is not mixed
 /// @param[in] topology  of the molecules, whose ids need not be known yet, or NULL
-/// Fails: BAD_INPUT, without a place, for more than COMPOSITION_MOST_TYPES components, a kind whose
+/// Fails: BAD_INPUT, without a place, for more than COMPOSITION_MAX_TYPES components, a kind whose
 /// name is too long for one, or a name that two pairs of components have. Tested: test_components.
 enum status mf_components_find(struct composition *components, const struct composition *beads,
                                size_t count, const struct topology *topology) MUST_USE;

@@ -41,8 +41,8 @@ double mf_composition_distortion(const struct composition *from, const struct co
     return largest;
 }
 
-int64_t mf_composition_least_particles(const struct composition *composition, int64_t particles,
-                                       double distortion) {
+int64_t mf_composition_min_particles(const struct composition *composition, int64_t particles,
+                                     double distortion) {
     for (;; particles++) { // a multiple of the whole is exact
         const struct composition scaled = mf_composition_scaled(composition, particles);
         if (mf_composition_distortion(composition, &scaled) <= distortion)

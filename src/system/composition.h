@@ -10,17 +10,17 @@
 #include <stdint.h>
 
 enum {
-    COMPOSITION_MOST_TYPES = 8,
-    COMPOSITION_MOST_PAIRS = COMPOSITION_MOST_TYPES * (COMPOSITION_MOST_TYPES + 1) / 2,
+    COMPOSITION_MAX_TYPES = 8,
+    COMPOSITION_MAX_PAIRS = COMPOSITION_MAX_TYPES * (COMPOSITION_MAX_TYPES + 1) / 2,
     COMPOSITION_NAME_SIZE = 16,
     COMPOSITION_PAIR_NAME_SIZE = 2 * COMPOSITION_NAME_SIZE,
 };
 
 /// Plain data; all zero is a one-component system.
 struct composition {
-    int types;                             ///< 0 or 1: a one-component system
-    int64_t count[COMPOSITION_MOST_TYPES]; ///< beads of each type
-    char name[COMPOSITION_MOST_TYPES][COMPOSITION_NAME_SIZE];
+    int types;                            ///< 0 or 1: a one-component system
+    int64_t count[COMPOSITION_MAX_TYPES]; ///< beads of each type
+    char name[COMPOSITION_MAX_TYPES][COMPOSITION_NAME_SIZE];
 };
 
 /// `count` beads of one type without a name.
@@ -39,8 +39,8 @@ double mf_composition_distortion(const struct composition *from, const struct co
 
 /// The smallest number of beads from `particles` on for which mf_composition_scaled changes no
 /// share by more than `distortion`.
-int64_t mf_composition_least_particles(const struct composition *composition, int64_t particles,
-                                       double distortion);
+int64_t mf_composition_min_particles(const struct composition *composition, int64_t particles,
+                                     double distortion);
 
 static inline bool composition_is_mixed(const struct composition *composition) {
     return composition->types > 1;

@@ -17,13 +17,13 @@
 static const double fewest_in_cell = 5;
 
 /// Cells for each particle, at most: more would only be empty.
-static const double most_cells = 4;
+static const double max_cells = 4;
 
 static void shape_cells(struct neighbours *neighbours, const struct box *box, int count[3]) {
-    const double room = mf_box_volume(box) / (double)neighbours->count; // of a particle
-    const double most = neighbours->range > 0 ? most_cells : 1 / fewest_in_cell;
-    const double narrowest = pow(room / most, 1.0 / box->dimensions);
-    double in_cell = pow(neighbours->range, box->dimensions) / room;
+    const double capacity = mf_box_volume(box) / (double)neighbours->count; // of a particle
+    const double max = neighbours->range > 0 ? max_cells : 1 / fewest_in_cell;
+    const double narrowest = pow(capacity / max, 1.0 / box->dimensions);
+    double in_cell = pow(neighbours->range, box->dimensions) / capacity;
     for (int d = 2; d >= 0; d--) {
         neighbours->range_cells[d] = count[d] = 1;
         if (d >= box->dimensions)
@@ -31,7 +31,7 @@ static void shape_cells(struct neighbours *neighbours, const struct box *box, in
         if (in_cell / 2 >= fewest_in_cell) {
             in_cell /= 2;
             neighbours->range_cells[d] =
-                d == 2 ? 2 * NEIGHBOURS_MOST_RANGE_CELLS : NEIGHBOURS_MOST_RANGE_CELLS;
+                d == 2 ? 2 * NEIGHBOURS_MAX_RANGE_CELLS : NEIGHBOURS_MAX_RANGE_CELLS;
         }
         const double width = fmax(neighbours->range / neighbours->range_cells[d], narrowest);
         count[d] = cells_fit(box->length[d], width, INT32_MAX);
@@ -44,7 +44,7 @@ static void divide(struct neighbours *neighbours) {
     int parts = planes / neighbours->range_cells[0] / 2 * 2;
     if (neighbours->kind == NEIGHBOURS_FULL || parts < 4)
         parts = 1;
-    neighbours->parts = parts < NEIGHBOURS_MOST_PARTS ? parts : NEIGHBOURS_MOST_PARTS;
+    neighbours->parts = parts < NEIGHBOURS_MAX_PARTS ? parts : NEIGHBOURS_MAX_PARTS;
     for (int p = 0; p < neighbours->parts; p++)
         neighbours->part[p] =
             (struct neighbours_part){.first_plane = planes * p / neighbours->parts,

@@ -46,7 +46,7 @@ struct neighbours_rows {
 enum { NEIGHBOURS_BATCH = 512 };
 
 /// Parts enough for the processors of a desktop computer.
-enum { NEIGHBOURS_MOST_PARTS = 64 };
+enum { NEIGHBOURS_MAX_PARTS = 64 };
 
 struct neighbours {
     enum neighbours_kind kind;
@@ -65,7 +65,7 @@ struct neighbours {
     /// 1, or an even number of at least 4, by the cells alone: threads take the even parts, then
     /// the odd ones, and never meet.
     int parts;
-    struct neighbours_part part[NEIGHBOURS_MOST_PARTS];
+    struct neighbours_part part[NEIGHBOURS_MAX_PARTS];
 };
 
 /// Prepare for particles in `box`. Fails: NO_MEMORY; BAD_INPUT if the box is shorter than twice the

@@ -9,8 +9,8 @@
 
 #include <stdlib.h>
 
-enum { WIDEST = 2 * NEIGHBOURS_MOST_RANGE_CELLS + 1 };
-_Static_assert(PAIR_SEARCH_MOST_ROWS >= WIDEST * WIDEST, "rows in range");
+enum { WIDEST = 2 * NEIGHBOURS_MAX_RANGE_CELLS + 1 };
+_Static_assert(PAIR_SEARCH_MAX_ROWS >= WIDEST * WIDEST, "rows in range");
 
 // Sorting -----------------------------------------------------------------------------------------
 

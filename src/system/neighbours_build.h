@@ -5,7 +5,7 @@
 #include "system/neighbours.h"
 
 /// Cells are at least as wide as the range, or as half of it: neighbours lie within `range_cells`.
-enum { NEIGHBOURS_MOST_RANGE_CELLS = 2 };
+enum { NEIGHBOURS_MAX_RANGE_CELLS = 2 };
 
 /// Counting sort by cell: fills neighbours->cells. Stable, so sorted stays sorted.
 void mf_neighbours_sort(struct neighbours *neighbours, const struct particles *particles);

@@ -21,10 +21,10 @@ enum status mf_neighbours_init_rows(struct neighbours *neighbours, const struct 
         rows->wrap |= neighbours_span_axis(neighbours, d);
     rows->margin = neighbours_span_axis(neighbours, 2) ? 0 : neighbours->range_cells[2];
     const size_t images = rows->margin > 0 ? 2 * neighbours->count : 0;
-    const size_t room = neighbours->count + images + row_count(neighbours) * ROW_PADDING;
+    const size_t capacity = neighbours->count + images + row_count(neighbours) * ROW_PADDING;
     for (int d = 0; d < 3; d++)
-        NEW_ARRAY(rows->place[d], room);
-    NEW_ARRAY(rows->particle, room);
+        NEW_ARRAY(rows->place[d], capacity);
+    NEW_ARRAY(rows->particle, capacity);
     rows->cells = (size_t)(neighbours->cells.count[2] + 2 * rows->margin);
     NEW_ARRAY(rows->start, row_count(neighbours) * (rows->cells + 1));
 done:

@@ -4,7 +4,7 @@
 
 #include "system/neighbours.h"
 
-enum { PAIR_SEARCH_MOST_ROWS = 25 };
+enum { PAIR_SEARCH_MAX_ROWS = 25 };
 
 /// The cells of a row, and the rows that are searched for their neighbours, itself first.
 struct pair_search_rows {
@@ -16,7 +16,7 @@ struct pair_search_rows {
         const uint32_t *start; ///< of the first cell in the box: neighbours_rows.start
         int depth;             ///< cells to search on both sides
         float shift[2];        ///< of this image along the first two axes [λ]
-    } row[PAIR_SEARCH_MOST_ROWS];
+    } row[PAIR_SEARCH_MAX_ROWS];
 };
 
 /// Append the neighbours of the particles of a row to the list from place `used` on, and set their

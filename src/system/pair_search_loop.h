@@ -68,7 +68,7 @@ LANES_INLINE size_t search_fill_rows(struct neighbours *neighbours, size_t k, si
 /// Places around a cell, a run from each row. In a half list the first begins with the cell itself;
 /// the others are wanted whole.
 struct pair_search_runs {
-    uint32_t begin[PAIR_SEARCH_MOST_ROWS], end[PAIR_SEARCH_MOST_ROWS];
+    uint32_t begin[PAIR_SEARCH_MAX_ROWS], end[PAIR_SEARCH_MAX_ROWS];
     size_t places; ///< in all of them
 };
 

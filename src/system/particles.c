@@ -111,13 +111,13 @@ static size_t size_of(const struct particles_attribute *attribute) {
 
 enum status mf_particles_add_attribute(struct particles *particles,
                                        const struct particles_attribute *attribute, int *number) {
-    if (particles->attributes == PARTICLES_MOST_ATTRIBUTES)
+    if (particles->attributes == PARTICLES_MAX_ATTRIBUTES)
         return mf_status_fail(STATUS_BAD_INPUT, "%s: particles have at most %d attributes",
-                              attribute->name, PARTICLES_MOST_ATTRIBUTES);
+                              attribute->name, PARTICLES_MAX_ATTRIBUTES);
     *number = particles->attributes++;
     struct particles_attribute *own = &particles->attribute[*number];
     *own = *attribute;
-    for (int c = 0; c < PARTICLES_MOST_COMPONENTS; c++)
+    for (int c = 0; c < PARTICLES_MAX_COMPONENTS; c++)
         own->value[c] = NULL;
     for (int c = 0; c < own->components; c++) {
         own->value[c] = mf_memory_zeroed(particles->count, size_of(own));

@@ -38,7 +38,7 @@ struct particle_precise_motion {
 
 /// What a particle may have besides: an orientation, a radius, a number that an integrator keeps.
 /// Nothing is allocated that nobody asks for.
-enum { PARTICLES_MOST_ATTRIBUTES = 8, PARTICLES_MOST_COMPONENTS = 4 };
+enum { PARTICLES_MAX_ATTRIBUTES = 8, PARTICLES_MAX_COMPONENTS = 4 };
 enum particles_type { PARTICLES_DOUBLE, PARTICLES_FLOAT, PARTICLES_WORD };
 struct particles_attribute {
     const char *name; ///< as a scene and tables have it
@@ -46,7 +46,7 @@ struct particles_attribute {
     int components;
     /// Shape [components][count]: double, float or uint32_t. Sorting exchanges the arrays, so take
     /// them anew from here in every step.
-    void *value[PARTICLES_MOST_COMPONENTS];
+    void *value[PARTICLES_MAX_COMPONENTS];
 };
 
 struct particles {
@@ -71,7 +71,7 @@ struct particles {
     const struct topology *topology; ///< molecules that they are, or NULL; borrowed
     uint32_t *place;                 ///< shape [count], of molecules: where each id stands, or NULL
     uint64_t orders;                 ///< changes whenever the order of the particles does
-    struct particles_attribute attribute[PARTICLES_MOST_ATTRIBUTES];
+    struct particles_attribute attribute[PARTICLES_MAX_ATTRIBUTES];
     int attributes;
 };
 
@@ -92,7 +92,7 @@ enum status mf_particles_join(struct particles *particles,
 /// Give the particles one attribute more, all 0: from now on it is sorted and saved with the rest.
 /// @param[in]  attribute  name, type and components; the name lives as long as the particles
 /// @param[out] number     its place in `attribute`, which stays
-/// Fails: NO_MEMORY; BAD_INPUT if there are PARTICLES_MOST_ATTRIBUTES. Tested: test_attributes.
+/// Fails: NO_MEMORY; BAD_INPUT if there are PARTICLES_MAX_ATTRIBUTES. Tested: test_attributes.
 enum status mf_particles_add_attribute(struct particles *particles,
                                        const struct particles_attribute *attribute,
                                        int *number) MUST_USE;
@@ -131,7 +131,7 @@ void mf_particles_permute(struct particles *particles, const uint32_t *order);
 
 /// @name Restart
 /// What a checkpoint must keep: positions, velocities, forces, images, ids and all attributes.
-enum { PARTICLES_SPANS = 13 + PARTICLES_MOST_ATTRIBUTES * PARTICLES_MOST_COMPONENTS };
+enum { PARTICLES_SPANS = 13 + PARTICLES_MAX_ATTRIBUTES * PARTICLES_MAX_COMPONENTS };
 size_t mf_particles_spans(struct particles *particles, struct memory_span *spans);
 
 /// How the components of the first velocities are distributed.

@@ -37,15 +37,15 @@ static void lattice_shape(const struct particles *particles, size_t cells[3]) {
     const struct box *box = &particles->box;
     double spacing = pow(mf_box_volume(box) / (double)particles->count, 1.0 / box->dimensions);
     for (;; spacing *= 0.999) {
-        double room = 1;
+        double capacity = 1;
         for (int d = 0; d < 3; d++) {
             // A part in 10⁹ forgives the rounding of count = n³ and length = n · spacing.
             cells[d] = d < box->dimensions
                            ? (size_t)fmax(1, floor(box->length[d] / spacing * (1 + 1e-9)))
                            : 1;
-            room *= (double)cells[d];
+            capacity *= (double)cells[d];
         }
-        if (room >= (double)particles->count)
+        if (capacity >= (double)particles->count)
             return;
     }
 }

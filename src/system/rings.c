@@ -47,20 +47,20 @@ static int trace_rings(const struct topology_kind *kind, const int *parent, cons
 }
 
 /// The least bead that is joined to each by rings.
-static void find_clumps(struct ring_kind *own, int beads) {
+static void find_ring_systems(struct ring_kind *own, int beads) {
     for (int bead = 0; bead < beads; bead++)
-        own->clump[bead] = -1;
+        own->ring_system[bead] = -1;
     for (int k = 0; k < own->start[own->rings]; k++)
-        own->clump[own->bead[k]] = own->bead[k];
+        own->ring_system[own->bead[k]] = own->bead[k];
     for (bool changed = true; changed;) {
         changed = false;
         for (int n = 0; n < own->rings; n++) {
-            int least = beads;
+            int min = beads;
             for (int k = own->start[n]; k < own->start[n + 1]; k++)
-                least = own->clump[own->bead[k]] < least ? own->clump[own->bead[k]] : least;
+                min = own->ring_system[own->bead[k]] < min ? own->ring_system[own->bead[k]] : min;
             for (int k = own->start[n]; k < own->start[n + 1]; k++) {
-                changed |= own->clump[own->bead[k]] != least;
-                own->clump[own->bead[k]] = least;
+                changed |= own->ring_system[own->bead[k]] != min;
+                own->ring_system[own->bead[k]] = min;
             }
         }
     }
@@ -78,9 +78,9 @@ static enum status find_kind(const struct topology_kind *kind, const int *order,
         goto done;
     NEW_ARRAY(own->start, own->rings + 1);
     NEW_ARRAY(own->bead, beads);
-    NEW_ARRAY(own->clump, kind->beads);
+    NEW_ARRAY(own->ring_system, kind->beads);
     trace_rings(kind, parent, depth, own->start, own->bead, &own->rings);
-    find_clumps(own, kind->beads);
+    find_ring_systems(own, kind->beads);
 done:
     mf_memory_free(depth);
     return status;
@@ -109,7 +109,7 @@ enum status mf_rings_init(struct rings *rings, const struct topology *topology) 
     *rings = (struct rings){0};
     CHECK(mf_whole_molecules_init(&rings->whole, topology));
     for (int k = 0; k < topology->kinds; k++) {
-        const size_t first = (size_t)k * rings->whole.most_beads;
+        const size_t first = (size_t)k * rings->whole.max_beads;
         struct ring_kind *own = &rings->kind[k];
         CHECK(find_kind(&topology->kind[k], rings->whole.order + first, rings->whole.parent + first,
                         own));
@@ -128,10 +128,10 @@ done:
 }
 
 void mf_rings_clear(struct rings *rings) {
-    for (int k = 0; k < TOPOLOGY_MOST_KINDS; k++) {
+    for (int k = 0; k < TOPOLOGY_MAX_KINDS; k++) {
         mf_memory_free(rings->kind[k].start);
         mf_memory_free(rings->kind[k].bead);
-        mf_memory_free(rings->kind[k].clump);
+        mf_memory_free(rings->kind[k].ring_system);
     }
     mf_whole_molecules_clear(&rings->whole);
     mf_memory_free(rings->ring);
@@ -188,7 +188,7 @@ static void look_at(const struct rings *rings, struct ring *ring, const double o
 /// Place of a molecule's first bead, from which the others are measured.
 static void find_origin(const struct rings *rings, const struct particles *particles, int kind,
                         int64_t m, double origin[3]) {
-    const int first = rings->whole.order[(size_t)kind * rings->whole.most_beads];
+    const int first = rings->whole.order[(size_t)kind * rings->whole.max_beads];
     const uint32_t id = topology_id(&rings->whole.topology->kind[kind], m, first);
     for (int d = 0; d < 3; d++)
         origin[d] = particles->position[d][particles->place[id]];
@@ -268,15 +268,15 @@ static bool are_linked(const struct ring *one, const struct ring *other, const s
     return false;
 }
 
-static int clump_of(const struct rings *rings, const struct ring *ring) {
+static int ring_system_of(const struct rings *rings, const struct ring *ring) {
     const struct ring_kind *own = &rings->kind[ring->kind];
-    return own->clump[own->bead[own->start[ring->number]]];
+    return own->ring_system[own->bead[own->start[ring->number]]];
 }
 
-static bool same_clump(const struct rings *rings, const struct ring *one,
-                       const struct ring *other) {
+static bool same_ring_system(const struct rings *rings, const struct ring *one,
+                             const struct ring *other) {
     return one->kind == other->kind && one->molecule == other->molecule &&
-           clump_of(rings, one) == clump_of(rings, other);
+           ring_system_of(rings, one) == ring_system_of(rings, other);
 }
 
 static int compare_places(const void *one, const void *other) {
@@ -304,7 +304,7 @@ static void choose_one(struct rings *rings, size_t a, size_t b, const struct box
                        bool second) {
     struct ring *one = &rings->ring[a < b ? a : b], *other = &rings->ring[a < b ? b : a];
     double shift[3], centre[3];
-    if (one->chosen || other->chosen || same_clump(rings, one, other) ||
+    if (one->chosen || other->chosen || same_ring_system(rings, one, other) ||
         !are_linked(one, other, box, shift))
         return;
     for (int d = 0; d < 3; d++)
@@ -333,13 +333,13 @@ size_t mf_rings_choose_linked(struct rings *rings, const struct particles *parti
 
 // Shrinking ---------------------------------------------------------------------------------------
 
-static void shrink_clump(const struct rings *rings, const struct ring *chosen,
-                         struct particles *particles, double scale) {
+static void shrink_ring_system(const struct rings *rings, const struct ring *chosen,
+                               struct particles *particles, double scale) {
     const struct ring_kind *own = &rings->kind[chosen->kind];
     const struct topology_kind *kind = &rings->whole.topology->kind[chosen->kind];
     const struct ring *first = chosen - chosen->number;
     for (const struct ring *ring = first; ring < first + own->rings; ring++)
-        for (int k = 0; k < ring->corners && same_clump(rings, ring, chosen); k++) {
+        for (int k = 0; k < ring->corners && same_ring_system(rings, ring, chosen); k++) {
             const int bead = own->bead[own->start[ring->number] + k];
             const uint32_t place = particles->place[topology_id(kind, ring->molecule, bead)];
             for (int d = 0; d < 3; d++)
@@ -353,8 +353,8 @@ void mf_rings_shrink_chosen(const struct rings *rings, struct particles *particl
         bool before = !rings->ring[r].chosen; // or with another ring of its clump
         for (size_t other = r - (size_t)rings->ring[r].number; other < r && !before; other++)
             before = rings->ring[other].chosen &&
-                     same_clump(rings, &rings->ring[other], &rings->ring[r]);
+                     same_ring_system(rings, &rings->ring[other], &rings->ring[r]);
         if (!before)
-            shrink_clump(rings, &rings->ring[r], particles, scale);
+            shrink_ring_system(rings, &rings->ring[r], particles, scale);
     }
 }

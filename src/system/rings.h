@@ -21,10 +21,11 @@ struct ring {
 struct rings {
     struct ring_kind {
         int rings;
-        int *start; ///< shape [rings + 1]
-        int *bead;  ///< those of ring n in their order: bead[start[n] … start[n + 1])
-        int *clump; ///< shape [beads]: the same for beads of rings that share beads; −1: in no ring
-    } kind[TOPOLOGY_MOST_KINDS];
+        int *start;       ///< shape [rings + 1]
+        int *bead;        ///< those of ring n in their order: bead[start[n] … start[n + 1])
+        int *ring_system; ///< shape [beads]: the same for beads of rings that share beads; −1: in
+                          ///< no ring
+    } kind[TOPOLOGY_MAX_KINDS];
     struct whole_molecules whole;
     size_t count;        ///< rings of all molecules; 0: nothing else is there
     struct ring *ring;   ///< shape [count]

@@ -193,7 +193,7 @@ done:
     return status;
 }
 
-enum status mf_topology_apart(const struct topology_kind *kind, int *bead) {
+enum status mf_topology_find_disconnected(const struct topology_kind *kind, int *bead) {
     enum status status = STATUS_OK;
     struct search search;
     struct topology_kind whole = *kind;
@@ -224,16 +224,16 @@ enum status mf_topology_count_excluded(const struct topology_kind *kind, int exc
 // Numbers of beads --------------------------------------------------------------------------------
 
 /// Ids of a kind's beads, given the next one of each type, which go on.
-static enum status number_beads(struct topology_kind *kind, int64_t next[COMPOSITION_MOST_TYPES]) {
+static enum status number_beads(struct topology_kind *kind, int64_t next[COMPOSITION_MAX_TYPES]) {
     enum status status = STATUS_OK;
-    int64_t of_type[COMPOSITION_MOST_TYPES] = {0};
+    int64_t of_type[COMPOSITION_MAX_TYPES] = {0};
     NEW_ARRAY(kind->id, kind->beads);
     NEW_ARRAY(kind->step, kind->beads);
     for (int bead = 0; bead < kind->beads; bead++)
         kind->id[bead] = (uint32_t)(next[kind->type[bead]] + of_type[kind->type[bead]]++);
     for (int bead = 0; bead < kind->beads; bead++)
         kind->step[bead] = (uint32_t)of_type[kind->type[bead]];
-    for (int type = 0; type < COMPOSITION_MOST_TYPES; type++)
+    for (int type = 0; type < COMPOSITION_MAX_TYPES; type++)
         next[type] += of_type[type] * kind->count;
 done:
     return status;
@@ -273,7 +273,7 @@ static void enter_excluded(struct topology *topology) {
 
 enum status mf_topology_complete(struct topology *topology, const struct composition *composition) {
     enum status status = STATUS_OK;
-    int64_t next[COMPOSITION_MOST_TYPES] = {0};
+    int64_t next[COMPOSITION_MAX_TYPES] = {0};
     for (int type = 1; type < composition->types; type++)
         next[type] = next[type - 1] + composition->count[type - 1];
     topology->particles = (size_t)mf_composition_particles(composition);
@@ -302,7 +302,8 @@ int mf_topology_beads_of(const struct topology_kind *kind, int type) {
     return beads;
 }
 
-double mf_topology_pairs_inside(const struct topology *topology, const int type[2], bool excluded) {
+double mf_topology_intramolecular_pairs(const struct topology *topology, const int type[2],
+                                        bool excluded) {
     double pairs = 0;
     for (int k = 0; k < topology->kinds; k++) {
         const struct topology_kind *kind = &topology->kind[k];

@@ -15,14 +15,14 @@
 #include <stddef.h>
 
 enum {
-    TOPOLOGY_MOST_KINDS = 16,
-    TOPOLOGY_MOST_EXCLUDE = 3,
+    TOPOLOGY_MAX_KINDS = 16,
+    TOPOLOGY_MAX_EXCLUDE = 3,
     TOPOLOGY_NAME_SIZE = 32,
     TOPOLOGY_TERM_SIZE = 64, ///< of its beads as a text
 };
 
 struct topology_term {
-    int bead[BONDED_MOST_TERM_BEADS]; ///< of the molecule, from 0
+    int bead[BONDED_MAX_TERM_BEADS]; ///< of the molecule, from 0
     int group;
 };
 
@@ -45,7 +45,7 @@ struct topology_kind {
 
 struct topology {
     int kinds;
-    struct topology_kind kind[TOPOLOGY_MOST_KINDS];
+    struct topology_kind kind[TOPOLOGY_MAX_KINDS];
     int64_t molecules;  ///< of all kinds
     size_t particles;   ///< with single beads
     uint32_t *molecule; ///< shape [particles]: number of the molecule by id; a single bead has one
@@ -79,7 +79,7 @@ const struct topology_term *mf_topology_unbonded(const struct topology_kind *kin
 
 /// The first bead that no bonds join to the first one of its kind, through whichever beads, or −1.
 /// Fails: NO_MEMORY. Tested: test_topology.
-enum status mf_topology_apart(const struct topology_kind *kind, int *bead) MUST_USE;
+enum status mf_topology_find_disconnected(const struct topology_kind *kind, int *bead) MUST_USE;
 
 /// How many beads are excluded from pairs with each bead of a kind, in all, if pairs at most
 /// `exclude` bonds apart are. Fails: NO_MEMORY. Tested: test_topology.
@@ -120,7 +120,8 @@ int mf_topology_beads_of(const struct topology_kind *kind, int type);
 
 /// Ordered pairs of beads of two types, a bead of the first with one of the second, that are in one
 /// molecule, in all molecules: those that are excluded, or all. Tested: test_topology.
-double mf_topology_pairs_inside(const struct topology *topology, const int type[2], bool excluded);
+double mf_topology_intramolecular_pairs(const struct topology *topology, const int type[2],
+                                        bool excluded);
 
 /// Whether the pair of two ids is excluded. NULL: no molecules.
 bool mf_topology_excludes(const struct topology *topology, uint32_t i, uint32_t j);

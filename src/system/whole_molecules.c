@@ -9,14 +9,14 @@ enum status mf_whole_molecules_init(struct whole_molecules *whole,
     const size_t kinds = (size_t)topology->kinds;
     *whole = (struct whole_molecules){.topology = topology};
     for (size_t k = 0; k < kinds; k++)
-        if ((size_t)topology->kind[k].beads > whole->most_beads)
-            whole->most_beads = (size_t)topology->kind[k].beads;
-    NEW_ARRAY(whole->place, whole->most_beads);
-    NEW_ARRAY(whole->parent, kinds * whole->most_beads);
-    NEW_ARRAY(whole->order, kinds * whole->most_beads);
+        if ((size_t)topology->kind[k].beads > whole->max_beads)
+            whole->max_beads = (size_t)topology->kind[k].beads;
+    NEW_ARRAY(whole->place, whole->max_beads);
+    NEW_ARRAY(whole->parent, kinds * whole->max_beads);
+    NEW_ARRAY(whole->order, kinds * whole->max_beads);
     for (size_t k = 0; k < kinds; k++)
-        mf_topology_walk(&topology->kind[k], whole->order + k * whole->most_beads,
-                         whole->parent + k * whole->most_beads);
+        mf_topology_walk(&topology->kind[k], whole->order + k * whole->max_beads,
+                         whole->parent + k * whole->max_beads);
 done:
     return status;
 }
@@ -31,8 +31,8 @@ void mf_whole_molecules_clear(struct whole_molecules *whole) {
 void mf_whole_molecules_make(struct whole_molecules *whole, const struct particles *particles,
                              int k, int64_t m) {
     const struct topology_kind *kind = &whole->topology->kind[k];
-    const int *order = whole->order + (size_t)k * whole->most_beads;
-    const int *parent = whole->parent + (size_t)k * whole->most_beads;
+    const int *order = whole->order + (size_t)k * whole->max_beads;
+    const int *parent = whole->parent + (size_t)k * whole->max_beads;
     for (int n = 0; n < kind->beads; n++) {
         const int bead = order[n], from = parent[bead] < 0 ? order[0] : parent[bead];
         const size_t here = particles->place[topology_id(kind, m, bead)];

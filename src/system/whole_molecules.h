@@ -8,7 +8,7 @@
 
 struct whole_molecules {
     const struct topology *topology; ///< borrowed
-    size_t most_beads;               ///< of a molecule
+    size_t max_beads;                ///< of a molecule
     double (*place)[3]; ///< shape [beads] of the last one made: from its first bead [λ]
     int *parent;        ///< shape [kinds, beads]: placed before it and bonded to it, or −1
     int *order;         ///< shape [kinds, beads]: bead that is placed as number n

@@ -9,7 +9,7 @@
 #include <string.h>
 
 /// Bins beyond these are joined; standard error at the peak, in peaks, if nothing tells it.
-enum { MOST_BINS = 200, FEWEST_ROWS = 8 };
+enum { MAX_BINS = 200, FEWEST_ROWS = 8 };
 static const double assumed_error = 0.01;
 
 /// By which the integral of p may differ from 1.
@@ -43,7 +43,7 @@ static enum status read_columns(const struct target_bonded_parameters *p, int or
                                      .name = name,
                                      .x_unit = mf_bonded_kinds[order]->unit,
                                      .y_unit = mf_bonded_kinds[order]->density,
-                                     .least = -INFINITY,
+                                     .min = -INFINITY,
                                      .x = p->q_column,
                                      .y = p->value_column,
                                      .error = p->error_column};
@@ -189,8 +189,8 @@ static void trim(struct target_rows *rows) {
 /// where p is above a twentieth of its peak; NaN if that does not tell.
 static enum status find_scatter(const struct target_rows *rows, int order, int dimensions,
                                 const struct bonded_bins *bins, double *square) {
-    enum { TAPS = 5, LEAST_DIFFERENCES = 8 };
-    static const double taps[TAPS] = {1, -4, 6, -4, 1}, least = 0.05;
+    enum { TAPS = 5, MIN_DIFFERENCES = 8 };
+    static const double taps[TAPS] = {1, -4, 6, -4, 1}, min = 0.05;
     enum status status = STATUS_OK;
     double peak = 0, *all = NULL;
     size_t count = 0;
@@ -207,10 +207,10 @@ static enum status find_scatter(const struct target_rows *rows, int order, int d
             difference += taps[j] * log(p / jacobian);
             variance += taps[j] * taps[j] / p;
         }
-        if (lowest > least * peak)
+        if (lowest > min * peak)
             all[count++] = difference * difference / variance;
     }
-    if (count >= LEAST_DIFFERENCES)
+    if (count >= MIN_DIFFERENCES)
         *square = mf_target_rows_robust_mean(all, count);
 done:
     mf_memory_free(all);
@@ -253,11 +253,11 @@ static enum status set_errors(struct target_bonded *target, struct target_rows *
 /// and rows whose number has no such divisor stay as they are.
 static void join(struct target_bonded *target, struct target_rows *rows, bool circle) {
     enum { COARSEST = 2 };
-    const size_t least = (rows->count + MOST_BINS - 1) / MOST_BINS;
-    size_t of = least;
+    const size_t min = (rows->count + MAX_BINS - 1) / MAX_BINS;
+    size_t of = min;
     while (circle && rows->count % of != 0)
         of++;
-    if (of > COARSEST * least)
+    if (of > COARSEST * min)
         of = 1;
     target->joined = of;
     target->bins.width *= (double)of;

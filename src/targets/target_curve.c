@@ -101,7 +101,7 @@ static enum status load(struct target_curve *curve, const struct observable_targ
                                      .name = about->name,
                                      .x_unit = argument,
                                      .y_unit = about->unit,
-                                     .least = of_time ? 0 : -DBL_MAX,
+                                     .min = of_time ? 0 : -DBL_MAX,
                                      .x = p->x_column,
                                      .y = p->value_column,
                                      .error = p->error_column};
@@ -244,13 +244,13 @@ static enum status read_diffusion(struct target_files *files, int kind, struct j
 static void write_number(const struct target_files *files, int kind, struct json_writer *writer) {
     struct field fields[NUMBER_FIELDS];
     number_fields_of(kind, fields);
-    mf_json_put_fields(writer, fields, files->own[kind]);
+    mf_json_write_fields(writer, fields, files->own[kind]);
 }
 
 static void write_diffusion(const struct target_files *files, int kind,
                             struct json_writer *writer) {
     write_number(files, kind, writer);
-    mf_json_put_fields(writer, diffusion_fields, files->own[kind]);
+    mf_json_write_fields(writer, diffusion_fields, files->own[kind]);
 }
 
 static struct target number_values(const struct target_files *files, int kind) {

@@ -130,7 +130,7 @@ void mf_target_files_clear(struct target_files *files) {
             mf_target_record(kind)->clear(files->own[kind]);
         mf_memory_free(files->own[kind]);
     }
-    for (size_t place = 0; place < OBSERVABLES_MOST; place++)
+    for (size_t place = 0; place < OBSERVABLES_MAX; place++)
         mf_memory_free(files->settings[place]);
     *files = (struct target_files){0};
 }
@@ -144,12 +144,12 @@ void mf_target_files_write(const struct target_files *files, struct json_writer 
             continue;
         mf_json_begin(writer, about.target->name);
         if (about.target->has_settings)
-            mf_json_put_fields(writer, about.observable->fields, files->settings[about.place]);
+            mf_json_write_fields(writer, about.observable->fields, files->settings[about.place]);
         if (record->write)
             record->write(files, kind, writer);
         else
-            mf_json_put_fields(writer, record->fields[0], files->own[kind]);
-        mf_json_put_fields(writer, mf_target_files_use_fields, &files->use[kind]);
+            mf_json_write_fields(writer, record->fields[0], files->own[kind]);
+        mf_json_write_fields(writer, mf_target_files_use_fields, &files->use[kind]);
         mf_json_end(writer);
     }
     mf_json_end(writer);

@@ -24,7 +24,7 @@ struct target_files {
     struct normalisation normalisation; ///< by which g(r) of all that do not say theirs are divided
     void *own[TARGETS];                 ///< what the reader of each kind keeps
     /// Of the observables whose targets say them, by their places in the list; else NULL.
-    void *settings[OBSERVABLES_MOST];
+    void *settings[OBSERVABLES_MAX];
     struct target_use {
         double weight; ///< 0: by the errors
         int fitted;    ///< 0: only compared with the result
@@ -37,7 +37,8 @@ static inline const struct target_pairs *target_files_rdf(const struct target_fi
 }
 
 /// g(r) of beads of different molecules.
-static inline const struct target_pairs *target_files_apart(const struct target_files *files) {
+static inline const struct target_pairs *
+target_files_intermolecular(const struct target_files *files) {
     return files->own[mf_rdf_intermolecular_kind()];
 }
 

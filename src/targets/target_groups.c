@@ -17,7 +17,7 @@ static bool is_use(const char *key) {
 
 static void fault_unknown(const struct target_groups *groups, struct json_object *object,
                           const char *key) {
-    const char *known[MOLECULES_MOST_GROUPS];
+    const char *known[MOLECULES_MAX_GROUPS];
     char hint[1024];
     for (size_t g = 0; g < groups->groups; g++)
         known[g] = groups->name[g];
@@ -41,7 +41,7 @@ static enum status collect(struct target_groups *groups) {
         groups->first[g + 1] = groups->first[g] + groups->member[g].bins.count;
     NEW_ARRAY(groups->value, groups->first[groups->groups]);
     NEW_ARRAY(groups->error, groups->first[groups->groups]);
-    NEW_ARRAY(groups->block, groups->groups * TARGETS_MOST_BLOCKS + 1);
+    NEW_ARRAY(groups->block, groups->groups * TARGETS_MAX_BLOCKS + 1);
     for (size_t g = 0; g < groups->groups; g++) {
         const struct target_bonded *member = &groups->member[g];
         const size_t bytes = member->bins.count * sizeof(double);
@@ -165,7 +165,7 @@ static void write(const struct target_files *files, int kind, struct json_writer
         if (groups->member[g].bins.count == 0)
             continue;
         mf_json_begin(writer, groups->name[g]);
-        mf_json_put_fields(writer, mf_target_bonded_fields, &groups->member[g].parameters);
+        mf_json_write_fields(writer, mf_target_bonded_fields, &groups->member[g].parameters);
         mf_json_end(writer);
     }
 }

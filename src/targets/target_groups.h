@@ -9,11 +9,11 @@
 struct target_groups {
     int order;
     size_t groups; ///< of the scene; 0: the target is not given
-    char name[MOLECULES_MOST_GROUPS][TOPOLOGY_NAME_SIZE];
-    struct target_bonded *member;            ///< shape [groups]
-    size_t first[MOLECULES_MOST_GROUPS + 1]; ///< value of each among those of all
-    double *value, *error;                   ///< of all members, one behind the other
-    size_t *block, blocks;                   ///< their blocks (mf_targets_blocks), and the end
+    char name[MOLECULES_MAX_GROUPS][TOPOLOGY_NAME_SIZE];
+    struct target_bonded *member;           ///< shape [groups]
+    size_t first[MOLECULES_MAX_GROUPS + 1]; ///< value of each among those of all
+    double *value, *error;                  ///< of all members, one behind the other
+    size_t *block, blocks;                  ///< their blocks (mf_targets_blocks), and the end
 };
 
 /// Whether a group of the scene has a target.

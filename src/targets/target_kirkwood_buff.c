@@ -35,9 +35,8 @@ static enum status read(struct target_files *files, int kind, struct json_object
     const struct composition *composition = &files->composition;
     const struct topology *topology = scene->molecules ? &scene->molecules->topology : NULL;
     const struct composition *components = &target->components;
-    char name[COMPOSITION_MOST_PAIRS]
-             [COMPOSITION_PAIR_NAME_SIZE]; // remembered until it is finished
-    const char *key[COMPOSITION_MOST_PAIRS];
+    char name[COMPOSITION_MAX_PAIRS][COMPOSITION_PAIR_NAME_SIZE]; // remembered until it is finished
+    const char *key[COMPOSITION_MAX_PAIRS];
     size_t named = 0;
     if (composition->types == 0)
         return STATUS_OK; // a fault of the types is told, those of their pairs would mislead
@@ -90,7 +89,7 @@ static void write(const struct target_files *files, int kind, struct json_writer
         mf_composition_pair_name(&target->components, (int)pair, name);
         if (target->pairs > 1)
             mf_json_begin(writer, name);
-        mf_json_put_fields(writer, number_fields, &number);
+        mf_json_write_fields(writer, number_fields, &number);
         if (target->pairs > 1)
             mf_json_end(writer);
     }

@@ -11,5 +11,5 @@ struct target_kirkwood_buff {
     struct composition components;
     size_t pairs; ///< of the components; 0: not given
     /// By the numbers of the pairs; NaN: not named.
-    double value[COMPOSITION_MOST_PAIRS], error[COMPOSITION_MOST_PAIRS];
+    double value[COMPOSITION_MAX_PAIRS], error[COMPOSITION_MAX_PAIRS];
 };

@@ -88,8 +88,8 @@ static enum status read_pairs(struct target_pairs *target, struct json_object *o
         return collect(target, fluid);
     }
     // The object remembers what it was asked for until it is finished.
-    char name[COMPOSITION_MOST_PAIRS][COMPOSITION_PAIR_NAME_SIZE];
-    const char *key[COMPOSITION_MOST_PAIRS];
+    char name[COMPOSITION_MAX_PAIRS][COMPOSITION_PAIR_NAME_SIZE];
+    const char *key[COMPOSITION_MAX_PAIRS];
     const bool known = mf_pair_names_find(object, composition, key);
     for (size_t pair = 0; pair < target->pairs; pair++) {
         mf_composition_pair_name(composition, (int)pair, name[pair]);
@@ -174,7 +174,7 @@ enum status mf_target_files_normalise(struct target_files *files, const struct b
 }
 
 /// Of beads of different molecules: also the bins in which they are measured.
-static enum status read_apart(struct target_files *files, int kind) {
+static enum status read_intermolecular(struct target_files *files, int kind) {
     const size_t place = mf_observable_kind(kind).place;
     struct rdf_settings *settings = mf_memory_zeroed(1, sizeof *settings);
     if (settings == NULL)
@@ -188,14 +188,14 @@ static enum status read_apart(struct target_files *files, int kind) {
 
 static enum status read(struct target_files *files, int kind, struct json_object *object,
                         const struct target_scene *scene) {
-    const bool apart = kind != TARGET_RDF;
+    const bool intermolecular = kind != TARGET_RDF;
     const struct finite_size_fluid fluid = {
         .box = scene->box,
         .composition = &files->composition,
         .topology = scene->molecules ? &scene->molecules->topology : NULL,
-        .apart = apart};
+        .intermolecular = intermolecular};
     TRY(read_pairs(files->own[kind], object, &fluid, scene->units));
-    return apart ? read_apart(files, kind) : STATUS_OK;
+    return intermolecular ? read_intermolecular(files, kind) : STATUS_OK;
 }
 
 static void clear(void *own) {
@@ -212,7 +212,7 @@ static void write(const struct target_files *files, int kind, struct json_writer
     const struct target_pairs *target = files->own[kind];
     const struct composition *composition = &files->composition;
     if (!composition_is_mixed(composition)) {
-        mf_json_put_fields(writer, mf_target_rdf_fields, &target->member[0].parameters);
+        mf_json_write_fields(writer, mf_target_rdf_fields, &target->member[0].parameters);
         return;
     }
     for (size_t pair = 0; pair < target->pairs; pair++) {
@@ -221,7 +221,7 @@ static void write(const struct target_files *files, int kind, struct json_writer
             continue;
         mf_composition_pair_name(composition, (int)pair, name);
         mf_json_begin(writer, name);
-        mf_json_put_fields(writer, mf_target_rdf_fields, &target->member[pair].parameters);
+        mf_json_write_fields(writer, mf_target_rdf_fields, &target->member[pair].parameters);
         mf_json_end(writer);
     }
 }

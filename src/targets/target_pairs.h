@@ -8,13 +8,13 @@
 
 /// Tested: test_target_files, test_target_files_mixture.
 struct target_pairs {
-    size_t pairs;                                     ///< pair types of the scene; 0: not given
-    struct target_rdf member[COMPOSITION_MOST_PAIRS]; ///< of each pair type, in the same bins
+    size_t pairs;                                    ///< pair types of the scene; 0: not given
+    struct target_rdf member[COMPOSITION_MAX_PAIRS]; ///< of each pair type, in the same bins
     /// Of all, one behind the other, in the numbers of the scene: shape [pairs, bins].
     double *g, *error;
-    double ends[COMPOSITION_MOST_PAIRS]; ///< where the file of each would end [λ]
-    double *given;                       ///< g before it was divided by its normalisation
-    double *factor_error;                ///< of that, shape [pairs]
+    double ends[COMPOSITION_MAX_PAIRS]; ///< where the file of each would end [λ]
+    double *given;                      ///< g before it was divided by its normalisation
+    double *factor_error;               ///< of that, shape [pairs]
 };
 
 static inline const struct rdf_bins *target_pairs_bins(const struct target_pairs *target) {

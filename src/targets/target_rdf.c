@@ -7,7 +7,7 @@
 #include <string.h>
 
 /// Bins that an inversion solves for in little time: more are joined unless the file says how wide.
-static const double most_bins = 400;
+static const double max_bins = 400;
 
 /// Standard error of g = 1 in the last bin if neither the file nor the scatter tells it: that of a
 /// short simulation, or of a drawn curve.
@@ -160,7 +160,7 @@ static enum status check_values(struct target_rdf *target, struct target_rows *r
                 "%s:%zu: a negative g, %g: a potential, or another column than g?", file,
                 rows->line[k], rows->y[k]);
         target->negative++;
-        target->least = fmin(target->least, rows->y[k]);
+        target->min = fmin(target->min, rows->y[k]);
         rows->y[k] = 0;
     }
     return STATUS_OK;
@@ -199,7 +199,7 @@ static enum status join(struct target_rdf *target, struct target_rows *rows) {
 static size_t rows_of_a_bin(const struct target_rdf_parameters *p, const struct rdf_bins *bins) {
     if (p->bin_width > 0)
         return (size_t)fmin(fmax(1, round(p->bin_width / bins->width)), (double)bins->count);
-    return (size_t)ceil((double)bins->count / most_bins);
+    return (size_t)ceil((double)bins->count / max_bins);
 }
 
 static enum status load(struct target_rdf *target, const struct units *units, int dimensions) {

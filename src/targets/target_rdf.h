@@ -30,7 +30,7 @@ struct target_rdf {
     struct target_tail tail; ///< of the whole file, whatever the cutoff
     struct target_resampling resampling;
     size_t negative; ///< rows with a g slightly below 0, which is taken as 0
-    double least;    ///< of these [1]
+    double min;      ///< of these [1]
 };
 
 /// Read the members of {"file": …}. Faults (gaps, negative values, …) go to the document and leave

@@ -54,7 +54,7 @@ static double slope_of(const struct target_rows *rows, size_t k) {
 
 /// Of all points where g is not in its core; returns how many there are.
 static size_t find_differences(const struct target_rows *rows, struct difference *difference) {
-    static const double least_g = 0.2;
+    static const double min_g = 0.2;
     size_t count = 0;
     for (size_t k = 3; k + 3 < rows->count; k++) {
         const size_t point[AROUND] = {k - 3, k - 2, k - 1, k + 1, k + 2, k + 3};
@@ -64,7 +64,7 @@ static size_t find_differences(const struct target_rows *rows, struct difference
             variance += weight[i] * weight[i];
             steep += pow(weight[i] * slope_of(rows, point[i]), 2);
         }
-        if (rows->y[k - 3] > least_g && rows->y[k] > least_g)
+        if (rows->y[k - 3] > min_g && rows->y[k] > min_g)
             difference[count++] = (struct difference){
                 pow(rows->y[k] - sum_of(rows, point, weight, AROUND), 2) / variance,
                 steep / variance};
@@ -122,14 +122,14 @@ done:
 /// The errors of points by their scatter, or `assumed` if there is none.
 static enum status set_errors(struct target_rows *rows, double assumed,
                               struct target_resampling *done) {
-    enum { LEAST = 24 };
+    enum { MIN = 24 };
     enum status status = STATUS_OK;
     struct difference *difference = NULL;
     NEW_ARRAY(difference, rows->count);
     const size_t count = find_differences(rows, difference);
-    if (count >= LEAST)
+    if (count >= MIN)
         CHECK(find_errors(difference, count, done));
-    done->assumed = !(done->error > target_rows_least_scatter);
+    done->assumed = !(done->error > target_rows_min_scatter);
     if (done->assumed) {
         done->error = assumed;
         done->error_in_r = 0;

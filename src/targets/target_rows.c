@@ -12,10 +12,10 @@
 #include <stdlib.h>
 
 /// Where g is below, it is too steep for the scatter to be told from its slope.
-static const double least_g = 0.2;
+static const double min_g = 0.2;
 
 /// Fourth differences and how many are needed.
-enum { TAPS = 5, LEAST_DIFFERENCES = 12 };
+enum { TAPS = 5, MIN_DIFFERENCES = 12 };
 static const double taps[TAPS] = {1, -4, 6, -4, 1};
 
 /// Differences beyond three standard deviations are left out; the mean square of what a normal
@@ -100,12 +100,11 @@ enum status mf_target_rows_read(struct target_rows *rows, struct target_columns 
                                 const struct units *units) {
     enum status status = STATUS_OK;
     struct data_table table = {0};
-    const int64_t least = columns->y > 0 ? columns->y : 2;
-    CHECK(mf_data_table_read(&table, columns->file,
-                             (size_t)(columns->x > least ? columns->x : least)));
+    const int64_t min = columns->y > 0 ? columns->y : 2;
+    CHECK(mf_data_table_read(&table, columns->file, (size_t)(columns->x > min ? columns->x : min)));
     CHECK(find_columns(columns, &table));
     CHECK(mf_data_table_check_increasing(&table, columns->file, (size_t)columns->x - 1,
-                                         columns->least));
+                                         columns->min));
     CHECK(convert(&table, columns, units));
     CHECK(mf_target_rows_allocate(rows, table.rows));
     for (size_t k = 0; k < table.rows; k++) {
@@ -173,13 +172,13 @@ static size_t differences(const struct target_rows *rows, double *square) {
     const double width = width_of(rows);
     size_t count = 0;
     for (size_t k = 0; k + TAPS <= rows->count; k++) {
-        double difference = 0, variance = 0, least = INFINITY;
+        double difference = 0, variance = 0, min = INFINITY;
         for (size_t j = 0; j < TAPS; j++) {
             difference += taps[j] * rows->y[k + j];
             variance += taps[j] * taps[j] * rows->y[k + j] / volume(rows, k + j, width);
-            least = fmin(least, rows->y[k + j]);
+            min = fmin(min, rows->y[k + j]);
         }
-        if (least > least_g)
+        if (min > min_g)
             square[count++] = difference * difference / variance;
     }
     return count;
@@ -210,11 +209,11 @@ enum status mf_target_rows_scatter(const struct target_rows *rows, double *error
     *error = NAN;
     NEW_ARRAY(square, rows->count);
     const size_t count = differences(rows, square);
-    if (count < LEAST_DIFFERENCES)
+    if (count < MIN_DIFFERENCES)
         goto done;
     const double variance = mf_target_rows_robust_mean(square, count);
     const double scatter = sqrt(variance / volume(rows, rows->count - 1, width_of(rows)));
-    if (scatter > target_rows_least_scatter)
+    if (scatter > target_rows_min_scatter)
         *error = scatter;
 done:
     mf_memory_free(square);

@@ -26,7 +26,7 @@ struct target_columns {
     const char *file;
     const char *name;            ///< columns may be called so, and "name_error"; NULL: not by name
     const char *x_unit, *y_unit; ///< reduced; NULL: numbers that have none
-    double least;                ///< of x
+    double min;                  ///< of x
     int64_t x, y;                ///< y 0: that of the name, or 2
     int64_t error; ///< 0: none; −1: that of the name, or 3, or none; a column of nan is none
     const char *usual_error; ///< what programs call a column of errors
@@ -68,7 +68,7 @@ struct target_tail mf_target_rows_tail(const struct target_rows *rows);
 /// are fewer than 12 differences, or if g scatters by less than 1e-5 as the digits of an exact
 /// table do, which no counted pairs have. Needs bins of the same width. Fails: NO_MEMORY. Tested:
 /// test_target_rows.
-static const double target_rows_least_scatter = 1e-5;
+static const double target_rows_min_scatter = 1e-5;
 enum status mf_target_rows_scatter(const struct target_rows *rows, double *error) MUST_USE;
 
 /// The mean of `count` squares of normal numbers, some of which do not belong: without those beyond

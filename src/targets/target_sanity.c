@@ -96,9 +96,9 @@ static double integral_of(const struct view *view, int a, int b) {
     const struct finite_size_fluid fluid = {.box = &own.scene->setup.box,
                                             .composition = &own.scene->setup.composition,
                                             .topology = &own.scene->molecules.molecules.topology,
-                                            .apart = own.kind != TARGET_RDF};
+                                            .intermolecular = own.kind != TARGET_RDF};
     return mf_kirkwood_buff_integrate(own.bins, own.g, own.error, fluid.box, 0,
-                                      mf_finite_size_inside(&fluid, pair))
+                                      mf_finite_size_intramolecular(&fluid, pair))
         .integral;
 }
 
@@ -155,9 +155,9 @@ static double edge_below(const struct view *view, double level) {
 static enum status check_packing(const struct view *view, const char *file) {
     const struct box *box = &view->scene->setup.box;
     const double closest = box->dimensions == 2 ? 2 / sqrt(3) : sqrt(2);
-    const double apart = view->g[0] <= empty ? edge_below(view, empty) : 0;
+    const double intermolecular = view->g[0] <= empty ? edge_below(view, empty) : 0;
     const double filled =
-        (double)view->like / mf_box_volume(box) * pow(apart, (double)box->dimensions);
+        (double)view->like / mf_box_volume(box) * pow(intermolecular, (double)box->dimensions);
     const struct units *units = &view->scene->units;
     char density[80], unit[UNITS_NAME_SIZE];
     if (filled <= closest)
@@ -168,7 +168,7 @@ static enum status check_packing(const struct view *view, const char *file) {
         "%s: target.%s: it has no pairs nearer than %.3g %s, and the scene a "
         "density of %s: rho d^%d = %.3g, while the closest packing has %.3g; is the "
         "unit of length, scene.box or the number of particles wrong?",
-        file, view->name, apart * mf_units_factor(units, "lambda"),
+        file, view->name, intermolecular * mf_units_factor(units, "lambda"),
         mf_units_name(units, "lambda", unit), density, box->dimensions, filled, closest);
 }
 
@@ -206,16 +206,16 @@ done:
 static void print_compressibility(const struct view *view, char *text, size_t size) {
     struct rdf_bins part = *view->bins;
     struct kirkwood_buff whole = {0};
-    double least = INFINITY, largest = -INFINITY;
+    double min = INFINITY, largest = -INFINITY;
     for (; 4 * part.count >= 3 * view->bins->count; part.count -= step_of_ranges(view)) {
         const struct kirkwood_buff kb = mf_kirkwood_buff_integrate(
             &part, view->g, view->error, &view->scene->setup.box, view->like, 0);
         if (part.count == view->bins->count)
             whole = kb;
-        least = fmin(least, kb.compressibility);
+        min = fmin(min, kb.compressibility);
         largest = fmax(largest, kb.compressibility);
     }
-    const double error = fmax(whole.compressibility_error, 0.5 * (largest - least));
+    const double error = fmax(whole.compressibility_error, 0.5 * (largest - min));
     snprintf(text, size, "1 + rho G = %.2f(%.0f)", whole.compressibility, ceil(1e2 * error));
 }
 
@@ -247,14 +247,14 @@ static enum status check_nonzero(const struct view *view, const char *file) {
 }
 
 /// g(r) of all pairs, then of different molecules.
-enum { MOST_VIEWS = 2 * COMPOSITION_MOST_PAIRS };
+enum { MAX_VIEWS = 2 * COMPOSITION_MAX_PAIRS };
 
 /// False where there is none: of a target that is not given, and of a single bead.
 static bool find_view(const struct target_files *files, const struct scene *scene, size_t n,
                       struct view *view) {
-    const int kind = n < COMPOSITION_MOST_PAIRS ? TARGET_RDF : mf_rdf_intermolecular_kind();
+    const int kind = n < COMPOSITION_MAX_PAIRS ? TARGET_RDF : mf_rdf_intermolecular_kind();
     const struct target_pairs *all = files->own[kind];
-    const size_t pair = n % COMPOSITION_MOST_PAIRS;
+    const size_t pair = n % COMPOSITION_MAX_PAIRS;
     if (pair >= all->pairs || !mf_composition_has_pairs(&scene->setup.composition, (int)pair))
         return false;
     *view = view_of(all, kind, scene, pair);
@@ -264,7 +264,7 @@ static bool find_view(const struct target_files *files, const struct scene *scen
 enum status mf_target_sanity_check(const struct target_files *files, const struct scene *scene,
                                    const char *file) {
     struct view view;
-    for (size_t n = 0; n < MOST_VIEWS; n++) {
+    for (size_t n = 0; n < MAX_VIEWS; n++) {
         if (!find_view(files, scene, n, &view))
             continue;
         TRY(check_nonzero(&view, file));
@@ -286,7 +286,7 @@ static size_t highest_bin(const struct view *view) {
 }
 
 /// "target rdf: g from 0.005 to 0.995 nm, peak 2.79 at 0.275 nm, tail 0.998(6); density …".
-static void tell_view(const struct view *view, const struct target_sanity_listener *listener) {
+static void report_view(const struct view *view, const struct target_sanity_listener *listener) {
     const struct rdf_bins *bins = view->bins;
     const struct target_tail *tail = &view->target->tail;
     const size_t peak = highest_bin(view);
@@ -297,7 +297,7 @@ static void tell_view(const struct view *view, const struct target_sanity_listen
     if (view->like > 1 && view->scene->setup.box.dimensions == 3 &&
         !scene_has_molecules(&view->scene->molecules))
         print_compressibility(view, compressibility, sizeof compressibility);
-    mf_target_sanity_say(
+    mf_target_sanity_warn(
         listener,
         "target %s: g from %.4g to %.4g %s, peak %.3g at %.4g %s, tail %.3f(%.0f); density %s%s%s",
         view->name, mf_rdf_bins_centre(bins, 0) * length,
@@ -306,28 +306,29 @@ static void tell_view(const struct view *view, const struct target_sanity_listen
         density, compressibility[0] ? ", " : "", compressibility);
 }
 
-static void tell_origin(const struct view *view, const struct target_sanity_listener *listener) {
+static void report_origin(const struct view *view, const struct target_sanity_listener *listener) {
     const struct target_rdf *target = view->target;
     double length;
     const char *unit = unit_of(view, &length);
     if (view->ends > mf_rdf_bins_edge(view->bins, view->bins->count) * (1 + 1e-9))
-        mf_target_sanity_say(
+        mf_target_sanity_warn(
             listener,
             "target %s: it goes on to %.4g %s and is cut at %.4g %s, where the shortest ends: "
             "all g(r) of a mixture end together",
             view->name, view->ends * length, unit,
             mf_rdf_bins_edge(view->bins, view->bins->count) * length, unit);
-    mf_target_sanity_tell_reading(target, view->name, view->scene, listener);
+    mf_target_sanity_report_reading(target, view->name, view->scene, listener);
     if (target->joined > 1)
-        mf_target_sanity_say(listener, "target %s: %zu rows of the file make a bin of %.4g %s",
-                             view->name, target->joined, view->bins->width * length, unit);
+        mf_target_sanity_warn(listener, "target %s: %zu rows of the file make a bin of %.4g %s",
+                              view->name, target->joined, view->bins->width * length, unit);
     if (target->assumed)
-        mf_target_sanity_say(listener,
-                             "target %s: no errors given, and no scatter to estimate them: %.2g at "
-                             "g = 1 in the last bin is assumed",
-                             view->name, target->estimated_error);
+        mf_target_sanity_warn(
+            listener,
+            "target %s: no errors given, and no scatter to estimate them: %.2g at "
+            "g = 1 in the last bin is assumed",
+            view->name, target->estimated_error);
     else if (target->estimated_error > 0)
-        mf_target_sanity_say(
+        mf_target_sanity_warn(
             listener,
             "target %s: no errors given: %.2g at g = 1 in the last bin, from the scatter of the "
             "rows",
@@ -364,7 +365,7 @@ static enum status warn_of_normalisation(const struct view *view,
     if (largest >= 0)
         return STATUS_OK;
     print_compressibility(view, value, sizeof value);
-    mf_target_sanity_say(
+    mf_target_sanity_warn(
         listener,
         "mesofit: warning: target.%s: it asks for a negative compressibility, %s; a normalisation "
         "or "
@@ -382,7 +383,7 @@ static void warn_of_state(const struct view *view, const struct target_sanity_li
                                        .tail = view->target->tail.mean};
     char line[TARGET_STATE_LINE];
     if (mf_target_state_print(&state, line))
-        mf_target_sanity_say(listener, "mesofit: warning: target.%s: %s", view->name, line);
+        mf_target_sanity_warn(listener, "mesofit: warning: target.%s: %s", view->name, line);
 }
 
 static void warn_of_density(const struct view *view,
@@ -394,7 +395,7 @@ static void warn_of_density(const struct view *view,
     char density[80], unit[UNITS_NAME_SIZE];
     print_density(view, density, sizeof density);
     if (neighbours < few_neighbours)
-        mf_target_sanity_say(
+        mf_target_sanity_warn(
             listener,
             "mesofit: warning: target.%s: it has the layers of a liquid, but at the density of the "
             "scene, %s, a bead has only %.2g neighbours up to the second one: is the unit of "
@@ -402,7 +403,7 @@ static void warn_of_density(const struct view *view,
             "look so, too)",
             view->name, density, neighbours);
     else if (filled < dilute)
-        mf_target_sanity_say(
+        mf_target_sanity_warn(
             listener,
             "mesofit: warning: target.%s: a dilute gas: the density of the scene is %s, and the "
             "beads "
@@ -411,10 +412,10 @@ static void warn_of_density(const struct view *view,
             mf_units_name(units, "lambda", unit));
 }
 
-static void tell_normalisation(const struct normalisation *n,
-                               const struct target_sanity_listener *listener) {
+static void report_normalisation(const struct normalisation *n,
+                                 const struct target_sanity_listener *listener) {
     if (n->found)
-        mf_target_sanity_say(
+        mf_target_sanity_warn(
             listener,
             "target.rdf: g is too %s as a whole, by a factor of %.4f(%.0f), by which it is "
             "divided; "
@@ -422,24 +423,24 @@ static void tell_normalisation(const struct normalisation *n,
             n->factor > 1 ? "large" : "small", n->factor, ceil(n->error * 1e4));
 }
 
-enum status mf_target_sanity_tell(const struct target_files *files, const struct scene *scene,
-                                  const struct target_sanity_listener *listener) {
+enum status mf_target_sanity_report(const struct target_files *files, const struct scene *scene,
+                                    const struct target_sanity_listener *listener) {
     struct view view;
-    for (size_t n = 0; n < MOST_VIEWS; n++) {
+    for (size_t n = 0; n < MAX_VIEWS; n++) {
         if (!find_view(files, scene, n, &view))
             continue;
-        tell_view(&view, listener);
-        tell_origin(&view, listener);
+        report_view(&view, listener);
+        report_origin(&view, listener);
         if (scene_has_molecules(&scene->molecules))
             continue;
         TRY(warn_of_normalisation(&view, listener));
         warn_of_density(&view, listener);
         warn_of_state(&view, listener);
     }
-    mf_target_sanity_tell_groups(files, scene, listener);
-    tell_normalisation(&files->normalisation, listener);
+    mf_target_sanity_report_groups(files, scene, listener);
+    report_normalisation(&files->normalisation, listener);
     char line[SCENE_LINE_SIZE];
     if (mf_scene_is_hot(scene, line))
-        mf_target_sanity_say(listener, "mesofit: warning: scene.%s", line);
+        mf_target_sanity_warn(listener, "mesofit: warning: scene.%s", line);
     return STATUS_OK;
 }

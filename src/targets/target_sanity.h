@@ -11,7 +11,7 @@
 
 /// Takes one line at a time, without its end.
 struct target_sanity_listener {
-    void (*say)(void *context, const char *line);
+    void (*warn)(void *context, const char *line);
     void *context;
 };
 
@@ -42,21 +42,21 @@ enum status mf_target_sanity_check(const struct target_files *files, const struc
 /// kelvins; of molecules a mean g of all beads that ends more than 3 % and three times its scatter
 /// away from 1, or that of the only pair type of one kind of molecules that does so. Fails:
 /// NO_MEMORY. Tested: test_target_sanity.
-enum status mf_target_sanity_tell(const struct target_files *files, const struct scene *scene,
-                                  const struct target_sanity_listener *listener) MUST_USE;
+enum status mf_target_sanity_report(const struct target_files *files, const struct scene *scene,
+                                    const struct target_sanity_listener *listener) MUST_USE;
 
 /// The same of bonds, angles and dihedrals: a line a group, and warnings of angles that may be
 /// straight, and of g(r) of molecules that does not end near 1.
-void mf_target_sanity_tell_groups(const struct target_files *files, const struct scene *scene,
-                                  const struct target_sanity_listener *listener);
+void mf_target_sanity_report_groups(const struct target_files *files, const struct scene *scene,
+                                    const struct target_sanity_listener *listener);
 
 /// Tell what was made of a table of g(r) without equal bins, or with a g slightly below 0.
-void mf_target_sanity_tell_reading(const struct target_rdf *target, const char *name,
-                                   const struct scene *scene,
-                                   const struct target_sanity_listener *listener);
+void mf_target_sanity_report_reading(const struct target_rdf *target, const char *name,
+                                     const struct scene *scene,
+                                     const struct target_sanity_listener *listener);
 
 /// Say a line.
-void mf_target_sanity_say(const struct target_sanity_listener *listener, const char *format, ...)
+void mf_target_sanity_warn(const struct target_sanity_listener *listener, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
 /// The unit of length in which a person is told of targets, and λ in it.

@@ -7,26 +7,27 @@
 #include <stdarg.h>
 #include <stdio.h>
 
-void mf_target_sanity_say(const struct target_sanity_listener *listener, const char *format, ...) {
+void mf_target_sanity_warn(const struct target_sanity_listener *listener, const char *format, ...) {
     char line[512];
     va_list arguments;
     va_start(arguments, format);
     vsnprintf(line, sizeof line, format, arguments);
     va_end(arguments);
-    listener->say(listener->context, line);
+    listener->warn(listener->context, line);
 }
 
 /// What lengths are told in.
 const char *mf_target_sanity_length(const struct scene *scene, double *length) {
     const struct units *units = &scene->units;
     static const char *const names[] = {"nm", "nm", "angstrom"};
-    *length = mf_units_beside(units) ? units->length : mf_units_factor(units, "lambda");
+    *length =
+        mf_units_have_second_columns(units) ? units->length : mf_units_factor(units, "lambda");
     return mf_units_known(units) ? names[units->system] : "lambda";
 }
 
 /// "target bond_lengths.backbone: 34 bins of 0.001 from 0.1505 to 0.1835, peak 84 at 0.169; …".
-static void tell_group(const struct target_groups *groups, size_t g, const struct scene *scene,
-                       const struct target_sanity_listener *listener) {
+static void report_group(const struct target_groups *groups, size_t g, const struct scene *scene,
+                         const struct target_sanity_listener *listener) {
     const struct target_bonded *member = &groups->member[g];
     const struct bonded_bins *bins = &member->bins;
     size_t peak = 0;
@@ -43,12 +44,12 @@ static void tell_group(const struct target_groups *groups, size_t g, const struc
     const char *unit = mf_bonded_kinds[groups->order]->is_length
                            ? mf_target_sanity_length(scene, &factor)
                            : "degrees";
-    mf_target_sanity_say(listener,
-                         "target %s.%s: %zu bins of %.4g from %.4g to %.4g %s, peak at %.4g%s",
-                         mf_bonded_distribution_of(groups->order)->name, groups->name[g],
-                         bins->count, factor * bins->width, factor * bins->low,
-                         factor * (bins->low + (double)bins->count * bins->width), unit,
-                         factor * bonded_bins_centre(bins, peak), errors);
+    mf_target_sanity_warn(listener,
+                          "target %s.%s: %zu bins of %.4g from %.4g to %.4g %s, peak at %.4g%s",
+                          mf_bonded_distribution_of(groups->order)->name, groups->name[g],
+                          bins->count, factor * bins->width, factor * bins->low,
+                          factor * (bins->low + (double)bins->count * bins->width), unit,
+                          factor * bonded_bins_centre(bins, peak), errors);
 }
 
 /// Three beads in a line have no plane: next to it the forces of a dihedral are without bound, and
@@ -66,7 +67,7 @@ static void warn_of_lines(const struct target_files *files,
             if (bonded_bins_centre(&member->bins, k) > straight)
                 share += member->value[k] * member->bins.width;
         if (share > many)
-            mf_target_sanity_say(
+            mf_target_sanity_warn(
                 listener,
                 "mesofit: warning: target.dihedral_angles: %.0f %% of the angles \"%s\" are within "
                 "10 degrees of a straight line, where the force of a dihedral has no bound: "
@@ -123,8 +124,8 @@ static void warn_of_tails(const struct target_files *files, const struct scene *
     static const double allowed = 0.03;
     const struct composition *composition = &files->composition;
     const struct topology *topology = &scene->molecules.molecules.topology;
-    const double most = allowed + longest(topology) / (double)mf_composition_particles(composition);
-    const int odd = find_odd_pair(files, topology, most);
+    const double max = allowed + longest(topology) / (double)mf_composition_particles(composition);
+    const int odd = find_odd_pair(files, topology, max);
     struct target_tail mean = {0};
     double all = 0;
     for (size_t pair = 0; pair < target_files_rdf(files)->pairs; pair++)
@@ -138,14 +139,14 @@ static void warn_of_tails(const struct target_files *files, const struct scene *
         const struct target_tail tail = tail_of(files, (size_t)odd);
         char name[COMPOSITION_PAIR_NAME_SIZE];
         mf_composition_pair_name(composition, odd, name);
-        mf_target_sanity_say(
+        mf_target_sanity_warn(
             listener,
             "mesofit: warning: target.rdf.%s: over the last quarter of its range g is %.3f(%.0f), "
             "not 1, which the other pair types have there: is it over another number of pairs than "
             "these? A fit of molecules does not mend it; \"normalisation\" divides by a factor",
             name, tail.mean, ceil(1e3 * tail.scatter));
-    } else if (all > 0 && ends_beside_1(mean, most)) {
-        mf_target_sanity_say(
+    } else if (all > 0 && ends_beside_1(mean, max)) {
+        mf_target_sanity_warn(
             listener,
             "mesofit: warning: target.rdf: over the last quarter of its range g of all beads is "
             "%.3f(%.0f), not 1: is its volume or number of beads another than the scene's? A fit "
@@ -154,11 +155,11 @@ static void warn_of_tails(const struct target_files *files, const struct scene *
     }
 }
 
-void mf_target_sanity_tell_groups(const struct target_files *files, const struct scene *scene,
-                                  const struct target_sanity_listener *listener) {
+void mf_target_sanity_report_groups(const struct target_files *files, const struct scene *scene,
+                                    const struct target_sanity_listener *listener) {
     for (int order = 0; order < BONDED_KINDS; order++)
         for (size_t g = 0; g < target_files_groups(files, order)->groups; g++)
-            tell_group(target_files_groups(files, order), g, scene, listener);
+            report_group(target_files_groups(files, order), g, scene, listener);
     warn_of_lines(files, listener);
     if (scene_has_molecules(&scene->molecules))
         warn_of_tails(files, scene, listener);

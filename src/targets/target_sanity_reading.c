@@ -5,17 +5,17 @@
 
 #include <stdio.h>
 
-void mf_target_sanity_tell_reading(const struct target_rdf *target, const char *name,
-                                   const struct scene *scene,
-                                   const struct target_sanity_listener *listener) {
+void mf_target_sanity_report_reading(const struct target_rdf *target, const char *name,
+                                     const struct scene *scene,
+                                     const struct target_sanity_listener *listener) {
     const struct target_resampling *r = &target->resampling;
     double length;
     char error[96] = "";
     const char *unit = mf_target_sanity_length(scene, &length);
     if (target->negative > 0)
-        mf_target_sanity_say(listener,
-                             "target %s: g is below 0 in %zu rows, by %.2g at most: taken as 0",
-                             name, target->negative, -target->least);
+        mf_target_sanity_warn(listener,
+                              "target %s: g is below 0 in %zu rows, by %.2g at most: taken as 0",
+                              name, target->negative, -target->min);
     if (r->points == 0)
         return;
     if (r->assumed)
@@ -23,9 +23,9 @@ void mf_target_sanity_tell_reading(const struct target_rdf *target, const char *
     else if (r->error > 0)
         snprintf(error, sizeof error, ", which scatter by %.2g in g and %.2g %s in r,", r->error,
                  r->error_in_r * length, unit);
-    mf_target_sanity_say(listener,
-                         "target %s: r is not equally spaced (steps of %.3g to %.3g %s): its %zu "
-                         "points%s are read at equal bins of %.4g %s by cubic interpolation",
-                         name, r->shortest * length, r->longest * length, unit, r->points, error,
-                         target->bins.width * length / (double)target->joined, unit);
+    mf_target_sanity_warn(listener,
+                          "target %s: r is not equally spaced (steps of %.3g to %.3g %s): its %zu "
+                          "points%s are read at equal bins of %.4g %s by cubic interpolation",
+                          name, r->shortest * length, r->longest * length, unit, r->points, error,
+                          target->bins.width * length / (double)target->joined, unit);
 }

@@ -5,15 +5,15 @@
 
 #include "curves/bonded_kind.h"
 
-enum { GROMACS_MOST_PARAMETERS = 6 };
+enum { GROMACS_MAX_PARAMETERS = 6 };
 enum gromacs_unit { GROMACS_PURE, GROMACS_LENGTH, GROMACS_ENERGY, GROMACS_BOND };
 
 struct gromacs_function {
     int order;
     int number;
     const struct bonded_law *law;
-    const char *parameter[GROMACS_MOST_PARAMETERS]; ///< in their order, by their names in a scene
-    enum gromacs_unit unit[GROMACS_MOST_PARAMETERS];
+    const char *parameter[GROMACS_MAX_PARAMETERS]; ///< in their order, by their names in a scene
+    enum gromacs_unit unit[GROMACS_MAX_PARAMETERS];
 };
 
 /// All that are laws of ours, ended by one without a law. Of a law the first is what is written.

@@ -9,17 +9,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-bool mf_gromacs_is_integer(const char *word, int64_t least, int64_t most, int64_t *value) {
+bool mf_gromacs_is_integer(const char *word, int64_t min, int64_t max, int64_t *value) {
     char *end;
     *value = strtoll(word, &end, 10);
-    return *end == '\0' && end != word && *value >= least && *value <= most;
+    return *end == '\0' && end != word && *value >= min && *value <= max;
 }
 
 /// Room for one more item of `size` bytes behind `count`.
-enum status mf_gromacs_reserve(void **array, size_t count, size_t *room, size_t size) {
-    if (count < *room)
+enum status mf_gromacs_reserve(void **array, size_t count, size_t *capacity, size_t size) {
+    if (count < *capacity)
         return STATUS_OK;
-    const size_t larger = *room ? 2 * *room : 16;
+    const size_t larger = *capacity ? 2 * *capacity : 16;
     void *grown = mf_memory_zeroed(larger, size);
     if (grown == NULL)
         return STATUS_NO_MEMORY;
@@ -27,7 +27,7 @@ enum status mf_gromacs_reserve(void **array, size_t count, size_t *room, size_t 
         memcpy(grown, *array, count * size);
     mf_memory_free(*array);
     *array = grown;
-    *room = larger;
+    *capacity = larger;
     return STATUS_OK;
 }
 
@@ -57,7 +57,7 @@ static void list_functions(int order, char *text, size_t size) {
 
 static int parameters_of(const struct gromacs_function *function) {
     int count = 0;
-    while (count < GROMACS_MOST_PARAMETERS && function->parameter[count])
+    while (count < GROMACS_MAX_PARAMETERS && function->parameter[count])
         count++;
     return count;
 }
@@ -95,8 +95,8 @@ enum status mf_gromacs_add_type(struct gromacs_reading *reading, const struct gr
     const int order = reading->order, beads = mf_bonded_kinds[order]->beads;
     struct gromacs_term_type *type = &reading->type[reading->types];
     const struct gromacs_function *function;
-    if (reading->types == GROMACS_MOST_TYPES)
-        return mf_gromacs_fail(line, "more than %d types of terms", GROMACS_MOST_TYPES);
+    if (reading->types == GROMACS_MAX_TYPES)
+        return mf_gromacs_fail(line, "more than %d types of terms", GROMACS_MAX_TYPES);
     if (words->count <= beads)
         return mf_gromacs_fail(line, "expected %d types and a function", beads);
     *type = (struct gromacs_term_type){.order = order};
@@ -214,9 +214,9 @@ static enum status find_group(struct gromacs_reading *reading, const struct grom
             memcmp(known->parameters, curve.parameters, curve.law->size) == 0)
             break;
     }
-    if (status == STATUS_OK && term->group == MOLECULES_MOST_GROUPS)
+    if (status == STATUS_OK && term->group == MOLECULES_MAX_GROUPS)
         status = mf_gromacs_fail(line, "there are more than %d groups of %ss of other parameters",
-                                 MOLECULES_MOST_GROUPS, mf_bonded_kinds[order]->name);
+                                 MOLECULES_MAX_GROUPS, mf_bonded_kinds[order]->name);
     if (status != STATUS_OK || term->group < molecules->groups[order]) {
         mf_bonded_clear(&curve);
         return status;
@@ -236,10 +236,10 @@ enum status mf_gromacs_add_term(struct gromacs_reading *reading, const struct gr
     struct topology_kind *kind = mf_gromacs_last_kind(reading);
     const struct gromacs_function *function;
     struct topology_term term = {.group = 0};
-    double values[2 * GROMACS_MOST_PARAMETERS];
+    double values[2 * GROMACS_MAX_PARAMETERS];
     int count;
-    if (kind && kind->terms[order] == GROMACS_MOST_TERMS)
-        return mf_gromacs_fail(line, "%s has more than %d %ss", kind->name, GROMACS_MOST_TERMS,
+    if (kind && kind->terms[order] == GROMACS_MAX_TERMS)
+        return mf_gromacs_fail(line, "%s has more than %d %ss", kind->name, GROMACS_MAX_TERMS,
                                mf_bonded_kinds[order]->name);
     if (kind == NULL || words->count <= beads)
         return mf_gromacs_fail(line, "expected %d atoms of a moleculetype and a function", beads);
@@ -256,7 +256,7 @@ enum status mf_gromacs_add_term(struct gromacs_reading *reading, const struct gr
         TRY(find_values(reading, line, function, &term, values));
     TRY(find_group(reading, line, function, values, &term));
     TRY(mf_gromacs_reserve((void **)&kind->term[order], (size_t)kind->terms[order],
-                           &reading->term_room[order], sizeof term));
+                           &reading->term_capacity[order], sizeof term));
     kind->term[order][kind->terms[order]++] = term;
     const enum status status = mf_topology_check_term(kind, order, kind->terms[order] - 1);
     return status == STATUS_BAD_INPUT ? mf_status_prefix(status, "%s:%zu", line->file, line->number)

@@ -9,7 +9,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-enum { MOST_DEPTH = 16, MOST_FILES = 256, MOST_WORDS = 1024, MOST_LEVELS = 32 };
+enum { MAX_DEPTH = 16, MAX_FILES = 256, MAX_WORDS = 1024, MAX_LEVELS = 32 };
 
 struct word {
     char name[64];
@@ -19,10 +19,10 @@ struct word {
 struct reading {
     gromacs_take *take;
     void *context;
-    struct word *word; ///< shape [MOST_WORDS]: defined
+    struct word *word; ///< shape [MAX_WORDS]: defined
     size_t words;
     int files, depth;
-    bool taken[MOST_LEVELS]; ///< of each #ifdef that is open: whether its lines count
+    bool taken[MAX_LEVELS]; ///< of each #ifdef that is open: whether its lines count
     int levels;
 };
 
@@ -58,8 +58,8 @@ static enum status define(struct reading *reading, struct gromacs_line *line, ch
     const char *text = rest + length + strspn(rest + length, " \t");
     if (length == 0 || length >= sizeof word->name || strlen(text) >= sizeof word->text)
         return mf_gromacs_fail(line, "#define of a word that is empty or too long");
-    if (word == NULL && reading->words == MOST_WORDS)
-        return mf_gromacs_fail(line, "more than %d words are defined", MOST_WORDS);
+    if (word == NULL && reading->words == MAX_WORDS)
+        return mf_gromacs_fail(line, "more than %d words are defined", MAX_WORDS);
     if (word == NULL)
         word = &reading->word[reading->words++];
     snprintf(word->name, sizeof word->name, "%.*s", (int)length, rest);
@@ -80,16 +80,16 @@ static enum status include(struct reading *reading, struct gromacs_line *line, c
     snprintf(path, sizeof path, "%.*s%.*s", folder, line->file, (int)length, rest + 1);
     if (stat(path, &found) != 0)
         return mf_gromacs_fail(line, "#include: there is no file %.300s", path);
-    if (reading->depth == MOST_DEPTH || reading->files == MOST_FILES)
-        return mf_gromacs_fail(line, "#include: more than %d levels or %d files", MOST_DEPTH,
-                               MOST_FILES);
+    if (reading->depth == MAX_DEPTH || reading->files == MAX_FILES)
+        return mf_gromacs_fail(line, "#include: more than %d levels or %d files", MAX_DEPTH,
+                               MAX_FILES);
     return read_file(reading, path);
 }
 
 static enum status open_level(struct reading *reading, struct gromacs_line *line, const char *rest,
                               bool wanted) {
-    if (reading->levels == MOST_LEVELS)
-        return mf_gromacs_fail(line, "more than %d #ifdef are open", MOST_LEVELS);
+    if (reading->levels == MAX_LEVELS)
+        return mf_gromacs_fail(line, "more than %d #ifdef are open", MAX_LEVELS);
     reading->taken[reading->levels++] =
         (find_word(reading, rest, strcspn(rest, " \t")) != NULL) == wanted;
     return STATUS_OK;
@@ -213,7 +213,7 @@ static enum status read_file(struct reading *reading, const char *file) {
 enum status mf_gromacs_text_read(const char *file, gromacs_take *take, void *context) {
     enum status status = STATUS_OK;
     struct reading reading = {.take = take, .context = context};
-    NEW_ARRAY(reading.word, MOST_WORDS);
+    NEW_ARRAY(reading.word, MAX_WORDS);
     status = read_file(&reading, file);
 done:
     mf_memory_free(reading.word);

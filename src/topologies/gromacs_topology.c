@@ -41,7 +41,7 @@ struct reading {
 static struct gromacs_words split(struct gromacs_line *line) {
     struct gromacs_words words = {.count = 0};
     char *rest = NULL;
-    for (char *word = strtok_r(line->text, " \t", &rest); word && words.count < GROMACS_MOST_WORDS;
+    for (char *word = strtok_r(line->text, " \t", &rest); word && words.count < GROMACS_MAX_WORDS;
          word = strtok_r(NULL, " \t", &rest))
         words.word[words.count++] = word;
     return words;
@@ -78,18 +78,18 @@ static enum status begin_kind(struct gromacs_reading *reading, const struct grom
     if (mf_names_is_reserved(name))
         return mf_gromacs_fail(
             line, "\"%.40s\": a moleculetype needs a name of its own, " NAMES_RESERVED, name);
-    if (!mf_gromacs_is_integer(words->word[1], 0, TOPOLOGY_MOST_EXCLUDE, &exclude))
-        return mf_gromacs_fail(line, "nrexcl is 0 to %d, not %.40s", TOPOLOGY_MOST_EXCLUDE,
+    if (!mf_gromacs_is_integer(words->word[1], 0, TOPOLOGY_MAX_EXCLUDE, &exclude))
+        return mf_gromacs_fail(line, "nrexcl is 0 to %d, not %.40s", TOPOLOGY_MAX_EXCLUDE,
                                words->word[1]);
-    if (topology->kinds == TOPOLOGY_MOST_KINDS)
-        return mf_gromacs_fail(line, "there are more than %d moleculetypes", TOPOLOGY_MOST_KINDS);
+    if (topology->kinds == TOPOLOGY_MAX_KINDS)
+        return mf_gromacs_fail(line, "there are more than %d moleculetypes", TOPOLOGY_MAX_KINDS);
     if (find_kind(topology, name) < topology->kinds)
         return mf_gromacs_fail(line, "duplicate moleculetype %s", name);
     *kind = (struct topology_kind){.exclude = (int)exclude};
     memcpy(kind->name, name, sizeof name);
     topology->kinds++;
-    reading->atom_room = 0;
-    memset(reading->term_room, 0, sizeof reading->term_room);
+    reading->atom_capacity = 0;
+    memset(reading->term_capacity, 0, sizeof reading->term_capacity);
     return STATUS_OK;
 }
 
@@ -104,8 +104,8 @@ static enum status find_type(struct gromacs_reading *reading, const struct groma
             line,
             "\"%.40s\": expected a type name of up to %d letters, digits and _, " NAMES_RESERVED,
             name, COMPOSITION_NAME_SIZE - 1);
-    if (composition->types == COMPOSITION_MOST_TYPES)
-        return mf_gromacs_fail(line, "\"%s\": more than %d types", name, COMPOSITION_MOST_TYPES);
+    if (composition->types == COMPOSITION_MAX_TYPES)
+        return mf_gromacs_fail(line, "\"%s\": more than %d types", name, COMPOSITION_MAX_TYPES);
     strcpy(composition->name[composition->types++], name);
     return STATUS_OK;
 }
@@ -122,14 +122,14 @@ static enum status add_atom(struct gromacs_reading *reading, const struct gromac
                             const struct gromacs_words *words) {
     struct topology_kind *kind = mf_gromacs_last_kind(reading);
     int64_t number;
-    if (kind && kind->beads == GROMACS_MOST_ATOMS)
-        return mf_gromacs_fail(line, "%s has more than %d atoms", kind->name, GROMACS_MOST_ATOMS);
+    if (kind && kind->beads == GROMACS_MAX_ATOMS)
+        return mf_gromacs_fail(line, "%s has more than %d atoms", kind->name, GROMACS_MAX_ATOMS);
     if (kind == NULL)
         return mf_gromacs_fail(line, "atoms without a moleculetype");
     if (words->count < 2 ||
         !mf_gromacs_is_integer(words->word[0], kind->beads + 1, kind->beads + 1, &number))
         return mf_gromacs_fail(line, "expected atom number %d and a type", kind->beads + 1);
-    TRY(mf_gromacs_reserve((void **)&kind->type, (size_t)kind->beads, &reading->atom_room,
+    TRY(mf_gromacs_reserve((void **)&kind->type, (size_t)kind->beads, &reading->atom_capacity,
                            sizeof *kind->type));
     TRY(find_type(reading, line, words->word[1], &kind->type[kind->beads]));
     kind->beads++;
@@ -154,8 +154,8 @@ static enum status add_count(struct gromacs_reading *reading, const struct groma
         return mf_gromacs_fail(line, "there is no moleculetype %.40s", words->word[0]);
     if (topology->kind[k].beads == 0)
         return mf_gromacs_fail(line, "moleculetype %.40s has no atoms", words->word[0]);
-    for (int behind = k; behind < topology->kinds && count > 0; behind++)
-        reading->note->scattered |= topology->kind[behind].count > 0;
+    for (int later = k; later < topology->kinds && count > 0; later++)
+        reading->note->scattered |= topology->kind[later].count > 0;
     topology->kind[k].count += count;
     return STATUS_OK;
 }
@@ -224,7 +224,7 @@ static void drop_kinds(struct topology *topology) {
 static void drop_types(struct gromacs_reading *reading, int known) {
     struct composition *composition = reading->composition;
     struct topology *topology = &reading->molecules->topology;
-    int number[COMPOSITION_MOST_TYPES] = {0}, left = known;
+    int number[COMPOSITION_MAX_TYPES] = {0}, left = known;
     for (int k = 0; k < topology->kinds; k++)
         for (int bead = 0; bead < topology->kind[k].beads; bead++)
             composition->count[topology->kind[k].type[bead]] += topology->kind[k].count;
@@ -245,8 +245,8 @@ static void drop_types(struct gromacs_reading *reading, int known) {
 
 static void drop_groups(struct molecules *molecules, int order) {
     struct topology *topology = &molecules->topology;
-    bool used[MOLECULES_MOST_GROUPS] = {false};
-    int number[MOLECULES_MOST_GROUPS] = {0}, left = 0;
+    bool used[MOLECULES_MAX_GROUPS] = {false};
+    int number[MOLECULES_MAX_GROUPS] = {0}, left = 0;
     for (int k = 0; k < topology->kinds; k++)
         for (int n = 0; n < topology->kind[k].terms[order]; n++)
             used[topology->kind[k].term[order][n].group] = true;
@@ -280,7 +280,7 @@ static enum status finish(struct gromacs_reading *reading, int known, const char
 
 enum status mf_gromacs_topology_read(struct molecules *molecules, struct composition *composition,
                                      const char *file, const struct units *units,
-                                     struct gromacs_note *told) {
+                                     struct gromacs_note *given) {
     enum status status = STATUS_OK;
     struct reading own = {.section = NULL};
     own.terms = (struct gromacs_reading){
@@ -288,10 +288,10 @@ enum status mf_gromacs_topology_read(struct molecules *molecules, struct composi
         .composition = composition,
         .length = mf_units_known(units) ? units->length : 1,
         .energy = mf_units_known(units) ? mf_units_energy_kj_per_mol(units) : 1,
-        .note = told};
+        .note = given};
     const int known = composition->types;
-    *told = (struct gromacs_note){.text = ""};
-    NEW_ARRAY(own.terms.type, GROMACS_MOST_TYPES);
+    *given = (struct gromacs_note){.text = ""};
+    NEW_ARRAY(own.terms.type, GROMACS_MAX_TYPES);
     CHECK(mf_gromacs_text_read(file, take, &own));
     CHECK(finish(&own.terms, known, file));
 done:

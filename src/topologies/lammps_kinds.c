@@ -66,7 +66,7 @@ static size_t beads_of(const struct finding *finding, size_t molecule) {
 
 static int compare_terms(const void *a, const void *b) {
     const struct topology_term *x = a, *y = b;
-    for (int k = 0; k < BONDED_MOST_TERM_BEADS; k++)
+    for (int k = 0; k < BONDED_MAX_TERM_BEADS; k++)
         if (x->bead[k] != y->bead[k])
             return x->bead[k] < y->bead[k] ? -1 : 1;
     return x->group < y->group ? -1 : x->group > y->group;
@@ -116,9 +116,9 @@ static enum status find_type(struct finding *finding, size_t atom) {
     snprintf(name, sizeof name, "%lld", (long long)finding->source->structure->atom[atom].type);
     while (type < composition->types && strcmp(composition->name[type], name) != 0)
         type++;
-    if (type == COMPOSITION_MOST_TYPES)
+    if (type == COMPOSITION_MAX_TYPES)
         return mf_status_fail(STATUS_BAD_INPUT, "%s: atoms are of more than %d types",
-                              finding->source->file, COMPOSITION_MOST_TYPES);
+                              finding->source->file, COMPOSITION_MAX_TYPES);
     if (type == composition->types)
         snprintf(composition->name[composition->types++], COMPOSITION_NAME_SIZE, "%.15s", name);
     finding->type[atom] = type;
@@ -161,13 +161,13 @@ static enum status add_kind(struct finding *finding, size_t molecule) {
     struct topology *topology = finding->topology;
     const size_t beads = beads_of(finding, molecule);
     const long long id = (long long)finding->source->structure->atom[molecule].id;
-    if (topology->kinds == TOPOLOGY_MOST_KINDS)
+    if (topology->kinds == TOPOLOGY_MAX_KINDS)
         return mf_status_fail(STATUS_BAD_INPUT, "%s: the molecule of atom %lld: more than %d kinds",
-                              finding->source->file, id, TOPOLOGY_MOST_KINDS);
-    if (beads > LAMMPS_MOST_ATOMS)
+                              finding->source->file, id, TOPOLOGY_MAX_KINDS);
+    if (beads > LAMMPS_MAX_ATOMS)
         return mf_status_fail(STATUS_BAD_INPUT,
                               "%s: the molecule of atom %lld has %zu atoms; the most are %d",
-                              finding->source->file, id, beads, LAMMPS_MOST_ATOMS);
+                              finding->source->file, id, beads, LAMMPS_MAX_ATOMS);
     struct topology_kind *kind = &topology->kind[topology->kinds++];
     *kind = (struct topology_kind){.exclude = finding->source->exclude, .beads = (int)beads};
     snprintf(kind->name, sizeof kind->name, "molecule-%d", topology->kinds);

@@ -17,7 +17,7 @@ struct numbers {
 struct style {
     int order;
     const char *name;
-    int least, most; ///< numbers
+    int min, max; ///< numbers
     const struct bonded_law *law;
     /// False if a number is none that the law can have.
     bool (*fill)(struct bonded_curve *curve, const struct numbers *numbers);
@@ -130,9 +130,9 @@ enum status mf_lammps_style_create(struct bonded_curve *curve, int order, const 
     if (found == NULL)
         return mf_status_fail(STATUS_BAD_INPUT, "style \"%.40s\" is not known, but %s", style,
                               known);
-    if (count < found->least || count > found->most)
+    if (count < found->min || count > found->max)
         return mf_status_fail(STATUS_BAD_INPUT, "%d numbers, and %s has %d", count, style,
-                              found->least);
+                              found->min);
     TRY(mf_bonded_create(curve, found->law));
     if (found->fill(curve, &(struct numbers){number, count, length, energy})) {
         *note = found->note && number[2] != 0 ? found->note : NULL;

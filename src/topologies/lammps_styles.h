@@ -5,7 +5,7 @@
 
 #include "curves/bonded_kind.h"
 
-enum { LAMMPS_MOST_NUMBERS = 8 };
+enum { LAMMPS_MAX_NUMBERS = 8 };
 
 /// Make the curve of a style from the numbers behind its name in a line of coefficients.
 /// @param[in]  length, energy  the file's units in λ and k_B T_0

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_WORDS = 16 };
+enum { MAX_WORDS = 16 };
 
 enum section { HEADER, TERMS, COEFFICIENTS, OTHER };
 
@@ -38,19 +38,19 @@ struct reading {
     const struct known *section;    ///< NULL: the header
     char style[TOPOLOGY_NAME_SIZE]; ///< of the section of coefficients, "" if it is not told
     int64_t promised[BONDED_KINDS];
-    size_t room[BONDED_KINDS];
+    size_t capacity[BONDED_KINDS];
 };
 
 struct words {
-    struct word word[MOST_WORDS];
-    int count; ///< all of them, of which MOST_WORDS are kept
+    struct word word[MAX_WORDS];
+    int count; ///< all of them, of which MAX_WORDS are kept
 };
 
 static void split(const char *line, struct words *words) {
     struct word next;
     words->count = 0;
     while (mf_words_next(&line, &next) && next.begin[0] != '#') {
-        if (words->count < MOST_WORDS)
+        if (words->count < MAX_WORDS)
             words->word[words->count] = next;
         words->count++;
     }
@@ -91,7 +91,7 @@ static enum status read_header(struct reading *reading, const struct words *word
         const bool types = is(words, 1, mf_bonded_kinds[order]->name) && is(words, 2, "types");
         if (!types && !is(words, 1, mf_bonded_kinds[order]->plural))
             continue;
-        if (number < 0 || number > (types ? LAMMPS_MOST_COEFFICIENTS : INT32_MAX))
+        if (number < 0 || number > (types ? LAMMPS_MAX_COEFFICIENTS : INT32_MAX))
             return FAIL(reading, "%lld %s%s cannot be", (long long)number, types ? "types of " : "",
                         mf_bonded_kinds[order]->plural);
         *(types ? &reading->terms->types[order] : &reading->promised[order]) = number;
@@ -103,7 +103,7 @@ static enum status read_header(struct reading *reading, const struct words *word
 static enum status begin_section(struct reading *reading, const char *line,
                                  const struct words *words) {
     char name[TOPOLOGY_NAME_SIZE];
-    const struct word *last = &words->word[words->count <= MOST_WORDS ? words->count - 1 : 0];
+    const struct word *last = &words->word[words->count <= MAX_WORDS ? words->count - 1 : 0];
     snprintf(name, sizeof name, "%.*s", (int)(last->begin + last->length - words->word[0].begin),
              words->word[0].begin);
     const char *comment = strchr(line, '#');
@@ -149,16 +149,16 @@ static enum status add_term(struct reading *reading, const struct words *words) 
             if (term.atom[other] == term.atom[k])
                 return FAIL(reading, "the %s has an atom twice", name);
     }
-    if (terms->terms[order] == reading->room[order]) {
-        const size_t room = 2 * reading->room[order] + 64;
-        struct lammps_term *grown = mf_memory_uncleared(room, sizeof *grown);
+    if (terms->terms[order] == reading->capacity[order]) {
+        const size_t capacity = 2 * reading->capacity[order] + 64;
+        struct lammps_term *grown = mf_memory_uncleared(capacity, sizeof *grown);
         if (grown == NULL)
             return STATUS_NO_MEMORY;
         if (terms->terms[order] > 0)
             memcpy(grown, terms->term[order], terms->terms[order] * sizeof *grown);
         mf_memory_free(terms->term[order]);
         terms->term[order] = grown;
-        reading->room[order] = room;
+        reading->capacity[order] = capacity;
     }
     terms->term[order][terms->terms[order]++] = term;
     return STATUS_OK;
@@ -181,7 +181,7 @@ static enum status add_coefficient(struct reading *reading, const struct words *
     if (own->line > 0)
         return FAIL(reading, "duplicate type %lld", (long long)type);
     *own = (struct lammps_coefficient){.line = reading->line, .count = words->count - first};
-    if (own->count < 0 || own->count > LAMMPS_MOST_NUMBERS)
+    if (own->count < 0 || own->count > LAMMPS_MAX_NUMBERS)
         return FAIL(reading, "no known style has %d numbers", own->count);
     if (!hybrid)
         memcpy(own->style, reading->style, sizeof own->style);
@@ -226,7 +226,7 @@ static enum status read_line(struct reading *reading, const char *line) {
 /// those of the same type.
 static int compare_terms(const void *a, const void *b) {
     const struct lammps_term *x = a, *y = b;
-    for (int k = 0; k < BONDED_MOST_TERM_BEADS; k++)
+    for (int k = 0; k < BONDED_MAX_TERM_BEADS; k++)
         if (x->atom[k] != y->atom[k])
             return x->atom[k] < y->atom[k] ? -1 : 1;
     if (x->type != y->type)

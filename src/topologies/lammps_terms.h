@@ -8,21 +8,21 @@
 #include "system/topology.h"
 #include "trajectory/structure.h"
 
-enum { LAMMPS_MOST_COEFFICIENTS = 1000 }; ///< types of bonds, of angles, of dihedrals
+enum { LAMMPS_MAX_COEFFICIENTS = 1000 }; ///< types of bonds, of angles, of dihedrals
 
 /// A line of "Bond Coeffs" and the like.
 struct lammps_coefficient {
     size_t line; ///< 0: there is none
     char style[TOPOLOGY_NAME_SIZE];
     int count;
-    double number[LAMMPS_MOST_NUMBERS];
+    double number[LAMMPS_MAX_NUMBERS];
 };
 
 /// A line of "Bonds" and the like.
 struct lammps_term {
-    int type;                         ///< from 1 on
-    int atom[BONDED_MOST_TERM_BEADS]; ///< by their places in the structure, whose order is that of
-                                      ///< ids
+    int type;                        ///< from 1 on
+    int atom[BONDED_MAX_TERM_BEADS]; ///< by their places in the structure, whose order is that of
+                                     ///< ids
     size_t line;
 };
 

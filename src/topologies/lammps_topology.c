@@ -31,7 +31,7 @@ static const struct scale *find_scale(const char *name) {
     return NULL;
 }
 
-enum status mf_lammps_topology_units(const char *file, const char *told, const struct units *units,
+enum status mf_lammps_topology_units(const char *file, const char *given, const struct units *units,
                                      const char **style) {
     char *text, title[TOPOLOGY_NAME_SIZE];
     size_t length;
@@ -39,9 +39,9 @@ enum status mf_lammps_topology_units(const char *file, const char *told, const s
     TRY(mf_text_file_read(file, &text, &length));
     mf_lammps_terms_units(text, title);
     mf_memory_free(text);
-    if (title[0] && told[0] && strcmp(title, told) != 0)
+    if (title[0] && given[0] && strcmp(title, given) != 0)
         return mf_status_fail(STATUS_BAD_INPUT, "%s:1: the file has the units \"%s\"", file, title);
-    const char *name = told[0] ? told : title[0] ? title : known ? "real" : "lj";
+    const char *name = given[0] ? given : title[0] ? title : known ? "real" : "lj";
     const struct scale *scale = find_scale(name);
     if (scale == NULL)
         return mf_status_fail(STATUS_BAD_INPUT,
@@ -82,9 +82,9 @@ static enum status find_group(struct reading *reading, int order, int type, size
                               "%s:%zu: type %d of %ss has no coefficients here, and no law \"%d\" "
                               "in the scene's",
                               reading->file, line, type, mf_bonded_kinds[order]->name, type);
-    if (g == MOLECULES_MOST_GROUPS)
+    if (g == MOLECULES_MAX_GROUPS)
         return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: there are more than %d types of %ss",
-                              reading->file, line, MOLECULES_MOST_GROUPS,
+                              reading->file, line, MOLECULES_MAX_GROUPS,
                               mf_bonded_kinds[order]->name);
     struct molecules_group *group = &molecules->group[order][g];
     const enum status status =

@@ -6,7 +6,7 @@
 #include "forces/molecules.h"
 #include "io/units_scale.h"
 
-enum { LAMMPS_NOTE_SIZE = 256, LAMMPS_MOST_ATOMS = 20000 }; ///< of a molecule
+enum { LAMMPS_NOTE_SIZE = 256, LAMMPS_MAX_ATOMS = 20000 }; ///< of a molecule
 
 /// Whether a file is one, by its name: "….data", "data.…".
 bool mf_lammps_topology_is(const char *file);
@@ -15,7 +15,7 @@ bool mf_lammps_topology_is(const char *file);
 /// for a scene without units.
 /// @param[in] told  "lj", "real" or "metal", or "": as above
 /// Fails: BAD_INPUT for other units, or if both tell another; IO; NO_MEMORY.
-enum status mf_lammps_topology_units(const char *file, const char *told, const struct units *units,
+enum status mf_lammps_topology_units(const char *file, const char *given, const struct units *units,
                                      const char **style) MUST_USE;
 
 /// Read molecules and single beads. Atoms that terms join are a molecule; molecules with the same

@@ -157,7 +157,7 @@ const struct trajectory_format mf_format_dcd = {
     .extensions = extensions,
     .summary =
         "CHARMM, NAMD, X-PLOR, LAMMPS: positions, with or without boxes, either order of bytes",
-    .speaks = TRAJECTORY_ANGSTROM,
+    .unit_source = TRAJECTORY_ANGSTROM,
     .state_size = sizeof(struct dcd),
     .recognise = recognise,
     .open = open_file,

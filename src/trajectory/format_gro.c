@@ -133,10 +133,10 @@ static enum status read_atoms(struct trajectory_frame *frame, const char **line)
 
 /// Numbers of `decimals` digits behind their points, which may stand so close that no blank is
 /// left.
-static size_t read_tight(const char *line, size_t decimals, double *values, size_t most) {
+static size_t read_tight(const char *line, size_t decimals, double *values, size_t max) {
     size_t count = 0;
     const char *point;
-    for (; count < most && (point = strchr(line, '.')); count++) {
+    for (; count < max && (point = strchr(line, '.')); count++) {
         const size_t length = (size_t)(point - line) + 1 + decimals;
         const struct word word = mf_words_columns(line, 0, length);
         if (!mf_words_number(&word, &values[count]))

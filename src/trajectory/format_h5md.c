@@ -37,7 +37,7 @@ static void close(struct trajectory *trajectory) {
 static enum status take(struct trajectory_frame *frame, const struct h5md_element *element,
                         hsize_t at, hid_t type) {
     const size_t size = mf_h5md_element_numbers(element) * sizeof(double);
-    TRY(mf_source_room(&frame->raw, size));
+    TRY(mf_source_capacity(&frame->raw, size));
     TRY(mf_h5md_element_read(element, at, type, frame->raw.data + frame->raw.size));
     frame->raw.size += size;
     return STATUS_OK;
@@ -91,7 +91,7 @@ static enum status fetch(struct trajectory *trajectory, struct trajectory_frame 
     TRY(mf_h5md_element_clock(&h5md->position, &h5md->position.time, at, &header.time));
     TRY(read_box(h5md, header.step, at, header.box));
     header.time *= trajectory->scale.time;
-    TRY(mf_source_room(&frame->raw, sizeof header));
+    TRY(mf_source_capacity(&frame->raw, sizeof header));
     frame->raw.size = sizeof header;
     TRY(take(frame, &h5md->position, at, H5T_NATIVE_DOUBLE));
     TRY(take_if(frame, &h5md->velocity, header.step, at, H5T_NATIVE_DOUBLE,
@@ -258,7 +258,7 @@ const struct trajectory_format mf_format_h5md = {
     .name = "h5md",
     .extensions = extensions,
     .summary = "H5MD 1.1: positions, velocities, images, ids, box; masses and species",
-    .speaks = TRAJECTORY_UNITS_TOLD,
+    .unit_source = TRAJECTORY_UNITS_GIVEN,
     .state_size = sizeof(struct h5md_file),
     .recognise = recognise,
     .open = open,

@@ -12,7 +12,7 @@ static bool recognise(const unsigned char *begin, size_t size) {
 }
 
 /// Lines behind an item but the atoms.
-static uint64_t lines_behind(const char *item) {
+static uint64_t lines_after(const char *item) {
     return strncmp(item, "ITEM: BOX BOUNDS", 16) == 0 ? 3 : 1;
 }
 
@@ -31,7 +31,7 @@ static enum status fetch(struct trajectory *trajectory, struct trajectory_frame 
         if (strncmp((const char *)raw->data + begin, table, sizeof table - 1) == 0)
             break;
         const size_t value = raw->size;
-        TRY(mf_source_lines(source, raw, lines_behind((const char *)raw->data + begin)));
+        TRY(mf_source_lines(source, raw, lines_after((const char *)raw->data + begin)));
         if (strncmp((const char *)raw->data + begin, count, sizeof count - 1) == 0)
             TRY(mf_trajectory_read_count(trajectory, (const char *)raw->data + value, &atoms));
     }
@@ -50,7 +50,7 @@ static enum status describe_atom(const struct lammps_dump *dump,
                                  const struct trajectory_frame *first, const char *line,
                                  const struct trajectory_scale *scale,
                                  struct structure_atom *atom) {
-    struct word word[LAMMPS_MOST_COLUMNS];
+    struct word word[LAMMPS_MAX_COLUMNS];
     const int *const column = dump->column;
     TRY(mf_lammps_dump_split(dump, first, line, word));
     if (!integer_at(dump, word, LAMMPS_ID, &atom->id) ||
@@ -165,7 +165,7 @@ static void scale_vector(double vector[3], double factor) {
 
 static enum status read_atoms(const struct trajectory *trajectory, struct trajectory_frame *frame,
                               const struct lammps_dump *dump) {
-    struct word word[LAMMPS_MOST_COLUMNS];
+    struct word word[LAMMPS_MAX_COLUMNS];
     enum lammps_column from;
     TRY(find_positions(dump, frame, &from));
     const char *line = dump->first;
@@ -210,7 +210,7 @@ const struct trajectory_format mf_format_lammps_dump = {
     .summary =
         "LAMMPS, dump in text, atom or custom: any columns, x xs xu xsu, ix, vx, id type mol "
         "element mass",
-    .speaks = TRAJECTORY_UNITS_TOLD,
+    .unit_source = TRAJECTORY_UNITS_GIVEN,
     .recognise = recognise,
     .fetch = fetch,
     .describe = describe,

@@ -48,8 +48,8 @@ static struct packed read_packed(const unsigned char *raw) {
         .bytes = large ? binary_long(count, true) : binary_word(count, true),
     };
     for (int d = 0; d < 3; d++) {
-        packed.packing.least[d] = binary_int(numbers + 4 + 4 * d, true);
-        packed.packing.most[d] = binary_int(numbers + 16 + 4 * d, true);
+        packed.packing.min[d] = binary_int(numbers + 4 + 4 * d, true);
+        packed.packing.max[d] = binary_int(numbers + 16 + 4 * d, true);
     }
     return packed;
 }
@@ -66,7 +66,7 @@ static enum status fetch_packed(struct source *source, struct bytes *raw) {
     const char *const fault = mf_xtc_coordinates_check(&packed.packing, packed.bytes);
     if (fault)
         return mf_source_fail_byte(source, "%s", fault);
-    TRY(mf_source_room(raw, XTC_SLACK));
+    TRY(mf_source_capacity(raw, XTC_SLACK));
     memset(raw->data + raw->size, 0, XTC_SLACK);
     return STATUS_OK;
 }

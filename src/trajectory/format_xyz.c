@@ -165,7 +165,7 @@ const struct trajectory_format mf_format_xyz = {
     .extensions = extensions,
     .summary = "XYZ, plain or extended: Lattice, pbc, Time, Units, and of Properties pos, velo, "
                "mass, id, mol",
-    .speaks = TRAJECTORY_UNITS_TOLD,
+    .unit_source = TRAJECTORY_UNITS_GIVEN,
     .recognise = recognise,
     .fetch = fetch,
     .describe = describe,

@@ -8,23 +8,23 @@
 #include <stdlib.h>
 #include <string.h>
 
-static enum status reserve(double (**array)[3], size_t *room, size_t atoms) {
-    if (atoms <= *room)
+static enum status reserve(double (**array)[3], size_t *capacity, size_t atoms) {
+    if (atoms <= *capacity)
         return STATUS_OK;
     mf_memory_free(*array);
-    *room = 0;
+    *capacity = 0;
     *array = mf_memory_uncleared(atoms, sizeof **array);
     if (*array == NULL)
         return STATUS_NO_MEMORY;
-    *room = atoms;
+    *capacity = atoms;
     return STATUS_OK;
 }
 
 enum status mf_frame_reserve(struct trajectory_frame *frame, size_t atoms, bool velocities) {
     frame->atoms = atoms;
     frame->has_velocities = velocities;
-    TRY(reserve(&frame->position, &frame->room, atoms));
-    return velocities ? reserve(&frame->velocity, &frame->speed_room, atoms) : STATUS_OK;
+    TRY(reserve(&frame->position, &frame->capacity, atoms));
+    return velocities ? reserve(&frame->velocity, &frame->speed_capacity, atoms) : STATUS_OK;
 }
 
 void mf_frame_clear(struct trajectory_frame *frame) {

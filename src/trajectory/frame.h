@@ -24,11 +24,11 @@ struct trajectory_frame {
     double (
         *velocity)[3]; ///< shape [atoms, 3] [nm/ps]; what it holds means nothing without velocities
     const char *file;  ///< what follows is the readers' own
-    uint64_t first_byte;     ///< of the frame in the file
-    size_t first_line;       ///< lines of the file before the frame
-    struct bytes raw;        ///< the frame as it stands in the file
-    struct bytes scratch;    ///< of a decoder
-    size_t room, speed_room; ///< atoms that the arrays could hold
+    uint64_t first_byte;             ///< of the frame in the file
+    size_t first_line;               ///< lines of the file before the frame
+    struct bytes raw;                ///< the frame as it stands in the file
+    struct bytes scratch;            ///< of a decoder
+    size_t capacity, speed_capacity; ///< atoms that the arrays could hold
 };
 
 /// Room for positions, and for velocities if `velocities`, which is what has_velocities becomes.

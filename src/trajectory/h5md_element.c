@@ -5,7 +5,7 @@
 #include <string.h>
 
 /// Compression makes of a file at most so many bytes from each of its own: deflate 1032.
-enum { MOST_COMPRESSION = 2000, CHUNKS_IN_MEMORY = 1 << 26 };
+enum { MAX_COMPRESSION = 2000, CHUNKS_IN_MEMORY = 1 << 26 };
 
 // What HDF5 says ----------------------------------------------------------------------------------
 
@@ -149,10 +149,10 @@ static enum status open_clock(const struct h5md_element *element, hid_t group, c
 
 /// Sizes of a frame and the number of them.
 static enum status find_sizes(struct h5md_element *element, uint64_t bytes) {
-    hsize_t size[H5MD_MOST_RANK + 1] = {1, 1, 1};
+    hsize_t size[H5MD_MAX_RANK + 1] = {1, 1, 1};
     const hid_t space = H5Dget_space(element->value);
     const int rank = H5Sget_simple_extent_ndims(space), first = element->timed ? 1 : 0;
-    const bool fits = rank >= first && rank <= H5MD_MOST_RANK + first;
+    const bool fits = rank >= first && rank <= H5MD_MAX_RANK + first;
     if (fits)
         H5Sget_simple_extent_dims(space, size, NULL);
     H5Sclose(space);
@@ -162,11 +162,11 @@ static enum status find_sizes(struct h5md_element *element, uint64_t bytes) {
     element->frames = element->timed ? size[0] : 1;
     element->rank = rank - first;
     double all = sizeof(float);
-    for (int k = 0; k < H5MD_MOST_RANK; k++) {
+    for (int k = 0; k < H5MD_MAX_RANK; k++) {
         element->size[k] = k < element->rank ? size[k + first] : 1;
         all *= (double)element->size[k];
     }
-    if (all > MOST_COMPRESSION * (double)bytes)
+    if (all > MAX_COMPRESSION * (double)bytes)
         return fail(element, "claims more numbers in a frame than the file can hold");
     return STATUS_OK;
 }
@@ -231,7 +231,7 @@ size_t mf_h5md_element_numbers(const struct h5md_element *element) {
 /// Read a stretch of `count` numbers along the dimensions behind the first.
 static herr_t read_slab(hid_t dataset, hsize_t frame, const hsize_t *size, int rank, hid_t type,
                         void *numbers) {
-    hsize_t begin[H5MD_MOST_RANK + 1] = {frame}, count[H5MD_MOST_RANK + 1] = {1}, all = 1;
+    hsize_t begin[H5MD_MAX_RANK + 1] = {frame}, count[H5MD_MAX_RANK + 1] = {1}, all = 1;
     for (int k = 0; k < rank; k++) {
         count[k + 1] = size[k];
         all *= size[k];

@@ -15,7 +15,7 @@
 #include <hdf5.h>
 #include <stdbool.h>
 
-enum { H5MD_MOST_RANK = 2, H5MD_UNIT_SIZE = 64 };
+enum { H5MD_MAX_RANK = 2, H5MD_UNIT_SIZE = 64 };
 
 /// A step or time of each frame.
 struct h5md_clock {
@@ -30,9 +30,9 @@ struct h5md_element {
     bool there;
     bool timed;
     hid_t value;
-    int rank;                     ///< of one frame
-    hsize_t size[H5MD_MOST_RANK]; ///< of one frame, 1 beyond the rank
-    hsize_t frames;               ///< 1 of what is the same for all times
+    int rank;                    ///< of one frame
+    hsize_t size[H5MD_MAX_RANK]; ///< of one frame, 1 beyond the rank
+    hsize_t frames;              ///< 1 of what is the same for all times
     struct h5md_clock step, time;
     char unit[H5MD_UNIT_SIZE]; ///< "": the file does not say
     hsize_t at;                ///< where the last search ended

@@ -58,33 +58,33 @@ static void list_groups(hid_t particles, struct groups *groups) {
 }
 
 static enum status choose_group(struct h5md_file *h5md, hid_t particles, const char *file,
-                                const char *wish) {
+                                const char *wanted) {
     struct groups groups = {0};
     list_groups(particles, &groups);
-    const bool known = wish && H5Lexists(particles, wish, H5P_DEFAULT) > 0;
+    const bool known = wanted && H5Lexists(particles, wanted, H5P_DEFAULT) > 0;
     if (groups.count == 0)
         return fail(file, "no group of \"particles\" in this file has positions");
-    if (wish && !(known && has_positions(particles, wish)))
+    if (wanted && !(known && has_positions(particles, wanted)))
         return mf_status_fail(STATUS_BAD_INPUT,
                               "%s: no group of particles with positions is called \"%s\"; there is "
                               "%s",
-                              file, wish, groups.names);
-    if (!wish && groups.count > 1)
+                              file, wanted, groups.names);
+    if (!wanted && groups.count > 1)
         return mf_status_fail(
             STATUS_BAD_INPUT,
             "%s: there are several groups of particles, %s: choose one by --file-group", file,
             groups.names);
-    h5md->group = mf_h5md_element_group(particles, wish ? wish : groups.last);
+    h5md->group = mf_h5md_element_group(particles, wanted ? wanted : groups.last);
     return h5md->group >= 0 ? STATUS_OK : fail(file, "the particles are not a group of this file");
 }
 
-static enum status open_group(struct h5md_file *h5md, const char *file, const char *wish) {
+static enum status open_group(struct h5md_file *h5md, const char *file, const char *wanted) {
     if (H5Lexists(h5md->file, "particles", H5P_DEFAULT) <= 0)
         return fail(file, "HDF5, but not H5MD: there is no group \"particles\"");
     const hid_t particles = mf_h5md_element_group(h5md->file, "particles");
     if (particles < 0)
         return fail(file, "\"particles\" is not a group of this file");
-    const enum status status = choose_group(h5md, particles, file, wish);
+    const enum status status = choose_group(h5md, particles, file, wanted);
     H5Gclose(particles);
     return status;
 }
@@ -194,18 +194,18 @@ static enum status find_unit(const char *file, const char *name, const char *uni
 static enum status find_units(struct h5md_file *h5md, struct trajectory *trajectory) {
     struct trajectory_scale *const scale = &trajectory->scale;
     const char *const file = trajectory->file;
-    const bool told = scale->length > 0, says = h5md->position.unit[0] != '\0';
-    if (told && says)
+    const bool given = scale->length > 0, says = h5md->position.unit[0] != '\0';
+    if (given && says)
         return mf_status_fail(STATUS_BAD_INPUT, "%s: the file has positions in \"%s\"", file,
                               h5md->position.unit);
-    if (!told)
+    if (!given)
         *scale = (struct trajectory_scale){1, 1, 1, 1};
-    if (!told && !says)
+    if (!given && !says)
         snprintf(trajectory->note, sizeof trajectory->note,
                  "%.200s: has no unit of positions: nm, ps and u are assumed (--file-units)", file);
     TRY(find_unit(file, "position", h5md->position.unit, H5MD_LENGTH, &scale->length));
     TRY(find_unit(file, "time", h5md->position.time.unit, H5MD_TIME, &scale->time));
-    if (!told)
+    if (!given)
         scale->speed = scale->length / scale->time;
     TRY(find_unit(file, "velocity", h5md->velocity.unit, H5MD_SPEED, &scale->speed));
     h5md->edge_length = scale->length;

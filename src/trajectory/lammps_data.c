@@ -76,8 +76,7 @@ static enum status read_header_line(struct lammps_data *data, const struct traje
         good = mf_words_integer(&word[0], &number) && number > 0;
         data->atoms = (size_t)number;
     } else if (is_word(word, count, 1, "atom") && is_word(word, count, 2, "types")) {
-        good =
-            mf_words_integer(&word[0], &number) && number > 0 && number <= LAMMPS_DATA_MOST_TYPES;
+        good = mf_words_integer(&word[0], &number) && number > 0 && number <= LAMMPS_DATA_MAX_TYPES;
         data->types = (size_t)number;
     } else if (is_word(word, count, 3, "xy")) {
         good = mf_words_number(&word[0], &data->box[1][0]) &&

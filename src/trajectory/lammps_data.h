@@ -6,7 +6,7 @@
 #include "trajectory/frame.h"
 #include "trajectory/words.h"
 
-enum { LAMMPS_DATA_MOST_TYPES = 1 << 16, LAMMPS_DATA_WORDS = 10 };
+enum { LAMMPS_DATA_MAX_TYPES = 1 << 16, LAMMPS_DATA_WORDS = 10 };
 
 /// Where an atom's words stand: behind its id, and before its three images.
 struct lammps_style {

@@ -24,14 +24,14 @@ static bool read_integer(const char *line, int64_t *value) {
     return mf_words_next(&line, &word) && mf_words_integer(&word, value);
 }
 
-static double least(const double *values, int count) {
+static double min(const double *values, int count) {
     double found = 0;
     for (int k = 0; k < count; k++)
         found = fmin(found, values[k]);
     return found;
 }
 
-static double most(const double *values, int count) {
+static double max(const double *values, int count) {
     double found = 0;
     for (int k = 0; k < count; k++)
         found = fmax(found, values[k]);
@@ -43,8 +43,8 @@ static double most(const double *values, int count) {
 static void set_tilted(struct lammps_dump *dump, double v[3][4]) {
     const double xy = v[0][2], xz = v[1][2], yz = v[2][2];
     const double shifts[] = {xy, xz, xy + xz};
-    v[0][0] -= least(shifts, 3), v[0][1] -= most(shifts, 3);
-    v[1][0] -= least(&yz, 1), v[1][1] -= most(&yz, 1);
+    v[0][0] -= min(shifts, 3), v[0][1] -= max(shifts, 3);
+    v[1][0] -= min(&yz, 1), v[1][1] -= max(&yz, 1);
     dump->box[1][0] = xy, dump->box[2][0] = xz, dump->box[2][1] = yz;
 }
 
@@ -87,8 +87,8 @@ static enum status read_columns(struct lammps_dump *dump, const struct trajector
         for (int k = 0; k < LAMMPS_COLUMNS; k++)
             if (mf_words_same(&word, column_name[k]) && dump->column[k] < 0)
                 dump->column[k] = (int)dump->columns;
-    if (dump->columns > LAMMPS_MOST_COLUMNS)
-        return mf_frame_fail_line(frame, words, "more than %d columns", LAMMPS_MOST_COLUMNS);
+    if (dump->columns > LAMMPS_MAX_COLUMNS)
+        return mf_frame_fail_line(frame, words, "more than %d columns", LAMMPS_MAX_COLUMNS);
     return STATUS_OK;
 }
 
@@ -131,7 +131,7 @@ enum status mf_lammps_dump_read(struct lammps_dump *dump, const struct trajector
 
 enum status mf_lammps_dump_split(const struct lammps_dump *dump,
                                  const struct trajectory_frame *frame, const char *line,
-                                 struct word word[LAMMPS_MOST_COLUMNS]) {
+                                 struct word word[LAMMPS_MAX_COLUMNS]) {
     const char *rest = line;
     for (size_t k = 0; k < dump->columns; k++)
         if (!mf_words_next(&rest, &word[k]))

@@ -22,7 +22,7 @@ enum lammps_column {
     LAMMPS_COLUMNS = LAMMPS_VX + 3,
 };
 
-enum { LAMMPS_MOST_COLUMNS = 128 };
+enum { LAMMPS_MAX_COLUMNS = 128 };
 
 struct lammps_dump {
     size_t atoms, columns;
@@ -44,4 +44,4 @@ enum status mf_lammps_dump_read(struct lammps_dump *dump,
 /// few.
 enum status mf_lammps_dump_split(const struct lammps_dump *dump,
                                  const struct trajectory_frame *frame, const char *line,
-                                 struct word word[LAMMPS_MOST_COLUMNS]) MUST_USE;
+                                 struct word word[LAMMPS_MAX_COLUMNS]) MUST_USE;

@@ -60,9 +60,9 @@ static enum status begin_bead(struct work *work, const struct mapping_entry *ent
     const struct structure_atom *const a = &work->structure->atom[atom];
     const char *const name = entry->type[0] ? entry->type : a->residue_name;
     const size_t type = find_type(mapping, name[0] ? name : "A");
-    if (mapping->types > MAPPING_MOST_BEADS)
+    if (mapping->types > MAPPING_MAX_BEADS)
         return mf_status_fail(STATUS_BAD_INPUT, "%s: more than %d types of beads", work->plan->file,
-                              MAPPING_MOST_BEADS);
+                              MAPPING_MAX_BEADS);
     mapping->bead[mapping->beads++] =
         (struct mapping_bead){.first = work->used,
                               .type = type,
@@ -197,7 +197,7 @@ enum status mf_mapping_build(struct mapping *mapping, const struct mapping_plan 
     enum status status = STATUS_OK;
     struct work work = {mapping, plan, structure, 0, NULL, NULL, NULL, 0};
     const size_t atoms = structure->atoms;
-    NEW_ARRAY(mapping->type_name, MAPPING_MOST_BEADS + 1);
+    NEW_ARRAY(mapping->type_name, MAPPING_MAX_BEADS + 1);
     NEW_ARRAY(mapping->bead, atoms + 1); // one more: a bead is begun before an atom is found taken
     NEW_ARRAY(mapping->atom, atoms);
     NEW_ARRAY(mapping->weight, atoms);

@@ -17,7 +17,7 @@ enum status mf_mapping_note(struct mapping *mapping, const char *format, ...) {
     vsnprintf(line, sizeof line, format, arguments);
     va_end(arguments);
     const size_t length = strlen(line);
-    TRY(mf_source_room(notes, length + 2));
+    TRY(mf_source_capacity(notes, length + 2));
     memcpy(notes->data + notes->size, line, length);
     memcpy(notes->data + notes->size + length, "\n", 2);
     notes->size += length + 1;
@@ -52,31 +52,31 @@ static enum origin find_mass(const struct mapping_plan *plan, const struct struc
 }
 
 /// What has been guessed once need not be told again: few names make up a liquid.
-enum { MOST_TOLD = 64 };
-struct told {
-    const struct structure_atom *atom[MOST_TOLD];
+enum { MAX_REPORTED = 64 };
+struct reported {
+    const struct structure_atom *atom[MAX_REPORTED];
     size_t count;
     bool hydrogen;                       ///< there is some
     const struct structure_atom *carbon; ///< that is called by more than its element, or NULL
 };
 
-static bool was_told(struct told *told, const struct structure_atom *atom) {
-    for (size_t k = 0; k < told->count; k++)
-        if (strcmp(told->atom[k]->name, atom->name) == 0 &&
-            strcmp(told->atom[k]->residue_name, atom->residue_name) == 0)
+static bool was_reported(struct reported *reported, const struct structure_atom *atom) {
+    for (size_t k = 0; k < reported->count; k++)
+        if (strcmp(reported->atom[k]->name, atom->name) == 0 &&
+            strcmp(reported->atom[k]->residue_name, atom->residue_name) == 0)
             return true;
-    if (told->count == MOST_TOLD)
+    if (reported->count == MAX_REPORTED)
         return true;
-    told->atom[told->count++] = atom;
+    reported->atom[reported->count++] = atom;
     return false;
 }
 
-static enum status note_guess(struct mapping *mapping, struct told *told,
+static enum status note_guess(struct mapping *mapping, struct reported *reported,
                               const struct structure *structure, size_t k, double mass) {
     const struct structure_atom *const atom = &structure->atom[k];
-    if (was_told(told, atom))
+    if (was_reported(reported, atom))
         return STATUS_OK;
-    if (told->count == MOST_TOLD)
+    if (reported->count == MAX_REPORTED)
         return mf_mapping_note(mapping, "masses of further names were guessed, too");
     return mf_mapping_note(mapping, "guessed by its name: \"%s\"%s%s%s is %s, %g u", atom->name,
                            atom->residue_name[0] ? " of \"" : "", atom->residue_name,
@@ -84,18 +84,19 @@ static enum status note_guess(struct mapping *mapping, struct told *told,
 }
 
 /// Carbon that is called CH3 or CA where there is no hydrogen has its hydrogen in it.
-static void look_for_united(struct told *told, const struct structure *structure, size_t k) {
+static void look_for_united(struct reported *reported, const struct structure *structure,
+                            size_t k) {
     const char *const element = guess(structure, k), *const name = structure->atom[k].name;
-    told->hydrogen = told->hydrogen || strcmp(element, "H") == 0;
+    reported->hydrogen = reported->hydrogen || strcmp(element, "H") == 0;
     if (strcmp(element, "C") == 0 && isalpha((unsigned char)name[1]))
-        told->carbon = &structure->atom[k];
+        reported->carbon = &structure->atom[k];
 }
 
 /// The mass of a bead, and the weights of its atoms if these are not those of geometry. The weight
 /// of an atom alone is 1, whatever its mass.
 static enum status weigh_bead(struct mapping *mapping, const struct mapping_plan *plan,
                               const struct structure *structure, struct mapping_bead *bead,
-                              struct told *told) {
+                              struct reported *reported) {
     double *const weight = &mapping->weight[bead->first];
     const bool by_mass = weight[0] == 0;
     for (size_t i = 0; i < bead->count; i++) {
@@ -108,9 +109,9 @@ static enum status weigh_bead(struct mapping *mapping, const struct mapping_plan
                                   "the map (0 for a site without mass)",
                                   plan->file, k + 1, structure->atom[k].name);
         if (origin == FROM_ELEMENT)
-            look_for_united(told, structure, k);
+            look_for_united(reported, structure, k);
         if (origin == FROM_ELEMENT)
-            TRY(note_guess(mapping, told, structure, k, mass));
+            TRY(note_guess(mapping, reported, structure, k, mass));
         bead->mass += mass;
         if (by_mass)
             weight[i] = bead->count > 1 ? mass : 1;
@@ -127,15 +128,15 @@ static enum status weigh_bead(struct mapping *mapping, const struct mapping_plan
 
 enum status mf_mapping_build_masses(struct mapping *mapping, const struct mapping_plan *plan,
                                     const struct structure *structure) {
-    struct told told = {.count = 0};
+    struct reported reported = {.count = 0};
     for (size_t k = 0; k < mapping->beads; k++)
-        TRY(weigh_bead(mapping, plan, structure, &mapping->bead[k], &told));
-    if (told.carbon && !told.hydrogen)
+        TRY(weigh_bead(mapping, plan, structure, &mapping->bead[k], &reported));
+    if (reported.carbon && !reported.hydrogen)
         return mf_mapping_note(
             mapping,
             "mesofit: warning: \"%s\" has the mass of carbon, and there is no hydrogen: are these "
             "united atoms? Give their masses in \"masses\" of a map",
-            told.carbon->name);
+            reported.carbon->name);
     return STATUS_OK;
 }
 

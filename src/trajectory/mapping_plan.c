@@ -58,9 +58,9 @@ static enum status read_beads(struct mapping_plan *plan, struct json_object *roo
     size_t count = 0;
     while (beads.item && mf_json_key(&beads, count))
         count++;
-    if (beads.item && (count == 0 || count > MAPPING_MOST_BEADS)) {
+    if (beads.item && (count == 0 || count > MAPPING_MAX_BEADS)) {
         mf_json_fault(&beads, NULL, "names %zu kinds of beads; there may be 1 to %d", count,
-                      MAPPING_MOST_BEADS);
+                      MAPPING_MAX_BEADS);
         return STATUS_OK;
     }
     plan->entry = mf_memory_zeroed(count + 1, sizeof *plan->entry);
@@ -93,8 +93,8 @@ static void read_masses(struct mapping_plan *plan, struct json_object *root) {
                                         .unit = "u", .help = ""},
                                        FIELD_END};
         const struct word word = {name, strlen(name)};
-        if (n >= MAPPING_MOST_MASSES) {
-            mf_json_fault(&masses, NULL, "more than %d masses", MAPPING_MOST_MASSES);
+        if (n >= MAPPING_MAX_MASSES) {
+            mf_json_fault(&masses, NULL, "more than %d masses", MAPPING_MAX_MASSES);
             return;
         }
         mf_json_fields(&masses, fields, mass);

@@ -10,7 +10,7 @@
 #include "base/status.h"
 #include "trajectory/structure.h"
 
-enum { MAPPING_MOST_BEADS = 60, MAPPING_MOST_MASSES = 60 };
+enum { MAPPING_MAX_BEADS = 60, MAPPING_MAX_MASSES = 60 };
 
 enum mapping_centre { MAPPING_CENTRE_OF_MASS, MAPPING_CENTRE_OF_GEOMETRY };
 
@@ -31,7 +31,7 @@ struct mapping_plan {
     struct mapping_mass {
         char name[STRUCTURE_NAME];
         double mass;
-    } mass[MAPPING_MOST_MASSES];
+    } mass[MAPPING_MAX_MASSES];
     size_t masses;
     bool ignores_rest; ///< atoms that no entry names are left out; else they are a fault
 };

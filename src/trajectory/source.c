@@ -10,11 +10,11 @@
 
 enum { BUFFER_SIZE = 1 << 18, LONGEST_LINE = 1 << 20, LARGEST_PIECE = 1 << 24 };
 
-enum status mf_source_room(struct bytes *bytes, size_t more) {
+enum status mf_source_capacity(struct bytes *bytes, size_t more) {
     if (more <= bytes->capacity - bytes->size)
         return STATUS_OK;
-    const size_t least = bytes->size + more, twice = 2 * bytes->capacity;
-    const size_t capacity = least > twice ? least : twice;
+    const size_t min = bytes->size + more, twice = 2 * bytes->capacity;
+    const size_t capacity = min > twice ? min : twice;
     unsigned char *data = mf_memory_uncleared(capacity, 1);
     if (data == NULL)
         return STATUS_NO_MEMORY;
@@ -97,7 +97,7 @@ static size_t take_some(struct source *source, unsigned char *to, size_t count) 
 enum status mf_source_take(struct source *source, struct bytes *bytes, uint64_t count) {
     while (count > 0) {
         const size_t piece = count < LARGEST_PIECE ? (size_t)count : LARGEST_PIECE;
-        TRY(mf_source_room(bytes, piece));
+        TRY(mf_source_capacity(bytes, piece));
         const size_t taken = take_some(source, bytes->data + bytes->size, piece);
         TRY(check_stream(source));
         bytes->size += taken;
@@ -117,7 +117,7 @@ static enum status take_line_part(struct source *source, struct bytes *bytes, bo
     const unsigned char *end = memchr(begin, '\n', available);
     const size_t length = end ? (size_t)(end - begin) : available;
     *ended = end != NULL;
-    TRY(mf_source_room(bytes, length + 1));
+    TRY(mf_source_capacity(bytes, length + 1));
     memcpy(bytes->data + bytes->size, begin, length);
     bytes->size += length;
     source->begin += length + *ended;

@@ -20,7 +20,7 @@ struct bytes {
 };
 
 /// Make room for `more` bytes behind those that are there, which stay. Fails: NO_MEMORY.
-enum status mf_source_room(struct bytes *bytes, size_t more) MUST_USE;
+enum status mf_source_capacity(struct bytes *bytes, size_t more) MUST_USE;
 
 void mf_source_free(struct bytes *bytes);
 

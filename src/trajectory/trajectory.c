@@ -66,9 +66,9 @@ static enum status find_format(struct trajectory *trajectory) {
 /// know.
 static enum status find_units(struct trajectory *trajectory, const char *units) {
     const struct trajectory_format *const format = trajectory->format;
-    if (format->speaks == TRAJECTORY_OWN_UNITS)
+    if (format->unit_source == TRAJECTORY_OWN_UNITS)
         trajectory->scale = (struct trajectory_scale){1, 1, 1, 1};
-    else if (units || format->speaks == TRAJECTORY_ANGSTROM)
+    else if (units || format->unit_source == TRAJECTORY_ANGSTROM)
         return mf_trajectory_units_find(units ? units : "real", &trajectory->scale);
     return STATUS_OK;
 }
@@ -77,8 +77,8 @@ enum status mf_trajectory_found_units(struct trajectory *trajectory, const char 
     struct trajectory_scale scale;
     if (mf_trajectory_units_find(name, &scale) != STATUS_OK)
         return mf_status_prefix(STATUS_BAD_INPUT, "%s", trajectory->file);
-    const bool told = trajectory->scale.length > 0;
-    if (told && memcmp(&scale, &trajectory->scale, sizeof scale) != 0)
+    const bool given = trajectory->scale.length > 0;
+    if (given && memcmp(&scale, &trajectory->scale, sizeof scale) != 0)
         return mf_status_fail(STATUS_BAD_INPUT, "%s: the file has the units \"%s\"",
                               trajectory->file, name);
     trajectory->scale = scale;
@@ -215,7 +215,7 @@ enum status mf_trajectory_begin_atoms(const struct trajectory *trajectory,
                                       struct trajectory_frame *frame) {
     const size_t atoms = trajectory->structure.atoms;
     frame->scratch.size = 0;
-    TRY(mf_source_room(&frame->scratch, atoms));
+    TRY(mf_source_capacity(&frame->scratch, atoms));
     memset(frame->scratch.data, 0, atoms);
     return STATUS_OK;
 }

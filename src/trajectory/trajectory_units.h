@@ -5,10 +5,10 @@
 #include "base/status.h"
 
 /// Whose units a format is in.
-enum trajectory_speaks {
-    TRAJECTORY_OWN_UNITS, ///< the format says which, and nobody else
-    TRAJECTORY_ANGSTROM,  ///< Å, fs and u, unless the user says otherwise
-    TRAJECTORY_UNITS_TOLD ///< the file may say it; else only the user knows
+enum trajectory_unit_source {
+    TRAJECTORY_OWN_UNITS,  ///< the format says which, and nobody else
+    TRAJECTORY_ANGSTROM,   ///< Å, fs and u, unless the user says otherwise
+    TRAJECTORY_UNITS_GIVEN ///< the file may say it; else only the user knows
 };
 
 /// What one unit of a file is.

@@ -66,21 +66,21 @@ static bool long_number(const struct word *word, double *value) {
 bool mf_words_number(const struct word *word, double *value) {
     static const double power[] = {1e0, 1e1, 1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
                                    1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15};
-    enum { MOST_DIGITS = 15 };
+    enum { MAX_DIGITS = 15 };
     const char *at = word->begin, *const end = at + word->length;
     const bool negative = at < end && *at == '-';
     uint64_t mantissa = 0;
     size_t digits = 0, decimals = 0;
     if (at < end && (*at == '-' || *at == '+'))
         at++;
-    if (end - at > MOST_DIGITS + 1)
+    if (end - at > MAX_DIGITS + 1)
         return long_number(word, value);
     for (; at < end && is_digit(*at); at++, digits++)
         mantissa = 10 * mantissa + (uint64_t)(*at - '0');
     if (at < end && *at == '.')
         for (at++; at < end && is_digit(*at); at++, digits++, decimals++)
             mantissa = 10 * mantissa + (uint64_t)(*at - '0');
-    if (at < end || digits > MOST_DIGITS)
+    if (at < end || digits > MAX_DIGITS)
         return long_number(word, value);
     const double size = (double)mantissa / power[decimals];
     *value = negative ? -size : size;

@@ -6,7 +6,7 @@
 #include <math.h>
 #include <stdbool.h>
 
-enum { FIRST_LEVEL = 9, LEVELS = 73, LEAST_BITS = 9 };
+enum { FIRST_LEVEL = 9, LEVELS = 73, MIN_BITS = 9 };
 
 /// Differences in level k are three digits below radix[k], 2^(k/3) but for a few that the format's
 /// author typed otherwise; k bits hold the three.
@@ -113,7 +113,7 @@ static struct whole make_whole(const struct xtc_packing *packing) {
     struct whole whole = {0};
     uint64_t range[3];
     for (int d = 0; d < 3; d++) {
-        range[d] = (uint64_t)((int64_t)packing->most[d] - packing->least[d] + 1);
+        range[d] = (uint64_t)((int64_t)packing->max[d] - packing->min[d] + 1);
         whole.bits[d] = bit_length(range[d]);
         whole.apart |= range[d] > 0xFFFFFF;
     }
@@ -137,19 +137,19 @@ const char *mf_xtc_coordinates_check(const struct xtc_packing *packing, size_t b
     if (packing->level < FIRST_LEVEL || packing->level >= LEVELS)
         return "the size of the differences is not valid";
     for (int d = 0; d < 3; d++)
-        if ((int64_t)packing->most[d] - packing->least[d] < 0 ||
-            (int64_t)packing->most[d] - packing->least[d] >= INT32_MAX)
+        if ((int64_t)packing->max[d] - packing->min[d] < 0 ||
+            (int64_t)packing->max[d] - packing->min[d] >= INT32_MAX)
             return "the range of the coordinates is not valid";
     const struct whole whole = make_whole(packing);
     // Atoms of one point take no bits but the flag that ends each.
-    const unsigned bits = whole.apart ? LEAST_BITS : whole.digits.bits + 1;
-    if ((double)packing->atoms * (bits < LEAST_BITS ? bits : LEAST_BITS) > 8.0 * (double)bytes)
+    const unsigned bits = whole.apart ? MIN_BITS : whole.digits.bits + 1;
+    if ((double)packing->atoms * (bits < MIN_BITS ? bits : MIN_BITS) > 8.0 * (double)bytes)
         return "too few bytes for the number of atoms";
     return NULL;
 }
 
 /// Whole numbers are kept as they are modulo 2^32: damaged ones may be any.
-static inline void put(double position[3], const uint32_t number[3], double precision) {
+static inline void append(double position[3], const uint32_t number[3], double precision) {
     for (int d = 0; d < 3; d++)
         position[d] = (double)(int32_t)number[d] / precision;
 }
@@ -167,10 +167,10 @@ static inline bool take_run(const struct digits *digits, const unsigned char *da
         for (int d = 0; d < 3; d++)
             next[d] += last[d] - middle;
         if (k == 0) { // the exchanged two: what follows is told from the first
-            put(position[0], next, precision);
-            put(position[1], whole, precision);
+            append(position[0], next, precision);
+            append(position[1], whole, precision);
         } else {
-            put(position[k + 1], next, precision);
+            append(position[k + 1], next, precision);
         }
         memcpy(last, next, sizeof last);
     }
@@ -199,7 +199,7 @@ const char *mf_xtc_coordinates_unpack(const struct xtc_packing *packing, const u
         if (bit > 8 * bytes || !take_whole(&whole, data, &bit, number))
             return "the packed coordinates are damaged";
         for (int d = 0; d < 3; d++)
-            number[d] += (uint32_t)packing->least[d];
+            number[d] += (uint32_t)packing->min[d];
         if (take(data, &bit, 1)) {
             const uint32_t code = take(data, &bit, 5);
             change = code % 3; // 0: finer, 2: coarser from the next atom on
@@ -208,7 +208,7 @@ const char *mf_xtc_coordinates_unpack(const struct xtc_packing *packing, const u
         if (run >= packing->atoms - atom)
             return "the packed coordinates are damaged";
         if (run == 0)
-            put(position[atom], number, precision);
+            append(position[atom], number, precision);
         else if (!take_run(&levels[level], data, &bit, run, number, precision, &position[atom]))
             return "the packed coordinates are damaged";
         atom += run + 1;

@@ -15,9 +15,9 @@
 /// What a frame says before the bits.
 struct xtc_packing {
     size_t atoms;
-    double precision;          ///< coordinates are whole multiples of 1/precision [1/nm]
-    int32_t least[3], most[3]; ///< of all coordinates, as whole numbers
-    int32_t level;             ///< with which the radix of differences begins
+    double precision;       ///< coordinates are whole multiples of 1/precision [1/nm]
+    int32_t min[3], max[3]; ///< of all coordinates, as whole numbers
+    int32_t level;          ///< with which the radix of differences begins
 };
 
 /// Bytes behind the bits that must be there to read, whatever they hold.

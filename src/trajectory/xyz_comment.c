@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { VALUE_SIZE = 1024, MOST_COLUMNS = 1000 };
+enum { VALUE_SIZE = 1024, MAX_COLUMNS = 1000 };
 
 /// Names of columns as ASE, OVITO, QUIP and LAMMPS write them; they may differ in case.
 static const struct {
@@ -89,7 +89,7 @@ static bool read_properties(const struct word *value, struct xyz_comment *commen
         take_part(&at, end); // the kind
         const struct word number = take_part(&at, end);
         int64_t width;
-        if (!mf_words_integer(&number, &width) || width < 1 || width > MOST_COLUMNS)
+        if (!mf_words_integer(&number, &width) || width < 1 || width > MAX_COLUMNS)
             return false;
         for (size_t k = 0; k < sizeof known_columns / sizeof *known_columns; k++) {
             int *const column = &comment->column[known_columns[k].column];
@@ -98,7 +98,7 @@ static bool read_properties(const struct word *value, struct xyz_comment *commen
                 *column = (int)comment->columns;
         }
         comment->columns += (size_t)width;
-        if (comment->columns > MOST_COLUMNS)
+        if (comment->columns > MAX_COLUMNS)
             return false;
     }
     return comment->column[XYZ_POSITION] >= 0;

@@ -11,16 +11,16 @@
 
 /// Nanoseconds, as those of observe/stages.h: of a particle and step, also with noise for each
 /// (`walk`); of a collision of hard particles with the crossings on the way to it; of a pair in
-/// range, whatever is computed of it; `remember`: for each mode of memory; `tell`: of its types; of
-/// a move of Monte Carlo (`propose`), of its energy (`judge`) and of each neighbour (`meet`), and
-/// of what holds a bead in a molecule (`hold`).
+/// range, whatever is computed of it; `remember`: for each mode of memory; `report`: of its types;
+/// of a move of Monte Carlo (`propose`), of its energy (`assess`) and of each neighbour (`meet`),
+/// and of what holds a bead in a molecule (`hold`).
 static const struct {
-    double move, walk, collision, pair, conservative, dissipative, kept, remember, tell;
-    double propose, judge, meet, hold;
+    double move, walk, collision, pair, conservative, dissipative, kept, remember, report;
+    double propose, assess, meet, hold;
 } cost = {.move = 8,
           .walk = 30,
           .propose = 55,
-          .judge = 100,
+          .assess = 100,
           .meet = 1.7,
           .hold = 100,
           .collision = 600,
@@ -29,7 +29,7 @@ static const struct {
           .dissipative = 1.3,
           .kept = 3.0,
           .remember = 12,
-          .tell = 0.7};
+          .report = 0.7};
 
 /// From event to event: as many collisions as there are of particles of the mean radius and mass.
 static void add_events(struct stages *stages, const struct simulation_setup *setup) {
@@ -39,8 +39,8 @@ static void add_events(struct stages *stages, const struct simulation_setup *set
         mean[name] = mf_attributes_sum(&setup->attribute[name], usual[name], &setup->composition,
                                        setup->placement.count) /
                      (double)setup->placement.count;
-    const double room = mf_box_volume(&setup->box) / (double)setup->placement.count;
-    const double rate = mf_hard_theory(setup->box.dimensions, room, setup->temperature,
+    const double capacity = mf_box_volume(&setup->box) / (double)setup->placement.count;
+    const double rate = mf_hard_theory(setup->box.dimensions, capacity, setup->temperature,
                                        &mean[ATTRIBUTES_RADIUS], &mean[ATTRIBUTES_MASS], 1)
                             .collision_rate;
     mf_stages_add(stages, "motion", true,
@@ -51,7 +51,7 @@ static void add_events(struct stages *stages, const struct simulation_setup *set
 
 /// Nanoseconds of a move of a bead among so many, `around` of which are near.
 static double move_of(double around) {
-    return cost.propose + cost.judge + cost.meet * around;
+    return cost.propose + cost.assess + cost.meet * around;
 }
 
 double mf_explain_sweep(const struct simulation_setup *setup, double particles, double range) {
@@ -65,7 +65,7 @@ static void add_sweeps(struct stages *stages, const struct simulation_setup *set
     const double cutoff = mf_stages_cutoff(setup), pairs = mf_stages_pairs_within(setup, cutoff);
     const double reach = cutoff + mf_metropolis_skin(&setup->box, (double)setup->placement.count);
     const double around = setup->potential ? 2 * mf_stages_pairs_within(setup, reach) : 0;
-    const double energy = setup->potential ? cost.judge + cost.meet * around : 0;
+    const double energy = setup->potential ? cost.assess + cost.meet * around : 0;
     mf_stages_add(stages, "moves of beads", true,
                   cost.propose + energy + (molecules ? cost.hold : 0),
                   "%s, %.0f neighbours within reach of a move", setup->integrator->name, around);
@@ -83,10 +83,10 @@ static void add_sweeps(struct stages *stages, const struct simulation_setup *set
 }
 
 static void add_motion(struct stages *stages, const struct simulation_setup *setup) {
-    const bool flies = simulation_has_velocities(setup);
-    mf_stages_add(stages, "motion", true, flies ? cost.move : cost.walk,
+    const bool has_velocities = simulation_has_velocities(setup);
+    mf_stages_add(stages, "motion", true, has_velocities ? cost.move : cost.walk,
                   "%s, and a watch over the %s", setup->integrator->name,
-                  flies ? "velocities" : "steps");
+                  has_velocities ? "velocities" : "steps");
 }
 
 /// λ in the units that are spoken, and what stands behind a length.
@@ -122,7 +122,7 @@ static void add_forces(struct stages *stages, const struct simulation_setup *set
                   setup->precision == PAIR_DOUBLE ? "double" : "mixed");
     const int types = setup->composition.types;
     if (composition_is_mixed(&setup->composition))
-        mf_stages_add(stages, "types of beads", true, cost.tell * pairs,
+        mf_stages_add(stages, "types of beads", true, cost.report * pairs,
                       "%d types: which curve a pair of the %d kinds has", types,
                       mf_composition_pairs(&setup->composition));
     if (setup->potential)
@@ -187,18 +187,18 @@ static double counted(const struct simulation_setup *setup) {
     return fmax(1, (double)setup->placement.count);
 }
 
-static void add_companions(struct stages *stages, const struct simulation_setup *setup) {
+static void add_solvent_particles(struct stages *stages, const struct simulation_setup *setup) {
     const struct integrator *integrator = setup->integrator;
-    const double own = integrator->companions ? integrator->companions(setup) : 0;
-    if (integrator->companions)
-        mf_stages_add(stages, "solvent", true, integrator->companion_cost * own / counted(setup),
+    const double own = integrator->solvent_particles ? integrator->solvent_particles(setup) : 0;
+    if (integrator->solvent_particles)
+        mf_stages_add(stages, "solvent", true, integrator->solvent_cost * own / counted(setup),
                       "%.0f particles of %s", own, integrator->name);
 }
 
 void mf_explain_scale(FILE *out, const struct units *units) {
     char line[UNITS_LINE_SIZE];
-    mf_units_tell(units, line);
-    if (mf_units_speaks(units))
+    mf_units_print(units, line);
+    if (mf_units_are_physical(units))
         fprintf(out, "%s\n", line);
 }
 
@@ -212,7 +212,7 @@ void mf_explain_scene(FILE *out, const struct simulation_setup *setup, const str
         add_sweeps(&stages, setup, (double)every);
     } else {
         add_motion(&stages, setup);
-        add_companions(&stages, setup);
+        add_solvent_particles(&stages, setup);
         if (setup->placement.count > 0)
             add_list(&stages, setup);
         add_forces(&stages, setup);

@@ -10,13 +10,13 @@
 #include "report/fit_output.h"
 #include "report/fit_report.h"
 #include "report/fit_reserve.h"
-#include "report/fit_verdict.h"
+#include "report/fit_verification.h"
 #include "report/history.h"
 #include "report/progress.h"
 #include "work/fit_checkpoint.h"
 #include "work/fit_ranks.h"
 #include "work/fit_tasks.h"
-#include "work/fit_tell.h"
+#include "work/fit_print.h"
 #include "work/fit_verify.h"
 
 #include <math.h>
@@ -41,12 +41,12 @@ struct run {
     double *curve_flat[UNKNOWNS];                    ///< shape [INVERSE_FLAT, mf_unknowns_points]
     double *without_ramp;                            ///< shape [mf_unknowns_points of Φ]
     struct standing {
-        bool finished, converged, used_up; ///< as in struct inverse_step
+        bool finished, converged, exhausted; ///< as in struct inverse_step
         uint64_t iterations, evaluations, engine_steps;
         struct fit_accuracy accuracy;
         double seconds;
         struct inverse_ramp ramp;
-        struct inverse_parameter parameter[INVERSE_PARAMETERS], number[INVERSE_MOST_NUMBERS];
+        struct inverse_parameter parameter[INVERSE_PARAMETERS], number[INVERSE_MAX_NUMBERS];
         char reason[INVERSE_REASON_SIZE];
         char formula[FIELD_TEXT_SIZE]; ///< or ""
     } standing;
@@ -138,7 +138,7 @@ static enum status read_and_create(struct run *run, const char *file,
     TRY(mf_fit_states_normalise(&run->fit));
     const enum status status = create(run);
     if (status != STATUS_OK)
-        return mf_status_prefix(mf_units_mark(&run->fit.scene.units, status), "%s", file);
+        return mf_status_prefix(mf_units_add_to_message(&run->fit.scene.units, status), "%s", file);
     return mf_fit_reserve_curves(&run->fit, &run->unknowns, &run->folder);
 }
 
@@ -159,22 +159,22 @@ static enum status prepare(struct run *run, const char *file, const struct run_o
     TRY(mf_ranks_check(ranks_lead() ? begin_folder(run, options->resume) : STATUS_OK, 0));
     if (options->resume)
         TRY(mf_fit_checkpoint_share(&run->checkpoint));
-    mf_progress_tell_run(&run->progress, &(struct watcher_run){RUN_FIT, run->folder.path,
-                                                               .units = &run->fit.scene.units});
-    return mf_fit_tell_targets(&run->progress, &run->fit);
+    mf_progress_report_run(&run->progress, &(struct watcher_run){RUN_FIT, run->folder.path,
+                                                                 .units = &run->fit.scene.units});
+    return mf_fit_print_targets(&run->progress, &run->fit);
 }
 
 static void save_now_and_then(struct run *run) {
     if (mf_progress_seconds(&run->progress) > run->pace.next && save(run) != STATUS_OK)
-        mf_progress_say(&run->progress, "mesofit: warning: %s", mf_status_message());
+        mf_progress_print(&run->progress, "mesofit: warning: %s", mf_status_message());
 }
 
 /// Progress inside an iteration, and a checkpoint now and then.
-static void tell(void *context, const struct inverse_progress *p) {
+static void report(void *context, const struct inverse_progress *p) {
     struct run *run = context;
     char text[FIT_TELL_SIZE];
-    mf_fit_tell_iteration(p, &run->fit.scene.units, text);
-    mf_progress_tell_iteration(&run->progress, p, text);
+    mf_fit_print_iteration(p, &run->fit.scene.units, text);
+    mf_progress_report_iteration(&run->progress, p, text);
     save_now_and_then(run);
 }
 
@@ -184,9 +184,9 @@ struct verifying {
     struct progress progress;
 };
 
-static void tell_verification(void *context, const struct inverse_progress *p) {
+static void report_verification(void *context, const struct inverse_progress *p) {
     struct verifying *verifying = context;
-    mf_progress_tell(&verifying->progress, p->done, p->total, "simulations", "verification");
+    mf_progress_report(&verifying->progress, p->done, p->total, "simulations", "verification");
     save_now_and_then(verifying->run);
 }
 
@@ -245,7 +245,7 @@ static enum status record(struct run *run, const struct inverse_step *step) {
     run->standing =
         (struct standing){.finished = step->finished,
                           .converged = step->converged,
-                          .used_up = step->used_up,
+                          .exhausted = step->exhausted,
                           .iterations = step->iteration + 1,
                           .evaluations = step->evaluations,
                           .engine_steps = step->engine_steps,
@@ -267,22 +267,22 @@ static enum status record(struct run *run, const struct inverse_step *step) {
         TRY(run->fit.method->write(run->state, &own));
     }
     TRY(mf_fit_tasks_write(&run->folder, mf_progress_seconds(&run->progress)));
-    mf_progress_tell_written(&run->progress);
-    mf_progress_say(&run->progress, "iteration %u  error %.4f  noise %.4f  %.1f s", step->iteration,
-                    mf_visible_number(step->error), mf_visible_number(step->noise),
-                    run->standing.seconds);
+    mf_progress_report_written(&run->progress);
+    mf_progress_print(&run->progress, "iteration %u  error %.4f  noise %.4f  %.1f s",
+                      step->iteration, mf_visible_number(step->error),
+                      mf_visible_number(step->noise), run->standing.seconds);
     if (step->begins)
-        mf_progress_say(&run->progress, "%s", step->begins);
+        mf_progress_print(&run->progress, "%s", step->begins);
     TRY(mf_fit_checkpoint_begin(&run->checkpoint));
     return save(run);
 }
 
 static enum status iterate(struct run *run) {
     const struct inverse_method *method = run->fit.method;
-    const struct inverse_listener listener = {tell, run};
+    const struct inverse_listener listener = {report, run};
     if (run->standing.finished)
-        mf_progress_say(&run->progress,
-                        "the fit is finished: only its result is verified and written");
+        mf_progress_print(&run->progress,
+                          "the fit is finished: only its result is verified and written");
     while (!run->standing.finished) {
         struct inverse_step step;
         mf_task_log_use(&run->checkpoint.tasks);
@@ -296,7 +296,7 @@ static enum status iterate(struct run *run) {
 }
 
 /// A method without an error and without a reason has not measured anything.
-static void tell_unconverged(const struct run *run) {
+static void report_unconverged(const struct run *run) {
     const char *folder = run->folder.path, *reason = run->standing.reason;
     if (isfinite(run->standing.accuracy.error))
         mf_status_fail(STATUS_UNCONVERGED,
@@ -313,7 +313,7 @@ static void tell_unconverged(const struct run *run) {
                        folder);
     // What the verification says of it speaks as the file does, and most reasons of no units.
     if (!run->doubted && (strstr(reason, "pressure") || strstr(reason, "k_B T_0")))
-        mf_units_mark(&run->fit.scene.units, STATUS_UNCONVERGED);
+        mf_units_add_to_message(&run->fit.scene.units, STATUS_UNCONVERGED);
 }
 
 /// A result whose verification blows up leaves a summary that says so.
@@ -335,18 +335,18 @@ static enum status write_unstable(struct run *run) {
 /// The verification has the last word.
 static void doubt(struct run *run, const struct verification *verification) {
     struct standing *standing = &run->standing;
-    if (!standing->converged && !standing->used_up)
+    if (!standing->converged && !standing->exhausted)
         return;
     run->doubted =
         mf_fit_verify_contradicts(&run->fit, verification, &standing->accuracy, standing->reason);
     if (run->doubted)
-        standing->converged = standing->used_up = false;
+        standing->converged = standing->exhausted = false;
     else if (standing->converged &&
              mf_fit_closing_is_noise(&run->unknowns, (const double *const *)run->curve,
                                      (const double *const *)run->curve_error, &run->fit.scene.units,
                                      standing->reason)) {
         standing->converged = false;
-        standing->used_up = true;
+        standing->exhausted = true;
     }
 }
 
@@ -356,7 +356,7 @@ static enum status verify_and_write(struct run *run) {
     struct verifying verifying = {run,
                                   mf_progress_begin(run->progress.quiet, run->progress.watcher)};
     verifying.progress.folder = run->progress.folder;
-    const struct inverse_listener listener = {tell_verification, &verifying};
+    const struct inverse_listener listener = {report_verification, &verifying};
     const size_t states = mf_fit_states_count(&run->fit);
     enum status status = STATUS_OK;
     NEW_ARRAY(verification, states);
@@ -368,7 +368,7 @@ static enum status verify_and_write(struct run *run) {
         status = write_unstable(run);
     CHECK(status);
     doubt(run, verification);
-    const bool accepted = run->standing.converged || run->standing.used_up;
+    const bool accepted = run->standing.converged || run->standing.exhausted;
     struct fit_result result = result_so_far(run, accepted ? STATUS_OK : STATUS_UNCONVERGED);
     result.verification = verification;
     CHECK(mf_fit_tasks_write(&run->folder, mf_progress_seconds(&run->progress)));
@@ -376,16 +376,16 @@ static enum status verify_and_write(struct run *run) {
         CHECK(mf_fit_verify_write(&run->fit, s, &verification[s], &run->folder));
     CHECK(mf_fit_output_summary(&run->fit, &run->unknowns, &result, &run->folder));
     mf_run_folder_draw(&run->folder);
-    mf_fit_report_say(&run->progress, &run->fit, &run->unknowns, &result);
+    mf_fit_report_print(&run->progress, &run->fit, &run->unknowns, &result);
     for (size_t s = 0; s < states; s++)
         if (verification[s].warning[0])
-            mf_progress_say(&run->progress, "mesofit: warning: %s%s%s",
-                            mf_fit_states_at(&run->fit, s)->name, run->fit.name[0] ? ": " : "",
-                            verification[s].warning);
-    mf_fit_closing_say(&run->progress, &run->fit, &run->unknowns, &result, run->folder.path);
+            mf_progress_print(&run->progress, "mesofit: warning: %s%s%s",
+                              mf_fit_states_at(&run->fit, s)->name, run->fit.name[0] ? ": " : "",
+                              verification[s].warning);
+    mf_fit_closing_print(&run->progress, &run->fit, &run->unknowns, &result, run->folder.path);
     status = result.status;
     if (status == STATUS_UNCONVERGED)
-        tell_unconverged(run);
+        report_unconverged(run);
 done:
     for (size_t s = 0; verification && s < states; s++)
         mf_verify_clear(&verification[s]);

@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-enum { MOST_SPANS = INVERSE_MAX_SPANS + HISTORY_SPANS + TASK_LOG_SPANS + FIT_CHECKPOINT_OWN };
+enum { MAX_SPANS = INVERSE_MAX_SPANS + HISTORY_SPANS + TASK_LOG_SPANS + FIT_CHECKPOINT_OWN };
 
 /// On these spans lengths depend: the size of the log, and the iterations of the history.
 static const size_t sizes[] = {0, TASK_LOG_SPANS};
@@ -30,9 +30,9 @@ static size_t list_all(struct fit_checkpoint *checkpoint, struct memory_span *sp
     return n + checkpoint->method->spans(checkpoint->state, spans + n);
 }
 
-static enum status make_room(struct fit_checkpoint *checkpoint) {
-    TRY(mf_task_log_make_room(&checkpoint->tasks));
-    return mf_history_make_room(checkpoint->history);
+static enum status reserve(struct fit_checkpoint *checkpoint) {
+    TRY(mf_task_log_reserve(&checkpoint->tasks));
+    return mf_history_reserve(checkpoint->history);
 }
 
 static enum status remember(struct fit_checkpoint *checkpoint) {
@@ -48,7 +48,7 @@ enum status mf_fit_checkpoint_begin(struct fit_checkpoint *checkpoint) {
 
 enum status mf_fit_checkpoint_save(struct fit_checkpoint *checkpoint, const char *file,
                                    uint64_t digest) {
-    struct memory_span spans[MOST_SPANS];
+    struct memory_span spans[MAX_SPANS];
     const struct memory_image *before = &checkpoint->before;
     const size_t n = list(checkpoint, spans);
     memcpy(spans + n, before->span, before->count * sizeof *spans);
@@ -57,21 +57,21 @@ enum status mf_fit_checkpoint_save(struct fit_checkpoint *checkpoint, const char
 
 enum status mf_fit_checkpoint_load(struct fit_checkpoint *checkpoint, const char *file,
                                    uint64_t digest) {
-    struct memory_span spans[MOST_SPANS];
+    struct memory_span spans[MAX_SPANS];
     list(checkpoint, spans);
     for (int k = 0; k < SIZES; k++)
         TRY(mf_checkpoint_load_span(file, digest, sizes[k], &spans[sizes[k]]));
-    TRY(make_room(checkpoint));
+    TRY(reserve(checkpoint));
     TRY(mf_checkpoint_load(file, digest, spans, list_all(checkpoint, spans)));
     return remember(checkpoint);
 }
 
 enum status mf_fit_checkpoint_share(struct fit_checkpoint *checkpoint) {
-    struct memory_span spans[MOST_SPANS];
+    struct memory_span spans[MAX_SPANS];
     list(checkpoint, spans);
     for (int k = 0; k < SIZES; k++)
         mf_ranks_broadcast(&spans[sizes[k]], 1);
-    TRY(mf_ranks_check(make_room(checkpoint), 0));
+    TRY(mf_ranks_check(reserve(checkpoint), 0));
     mf_ranks_broadcast(spans, list_all(checkpoint, spans));
     return STATUS_OK;
 }

@@ -8,7 +8,7 @@
 #include "work/fit.h"
 #include "defaults/fit_states.h"
 #include "work/fit_tasks.h"
-#include "work/fit_tell.h"
+#include "work/fit_print.h"
 
 #include <math.h>
 #include <string.h>
@@ -18,7 +18,7 @@ enum { TIME_SIZE = 32 };
 static enum status print_simulation(const struct measurement_setup *measured,
                                     const struct simulation_setup *setup,
                                     const struct units *units) {
-    struct observable_use uses[OBSERVABLES_MOST + 1] = {0};
+    struct observable_use uses[OBSERVABLES_MAX + 1] = {0};
     const enum status status = mf_measurement_list(measured, setup->time_step, uses);
     if (status == STATUS_OK)
         mf_explain_scene(stdout, setup, units, uses, measured->plan.every);
@@ -128,7 +128,7 @@ static enum status print_targets(const struct fit_file *state) {
         printf("State \"%s\":\n", state->name);
     for (size_t k = 0; k < state->choices.count; k++)
         printf("chosen: %s\n", state->choices.line[k]);
-    return mf_fit_tell_state(state, &(struct target_sanity_listener){print_line, stdout});
+    return mf_fit_print_state(state, &(struct target_sanity_listener){print_line, stdout});
 }
 
 /// The method refuses what it cannot fit when it is created.

@@ -10,12 +10,12 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-enum { COLUMNS = 5, MOST_ROWS = PARALLEL_MOST_SIZES + 1 };
+enum { COLUMNS = 5, MAX_ROWS = PARALLEL_MAX_SIZES + 1 };
 
 enum status mf_fit_tasks_write(const struct run_folder *folder, double seconds) {
     const struct parallel_times times = mf_parallel_times();
-    double tasks[MOST_ROWS] = {0}, rounds[MOST_ROWS] = {1}, mean[MOST_ROWS] = {0},
-           spread[MOST_ROWS] = {0}, waited[MOST_ROWS] = {seconds};
+    double tasks[MAX_ROWS] = {0}, rounds[MAX_ROWS] = {1}, mean[MAX_ROWS] = {0},
+           spread[MAX_ROWS] = {0}, waited[MAX_ROWS] = {seconds};
     char path[OUTPUT_PATH_SIZE];
     for (size_t k = 0; k < times.sizes; k++) {
         const struct parallel_size *size = &times.size[k];

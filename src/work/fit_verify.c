@@ -5,7 +5,7 @@
 #include "problem/unknowns.h"
 #include "report/fit_output.h"
 #include "report/fit_reserve.h"
-#include "report/fit_verdict.h"
+#include "report/fit_verification.h"
 
 #include <string.h>
 
@@ -28,13 +28,13 @@ struct sharing {
     const struct inverse_listener *listener;
 };
 
-static void tell_of_state(void *context, const struct inverse_progress *own) {
+static void report_of_state(void *context, const struct inverse_progress *own) {
     struct sharing *sharing = context;
-    struct inverse_progress told = *own;
-    told.done += sharing->before;
-    told.total += sharing->before + sharing->after;
+    struct inverse_progress reported = *own;
+    reported.done += sharing->before;
+    reported.total += sharing->before + sharing->after;
     sharing->here = own->total;
-    sharing->listener->tell(sharing->listener->context, &told);
+    sharing->listener->report(sharing->listener->context, &reported);
 }
 
 /// The engine advises a shorter "time_step", which here is the verification's own.
@@ -80,9 +80,9 @@ static enum status verify_state(const struct fit_file *state, double *const *cur
                                 struct verification *verification) {
     struct unknowns unknowns = {0};
     struct unknowns_laws laws = {0};
-    double value[INVERSE_MOST_NUMBERS];
+    double value[INVERSE_MAX_NUMBERS];
     enum status status = STATUS_OK;
-    for (int n = 0; n < INVERSE_MOST_NUMBERS; n++)
+    for (int n = 0; n < INVERSE_MAX_NUMBERS; n++)
         value[n] = number[n].value;
     CHECK(mf_unknowns_init(&unknowns, &state->problem));
     CHECK(mf_unknowns_laws_make(&unknowns, (const double *const *)curve, value, &laws));
@@ -90,7 +90,7 @@ static enum status verify_state(const struct fit_file *state, double *const *cur
                        &state->verification, listener, verification);
     CHECK(advise(state, &verification->step, status));
     verification->sampled = sampled_particles(state);
-    mf_fit_verdict_mark(&state->scene.units, verification);
+    mf_fit_verification_add_units(&state->scene.units, verification);
 done:
     mf_unknowns_laws_clear(&laws);
     mf_unknowns_clear(&unknowns);
@@ -103,7 +103,7 @@ enum status mf_fit_verify_states(struct fit_file *fit, double *const *curve,
                                  struct verification *verification) {
     const size_t states = mf_fit_states_count(fit);
     struct sharing sharing = {.listener = listener};
-    const struct inverse_listener of_state = {tell_of_state, &sharing};
+    const struct inverse_listener of_state = {report_of_state, &sharing};
     for (size_t s = 0; s < states; s++)
         sharing.after += (uint64_t)mf_fit_states_at(fit, s)->verification.replicas;
     for (size_t s = 0; s < states; s++) {
@@ -133,14 +133,14 @@ static bool is_contradicted(const struct fit_file *state, const struct inverse_m
     const double temperature = state->problem.scene.temperature;
     struct verify_agreement agreement[TARGETS];
     if (method->kind != INVERSE_INVERSION)
-        return mf_fit_verdict_is_worse(verification, targets, of_fit->error, of_fit->variance,
-                                       reason);
+        return mf_fit_verification_is_worse(verification, targets, of_fit->error, of_fit->variance,
+                                            reason);
     if (method->restricted)
-        return mf_fit_verdict_is_worse_than_samples(verification, targets, of_fit->error,
-                                                    of_fit->variance, temperature, units, reason);
+        return mf_fit_verification_is_worse_than_samples(
+            verification, targets, of_fit->error, of_fit->variance, temperature, units, reason);
     mf_verify_agree(targets, &verification->sections, &verification->observed, noise, agreement);
-    return mf_fit_verdict_contradicts(verification, agreement, targets, temperature, noise_margin,
-                                      units, reason);
+    return mf_fit_verification_contradicts(verification, agreement, targets, temperature,
+                                           noise_margin, units, reason);
 }
 
 bool mf_fit_verify_contradicts(const struct fit_file *fit, const struct verification *verification,

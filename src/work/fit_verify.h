@@ -12,7 +12,7 @@ enum status mf_fit_verify_folders(const struct fit_file *fit, struct run_folder 
 
 /// Simulate all states with what was found; the listener is told of the simulations of all.
 /// @param[in]  curve         shape [UNKNOWNS][points]
-/// @param[in]  number        shape [INVERSE_MOST_NUMBERS]
+/// @param[in]  number        shape [INVERSE_MAX_NUMBERS]
 /// @param[out] verification  shape [states], zeros; to be cleared
 /// Fails: as mf_verify and mf_unknowns_laws_make.
 enum status mf_fit_verify_states(struct fit_file *fit, double *const *curve,
@@ -22,8 +22,8 @@ enum status mf_fit_verify_states(struct fit_file *fit, double *const *curve,
 
 /// How far a fit is from its targets, by itself.
 struct fit_accuracy {
-    double error, variance;            ///< as in struct inverse_step
-    double noise[INVERSE_MOST_STATES]; ///< of each state, of inversions
+    double error, variance;           ///< as in struct inverse_step
+    double noise[INVERSE_MAX_STATES]; ///< of each state, of inversions
 };
 
 /// Whether the verification of any state contradicts the fit, and why. An inversion has converged

@@ -14,26 +14,26 @@
 #include <math.h>
 
 /// The digest of a file's frames, as a text: not every reader of JSON knows integers of 64 bits.
-static void put_digest(struct json_writer *writer, uint64_t digest) {
+static void write_digest(struct json_writer *writer, uint64_t digest) {
     char text[24];
     snprintf(text, sizeof text, "%016llx", (unsigned long long)digest);
-    mf_json_put_text(writer, "digest", text);
+    mf_json_write_text(writer, "digest", text);
 }
 
 /// "trajectories": {"1": {"file": …, "bytes": …, …}, "2": …}
-static void put_trajectories(const struct measure_result *result, struct json_writer *writer) {
+static void write_trajectories(const struct measure_result *result, struct json_writer *writer) {
     mf_json_begin(writer, "trajectories");
     for (size_t k = 0; k < result->request->frames.files; k++) {
         const struct frames_source *const source = &result->frames->source[k];
         char number[24];
         snprintf(number, sizeof number, "%zu", k + 1);
         mf_json_begin(writer, number);
-        mf_json_put_text(writer, "file", result->request->frames.file[k]);
-        mf_json_put_integer(writer, "bytes", (int64_t)source->bytes);
-        mf_json_put_integer(writer, "frames", (int64_t)source->read);
-        mf_json_put_integer(writer, "frames_used", (int64_t)source->used);
-        mf_json_put_integer(writer, "frames_doubled", (int64_t)source->doubled);
-        put_digest(writer, source->digest);
+        mf_json_write_text(writer, "file", result->request->frames.file[k]);
+        mf_json_write_integer(writer, "bytes", (int64_t)source->bytes);
+        mf_json_write_integer(writer, "frames", (int64_t)source->read);
+        mf_json_write_integer(writer, "frames_used", (int64_t)source->used);
+        mf_json_write_integer(writer, "frames_doubled", (int64_t)source->doubled);
+        write_digest(writer, source->digest);
         mf_json_end(writer);
     }
     mf_json_end(writer);
@@ -56,8 +56,8 @@ double mf_measure_output_density(const struct measure_result *result) {
 
 /// [K]: as told, or the kinetic one; NAN if neither is known.
 double mf_measure_output_temperature(const struct measure_result *result) {
-    const double told = result->request->temperature;
-    return isnan(told) ? mf_series_mean(&result->measured->motion.temperature) : told;
+    const double given = result->request->temperature;
+    return isnan(given) ? mf_series_mean(&result->measured->motion.temperature) : given;
 }
 
 /// Mean mass of a type's beads [u]; NAN if it is not known.
@@ -90,13 +90,13 @@ bool mf_measure_output_is_alone(const struct measure_result *result) {
 
 // summary.json ------------------------------------------------------------------------------------
 
-static void put_density(const struct measure_result *result, struct json_writer *writer) {
+static void write_density(const struct measure_result *result, struct json_writer *writer) {
     const struct series *const volume = &result->measured->volume;
     const double density = mf_measure_output_density(result), mean = mf_series_mean(volume);
     const double error = density * mf_series_error(volume) / mean;
-    mf_json_put_quantity(writer, "density", "1/lambda^3", density);
-    mf_json_put_quantity(writer, "density_error", "1/lambda^3", error);
-    mf_json_put_quantity(writer, "volume", "lambda^3", mean);
+    mf_json_write_quantity(writer, "density", "1/lambda^3", density);
+    mf_json_write_quantity(writer, "density_error", "1/lambda^3", error);
+    mf_json_write_quantity(writer, "volume", "lambda^3", mean);
 }
 
 /// Share of all pairs that g(r) of one type leaves out: those that molecules exclude, which count
@@ -106,13 +106,13 @@ static double share_inside(const struct measured *measured) {
     const struct molecules *const molecules = measured->molecules.molecules;
     if (molecules == NULL)
         return 1 - measured->share[0];
-    return mf_topology_pairs_inside(&molecules->topology, type, true) / 2 /
+    return mf_topology_intramolecular_pairs(&molecules->topology, type, true) / 2 /
            mf_composition_possible_pairs(&measured->pairs.composition, 0);
 }
 
 /// Kirkwood and Buff's integral of what is of one type.
-static enum status put_kirkwood_buff(const struct measure_result *result,
-                                     struct json_writer *writer) {
+static enum status write_kirkwood_buff(const struct measure_result *result,
+                                       struct json_writer *writer) {
     enum status status = STATUS_OK;
     const struct rdf *const rdf = &result->measured->rdf.counted;
     const struct box box = mf_measured_box(result->measured);
@@ -130,123 +130,124 @@ static enum status put_kirkwood_buff(const struct measure_result *result,
         found.integral += inside;
         found.compressibility += mf_measure_output_density(result) * inside;
     }
-    mf_statistics_forget_errors(&found.integral_error, 1);
-    mf_statistics_forget_errors(&found.compressibility_error, 1);
-    mf_json_put_quantity(writer, "kirkwood_buff", "lambda^3", found.integral);
-    mf_json_put_quantity(writer, "kirkwood_buff_error", "lambda^3", found.integral_error);
-    mf_json_put_number(writer, "compressibility", found.compressibility);
-    mf_json_put_number(writer, "compressibility_error", found.compressibility_error);
+    mf_statistics_mark_unknown_errors(&found.integral_error, 1);
+    mf_statistics_mark_unknown_errors(&found.compressibility_error, 1);
+    mf_json_write_quantity(writer, "kirkwood_buff", "lambda^3", found.integral);
+    mf_json_write_quantity(writer, "kirkwood_buff_error", "lambda^3", found.integral_error);
+    mf_json_write_number(writer, "compressibility", found.compressibility);
+    mf_json_write_number(writer, "compressibility_error", found.compressibility_error);
 done:
     mf_memory_free(g);
     mf_memory_free(error);
     return status;
 }
 
-static void put_temperature(const struct measure_result *result, struct json_writer *writer) {
+static void write_temperature(const struct measure_result *result, struct json_writer *writer) {
     const struct series *const series = &result->measured->motion.temperature;
     if (series->count == 0)
         return;
-    mf_json_put_number(writer, "temperature", mf_series_mean(series));
-    mf_json_put_number(writer, "temperature_error", mf_series_error(series));
+    mf_json_write_number(writer, "temperature", mf_series_mean(series));
+    mf_json_write_number(writer, "temperature_error", mf_series_error(series));
 }
 
 /// D by the MSD, and by the VACF if there is one.
-static void put_diffusion(const struct measure_result *result, struct json_writer *writer) {
+static void write_diffusion(const struct measure_result *result, struct json_writer *writer) {
     const double unit = mf_units_diffusion_cm2_per_s(&result->units);
     if (!mf_measure_tables_have_motion(result))
         return;
     struct motion_summary s = mf_motion_result(&result->measured->motion.motion, NULL);
-    mf_statistics_forget_errors(&s.msd_error, 1);
-    mf_json_put_quantity(writer, "diffusion", "lambda^2/tau", s.msd);
-    mf_json_put_quantity(writer, "diffusion_error", "lambda^2/tau", s.msd_error);
-    mf_json_put_number(writer, "diffusion_cm2_per_s", s.msd * unit);
-    mf_json_put_number(writer, "diffusion_error_cm2_per_s", s.msd_error * unit);
-    mf_json_put_quantity(writer, "diffusion_fit_begin", "tau", s.fit_begin);
-    mf_json_put_quantity(writer, "diffusion_fit_end", "tau", s.fit_end);
+    mf_statistics_mark_unknown_errors(&s.msd_error, 1);
+    mf_json_write_quantity(writer, "diffusion", "lambda^2/tau", s.msd);
+    mf_json_write_quantity(writer, "diffusion_error", "lambda^2/tau", s.msd_error);
+    mf_json_write_number(writer, "diffusion_cm2_per_s", s.msd * unit);
+    mf_json_write_number(writer, "diffusion_error_cm2_per_s", s.msd_error * unit);
+    mf_json_write_quantity(writer, "diffusion_fit_begin", "tau", s.fit_begin);
+    mf_json_write_quantity(writer, "diffusion_fit_end", "tau", s.fit_end);
     if (!result->measured->motion.has_vacf)
         return;
     const double error = mf_motion_green_kubo_uncertainty(&s);
-    mf_json_put_quantity(writer, "diffusion_green_kubo", "lambda^2/tau", s.green_kubo);
-    mf_json_put_quantity(writer, "diffusion_green_kubo_error", "lambda^2/tau", error);
-    mf_json_put_number(writer, "diffusion_green_kubo_cm2_per_s", s.green_kubo * unit);
-    mf_json_put_number(writer, "diffusion_green_kubo_error_cm2_per_s", error * unit);
+    mf_json_write_quantity(writer, "diffusion_green_kubo", "lambda^2/tau", s.green_kubo);
+    mf_json_write_quantity(writer, "diffusion_green_kubo_error", "lambda^2/tau", error);
+    mf_json_write_number(writer, "diffusion_green_kubo_cm2_per_s", s.green_kubo * unit);
+    mf_json_write_number(writer, "diffusion_green_kubo_error_cm2_per_s", error * unit);
 }
 
 /// What is measured of time.
-static void put_motion(const struct measure_result *result, struct json_writer *writer) {
+static void write_motion(const struct measure_result *result, struct json_writer *writer) {
     const struct measured_motion *const motion = &result->measured->motion;
     if (!motion->begun)
         return;
-    mf_json_put_quantity(writer, "interval", "tau", motion->interval);
-    mf_json_put_quantity(writer, "window", "tau",
-                         (double)motion->motion.plan.lags * motion->interval);
-    put_temperature(result, writer);
-    put_diffusion(result, writer);
+    mf_json_write_quantity(writer, "interval", "tau", motion->interval);
+    mf_json_write_quantity(writer, "window", "tau",
+                           (double)motion->motion.plan.lags * motion->interval);
+    write_temperature(result, writer);
+    write_diffusion(result, writer);
 }
 
-void mf_measure_output_put_masses(const struct measure_result *result, struct json_writer *writer) {
+void mf_measure_output_write_masses(const struct measure_result *result,
+                                    struct json_writer *writer) {
     const struct composition *const composition = &result->measured->pairs.composition;
     const bool mixed = composition_is_mixed(composition);
     if (isnan(mf_measure_output_mass(result, 0)))
         return;
     if (!mixed) {
-        mf_json_put_quantity(writer, "mass", "mu", mf_measure_output_mass(result, 0));
+        mf_json_write_quantity(writer, "mass", "mu", mf_measure_output_mass(result, 0));
         return;
     }
     mf_json_begin(writer, "mass");
     for (int type = 0; type < composition->types; type++)
-        mf_json_put_quantity(writer, composition->name[type], "mu",
-                             mf_measure_output_mass(result, type));
+        mf_json_write_quantity(writer, composition->name[type], "mu",
+                               mf_measure_output_mass(result, type));
     mf_json_end(writer);
 }
 
-static void put_molecules(const struct measure_result *result, struct json_writer *writer) {
+static void write_molecules(const struct measure_result *result, struct json_writer *writer) {
     const struct observable_results results = {.units = &result->units};
     const struct observable_use *use = result->measured->molecules.use;
     for (; use->observable; use++)
-        if (use->observable->put)
-            use->observable->put(use->state, &results, writer);
+        if (use->observable->write_summary)
+            use->observable->write_summary(use->state, &results, writer);
 }
 
 static enum status write_summary(const struct measure_result *result) {
     struct json_writer *writer = mf_json_writer_create();
-    mf_json_put_text(writer, "status",
-                     mf_status_name(result->interrupted ? STATUS_INTERRUPTED : STATUS_OK));
-    mf_json_put_text(writer, "method", "measure");
+    mf_json_write_text(writer, "status",
+                       mf_status_name(result->interrupted ? STATUS_INTERRUPTED : STATUS_OK));
+    mf_json_write_text(writer, "method", "measure");
     mf_units_write_summary(&result->units, writer);
-    mf_json_put_number(writer, "seconds", result->seconds);
-    mf_json_put_integer(writer, "frames", (int64_t)result->measured->frames);
-    mf_json_put_integer(writer, "frames_left_out", (int64_t)result->frames->skipped);
-    mf_json_put_integer(writer, "particles", (int64_t)result->mapping->beads);
-    mf_measure_output_put_masses(result, writer);
+    mf_json_write_number(writer, "seconds", result->seconds);
+    mf_json_write_integer(writer, "frames", (int64_t)result->measured->frames);
+    mf_json_write_integer(writer, "frames_left_out", (int64_t)result->frames->skipped);
+    mf_json_write_integer(writer, "particles", (int64_t)result->mapping->beads);
+    mf_measure_output_write_masses(result, writer);
     if (!result->measured->in_vacuum)
-        put_density(result, writer);
-    put_motion(result, writer);
-    put_molecules(result, writer);
+        write_density(result, writer);
+    write_motion(result, writer);
+    write_molecules(result, writer);
     const enum status status =
-        result->measured->in_vacuum ? STATUS_OK : put_kirkwood_buff(result, writer);
+        result->measured->in_vacuum ? STATUS_OK : write_kirkwood_buff(result, writer);
     if (status != STATUS_OK) {
         mf_json_writer_free(writer);
         return status;
     }
-    put_trajectories(result, writer);
-    mf_json_put_text(writer, "version", MESOFIT_VERSION);
+    write_trajectories(result, writer);
+    mf_json_write_text(writer, "version", MESOFIT_VERSION);
     return write_json(result, "summary.json", writer);
 }
 
 // target.json -------------------------------------------------------------------------------------
 
-static void put_rdf_file(const struct measure_result *result, struct json_writer *writer,
-                         const char *file) {
-    mf_json_put_text(writer, "file", file);
-    mf_json_put_integer(writer, "particles", (int64_t)result->mapping->beads);
+static void write_rdf_file(const struct measure_result *result, struct json_writer *writer,
+                           const char *file) {
+    mf_json_write_text(writer, "file", file);
+    mf_json_write_integer(writer, "particles", (int64_t)result->mapping->beads);
 }
 
-static void put_rdf(const struct measure_result *result, struct json_writer *writer) {
+static void write_rdf(const struct measure_result *result, struct json_writer *writer) {
     const struct composition *const composition = &result->measured->pairs.composition;
     mf_json_begin(writer, "rdf");
     if (!composition_is_mixed(composition))
-        put_rdf_file(result, writer, "rdf.tsv");
+        write_rdf_file(result, writer, "rdf.tsv");
     for (int pair = 0;
          composition_is_mixed(composition) && pair < mf_composition_pairs(composition); pair++) {
         char name[COMPOSITION_PAIR_NAME_SIZE], file[COMPOSITION_PAIR_NAME_SIZE + 16];
@@ -255,7 +256,7 @@ static void put_rdf(const struct measure_result *result, struct json_writer *wri
         mf_composition_pair_name(composition, pair, name);
         snprintf(file, sizeof file, "rdf_%s.tsv", name);
         mf_json_begin(writer, name);
-        put_rdf_file(result, writer, file);
+        write_rdf_file(result, writer, file);
         mf_json_end(writer);
     }
     mf_json_end(writer);
@@ -263,38 +264,39 @@ static void put_rdf(const struct measure_result *result, struct json_writer *wri
 
 /// Friction is found for single beads of one mass: motion of others is compared with, and not
 /// fitted.
-static void put_fitted(const struct measure_result *result, struct json_writer *writer) {
+static void write_fitted(const struct measure_result *result, struct json_writer *writer) {
     if (result->kinds || mf_measure_output_masses_differ(result))
-        mf_json_put_text(writer, "fitted", "no");
+        mf_json_write_text(writer, "fitted", "no");
 }
 
-static void put_curve(const struct measure_result *result, struct json_writer *writer,
-                      const char *name, const char *file) {
+static void write_curve(const struct measure_result *result, struct json_writer *writer,
+                        const char *name, const char *file) {
     mf_json_begin(writer, name);
-    put_fitted(result, writer);
-    mf_json_put_text(writer, "file", file);
+    write_fitted(result, writer);
+    mf_json_write_text(writer, "file", file);
     mf_json_end(writer);
 }
 
-static void put_etd(const struct measure_result *result, struct json_writer *writer) {
+static void write_etd(const struct measure_result *result, struct json_writer *writer) {
     mf_json_begin(writer, "etd");
-    put_fitted(result, writer);
-    mf_json_put_text(writer, "file", "etd.tsv");
-    mf_json_put_text(writer, "error_file", "etd_error.tsv");
+    write_fitted(result, writer);
+    mf_json_write_text(writer, "file", "etd.tsv");
+    mf_json_write_text(writer, "error_file", "etd_error.tsv");
     mf_json_end(writer);
 }
 
-static void put_diffusion_target(const struct measure_result *result, struct json_writer *writer) {
+static void write_diffusion_target(const struct measure_result *result,
+                                   struct json_writer *writer) {
     struct motion_summary s = mf_motion_result(&result->measured->motion.motion, NULL);
     mf_json_begin(writer, "diffusion");
-    mf_json_put_text(writer, "fitted", "no");
-    mf_json_put_quantity(writer, "value", "lambda^2/tau", s.msd);
-    mf_json_put_quantity(writer, "error", "lambda^2/tau", s.msd_error);
+    mf_json_write_text(writer, "fitted", "no");
+    mf_json_write_quantity(writer, "value", "lambda^2/tau", s.msd);
+    mf_json_write_quantity(writer, "error", "lambda^2/tau", s.msd_error);
     mf_json_end(writer);
 }
 
 /// "bond_lengths": {"backbone": {"file": "bond_lengths.tsv"}} and so on.
-static void put_groups(const struct measure_result *result, struct json_writer *writer) {
+static void write_groups(const struct measure_result *result, struct json_writer *writer) {
     const struct molecules *const molecules = &result->kinds->molecules;
     for (int order = 0; order < BONDED_KINDS; order++) {
         const struct observable *observable = mf_bonded_distribution_of(order);
@@ -302,7 +304,7 @@ static void put_groups(const struct measure_result *result, struct json_writer *
             mf_json_begin(writer, observable->name);
         for (int g = 0; g < molecules->groups[order]; g++) {
             mf_json_begin(writer, molecules->group[order][g].name);
-            mf_json_put_text(writer, "file", observable->files[0]);
+            mf_json_write_text(writer, "file", observable->files[0]);
             mf_json_end(writer);
         }
         if (molecules->groups[order] > 0)
@@ -310,35 +312,35 @@ static void put_groups(const struct measure_result *result, struct json_writer *
     }
 }
 
-static void put_motion_targets(const struct measure_result *result, struct json_writer *writer) {
+static void write_motion_targets(const struct measure_result *result, struct json_writer *writer) {
     if (mf_measure_tables_have_etd(result))
-        put_etd(result, writer);
+        write_etd(result, writer);
     if (!mf_measure_tables_have_motion(result))
         return;
     if (result->measured->motion.has_vacf)
-        put_curve(result, writer, "vacf", "vacf.tsv");
-    put_curve(result, writer, "msd", "msd.tsv");
-    put_diffusion_target(result, writer);
+        write_curve(result, writer, "vacf", "vacf.tsv");
+    write_curve(result, writer, "msd", "msd.tsv");
+    write_diffusion_target(result, writer);
 }
 
-static void put_targets(const struct measure_result *result, struct json_writer *writer) {
+static void write_targets(const struct measure_result *result, struct json_writer *writer) {
     mf_json_begin(writer, "target");
     if (!mf_measure_output_is_alone(result))
-        put_rdf(result, writer);
+        write_rdf(result, writer);
     if (result->kinds)
-        put_groups(result, writer);
+        write_groups(result, writer);
     if (!mf_measure_output_is_alone(result))
-        put_motion_targets(result, writer);
+        write_motion_targets(result, writer);
     mf_json_end(writer);
 }
 
 static enum status write_target(const struct measure_result *result) {
     struct json_writer *writer = mf_json_writer_create();
-    mf_json_put_text(writer, "title", result->request->frames.file[0]);
-    mf_json_put_text(writer, "units", mf_units_systems[result->units.system]);
-    mf_json_writer_speak(writer, &result->units);
-    put_targets(result, writer);
-    const enum status status = mf_measure_scene_put(result, writer);
+    mf_json_write_text(writer, "title", result->request->frames.file[0]);
+    mf_json_write_text(writer, "units", mf_units_systems[result->units.system]);
+    mf_json_writer_set_units(writer, &result->units);
+    write_targets(result, writer);
+    const enum status status = mf_measure_scene_write(result, writer);
     if (status == STATUS_OK)
         return write_json(result, "target.json", writer);
     mf_json_writer_free(writer);
@@ -348,11 +350,11 @@ static enum status write_target(const struct measure_result *result) {
 static enum status write_used(const struct measure_result *result) {
     const struct measured_plan *const plan = &result->measured->plan;
     struct json_writer *writer = mf_json_writer_create();
-    put_trajectories(result, writer);
-    mf_json_put_number(writer, "range", plan->range);
-    mf_json_put_integer(writer, "bins", plan->bins);
-    mf_json_put_number(writer, "q_maximum", plan->q_maximum);
-    mf_json_put_integer(writer, "waves", plan->waves);
+    write_trajectories(result, writer);
+    mf_json_write_number(writer, "range", plan->range);
+    mf_json_write_integer(writer, "bins", plan->bins);
+    mf_json_write_number(writer, "q_maximum", plan->q_maximum);
+    mf_json_write_integer(writer, "waves", plan->waves);
     return write_json(result, "used.json", writer);
 }
 

@@ -33,7 +33,8 @@ double mf_measure_output_temperature(const struct measure_result *result);
 double mf_measure_output_mass(const struct measure_result *result, int type);
 
 /// "mass", of a mixture that of each type, if it is known.
-void mf_measure_output_put_masses(const struct measure_result *result, struct json_writer *writer);
+void mf_measure_output_write_masses(const struct measure_result *result,
+                                    struct json_writer *writer);
 
 /// Write the tables, target.json, summary.json and used.json. Fails: IO, NO_MEMORY.
 enum status mf_measure_output_write(const struct measure_result *result) MUST_USE;

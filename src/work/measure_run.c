@@ -40,18 +40,18 @@ static const char *structure_file(const struct run *run) {
 }
 
 /// Lines of a text, one at a time.
-static void say_lines(struct progress *progress, const struct bytes *notes) {
+static void print_lines(struct progress *progress, const struct bytes *notes) {
     const char *line = (const char *)notes->data;
     while (line && *line) {
         const char *const end = strchr(line, '\n');
-        mf_progress_say(progress, "%.*s", (int)(end - line), line);
+        mf_progress_print(progress, "%.*s", (int)(end - line), line);
         line = end + 1;
     }
 }
 
 /// Beads are atoms whose types the molecules' file names.
 static enum status take_atoms(struct run *run) {
-    const char *types[COMPOSITION_MOST_TYPES];
+    const char *types[COMPOSITION_MAX_TYPES];
     for (int type = 0; type < run->types.types; type++)
         types[type] = run->types.name[type];
     return mf_mapping_init_atoms(&run->mapping, &run->structure.structure, types,
@@ -75,11 +75,11 @@ static enum status find_beads(struct run *run) {
         TRY(mf_molecules_file_read(&run->molecules, &run->types, request->molecules));
     TRY(mf_trajectory_open(&run->structure, structure_file(run), &request->frames.options));
     TRY(request->molecules && !request->map ? take_atoms(run) : map_atoms(run));
-    say_lines(&run->progress, &run->mapping.notes);
+    print_lines(&run->progress, &run->mapping.notes);
     return STATUS_OK;
 }
 
-static void tell(struct run *run) {
+static void report(struct run *run) {
     const struct frames *const frames = &run->frames;
     uint64_t done, total;
     char text[96];
@@ -88,18 +88,18 @@ static void tell(struct run *run) {
         return;
     const double all = (double)frames->used * (double)total / (double)done;
     snprintf(text, sizeof text, "%zu frames", frames->used);
-    mf_progress_tell(&run->progress, frames->used, (uint64_t)fmax(all, (double)frames->used),
-                     "frames", text);
+    mf_progress_report(&run->progress, frames->used, (uint64_t)fmax(all, (double)frames->used),
+                       "frames", text);
 }
 
 /// Frames that are wanted further apart than they are come at common multiples of both times.
-static void say_interval(struct run *run, size_t count) {
+static void print_interval(struct run *run, size_t count) {
     static const double share = 0.01;
     const double every = run->request->frames.every;
     const struct trajectory_frame *const frame = run->frames.frame;
     const double interval = count > 1 ? frame[1].time - frame[0].time : every;
     if (every > 0 && fabs(interval / every - 1) > share)
-        mf_progress_say(
+        mf_progress_print(
             &run->progress,
             "mesofit: warning: --every %g: frames are used that are %.6g ps apart, since "
             "there are none between",
@@ -123,11 +123,11 @@ static enum status read_frames(struct run *run) {
             break;
         if (run->measured.mapping == NULL) {
             if (run->frames.plan.skip == 0)
-                say_interval(run, count);
+                print_interval(run, count);
             TRY(begin_measuring(run));
         }
         TRY(mf_measured_add(&run->measured, run->frames.frame, count));
-        tell(run);
+        report(run);
     }
     if (run->frames.used > 0)
         return STATUS_OK;
@@ -174,75 +174,76 @@ static enum status read_again(struct run *run, size_t skip) {
 /// Leave out what is before equilibrium, unless a person has said where to begin.
 static enum status find_equilibrium(struct run *run) {
     struct frame_features_slowest slowest;
-    TRY(mf_frame_features_judge(&run->measured.features, &run->measured.pairs, &slowest));
+    TRY(mf_frame_features_assess(&run->measured.features, &run->measured.pairs, &slowest));
     if (slowest.frames == 0)
         return STATUS_OK;
     char what[128];
     print_slowest(run, &slowest, what, sizeof what);
     if (!isnan(run->request->frames.begin) || !can_be_read_again(&run->frames)) {
-        mf_progress_say(&run->progress,
-                        "mesofit: warning: the first %zu frames are not in equilibrium (%s): "
-                        "--begin leaves them out",
-                        slowest.frames, what);
+        mf_progress_print(&run->progress,
+                          "mesofit: warning: the first %zu frames are not in equilibrium (%s): "
+                          "--begin leaves them out",
+                          slowest.frames, what);
         return STATUS_OK;
     }
-    mf_progress_say(&run->progress,
-                    "the first %zu of %zu frames are not in equilibrium (%s) and are left out; "
-                    "--begin 0 keeps them",
-                    slowest.frames, run->measured.frames, what);
+    mf_progress_print(&run->progress,
+                      "the first %zu of %zu frames are not in equilibrium (%s) and are left out; "
+                      "--begin 0 keeps them",
+                      slowest.frames, run->measured.frames, what);
     return read_again(run, slowest.frames);
 }
 
 /// How far beads go, and what is to be known of it: a periodic box slows D.
-static void say_diffusion(struct run *run, const struct units *units) {
+static void print_diffusion(struct run *run, const struct units *units) {
     const struct measured_motion *const motion = &run->measured.motion;
     const struct motion_summary s = mf_motion_result(&motion->motion, NULL);
     const double cm2 = mf_units_diffusion_cm2_per_s(units) * 1e5;
     char diffusion[NUMBER_TEXT_SIZE];
     mf_number_text(cm2 * s.msd, cm2 * s.msd_error, diffusion);
-    mf_progress_say(&run->progress,
-                    "D = %s 1e-5 cm^2/s by the MSD from %.4g to %.4g ps, as it is in this box: a "
-                    "larger one has more, by 2.84 k_B T/(6 pi eta L) of a cube",
-                    diffusion, s.fit_begin, s.fit_end);
+    mf_progress_print(&run->progress,
+                      "D = %s 1e-5 cm^2/s by the MSD from %.4g to %.4g ps, as it is in this box: a "
+                      "larger one has more, by 2.84 k_B T/(6 pi eta L) of a cube",
+                      diffusion, s.fit_begin, s.fit_end);
     if (motion->path.differences)
-        mf_progress_say(&run->progress,
-                        "mesofit: warning: the VACF is of differences of positions over %.4g ps: "
-                        "it is lower at short times, its integral is right",
-                        2 * motion->interval);
+        mf_progress_print(&run->progress,
+                          "mesofit: warning: the VACF is of differences of positions over %.4g ps: "
+                          "it is lower at short times, its integral is right",
+                          2 * motion->interval);
     else if (motion->has_vacf && mf_motion_is_coarse(&s))
-        mf_progress_say(&run->progress,
-                        "mesofit: warning: frames are too far apart for D by the VACF, %.3g 1e-5 "
-                        "cm^2/s: velocities lose %.0f %% of their correlation from one to the next",
-                        cm2 * s.green_kubo, 100 * s.vacf_drop);
+        mf_progress_print(
+            &run->progress,
+            "mesofit: warning: frames are too far apart for D by the VACF, %.3g 1e-5 "
+            "cm^2/s: velocities lose %.0f %% of their correlation from one to the next",
+            cm2 * s.green_kubo, 100 * s.vacf_drop);
 }
 
-static void say_motion(struct run *run, const struct units *units) {
+static void print_motion(struct run *run, const struct units *units) {
     const struct measured_motion *const motion = &run->measured.motion;
     if (!motion->begun && !motion->plan.leave_out)
-        mf_progress_say(&run->progress, "mesofit: warning: no motion, no escape times: %s",
-                        run->measured.frames < 2 ? "there is one frame"
-                                                 : "frames have no times (--file-time-step)");
+        mf_progress_print(&run->progress, "mesofit: warning: no motion, no escape times: %s",
+                          run->measured.frames < 2 ? "there is one frame"
+                                                   : "frames have no times (--file-time-step)");
     if (!motion->begun)
         return;
     if (mf_motion_blocks(&motion->motion) == 0)
-        mf_progress_say(&run->progress,
-                        "mesofit: warning: no motion, no escape times: %zu frames are no window "
-                        "of %lld intervals (--window)",
-                        motion->frames, (long long)motion->motion.plan.lags);
+        mf_progress_print(&run->progress,
+                          "mesofit: warning: no motion, no escape times: %zu frames are no window "
+                          "of %lld intervals (--window)",
+                          motion->frames, (long long)motion->motion.plan.lags);
     else
-        say_diffusion(run, units);
+        print_diffusion(run, units);
     const struct etd_grid *const grid = &motion->etd.grid;
     if (mf_etd_complete(&motion->etd) > 0 && mf_etd_pairs(&motion->etd) == 0)
-        mf_progress_say(&run->progress,
-                        "mesofit: warning: no escape times: no pair was between %.4g and %.4g nm",
-                        grid->r_minimum, grid->r_maximum);
+        mf_progress_print(&run->progress,
+                          "mesofit: warning: no escape times: no pair was between %.4g and %.4g nm",
+                          grid->r_minimum, grid->r_maximum);
     else
-        mf_progress_say(
+        mf_progress_print(
             &run->progress, "escape times of pairs from %.4g to %.4g nm, in windows of %.4g ps",
             grid->r_minimum, grid->r_maximum, (double)(grid->times - 1) * motion->interval);
     if (!motion->has_vacf && motion->plan.velocities == MEASURED_VELOCITIES_USUAL)
-        mf_progress_say(&run->progress, "no VACF: there are no velocities (--velocities "
-                                        "differences makes them of positions)");
+        mf_progress_print(&run->progress, "no VACF: there are no velocities (--velocities "
+                                          "differences makes them of positions)");
 }
 
 /// The first atom of each bead of the first molecule of a kind, counted from 1.
@@ -262,32 +263,33 @@ static bool list_atoms(const struct run *run, const struct topology_kind *kind, 
 }
 
 /// Types in another order than that of the trajectory may be meant, or a slip: bonds show it.
-static void say_order(struct run *run) {
+static void print_order(struct run *run) {
     const struct topology *const topology = &run->molecules.molecules.topology;
     char text[256];
     for (int k = 0; run->request->map && k < topology->kinds; k++)
         if (!list_atoms(run, &topology->kind[k], text, sizeof text))
-            mf_progress_say(&run->progress,
-                            "%s: its beads are not in the order of the atoms: they begin with the "
-                            "atoms %s",
-                            topology->kind[k].name, text);
+            mf_progress_print(
+                &run->progress,
+                "%s: its beads are not in the order of the atoms: they begin with the "
+                "atoms %s",
+                topology->kind[k].name, text);
 }
 
-static void say_molecules(struct run *run, const struct measure_result *result) {
+static void print_molecules(struct run *run, const struct measure_result *result) {
     const struct observable_results results = {.units = &result->units};
     const struct observable_use *use = run->measured.molecules.use;
     char line[256];
-    say_order(run);
+    print_order(run);
     for (; use->observable; use++) {
-        if (use->observable->say == NULL)
+        if (use->observable->print == NULL)
             continue;
-        use->observable->say(use->state, &results, line, sizeof line);
-        mf_progress_say(&run->progress, "%s", line);
+        use->observable->print(use->state, &results, line, sizeof line);
+        mf_progress_print(&run->progress, "%s", line);
     }
 }
 
 /// Bonds and angles that a fit takes a law for.
-static enum status say_constraints(struct run *run) {
+static enum status print_constraints(struct run *run) {
     const struct molecules *const molecules = run->measured.molecules.molecules;
     for (int order = 0; molecules && order < BONDED_KINDS; order++)
         for (int g = 0; g < molecules->groups[order]; g++) {
@@ -296,54 +298,54 @@ static enum status say_constraints(struct run *run) {
             if (!mf_bonded_distribution_is_constrained(order, &found))
                 continue;
             const char *const unit = mf_bonded_kinds[order]->is_length ? "nm" : "degrees";
-            mf_progress_say(&run->progress,
-                            "%s \"%s\": a constraint, of a standard deviation of %.2g for a mean "
-                            "of %.4g %s: fit takes a harmonic law for it, of %.2g %s",
-                            mf_bonded_kinds[order]->name, molecules->group[order][g].name,
-                            found.deviation, found.mean, unit,
-                            mf_bonded_distribution_narrow(order, found.mean), unit);
+            mf_progress_print(&run->progress,
+                              "%s \"%s\": a constraint, of a standard deviation of %.2g for a mean "
+                              "of %.4g %s: fit takes a harmonic law for it, of %.2g %s",
+                              mf_bonded_kinds[order]->name, molecules->group[order][g].name,
+                              found.deviation, found.mean, unit,
+                              mf_bonded_distribution_narrow(order, found.mean), unit);
         }
     return STATUS_OK;
 }
 
-static void say_pairs(struct run *run) {
+static void print_pairs(struct run *run) {
     const struct measured *const measured = &run->measured;
-    mf_progress_say(&run->progress, "g(r) to %.4g nm in %lld bins%s", measured->plan.range,
-                    (long long)measured->plan.bins,
-                    measured->pairs.within     ? ", without pairs that molecules exclude"
-                    : measured->pairs.molecule ? ", without pairs of one molecule or residue"
-                                               : "");
-    if (mf_rdf_observable.judge(&measured->rdf, NULL) != STATUS_OK)
-        mf_progress_say(&run->progress, "mesofit: warning: %s", mf_status_message());
+    mf_progress_print(&run->progress, "g(r) to %.4g nm in %lld bins%s", measured->plan.range,
+                      (long long)measured->plan.bins,
+                      measured->pairs.within     ? ", without pairs that molecules exclude"
+                      : measured->pairs.molecule ? ", without pairs of one molecule or residue"
+                                                 : "");
+    if (mf_rdf_observable.assess(&measured->rdf, NULL) != STATUS_OK)
+        mf_progress_print(&run->progress, "mesofit: warning: %s", mf_status_message());
     if (measured->plan.q_maximum > 0)
-        mf_progress_say(&run->progress, "S(q) to %.4g 1/nm, of at most %lld waves in a bin",
-                        measured->plan.q_maximum, (long long)measured->plan.waves);
+        mf_progress_print(&run->progress, "S(q) to %.4g 1/nm, of at most %lld waves in a bin",
+                          measured->plan.q_maximum, (long long)measured->plan.waves);
 }
 
 /// What a person is to know.
-static void say_results(struct run *run, const struct measure_result *result) {
+static void print_results(struct run *run, const struct measure_result *result) {
     const struct measured *const measured = &run->measured;
     if (mf_measure_output_is_alone(result))
-        mf_progress_say(&run->progress,
-                        measured->in_vacuum
-                            ? "there is no box: molecules alone are measured, no g(r), no motion"
-                            : "a single molecule: g(r) is that of its own beads, and no target; "
-                              "bonds, angles and dihedrals are");
+        mf_progress_print(&run->progress,
+                          measured->in_vacuum
+                              ? "there is no box: molecules alone are measured, no g(r), no motion"
+                              : "a single molecule: g(r) is that of its own beads, and no target; "
+                                "bonds, angles and dihedrals are");
     if (!measured->in_vacuum)
-        say_pairs(run);
+        print_pairs(run);
     if (measured->pairs.molecule && result->kinds == NULL)
-        mf_progress_say(
+        mf_progress_print(
             &run->progress,
             "mesofit: warning: molecules have several beads: without --molecules a fit has no "
             "bonds; g(r) is of different molecules alone, no target of a fit that has them");
-    say_molecules(run, result);
+    print_molecules(run, result);
     if (!measured->in_vacuum)
-        say_motion(run, &result->units);
+        print_motion(run, &result->units);
     if (measured->motion.begun && mf_measure_output_masses_differ(result))
-        mf_progress_say(&run->progress, "masses of beads differ: target.json has motion compared "
-                                        "with and not fitted, since friction is for one mass");
+        mf_progress_print(&run->progress, "masses of beads differ: target.json has motion compared "
+                                          "with and not fitted, since friction is for one mass");
     if (isnan(run->request->temperature) && measured->motion.temperature.count == 0)
-        mf_progress_say(
+        mf_progress_print(
             &run->progress,
             "unknown temperature%s: give it by --temperature, or in \"scene\" of target.json",
             run->mapping.broken ? " by parts of molecules" : "");
@@ -365,11 +367,11 @@ static enum status write_results(struct run *run, bool interrupted) {
     TRY(mf_run_folder_take_over(&run->folder));
     TRY(mf_measure_output_write(&result));
     mf_run_folder_draw(&run->folder);
-    say_lines(&run->progress, &run->frames.notes);
-    say_results(run, &result);
-    TRY(say_constraints(run));
-    mf_progress_say(&run->progress, "%zu frames of %zu beads in %.3g s; results in %s",
-                    run->measured.frames, run->mapping.beads, result.seconds, run->folder.path);
+    print_lines(&run->progress, &run->frames.notes);
+    print_results(run, &result);
+    TRY(print_constraints(run));
+    mf_progress_print(&run->progress, "%zu frames of %zu beads in %.3g s; results in %s",
+                      run->measured.frames, run->mapping.beads, result.seconds, run->folder.path);
     return STATUS_OK;
 }
 
@@ -377,8 +379,8 @@ static enum status write_results(struct run *run, bool interrupted) {
 static enum status check_units(const struct run *run) {
     const struct trajectory *const trajectory = &run->frames.trajectory;
     if (run->request->frames.options.units == NULL ||
-        run->structure.format->speaks != TRAJECTORY_OWN_UNITS ||
-        trajectory->format->speaks != TRAJECTORY_OWN_UNITS)
+        run->structure.format->unit_source != TRAJECTORY_OWN_UNITS ||
+        trajectory->format->unit_source != TRAJECTORY_OWN_UNITS)
         return STATUS_OK;
     return mf_status_fail(STATUS_BAD_INPUT,
                           "%s: the format \"%s\" has units of its own: leave --file-units out",

@@ -4,7 +4,7 @@
 #include <math.h>
 
 /// Beads that a fit simulates well.
-enum { MOST_BEADS = 4000 };
+enum { MAX_BEADS = 4000 };
 
 /// Beads that are in no molecule.
 static struct composition find_single(const struct measure_result *result) {
@@ -16,13 +16,13 @@ static struct composition find_single(const struct measure_result *result) {
     return single;
 }
 
-static void put_types(const struct composition *composition, double share,
-                      struct json_writer *writer) {
+static void write_types(const struct composition *composition, double share,
+                        struct json_writer *writer) {
     mf_json_begin(writer, "types");
     for (int type = 0; type < composition->types; type++)
         if (composition->count[type] > 0)
-            mf_json_put_integer(writer, composition->name[type],
-                                (int64_t)ceil(share * (double)composition->count[type]));
+            mf_json_write_integer(writer, composition->name[type],
+                                  (int64_t)ceil(share * (double)composition->count[type]));
     mf_json_end(writer);
 }
 
@@ -34,7 +34,7 @@ static double share_of_alone(const struct measure_result *result) {
     return fmax(1, ALONE_BEADS / (double)result->mapping->beads);
 }
 
-static enum status put_wide_box(const struct measure_result *result, struct json_writer *writer) {
+static enum status write_wide_box(const struct measure_result *result, struct json_writer *writer) {
     static const double bonds = 3;
     const struct molecules *const molecules = &result->kinds->molecules;
     double longest = 0, edge[3];
@@ -46,17 +46,17 @@ static enum status put_wide_box(const struct measure_result *result, struct json
     const double beads = share_of_alone(result) * (double)result->mapping->beads;
     for (int d = 0; d < 3; d++)
         edge[d] = bonds * (longest > 0 ? longest : 1) * cbrt(beads);
-    mf_json_put_quantities(writer, "box", "lambda", edge, 3);
+    mf_json_write_quantities(writer, "box", "lambda", edge, 3);
     return STATUS_OK;
 }
 
 /// The part of all that a fit simulates well; all, if there are so few of anything that the
 /// composition would be another one.
 static double find_share(const struct measure_result *result, const struct composition *single) {
-    static const double most_change = 0.02;
+    static const double max_change = 0.02;
     const struct topology *const topology = &result->kinds->molecules.topology;
     const double beads = (double)mf_composition_particles(&result->measured->pairs.composition);
-    const double share = fmin(1, MOST_BEADS / beads), fewest = 1 / (share * most_change);
+    const double share = fmin(1, MAX_BEADS / beads), fewest = 1 / (share * max_change);
     for (int k = 0; k < topology->kinds; k++)
         if (topology->kind[k].count > 0 && (double)topology->kind[k].count < fewest)
             return 1;
@@ -67,8 +67,8 @@ static double find_share(const struct measure_result *result, const struct compo
 }
 
 /// Molecules, and the single beads beside them.
-static void put_molecules_of_scene(const struct measure_result *result,
-                                   struct json_writer *writer) {
+static void write_molecules_of_scene(const struct measure_result *result,
+                                     struct json_writer *writer) {
     const struct composition *const all = &result->measured->pairs.composition;
     const struct composition single = find_single(result);
     const double share =
@@ -78,39 +78,40 @@ static void put_molecules_of_scene(const struct measure_result *result,
         return;
     mf_json_begin(writer, "particles");
     if (mf_composition_particles(&single) > 0)
-        put_types(&single, share, writer);
-    mf_measure_output_put_masses(result, writer);
+        write_types(&single, share, writer);
+    mf_measure_output_write_masses(result, writer);
     mf_json_end(writer);
 }
 
 /// A mixture is told by the numbers of its beads, of no more of them than a fit simulates well.
-static void put_particles(const struct measure_result *result, struct json_writer *writer) {
+static void write_particles(const struct measure_result *result, struct json_writer *writer) {
     const struct composition *const all = &result->measured->pairs.composition;
     const int64_t beads = mf_composition_particles(all);
     const struct composition some =
-        mf_composition_scaled(all, beads < MOST_BEADS ? beads : MOST_BEADS);
+        mf_composition_scaled(all, beads < MAX_BEADS ? beads : MAX_BEADS);
     if (!composition_is_mixed(all) && isnan(mf_measure_output_mass(result, 0)))
         return;
     mf_json_begin(writer, "particles");
     if (composition_is_mixed(all))
-        put_types(&some, 1, writer);
-    mf_measure_output_put_masses(result, writer);
+        write_types(&some, 1, writer);
+    mf_measure_output_write_masses(result, writer);
     mf_json_end(writer);
 }
 
-enum status mf_measure_scene_put(const struct measure_result *result, struct json_writer *writer) {
+enum status mf_measure_scene_write(const struct measure_result *result,
+                                   struct json_writer *writer) {
     const double temperature = mf_measure_output_temperature(result);
     mf_json_begin(writer, "scene");
     if (mf_measure_output_is_alone(result))
-        TRY(put_wide_box(result, writer));
+        TRY(write_wide_box(result, writer));
     else
-        mf_json_put_quantity(writer, "density", "1/lambda^3", mf_measure_output_density(result));
+        mf_json_write_quantity(writer, "density", "1/lambda^3", mf_measure_output_density(result));
     if (result->kinds)
-        put_molecules_of_scene(result, writer);
+        write_molecules_of_scene(result, writer);
     else
-        put_particles(result, writer);
+        write_particles(result, writer);
     if (!isnan(temperature))
-        mf_json_put_number(writer, "temperature", temperature);
+        mf_json_write_number(writer, "temperature", temperature);
     mf_json_end(writer);
     return STATUS_OK;
 }

@@ -6,5 +6,5 @@
 #include "work/measure_output.h"
 
 /// Fails: NO_MEMORY.
-enum status mf_measure_scene_put(const struct measure_result *result,
-                                 struct json_writer *writer) MUST_USE;
+enum status mf_measure_scene_write(const struct measure_result *result,
+                                   struct json_writer *writer) MUST_USE;

@@ -42,8 +42,8 @@ static enum status write_motion(const struct measure_result *result) {
     const struct motion_curves curves = {values, values + rows, values + 2 * rows,
                                          values + 3 * rows};
     mf_motion_result(motion, &curves);
-    mf_statistics_forget_errors(curves.msd_error, rows);
-    mf_statistics_forget_errors(curves.vacf_error, rows);
+    mf_statistics_mark_unknown_errors(curves.msd_error, rows);
+    mf_statistics_mark_unknown_errors(curves.vacf_error, rows);
     for (size_t k = 0; k < rows; k++)
         time[k] = (double)k * measured->interval;
     const struct data_column msd[] = {{"time[tau]", time, NULL},
@@ -68,7 +68,7 @@ static enum status write_molecules(const struct measure_result *result,
     if (measured->molecules.molecules == NULL)
         return STATUS_OK;
     if (!measured->in_vacuum)
-        TRY(mf_rdf_observable.write(&measured->apart, results));
+        TRY(mf_rdf_observable.write(&measured->intermolecular, results));
     for (const struct observable_use *use = measured->molecules.use; use->observable; use++)
         TRY(use->observable->write(use->state, results));
     return STATUS_OK;

@@ -40,8 +40,8 @@ struct run {
 enum { PARTICLES_A_THREAD = 500 };
 
 static int find_threads(const struct simulation_setup *setup, int wanted) {
-    const int most = (int)(simulation_moved(setup) / PARTICLES_A_THREAD);
-    return most < 1 ? 1 : wanted < most ? wanted : most;
+    const int max = (int)(simulation_moved(setup) / PARTICLES_A_THREAD);
+    return max < 1 ? 1 : wanted < max ? wanted : max;
 }
 
 static enum status read_file(struct run *run, const char *file, const struct run_options *options) {
@@ -75,11 +75,11 @@ static enum status read_file(struct run *run, const char *file, const struct run
 /// Keep all settings, and take their digest.
 static enum status keep_settings(struct run *run) {
     struct json_writer *writer = mf_json_writer_create();
-    mf_json_put_fields(writer, mf_heading_fields, &run->heading);
+    mf_json_write_fields(writer, mf_heading_fields, &run->heading);
     mf_units_write(&run->scene.units, writer);
     mf_scene_write(&run->scene, writer);
     mf_json_begin(writer, "measure");
-    mf_json_put_fields(writer, mf_measure_plan_fields, &run->plan);
+    mf_json_write_fields(writer, mf_measure_plan_fields, &run->plan);
     mf_json_end(writer);
     mf_simulate_observables_write_used(&run->observables, writer);
     const enum status status = mf_run_folder_keep_settings(&run->folder, writer, &run->digest);
@@ -97,7 +97,7 @@ static struct memory_span kept_span(struct run *run) {
 }
 
 static enum status save(struct run *run) {
-    struct memory_span spans[1 + SIMULATE_MOST_SPANS] = {kept_span(run)};
+    struct memory_span spans[1 + SIMULATE_MAX_SPANS] = {kept_span(run)};
     char path[OUTPUT_PATH_SIZE];
     mf_run_folder_file(&run->folder, "checkpoint.bin", path);
     const double begun = mf_progress_seconds(&run->progress);
@@ -115,7 +115,7 @@ static enum status change(struct run *run) {
     const struct simulation_change *last = mf_simulate_changes_last(&run->kept.changes);
     TRY(mf_simulation_change(&run->simulation, last));
     run->plan.equilibration = (int64_t)last->step + run->equilibration;
-    return mf_simulate_observables_begin_anew(&run->observables, &run->simulation, &run->plan);
+    return mf_simulate_observables_restart(&run->observables, &run->simulation, &run->plan);
 }
 
 static enum status load(struct run *run) {
@@ -132,22 +132,22 @@ static enum status load(struct run *run) {
     return STATUS_OK;
 }
 
-static void tell(void *context, const struct simulation *simulation, uint64_t done,
-                 uint64_t total) {
+static void report(void *context, const struct simulation *simulation, uint64_t done,
+                   uint64_t total) {
     struct run *run = context;
     const struct units *units = &run->scene.units;
     char text[96], unit[UNITS_NAME_SIZE];
     snprintf(text, sizeof text, "step %llu", (unsigned long long)done);
     if (simulation_has_velocities(&simulation->setup) && simulation->particles.count > 1)
         snprintf(text, sizeof text, "step %llu  T %.*f%s", (unsigned long long)done,
-                 !mf_units_speaks(units) ? 3 : 1,
+                 !mf_units_are_physical(units) ? 3 : 1,
                  mf_simulation_temperature(simulation) * mf_units_factor(units, "T_0"),
                  mf_units_suffix(units, "T_0", unit));
     // Before its first step, what goes on knows neither temperature nor rate.
     if (done == 0 || done > run->progress.done_before)
-        mf_progress_tell(&run->progress, done, total, "steps", text);
+        mf_progress_report(&run->progress, done, total, "steps", text);
     if (mf_progress_seconds(&run->progress) > run->pace.next && save(run) != STATUS_OK)
-        mf_progress_say(&run->progress, "mesofit: warning: %s", mf_status_message());
+        mf_progress_print(&run->progress, "mesofit: warning: %s", mf_status_message());
     struct simulation_change wanted;
     if (done < total && mf_progress_ask_change(&run->progress, &wanted) &&
         mf_simulate_changes_add(&run->kept.changes, &wanted))
@@ -159,14 +159,14 @@ static int64_t steps(void *context) {
     return watcher->steps(watcher->context);
 }
 
-static void tell_run(struct run *run) {
+static void report_run(struct run *run) {
     const struct watcher_run watched = {.kind = RUN_SIMULATION,
                                         .folder = run->folder.path,
                                         .units = &run->scene.units,
                                         .simulation = &run->simulation,
                                         .plan = &run->plan,
                                         .observables = run->observables.use};
-    mf_progress_tell_run(&run->progress, &watched);
+    mf_progress_report_run(&run->progress, &watched);
 }
 
 static struct observable_results results_of(const struct run *run) {
@@ -178,13 +178,13 @@ static struct observable_results results_of(const struct run *run) {
 }
 
 /// What the integrator tells of itself.
-static void put_numbers(const struct simulation *simulation, struct json_writer *writer) {
+static void write_numbers(const struct simulation *simulation, struct json_writer *writer) {
     const struct integrator *integrator = simulation->setup.integrator;
     struct integrator_number number[INTEGRATOR_NUMBERS];
     const size_t count =
         integrator->numbers ? integrator->numbers(simulation->integrator_state, number) : 0;
     for (size_t k = 0; k < count; k++)
-        mf_json_put_number(writer, number[k].name, number[k].value);
+        mf_json_write_number(writer, number[k].name, number[k].value);
 }
 
 static enum status write_summary(const struct run *run, double taken) {
@@ -192,16 +192,16 @@ static enum status write_summary(const struct run *run, double taken) {
     struct json_writer *writer = mf_json_writer_create();
     char path[OUTPUT_PATH_SIZE];
     mf_units_write_summary(&run->scene.units, writer);
-    mf_json_put_text(writer, "status", mf_status_name(STATUS_OK));
-    mf_json_put_text(writer, "method", "simulate");
-    mf_json_put_number(writer, "seconds", taken);
-    mf_json_put_number(writer, "engine_steps", (double)run->simulation.step);
-    mf_simulate_changes_put(&run->kept.changes, writer);
-    mf_json_put_number(writer, "steps_per_second", (double)run->simulation.step / taken);
-    put_numbers(&run->simulation, writer);
-    mf_simulate_observables_put(&run->observables, &results, writer);
-    mf_json_put_number(writer, "seed", (double)run->heading.seed);
-    mf_json_put_text(writer, "version", MESOFIT_VERSION);
+    mf_json_write_text(writer, "status", mf_status_name(STATUS_OK));
+    mf_json_write_text(writer, "method", "simulate");
+    mf_json_write_number(writer, "seconds", taken);
+    mf_json_write_number(writer, "engine_steps", (double)run->simulation.step);
+    mf_simulate_changes_write(&run->kept.changes, writer);
+    mf_json_write_number(writer, "steps_per_second", (double)run->simulation.step / taken);
+    write_numbers(&run->simulation, writer);
+    mf_simulate_observables_write_summary(&run->observables, &results, writer);
+    mf_json_write_number(writer, "seed", (double)run->heading.seed);
+    mf_json_write_text(writer, "version", MESOFIT_VERSION);
     mf_run_folder_file(&run->folder, "summary.json", path);
     const enum status status = mf_json_write(writer, path);
     mf_json_writer_free(writer);
@@ -214,7 +214,7 @@ static enum status begin_measuring(struct run *run, const char *file) {
         status = mf_simulate_observables_begin(&run->observables, &run->simulation, &run->plan);
     return status == STATUS_OK
                ? status
-               : mf_status_prefix(mf_units_mark(&run->scene.units, status), "%s", file);
+               : mf_status_prefix(mf_units_add_to_message(&run->scene.units, status), "%s", file);
 }
 
 static enum status begin_folder(struct run *run, bool resume) {
@@ -241,11 +241,11 @@ static enum status prepare(struct run *run, const char *file, const struct run_o
 static void warn(struct run *run) {
     const char *warning = mf_scene_warning(&run->scene);
     char line[SCENE_LINE_SIZE];
-    mf_progress_say_scale(&run->progress, &run->scene.units);
+    mf_progress_print_scale(&run->progress, &run->scene.units);
     if (warning)
-        mf_progress_say(&run->progress, "mesofit: warning: %s", warning);
+        mf_progress_print(&run->progress, "mesofit: warning: %s", warning);
     if (mf_scene_is_hot(&run->scene, line))
-        mf_progress_say(&run->progress, "mesofit: warning: %s", line);
+        mf_progress_print(&run->progress, "mesofit: warning: %s", line);
 }
 
 static enum status measure(struct run *run, const struct measure_listener *listener) {
@@ -258,14 +258,14 @@ static enum status measure(struct run *run, const struct measure_listener *liste
 
 static enum status carry_out(struct run *run) {
     const struct watcher *watcher = run->progress.watcher;
-    const struct measure_listener listener = {tell, run, watcher ? steps : NULL};
-    tell_run(run);
+    const struct measure_listener listener = {report, run, watcher ? steps : NULL};
+    report_run(run);
     warn(run);
     enum status status = measure(run, &listener);
     // A person may have stopped it meanwhile: it then begins with the change when it goes on.
     while (status == STATUS_INTERRUPTED && atomic_exchange(&run->cancel, false)) {
         TRY(change(run));
-        mf_simulate_changes_say(&run->kept.changes, &run->scene.units, &run->progress);
+        mf_simulate_changes_print(&run->kept.changes, &run->scene.units, &run->progress);
         TRY(save(run));
         status = measure(run, &listener);
     }
@@ -276,7 +276,7 @@ static enum status carry_out(struct run *run) {
 static void remove_checkpoint(const struct run *run) {
     char path[OUTPUT_PATH_SIZE];
     mf_run_folder_file(&run->folder, "checkpoint.bin", path);
-    mf_own_files_remove(path);
+    mf_tracked_files_remove(path);
 }
 
 static enum status write_results(struct run *run) {
@@ -286,9 +286,9 @@ static enum status write_results(struct run *run) {
     TRY(write_summary(run, taken));
     remove_checkpoint(run);
     mf_run_folder_draw(&run->folder);
-    mf_simulate_observables_say(&run->observables, &results, &run->progress);
-    mf_progress_say(&run->progress, "%llu steps in %.3g s; results in %s",
-                    (unsigned long long)run->simulation.step, taken, run->folder.path);
+    mf_simulate_observables_print(&run->observables, &results, &run->progress);
+    mf_progress_print(&run->progress, "%llu steps in %.3g s; results in %s",
+                      (unsigned long long)run->simulation.step, taken, run->folder.path);
     return STATUS_OK;
 }
 
@@ -311,7 +311,7 @@ enum status mf_simulate_file(const char *file, const struct run_options *options
     run->pace.interval = run->pace.next = checkpoint_interval;
     run->progress = mf_progress_begin(options->quiet, options->watcher);
     CHECK(prepare(run, file, options));
-    status = mf_units_mark(&run->scene.units, carry_out(run));
+    status = mf_units_add_to_message(&run->scene.units, carry_out(run));
     if (status == STATUS_INTERRUPTED) {
         CHECK(save(run));
         status =

@@ -31,7 +31,8 @@ static void check_time(const struct observable *observable, const struct integra
 enum status mf_simulate_observables_read(struct simulate_observables *observables,
                                          struct json_object *root,
                                          const struct simulation_setup *setup) {
-    const bool lonely = setup->placement.count < 2 && mf_json_fault_count(root->document) == 0;
+    const bool too_few_particles =
+        setup->placement.count < 2 && mf_json_fault_count(root->document) == 0;
     *observables = (struct simulate_observables){0};
     struct observable_use *use = observables->use;
     for (size_t k = 0; mf_observables[k]; k++) {
@@ -42,7 +43,7 @@ enum status mf_simulate_observables_read(struct simulate_observables *observable
         if (object.item == NULL && !is_usual(observable, setup))
             continue;
         check_time(observable, setup->integrator, root);
-        if (lonely && !observable->of_solvent)
+        if (too_few_particles && !observable->of_solvent)
             mf_json_fault(root, observable->name, "there are fewer than two particles to measure");
         use->observable = observable;
         if (observable->fields) {
@@ -75,7 +76,7 @@ void mf_simulate_observables_write_used(const struct simulate_observables *obser
         if (use->settings == NULL)
             continue;
         mf_json_begin(writer, use->observable->name);
-        mf_json_put_fields(writer, use->observable->fields, use->settings);
+        mf_json_write_fields(writer, use->observable->fields, use->settings);
         mf_json_end(writer);
     }
 }
@@ -92,9 +93,9 @@ enum status mf_simulate_observables_begin(struct simulate_observables *observabl
     return STATUS_OK;
 }
 
-enum status mf_simulate_observables_begin_anew(struct simulate_observables *observables,
-                                               const struct simulation *simulation,
-                                               const struct measure_plan *plan) {
+enum status mf_simulate_observables_restart(struct simulate_observables *observables,
+                                            const struct simulation *simulation,
+                                            const struct measure_plan *plan) {
     for (struct observable_use *use = observables->use; use->observable; use++) {
         use->observable->clear(use->state);
         mf_memory_free(use->state);
@@ -149,18 +150,18 @@ size_t mf_simulate_observables_spans(struct simulate_observables *observables,
 enum status mf_simulate_observables_load(struct simulate_observables *observables,
                                          struct simulation *simulation, const char *file,
                                          uint64_t digest, const struct memory_span *first) {
-    struct memory_span spans[1 + SIMULATE_MOST_SPANS] = {*first};
+    struct memory_span spans[1 + SIMULATE_MAX_SPANS] = {*first};
     size_t n = 1 + mf_simulation_spans(simulation, spans + 1);
-    if (simulation_wants_room(simulation)) {
+    if (simulation_wants_capacity(simulation)) {
         TRY(mf_checkpoint_load_span(file, digest, 1, &spans[1]));
-        TRY(mf_simulation_make_room(simulation));
+        TRY(mf_simulation_reserve(simulation));
         n = 1 + mf_simulation_spans(simulation, spans + 1);
     }
     for (const struct observable_use *use = observables->use; use->observable; use++) {
         size_t own = use->observable->spans(use->state, spans + n);
-        if (use->observable->make_room) {
+        if (use->observable->reserve) {
             TRY(mf_checkpoint_load_span(file, digest, n, &spans[n]));
-            TRY(use->observable->make_room(use->state));
+            TRY(use->observable->reserve(use->state));
             own = use->observable->spans(use->state, spans + n);
         }
         n += own;
@@ -177,25 +178,26 @@ enum status mf_simulate_observables_write(const struct simulate_observables *obs
     return STATUS_OK;
 }
 
-void mf_simulate_observables_put(const struct simulate_observables *observables,
-                                 const struct observable_results *results,
-                                 struct json_writer *writer) {
+void mf_simulate_observables_write_summary(const struct simulate_observables *observables,
+                                           const struct observable_results *results,
+                                           struct json_writer *writer) {
     for (const struct observable_use *use = observables->use; use->observable; use++)
-        if (use->observable->put)
-            use->observable->put(use->state, results, writer);
+        if (use->observable->write_summary)
+            use->observable->write_summary(use->state, results, writer);
 }
 
-void mf_simulate_observables_say(const struct simulate_observables *observables,
-                                 const struct observable_results *results, struct progress *to) {
+void mf_simulate_observables_print(const struct simulate_observables *observables,
+                                   const struct observable_results *results, struct progress *to) {
     for (const struct observable_use *use = observables->use; use->observable; use++) {
         char line[256];
-        if (use->observable->say) {
-            use->observable->say(use->state, results, line, sizeof line);
-            mf_progress_say(to, "%s", line);
+        if (use->observable->print) {
+            use->observable->print(use->state, results, line, sizeof line);
+            mf_progress_print(to, "%s", line);
         }
-        const enum status status =
-            use->observable->judge ? use->observable->judge(use->state, results->setup) : STATUS_OK;
-        if (mf_units_mark(results->units, status) != STATUS_OK)
-            mf_progress_say(to, "mesofit: warning: %s", mf_status_message());
+        const enum status status = use->observable->assess
+                                       ? use->observable->assess(use->state, results->setup)
+                                       : STATUS_OK;
+        if (mf_units_add_to_message(results->units, status) != STATUS_OK)
+            mf_progress_print(to, "mesofit: warning: %s", mf_status_message());
     }
 }

@@ -8,7 +8,7 @@
 #include "report/run_folder.h"
 
 struct simulate_observables {
-    struct observable_use use[OBSERVABLES_MOST + 1]; ///< settings are NULL of one without fields
+    struct observable_use use[OBSERVABLES_MAX + 1]; ///< settings are NULL of one without fields
 };
 
 /// Read the objects of a scene file; faults go to its document. Fails: NO_MEMORY.
@@ -28,9 +28,9 @@ enum status mf_simulate_observables_begin(struct simulate_observables *observabl
                                           const struct measure_plan *plan) MUST_USE;
 
 /// Forget all that was measured, and begin once more.
-enum status mf_simulate_observables_begin_anew(struct simulate_observables *observables,
-                                               const struct simulation *simulation,
-                                               const struct measure_plan *plan) MUST_USE;
+enum status mf_simulate_observables_restart(struct simulate_observables *observables,
+                                            const struct simulation *simulation,
+                                            const struct measure_plan *plan) MUST_USE;
 
 /// Tell those that write while they measure where their files go.
 void mf_simulate_observables_open(const struct simulate_observables *observables,
@@ -41,7 +41,7 @@ enum status mf_simulate_observables_reserve(const struct simulate_observables *o
                                             const struct composition *composition,
                                             struct run_folder *folder) MUST_USE;
 
-enum { SIMULATE_MOST_SPANS = SIMULATION_SPANS + OBSERVABLES_MOST * OBSERVABLE_MOST_SPANS };
+enum { SIMULATE_MAX_SPANS = SIMULATION_SPANS + OBSERVABLES_MAX * OBSERVABLE_MAX_SPANS };
 
 /// Spans of a checkpoint, the simulation's first; returns their number.
 size_t mf_simulate_observables_spans(struct simulate_observables *observables,
@@ -59,10 +59,10 @@ enum status mf_simulate_observables_write(const struct simulate_observables *obs
                                           const struct observable_results *results) MUST_USE;
 
 /// Add all numbers to summary.json.
-void mf_simulate_observables_put(const struct simulate_observables *observables,
-                                 const struct observable_results *results,
-                                 struct json_writer *writer);
+void mf_simulate_observables_write_summary(const struct simulate_observables *observables,
+                                           const struct observable_results *results,
+                                           struct json_writer *writer);
 
 /// Say what a person is to know, and what is not to be trusted.
-void mf_simulate_observables_say(const struct simulate_observables *observables,
-                                 const struct observable_results *results, struct progress *to);
+void mf_simulate_observables_print(const struct simulate_observables *observables,
+                                   const struct observable_results *results, struct progress *to);

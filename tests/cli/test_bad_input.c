@@ -8,14 +8,14 @@
 
 static const char good_table[] = "# r value\n0 10\n0.5 3\n1 0\n";
 
-enum { MOST_WORDS = 5 };
+enum { MAX_WORDS = 5 };
 
 /// A file that differs from the good one in one place, and words of the lines that tell of it.
 struct fault {
     const char *what;
-    const char *from, *to;         ///< in the JSON file
-    const char *words[MOST_WORDS]; ///< of the message; NULL-terminated
-    const char *table;             ///< instead of the good table or target
+    const char *from, *to;        ///< in the JSON file
+    const char *words[MAX_WORDS]; ///< of the message; NULL-terminated
+    const char *table;            ///< instead of the good table or target
 };
 
 static void check_fault(struct temporary_folder *folder, const char *verb, const char *good,

@@ -13,10 +13,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { MOST_WORDS = 8 };
+enum { MAX_WORDS = 8 };
 
 struct command_line {
-    const char *words[MOST_WORDS];
+    const char *words[MAX_WORDS];
     const char *says[3];
 };
 
@@ -185,12 +185,12 @@ static enum barrier force_fit(int pages) {
 /// A forced fit replaces used.json and the checkpoint once there is room for both, and then removes
 /// what else the earlier one left: from a disk without room for the first to one with room for all.
 static void test_forced_fit_on_a_full_disk_keeps_the_earlier_one_until_it_has_begun(void **state) {
-    enum { PAGES = 64, MOST = 32 };
+    enum { PAGES = 64, MAX = 32 };
     int met[BARRIERS] = {0};
     assert_int_equal(mkdir("disk", 0777), 0);
     small_inputs_write(*state, "run.json", small_inputs_run, NULL, NULL);
     small_inputs_write(*state, "target.tsv", small_inputs_target, NULL, NULL);
-    for (int pages = 0; met[NOWHERE] == 0 && pages < MOST; pages++) {
+    for (int pages = 0; met[NOWHERE] == 0 && pages < MAX; pages++) {
         if (!small_disk_mount("disk", PAGES))
             skip();
         met[force_fit(pages)]++;

@@ -32,11 +32,11 @@ static const char good[] =
     ", \"temperature_tolerance\": 0.9},\n"
     "\"verification\": {\"replicas\": 2, \"equilibration\": 10, " CHECK_PLAN "}}\n";
 
-enum { MOST_WORDS = 5 };
+enum { MAX_WORDS = 5 };
 
 struct fault {
     const char *what, *from, *to; ///< in the good file
-    const char *words[MOST_WORDS];
+    const char *words[MAX_WORDS];
 };
 
 #define FAULT(name, old, new, ...)                                                                 \

@@ -18,7 +18,7 @@
 static const double thermal = 8.31446261815324e-3 * 300; // k_B T [kJ/mol]
 static const double cutoff = 0.7;                        // [nm]
 
-enum { MOST = 600000 };
+enum { MAX = 600000 };
 
 /// A table as it stands in a file, in units of the file.
 struct rows {
@@ -28,9 +28,9 @@ struct rows {
 };
 
 static void init(struct rows *rows) {
-    *rows = (struct rows){.r = calloc(MOST, sizeof(double)),
-                          .phi = calloc(MOST, sizeof(double)),
-                          .force = calloc(MOST, sizeof(double))};
+    *rows = (struct rows){.r = calloc(MAX, sizeof(double)),
+                          .phi = calloc(MAX, sizeof(double)),
+                          .force = calloc(MAX, sizeof(double))};
 }
 
 static void clear(struct rows *rows) {
@@ -297,7 +297,7 @@ static void test_dl_poly_reads_the_potential(void **state) {
     FILE *file = open_text("dl_poly/TABLE");
     assert_non_null(fgets(line, sizeof line, file));
     assert_int_equal(fscanf(file, "%lf %lf %zu", &rows.spacing, &rows.high, &rows.count), 3);
-    assert_true(rows.high >= 7 && rows.count < MOST);
+    assert_true(rows.high >= 7 && rows.count < MAX);
     assert_true(fabs(rows.spacing - 7 / (double)(rows.count - 4)) <= 1e-8);
     assert_int_equal(fscanf(file, "%15s %15s %*f %*f", a, b), 2);
     for (size_t k = 0; k < rows.count; k++)

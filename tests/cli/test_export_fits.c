@@ -50,7 +50,7 @@ static void fit_and_export(struct temporary_folder *folder, const char *unknowns
 }
 
 /// The number behind `words` in a file.
-static double number_behind(const char *path, const char *words) {
+static double number_after(const char *path, const char *words) {
     char *text = temporary_folder_read(path);
     const char *found = strstr(text, words);
     if (found == NULL)
@@ -67,7 +67,7 @@ static void test_numbers_that_were_found_are_exported(void **state) {
                    ", \"dissipative\": {\"law\": \"power\", \"sigma\": 5}");
     const double sigma = results_parameter("fit/summary.json", "dissipative.sigma", "value");
     const double a = results_parameter("fit/summary.json", "conservative.a", "value");
-    const double gamma = number_behind("lammps/in.mesofit", "pair_coeff 1 1 dpd/tstat ");
+    const double gamma = number_after("lammps/in.mesofit", "pair_coeff 1 1 dpd/tstat ");
     assert_true(fabs(sigma - 5) > 1e-6 && fabs(gamma / (sigma * sigma) - 1) < 1e-6);
     // Φ of the first row, which is at r = 1e-4: ½ a (1 − r)².
     char *text = temporary_folder_read("lammps/mesofit.table");
@@ -137,10 +137,10 @@ static void assert_runs_as_fitted(struct temporary_folder *folder, const char *e
     snprintf(coefficients, sizeof coefficients, "pair_coeff 1 1 %s ", style);
     fit_and_export(folder, unknowns, "");
     const double sigma = results_parameter("fit/summary.json", "sigma", "value");
-    const double gamma = number_behind("lammps/in.mesofit", coefficients);
+    const double gamma = number_after("lammps/in.mesofit", coefficients);
     assert_true(sigma > 1 && fabs(gamma / (sigma * sigma) - 1) < 1e-3);
-    assert_true(fabs(number_behind("lammps/README", ", s = ") / strtod(exponent, NULL) - 1) < 1e-3);
-    assert_true(number_behind("lammps/README", "misfit of omega ") < 0.01);
+    assert_true(fabs(number_after("lammps/README", ", s = ") / strtod(exponent, NULL) - 1) < 1e-3);
+    assert_true(number_after("lammps/README", "misfit of omega ") < 0.01);
 }
 
 static void test_fit_with_exponent_1_runs_as_dpd_tstat(void **state) {
@@ -181,12 +181,12 @@ static void test_projection_of_a_power_law_costs_nothing(void **state) {
     }
     free(text);
     assert_true(fabs(value[0] - value[1]) < 5 * sqrt(error[0] * error[0] + error[1] * error[1]));
-    const double rms = number_behind("lammps/README", "rms of the difference ");
-    const double noise = number_behind("lammps/README", "noise alone gives ");
+    const double rms = number_after("lammps/README", "rms of the difference ");
+    const double noise = number_after("lammps/README", "noise alone gives ");
     assert_true(rms > 0 && noise > 0 && rms < 3 * noise && noise < 0.05);
-    assert_true(fabs(number_behind("lammps/in.mesofit", "dpd/tstat ") - 1) <
+    assert_true(fabs(number_after("lammps/in.mesofit", "dpd/tstat ") - 1) <
                 1e-12); // T of pair_style
-    assert_true(fabs(number_behind("lammps/in.mesofit", "1 1 dpd/tstat ") / 9 - 1) < 1e-6);
+    assert_true(fabs(number_after("lammps/in.mesofit", "1 1 dpd/tstat ") / 9 - 1) < 1e-6);
     text = temporary_folder_read("lammps/in.mesofit");
     assert_contains(text, "variable friction index dpd ");
     free(text);
@@ -200,14 +200,14 @@ static void test_projection_is_made_for_the_engine_and_its_cost_is_told(void **s
                   "out");
     project("lammps", "1");
     results_assert_table("lammps/projection.tsv", 6, 0);
-    assert_true(number_behind("lammps/README", "misfit of omega ") > 0.1);
-    const double rms = number_behind("lammps/README", "rms of the difference ");
-    assert_true(rms > 5 * number_behind("lammps/README", "noise alone gives "));
+    assert_true(number_after("lammps/README", "misfit of omega ") > 0.1);
+    const double rms = number_after("lammps/README", "rms of the difference ");
+    assert_true(rms > 5 * number_after("lammps/README", "noise alone gives "));
     assert_int_equal(rename("lammps", "one"), 0);
     project("lammps", "2");
     results_assert_same("one", "lammps", files);
     project("espresso", "2"); // which has no exponent but 1
-    assert_true(number_behind("espresso/README", ", s = ") == 1);
+    assert_true(number_after("espresso/README", ", s = ") == 1);
     char *text = temporary_folder_read("espresso/run.py");
     assert_contains(text, "linear = True");
     free(text);

@@ -105,7 +105,7 @@ static double energy_of(const struct ours *ours, int order) {
         for (int64_t m = 0; m < kind->count; m++)
             for (int n = 0; n < kind->terms[order]; n++) {
                 const struct topology_term *term = &kind->term[order][n];
-                int32_t place[BONDED_MOST_TERM_BEADS];
+                int32_t place[BONDED_MAX_TERM_BEADS];
                 double q, energy;
                 for (int bead = 0; bead < mf_bonded_kinds[order]->beads; bead++)
                     place[bead] = (int32_t)ours->simulation.particles

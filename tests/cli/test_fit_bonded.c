@@ -102,7 +102,7 @@ static void test_fit_finds_numbers_of_bonds_and_angles_of_a_twin(void **state) {
 }
 
 /// The number that comes behind a text in a file.
-static double number_behind(const char *file, const char *words) {
+static double number_after(const char *file, const char *words) {
     char *text = temporary_folder_read(file);
     const char *found = strstr(text, words);
     assert_non_null(found);
@@ -120,9 +120,9 @@ static void test_fit_exports_the_bonds_that_it_has_found(void **state) {
     assert_true(result.code == 0 || result.code == 1);
     RUN_PROGRAM(&result, "export", "out", "--engine", "lammps", "-o", "lammps");
     run_program_assert_code(&result, 0);
-    assert_close(2 * number_behind("lammps/in.mesofit", "bond_coeff 1 "),
+    assert_close(2 * number_after("lammps/in.mesofit", "bond_coeff 1 "),
                  results_parameter("out/summary.json", "bonds.backbone.k", "value"), 1e-6);
-    assert_close(2 * number_behind("lammps/in.mesofit", "angle_coeff 1 "),
+    assert_close(2 * number_after("lammps/in.mesofit", "angle_coeff 1 "),
                  results_parameter("out/summary.json", "angles.bend.k", "value"), 1e-6);
 }
 

@@ -10,7 +10,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { POPULATION = 8, GENERATIONS = 5, GENES = 4, COLUMNS = 5 + GENES, MOST = 200 };
+enum { POPULATION = 8, GENERATIONS = 5, GENES = 4, COLUMNS = 5 + GENES, MAX = 200 };
 enum { ITERATION, NUMBER, ERROR, PARENT, OTHER };
 
 #define SCENE                                                                                      \
@@ -38,14 +38,14 @@ static void write_inputs(struct temporary_folder *folder) {
 }
 
 /// The numbers of a table. Returns its rows.
-static size_t read_rows(const char *path, double row[MOST][COLUMNS]) {
+static size_t read_rows(const char *path, double row[MAX][COLUMNS]) {
     char *text = temporary_folder_read(path);
     size_t rows = 0;
     for (char *rest, *line = strtok_r(text, "\n", &rest); line;
          line = strtok_r(NULL, "\n", &rest)) {
         if (line[0] == '#')
             continue;
-        assert_true(rows < MOST);
+        assert_true(rows < MAX);
         for (int c = 0; c < COLUMNS; c++)
             row[rows][c] = strtod(line, &line);
         rows++;
@@ -62,7 +62,7 @@ static bool has_gene(const double *row, const double *of) {
 /// the first generation has none. One parent alone is what the individual is a copy of.
 static void test_genes_of_children_are_those_of_their_parents(void **state) {
     static struct run_program_result result;
-    static double row[MOST][COLUMNS];
+    static double row[MAX][COLUMNS];
     size_t crossed = 0, copies = 0, challengers = 0;
     write_inputs(*state);
     RUN_PROGRAM(&result, "fit", "run.json", "--quiet");

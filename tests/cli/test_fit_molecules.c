@@ -148,13 +148,13 @@ static void test_fit_by_relative_entropy_tells_what_its_form_does_not_meet(void 
 }
 
 /// The numbers behind a section's name in a file of tables, up to the next name.
-static size_t read_section(const char *file, const char *name, double *numbers, size_t most) {
+static size_t read_section(const char *file, const char *name, double *numbers, size_t max) {
     char line[512];
     size_t count = 0;
     bool inside = false;
     FILE *stream = fopen(file, "r");
     assert_non_null(stream);
-    while (fgets(line, sizeof line, stream) && count + 4 <= most) {
+    while (fgets(line, sizeof line, stream) && count + 4 <= max) {
         double number[4];
         if (isalpha((unsigned char)line[0]) && line[0] != 'N')
             inside = strncmp(line, name, strlen(name)) == 0;
@@ -170,18 +170,18 @@ static size_t read_section(const char *file, const char *name, double *numbers, 
 
 /// A fit is exported with the laws of the scene that its tables make.
 static void check_exports(void) {
-    enum { MOST = 200000 };
+    enum { MAX = 200000 };
     static struct run_program_result result;
-    static double of_fit[MOST], of_scene[MOST];
+    static double of_fit[MAX], of_scene[MAX];
     RUN_PROGRAM(&result, "export", "found", "--engine", "lammps", "-o", "lammps_found");
     run_program_assert_code(&result, 0);
     RUN_PROGRAM(&result, "export", "again", "--engine", "lammps", "-o", "lammps_again");
     run_program_assert_code(&result, 0);
     static const char *const sections[] = {"BOND_backbone", "ANGLE_bend", "PHI_A-A"};
     for (size_t k = 0; k < sizeof sections / sizeof *sections; k++) {
-        const size_t count = read_section("lammps_found/mesofit.table", sections[k], of_fit, MOST);
+        const size_t count = read_section("lammps_found/mesofit.table", sections[k], of_fit, MAX);
         assert_true(count > 100);
-        assert_int_equal(read_section("lammps_again/mesofit.table", sections[k], of_scene, MOST),
+        assert_int_equal(read_section("lammps_again/mesofit.table", sections[k], of_scene, MAX),
                          count);
         for (size_t n = 0; n < count; n++)
             assert_close(of_fit[n], of_scene[n], 1e-6 * (1 + fabs(of_scene[n])));

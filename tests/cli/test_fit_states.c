@@ -95,14 +95,14 @@ static void test_one_state_is_a_fit_without_states(void **state) {
 
 /// The ramp is what g(r) of one state hardly tells. Five errors: a false alarm in a million seeds
 /// if the errors are honest.
-static void assert_found(const char *folder, double most_error) {
+static void assert_found(const char *folder, double max_error) {
     char file[64];
     snprintf(file, sizeof file, "%s/summary.json", folder);
     const double ramp = results_number(file, "truth_ramp");
     const double error = results_number(file, "ramp_error");
     print_message("%s: ramp %.4f +- %.4f, %.4f beside it\n", folder, ramp, error,
                   results_number(file, "truth_rms_without_ramp"));
-    assert_true(error > 0 && error < most_error);
+    assert_true(error > 0 && error < max_error);
     assert_true(fabs(ramp) < 5 * error);
     assert_true(results_number(file, "truth_rms_without_ramp") < 0.05);
 }

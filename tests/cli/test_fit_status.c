@@ -71,8 +71,8 @@ static void test_gauss_newton_stops_at_its_noise(void **state) {
     assert_true(results_number("out/summary.json", "iterations") < 60);
     // What is left is at most that of 200 iterations; the verification takes all of its time.
     const char *verification = strstr(result.err, "verification ");
-    const char *most = strstr(result.err, "  at most ");
-    assert_true(verification && most && most < verification);
+    const char *max = strstr(result.err, "  at most ");
+    assert_true(verification && max && max < verification);
     assert_null(strstr(verification, "at most"));
     assert_contains(verification, " left\n");
     // Twice what statistics make: what own measurements of ten samples cannot tell from none.

@@ -14,7 +14,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { WATERS = 2744, PATH = 1024, MOST_WORDS = 16 };
+enum { WATERS = 2744, PATH = 1024, MAX_WORDS = 16 };
 
 static struct run_program_result result;
 
@@ -283,7 +283,7 @@ static void test_measure_tells_types_apart_when_the_map_does(void **state) {
 }
 
 static const struct {
-    const char *words[MOST_WORDS];
+    const char *words[MAX_WORDS];
     const char *says[3];
 } refusals[] = {
     {{"XTC", "-s", "missing.gro"}, {"missing.gro"}},
@@ -399,7 +399,7 @@ static void test_measure_takes_units_of_one_file_when_the_other_has_its_own(void
 static void test_measure_refuses_what_does_not_fit_in_a_line(void **state) {
     write_bad_files(*state);
     for (size_t k = 0; k < sizeof refusals / sizeof *refusals; k++) {
-        const char *words[MOST_WORDS + 5] = {"measure", "--quiet", "-o", "bad"};
+        const char *words[MAX_WORDS + 5] = {"measure", "--quiet", "-o", "bad"};
         for (size_t n = 0; refusals[k].words[n]; n++) {
             const char *const word = refusals[k].words[n];
             words[4 + n] = strcmp(word, "XTC") == 0    ? xtc

@@ -147,7 +147,7 @@ static void write_frames(void) {
 
 /// The shortest of the separations of two beads over their images.
 static double nearest(int frame, int a, int b, double separation[3]) {
-    double least = INFINITY;
+    double min = INFINITY;
     for (int n = 0; n < 125; n++) {
         double x[3], square = 0;
         for (int d = 0; d < 3; d++) {
@@ -155,12 +155,12 @@ static double nearest(int frame, int a, int b, double separation[3]) {
                    (n / 5 % 5 - 2) * lattice[1][d] + (n / 25 - 2) * lattice[2][d];
             square += x[d] * x[d];
         }
-        if (square < least * least) {
-            least = sqrt(square);
+        if (square < min * min) {
+            min = sqrt(square);
             memcpy(separation, x, sizeof x);
         }
     }
-    return least;
+    return min;
 }
 
 /// Pairs of A and A in a bin of 0.1 nm: those of different molecules, and all that are not bonded.

@@ -117,7 +117,7 @@ static void test_one_type_keeps_its_name(void **state) {
 }
 
 /// The number behind a word in a text.
-static double number_behind(const char *text, const char *words) {
+static double number_after(const char *text, const char *words) {
     const char *found = strstr(text, words);
     assert_non_null(found);
     return strtod(found + strlen(words), NULL);
@@ -136,7 +136,7 @@ static void test_constrained_bonds_are_a_known_law(void **state) {
     assert_contains(result.err, "bond \"AB\": a constraint, of a standard deviation of 0.0003 for");
     explain();
     assert_contains(result.out, "chosen: bond \"AB\": a constraint");
-    assert_close_relative(number_behind(result.out, "a harmonic law of k = "),
+    assert_close_relative(number_after(result.out, "a harmonic law of k = "),
                           8.314462618e-3 * 300 / (0.0015 * 0.0015), 1e-3);
     assert_null(strstr(result.out, "target bond_lengths"));
     assert_contains(result.out, "target bond_angles.ABA");

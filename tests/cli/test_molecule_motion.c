@@ -34,12 +34,12 @@ static const char beads[] =
     "\"measure\": {\"equilibration\": 200, \"samples\": 100, \"every\": 20}}\n";
 
 /// Columns of a table's rows; returns the number of rows.
-static size_t read_rows(const char *file, double (*rows)[8], size_t most, int columns) {
+static size_t read_rows(const char *file, double (*rows)[8], size_t max, int columns) {
     char line[4096];
     size_t count = 0;
     FILE *stream = fopen(file, "r");
     assert_non_null(stream);
-    while (count < most && fgets(line, sizeof line, stream)) {
+    while (count < max && fgets(line, sizeof line, stream)) {
         char *at = line;
         for (int k = 0; line[0] != '#' && k < columns; k++)
             rows[count][k] = strtod(at, &at);

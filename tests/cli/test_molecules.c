@@ -71,13 +71,13 @@ static void test_molecules_go_on_with_the_same_bits(void **state) {
     results_assert_same("whole", "again", tables);
 }
 
-/// The file's rows without its comments: column `column`, at most `most` of them.
-static size_t read_column(const char *file, int column, double *values, size_t most) {
+/// The file's rows without its comments: column `column`, at most `max` of them.
+static size_t read_column(const char *file, int column, double *values, size_t max) {
     char line[4096];
     size_t rows = 0;
     FILE *stream = fopen(file, "r");
     assert_non_null(stream);
-    while (rows < most && fgets(line, sizeof line, stream)) {
+    while (rows < max && fgets(line, sizeof line, stream)) {
         char *at = line;
         if (line[0] == '#')
             continue;

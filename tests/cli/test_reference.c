@@ -35,7 +35,7 @@ static void test_reference_page_is_what_the_program_prints(void **state) {
 }
 
 /// Markdown and the man page have `name` as they set off names.
-static void assert_told(const char *markdown, const char *man, const char *name) {
+static void assert_reported(const char *markdown, const char *man, const char *name) {
     char quoted[256], bold[256];
     size_t used = (size_t)snprintf(bold, sizeof bold, "\\fB");
     for (const char *letter = name; *letter; letter++)
@@ -58,10 +58,10 @@ static void test_reference_tells_of_every_option_object_and_key(void **state) {
     size_t count = 0;
     for (char *rest, *name = strtok_r(options, "\n", &rest); name;
          name = strtok_r(NULL, "\n", &rest), count++)
-        assert_told(markdown, man, name);
+        assert_reported(markdown, man, name);
     for (char *rest, *name = strtok_r(keys, "\n", &rest); name;
          name = strtok_r(NULL, "\n", &rest), count++)
-        assert_told(markdown, man, name);
+        assert_reported(markdown, man, name);
     assert_true(count > 100);
     free(markdown);
     free(man);

@@ -50,7 +50,7 @@ static const struct {
 
 static char *doc;
 
-static void assert_told(const char *what, const char *file) {
+static void assert_reported(const char *what, const char *file) {
     char word[512];
     snprintf(word, sizeof word, "`%s`", what);
     if (strstr(doc, word) == NULL)
@@ -66,7 +66,7 @@ static void check_keys(const char *path) {
         if (end == NULL || end[1] != ':')
             continue;
         *end = '\0';
-        assert_told(begin + 1, path);
+        assert_reported(begin + 1, path);
     }
     free(text);
 }
@@ -84,7 +84,7 @@ static void check_columns(const char *path) {
         name[strcspn(name, "[(")] = '\0';
         if (!isdigit(name[0]) && strncmp(name, "E", 1) != 0 && strstr(name, "_rmse") == NULL &&
             strstr(name, "_noise") == NULL && strncmp(name, "member", 6) != 0)
-            assert_told(name, path);
+            assert_reported(name, path);
     }
     free(text);
 }
@@ -98,7 +98,7 @@ static void check_folder(const char *folder) {
         const char *name = entries[k]->d_name;
         snprintf(path, sizeof path, "%s/%s", folder, name);
         if (name[0] != '.')
-            assert_told(name, folder);
+            assert_reported(name, folder);
         if (strstr(name, ".tsv"))
             check_columns(path);
         if (strcmp(name, "summary.json") == 0)

@@ -178,7 +178,7 @@ static void test_forces_are_those_of_the_positions_beside_them(void **state) {
                                               "shardlow",        "lowe-andersen",  "monte-carlo",
                                               "velocity-verlet", "euler-maruyama", NULL};
     for (int n = 0; integrators[n]; n++) {
-        const bool rubs = n < 5;
+        const bool has_friction = n < 5;
         struct bead beads[BEADS];
         char scene[1024];
         int frames = 0;
@@ -189,7 +189,7 @@ static void test_forces_are_those_of_the_positions_beside_them(void **state) {
                  "\"snapshots\": {\"every\": 10, \"formats\": [\"extxyz\"]},"
                  "\"measure\": {\"equilibration\": 0, \"samples\": 2, \"every\": 15}}",
                  n == 5 ? "" : "\"time_step\": 0.01, ",
-                 rubs ? "\"dissipative\": {\"law\": \"power\", \"sigma\": 3}, " : "",
+                 has_friction ? "\"dissipative\": {\"law\": \"power\", \"sigma\": 3}, " : "",
                  integrators[n]);
         temporary_folder_write(*state, "scene.json", scene, strlen(scene));
         RUN_PROGRAM(&result, "simulate", "scene.json", "--force");

@@ -173,13 +173,13 @@ static void test_bonds_are_found_from_a_structure_factor_alone(void **state) {
     run_program_assert_code(&result, 0);
     static const struct {
         const char *name;
-        double truth, most;
+        double truth, max;
     } number[] = {{"bonds.backbone.length", 0.6, 0.02}, {"conservative.a", 25, 2}};
     for (int k = 0; k < 2; k++) {
         const double value = results_parameter("bonds/summary.json", number[k].name, "value");
         const double error = results_parameter("bonds/summary.json", number[k].name, "error");
         print_message("%s = %g(%g)\n", number[k].name, value, error);
-        assert_true(error < number[k].most);
+        assert_true(error < number[k].max);
         assert_true(fabs(value - number[k].truth) < 4 * error);
     }
 }

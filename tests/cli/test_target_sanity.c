@@ -47,12 +47,12 @@ static int enter(void **state) {
     return 0;
 }
 
-enum { MOST_WORDS = 5 };
+enum { MAX_WORDS = 5 };
 
 /// A mistake: `from` of the good file becomes `to`, and the lines on stderr or stdout have `words`.
 struct mistake {
     const char *what, *from, *to;
-    const char *words[MOST_WORDS];
+    const char *words[MAX_WORDS];
 };
 
 #define MISTAKE(name, old, new, ...)                                                               \
@@ -146,7 +146,7 @@ static void test_fit_warns_of_targets_that_hardly_can_be(void **state) {
         small_inputs_write(*state, "run.json", water, doubted[k].from, doubted[k].to);
         RUN_PROGRAM(&result, "fit", "run.json", "--explain");
         run_program_assert_code(&result, 0);
-        for (size_t word = 0; word < MOST_WORDS && doubted[k].words[word]; word++)
+        for (size_t word = 0; word < MAX_WORDS && doubted[k].words[word]; word++)
             assert_contains(result.out, doubted[k].words[word]);
     }
 }
@@ -362,7 +362,7 @@ static void test_fit_has_nothing_against_soft_fluids_and_gases(void **state) {
     }
 }
 
-/// The program says what mf_fit_tell_state tells: see test_fit_tell for all that it warns of.
+/// The program says what mf_fit_print_state tells: see test_fit_print for all that it warns of.
 static void test_fit_of_molecules_warns_of_g_that_ends_beside_1(void **state) {
     static struct run_program_result result;
     small_inputs_write(*state, "run.json", propane_run_small, NULL, NULL);

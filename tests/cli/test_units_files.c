@@ -90,12 +90,12 @@ static void write_scene(struct temporary_folder *folder, const char *name, const
 }
 
 /// The numbers of a table, all behind each other.
-static size_t read_numbers(const char *file, double *values, size_t most) {
+static size_t read_numbers(const char *file, double *values, size_t max) {
     char *text = temporary_folder_read(file), *rest, *at = text;
     size_t count = 0;
     while (*at == '#')
         at = strchr(at, '\n') + 1;
-    for (double value; count < most; at = rest) {
+    for (double value; count < max; at = rest) {
         value = strtod(at, &rest);
         if (rest == at)
             break;
@@ -160,10 +160,10 @@ static void test_used_json_of_physical_units_gives_the_same_bits(void **state) {
 }
 
 /// The numbers of a line, all behind each other.
-static size_t numbers_of(const char *line, double *values, size_t most) {
+static size_t numbers_of(const char *line, double *values, size_t max) {
     size_t count = 0;
     char *rest;
-    for (double value; count < most; line = rest) {
+    for (double value; count < max; line = rest) {
         value = strtod(line, &rest);
         if (rest == line)
             break;
@@ -174,7 +174,7 @@ static size_t numbers_of(const char *line, double *values, size_t most) {
 
 /// The same physics in two units side by side: but for index and seconds, the rows are the same.
 static void test_compare_tells_all_in_the_units_of_the_first(void **state) {
-    enum { MOST = 32, SECONDS = 1 };
+    enum { MAX = 32, SECONDS = 1 };
     const struct scale scales[] = {scale_of("nm-ps"), scale_of("angstrom-fs")};
     for (int k = 0; k < 2; k++) {
         write_scene(*state, "scene.json", &scales[k]);
@@ -188,10 +188,10 @@ static void test_compare_tells_all_in_the_units_of_the_first(void **state) {
     *second = '\0'; // the last line end
     second = strrchr(text, '\n');
     *second++ = '\0';
-    double first_row[MOST], second_row[MOST];
-    const size_t count = numbers_of(strrchr(text, '\n') + 1, first_row, MOST);
+    double first_row[MAX], second_row[MAX];
+    const size_t count = numbers_of(strrchr(text, '\n') + 1, first_row, MAX);
     assert_true(count > 8);
-    assert_int_equal(numbers_of(second, second_row, MOST), count);
+    assert_int_equal(numbers_of(second, second_row, MAX), count);
     for (size_t k = SECONDS + 1; k < count; k++)
         assert_close_relative(second_row[k], first_row[k], 1e-6);
     free(text);

@@ -19,7 +19,7 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { MOST_CASES = 64, MOST_FILES = 64, LARGEST = 1 << 20, TIME_LIMIT = 20, MOST_WORDS = 16 };
+enum { MAX_CASES = 64, MAX_FILES = 64, LARGEST = 1 << 20, TIME_LIMIT = 20, MAX_WORDS = 16 };
 
 static unsigned seed;
 static const char *program, *findings;
@@ -149,14 +149,14 @@ static void change_file(const char *path) {
     free(text.bytes);
 }
 
-static char *files[MOST_FILES];
+static char *files[MAX_FILES];
 static size_t file_count;
 
 static int note_file(const char *path, const struct stat *about, int type, struct FTW *place) {
     (void)about;
     const char *name = path + place->base;
     if (type == FTW_F && strcmp(name, "words") != 0 && strcmp(name, "prepare") != 0 &&
-        file_count < MOST_FILES)
+        file_count < MAX_FILES)
         files[file_count++] = strdup(path);
     return 0;
 }
@@ -175,14 +175,14 @@ static void change_some_file(const char *work) {
 
 static void become(const char *work) {
     static char line[1024];
-    const char *words[MOST_WORDS + 1] = {program};
+    const char *words[MAX_WORDS + 1] = {program};
     if (chdir(work) != 0)
         _exit(125);
     FILE *stream = fopen("words", "r");
     if (stream == NULL || fgets(line, sizeof line, stream) == NULL)
         _exit(125);
     int count = 1;
-    for (char *rest, *word = strtok_r(line, " \n", &rest); word && count < MOST_WORDS;
+    for (char *rest, *word = strtok_r(line, " \n", &rest); word && count < MAX_WORDS;
          word = strtok_r(NULL, " \n", &rest))
         words[count++] = word;
     const int said = open("said", O_WRONLY | O_CREAT | O_TRUNC, 0666);
@@ -251,12 +251,12 @@ int main(int count, char **words) {
     findings = words[3];
     seed = (unsigned)atol(words[5]);
     const time_t end = time(NULL) + atol(words[4]);
-    const int most = scandir(words[2], &cases, is_case, alphasort);
-    if (most <= 0)
+    const int max = scandir(words[2], &cases, is_case, alphasort);
+    if (max <= 0)
         die(words[2]);
     snprintf(work, sizeof work, "%s/work", findings);
     for (long k = 0; time(NULL) < end; k++) {
-        snprintf(from, sizeof from, "%s/%s", words[2], cases[k % most]->d_name);
+        snprintf(from, sizeof from, "%s/%s", words[2], cases[k % max]->d_name);
         run_case(from, work);
     }
     must("rm -rf '%s'%s", work, "");

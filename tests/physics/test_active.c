@@ -99,7 +99,7 @@ static void test_fit_of_the_msd_finds_its_numbers(void **state) {
     make_free(&fluid, 1000, 0.01, &mf_brownian, &parameters);
     assert_ok(mf_simulation_init(&simulation, &fluid.setup, NULL));
     assert_ok(mf_polarity_observable.begin(&polarity, &window, &simulation, &plan));
-    assert_true(polarity.lone);
+    assert_true(polarity.noninteracting);
     const struct observable_use uses[] = {{&mf_polarity_observable, &polarity, NULL}, {0}};
     assert_ok(mf_measure_sample(&simulation, &plan, uses, NULL));
     const struct polarity_fit fit = mf_polarity_fit(&polarity);
@@ -164,7 +164,7 @@ static void test_order_is_that_of_chance_without_alignment_and_high_with_it(void
         struct fluid fluid;
         struct simulation simulation;
         struct polarity polarity = {0};
-        double squares = 0, least = 1, temperature;
+        double squares = 0, min = 1, temperature;
         make_free(&fluid, COUNT, 0.02, &mf_brownian, &parameters);
         fluid.setup.temperature = 0;
         fluid.setup.box = (struct box){2, {30, 30, 1}};
@@ -178,13 +178,13 @@ static void test_order_is_that_of_chance_without_alignment_and_high_with_it(void
         const double *order = sample_series_column(&polarity.order, 0);
         for (size_t k = 0; k < polarity.order.count; k++) {
             squares += pow(order[k], 2) / (double)polarity.order.count;
-            least = fmin(least, order[k]);
+            min = fmin(min, order[k]);
         }
         print_message("%s: N <|n|^2> = %.3f, least order %.3f\n", aligned ? "aligned" : "alone",
-                      COUNT * squares, least);
+                      COUNT * squares, min);
         // An order keeps for 1/D_r, 10 of 60: 6 independent exponential numbers of mean 1.
         if (aligned)
-            assert_true(least > 0.9);
+            assert_true(min > 0.9);
         else
             assert_close(COUNT * squares, 1, 3);
         mf_polarity_observable.clear(&polarity);

@@ -73,7 +73,7 @@ static void test_motion_of_free_particles_is_exact_at_every_lag(void **state) {
         struct simulation simulation;
         struct motion motion;
         double msd[LAGS + 1], msd_error[LAGS + 1], vacf[LAGS + 1], vacf_error[LAGS + 1];
-        double temperature, most = 0;
+        double temperature, max = 0;
         make_free(&fluid, 3, COUNT, 0.01, &parameters);
         fluid.setup.interaction[0] = (struct interaction_choice){&mf_uniform_force, &drift};
         fluid.setup.interactions = n;
@@ -88,17 +88,17 @@ static void test_motion_of_free_particles_is_exact_at_every_lag(void **state) {
             const double variance = 6 * square * square + 4 * square * way * way;
             const double error = sqrt(variance / (COUNT * WINDOWS));
             const double off = (msd[lag] - 3 * square - way * way) / error;
-            most = fmax(most, fabs(off));
+            max = fmax(max, fabs(off));
             assert_close(off, 0, deviations);
             assert_true(isnan(vacf[lag]) && isnan(vacf_error[lag]));
         }
         print_message(
             "drift %g: MSD at the first lag %.5f, at most %.1f errors off; D %.4f(%.4f)\n",
-            n * 30 / 2.5, msd[1], most, s.msd, s.msd_error);
+            n * 30 / 2.5, msd[1], max, s.msd, s.msd_error);
         if (n == 0)
             assert_close(s.msd, 1 / 2.5, deviations * s.msd_error);
         assert_true(isnan(s.green_kubo) && isnan(mf_motion_green_kubo_uncertainty(&s)));
-        assert_ok(mf_motion_judge(&s));
+        assert_ok(mf_motion_assess(&s));
         mf_motion_clear(&motion);
         mf_simulation_clear(&simulation);
         fluid_clear(&fluid);

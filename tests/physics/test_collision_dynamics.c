@@ -181,14 +181,14 @@ static void test_flow_between_plates_is_poiseuilles(void **state) {
     parameters.walls = COLLISION_PLATES;
     parameters.acceleration[0] = 0.015;
     const struct simulation_setup setup = setup_of(2, 100, 20, 0.1, &parameters);
-    const double most = length_is_long() ? 0.02 : 0.04;
+    const double max = length_is_long() ? 0.02 : 0.04;
     const struct flow_profile_summary flow = measure(&setup, 1500, length_is_long() ? 15000 : 3750);
     const double theory = mf_collision_dynamics_viscosity(&setup);
     print_message("plates: nu %.4f(%.4f), theory %.4f; slip %.4f(%.4f) of the peak; T %.5f(%.5f)\n",
                   flow.viscosity, flow.viscosity_error, theory, flow.slip, flow.slip_error,
                   flow.temperature, flow.temperature_error);
-    assert_close_relative(flow.viscosity, theory, most);
-    assert_close(flow.slip, 0, most / 2);
+    assert_close_relative(flow.viscosity, theory, max);
+    assert_close(flow.slip, 0, max / 2);
     assert_close(flow.temperature, 1, 0.002);
 }
 

@@ -12,7 +12,7 @@
 #include "shared/length.h"
 #include "shared/testing.h"
 
-enum { PARTICLES = 250, BINS = 36, MOST_BINS = 75, BLOCKS = 24 };
+enum { PARTICLES = 250, BINS = 36, MAX_BINS = 75, BLOCKS = 24 };
 
 static const struct rdf_bins wide = {0, 0.05, BINS};
 static const struct composition composition = {.types = 1, .count = {PARTICLES}};
@@ -41,7 +41,7 @@ static void sample_g(const struct rdf_bins *bins, const struct table *potential,
     assert_ok(mf_comoments_init(blocks, bins->count));
     for (int block = 0; block < BLOCKS; block++) {
         struct rdf rdf;
-        double mean[MOST_BINS];
+        double mean[MAX_BINS];
         assert_ok(mf_rdf_init(&rdf, bins, &fluid->setup.box, PARTICLES, 0, samples));
         assert_ok(mf_metropolis_run(&metropolis, 60));
         for (int sample = 0; sample < samples; sample++) {
@@ -137,8 +137,8 @@ static void test_core_model_does_not_matter_when_the_potential_is_fitted(void **
 /// targets. The errors of a target go together, so that the rms of one was from 0.6 to 3.0, and of
 /// all 1.8; when each bin with a pair was known it was 3.3, with spikes of 12 errors. In short
 /// there are two of them.
-static const struct rdf_bins fine = {0, 0.02, MOST_BINS};
-static const double most_errors = 2.5, well_known = 0.1;
+static const struct rdf_bins fine = {0, 0.02, MAX_BINS};
+static const double max_errors = 2.5, well_known = 0.1;
 
 /// Add the squares of what a potential is off by its errors, of bins that have one where g is
 /// small.
@@ -168,7 +168,7 @@ static void test_core_of_soft_beads_takes_in_bins_with_single_pairs(void **state
     assert_ok(mf_table_init_potential(&fluid.potential, &curve));
     for (int k = 0; k < targets; k++) {
         struct comoments target;
-        double error[MOST_BINS], phi[MOST_BINS + 1], phi_error[MOST_BINS + 1];
+        double error[MAX_BINS], phi[MAX_BINS + 1], phi_error[MAX_BINS + 1];
         sample_g(&fine, &fluid.potential, &fluid, 20 + (uint64_t)k, FEW, &target);
         const struct inverse_problem problem = make_problem(&fine, &fluid, &target, error, soft);
         invert(&problem, phi, phi_error);
@@ -176,7 +176,7 @@ static void test_core_of_soft_beads_takes_in_bins_with_single_pairs(void **state
         mf_comoments_clear(&target);
     }
     assert_true(squares.count >= 4 * (size_t)targets);
-    assert_true(sqrt(squares.mean) < most_errors);
+    assert_true(sqrt(squares.mean) < max_errors);
     fluid_clear(&fluid);
 }
 

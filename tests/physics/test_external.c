@@ -80,7 +80,7 @@ static void test_trapped_drop_has_the_temperature_by_its_positions(void **state)
                   s.temperature_configurational_error);
     assert_close(s.temperature_configurational, 1,
                  deviations * s.temperature_configurational_error + 0.01);
-    assert_ok(mf_thermodynamics_judge(&s, &fluid.setup));
+    assert_ok(mf_thermodynamics_assess(&s, &fluid.setup));
     fluid_clear(&fluid);
 }
 

@@ -41,7 +41,7 @@ static double exact(size_t bin) {
 /// errors off in one of 1000 tests. In short a quarter of the samples, and twice as much.
 static void assert_recovered(struct fluid *fluid, const double time_step[2]) {
     const int64_t samples = length_is_long() ? 40000 : 10000;
-    const double most = length_is_long() ? 0.03 : 0.06;
+    const double max = length_is_long() ? 0.03 : 0.06;
     double kappa[2][BINS], error[2][BINS], squared[BINS], squared_error[BINS], mean = 0;
     for (int k = 0; k < 2; k++) {
         struct force_covariance covariance;
@@ -55,11 +55,11 @@ static void assert_recovered(struct fluid *fluid, const double time_step[2]) {
                                     (const double *const[]){error[0], error[1]}, BINS, squared,
                                     squared_error);
     for (size_t bin = 6; bin < 16; bin++) {
-        assert_close_relative(squared[bin], exact(bin), most);
+        assert_close_relative(squared[bin], exact(bin), max);
         assert_close(squared[bin], exact(bin), 4 * squared_error[bin] + 0.01 * exact(bin));
         mean += (squared[bin] / exact(bin) - 1) / 10;
     }
-    assert_close(mean, 0, most / 2);
+    assert_close(mean, 0, max / 2);
 }
 
 /// The time steps of Eriksson et al.; without a potential, since with one these are too long.

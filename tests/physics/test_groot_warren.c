@@ -130,7 +130,7 @@ static void test_standard_fluid_heats_as_known_when_the_time_step_is_large(void 
 /// another seed, so that it is more than the same run again.
 static void test_standard_fluid_heats_as_known_when_the_variant_changes(void **state) {
     (void)state;
-    struct variant variants[VARIANTS_MOST];
+    struct variant variants[VARIANTS_MAX];
     const int variant_count = variants_find(variants);
     for (int v = 1; v < variant_count; v++) {
         struct fluid fluid;
@@ -211,7 +211,7 @@ static void check_heating(const struct heating *heating) {
     mf_thermodynamics_init(&thermodynamics);
     assert_ok(mf_measure_equilibrate(&simulation, &plan, &temperature, NULL));
     const struct watched observables = {.thermodynamics = &thermodynamics};
-    const struct measure_listener listener = {.tell = add_end, .context = &ends};
+    const struct measure_listener listener = {.report = add_end, .context = &ends};
     assert_ok(watched_sample(&simulation, &plan, observables, &listener));
     const struct thermodynamics_summary s = mf_thermodynamics_result(&thermodynamics, 1);
     const double kinetic = ends.sum / (double)ends.count;

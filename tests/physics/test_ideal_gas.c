@@ -81,7 +81,7 @@ static void test_ideal_gas_has_no_structure_when_particles_fly_freely(void **sta
 
 static void test_ideal_gas_has_no_structure_when_there_are_friction_and_noise(void **state) {
     (void)state;
-    struct variant variants[VARIANTS_MOST];
+    struct variant variants[VARIANTS_MAX];
     const int variant_count = variants_find(variants);
     for (int v = 0; v < variant_count; v++)
         for (int dimensions = 2; dimensions <= 3; dimensions++) {

@@ -10,14 +10,14 @@
 #include "shared/length.h"
 #include "shared/testing.h"
 
-enum { PARTICLES = 200, MOST_BINS = 40 };
+enum { PARTICLES = 200, MAX_BINS = 40 };
 
 /// Below this g the pairs are too few to tell the potential.
 static const double well_known = 0.1;
 
 /// The start, −ln g, is off by this much at least without the ramp, so that there is something to
 /// do. Measured: 0.31 (soft) and 0.75 (core and well).
-static const double least_start_error = 0.2;
+static const double min_start_error = 0.2;
 
 /// rms over the well-known bins without the ramp [k_B T]. Measured with six seeds of target and
 /// inversion each: 0.018 to 0.029 (soft) and 0.009 to 0.045 (core and well). Since samples stop at
@@ -36,7 +36,7 @@ static const double ramp_tolerance = 4;
 static const double ramp_tolerance_with_pressure = 0.2;
 
 struct target_measured {
-    double g[MOST_BINS], error[MOST_BINS], pressure;
+    double g[MAX_BINS], error[MAX_BINS], pressure;
 };
 
 /// g and the pressure of `potential` with standard errors, by Monte Carlo of the size that the
@@ -102,7 +102,7 @@ static void assert_truth_is_found(const struct inverse_method *method, const str
                                   const struct rdf_bins *bins, const struct target_measured *target,
                                   bool with_pressure, double precision) {
     static const double pressure_error = 0.05;
-    double start[MOST_BINS], phi[MOST_BINS + 1], ramp, rms;
+    double start[MAX_BINS], phi[MAX_BINS + 1], ramp, rms;
     struct inverse_step step;
     const struct inverse_problem problem = {
         .targets = {.bins = *bins,
@@ -119,7 +119,7 @@ static void assert_truth_is_found(const struct inverse_method *method, const str
         start[k] = -fluid->setup.temperature * log(fmax(target->g[k], 1e-3));
     compare_with_truth(&problem, start, &ramp, &rms);
     print_message("-ln g: rms without the ramp %.3f, ramp %.3f\n", rms, ramp);
-    assert_true(rms > least_start_error);
+    assert_true(rms > min_start_error);
     inversions_run(method, &problem, precision, phi, NULL, &step);
     compare_with_truth(&problem, phi, &ramp, &rms);
     print_message("found: rms without the ramp %.4f, ramp %.3f(%.3f), dP/dA %.2f\n", rms, ramp,
@@ -138,7 +138,7 @@ static void assert_truth_is_found(const struct inverse_method *method, const str
 static void test_imc_and_auto_have_the_pressure_when_g_reaches_far(void **state) {
     (void)state;
     const struct rdf_bins bins = {0, 0.05, 40};
-    double phi[MOST_BINS + 1];
+    double phi[MAX_BINS + 1];
     struct fluid fluid;
     struct target_measured target;
     struct inverse_step step;

@@ -109,7 +109,7 @@ static void compare_with_truth(const struct mixture *mixture, const double *phi,
 
 /// The start, −ln g, of A-B and B-B is off by this much at least without the ramp, so that there is
 /// something to do. Measured: 0.10 to 0.11 (A-A), 0.25 to 0.26 and 0.23 to 0.24.
-static const double least_start_error = 0.2;
+static const double min_start_error = 0.2;
 
 /// rms over the well-known bins without the ramp [k_B T]. Measured with four seeds of target and
 /// inversion each: 0.007 to 0.057 (imc), 0.015 to 0.034 (hnc) and 0.010 to 0.064 (auto).
@@ -131,7 +131,7 @@ static void check_truth(const struct inverse_method *method) {
     compare_with_truth(&mixture, start, BINS, ramp, rms);
     for (int pair = 0; pair < PAIRS; pair++) {
         print_message("-ln g: rms without the ramp %.3f, ramp %.3f\n", rms[pair], ramp[pair]);
-        assert_true(pair == 0 || rms[pair] > least_start_error);
+        assert_true(pair == 0 || rms[pair] > min_start_error);
     }
     inversions_run(method, &problem, 0, phi, NULL, &step);
     compare_with_truth(&mixture, phi, BINS + 1, ramp, rms);

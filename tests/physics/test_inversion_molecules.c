@@ -161,8 +161,8 @@ static void check_pairs(const struct inversion *inversion) {
 }
 
 /// k of the parabolas within 5 %, which is 0.6 % of the distribution's width times some; returns
-/// the mean square over both groups of what is left in errors, which is up to `most` in each.
-static double check_parabolas(const struct inversion *inversion, double most) {
+/// the mean square over both groups of what is left in errors, which is up to `max` in each.
+static double check_parabolas(const struct inversion *inversion, double max) {
     static const double truth[] = {spring, bend}, unit[] = {1, M_PI / 180};
     double squares = 0;
     for (size_t g = 0; g < 2; g++) {
@@ -171,7 +171,7 @@ static double check_parabolas(const struct inversion *inversion, double most) {
         print_message("group %zu: k = %.3f of %g, deviations %.2f bands\n", g, k, truth[g],
                       deviation);
         assert_true(fabs(k / truth[g] - 1) < 0.05);
-        assert_true(deviation < most);
+        assert_true(deviation < max);
         squares += deviation * deviation / 2;
     }
     return squares;
@@ -212,20 +212,21 @@ typedef double judgement(const struct inversion *inversion);
 
 /// The deviations from a parabola, as large as the bands say within what smoothing takes off and
 /// misfit adds.
-static double judge_parabolas(const struct inversion *inversion) {
+static double assess_parabolas(const struct inversion *inversion) {
     return check_parabolas(inversion, 1.6);
 }
 
 /// Bins deviate together that few coefficients make: eight of these are above 2 on average in one
 /// case of 1000, if the errors are honest. What is no parabola is a small part of the error of so
 /// few, so that U itself is compared.
-static double judge_deviations(const struct inversion *inversion) {
+static double assess_deviations(const struct inversion *inversion) {
     check_parabolas(inversion, 2.5);
     return (find_deviation(inversion, 0) + find_deviation(inversion, 1)) / 2;
 }
 
 /// Its seed is the twin's.
-static double find(const struct inverse_method *method, const struct twin *twin, judgement *judge) {
+static double find(const struct inverse_method *method, const struct twin *twin,
+                   judgement *assess) {
     void *state = mf_memory_zeroed(1, method->state_size);
     struct inversion_parameters *settings = mf_memory_zeroed(1, method->parameters_size);
     struct inverse_step step;
@@ -243,7 +244,7 @@ static double find(const struct inverse_method *method, const struct twin *twin,
     assert_true(step.converged);
     const struct inversion *inversion = state;
     check_pairs(inversion);
-    const double squares = judge(inversion);
+    const double squares = assess(inversion);
     method->destroy(state);
     mf_memory_free(state);
     mf_memory_free(settings);
@@ -269,12 +270,12 @@ static int clear_first_twin(void **state) {
 
 static void test_imc_finds_pairs_bonds_and_angles_at_once(void **state) {
     (void)state;
-    assert_true(find(&mf_imc, &first_twin, judge_parabolas) > pow(0.2, 2));
+    assert_true(find(&mf_imc, &first_twin, assess_parabolas) > pow(0.2, 2));
 }
 
 static void test_ibi_finds_pairs_bonds_and_angles_at_once(void **state) {
     (void)state;
-    assert_true(find(&mf_ibi, &first_twin, judge_parabolas) > pow(0.2, 2));
+    assert_true(find(&mf_ibi, &first_twin, assess_parabolas) > pow(0.2, 2));
 }
 
 /// The bands of four fits are as wide as they should be. Of 152 twins off over stated is 1.00(3),
@@ -284,11 +285,11 @@ static void test_ibi_finds_pairs_bonds_and_angles_at_once(void **state) {
 static void test_relative_entropy_finds_pairs_bonds_and_angles_at_once(void **state) {
     (void)state;
     const uint64_t fits = length_is_long() ? 4 : 1;
-    double squares = find(&mf_relative_entropy, &first_twin, judge_deviations);
+    double squares = find(&mf_relative_entropy, &first_twin, assess_deviations);
     for (uint64_t fit = 1; fit < fits; fit++) {
         static struct twin twin;
         make_twin(&twin, TWIN_SEED + fit);
-        squares += find(&mf_relative_entropy, &twin, judge_deviations);
+        squares += find(&mf_relative_entropy, &twin, assess_deviations);
         clear_twin(&twin);
     }
     squares /= (double)fits;

@@ -9,7 +9,7 @@
 #include "shared/length.h"
 #include "shared/testing.h"
 
-enum { PARTICLES = 300, MOST_BINS = 40 };
+enum { PARTICLES = 300, MAX_BINS = 40 };
 
 /// Of the predicted change of the pressure: g(r) counts as constant in a bin, the change is not
 /// infinitesimal, and both have statistical errors of about 1 %. Measured, predicted over found,
@@ -24,7 +24,7 @@ static void ignore(void *context, const struct inverse_progress *progress) {
 /// One iteration from a potential: what its samples say.
 static void measure(const struct fluid *fluid, const struct rdf_bins *bins, const double *g,
                     const struct curve *potential, struct inversion *inversion) {
-    static const double errors[MOST_BINS];
+    static const double errors[MAX_BINS];
     const struct inverse_listener listener = {ignore, NULL};
     struct inversion_parameters settings = {.replicas = 8,
                                             .equilibration = 60,
@@ -58,7 +58,7 @@ static double pressure_when_changed(const struct fluid *fluid, const struct rdf_
     const struct inversion_state *at = from->state;
     struct inversion changed;
     struct curve curve;
-    double phi[MOST_BINS + 1];
+    double phi[MAX_BINS + 1];
     for (size_t k = 0; k < at->grid.points; k++)
         phi[k] = from->course.best.phi[k] +
                  amount * change_of(kind, at->grid.r[k], mf_rdf_bins_range(bins));
@@ -73,7 +73,7 @@ static double pressure_when_changed(const struct fluid *fluid, const struct rdf_
 static void check_slopes(const struct fluid *fluid, const struct rdf_bins *bins, size_t core,
                          const struct curve *potential, double amount) {
     struct inversion from;
-    double g[MOST_BINS];
+    double g[MAX_BINS];
     for (size_t k = 0; k < bins->count; k++)
         g[k] = k < core ? 0 : 1;
     measure(fluid, bins, g, potential, &from);

@@ -51,8 +51,8 @@ static struct measured measure(struct simulation *simulation, double collisions)
 }
 
 static struct hard_theory theory_of(const struct simulation *simulation) {
-    enum { MOST = 5000 };
-    static double radius[MOST], mass[MOST];
+    enum { MAX = 5000 };
+    static double radius[MAX], mass[MAX];
     const struct hard_gas *gas = hard_gases_of(simulation);
     for (int k = 0; k < gas->count; k++) {
         radius[k] = gas->body[k].radius;

@@ -11,7 +11,7 @@
 
 #include <math.h>
 
-enum { PARTICLES = 1500, SAMPLES = 1000, MOST_PAIRS = 3 };
+enum { PARTICLES = 1500, SAMPLES = 1000, MAX_PAIRS = 3 };
 
 /// Standard errors by which a mean may be off beside what a theory is off.
 static const double deviations = 4;
@@ -42,7 +42,7 @@ static void measure(const struct simulation_setup *setup, double *value, double 
 static void test_compressibility_of_soft_beads_is_that_of_their_equation_of_state(void **state) {
     (void)state;
     struct fluid fluid;
-    double value[MOST_PAIRS] = {0}, error[MOST_PAIRS] = {0};
+    double value[MAX_PAIRS] = {0}, error[MAX_PAIRS] = {0};
     fluid_groot_warren(&fluid, PARTICLES, 0.03);
     fluid.setup.composition = mf_composition_of_one(PARTICLES);
     measure(&fluid.setup, value, error);
@@ -59,24 +59,24 @@ static void test_compressibility_of_soft_beads_is_that_of_their_equation_of_stat
 /// at a = 25 it takes the composition's for twice as large as it is.
 static void test_integrals_of_weak_beads_are_those_of_the_random_phase_approximation(void **state) {
     (void)state;
-    static const double a[MOST_PAIRS] = {2, 1, 2}, density = 1.5, part = 0.1;
+    static const double a[MAX_PAIRS] = {2, 1, 2}, density = 1.5, part = 0.1;
     struct fluid fluid;
-    struct table tables[MOST_PAIRS], potential, omega;
-    double value[MOST_PAIRS] = {0}, error[MOST_PAIRS] = {0};
+    struct table tables[MAX_PAIRS], potential, omega;
+    double value[MAX_PAIRS] = {0}, error[MAX_PAIRS] = {0};
     fluid_groot_warren(&fluid, PARTICLES, 0.03);
-    for (int pair = 0; pair < MOST_PAIRS; pair++) {
+    for (int pair = 0; pair < MAX_PAIRS; pair++) {
         struct formula_soft_repulsion_parameters soft = {a[pair], 1};
         const struct curve curve = {&mf_formula_soft_repulsion, &soft};
         assert_ok(mf_table_init_potential(&tables[pair], &curve));
     }
-    assert_ok(mf_table_stack(&potential, tables, MOST_PAIRS));
+    assert_ok(mf_table_stack(&potential, tables, MAX_PAIRS));
     fluid.setup.composition = (struct composition){
         .types = 2, .count = {PARTICLES / 2, PARTICLES / 2}, .name = {"A", "B"}};
     fluid.setup.potential = &potential;
     omega = fluid.omega;
-    const struct table same[MOST_PAIRS] = {omega, omega, omega};
+    const struct table same[MAX_PAIRS] = {omega, omega, omega};
     struct table omegas;
-    assert_ok(mf_table_stack(&omegas, same, MOST_PAIRS));
+    assert_ok(mf_table_stack(&omegas, same, MAX_PAIRS));
     fluid.setup.omega = &omegas;
     measure(&fluid.setup, value, error);
     const double like = 0.5 * (value[0] + value[2]), unit = M_PI / 15;
@@ -88,7 +88,7 @@ static void test_integrals_of_weak_beads_are_those_of_the_random_phase_approxima
                       found, noise, theory);
         assert_close(found, theory, part * fabs(theory) + deviations * noise);
     }
-    for (int pair = 0; pair < MOST_PAIRS; pair++)
+    for (int pair = 0; pair < MAX_PAIRS; pair++)
         mf_table_clear(&tables[pair]);
     mf_table_clear(&potential);
     mf_table_clear(&omegas);

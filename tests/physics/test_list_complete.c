@@ -61,7 +61,7 @@ static void take_positions(struct watcher *watcher, const struct particles *part
         }
 }
 
-static double least(double a, double b) {
+static double min(double a, double b) {
     return a < b ? a : b;
 }
 
@@ -70,7 +70,7 @@ static double square_distance(const struct watcher *watcher, size_t i, size_t j)
     double square = 0;
     for (int d = 0; d < 3; d++) {
         const double apart = fabs(watcher->x[d][i] - watcher->x[d][j]);
-        const double dx = least(apart, watcher->length[d] - apart);
+        const double dx = min(apart, watcher->length[d] - apart);
         square += dx * dx;
     }
     return square;
@@ -88,7 +88,7 @@ SIMD_CLONES static size_t count_all(const struct watcher *watcher) {
         const double xi = x[i], yi = y[i], zi = z[i];
         for (size_t j = i + 1; j < watcher->count; j++) {
             const double ax = fabs(x[j] - xi), ay = fabs(y[j] - yi), az = fabs(z[j] - zi);
-            const double dx = least(ax, lx - ax), dy = least(ay, ly - ay), dz = least(az, lz - az);
+            const double dx = min(ax, lx - ax), dy = min(ay, ly - ay), dz = min(az, lz - az);
             count += dx * dx + dy * dy + dz * dz < limit;
         }
     }
@@ -205,7 +205,7 @@ static struct outcome run(const struct simulation_setup *setup, const struct beg
 /// One scene with all skins and instruction sets, which ends about at `temperature`.
 static void check_scene(struct fluid *fluid, const char *what, const struct beginning *beginning,
                         double temperature) {
-    struct variant variants[VARIANTS_MOST];
+    struct variant variants[VARIANTS_MAX];
     const int variant_count = variants_find(variants);
     for (int v = 0; v < variant_count; v++) {
         // Lists know nothing of the precision of forces: one instruction set is enough for both.

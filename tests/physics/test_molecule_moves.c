@@ -19,7 +19,7 @@
 static const double temperature = 1.3, strength = 40; // Φ = strength (1 − r)²/2
 static const double spring = 40, rest = 0.6, stiffness = 5, bent = 110, torsion = 1.5, phase = 70;
 
-enum { MOST_BEADS = 6, VALUES = 4, BEADS_ALONE = MOLECULE_MOVES, ALL_MOVES };
+enum { MAX_BEADS = 6, VALUES = 4, BEADS_ALONE = MOLECULE_MOVES, ALL_MOVES };
 
 /// One system and the moves that it is given.
 struct example {
@@ -38,8 +38,8 @@ struct example {
 struct draw {
     const struct example *example;
     struct rng_sequence random;
-    double start[2 * MOST_BEADS][3]; ///< where the Markov chain begins
-    double x[2 * MOST_BEADS][3];
+    double start[2 * MAX_BEADS][3]; ///< where the Markov chain begins
+    double x[2 * MAX_BEADS][3];
     double weight; ///< of what is not drawn exactly
 };
 
@@ -111,7 +111,7 @@ static void turn(struct draw *draw, const double last[3], const double before[3]
 /// A free molecule from its first bead on; a pivot keeps lengths of bonds.
 static void draw_molecule(struct draw *draw, double (*x)[3], const double (*start)[3]) {
     const struct example *e = draw->example;
-    double u[MOST_BEADS][3];
+    double u[MAX_BEADS][3];
     for (int bead = 1; bead < e->beads; bead++) {
         const int parent = e->star ? 0 : bead - 1;
         const double length = e->move == MOLECULE_PIVOT
@@ -237,7 +237,7 @@ static void add_term(struct topology_kind *kind, int order, int a, int b) {
 }
 
 static struct composition make_molecules(struct molecules *molecules, const struct example *e) {
-    static const int type[MOST_BEADS] = {0};
+    static const int type[MAX_BEADS] = {0};
     const struct molecules_number bond[] = {{"k", spring}, {"length", rest}, {NULL, 0}};
     const struct molecules_number bend[] = {{"k", stiffness}, {"angle", bent}, {NULL, 0}};
     const struct molecules_number twist[] = {
@@ -246,7 +246,7 @@ static struct composition make_molecules(struct molecules *molecules, const stru
         molecules_chain(e->molecules, type, e->beads, e->highest, e->exclude);
     if (e->ring || e->star) {
         mf_memory_free(kind.term[BONDED_BOND]);
-        kind.term[BONDED_BOND] = mf_memory_zeroed(MOST_BEADS, sizeof(struct topology_term));
+        kind.term[BONDED_BOND] = mf_memory_zeroed(MAX_BEADS, sizeof(struct topology_term));
         kind.terms[BONDED_BOND] = 0;
         for (int bead = 1; bead < e->beads; bead++)
             add_term(&kind, BONDED_BOND, e->star ? 0 : bead - 1, bead);
@@ -297,7 +297,7 @@ static void sample(struct metropolis *metropolis, const struct example *e,
     for (int block = 0; block < BLOCKS; block++) {
         double sum[VALUES] = {0};
         for (int k = 0; k < SAMPLES; k++) {
-            double x[2 * MOST_BEADS][3], values[VALUES];
+            double x[2 * MAX_BEADS][3], values[VALUES];
             for (int n = 0; n < EVERY; n++)
                 step(metropolis, e->move);
             get_positions(metropolis, e, x);

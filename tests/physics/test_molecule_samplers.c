@@ -19,7 +19,7 @@
 #include <math.h>
 
 enum { CHAINS = 60, BEADS = 5, COUNT = CHAINS * BEADS };
-enum { SAMPLES = 20, KINDS = 5, MOST = 5 };
+enum { SAMPLES = 20, KINDS = 5, MAX = 5 };
 
 static int blocks(void) {
     return length_is_long() ? 40 : 16;
@@ -109,7 +109,7 @@ static double gyration(const struct particles *particles, const size_t *place) {
 
 /// Add what a configuration has, by all pairs and all terms, to the sums of a block.
 static void measure(const struct melt *melt, const struct particles *particles,
-                    const struct pair_sums *sums, double (*sum)[MOST]) {
+                    const struct pair_sums *sums, double (*sum)[MAX]) {
     const struct topology_kind *kind = &melt->molecules.topology.kind[0];
     sum[0][0] += sums->energy / COUNT;
     sum[0][1] += sums->virial / COUNT;
@@ -120,7 +120,7 @@ static void measure(const struct melt *melt, const struct particles *particles,
         sum[0][2] += gyration(particles, place) / CHAINS;
         for (int order = 0; order < BONDED_KINDS; order++)
             for (int n = 0; n < kind->terms[order]; n++) {
-                int32_t of[BONDED_MOST_TERM_BEADS];
+                int32_t of[BONDED_MAX_TERM_BEADS];
                 double q;
                 for (int k = 0; k < mf_bonded_kinds[order]->beads; k++)
                     of[k] = (int32_t)place[kind->term[order][n].bead[k]];
@@ -140,7 +140,7 @@ static void measure(const struct melt *melt, const struct particles *particles,
         }
 }
 
-static void end_block(struct found *found, double (*sum)[MOST]) {
+static void end_block(struct found *found, double (*sum)[MAX]) {
     for (int k = 0; k < KINDS; k++) {
         for (int n = 0; n < kinds[k].bins; n++)
             sum[k][n] /= SAMPLES;
@@ -162,7 +162,7 @@ static void by_simulation(const struct melt *melt, const struct integrator *inte
     if (integrator->settle)
         integrator->settle(simulation.integrator_state);
     for (int block = 0; block < blocks(); block++) {
-        double sum[KINDS][MOST] = {{0}};
+        double sum[KINDS][MAX] = {{0}};
         for (int n = 0; n < SAMPLES; n++) {
             simulation.wants = PAIR_FORCES;
             assert_ok(mf_simulation_run(&simulation, every));
@@ -189,7 +189,7 @@ static void by_sampler(const struct melt *melt, enum sampler_kind kind, uint64_t
     assert_ok(mf_sampler_begin(&sampler));
     assert_ok(mf_sampler_equilibrate(&sampler, 60 * every));
     for (int block = 0; block < blocks(); block++) {
-        double sum[KINDS][MOST] = {{0}}, sample[SAMPLER_SUMS];
+        double sum[KINDS][MAX] = {{0}}, sample[SAMPLER_SUMS];
         for (int n = 0; n < SAMPLES; n++) {
             assert_ok(mf_sampler_sample(&sampler, every, sample));
             measure(melt,
@@ -273,10 +273,10 @@ static void test_an_ideal_gas_of_molecules_has_its_pressure(void **state) {
 /// What a checkpoint keeps of a sampler, put into another one: moves go on as they were tuned.
 static void test_moves_go_on_with_the_same_bits_when_restarted(void **state) {
     (void)state;
-    enum { MOST_SPANS = 16 };
+    enum { MAX_SPANS = 16 };
     struct melt melt;
     struct sampler sampler[2];
-    struct memory_span from[MOST_SPANS], to[MOST_SPANS];
+    struct memory_span from[MAX_SPANS], to[MAX_SPANS];
     double sample[2][SAMPLER_SUMS];
     make_melt(&melt);
     for (int n = 0; n < 2; n++)

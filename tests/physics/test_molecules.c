@@ -94,7 +94,7 @@ static void count_terms(const struct gas *gas, int order, double (*histogram)[BI
     find_range(order, &low, &high);
     for (int64_t m = 0; m < kind->count; m++)
         for (int n = 0; n < kind->terms[order]; n++) {
-            int32_t place[BONDED_MOST_TERM_BEADS];
+            int32_t place[BONDED_MAX_TERM_BEADS];
             double q;
             for (int k = 0; k < mf_bonded_kinds[order]->beads; k++)
                 place[k] = (int32_t)gas->simulation.particles

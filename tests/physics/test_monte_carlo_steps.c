@@ -14,7 +14,7 @@
 
 #include <math.h>
 
-enum { BLOCKS = 60, MOST = 8 };
+enum { BLOCKS = 60, MAX = 8 };
 
 /// Each of the four comparisons fails by chance in one of 10,000 seeds: the file in one of 2,500.
 static const double false_alarm_rate = 1e-4;
@@ -27,13 +27,13 @@ struct probe {
     size_t size;
     int each; ///< samples of a block
     int samples;
-    double sum[MOST];
+    double sum[MAX];
     struct comoments blocks;
 };
 
 static enum status take(void *state, struct simulation *simulation) {
     struct probe *probe = state;
-    double values[MOST] = {0};
+    double values[MAX] = {0};
     probe->look(simulation, values);
     for (size_t k = 0; k < probe->size; k++)
         probe->sum[k] += values[k] / probe->each;
@@ -122,7 +122,7 @@ static void count_terms(const struct simulation *simulation, int order, double *
     const struct topology_kind *kind = &molecules->topology.kind[0];
     for (int64_t m = 0; m < CHAINS; m++)
         for (int n = 0; n < kind->terms[order]; n++) {
-            int32_t place[BONDED_MOST_TERM_BEADS];
+            int32_t place[BONDED_MAX_TERM_BEADS];
             double q;
             for (int k = 0; k < mf_bonded_kinds[order]->beads; k++)
                 place[k] = (int32_t)simulation->particles
@@ -172,7 +172,7 @@ static void test_free_chains_have_the_distributions_of_their_integrals(void **st
             (struct probe){.look = look[order], .size = (size_t)ranges[order].bins, .each = 40};
     measure(&fluid.setup, 600, 24, probes, BONDED_KINDS);
     for (int order = 0; order < BONDED_KINDS; order++) {
-        double exact[MOST];
+        double exact[MAX];
         find_probabilities(order, exact);
         compare(names[order], &probes[order], exact);
     }
@@ -224,7 +224,7 @@ static void look_at_pair(const struct simulation *simulation, double *values) {
 
 static void test_two_particles_meet_as_their_potential_lets_them(void **state) {
     struct fluid fluid;
-    double exact[MOST];
+    double exact[MAX];
     struct probe probe = {.look = look_at_pair, .size = 2 + PAIR_BINS, .each = 2000};
     (void)state;
     fluid_groot_warren(&fluid, 2, 0.01);

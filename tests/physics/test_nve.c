@@ -101,7 +101,7 @@ static double fluctuation(const struct energies *energies) {
 /// NVE of the liquid with each variant from the same start, which the first one made.
 static void for_each_variant(void (*check)(const struct fluid *fluid,
                                            const struct simulation *start)) {
-    struct variant variants[VARIANTS_MOST];
+    struct variant variants[VARIANTS_MAX];
     const int variant_count = variants_find(variants);
     struct fluid fluid;
     struct simulation start;
@@ -164,7 +164,7 @@ static double momentum(const struct particles *particles) {
 
 /// Over 10^4 steps with the first variant, and 10^3 with the others; a third of them in short.
 static void assert_momentum_stays_zero(struct simulation_setup *setup) {
-    struct variant variants[VARIANTS_MOST];
+    struct variant variants[VARIANTS_MAX];
     const int variant_count = variants_find(variants);
     for (int v = 0; v < variant_count; v++) {
         const uint64_t steps = (v == 0 ? 10000 : 1000) / (length_is_long() ? 1 : 3);

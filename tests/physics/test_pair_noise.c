@@ -184,7 +184,7 @@ static void check_triangles(struct probes *scene) {
 /// The first instruction set in both precisions, with ids in order and shuffled. The others draw
 /// the same numbers, which another test says.
 static void check_statistics(enum probes_motif motif, void (*check_scene)(struct probes *scene)) {
-    struct variant variants[VARIANTS_MOST];
+    struct variant variants[VARIANTS_MAX];
     variants_find(variants);
     for (int v = 0; v < 2; v++)
         for (int ids = PROBES_IN_ORDER; ids <= PROBES_SHUFFLED; ids++) {

@@ -28,7 +28,7 @@ static uint64_t few_step(int k) {
 
 static void test_pair_noise_is_the_same_when_the_variant_changes(void **state) {
     (void)state;
-    struct variant variants[VARIANTS_MOST];
+    struct variant variants[VARIANTS_MAX];
     const int variant_count = variants_find(variants);
     double largest = 0;
     size_t compared = 0;
@@ -74,7 +74,7 @@ static int32_t word_of(const struct probes *scene, size_t pair, uint64_t step) {
 /// all of them; in mixed precision the 17 highest or more.
 static void test_pair_noise_is_made_of_the_same_word_when_the_precision_changes(void **state) {
     (void)state;
-    struct variant variants[VARIANTS_MOST];
+    struct variant variants[VARIANTS_MAX];
     const int variant_count = variants_find(variants);
     const struct probes_plan plan = small_plan(PROBES_DIMERS, PROBES_SHUFFLED, 3);
     struct probes scene;
@@ -97,7 +97,7 @@ static void test_pair_noise_is_made_of_the_same_word_when_the_precision_changes(
 
 static void test_pair_noise_is_opposite_when_read_on_the_other_particle(void **state) {
     (void)state;
-    struct variant variants[VARIANTS_MOST];
+    struct variant variants[VARIANTS_MAX];
     const int variant_count = variants_find(variants);
     for (int dimensions = 2; dimensions <= 3; dimensions++) {
         const struct probes_plan plan = small_plan(PROBES_DIMERS, PROBES_SHUFFLED, dimensions);
@@ -133,7 +133,7 @@ static size_t count_low_first(const struct probes *scene) {
 static void
 test_pair_noise_is_the_same_when_particles_are_stored_the_other_way_round(void **state) {
     (void)state;
-    struct variant variants[VARIANTS_MOST];
+    struct variant variants[VARIANTS_MAX];
     const int variant_count = variants_find(variants);
     for (int which = 0; which < 4; which++) {
         struct probes_plan plan = small_plan(PROBES_DIMERS, which & 1, which & 2 ? 3 : 2);

@@ -9,7 +9,7 @@
 #include "shared/watched.h"
 #include "shared/testing.h"
 
-enum { MOST_BINS = 50, VERSIONS = RDF_FORCE_COUNTED + 1 };
+enum { MAX_BINS = 50, VERSIONS = RDF_FORCE_COUNTED + 1 };
 
 static const char *const names[VERSIONS] = {"from zero", "from infinity", "combined", "counted"};
 
@@ -58,7 +58,7 @@ static void clear(struct both *both) {
 /// Largest difference from the histogram in combined errors, over bins that hold pairs enough.
 static double largest_deviation(const struct both *both, enum rdf_force_version version) {
     const struct rdf_bins *bins = &both->rdf.bins;
-    double h[MOST_BINS], h_error[MOST_BINS], g[MOST_BINS], error[MOST_BINS], largest = 0;
+    double h[MAX_BINS], h_error[MAX_BINS], g[MAX_BINS], error[MAX_BINS], largest = 0;
     double mean_h = 0, mean_g = 0;
     assert_ok(mf_rdf_result(&both->rdf, 1, h, h_error));
     assert_ok(mf_rdf_force_result(&both->force, 1, version, g, error));
@@ -123,7 +123,7 @@ static void test_force_rdf_from_infinity_is_the_histogram_when_particles_overlap
 /// Share of bins within 2 errors of the mean of all seeds: 94 % for Student's t with 19 degrees of
 /// freedom; samples that follow each other in neighbouring blocks are not quite independent. With
 /// 40 seeds whose 14 bins are correlated, the share has a standard error of about 1.5 %.
-static const double least_covered = 0.88, most_covered = 0.985;
+static const double min_covered = 0.88, max_covered = 0.985;
 
 static void test_force_rdf_errors_cover_the_mean_when_seeds_differ(void **state) {
     (void)state;
@@ -151,7 +151,7 @@ static void test_force_rdf_errors_cover_the_mean_when_seeds_differ(void **state)
         }
         const double share = covered / (SEEDS * BINS);
         print_message("%s: %.3f covered\n", names[v], share);
-        assert_true(share > least_covered && share < most_covered);
+        assert_true(share > min_covered && share < max_covered);
     }
     fluid_clear(&fluid);
 }
@@ -159,7 +159,7 @@ static void test_force_rdf_errors_cover_the_mean_when_seeds_differ(void **state)
 /// rms of g − h over all bins.
 static double distance(const struct rdf *rdf, const struct rdf_force *force,
                        enum rdf_force_version version) {
-    double h[MOST_BINS], g[MOST_BINS];
+    double h[MAX_BINS], g[MAX_BINS];
     assert_ok(mf_rdf_result(rdf, 1, h, NULL));
     assert_ok(mf_rdf_force_result(force, 1, version, g, NULL));
     return mf_rdf_rmse(g, h, rdf->bins.count);

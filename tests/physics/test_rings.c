@@ -16,15 +16,15 @@
 
 #include <math.h>
 
-enum { MOST_BEADS = 40, KINDS = 2, MOST_CYCLES = 2 };
+enum { MAX_BEADS = 40, KINDS = 2, MAX_CYCLES = 2 };
 
 /// A kind's bonds, and its rings, which are closed from the last bead to the first.
 struct plan {
     int64_t count;
     int beads, bonds, cycles;
     bool fused;
-    int bond[2 * MOST_BEADS][2];
-    int length[MOST_CYCLES], cycle[MOST_CYCLES][MOST_BEADS];
+    int bond[2 * MAX_BEADS][2];
+    int length[MAX_CYCLES], cycle[MAX_CYCLES][MAX_BEADS];
 };
 
 static void add_bond(struct plan *plan, int from, int to) {
@@ -79,7 +79,7 @@ struct melt {
 };
 
 static struct topology_kind make_kind(const struct plan *plan) {
-    static const int type[MOST_BEADS] = {0};
+    static const int type[MAX_BEADS] = {0};
     struct topology_kind kind = molecules_chain(plan->count, type, plan->beads, -1, 0);
     kind.terms[BONDED_BOND] = plan->bonds;
     kind.term[BONDED_BOND] = mf_memory_zeroed((size_t)plan->bonds, sizeof *kind.term[BONDED_BOND]);
@@ -154,7 +154,7 @@ static double solid_angle(const vector a, const vector b, const vector p, const 
 struct curve_of_beads {
     int kind, beads;
     int64_t molecule;
-    vector at[MOST_BEADS], centre;
+    vector at[MAX_BEADS], centre;
 };
 
 static double linking_number(const struct curve_of_beads *one, const struct curve_of_beads *other,
@@ -286,7 +286,7 @@ static void test_scene_begins_without_links_when_rings_are_fused_and_joined(void
 static void test_scene_begins_without_links_when_rings_are_large(void **state) {
     (void)state;
     struct melt melt;
-    make_melt(&melt, plan_ring(12, MOST_BEADS), (struct plan){0}, 0.85);
+    make_melt(&melt, plan_ring(12, MAX_BEADS), (struct plan){0}, 0.85);
     check_scene(&melt, 1);
     check_scene(&melt, 2);
     clear_melt(&melt);

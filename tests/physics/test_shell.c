@@ -25,7 +25,7 @@ static void make_omega(struct fluid *fluid, struct formula_power_omega_parameter
 static void check_temperatures(const struct simulation_setup *setup) {
     const struct measure_plan plan = {
         .equilibration = 2000, .samples = length_is_long() ? 4000 : 1000, .every = 10};
-    const double most = temperature_tolerance * (length_is_long() ? 1 : 2);
+    const double max = temperature_tolerance * (length_is_long() ? 1 : 2);
     static struct simulation simulation;
     struct thermodynamics thermodynamics;
     double temperature;
@@ -38,8 +38,8 @@ static void check_temperatures(const struct simulation_setup *setup) {
     print_message("%-15s temperature %.4f(%.4f), configurational %.4f(%.4f)\n",
                   setup->integrator->name, s.temperature, s.temperature_error,
                   s.temperature_configurational, s.temperature_configurational_error);
-    assert_close(s.temperature, 1, most);
-    assert_close(s.temperature_configurational, 1, most);
+    assert_close(s.temperature, 1, max);
+    assert_close(s.temperature_configurational, 1, max);
     mf_thermodynamics_clear(&thermodynamics);
     mf_simulation_clear(&simulation);
 }

@@ -59,8 +59,8 @@ static struct shear_viscosity_summary at_rest(const struct simulation_setup *set
 }
 
 /// At rest, and driven to a flow of some tenths.
-static struct shear_viscosity_summary check_ways(struct simulation_setup *setup,
-                                                 double acceleration) {
+static struct shear_viscosity_summary check_drifts(struct simulation_setup *setup,
+                                                   double acceleration) {
     const struct measure_plan plan = {
         .equilibration = 1500, .samples = length_is_long() ? 3000 : 500, .every = 10};
     const struct shear_wave_parameters wave = {acceleration};
@@ -85,7 +85,7 @@ static void test_viscosity_of_the_standard_fluid_is_the_usual_one(void **state) 
     struct fluid fluid;
     fluid_groot_warren(&fluid, 1536, 0.02);
     fluid.setup.integrator = &mf_aboba;
-    const struct shear_viscosity_summary s = check_ways(&fluid.setup, 0.035);
+    const struct shear_viscosity_summary s = check_drifts(&fluid.setup, 0.035);
     assert_close(s.value, quoted, deviations * hypot(s.error, uncertainty));
     fluid_clear(&fluid);
 }
@@ -95,7 +95,7 @@ static void test_viscosity_with_memory_is_the_same_by_both_ways(void **state) {
     (void)state;
     struct remembering r;
     remembering_make(&r, 1536, 0.02, REMEMBERING_SLOW | REMEMBERING_ACROSS);
-    const struct shear_viscosity_summary s = check_ways(&r.fluid.setup, 0.08);
+    const struct shear_viscosity_summary s = check_drifts(&r.fluid.setup, 0.08);
     assert_true(s.value > 1); // of white friction alone: 0.85
     remembering_clear(&r);
 }

@@ -24,7 +24,7 @@ static const double factor_tolerance = 3e-6;
 /// Standard errors that a mean may be off: one false alarm in 15,000, with fixed seeds.
 static const double deviations = 4;
 
-static struct variant variants[VARIANTS_MOST];
+static struct variant variants[VARIANTS_MAX];
 static int variant_count;
 static struct table soft, omega_table, short_omega_table, long_omega_table;
 

@@ -8,7 +8,7 @@
 
 #include <math.h>
 
-enum { COUNT = 26, MOST = 200 };
+enum { COUNT = 26, MAX = 200 };
 
 struct twin {
     int dimensions, walls;
@@ -179,7 +179,7 @@ static void test_hard_gas_has_the_events_of_all_pairs(void **state) {
         while (twin.collisions < 50) {
             assert_ok(mf_simulation_run(&simulation, 1));
             run(&twin, scene.setup.time_step);
-            assert_true(simulation.step < MOST * 100);
+            assert_true(simulation.step < MAX * 100);
         }
         print_message("case %zu: %d collisions, virial %.1e from that of all pairs\n", n,
                       twin.collisions,

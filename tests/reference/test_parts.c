@@ -9,7 +9,7 @@
 /// Rooms that are tried at the end of a part, of 16 places each: vectors of owners reach 8.
 enum { ROOMS = 24 };
 
-static struct variant variants[VARIANTS_MOST];
+static struct variant variants[VARIANTS_MAX];
 static int variant_count;
 
 static int find_variants(void **state) {
@@ -24,10 +24,10 @@ static void test_part_ends_before_the_next_when_it_is_nearly_full(void **state) 
         int seen = 0;
         variants_select(&variants[v]);
         for (uint32_t number = 0; number < 12; number++)
-            for (int room = 0; room < ROOMS; room++) {
+            for (int capacity = 0; capacity < ROOMS; capacity++) {
                 struct uneven uneven;
                 uneven_init(&uneven, UNEVEN_EMPTY, number);
-                uneven_narrow(&uneven, room);
+                uneven_narrow(&uneven, capacity);
                 seen += uneven_check_ends(&uneven);
                 uneven_clear(&uneven);
             }
@@ -40,11 +40,11 @@ static void test_threads_build_the_same_list_when_beads_are_spread_unevenly(void
     (void)state;
     static const int threads[] = {2, 3, 7, 40};
     for (int kind = 0; kind < UNEVEN_KINDS; kind++)
-        for (int room = 0; room < ROOMS; room++) {
+        for (int capacity = 0; capacity < ROOMS; capacity++) {
             struct uneven uneven;
-            uneven_init(&uneven, (enum uneven_kind)kind, (uint32_t)room);
-            uneven_narrow(&uneven, room);
-            uneven_check_threads(&uneven, threads[room % 4]);
+            uneven_init(&uneven, (enum uneven_kind)kind, (uint32_t)capacity);
+            uneven_narrow(&uneven, capacity);
+            uneven_check_threads(&uneven, threads[capacity % 4]);
             uneven_clear(&uneven);
         }
 }

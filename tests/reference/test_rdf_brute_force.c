@@ -9,7 +9,7 @@
 #include "shared/watched.h"
 #include "shared/testing.h"
 
-enum { MOST_BINS = 40, PARTICLES = 200 };
+enum { MAX_BINS = 40, PARTICLES = 200 };
 
 /// Distances in the lists are single-precision: off by up to about 4e-7 at r = 2.5. A pair nearer
 /// than this to an edge may be counted on either side of it: about one pair of a configuration.
@@ -17,8 +17,8 @@ static const double edge_rounding = 1e-6;
 
 /// What a double loop says of each bin.
 struct counts {
-    double certain[MOST_BINS];  ///< pairs well inside
-    double possible[MOST_BINS]; ///< these and the pairs on an edge
+    double certain[MAX_BINS];  ///< pairs well inside
+    double possible[MAX_BINS]; ///< these and the pairs on an edge
 };
 
 static void count_pair(const struct rdf_bins *bins, double r, struct counts *counts) {

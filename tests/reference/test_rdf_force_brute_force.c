@@ -8,7 +8,7 @@
 #include "shared/is_close.h"
 #include "shared/testing.h"
 
-enum { MOST_BINS = 40, PARTICLES = 200 };
+enum { MAX_BINS = 40, PARTICLES = 200 };
 
 /// Single-precision pairs. One so near to an edge that it falls on its other side would show as
 /// more in h; with these seeds there is none.
@@ -16,7 +16,7 @@ static const double tolerance = 2e-5;
 
 /// h, z and D of one configuration.
 struct answer {
-    double h[MOST_BINS], z[MOST_BINS], difference, level;
+    double h[MAX_BINS], z[MAX_BINS], difference, level;
 };
 
 /// Share of the volume of a shell that lies within r.

@@ -94,8 +94,9 @@ static void check_integrators(struct fluid *fluid) {
     fluid->setup.skin = 0.15;
     for (size_t k = 0; mf_integrator_list[k]; k++) {
         if (mf_integrator_list[k]->events)
-            continue;                          // no forces, no list: test_hard_gas
-        if (mf_integrator_list[k]->companions) // whose cells divide other boxes: test_solvent
+            continue; // no forces, no list: test_hard_gas
+        if (mf_integrator_list[k]
+                ->solvent_particles) // whose cells divide other boxes: test_solvent
             continue;
         fluid->setup.integrator = mf_integrator_list[k];
         fluid->setup.omega = mf_integrator_list[k]->dissipative ? &fluid->omega : NULL;

@@ -9,11 +9,11 @@
 #include <string.h>
 
 /// Few: on a busy machine threads wait long for each other, a dozen times in a step.
-enum { STEPS = 15, MOST_PARTICLES = 2500, BINS = 50, MOST_PAIRS = 6 };
+enum { STEPS = 15, MAX_PARTICLES = 2500, BINS = 50, MAX_PAIRS = 6 };
 
 /// All that a run leaves, by id.
 struct outcome {
-    double position[MOST_PARTICLES][3], velocity[MOST_PARTICLES][3], histogram[MOST_PAIRS * BINS];
+    double position[MAX_PARTICLES][3], velocity[MAX_PARTICLES][3], histogram[MAX_PAIRS * BINS];
     struct pair_sums sums;
     uint64_t list_builds;
 };
@@ -32,7 +32,7 @@ static void run(const struct simulation_setup *setup, int threads, struct outcom
     assert_ok(mf_rdf_init_mixture(
         &rdf, &bins, &shared.box,
         composition_is_mixed(&shared.composition) ? &shared.composition : &alike, cutoff, 1));
-    assert_true(rdf.pairs <= MOST_PAIRS);
+    assert_true(rdf.pairs <= MAX_PAIRS);
     assert_ok(mf_simulation_run(&simulation, STEPS - 1));
     simulation.wants = PAIR_FORCES_AND_SUMS;
     simulation.law.histogram = mf_rdf_histogram(&rdf);

@@ -55,7 +55,7 @@ void figure_folders_draw(const char *folder) {
         fail_msg("%s", mf_status_message());
 }
 
-bool figure_folders_say(const char *folder, const char *name, const char *word) {
+bool figure_folders_print(const char *folder, const char *name, const char *word) {
     char path[FIGURE_PATH + 64], line[4096];
     bool found = false;
     snprintf(path, sizeof path, "%s/figures/%s.svg", folder, name);
@@ -76,7 +76,7 @@ bool figure_folders_drawn(const char *folder, const char *name) {
         return false;
     static const char *const code[] = {"using", "word(", "column(", "every ", "title "};
     for (size_t k = 0; k < sizeof code / sizeof *code; k++)
-        if (figure_folders_say(folder, name, code[k]))
+        if (figure_folders_print(folder, name, code[k]))
             fail_msg("%s says \"%s\"", svg, code[k]);
     return true;
 }

@@ -27,7 +27,7 @@ void figure_folders_write(const char *folder, const char *name, const char *text
 void figure_folders_draw(const char *folder);
 
 /// True if the figure has that word: a legend, say.
-bool figure_folders_say(const char *folder, const char *name, const char *word);
+bool figure_folders_print(const char *folder, const char *name, const char *word);
 
 /// Both files of a figure are there, and no text of it is a piece of its script.
 bool figure_folders_drawn(const char *folder, const char *name);

@@ -66,9 +66,9 @@ void landscape_set(const struct optimiser *optimiser, void *parameters, const ch
 }
 
 void *landscape_parameters_with(const struct optimiser *optimiser,
-                                const struct landscape_setting *settings, int most) {
+                                const struct landscape_setting *settings, int max) {
     void *parameters = landscape_parameters(optimiser);
-    for (int k = 0; k < most && settings[k].name; k++)
+    for (int k = 0; k < max && settings[k].name; k++)
         landscape_set(optimiser, parameters, settings[k].name, settings[k].value);
     return parameters;
 }
@@ -80,7 +80,7 @@ struct landscape_run landscape_begin(const struct optimiser *optimiser, void *pa
                                           .maximum = drive->landscape->maximum,
                                           .start = drive->start,
                                           .seed = drive->seed,
-                                          .most = drive->most};
+                                          .max = drive->max};
     struct landscape_run run = {optimiser, parameters, mf_memory_zeroed(1, optimiser->state_size)};
     assert_non_null(run.state);
     assert_ok(optimiser->create(run.state, &space, parameters));
@@ -126,13 +126,14 @@ static struct optimiser_round ask_twice(struct landscape_run *run, size_t variab
     return second;
 }
 
-static void look_at_incumbent(const struct landscape_run *run, const struct landscape_drive *drive,
-                              struct landscape_result *result) {
+static void look_at_best_candidate(const struct landscape_run *run,
+                                   const struct landscape_drive *drive,
+                                   struct landscape_result *result) {
     double *variables = mf_memory_zeroed(drive->variables, sizeof *variables);
     assert_non_null(variables);
-    if (run->optimiser->incumbent(run->state, variables)) {
+    if (run->optimiser->best_candidate(run->state, variables)) {
         check_round(drive, &(struct optimiser_round){variables, 1});
-        result->incumbent = drive->landscape->error(variables, drive->variables);
+        result->best_candidate = drive->landscape->error(variables, drive->variables);
     }
     mf_memory_free(variables);
 }
@@ -149,25 +150,25 @@ bool landscape_step(struct landscape_run *run, const struct landscape_drive *dri
     for (size_t k = 0; k < round.count; k++) {
         const double exact =
             drive->landscape->error(round.variables + k * drive->variables, drive->variables);
-        result->least = fmin(result->least, exact); // fmin leaves NaN out
+        result->min = fmin(result->min, exact); // fmin leaves NaN out
         errors[k] = measure(drive, exact, result->evaluations++);
         errors[round.count + k] = drive->noise * drive->noise;
     }
     assert_ok(run->optimiser->tell(run->state, errors, errors + round.count));
     mf_memory_free(errors);
     result->rounds++;
-    look_at_incumbent(run, drive, result);
+    look_at_best_candidate(run, drive, result);
     return true;
 }
 
 struct landscape_result landscape_minimise(const struct optimiser *optimiser, void *parameters,
                                            const struct landscape_drive *drive) {
-    struct landscape_result result = {.least = HUGE_VAL, .incumbent = HUGE_VAL};
+    struct landscape_result result = {.min = HUGE_VAL, .best_candidate = HUGE_VAL};
     struct landscape_run run = landscape_begin(optimiser, parameters, drive);
     while ((drive->evaluations == 0 || result.evaluations < drive->evaluations) &&
-           result.least > drive->target && landscape_step(&run, drive, &result))
+           result.min > drive->target && landscape_step(&run, drive, &result))
         continue;
-    assert_true(result.rounds <= optimiser->most_rounds(parameters, drive->variables));
+    assert_true(result.rounds <= optimiser->max_rounds(parameters, drive->variables));
     landscape_end(&run);
     return result;
 }

@@ -26,15 +26,15 @@ struct landscape_drive {
     double failing;       ///< share of candidates that fail, by turns with 1e9, NaN and ±infinity
     double target;        ///< stop once a candidate is below it
     uint64_t evaluations; ///< stop after so many; 0: never
-    size_t most;          ///< candidates that a round may have; 0: any number
+    size_t max;           ///< candidates that a round may have; 0: any number
 };
 
 /// What came of it.
 struct landscape_result {
     uint64_t rounds, evaluations;
-    double least;     ///< error of the best candidate, without noise
-    double incumbent; ///< error of the incumbent, without noise; HUGE_VAL if there was none
-    bool finished;    ///< by itself
+    double min;            ///< error of the best candidate, without noise
+    double best_candidate; ///< error of the incumbent, without noise; HUGE_VAL if there was none
+    bool finished;         ///< by itself
 };
 
 /// An optimiser with its parameters and state.
@@ -56,9 +56,9 @@ struct landscape_setting {
     double value;
 };
 
-/// The default parameters with some settings, up to `most` of them or the first without a name.
+/// The default parameters with some settings, up to `max` of them or the first without a name.
 void *landscape_parameters_with(const struct optimiser *optimiser,
-                                const struct landscape_setting *settings, int most);
+                                const struct landscape_setting *settings, int max);
 
 /// A new state. `parameters` are borrowed; landscape_end frees the state.
 struct landscape_run landscape_begin(const struct optimiser *optimiser, void *parameters,

@@ -92,7 +92,7 @@ void replaced_folders_finish(const struct replaced_folder *one, const char *out)
         fail_msg("%s: %s", out, result.err);
 }
 
-static void put_mine(struct temporary_folder *folder, const char *out) {
+static void write_mine(struct temporary_folder *folder, const char *out) {
     char path[64];
     snprintf(path, sizeof path, "%s/mine.tsv", out);
     temporary_folder_write(folder, path, "mine", 4);
@@ -126,7 +126,7 @@ void replaced_folders_begin(struct temporary_folder *folder, const struct replac
     replaced_folders_remove(out);
     if (replaced_folders_run(one->first, out, NULL) == 2)
         fail_msg("%s", result.err);
-    put_mine(folder, out);
+    write_mine(folder, out);
 }
 
 void replaced_folders_make_whole(struct temporary_folder *folder,
@@ -134,7 +134,7 @@ void replaced_folders_make_whole(struct temporary_folder *folder,
     replaced_folders_remove("whole");
     if (replaced_folders_run(one->second, "whole", NULL) == 2)
         fail_msg("%s", result.err);
-    put_mine(folder, "whole");
+    write_mine(folder, "whole");
 }
 
 const char *replaced_folders_message(void) {

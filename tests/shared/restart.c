@@ -8,10 +8,10 @@ void restart_simulation(struct simulation *simulation) {
     struct simulation again;
     assert_ok(mf_simulation_init(&again, &simulation->setup, NULL));
     const size_t spans = mf_simulation_spans(simulation, from);
-    if (simulation_wants_room(&again)) {
+    if (simulation_wants_capacity(&again)) {
         mf_simulation_spans(&again, to);
         memcpy(to[0].memory, from[0].memory, from[0].bytes);
-        assert_ok(mf_simulation_make_room(&again));
+        assert_ok(mf_simulation_reserve(&again));
     }
     assert_int_equal(mf_simulation_spans(&again, to), spans);
     for (size_t n = 0; n < spans; n++) {

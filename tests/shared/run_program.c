@@ -20,7 +20,7 @@
 
 extern char **environ;
 
-enum { MOST_WORDS = 32 };
+enum { MAX_WORDS = 32 };
 
 static const double usual_work_limit = 300, longest_idle = 600; // [s]
 
@@ -84,9 +84,9 @@ static void init_attributes(posix_spawnattr_t *attributes) {
 }
 
 static struct child start(const struct run_program_how *how, const char *const *words) {
-    char *line[MOST_WORDS + 2] = {strdup(program_path())};
+    char *line[MAX_WORDS + 2] = {strdup(program_path())};
     for (int k = 0; words[k]; k++) {
-        assert_true(k < MOST_WORDS);
+        assert_true(k < MAX_WORDS);
         line[k + 1] = strdup(words[k]);
     }
     int out[2], err[2];
@@ -145,8 +145,8 @@ static double find_work(const struct child *child) {
 static void listen_to(struct child *child, double seconds, struct run_program_result *result) {
     struct pollfd ends[] = {{.fd = child->out, .events = POLLIN},
                             {.fd = child->err, .events = POLLIN}};
-    const struct timespec most = {.tv_nsec = (long)(1e9 * fmin(fmax(seconds, 0), 0.01))};
-    if (ppoll(ends, 2, &most, NULL) <= 0)
+    const struct timespec max = {.tv_nsec = (long)(1e9 * fmin(fmax(seconds, 0), 0.01))};
+    if (ppoll(ends, 2, &max, NULL) <= 0)
         return;
     if (ends[0].revents)
         take(&child->out, result->out, sizeof result->out, &child->out_length);
@@ -250,16 +250,16 @@ void run_program_assert_refused(const struct run_program_result *result, const c
 
 int run_program_in_pieces(int code, const char *const *words) {
     static struct run_program_result result;
-    enum { MOST_PIECES = 12, INTERRUPTED = 130 };
+    enum { MAX_PIECES = 12, INTERRUPTED = 130 };
     const double shortest = 1e-5, longest = 0.05;
-    const char *begun[MOST_WORDS] = {NULL}, *resumed[MOST_WORDS] = {NULL};
+    const char *begun[MAX_WORDS] = {NULL}, *resumed[MAX_WORDS] = {NULL};
     int count = 0;
     for (; words[count]; count++)
         begun[count] = resumed[count] = words[count];
     begun[count] = "--force"; // an attempt that came too late has left its results
     resumed[count] = "--resume";
     for (double first = longest; first > shortest; first /= 3) {
-        for (int piece = 0; piece < MOST_PIECES; piece++) {
+        for (int piece = 0; piece < MAX_PIECES; piece++) {
             const struct run_program_how how = {.interrupt_with = SIGINT,
                                                 .interrupt_after = first * (1 << piece)};
             run_program(&result, &how, piece ? resumed : begun);

@@ -41,7 +41,7 @@ enum stability stability_run(const struct simulation_setup *setup,
         return STABILITY_UNSTABLE;
     }
     assert_ok(status);
-    const bool good = mf_thermodynamics_judge(&s, setup) == STATUS_OK;
+    const bool good = mf_thermodynamics_assess(&s, setup) == STATUS_OK;
     print_message("%.3f(%.3f) / %.3f(%.3f)%s\n", s.temperature, s.temperature_error,
                   s.temperature_configurational, s.temperature_configurational_error,
                   good ? "" : ", doubtful");

@@ -5,8 +5,8 @@
 #include "observe/measure.h"
 
 enum stability {
-    STABILITY_GOOD,     ///< mf_thermodynamics_judge has nothing to say
-    STABILITY_DOUBTFUL, ///< it ends, and mf_thermodynamics_judge warns
+    STABILITY_GOOD,     ///< mf_thermodynamics_assess has nothing to say
+    STABILITY_DOUBTFUL, ///< it ends, and mf_thermodynamics_assess warns
     STABILITY_UNSTABLE, ///< STATUS_UNSTABLE
 };
 

@@ -10,9 +10,9 @@
 
 /// Scenes that were simulated, by their texts; of each the results stand in a folder of that
 /// number.
-enum { MOST = 16 };
+enum { MAX = 16 };
 static struct temporary_folder *kept;
-static char *text[MOST];
+static char *text[MAX];
 static int count;
 
 static void forget(void) {
@@ -49,7 +49,7 @@ void twins_simulate(const char *file, const char *out) {
         free(scene);
         return;
     }
-    assert_in_range(count, 0, MOST - 1);
+    assert_in_range(count, 0, MAX - 1);
     RUN_PROGRAM(&result, "simulate", file, "-o", out, "--quiet");
     run_program_assert_code(&result, 0);
     copy(out, temporary_folder_file(kept, number));

@@ -6,7 +6,7 @@
 
 #include <stdio.h>
 
-int variants_find(struct variant variants[VARIANTS_MOST]) {
+int variants_find(struct variant variants[VARIANTS_MAX]) {
     // The best first: one that the processor lacks is refused.
     static const char *const instruction_sets[] = {"avx512", "avx2", "portable"};
     static const struct {

@@ -141,10 +141,10 @@ static int run_limited(const struct replaced_folder *one, char what, long limit)
 }
 
 static void check_limits(struct temporary_folder *folder, const struct replaced_folder *one,
-                         char what, long least, long most, double factor) {
+                         char what, long min, long max, double factor) {
     enum { LOADER = 127 };
     int failures = 0, runs = 0;
-    for (double limit = (double)least; limit < (double)most; limit = limit * factor + 1) {
+    for (double limit = (double)min; limit < (double)max; limit = limit * factor + 1) {
         const int code = run_limited(one, what, (long)limit);
         if (code < 0 || (code > 3 && code != LOADER))
             fail_msg("%s, ulimit -%c %.0f: exit code %d", one->second[0], what, limit, code);

@@ -8,12 +8,12 @@
 /// A part that is nearly full, as its own room happens to be: one scene in some hundreds.
 enum { SCENES = 500, NARROW = 20 };
 
-static void check(uint32_t number, int room, int threads) {
+static void check(uint32_t number, int capacity, int threads) {
     for (int kind = 0; kind < UNEVEN_KINDS; kind++) {
         struct uneven uneven;
         uneven_init(&uneven, (enum uneven_kind)kind, number);
-        if (room > 0)
-            uneven_narrow(&uneven, room);
+        if (capacity > 0)
+            uneven_narrow(&uneven, capacity);
         uneven_check_threads(&uneven, threads);
         uneven_clear(&uneven);
     }
@@ -29,8 +29,8 @@ static void test_threads_build_the_same_list_when_every_part_is_narrow(void **st
     (void)state;
     static const int threads[] = {2, 4, 5, 64};
     for (uint32_t number = 10; number < 17; number++)
-        for (int room = 1; room <= NARROW; room++)
-            check(number, room, threads[room % 4]);
+        for (int capacity = 1; capacity <= NARROW; capacity++)
+            check(number, capacity, threads[capacity % 4]);
 }
 
 int main(void) {

@@ -10,7 +10,7 @@
 #include "shared/stability.h"
 #include "shared/testing.h"
 
-enum { MOST_POINTS = 600 };
+enum { MAX_POINTS = 600 };
 
 static void make_table(struct table *table, const double *r, const double *value, size_t points) {
     struct curve curve;
@@ -46,13 +46,13 @@ static void check(const struct table *potential, double time_step, enum placemen
 
 static void test_steep_table_is_good_when_the_time_step_is_small(void **state) {
     (void)state;
-    double r[MOST_POINTS], value[MOST_POINTS];
+    double r[MAX_POINTS], value[MAX_POINTS];
     struct table table;
-    for (int k = 0; k < MOST_POINTS; k++) {
-        r[k] = 0.7 + 0.8 * k / (MOST_POINTS - 1);
+    for (int k = 0; k < MAX_POINTS; k++) {
+        r[k] = 0.7 + 0.8 * k / (MAX_POINTS - 1);
         value[k] = pow(r[k], -24) - pow(1.5, -24);
     }
-    make_table(&table, r, value, MOST_POINTS);
+    make_table(&table, r, value, MAX_POINTS);
     check(&table, 0.001, PLACEMENT_LATTICE, STABILITY_GOOD);
     check(&table, 0.001, PLACEMENT_RANDOM, STABILITY_GOOD);
     check(&table, 0.1, PLACEMENT_LATTICE, STABILITY_UNSTABLE);
@@ -62,10 +62,10 @@ static void test_steep_table_is_good_when_the_time_step_is_small(void **state) {
 static void test_water_table_is_good_from_a_lattice_and_from_random_places(void **state) {
     (void)state;
     struct data_table points;
-    double r[MOST_POINTS], value[MOST_POINTS];
+    double r[MAX_POINTS], value[MAX_POINTS];
     struct table table;
     assert_ok(mf_data_table_read(&points, "tests/bench/scenes/cgwater.tsv", 2));
-    assert_true(points.rows <= MOST_POINTS);
+    assert_true(points.rows <= MAX_POINTS);
     for (size_t k = 0; k < points.rows; k++) {
         r[k] = points.values[k * points.columns];
         value[k] = points.values[k * points.columns + 1];

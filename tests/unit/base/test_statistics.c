@@ -85,12 +85,12 @@ static void test_statistics_standard_error_is_zero_when_there_are_fewer_than_two
     assert_close(mf_statistics_standard_error(&running), 1, rounding);
 }
 
-static void test_statistics_forget_errors_of_which_none_is_above_zero(void **state) {
+static void test_statistics_mark_unknown_errors_of_which_none_is_above_zero(void **state) {
     (void)state;
     double single[] = {0, 0, 0}, several[] = {0, 0.1, 0}, other = 1;
-    mf_statistics_forget_errors(single, 3);
-    mf_statistics_forget_errors(several, 3);
-    mf_statistics_forget_errors(&other, 0);
+    mf_statistics_mark_unknown_errors(single, 3);
+    mf_statistics_mark_unknown_errors(several, 3);
+    mf_statistics_mark_unknown_errors(&other, 0);
     for (size_t k = 0; k < 3; k++) {
         assert_true(isnan(single[k]));
         assert_true(several[k] == (k == 1 ? 0.1 : 0));
@@ -331,7 +331,7 @@ int main(void) {
         cmocka_unit_test(test_statistics_add_equals_two_passes_when_numbers_are_of_order_one),
         cmocka_unit_test(test_statistics_add_keeps_the_variance_when_the_mean_is_large),
         cmocka_unit_test(test_statistics_standard_error_is_zero_when_there_are_fewer_than_two),
-        cmocka_unit_test(test_statistics_forget_errors_of_which_none_is_above_zero),
+        cmocka_unit_test(test_statistics_mark_unknown_errors_of_which_none_is_above_zero),
         cmocka_unit_test(test_statistics_correlated_error_is_exact_when_series_are_short),
         cmocka_unit_test(test_statistics_correlated_error_is_zero_when_there_is_no_scatter),
         cmocka_unit_test(

@@ -8,26 +8,26 @@
 #include <stdbool.h>
 #include <string.h>
 
-enum { TASKS = 20, CALLS = 3, MOST = 8 };
+enum { TASKS = 20, CALLS = 3, MAX = 8 };
 
 /// Work of a few calls, each of whose tasks leaves a result and an array of its own length.
 struct work {
-    int most; ///< tasks that may be done before it stops
+    int max; ///< tasks that may be done before it stops
     int runs, call;
     size_t length[TASKS];
-    double array[TASKS][MOST], result[CALLS][TASKS], sum[CALLS];
+    double array[TASKS][MAX], result[CALLS][TASKS], sum[CALLS];
 };
 
 static enum status run(void *context, size_t task, void *result) {
     struct work *work = context;
     bool may;
 #pragma omp critical(count)
-    may = work->runs++ < work->most;
+    may = work->runs++ < work->max;
     if (!may)
         return mf_status_fail(STATUS_INTERRUPTED, "interrupted");
-    work->length[task] = 1 + (task + (size_t)work->call) % MOST;
+    work->length[task] = 1 + (task + (size_t)work->call) % MAX;
     for (size_t k = 0; k < work->length[task]; k++)
-        work->array[task][k] = sin((double)(task * MOST + k + 100 * (size_t)work->call));
+        work->array[task][k] = sin((double)(task * MAX + k + 100 * (size_t)work->call));
     *(double *)result = cos((double)task) + work->call;
     return STATUS_OK;
 }
@@ -68,7 +68,7 @@ static enum status do_all(struct work *work, int threads) {
 static void move(struct task_log *log) {
     struct task_log moved = {.size = log->size};
     struct memory_span from[TASK_LOG_SPANS], to[TASK_LOG_SPANS];
-    assert_ok(mf_task_log_make_room(&moved));
+    assert_ok(mf_task_log_reserve(&moved));
     assert_int_equal(mf_task_log_spans(log, from), TASK_LOG_SPANS);
     mf_task_log_spans(&moved, to);
     assert_int_equal(from[1].bytes, to[1].bytes);
@@ -82,26 +82,26 @@ static void test_finished_tasks_are_not_done_again(void **state) {
     static struct work whole, pieces;
     (void)state;
     memset(&whole, 0, sizeof whole);
-    whole.most = 1000;
+    whole.max = 1000;
     assert_ok(do_all(&whole, 1));
     for (int threads = 1; threads <= 3; threads++)
-        for (int most = 1; most < 30; most += 7) {
+        for (int max = 1; max < 30; max += 7) {
             struct task_log log = {0};
             int done = 0, begun = 0;
             enum status status = STATUS_INTERRUPTED;
             for (; status == STATUS_INTERRUPTED; begun++) {
                 assert_true(begun < 100);
                 memset(&pieces, 0, sizeof pieces); // the state before
-                pieces.most = most;
+                pieces.max = max;
                 mf_task_log_use(&log);
                 status = do_all(&pieces, threads);
                 mf_task_log_use(NULL);
-                done += pieces.runs < most ? pieces.runs : most;
+                done += pieces.runs < max ? pieces.runs : max;
                 move(&log);
             }
             assert_ok(status);
             assert_int_equal(done, whole.runs);
-            assert_int_equal(begun, (whole.runs + most - 1) / most);
+            assert_int_equal(begun, (whole.runs + max - 1) / max);
             assert_memory_equal(pieces.sum, whole.sum, sizeof whole.sum);
             assert_memory_equal(pieces.result, whole.result, sizeof whole.result);
             mf_task_log_clear(&log);
@@ -112,7 +112,7 @@ static void test_records_of_other_tasks_are_refused(void **state) {
     static struct work work;
     struct task_log log = {0};
     (void)state;
-    work.most = 1000;
+    work.max = 1000;
     mf_task_log_use(&log);
     assert_ok(do_all(&work, 1));
     mf_task_log_use(&log);

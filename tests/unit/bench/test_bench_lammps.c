@@ -98,22 +98,22 @@ static void test_bench_lammps_rate_is_that_of_the_last_run(void **state) {
     assert_true(isnan(mf_bench_lammps_rate("Loop time of nothing")));
 }
 
-static void test_bench_lammps_objection_says_what_debians_lammps_lacks(void **state) {
+static void test_bench_lammps_unsupported_says_what_debians_lammps_lacks(void **state) {
     (void)state;
     struct scene scene = {.setup = {.integrator = &mf_velocity_verlet, .box.dimensions = 3}};
-    assert_contains(mf_bench_lammps_objection(&scene), "neither a table nor Lennard-Jones");
+    assert_contains(mf_bench_lammps_unsupported(&scene), "neither a table nor Lennard-Jones");
     scene.potential.curve[0].family = &mf_formula_lennard_jones;
-    assert_null(mf_bench_lammps_objection(&scene));
+    assert_null(mf_bench_lammps_unsupported(&scene));
     scene.potential.curve[0].family = &mf_sampled_family;
-    assert_null(mf_bench_lammps_objection(&scene));
+    assert_null(mf_bench_lammps_unsupported(&scene));
     scene.setup.box.dimensions = 2;
-    assert_contains(mf_bench_lammps_objection(&scene), "three dimensions");
+    assert_contains(mf_bench_lammps_unsupported(&scene), "three dimensions");
     scene.setup.integrator = &mf_dpd_verlet;
-    assert_contains(mf_bench_lammps_objection(&scene), "velocity-verlet");
+    assert_contains(mf_bench_lammps_unsupported(&scene), "velocity-verlet");
     scene.omega.curves = 1;
-    assert_contains(mf_bench_lammps_objection(&scene), "friction");
+    assert_contains(mf_bench_lammps_unsupported(&scene), "friction");
     scene.setup.composition.types = 2;
-    assert_contains(mf_bench_lammps_objection(&scene), "mixture");
+    assert_contains(mf_bench_lammps_unsupported(&scene), "mixture");
 }
 
 #define IN_FOLDER(test)                                                                            \
@@ -124,7 +124,7 @@ int main(void) {
         IN_FOLDER(test_bench_lammps_write_gives_the_same_lennard_jones),
         IN_FOLDER(test_bench_lammps_write_gives_the_same_table),
         cmocka_unit_test(test_bench_lammps_rate_is_that_of_the_last_run),
-        cmocka_unit_test(test_bench_lammps_objection_says_what_debians_lammps_lacks),
+        cmocka_unit_test(test_bench_lammps_unsupported_says_what_debians_lammps_lacks),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -15,7 +15,7 @@ static const struct table some_omega;
 
 static void test_scene_with_friction_gets_all_that_know_it(void **state) {
     (void)state;
-    struct bench_method methods[BENCH_MOST_METHODS];
+    struct bench_method methods[BENCH_MAX_METHODS];
     const struct simulation_setup setup = {.omega = &some_omega, .integrator = &mf_dpd_verlet};
     const size_t count = mf_bench_methods(&setup, methods);
     assert_int_equal(count, 7);
@@ -30,7 +30,7 @@ static void test_scene_with_friction_gets_all_that_know_it(void **state) {
 
 static void test_scene_without_friction_gets_velocity_verlet(void **state) {
     (void)state;
-    struct bench_method methods[BENCH_MOST_METHODS];
+    struct bench_method methods[BENCH_MAX_METHODS];
     const struct simulation_setup setup = {.integrator = &mf_velocity_verlet};
     assert_int_equal(mf_bench_methods(&setup, methods), 1);
     assert_ptr_equal(mf_bench_reference_method(methods, 1)->integrator, &mf_velocity_verlet);
@@ -38,7 +38,7 @@ static void test_scene_without_friction_gets_velocity_verlet(void **state) {
 
 static void test_parameters_of_the_scene_are_kept_and_others_are_the_usual(void **state) {
     (void)state;
-    struct bench_method methods[BENCH_MOST_METHODS];
+    struct bench_method methods[BENCH_MAX_METHODS];
     struct simulation_setup setup = {.omega = &some_omega, .integrator = &mf_aboba_implicit};
     const struct aboba_parameters parameters = {.tolerance = 0.125};
     setup.integrator_parameters = &parameters;
@@ -70,12 +70,12 @@ static void count_steps(void *context, uint64_t steps) {
 
 static void run(struct bench_point *point, double time_step, double time,
                 const struct simulation_setup *setup) {
-    static struct bench_method methods[BENCH_MOST_METHODS];
+    static struct bench_method methods[BENCH_MAX_METHODS];
     uint64_t steps = 0;
     const size_t count = mf_bench_methods(setup, methods);
     const struct bench_common common = {.setup = setup,
                                         .bins = mf_bench_bins_choose(&setup->box, 81, 1),
-                                        .tell = count_steps,
+                                        .report = count_steps,
                                         .context = &steps};
     *point = (struct bench_point){.method = mf_bench_reference_method(methods, count),
                                   .time_step = time_step,

@@ -44,7 +44,7 @@ static void test_fit_defaults_choose_all_that_target_density_and_temperature_lea
     const double range = mf_rdf_bins_range(&fit.problem.targets.bins);
     for (size_t k = 0; k < fit.choices.count; k++)
         print_message("%s\n", fit.choices.line[k]);
-    assert_in_range(fit.choices.count, 5, FIT_MOST_CHOICES);
+    assert_in_range(fit.choices.count, 5, FIT_MAX_CHOICES);
     assert_ptr_equal(fit.method, &mf_automatic);
     assert_in_range(setup->placement.count, 1000, 1e5);
     assert_close((double)setup->placement.count / mf_box_volume(&setup->box), 0.3, 1e-9);

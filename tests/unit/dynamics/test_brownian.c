@@ -106,7 +106,7 @@ static void test_brownian_is_judged_by_the_configurational_temperature(void **st
     (void)state;
     static const struct {
         double time_step;
-        enum status verdict;
+        enum status deviation;
     } cases[] = {{0.004, STATUS_OK}, {0.024, STATUS_UNSTABLE}};
     const struct measure_plan plan = {.equilibration = 400, .samples = 100, .every = 4};
     for (int n = 0; n < 2; n++) {
@@ -126,8 +126,8 @@ static void test_brownian_is_judged_by_the_configurational_temperature(void **st
                       s.temperature_configurational_error, temperature);
         assert_true(isnan(s.temperature));
         assert_close(temperature, s.temperature_configurational, 0.1);
-        assert_int_equal(mf_thermodynamics_judge(&s, &fluid.setup), cases[n].verdict);
-        if (cases[n].verdict == STATUS_OK)
+        assert_int_equal(mf_thermodynamics_assess(&s, &fluid.setup), cases[n].deviation);
+        if (cases[n].deviation == STATUS_OK)
             assert_close(s.temperature_configurational, 1, 0.03);
         mf_thermodynamics_clear(&thermodynamics);
         mf_simulation_clear(&simulation);
@@ -140,7 +140,7 @@ static void test_brownian_is_unstable_when_its_temperature_is_absurd(void **stat
     (void)state;
     static const struct {
         double temperature, error;
-        enum status verdict;
+        enum status deviation;
     } cases[] = {
         {-613, 242, STATUS_UNSTABLE}, {3625, 9341, STATUS_UNSTABLE}, {0.7, 0.2, STATUS_OK}};
     const struct simulation_setup setup = {.temperature = 1, .integrator = &mf_brownian};
@@ -150,7 +150,7 @@ static void test_brownian_is_unstable_when_its_temperature_is_absurd(void **stat
             .temperature = NAN,
             .temperature_configurational = cases[n].temperature,
             .temperature_configurational_error = cases[n].error};
-        assert_int_equal(mf_thermodynamics_judge(&s, &setup), cases[n].verdict);
+        assert_int_equal(mf_thermodynamics_assess(&s, &setup), cases[n].deviation);
     }
 }
 

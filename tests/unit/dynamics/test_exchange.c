@@ -55,7 +55,7 @@ static unsigned way_of(const struct particles *particles) {
     return way;
 }
 
-static void sample_ways(double count[WAYS]) {
+static void sample_drifts(double count[WAYS]) {
     const struct composition composition = {.types = 2, .count = {2, 2}, .name = {"A", "B"}};
     struct metropolis metropolis;
     struct particles particles;
@@ -85,7 +85,7 @@ static void sample_ways(double count[WAYS]) {
 static void test_exchanges_share_out_places_as_boltzmanns_factor_says(void **state) {
     (void)state;
     double count[WAYS] = {0}, sum = 0, largest = 0;
-    sample_ways(count);
+    sample_drifts(count);
     for (unsigned way = 0; way < WAYS; way++)
         sum += __builtin_popcount(way) == 2 ? exp(-energy_of(way) / temperature) : 0;
     for (unsigned way = 0; way < WAYS; way++) {

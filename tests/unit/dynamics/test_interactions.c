@@ -227,12 +227,12 @@ static void test_pairs_come_first_and_too_many_interactions_are_refused(void **s
     struct simulation simulation;
     char refusal[64];
     snprintf(refusal, sizeof refusal, "growing-push: there are %d interactions",
-             SIMULATION_MOST_INTERACTIONS);
+             SIMULATION_MAX_INTERACTIONS);
     fluid_groot_warren(&fluid, COUNT, 0.01);
     assert_ok(mf_simulation_init(&simulation, &fluid.setup, NULL));
     assert_int_equal(simulation.interactions, 1);
     assert_ptr_equal(simulation.interaction[0].choice.kind, &mf_pairs);
-    while (simulation.interactions < SIMULATION_MOST_INTERACTIONS)
+    while (simulation.interactions < SIMULATION_MAX_INTERACTIONS)
         assert_ok(mf_simulation_add_interaction(&simulation, &choice));
     assert_fails(mf_simulation_add_interaction(&simulation, &choice), STATUS_BAD_INPUT, refusal);
     mf_simulation_clear(&simulation);

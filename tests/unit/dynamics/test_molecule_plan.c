@@ -10,8 +10,8 @@
 
 #include <stdlib.h>
 
-enum { MOST = 12 };
-static const int type[MOST] = {0};
+enum { MAX = 12 };
+static const int type[MAX] = {0};
 
 /// A molecule of these bonds, two numbers each.
 static struct topology_kind make_graph(int beads, int bonds, const int (*pair)[2], int exclude) {
@@ -37,7 +37,7 @@ static int compare(const void *a, const void *b) {
 /// An arm as "pivot-first: beads", sorted.
 static void describe(const struct molecule_plan *plan, int n, char *text) {
     const struct molecule_arm *arm = &plan->arm[n];
-    int bead[MOST] = {0};
+    int bead[MAX] = {0};
     const int beads = molecule_arm_beads(plan, arm);
     for (int k = 0; k < beads; k++)
         bead[k] = molecule_arm_bead(plan, arm, k);
@@ -63,8 +63,8 @@ static void check_arms(const struct molecule_plan *plan, int arms, const char *c
 static void test_arms_are_the_smaller_sides_of_bonds_in_no_ring(void **state) {
     (void)state;
     static const struct {
-        int beads, bonds, pair[MOST][2], arms;
-        const char *arm[MOST];
+        int beads, bonds, pair[MAX][2], arms;
+        const char *arm[MAX];
     } graphs[] = {
         {4, 3, {{0, 1}, {1, 2}, {2, 3}}, 3, {"1-0: 0", "1-2: 2 3", "2-3: 3"}},
         {4, 3, {{3, 1}, {1, 0}, {1, 2}}, 3, {"1-0: 0", "1-2: 2", "1-3: 3"}},

@@ -12,7 +12,7 @@
 
 #include <string.h>
 
-enum { COUNT = 400, BINS = 30, MOST_PAIRS = 6 };
+enum { COUNT = 400, BINS = 30, MAX_PAIRS = 6 };
 
 /// Of changes between energies of up to 10 k_B T, and in proportion beyond. Measured: 1.8e-5 of
 /// Lennard-Jones, whose core is steep, 1.6e-6 of soft potentials.
@@ -69,8 +69,8 @@ static void check_sums(struct metropolis *metropolis) {
     const struct composition *composition = &metropolis->law.composition;
     const struct rdf_bins bins = {0, metropolis->law.potential->cutoff / BINS, BINS};
     const size_t pairs = (size_t)mf_composition_pairs(composition);
-    uint32_t counts[MOST_PAIRS * BINS + 1] = {0};
-    double histogram[MOST_PAIRS * BINS] = {0}, energy = 0, virial = 0, differences = 0;
+    uint32_t counts[MAX_PAIRS * BINS + 1] = {0};
+    double histogram[MAX_PAIRS * BINS] = {0}, energy = 0, virial = 0, differences = 0;
     struct pair_sums sums;
     mf_rdf_count_pairs_of(&bins, composition, &metropolis->particles, &metropolis->neighbours,
                           histogram);
@@ -93,7 +93,7 @@ static void check_sums(struct metropolis *metropolis) {
 /// Without bins for each pair type, a mixture's pairs are counted together.
 static void check_counts_together(struct metropolis *metropolis) {
     const double width = metropolis->law.potential->cutoff / BINS;
-    uint32_t apart[MOST_PAIRS * BINS + 1] = {0}, together[BINS + 1] = {0};
+    uint32_t apart[MAX_PAIRS * BINS + 1] = {0}, together[BINS + 1] = {0};
     const size_t pairs = (size_t)mf_composition_pairs(&metropolis->law.composition);
     struct pair_sums sums;
     assert_ok(mf_metropolis_count(metropolis,

@@ -54,7 +54,7 @@ static void test_changed_simulation_is_the_one_that_begins_so(void **state) {
     for (size_t n = 0; mf_integrator_list[n]; n++) {
         const struct integrator *integrator = mf_integrator_list[n];
         struct fluid fluid;
-        if (integrator->events || integrator->companions || !integrator->dissipative)
+        if (integrator->events || integrator->solvent_particles || !integrator->dissipative)
             continue;
         fluid_groot_warren(&fluid, COUNT, 0.02);
         fluid.setup.integrator = integrator;

@@ -221,8 +221,8 @@ static void test_particles_stay_outside_walls_and_obstacle(void **state) {
         assert_ok(mf_simulation_init(&simulation, &setup, NULL));
         const struct solvent *solvent = mf_collision_dynamics_solvent(&simulation);
         const double obstacle = dimensions == 2 ? M_PI * 1.21 : 4 * M_PI / 3 * 1.1 * 1.21;
-        const double room = 48 * (dimensions == 3 ? 5 : 1) - obstacle;
-        assert_int_equal(solvent->count, (size_t)rint(6 * room));
+        const double capacity = 48 * (dimensions == 3 ? 5 : 1) - obstacle;
+        assert_int_equal(solvent->count, (size_t)rint(6 * capacity));
         for (int step = 0; step < 100; step++) {
             assert_ok(mf_simulation_run(&simulation, 1));
             for (size_t k = 0; k < solvent->count; k++) {
@@ -258,16 +258,16 @@ static void test_flights_reverse_and_agree_with_small_flights(void **state) {
         double v[3] = {solvent->velocity[0][k], solvent->velocity[1][k]}, impulse[3] = {0};
         double small_x[3] = {x[0], x[1]}, small_v[3] = {v[0], v[1]};
         const double begin[2] = {x[0], x[1]}, speed[2] = {v[0], v[1]};
-        assert_true(mf_solvent_fly(solvent, x, v, g, 2, impulse));
+        assert_true(mf_solvent_propagate(solvent, x, v, g, 2, impulse));
         for (int n = 0; n < 1000; n++)
-            assert_true(mf_solvent_fly(solvent, small_x, small_v, g, 0.002, NULL));
+            assert_true(mf_solvent_propagate(solvent, small_x, small_v, g, 0.002, NULL));
         met += impulse[0] != 0;
         for (int d = 0; d < 2; d++) {
             assert_close(small_x[d], x[d], 1e-6);
             assert_close(small_v[d], v[d], 1e-6);
             v[d] = -v[d];
         }
-        assert_true(mf_solvent_fly(solvent, x, v, g, 2, NULL));
+        assert_true(mf_solvent_propagate(solvent, x, v, g, 2, NULL));
         for (int d = 0; d < 2; d++) {
             assert_close(x[d], begin[d], 1e-6);
             assert_close(v[d], -speed[d], 1e-6);
@@ -293,7 +293,7 @@ static void test_particle_that_is_pressed_against_the_obstacle_rests_there(void 
             double x[3] = {parameters.obstacle_centre[0] - radius + behind,
                            parameters.obstacle_centre[1]};
             double v[3] = {-slow, 0}, impulse[3] = {0};
-            assert_true(mf_solvent_fly(solvent, x, v, g, time, impulse));
+            assert_true(mf_solvent_propagate(solvent, x, v, g, time, impulse));
             assert_close(x[0], parameters.obstacle_centre[0] - radius, 1e-6);
             assert_true(fabs(v[0]) < 0.005);
             assert_close(v[0] + impulse[0], time * g[0] - slow, 1e-9);

@@ -8,9 +8,9 @@
 static int steps_with_most(struct thread_count *count, int steps, uint64_t many, uint64_t one) {
     int with_most = 0;
     for (int k = 0; k < steps; k++) {
-        with_most += count->now == count->most;
+        with_most += count->now == count->max;
         mf_thread_count_update(count,
-                               (count->now == count->most ? many : one) * (k % 3 == 0 ? 10 : 1));
+                               (count->now == count->max ? many : one) * (k % 3 == 0 ? 10 : 1));
     }
     return with_most;
 }

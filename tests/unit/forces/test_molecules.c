@@ -122,7 +122,7 @@ static double slow_energy_of(const struct simulation *simulation, const struct m
         for (int64_t m = 0; m < kind->count; m++)
             for (int n = 0; n < kind->terms[order]; n++) {
                 const struct topology_term *term = &kind->term[order][n];
-                uint32_t id[BONDED_MOST_TERM_BEADS];
+                uint32_t id[BONDED_MAX_TERM_BEADS];
                 double energy;
                 for (int k = 0; k < mf_bonded_kinds[order]->beads; k++)
                     id[k] = topology_id(kind, m, term->bead[k]);

@@ -12,7 +12,7 @@
 
 #include <math.h>
 
-enum { PARTICLES = 300, BINS = 20, MOST_PAIRS = 6, TYPES = 3 };
+enum { PARTICLES = 300, BINS = 20, MAX_PAIRS = 6, TYPES = 3 };
 
 static void ignore(void *context, const struct inverse_progress *progress) {
     (void)context, (void)progress;
@@ -21,7 +21,7 @@ static void ignore(void *context, const struct inverse_progress *progress) {
 /// One iteration from −k_B T ln g, of a target that is softer than the fluid's.
 static void iterate(struct inversion *inversion, const struct inverse_method *method,
                     const struct simulation_setup *scene, const double *pressure) {
-    static double g[MOST_PAIRS * BINS], error[MOST_PAIRS * BINS], pressure_error = 0.1;
+    static double g[MAX_PAIRS * BINS], error[MAX_PAIRS * BINS], pressure_error = 0.1;
     const struct inverse_listener listener = {ignore, NULL};
     const struct rdf_bins bins = {0, 0.05, BINS};
     const size_t count = (size_t)mf_composition_pairs(&scene->composition) * BINS;

@@ -97,19 +97,21 @@ static void test_hnc_closure_slope_is_that_of_the_closure_of_molecules(void **st
     assert_true(largest > 0.1 * small);
 }
 
-static void test_hnc_closure_least_inside_is_that_of_pairs_at_a_distance(void **state) {
+static void test_hnc_closure_min_intramolecular_is_that_of_pairs_at_a_distance(void **state) {
     (void)state;
     static const double longest_wave = -0.21723362821122166; // of sin x/x
-    double inside[BINS] = {0}, least;
+    double inside[BINS] = {0}, min;
     const size_t bin = 80;
     // 250 pairs, all in one bin, over those of an ideal gas.
     inside[bin] = 250 / (0.5 * 500 * 500 / 1000 *
                          mf_box_shell_volume(&box, mf_rdf_bins_edge(&bins, bin),
                                              mf_rdf_bins_edge(&bins, bin + 1)));
-    assert_ok(mf_hnc_closure_least_inside(&(struct hnc_liquid){&bins, &box, &one, inside}, &least));
-    assert_close(least, 1 + longest_wave, 2e-3);
-    assert_ok(mf_hnc_closure_least_inside(&(struct hnc_liquid){&bins, &box, &one, NULL}, &least));
-    assert_close(least, 1, 0);
+    assert_ok(
+        mf_hnc_closure_min_intramolecular(&(struct hnc_liquid){&bins, &box, &one, inside}, &min));
+    assert_close(min, 1 + longest_wave, 2e-3);
+    assert_ok(
+        mf_hnc_closure_min_intramolecular(&(struct hnc_liquid){&bins, &box, &one, NULL}, &min));
+    assert_close(min, 1, 0);
 }
 
 int main(void) {
@@ -117,7 +119,7 @@ int main(void) {
         cmocka_unit_test(test_hnc_closure_is_the_equation_by_hand_when_beads_have_partners),
         cmocka_unit_test(test_hnc_closure_has_no_indirect_part_in_an_ideal_gas_of_molecules),
         cmocka_unit_test(test_hnc_closure_slope_is_that_of_the_closure_of_molecules),
-        cmocka_unit_test(test_hnc_closure_least_inside_is_that_of_pairs_at_a_distance),
+        cmocka_unit_test(test_hnc_closure_min_intramolecular_is_that_of_pairs_at_a_distance),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -18,7 +18,7 @@ struct scene {
     struct inversion_state state;
     size_t place[BINS];
     bool seen[BINS], well_known[BINS];
-    double ideal[BINS], least[BINS], target[BINS], error[BINS], mean[BINS];
+    double ideal[BINS], min[BINS], target[BINS], error[BINS], mean[BINS];
     double comoment[BINS * BINS];
     double step[BINS];
 };
@@ -31,7 +31,7 @@ static void make(struct scene *scene, double rare) {
                             .well_known = {false, true},
                             .ideal = {1, 1}};
     for (int k = 0; k < BINS; k++) {
-        scene->least[k] = 0.3 / SAMPLES;
+        scene->min[k] = 0.3 / SAMPLES;
         scene->target[k] = (k == RARE ? 1 : 1000) * rare / SAMPLES;
         scene->error[k] = 0.1 * scene->target[k];
     }
@@ -42,7 +42,7 @@ static void make(struct scene *scene, double rare) {
                                                .seen = scene->seen,
                                                .well_known = scene->well_known},
                                       .target = {.ideal = scene->ideal,
-                                                 .least = scene->least,
+                                                 .min = scene->min,
                                                  .counts = scene->target,
                                                  .error = scene->error},
                                       .inefficiency = 1};

@@ -14,7 +14,7 @@
 
 #define FOLDER "tests/reference_data/votca/"
 
-enum { MOST = 170 };
+enum { MAX = 170 };
 
 /// The answers are printed with 10 digits; values up to 1.5 in spce, 0.4 in the mixture.
 static const double tolerance = 1e-9;
@@ -26,12 +26,12 @@ static const double ridge = 0.01, apart = 1e6;
 static void solve(const char *matrix_file, const char *excess_file, double lambda, double *x) {
     struct data_table matrix, excess;
     struct imc_solution solution;
-    double column[MOST], variance[MOST];
+    double column[MAX], variance[MAX];
     assert_ok(mf_data_table_read(&matrix, matrix_file, 1));
     assert_ok(mf_data_table_read(&excess, excess_file, 2));
     assert_int_equal(matrix.rows, matrix.columns);
     assert_int_equal(matrix.rows, excess.rows);
-    assert_in_range(matrix.rows, 1, MOST);
+    assert_in_range(matrix.rows, 1, MAX);
     for (size_t k = 0; k < matrix.rows * matrix.rows; k++)
         matrix.values[k] = -matrix.values[k];
     for (size_t k = 0; k < excess.rows; k++) {
@@ -63,7 +63,7 @@ static size_t compare(const char *file, const double *x) {
 static void test_imc_solve_gives_the_answer_of_votca_when_it_is_weak(void **state) {
     (void)state;
     // 0 would be chosen from the noise.
-    double x[MOST];
+    double x[MAX];
     solve(FOLDER "spce/CG-CG.gmc", FOLDER "spce/CG-CG.imc", 1e-18, x);
     assert_int_equal(compare(FOLDER "spce/CG-CG.dpot.imc", x), 67);
 }
@@ -71,12 +71,12 @@ static void test_imc_solve_gives_the_answer_of_votca_when_it_is_weak(void **stat
 static void
 test_imc_solve_gives_the_answer_of_votca_when_three_potentials_are_coupled(void **state) {
     (void)state;
-    double x[MOST];
+    double x[MAX];
     solve(FOLDER "LJ1-LJ2/group_1.gmc", FOLDER "LJ1-LJ2/group_1.imc", 1000, x);
     size_t begin = compare(FOLDER "LJ1-LJ2/LJ1-LJ1.dpot.imc", x);
     begin += compare(FOLDER "LJ1-LJ2/LJ2-LJ2.dpot.imc", x + begin);
     begin += compare(FOLDER "LJ1-LJ2/LJ1-LJ2.dpot.imc", x + begin);
-    assert_int_equal(begin, MOST);
+    assert_int_equal(begin, MAX);
 }
 
 int main(void) {

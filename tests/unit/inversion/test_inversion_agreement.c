@@ -34,11 +34,11 @@ static void make(struct made *made, gsl_rng *rng, double frames, double wrong) {
                                                .pairs_known = BINS,
                                                .known_bin = made->known_bin,
                                                .seen = made->seen},
-                                      .verdict = {.sections = 1,
-                                                  .section[0] = {.kind = TARGET_RDF,
-                                                                 .bins = BINS,
-                                                                 .known_count = BINS,
-                                                                 .peak = 1}},
+                                      .assessment = {.sections = 1,
+                                                     .section[0] = {.kind = TARGET_RDF,
+                                                                    .bins = BINS,
+                                                                    .known_count = BINS,
+                                                                    .peak = 1}},
                                       .target = {.ideal = made->unit,
                                                  .unit = made->unit,
                                                  .counts = made->target,
@@ -72,7 +72,7 @@ static double count_agreements(int trials, double wrong) {
     double agree = 0;
     for (int k = 0; k < trials; k++) {
         make(&made, rng, 100, wrong);
-        agree += inversion_section_agrees(mf_inversion_verdict_worst(&made.state.verdict)) /
+        agree += inversion_section_agrees(mf_inversion_assessment_worst(&made.state.assessment)) /
                  (double)trials;
     }
     gsl_rng_free(rng);
@@ -94,7 +94,7 @@ test_wrong_potential_does_not_agree_though_the_noise_of_rare_pairs_is_larger(voi
     static struct made made;
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
     make(&made, rng, 100, 0.05);
-    const struct inversion_section *section = &made.state.verdict.section[0];
+    const struct inversion_section *section = &made.state.assessment.section[0];
     print_message("rms %.3f of a noise of %.3f, chi^2 by bin %.2f of %.2f\n", section->rms,
                   section->noise, section->misfit, section->probable);
     assert_true(section->rms < 1.7 * section->noise);
@@ -125,7 +125,7 @@ static double mean_bound(uint32_t samples, uint32_t alike) {
         }
         made.state.replicas.counts = moments;
         mf_inversion_assess(&made.state);
-        sum += made.state.verdict.section[0].probable / TRIALS;
+        sum += made.state.assessment.section[0].probable / TRIALS;
         mf_comoments_clear(&moments);
     }
     gsl_rng_free(rng);
@@ -177,14 +177,14 @@ static void test_target_that_is_off_as_a_whole_agrees_where_its_factor_may_be(vo
         common[k] = prior * made.target[k];
     }
     mf_inversion_assess(&made.state);
-    print_message("without: %.2f\n", made.state.verdict.section[0].misfit);
-    assert_false(inversion_section_agrees(&made.state.verdict.section[0]));
+    print_message("without: %.2f\n", made.state.assessment.section[0].misfit);
+    assert_false(inversion_section_agrees(&made.state.assessment.section[0]));
     made.state.target.common = common;
     mf_inversion_assess(&made.state);
     mf_inversion_find_factor(&made.state, &factor);
-    print_message("with: %.2f of %.2f; factor %.4f\n", made.state.verdict.section[0].misfit,
-                  made.state.verdict.section[0].probable, factor.missing);
-    assert_true(inversion_section_agrees(&made.state.verdict.section[0]));
+    print_message("with: %.2f of %.2f; factor %.4f\n", made.state.assessment.section[0].misfit,
+                  made.state.assessment.section[0].probable, factor.missing);
+    assert_true(inversion_section_agrees(&made.state.assessment.section[0]));
     assert_true(fabs(factor.missing - (1 / moved - 1)) < 0.003);
     gsl_rng_free(rng);
 }
@@ -202,7 +202,7 @@ static void test_error_of_a_factor_is_no_noise_of_bins(void **state) {
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
     for (int trial = 0; trial < TRIALS; trial++) {
         make(&made, rng, 1000, 0);
-        alone += pow(made.state.verdict.section[0].noise, 2) / TRIALS;
+        alone += pow(made.state.assessment.section[0].noise, 2) / TRIALS;
         made.problem.targets.target[TARGET_RDF].factor_error = &prior;
         made.state.grid.pairs = made.state.grid.blocks = 1;
         made.state.grid.known_of = (size_t *)known_of;
@@ -213,9 +213,9 @@ static void test_error_of_a_factor_is_no_noise_of_bins(void **state) {
             common[k] = prior * made.target[k];
         }
         mf_inversion_assess(&made.state);
-        const struct target_distance *distance = &made.state.verdict.distance[TARGET_RDF];
-        squares += pow(made.state.verdict.section[0].rms, 2) / TRIALS;
-        noise += pow(made.state.verdict.section[0].noise, 2) / TRIALS;
+        const struct target_distance *distance = &made.state.assessment.distance[TARGET_RDF];
+        squares += pow(made.state.assessment.section[0].rms, 2) / TRIALS;
+        noise += pow(made.state.assessment.section[0].noise, 2) / TRIALS;
         whole += distance->rms * distance->rms / TRIALS;
         all += distance->noise * distance->noise / TRIALS;
     }

@@ -244,8 +244,7 @@ struct counted {
     double target[2], error[2], mean[2], variance[2];
 };
 
-static double least_error(struct counted *counted, const double target[2],
-                          const double sampled[2]) {
+static double min_error(struct counted *counted, const double target[2], const double sampled[2]) {
     static const double frames = 10;
     *counted = (struct counted){
         .problem.scene.temperature = temperature,
@@ -267,7 +266,7 @@ static double least_error(struct counted *counted, const double target[2],
         state->replicas.counts = (struct comoments){.size = 1, .mean = &counted->mean[s]};
         state->variance = &counted->variance[s];
     }
-    return mf_inversion_band_least(&counted->inversion, 0);
+    return mf_inversion_band_min_error(&counted->inversion, 0);
 }
 
 /// A core that the hot state enters and the cold one does not is known by what the hot one counted.
@@ -276,16 +275,16 @@ static void test_inversion_band_of_few_counts_is_that_of_the_states_that_have_an
     struct counted counted;
     const double five = scatter_of_logarithm(5), two = scatter_of_logarithm(2);
     const double none[2] = {0, 0}, one[2] = {0, 5}, both[2] = {3, 2}, few[2] = {2, 0};
-    assert_close(least_error(&counted, one, one), temperature * hypot(five, five), 1e-4);
-    assert_close(least_error(&counted, both, one), temperature * hypot(five, five), 1e-4);
-    assert_close(least_error(&counted, one, few), temperature * hypot(five, two), 1e-4);
+    assert_close(min_error(&counted, one, one), temperature * hypot(five, five), 1e-4);
+    assert_close(min_error(&counted, both, one), temperature * hypot(five, five), 1e-4);
+    assert_close(min_error(&counted, one, few), temperature * hypot(five, two), 1e-4);
     // Nobody has seen it: psi_1(1/2) is pi^2/2.
-    assert_close(least_error(&counted, none, none), temperature * M_PI, 1e-9);
+    assert_close(min_error(&counted, none, none), temperature * M_PI, 1e-9);
     // An exact target says all, and the samples what they have.
-    assert_true(least_error(&counted, one, one) > temperature * five);
+    assert_true(min_error(&counted, one, one) > temperature * five);
     counted.error[1] = 0;
     counted.variance[1] = 0.05;
-    assert_close(mf_inversion_band_least(&counted.inversion, 0), temperature * five, 1e-4);
+    assert_close(mf_inversion_band_min_error(&counted.inversion, 0), temperature * five, 1e-4);
 }
 
 /// Counts tell U/k_B T of the state that they are of: twice as hot, twice the error. Of many in
@@ -294,13 +293,13 @@ static void test_inversion_band_of_counts_goes_by_the_temperature_of_their_state
     (void)state;
     struct counted counted;
     const double hot[2] = {0, 5}, both[2] = {1e6, 4e6}, five = scatter_of_logarithm(5);
-    least_error(&counted, hot, hot);
+    min_error(&counted, hot, hot);
     counted.other.scene.temperature = 2 * temperature;
-    assert_close(mf_inversion_band_least(&counted.inversion, 0),
+    assert_close(mf_inversion_band_min_error(&counted.inversion, 0),
                  2 * temperature * hypot(five, five), 1e-4);
-    least_error(&counted, both, both);
+    min_error(&counted, both, both);
     counted.other.scene.temperature = 2 * temperature;
-    assert_close_relative(mf_inversion_band_least(&counted.inversion, 0),
+    assert_close_relative(mf_inversion_band_min_error(&counted.inversion, 0),
                           sqrt(2) * temperature / sqrt(1e6 + 4e6 / 4), 1e-4);
 }
 
@@ -325,10 +324,10 @@ static void test_inversion_band_of_a_group_has_what_its_bins_err_in_common(void 
         counts[k] = k % 2 ? 100 + d : 100 - d;
         error[k] = hypot(10, 30);
     }
-    assert_close(mf_inversion_band_least(&inversion, 8) * counts[8], temperature * 30, 0.2);
+    assert_close(mf_inversion_band_min_error(&inversion, 8) * counts[8], temperature * 30, 0.2);
     for (size_t k = 0; k < BINS; k++)
         error[k] = 9;
-    assert_close(mf_inversion_band_least(&inversion, 8), 0, 1e-12);
+    assert_close(mf_inversion_band_min_error(&inversion, 8), 0, 1e-12);
 }
 
 int main(void) {

@@ -18,10 +18,10 @@ static struct inversion *make_end(struct end *end, size_t groups) {
         .inversion = {.problem = &end->problem,
                       .state = &end->state,
                       .states = 1,
-                      .verdict = {.sections = 1, .section[0] = {.misfit = 1.5, .probable = 2}},
+                      .assessment = {.sections = 1, .section[0] = {.misfit = 1.5, .probable = 2}},
                       .course = {.most_probable = true,
-                                 .band.ways = {.ramp = {.way = -0.04, .open = 0.1},
-                                               .pressure[0] = {.way = 0.4, .open = 1}},
+                                 .band.drifts = {.ramp = {.drift = -0.04, .open = 0.1},
+                                                 .pressure[0] = {.drift = 0.4, .open = 1}},
                                  .progress.best.precise = true}}};
     return &end->inversion;
 }
@@ -30,16 +30,16 @@ static void test_fit_of_pairs_ends_when_it_agrees_once(void **state) {
     (void)state;
     struct end end;
     struct inversion *inversion = make_end(&end, 0);
-    inversion->verdict.section[0].misfit = 2.1;
+    inversion->assessment.section[0].misfit = 2.1;
     assert_false(mf_inversion_has_converged(inversion, true));
-    inversion->verdict.section[0].misfit = 1.5;
+    inversion->assessment.section[0].misfit = 1.5;
     assert_false(mf_inversion_has_converged(inversion, false));
-    inversion->course.band.ways.ramp.way = -0.06;
+    inversion->course.band.drifts.ramp.drift = -0.06;
     assert_false(mf_inversion_has_converged(inversion, true));
-    inversion->course.band.ways.ramp.way = -0.04;
-    inversion->course.band.ways.pressure[0].way = 0.9;
+    inversion->course.band.drifts.ramp.drift = -0.04;
+    inversion->course.band.drifts.pressure[0].drift = 0.9;
     assert_false(mf_inversion_has_converged(inversion, true));
-    inversion->course.band.ways.pressure[0].way = 0.4;
+    inversion->course.band.drifts.pressure[0].drift = 0.4;
     assert_true(mf_inversion_has_converged(inversion, true));
 }
 
@@ -49,22 +49,22 @@ static void test_fit_with_groups_ends_when_the_ways_of_three_iterations_cancel(v
     struct end end;
     struct inversion *inversion = make_end(&end, 1);
     assert_false(mf_inversion_has_converged(inversion, true));
-    inversion->course.band.ways.ramp.way = -0.07;
+    inversion->course.band.drifts.ramp.drift = -0.07;
     assert_false(mf_inversion_has_converged(inversion, true));
-    inversion->course.band.ways.ramp.way = 0.04;
+    inversion->course.band.drifts.ramp.drift = 0.04;
     assert_false(mf_inversion_has_converged(inversion, false)); // back to the one before
-    inversion->verdict.section[0].misfit = 2.1;
+    inversion->assessment.section[0].misfit = 2.1;
     assert_false(mf_inversion_has_converged(inversion, true));
-    inversion->verdict.section[0].misfit = 1.5;
-    inversion->course.band.ways.ramp.way = -0.2;
-    inversion->course.band.ways.pressure[0].way = 0.7;
+    inversion->assessment.section[0].misfit = 1.5;
+    inversion->course.band.drifts.ramp.drift = -0.2;
+    inversion->course.band.drifts.pressure[0].drift = 0.7;
     for (int k = 0; k < 4; k++)
         assert_false(mf_inversion_has_converged(inversion, true));
-    inversion->course.band.ways.ramp.way = 0.12;
+    inversion->course.band.drifts.ramp.drift = 0.12;
     assert_false(mf_inversion_has_converged(inversion, true));
-    inversion->course.band.ways.pressure[0].way = 0.3;
+    inversion->course.band.drifts.pressure[0].drift = 0.3;
     assert_false(mf_inversion_has_converged(inversion, true));
-    inversion->course.band.ways.ramp.way = -0.15; // the last three
+    inversion->course.band.drifts.ramp.drift = -0.15; // the last three
     assert_true(mf_inversion_has_converged(inversion, true));
 }
 
@@ -73,21 +73,21 @@ static void test_pressure_of_each_state_must_settle(void **state) {
     (void)state;
     struct end end;
     struct inversion *inversion = make_end(&end, 1);
-    struct inversion_band_way *pressure = inversion->course.band.ways.pressure;
+    struct inversion_band_drift *pressure = inversion->course.band.drifts.pressure;
     inversion->states = 2;
-    inversion->course.band.ways.ramp.way = 0;
+    inversion->course.band.drifts.ramp.drift = 0;
     pressure[1].open = 1;
-    for (int k = 0; k < INVERSION_MOST_WAYS - 1; k++) {
-        pressure[0].way = k % 2 ? 0.6 : 0.7;
-        pressure[1].way = k % 2 ? -0.7 : -0.6;
+    for (int k = 0; k < INVERSION_MAX_DRIFTS - 1; k++) {
+        pressure[0].drift = k % 2 ? 0.6 : 0.7;
+        pressure[1].drift = k % 2 ? -0.7 : -0.6;
         assert_false(mf_inversion_has_converged(inversion, true));
     }
-    inversion->course.progress.ways.met = 0;
+    inversion->course.progress.drifts.met = 0;
     for (int k = 0; k < 2; k++) {
-        pressure[0].way = pressure[1].way = k % 2 ? 0.7 : -0.7;
+        pressure[0].drift = pressure[1].drift = k % 2 ? 0.7 : -0.7;
         assert_false(mf_inversion_has_converged(inversion, true));
     }
-    pressure[0].way = pressure[1].way = 0.1;
+    pressure[0].drift = pressure[1].drift = 0.1;
     assert_true(mf_inversion_has_converged(inversion, true));
 }
 
@@ -100,16 +100,16 @@ static void test_fit_with_groups_ends_though_it_walks_on(void **state) {
     inversion->state->grid.points = 2;
     inversion->course.phi = phi;
     inversion->course.met_phi = met;
-    inversion->course.band.ways.ramp.way = -0.06;
+    inversion->course.band.drifts.ramp.drift = -0.06;
     for (int n = 0; n < 5; n++, phi[0] += 1)
         assert_false(mf_inversion_has_converged(inversion, true));
-    inversion->verdict.section[0].misfit = 2.1;
+    inversion->assessment.section[0].misfit = 2.1;
     assert_false(mf_inversion_has_converged(inversion, true));
-    inversion->verdict.section[0].misfit = 1.5;
-    for (int n = 0; n < INVERSION_MOST_WAYS - 1; n++, phi[0] += 1)
+    inversion->assessment.section[0].misfit = 1.5;
+    for (int n = 0; n < INVERSION_MAX_DRIFTS - 1; n++, phi[0] += 1)
         assert_false(mf_inversion_has_converged(inversion, true));
     assert_true(mf_inversion_has_converged(inversion, true));
-    assert_true(inversion->course.walked);
+    assert_true(inversion->course.not_stationary);
     assert_true(met[0] == 5);
 }
 
@@ -119,11 +119,11 @@ static void test_fit_with_groups_ends_at_once_where_nothing_must_settle(void **s
     struct end end;
     struct inversion *inversion = make_end(&end, 1);
     end.state.grid.pairs = 0;
-    inversion->course.band.ways.ramp.way = 1;
+    inversion->course.band.drifts.ramp.drift = 1;
     assert_true(mf_inversion_has_converged(inversion, true));
     inversion = make_end(&end, 1);
     end.problem.targets.target[TARGET_PRESSURE].count = 1;
-    inversion->course.band.ways.ramp.way = 1;
+    inversion->course.band.drifts.ramp.drift = 1;
     assert_true(mf_inversion_has_converged(inversion, true));
 }
 
@@ -132,17 +132,17 @@ static void test_fit_ends_when_all_sections_agree(void **state) {
     (void)state;
     struct end end;
     struct inversion *inversion = make_end(&end, 0);
-    inversion->verdict.sections = 2;
-    inversion->verdict.section[1] = (struct inversion_section){.misfit = 2.5, .probable = 2.4};
+    inversion->assessment.sections = 2;
+    inversion->assessment.section[1] = (struct inversion_section){.misfit = 2.5, .probable = 2.4};
     assert_false(mf_inversion_has_converged(inversion, true));
-    inversion->verdict.section[1].misfit = 2.3;
+    inversion->assessment.section[1].misfit = 2.3;
     assert_true(mf_inversion_has_converged(inversion, true));
 }
 
 /// Present samples are off by chance where the mean of three potentials near the target is not.
 static void test_fit_that_forgets_ends_when_its_mean_or_its_last_potential_agrees(void **state) {
     (void)state;
-    const struct inversion_rule rule = {.forgets = true};
+    const struct inversion_rule rule = {.memoryless = true};
     const struct inverse_method method = {.own = &rule};
     size_t known_bin[] = {0};
     bool seen[] = {true};
@@ -151,9 +151,9 @@ static void test_fit_that_forgets_ends_when_its_mean_or_its_last_potential_agree
     struct inversion *inversion = make_end(&end, 0);
     inversion->method = &method;
     inversion->course.most_probable = false;
-    inversion->verdict.section[0] =
+    inversion->assessment.section[0] =
         (struct inversion_section){.misfit = 2.5, .probable = 2, .known_count = 1, .bins = 1};
-    end.state.verdict = inversion->verdict;
+    end.state.assessment = inversion->assessment;
     end.state.grid.known = 1;
     end.state.grid.known_bin = known_bin;
     end.state.grid.seen = seen;
@@ -169,7 +169,7 @@ static void test_fit_that_forgets_ends_when_its_mean_or_its_last_potential_agree
     assert_false(mf_inversion_has_converged(inversion, true));
     // The mean follows a slow fit at a distance: ibi of soft beads met its target for eight
     // iterations, and its mean, which has less noise, did not.
-    inversion->verdict.section[0].misfit = 1.5;
+    inversion->assessment.section[0].misfit = 1.5;
     assert_true(mf_inversion_has_converged(inversion, true));
 }
 

@@ -9,16 +9,16 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { BINS = 10, PARTICLES = 100, REPLICAS = 4, MOST_WORDS = 64 };
+enum { BINS = 10, PARTICLES = 100, REPLICAS = 4, MAX_WORDS = 64 };
 
 struct told {
-    struct inverse_progress word[MOST_WORDS];
+    struct inverse_progress word[MAX_WORDS];
     int words;
 };
 
 static void hear(void *context, const struct inverse_progress *progress) {
     struct told *told = context;
-    assert_true(told->words < MOST_WORDS);
+    assert_true(told->words < MAX_WORDS);
     told->word[told->words++] = *progress;
 }
 
@@ -53,7 +53,7 @@ static double observe(double target, double precision, struct told *told) {
     *told = (struct told){0};
     assert_ok(mf_inversion_create(inversion, &mf_imc, &problem, &settings));
     assert_ok(mf_inversion_observe(inversion, &(struct inverse_listener){hear, told}));
-    const double noise = inversion->verdict.own_noise;
+    const double noise = inversion->assessment.own_noise;
     mf_inversion_destroy(inversion);
     free(inversion);
     fluid_clear(&fluid);
@@ -81,7 +81,7 @@ static void test_doublings_tell_a_noise_that_falls_to_what_is_wanted(void **stat
         const struct inverse_doubling *now = &told.word[k].doubling;
         // Once before the doubling, once after each replica.
         assert_int_equal(now->number, 1 + (k - REPLICAS) / (1 + REPLICAS));
-        assert_in_range(now->number, 1, now->most);
+        assert_in_range(now->number, 1, now->max);
         // A third of what is off, which is the noise of now, while that is more.
         assert_true(now->wanted >= wanted && now->wanted < 2 * wanted);
         assert_true(now->noise > now->wanted);
@@ -99,9 +99,9 @@ static void test_doublings_end_with_the_last_that_was_told(void **state) {
     static struct told told;
     const double wanted = 1e-6, left = observe(1, wanted, &told);
     const struct inverse_doubling *last = &told.word[told.words - 1].doubling;
-    assert_int_equal(last->number, last->most);
+    assert_int_equal(last->number, last->max);
     assert_true(left > wanted);
-    assert_int_equal(told.words, REPLICAS + last->most * (1 + REPLICAS));
+    assert_int_equal(told.words, REPLICAS + last->max * (1 + REPLICAS));
 }
 
 /// The innermost bin has so few pairs that its noise, over all bins, is more than a third of what g

@@ -27,7 +27,7 @@ static struct inversion *begin(struct fit *fit, bool pressure) {
 
 /// Samples say that g is this far off; what is kept becomes the best, as in an iteration.
 static bool keeps(struct inversion *inversion, double rms, double noise) {
-    struct target_distance *distance = inversion->verdict.distance;
+    struct target_distance *distance = inversion->assessment.distance;
     struct inversion_best_samples *best = &inversion->course.progress.best;
     distance[TARGET_RDF] = (struct target_distance){.rms = rms, .noise = noise};
     const bool kept = mf_inversion_keeps(inversion);
@@ -62,7 +62,7 @@ static void test_inversion_keeps_no_slow_divergence(void **state) {
         error *= 1.6;
     assert_in_range(kept, 1, 3);
     assert_true(inversion->course.progress.best.distance[TARGET_RDF].rms <= 3 * 0.01);
-    assert_true(inversion->course.progress.least[TARGET_RDF].rms == 0.01);
+    assert_true(inversion->course.progress.min[TARGET_RDF].rms == 0.01);
 }
 
 /// Several targets count in units of their noise; a new start begins anew.
@@ -70,11 +70,12 @@ static void test_inversion_keeps_by_all_targets_since_its_start(void **state) {
     (void)state;
     struct fit fit;
     struct inversion *inversion = begin(&fit, true);
-    inversion->verdict.distance[TARGET_PRESSURE] = (struct target_distance){.rms = 1, .noise = 1};
+    inversion->assessment.distance[TARGET_PRESSURE] =
+        (struct target_distance){.rms = 1, .noise = 1};
     assert_true(keeps(inversion, 0.01, 0.01));
-    inversion->verdict.distance[TARGET_PRESSURE].rms = 3.1;
+    inversion->assessment.distance[TARGET_PRESSURE].rms = 3.1;
     assert_true(keeps(inversion, 0.01, 0.01)); // sqrt(1 + 9.6) of sqrt(2) + 2
-    inversion->verdict.distance[TARGET_PRESSURE].rms = 3.4;
+    inversion->assessment.distance[TARGET_PRESSURE].rms = 3.4;
     assert_false(keeps(inversion, 0.01, 0.01));
     inversion->course.progress.best.distance[TARGET_RDF].rms = INFINITY;
     assert_true(keeps(inversion, 0.5, 0.01));
@@ -96,14 +97,14 @@ static void test_inversion_shortens_steps_that_go_too_far(void **state) {
         struct inversion inversion = {
             .state = &made,
             .states = 1,
-            .verdict = {.sections = 1, .section[0] = {.misfit = 100, .probable = 2}},
+            .assessment = {.sections = 1, .section[0] = {.misfit = 100, .probable = 2}},
             .course = {.phi = &phi,
                        .step = &step,
                        .best = {.phi = &best, .step = &best_step},
                        .progress.damping = 1}};
         mf_inversion_relax(&inversion);
         assert_close(inversion.course.progress.damping, k == 0 ? 1 / slope : 1, 1e-12);
-        inversion.verdict.section[0].misfit = 1; // noise points anywhere
+        inversion.assessment.section[0].misfit = 1; // noise points anywhere
         inversion.course.progress.damping = 0.5;
         mf_inversion_relax(&inversion);
         assert_close(inversion.course.progress.damping, 0.75, 1e-12);
@@ -130,8 +131,8 @@ static void test_inversion_goes_back_for_the_part_of_which_its_samples_tell(void
         inversion->course.best.counts = best;
         inversion->course.progress.damping = 1;
         assert_true(keeps(inversion, 0.1, 0.01));
-        inversion->verdict.distance[TARGET_RDF].rms = 1;
-        assert_ok(mf_inversion_course_judge(inversion, &kept));
+        inversion->assessment.distance[TARGET_RDF].rms = 1;
+        assert_ok(mf_inversion_course_accept(inversion, &kept));
         assert_false(kept);
         assert_close(inversion->course.progress.damping, cases[k].damping, 1e-6);
     }
@@ -142,12 +143,12 @@ static void test_inversion_knows_directions_by_its_samples(void **state) {
     (void)state;
     struct fit fit;
     struct inversion *inversion = begin(&fit, false);
-    inversion->verdict.sections = 1;
-    inversion->verdict.section[0] = (struct inversion_section){.misfit = 100, .probable = 2};
+    inversion->assessment.sections = 1;
+    inversion->assessment.section[0] = (struct inversion_section){.misfit = 100, .probable = 2};
     fit.state.response.independent = 900;
     assert_true(mf_imc_is_known(inversion, 99));
     assert_false(mf_imc_is_known(inversion, 101));
-    inversion->verdict.section[0].misfit = 1; // near
+    inversion->assessment.section[0].misfit = 1; // near
     assert_true(mf_imc_is_known(inversion, 101));
 }
 
@@ -168,7 +169,7 @@ static void make_one_bin(struct one_bin *one, double response) {
                  .points = 1,
                  .known_bin = &one->bin,
                  .known_point = &one->point},
-        .verdict = {.sections = 1, .section[0] = {.misfit = 1, .probable = 2}},
+        .assessment = {.sections = 1, .section[0] = {.misfit = 1, .probable = 2}},
         .target.error = &one->target_error,
         .response.covariance = &one->covariance,
         .excess = &one->excess,
@@ -228,7 +229,7 @@ static void test_inversion_pool_steps_with_a_fifth_of_the_noise(void **state) {
     assert_close(one.variance, 0.2, 1e-6);
     assert_close(worth, 5, 1e-6);
     // What is far off begins anew.
-    made->verdict.section[0].misfit = 9.1;
+    made->assessment.section[0].misfit = 9.1;
     mf_inversion_pool(made);
     assert_true(made->pool.samples == 0);
     gsl_rng_free(rng);
@@ -239,7 +240,7 @@ static void test_inversion_pool_of_coefficients_goes_by_their_gradient(void **st
     (void)state;
     struct one_bin one;
     make_one_bin(&one, 4);
-    one.state.verdict.section[0].misfit = 900;
+    one.state.assessment.section[0].misfit = 900;
     mf_inversion_pool(&one.state);
     assert_true(one.state.pool.samples == 0);
     one.state.basis.count = 1;
@@ -258,7 +259,7 @@ static void test_inversion_pool_of_coefficients_goes_by_their_gradient(void **st
 /// by more; other methods end with the potential that was sampled.
 static void test_inversion_ends_with_the_step_that_is_left_or_the_mean(void **state) {
     (void)state;
-    const struct inversion_rule forgetting = {.forgets = true}, other = {.forgets = false};
+    const struct inversion_rule forgetting = {.memoryless = true}, other = {.memoryless = false};
     struct inverse_method method = {.own = &other};
     struct inverse_problem problem = {0};
     size_t known_point[] = {0, 1}, known_bin[] = {0, 1};

@@ -38,7 +38,7 @@ static struct inversion *make_fit(struct fit *fit, double rms, bool pressure) {
 
 static void assert_says(const struct inversion *inversion, const char *words) {
     char reason[INVERSE_REASON_SIZE];
-    mf_inversion_reason_tell(inversion, reason);
+    mf_inversion_reason_write(inversion, reason);
     assert_contains(reason, words);
     assert_true(strlen(reason) + 1 < INVERSE_REASON_SIZE);
 }
@@ -97,7 +97,7 @@ static void test_inversion_reason_is_what_has_not_settled(void **state) {
     (void)state;
     struct fit fit;
     struct inversion *inversion = make_fit(&fit, 0.3, false);
-    inversion->verdict.unsettled = (struct inversion_unsettled){
+    inversion->assessment.unequilibrated = (struct inversion_unequilibrated){
         .found = true,
         .for_long = true,
         .quantity = "R_g^2 of the molecules",
@@ -105,9 +105,9 @@ static void test_inversion_reason_is_what_has_not_settled(void **state) {
         .is = {.drift = 0.3, .memory = 1e-9, .drift_ratio = 2, .memory_ratio = 25}};
     assert_says(inversion, "not in equilibrium after 52800 sweeps of each replica: R_g^2 of the "
                            "molecules differs between replicas, 5 times as much");
-    inversion->verdict.unsettled.is = (struct stationary){1e-9, 0.3, 16, 2};
+    inversion->assessment.unequilibrated.is = (struct stationary){1e-9, 0.3, 16, 2};
     assert_says(inversion, "R_g^2 of the molecules still changes, 4 times as much");
-    inversion->verdict.unsettled.for_long = false;
+    inversion->assessment.unequilibrated.for_long = false;
     assert_says(inversion, "after 30 iterations");
 }
 
@@ -126,7 +126,7 @@ static void test_inversion_reason_is_a_target_that_is_off_as_a_whole(void **stat
     assert_says(inversion, "too small as a whole by 0.4 %");
     assert_says(inversion, "\"normalisation\" allow by 0.1 %");
     double excess[] = {9, 9, 5, 2, 1};
-    inversion->trail = (struct inversion_trail){.bins = 1, .iterations = 5, .excess = excess};
+    inversion->history = (struct inversion_history){.bins = 1, .iterations = 5, .excess = excess};
     assert_says(inversion, "after 30 iterations"); // it still improves
     excess[4] = 4.9;
     assert_says(inversion, "too small as a whole by 0.4 %");
@@ -147,7 +147,7 @@ static void test_inversion_reason_of_groups_is_the_one_that_is_off(void **state)
     inversion->course.progress.best.worst =
         (struct inversion_section){.kind = bond, .misfit = 3.4, .probable = 1.9};
     fit.state.grid.groups = 1;
-    fit.state.verdict.sections = 1;
+    fit.state.assessment.sections = 1;
     assert_says(inversion, "the error of bond_lengths is 0.3, its statistical error 0.2, and "
                            "chi^2 by bin is 3.4 where noise makes 1.9");
     inversion->course.progress.best.worst.misfit = 1.8;

@@ -24,7 +24,7 @@ struct scene {
     struct imc_shape shape;
     size_t place[BINS];
     bool seen[BINS];
-    double p[BINS], ideal[BINS], least[BINS], error[BINS], mean[BINS], variance[BINS], phi[BINS];
+    double p[BINS], ideal[BINS], min[BINS], error[BINS], mean[BINS], variance[BINS], phi[BINS];
 };
 
 static double parabola(double x) {
@@ -54,7 +54,7 @@ static void make(struct scene *scene, double (*truth)(double), double peak) {
         scene->place[k] = k;
         scene->seen[k] = true;
         scene->ideal[k] = 1;
-        scene->least[k] = 0.3;
+        scene->min[k] = 0.3;
         scene->expected[k] = peak * exp(-scene->truth[k] / 1.5);
     }
     scene->inversion = (struct inversion){.method = &scene->method,
@@ -73,7 +73,7 @@ static void make(struct scene *scene, double (*truth)(double), double peak) {
                                                      .seen = scene->seen},
                                             .target = {.shape = &scene->shape,
                                                        .ideal = scene->ideal,
-                                                       .least = scene->least,
+                                                       .min = scene->min,
                                                        .counts = scene->target,
                                                        .error = scene->error},
                                             .variance = scene->variance};
@@ -182,7 +182,7 @@ static void test_result_of_a_method_that_forgets_goes_the_rest_of_the_way(void *
     (void)state;
     make(&scene, parabola, 400);
     assert_true(find_deviation(&scene, 0.5, true) > 1.5);
-    rule->forgets = true;
+    rule->memoryless = true;
     assert_true(find_deviation(&scene, 0.5, true) < 1.25);
     mf_memory_free(scene.inversion.smoothness);
 }
@@ -200,11 +200,11 @@ static void test_error_of_few_counts_is_that_of_those_expected(void **state) {
         .problem = &problem,
         .parameters = &parameters,
         .grid = {.known = THREE, .known_bin = bin, .seen = seen, .well_known = well_known},
-        .verdict = {.sections = 1,
-                    .section[0] = {.kind = mf_bonded_distribution_kind(BONDED_BOND),
-                                   .bins = THREE,
-                                   .known_count = THREE,
-                                   .peak = 100}},
+        .assessment = {.sections = 1,
+                       .section[0] = {.kind = mf_bonded_distribution_kind(BONDED_BOND),
+                                      .bins = THREE,
+                                      .known_count = THREE,
+                                      .peak = 100}},
         .target = {.ideal = unit, .unit = unit, .counts = target, .error = error},
         .excess = excess,
         .variance = variance};
@@ -216,7 +216,7 @@ static void test_error_of_few_counts_is_that_of_those_expected(void **state) {
     assert_close(variance[1], 9, 1e-9);
     assert_close(variance[2], 90, 1e-9);
     // (s² + s⁴/(2 e²))/n of the samples' own s² = 1e-12.
-    assert_close(made.verdict.distance[mf_bonded_distribution_kind(BONDED_BOND)].variance,
+    assert_close(made.assessment.distance[mf_bonded_distribution_kind(BONDED_BOND)].variance,
                  1e-12 / THREE, 1e-3 * 1e-12);
 }
 

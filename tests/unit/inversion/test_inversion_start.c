@@ -107,14 +107,14 @@ static void test_inversion_start_is_poor_when_g_is_far_off_under_tension(void **
     struct made made;
     make(&made, INVERSION_FROM_HNC);
     assert_ok(mf_inversion_create(&made.inversion, &mf_imc, &made.problem, &made.settings));
-    made.inversion.verdict.distance[TARGET_RDF].rms = 0.5;
+    made.inversion.assessment.distance[TARGET_RDF].rms = 0.5;
     made.inversion.state->pressure.value = 0.1;
     assert_false(mf_inversion_start_is_poor(&made.inversion, true));
     made.inversion.state->pressure.value = -4;
     assert_true(mf_inversion_start_is_poor(&made.inversion, true));
-    made.inversion.verdict.distance[TARGET_RDF].rms = 0.01;
+    made.inversion.assessment.distance[TARGET_RDF].rms = 0.01;
     assert_false(mf_inversion_start_is_poor(&made.inversion, true));
-    made.inversion.verdict.distance[TARGET_RDF].rms = 0.5;
+    made.inversion.assessment.distance[TARGET_RDF].rms = 0.5;
     made.inversion.course.progress.iteration = 1;
     assert_false(mf_inversion_start_is_poor(&made.inversion, true));
     assert_true(mf_inversion_start_is_poor(&made.inversion, false));
@@ -174,7 +174,7 @@ static void test_inversion_band_widens_when_more_than_noise_is_left(void **state
         for (size_t a = 0; a < inversion->state->grid.known; a++)
             inversion->state->excess[a] =
                 (a % 2 ? noises : -noises) * sqrt(inversion->state->variance[a]);
-        inversion->verdict.misfit = noises * noises;
+        inversion->assessment.misfit = noises * noises;
         assert_ok(mf_inversion_band_find(inversion));
         error[left] = inversion->course.band.error[inversion->state->grid.known_point[30]];
     }
@@ -203,24 +203,24 @@ static void test_inversion_band_counts_the_ramp_that_is_asked_for(void **state) 
                 inversion->state->response.covariance[a * grid->known + b] * ramp *
                 mf_potential_grid_ramp(grid, grid->known_point[b]) / made.problem.scene.temperature;
     }
-    inversion->verdict.misfit = 1;
+    inversion->assessment.misfit = 1;
     assert_ok(mf_inversion_band_find(inversion));
     const struct inverse_ramp found = inversion->course.band.ramp;
-    print_message("ramp %.3f, asked for %.3f, error %.3f\n", ramp, found.way, found.error);
-    assert_true(fabs(found.way - ramp) < 0.2 * ramp);
-    assert_true(found.error > fabs(found.way));
+    print_message("ramp %.3f, asked for %.3f, error %.3f\n", ramp, found.drift, found.error);
+    assert_true(fabs(found.drift - ramp) < 0.2 * ramp);
+    assert_true(found.error > fabs(found.drift));
     // What the way is compared with is what the data know of it, whatever they ask for: twice the
     // excess asks for twice the way.
-    const struct inversion_band_ways once = inversion->course.band.ways;
+    const struct inversion_band_drifts once = inversion->course.band.drifts;
     for (size_t a = 0; a < grid->known; a++)
         inversion->state->excess[a] *= 2;
     assert_ok(mf_inversion_band_find(inversion));
-    const struct inversion_band_ways twice = inversion->course.band.ways;
-    print_message("way %.3f of %.3f, and %.3f of %.3f\n", once.ramp.way, once.ramp.open,
-                  twice.ramp.way, twice.ramp.open);
-    assert_close_relative(twice.ramp.way, 2 * once.ramp.way, 1e-6);
+    const struct inversion_band_drifts twice = inversion->course.band.drifts;
+    print_message("way %.3f of %.3f, and %.3f of %.3f\n", once.ramp.drift, once.ramp.open,
+                  twice.ramp.drift, twice.ramp.open);
+    assert_close_relative(twice.ramp.drift, 2 * once.ramp.drift, 1e-6);
     assert_close_relative(twice.ramp.open, once.ramp.open, 1e-6);
-    assert_close_relative(twice.pressure[0].way, 2 * once.pressure[0].way, 1e-6);
+    assert_close_relative(twice.pressure[0].drift, 2 * once.pressure[0].drift, 1e-6);
     assert_close_relative(twice.pressure[0].open, once.pressure[0].open, 1e-6);
     clear(&made);
 }
@@ -233,7 +233,7 @@ static void test_inversion_band_looks_at_the_pressures_of_all_states(void **stat
     struct inverse_step step;
     const struct inverse_listener listener = {ignore, NULL};
     static struct inversion_state states[2];
-    struct inversion_band_way farthest[2], ways[2];
+    struct inversion_band_drift farthest[2], drifts[2];
     bool kept;
     make(&made, INVERSION_FROM_MEAN_FORCE);
     made.settings.samples = 200;
@@ -256,24 +256,25 @@ static void test_inversion_band_looks_at_the_pressures_of_all_states(void **stat
         states[0].pressure.slope = slope[n];
         states[1].pressure.slope = slope[1 - n];
         assert_ok(mf_inversion_band_find(inversion));
-        ways[n] = inversion->course.band.ways.pressure[0];
+        drifts[n] = inversion->course.band.drifts.pressure[0];
         farthest[n] = mf_inversion_band_farthest(inversion);
     }
     // A verification judges each state by the noise of its own samples.
-    states[0].verdict.distance[TARGET_RDF].noise = 0.01;
-    states[1].verdict.distance[TARGET_RDF].noise = 0.03;
-    assert_ok(mf_inversion_course_judge(inversion, &kept));
+    states[0].assessment.distance[TARGET_RDF].noise = 0.01;
+    states[1].assessment.distance[TARGET_RDF].noise = 0.03;
+    assert_ok(mf_inversion_course_accept(inversion, &kept));
     assert_close(inversion->course.progress.best.noise[0], 0.01, 1e-15);
     assert_close(inversion->course.progress.best.noise[1], 0.03, 1e-15);
     inversion->state = first;
     inversion->states = 1;
     free(other);
-    const double ratio[2] = {fabs(ways[0].way) / ways[0].open, fabs(ways[1].way) / ways[1].open};
+    const double ratio[2] = {fabs(drifts[0].drift) / drifts[0].open,
+                             fabs(drifts[1].drift) / drifts[1].open};
     const int farther = ratio[1] > ratio[0];
     print_message("ways of %.3f and %.3f errors\n", ratio[0], ratio[1]);
     for (int n = 0; n < 2; n++) {
-        assert_close(farthest[n].way, ways[farther].way, 1e-9);
-        assert_close(farthest[n].open, ways[farther].open, 1e-9);
+        assert_close(farthest[n].drift, drifts[farther].drift, 1e-9);
+        assert_close(farthest[n].open, drifts[farther].open, 1e-9);
     }
     clear(&made);
 }

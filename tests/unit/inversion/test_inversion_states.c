@@ -2,7 +2,7 @@
 //
 // The mean of the coarse steps of several states: each one's constant of a group is of no
 // consequence, and a bin that one state has not seen is the other's alone.
-#include "inversion/inversion_coarse.h"
+#include "inversion/inversion_low_rank.h"
 #include "inversion/inversion_state.h"
 #include "inversion/inversion_states.h"
 #include "shared/is_close.h"
@@ -24,7 +24,7 @@ struct made {
     struct inverse_problem problem[STATES];
     const struct inverse_problem *problems[STATES];
     struct inversion_state state[STATES];
-    double target[STATES][BINS], none[BINS], one[BINS], least[BINS], counts[STATES][BINS],
+    double target[STATES][BINS], none[BINS], one[BINS], min[BINS], counts[STATES][BINS],
         variance[STATES][BINS], covariance[STATES][BINS * BINS];
 };
 
@@ -75,23 +75,23 @@ static void sample_state(struct made *made, size_t s, double factor) {
     }
     state->target = (struct inversion_target){.ideal = made->one,
                                               .unit = made->one,
-                                              .least = made->least,
+                                              .min = made->min,
                                               .counts = made->target[s],
                                               .error = made->none};
     state->variance = made->variance[s];
     state->response.covariance = made->covariance[s];
     state->replicas.counts = (struct comoments){.count = sampled, .mean = made->counts[s]};
     state->inefficiency = 1;
-    state->verdict.sections = 1;
-    state->verdict.section[0] =
+    state->assessment.sections = 1;
+    state->assessment.section[0] =
         (struct inversion_section){.known_count = BINS, .rms = 1, .noise = 0, .bins = BINS};
-    assert_ok(mf_inversion_coarse_init(state));
+    assert_ok(mf_inversion_low_rank_init(state));
 }
 
 static void make(struct made *made, const double factor[STATES]) {
     *made = (struct made){.none = {0}};
     for (size_t k = 0; k < BINS; k++)
-        made->least[k] = 0.01;
+        made->min[k] = 0.01;
     made->composition =
         molecules_topology(&made->molecules.topology, molecules_chain(20, types, 2, 1, 0),
                            (struct topology_kind){0}, 1, NULL);
@@ -104,7 +104,7 @@ static void make(struct made *made, const double factor[STATES]) {
 
 static void clear(struct made *made) {
     for (size_t s = 0; s < STATES; s++) {
-        mf_inversion_basis_clear(&made->state[s].coarse);
+        mf_inversion_basis_clear(&made->state[s].low_rank);
         mf_potential_grid_clear(&made->state[s].grid);
     }
     mf_molecules_clear(&made->molecules);
@@ -119,7 +119,7 @@ static void test_constants_of_states_do_not_bend_the_mean(void **state) {
     (void)state;
     for (size_t n = 0; n < 2; n++) {
         make(&made, factors[n]);
-        assert_ok(mf_inversion_states_coarse_step(made.state, STATES, step));
+        assert_ok(mf_inversion_states_low_rank_step(made.state, STATES, step));
         const size_t *point = made.state[0].grid.known_point;
         const double constant = step[point[FIRST]] - wanted(FIRST);
         for (size_t k = 0; k < BINS; k++)
@@ -135,11 +135,11 @@ static void test_what_a_state_has_not_seen_is_no_news_of_it(void **state) {
     double step[3 * BINS] = {0}, again[3 * BINS] = {0};
     (void)state;
     make(&made, factor);
-    assert_ok(mf_inversion_states_coarse_step(made.state, STATES, step));
+    assert_ok(mf_inversion_states_low_rank_step(made.state, STATES, step));
     for (size_t k = 0; k < BINS; k++)
         assert_int_equal(made.state[0].grid.seen[k], is_seen(0, k));
     made.counts[0][0] = 4000;
-    assert_ok(mf_inversion_states_coarse_step(made.state, STATES, again));
+    assert_ok(mf_inversion_states_low_rank_step(made.state, STATES, again));
     for (size_t k = 0; k < made.state[0].grid.points; k++)
         assert_close(step[k], again[k], 1e-12);
     clear(&made);

@@ -12,7 +12,7 @@ static void add(struct faults *faults, const char *const *lines) {
         mf_faults_add(faults, *lines);
 }
 
-static const char *told(const struct faults *faults) {
+static const char *reported(const struct faults *faults) {
     return mf_faults_status(faults) == STATUS_OK ? "" : mf_status_message();
 }
 
@@ -21,7 +21,7 @@ static void test_faults_add_tells_a_line_once(void **state) {
     struct faults faults;
     add(&faults, (const char *const[]){"f: a", "f: ab", "f: a", "f: b", "f: b", NULL});
     assert_int_equal(faults.count, 3);
-    assert_string_equal(told(&faults), "f: a\nf: ab\nf: b");
+    assert_string_equal(reported(&faults), "f: a\nf: ab\nf: b");
 }
 
 static void test_faults_take_back_the_line_that_begins_so(void **state) {
@@ -38,10 +38,10 @@ static void test_faults_take_back_the_line_that_begins_so(void **state) {
         struct faults faults;
         add(&faults, lines);
         mf_faults_take_back(&faults, cases[k].words);
-        assert_string_equal(told(&faults), cases[k].left);
+        assert_string_equal(reported(&faults), cases[k].left);
         mf_faults_add(&faults, "f: e");
         assert_int_equal(faults.length, strlen(faults.text));
-        assert_contains(told(&faults), "x\nf: e");
+        assert_contains(reported(&faults), "x\nf: e");
     }
 }
 
@@ -53,22 +53,22 @@ static void test_faults_are_none_when_all_are_taken_back(void **state) {
     assert_ok(mf_faults_status(&faults));
     mf_faults_take_back(&faults, "f: a");
     mf_faults_add(&faults, "f: b");
-    assert_string_equal(told(&faults), "f: b");
+    assert_string_equal(reported(&faults), "f: b");
 }
 
 /// Of more faults than are told, one that is taken back leaves the rest counted.
 static void test_faults_are_counted_when_there_are_too_many(void **state) {
     (void)state;
     struct faults faults = {0};
-    for (int k = 0; k < FAULTS_TOLD + 5; k++) {
+    for (int k = 0; k < FAULTS_REPORTED + 5; k++) {
         char line[16];
         snprintf(line, sizeof line, "f: %d.", k);
         mf_faults_add(&faults, line);
     }
-    assert_contains(told(&faults), "\n… and 5 more faults");
+    assert_contains(reported(&faults), "\n… and 5 more faults");
     mf_faults_take_back(&faults, "f: 3.");
-    assert_contains(told(&faults), "\n… and 5 more faults");
-    assert_null(strstr(told(&faults), "f: 3."));
+    assert_contains(reported(&faults), "\n… and 5 more faults");
+    assert_null(strstr(reported(&faults), "f: 3."));
 }
 
 int main(void) {

@@ -329,7 +329,7 @@ static void test_json_open_refuses_more_keys_than_can_be_looked_for(void **state
     char *text = malloc(MANY * 16 + 16), *end = text;
     struct json_document *document = NULL;
     assert_non_null(text);
-    for (int count = JSON_MOST_MEMBERS; count <= MANY; count += MANY - JSON_MOST_MEMBERS) {
+    for (int count = JSON_MAX_MEMBERS; count <= MANY; count += MANY - JSON_MAX_MEMBERS) {
         end = text + sprintf(text, "{\"a\": {");
         for (int k = 0; k < count; k++)
             end += sprintf(end, "%s\"k%d\": 1", k ? ", " : "", k);
@@ -337,7 +337,7 @@ static void test_json_open_refuses_more_keys_than_can_be_looked_for(void **state
         const double begun = clock_thread_seconds();
         const enum status status = mf_json_open(&document, write_text(state, text));
         assert_true(clock_thread_seconds() - begun < 10);
-        assert_int_equal(status, count > JSON_MOST_MEMBERS ? STATUS_BAD_INPUT : STATUS_OK);
+        assert_int_equal(status, count > JSON_MAX_MEMBERS ? STATUS_BAD_INPUT : STATUS_OK);
         if (status == STATUS_OK)
             assert_ok(mf_json_close(document, STATUS_OK));
     }
@@ -376,11 +376,11 @@ static void test_json_collect_files_finds_what_the_fields_name(void **state) {
     mf_json_fields(&root, sample_fields, &sample);
     assert_ok(mf_json_close(document, STATUS_OK));
     assert_int_equal(inputs.count, 2);
-    assert_fails(mf_input_files_spare(&inputs, temporary_folder_file(*state, "table.tsv")),
+    assert_fails(mf_input_files_protect(&inputs, temporary_folder_file(*state, "table.tsv")),
                  STATUS_BAD_INPUT, "/./table.tsv: write elsewhere");
-    assert_fails(mf_input_files_spare(&inputs, temporary_folder_file(*state, "run.json")),
+    assert_fails(mf_input_files_protect(&inputs, temporary_folder_file(*state, "run.json")),
                  STATUS_BAD_INPUT, "run.json would be replaced");
-    assert_ok(mf_input_files_spare(&inputs, temporary_folder_file(*state, "other.tsv")));
+    assert_ok(mf_input_files_protect(&inputs, temporary_folder_file(*state, "other.tsv")));
     mf_input_files_clear(&inputs);
 }
 

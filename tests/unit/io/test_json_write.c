@@ -14,7 +14,7 @@ static void assert_round_trip(void **state, const struct sample *sample) {
     const char *file = temporary_folder_file(*state, "run.json");
     struct json_writer *writer = mf_json_writer_create();
     assert_non_null(writer);
-    mf_json_put_fields(writer, sample_fields, sample);
+    mf_json_write_fields(writer, sample_fields, sample);
     assert_ok(mf_json_write(writer, file));
     mf_json_writer_free(writer);
 
@@ -35,7 +35,7 @@ static void assert_round_trip(void **state, const struct sample *sample) {
     assert_int_equal(again.kinds, sample->kinds);
 }
 
-static void test_json_put_fields_reads_back_the_same_bits_when_digits_are_many(void **state) {
+static void test_json_write_fields_reads_back_the_same_bits_when_digits_are_many(void **state) {
     struct sample sample = {.strength = 1.0 / 3,
                             .steps = 9007199254740991,
                             .seed = 9007199254740991,
@@ -54,10 +54,10 @@ static void test_json_put_fields_reads_back_the_same_bits_when_digits_are_many(v
     assert_round_trip(state, &sample);
 }
 
-static void test_json_put_fields_makes_a_file_absolute_when_it_is_relative(void **state) {
+static void test_json_write_fields_makes_a_file_absolute_when_it_is_relative(void **state) {
     const struct sample sample = {.file = "a/b.dat"};
     struct json_writer *writer = mf_json_writer_create();
-    mf_json_put_fields(writer, sample_fields, &sample);
+    mf_json_write_fields(writer, sample_fields, &sample);
     const char *file = temporary_folder_file(*state, "used.json");
     assert_ok(mf_json_write(writer, file));
     mf_json_writer_free(writer);
@@ -69,14 +69,14 @@ static void test_json_put_fields_makes_a_file_absolute_when_it_is_relative(void 
     free(text);
 }
 
-static void test_json_put_fields_writes_what_is_required_when_it_is_zero(void **state) {
+static void test_json_write_fields_writes_what_is_required_when_it_is_zero(void **state) {
     static const struct field required[] = {
         {"force", FIELD_LENGTHS, 0, .required = true, .minimum = -1, .maximum = 1}, FIELD_END};
     static const double force[3] = {0, 0, 0};
     double again[3] = {1, 1, 1};
     const char *file = temporary_folder_file(*state, "used.json");
     struct json_writer *writer = mf_json_writer_create();
-    mf_json_put_fields(writer, required, force);
+    mf_json_write_fields(writer, required, force);
     assert_ok(mf_json_write(writer, file));
     mf_json_writer_free(writer);
     struct json_document *document;
@@ -90,15 +90,15 @@ static void test_json_put_fields_writes_what_is_required_when_it_is_zero(void **
 static void test_json_write_prints_the_tree_when_objects_are_nested(void **state) {
     struct json_writer *writer = mf_json_writer_create();
     assert_non_null(writer);
-    mf_json_put_text(writer, "name", "x");
+    mf_json_write_text(writer, "name", "x");
     mf_json_begin(writer, "scene");
     mf_json_begin(writer, "box");
-    mf_json_put_numbers(writer, "sides", (double[]){1, 0.1, 1e300}, 3);
+    mf_json_write_numbers(writer, "sides", (double[]){1, 0.1, 1e300}, 3);
     mf_json_end(writer);
-    mf_json_put_integer(writer, "steps", INT64_MIN);
+    mf_json_write_integer(writer, "steps", INT64_MIN);
     mf_json_end(writer);
-    mf_json_put_number(writer, "score", 0.1);
-    mf_json_put_numbers(writer, "none", NULL, 0);
+    mf_json_write_number(writer, "score", 0.1);
+    mf_json_write_numbers(writer, "none", NULL, 0);
     const char *file = temporary_folder_file(*state, "out.json");
     assert_ok(mf_json_write(writer, file));
     mf_json_writer_free(writer);
@@ -111,8 +111,8 @@ static void test_json_write_prints_the_tree_when_objects_are_nested(void **state
 }
 
 static void write_twice(struct json_writer *writer) {
-    mf_json_put_integer(writer, "distance", 1);
-    mf_json_put_integer(writer, "distance", 1);
+    mf_json_write_integer(writer, "distance", 1);
+    mf_json_write_integer(writer, "distance", 1);
 }
 
 static void write_too_deep(struct json_writer *writer) {
@@ -147,10 +147,10 @@ static void test_json_write_writes_null_when_a_number_is_not_finite(void **state
     const char *file = temporary_folder_file(*state, "out.json");
     struct json_writer *writer = mf_json_writer_create();
     assert_non_null(writer);
-    mf_json_put_number(writer, "a", NAN);
-    mf_json_put_number(writer, "b", -INFINITY);
-    mf_json_put_numbers(writer, "c", (double[]){1, INFINITY, 0.5}, 3);
-    mf_json_put_number(writer, "d", 2);
+    mf_json_write_number(writer, "a", NAN);
+    mf_json_write_number(writer, "b", -INFINITY);
+    mf_json_write_numbers(writer, "c", (double[]){1, INFINITY, 0.5}, 3);
+    mf_json_write_number(writer, "d", 2);
     assert_ok(mf_json_write(writer, file));
     mf_json_writer_free(writer);
     char *text = temporary_folder_read(file);
@@ -169,7 +169,7 @@ static void test_json_write_stream_prints_a_list_when_the_root_is_one(void **sta
     assert_ok(mf_json_write_stream(writer, stream, "stream"));
     for (int k = 0; k < 2; k++) {
         mf_json_begin(writer, NULL);
-        mf_json_put_integer(writer, "number", k);
+        mf_json_write_integer(writer, "number", k);
         mf_json_begin(writer, "inside");
         mf_json_end(writer);
         mf_json_end(writer);
@@ -209,14 +209,14 @@ static void test_json_write_into_adds_what_an_object_lacks(void **state) {
     struct json_document *document;
     double strength;
     struct json_writer *writer = mf_json_writer_create();
-    mf_json_put_number(writer, "strength", 0.5);
-    mf_json_put_text(writer, "added", "here");
+    mf_json_write_number(writer, "strength", 0.5);
+    mf_json_write_text(writer, "added", "here");
     mf_json_begin(writer, "kind");
-    mf_json_put_number(writer, "strength", 0.5);
+    mf_json_write_number(writer, "strength", 0.5);
     mf_json_end(writer);
     mf_json_begin(writer, "inner");
-    mf_json_put_number(writer, "strength", 1.0 / 3);
-    mf_json_put_number(writer, "steps", 4);
+    mf_json_write_number(writer, "strength", 1.0 / 3);
+    mf_json_write_number(writer, "steps", 4);
     mf_json_end(writer);
     assert_ok(
         mf_json_open(&document, temporary_folder_write(*state, "run.json", text, sizeof text - 1)));
@@ -242,9 +242,9 @@ static void test_json_write_into_adds_what_an_object_lacks(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        IN_FOLDER(test_json_put_fields_reads_back_the_same_bits_when_digits_are_many),
-        IN_FOLDER(test_json_put_fields_makes_a_file_absolute_when_it_is_relative),
-        IN_FOLDER(test_json_put_fields_writes_what_is_required_when_it_is_zero),
+        IN_FOLDER(test_json_write_fields_reads_back_the_same_bits_when_digits_are_many),
+        IN_FOLDER(test_json_write_fields_makes_a_file_absolute_when_it_is_relative),
+        IN_FOLDER(test_json_write_fields_writes_what_is_required_when_it_is_zero),
         IN_FOLDER(test_json_write_prints_the_tree_when_objects_are_nested),
         IN_FOLDER(test_json_write_writes_null_when_a_number_is_not_finite),
         IN_FOLDER(test_json_write_writes_nothing_when_the_tree_has_a_problem),

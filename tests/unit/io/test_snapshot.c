@@ -76,12 +76,13 @@ static void test_companions_follow_as_a_type_of_their_own(void **state) {
     struct temporary_folder *folder = *state;
     double x[] = {0.5, 4.5}, y[] = {1, 2}, vx[] = {-1, 3}, vy[] = {7, 8};
     double *const position[] = {x, y}, *const velocity[] = {vx, vy};
-    const struct snapshot_companions companions = {"solvent", 2, position, velocity, 1};
+    const struct snapshot_solvent_particles solvent_particles = {"solvent", 2, position, velocity,
+                                                                 1};
     struct particles particles;
     struct snapshot snapshot;
     int64_t size = 0;
     make(&particles);
-    assert_ok(mf_snapshot_take(&snapshot, &particles, &mixture, &companions, 20, 0.5));
+    assert_ok(mf_snapshot_take(&snapshot, &particles, &mixture, &solvent_particles, 20, 0.5));
     assert_ok(mf_snapshot_write(&snapshot, &mf_snapshot_extxyz, folder->path, &size));
     assert_ok(mf_snapshot_write(&snapshot, &mf_snapshot_json, folder->path, &size));
     assert_int_equal(mf_snapshot_type(&snapshot, 2), 1);
@@ -109,7 +110,8 @@ static void test_lammps_dump_is_read_back(void **state) {
     struct temporary_folder *folder = *state;
     double x[] = {0.5, 4.5}, y[] = {1, 2}, vx[] = {-1, 3}, vy[] = {7, 8};
     double *const position[] = {x, y}, *const velocity[] = {vx, vy};
-    const struct snapshot_companions companions = {"solvent", 2, position, velocity, 1};
+    const struct snapshot_solvent_particles solvent_particles = {"solvent", 2, position, velocity,
+                                                                 1};
     static const double expected[COUNT + 2][4] = {{3.1, 3.1, 102, 112},
                                                   {1.1, 1.1, 100, 110},
                                                   {40.1, 12.1, 101, 111},
@@ -123,7 +125,7 @@ static void test_lammps_dump_is_read_back(void **state) {
     bool more;
     make(&particles);
     for (uint64_t step = 20; step <= 40; step += 20) {
-        assert_ok(mf_snapshot_take(&snapshot, &particles, &mixture, &companions, step,
+        assert_ok(mf_snapshot_take(&snapshot, &particles, &mixture, &solvent_particles, step,
                                    0.025 * (double)step));
         assert_ok(mf_snapshot_write(&snapshot, &mf_snapshot_lammps, folder->path, &size));
         mf_snapshot_clear(&snapshot);

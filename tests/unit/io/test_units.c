@@ -32,10 +32,10 @@ static void test_units_scale_as_their_formulas(void **state) {
                           1e-12);
 }
 
-static void test_units_put_writes_results_in_physical_units(void **state) {
+static void test_units_write_results_writes_results_in_physical_units(void **state) {
     const char *file = temporary_folder_file(*state, "a.json");
     struct json_writer *writer = mf_json_writer_create();
-    mf_units_put(&water, writer, -2, 3);
+    mf_units_write_results(&water, writer, -2, 3);
     assert_ok(mf_json_write(writer, file));
     mf_json_writer_free(writer);
     assert_close(results_number(file, "physical.length_unit_nm"), 0.465, 0);
@@ -48,13 +48,13 @@ static void test_units_put_writes_results_in_physical_units(void **state) {
                           1e-4);
 }
 
-static void test_units_put_writes_nothing_when_there_are_none(void **state) {
+static void test_units_write_results_writes_nothing_when_there_are_none(void **state) {
     const char *file = temporary_folder_file(*state, "a.json");
     const struct units none = {0};
     struct json_writer *writer = mf_json_writer_create();
     assert_false(mf_units_known(&none));
     assert_true(mf_units_known(&water));
-    mf_units_put(&none, writer, -2, 3);
+    mf_units_write_results(&none, writer, -2, 3);
     assert_ok(mf_json_write(writer, file));
     mf_json_writer_free(writer);
     struct json_document *document;
@@ -227,14 +227,14 @@ static void test_units_from_takes_back_what_name_gives(void **state) {
 }
 
 /// Whatever number a file says is written again, as short as it was, and reads to the same bits.
-static void test_units_spoken_is_what_was_read(void **state) {
+static void test_units_file_value_is_what_was_read(void **state) {
     (void)state;
     const double factors[] = {0.465, 1.2540123, 2.4777, 39.948, 1.0 / 3};
     for (size_t f = 0; f < sizeof factors / sizeof *factors; f++)
         for (int k = 1; k < 2000; k++) {
             const double said = strtod(number(k * 0.001), NULL), read = said / factors[f];
-            assert_close(mf_units_spoken(read, factors[f]), said, 0);
-            assert_close(mf_units_spoken(read, factors[f]) / factors[f], read, 0);
+            assert_close(mf_units_file_value(read, factors[f]), said, 0);
+            assert_close(mf_units_file_value(read, factors[f]) / factors[f], read, 0);
         }
 }
 
@@ -282,7 +282,7 @@ static void test_units_follow_from_the_scene_when_the_file_does_not_say_them(voi
                             &units),
                  STATUS_BAD_INPUT, "units: no numbers can hold");
     assert_ok(read_scene(state, "{\"units\": \"reduced\"}", &units));
-    assert_false(mf_units_speaks(&units));
+    assert_false(mf_units_are_physical(&units));
 }
 
 #define TEST(name)                                                                                 \
@@ -296,12 +296,12 @@ int main(void) {
         cmocka_unit_test(test_units_factor_is_1_for_what_no_scene_sets),
         cmocka_unit_test(test_units_name_is_what_a_person_would_write),
         cmocka_unit_test(test_units_from_takes_back_what_name_gives),
-        cmocka_unit_test(test_units_spoken_is_what_was_read),
+        cmocka_unit_test(test_units_file_value_is_what_was_read),
         TEST(test_units_are_those_of_molecules),
         TEST(test_units_read_refuses_when_no_number_can_hold_what_follows),
         TEST(test_units_follow_from_the_scene_when_the_file_does_not_say_them),
-        TEST(test_units_put_writes_results_in_physical_units),
-        TEST(test_units_put_writes_nothing_when_there_are_none),
+        TEST(test_units_write_results_writes_results_in_physical_units),
+        TEST(test_units_write_results_writes_nothing_when_there_are_none),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

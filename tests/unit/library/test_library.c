@@ -101,7 +101,7 @@ static double pull(void *stiffness, size_t count, const uint32_t *id, const doub
     return energy;
 }
 
-static void test_own_force_holds_particles_as_equipartition_says(void **state) {
+static void test_user_force_holds_particles_as_equipartition_says(void **state) {
     (void)state;
     enum { SAMPLES = 80 };
     double stiffness = 4, sum = 0;
@@ -124,7 +124,7 @@ static void test_own_force_holds_particles_as_equipartition_says(void **state) {
     mesofit_simulation_free(simulation);
 }
 
-static void test_own_force_is_refused_when_moves_would_not_feel_it(void **state) {
+static void test_user_force_is_refused_when_moves_would_not_feel_it(void **state) {
     (void)state;
     double stiffness = 4;
     struct mesofit_means means;
@@ -326,8 +326,8 @@ int main(void) {
         cmocka_unit_test(test_own_law_gives_the_forces_of_the_formula),
         cmocka_unit_test(test_faults_are_told_and_not_printed),
         cmocka_unit_test(test_scene_reads_its_table_from_memory),
-        cmocka_unit_test(test_own_force_holds_particles_as_equipartition_says),
-        cmocka_unit_test(test_own_force_is_refused_when_moves_would_not_feel_it),
+        cmocka_unit_test(test_user_force_holds_particles_as_equipartition_says),
+        cmocka_unit_test(test_user_force_is_refused_when_moves_would_not_feel_it),
         cmocka_unit_test(test_simulations_of_two_threads_are_those_of_one),
         cmocka_unit_test(test_inversion_has_no_coefficients),
         cmocka_unit_test(test_fit_begins_at_its_base),

@@ -25,9 +25,9 @@ static int clear_feed(void **state) {
 static void test_listener_gets_the_newest_of_each_once(void **state) {
     uint64_t seen = 0;
     (void)state;
-    mf_live_feed_put(&feed, LIVE_LOG, "one");
-    mf_live_feed_put(&feed, LIVE_LOG, "two\nlines");
-    mf_live_feed_put(&feed, LIVE_STATE, "{}");
+    mf_live_feed_push(&feed, LIVE_LOG, "one");
+    mf_live_feed_push(&feed, LIVE_LOG, "two\nlines");
+    mf_live_feed_push(&feed, LIVE_STATE, "{}");
     char *events = mf_live_feed_wait(&feed, &seen, 1);
     // As section 9.2.6 of the HTML standard reads a stream: a line "data" for each line.
     assert_string_equal(events, "event: state\ndata: {}\n\nevent: log\ndata: two\ndata: lines\n\n");
@@ -35,7 +35,7 @@ static void test_listener_gets_the_newest_of_each_once(void **state) {
     events = mf_live_feed_wait(&feed, &seen, 0);
     assert_int_equal(events[0], ':');
     free(events);
-    mf_live_feed_put(&feed, LIVE_LOG, "three");
+    mf_live_feed_push(&feed, LIVE_LOG, "three");
     events = mf_live_feed_wait(&feed, &seen, 1);
     assert_string_equal(events, "event: log\ndata: three\n\n");
     free(events);
@@ -47,7 +47,7 @@ static const double patience = 600;
 static void *publish_late(void *context) {
     (void)context;
     nanosleep(&(struct timespec){.tv_nsec = 100000000}, NULL);
-    mf_live_feed_put(&feed, LIVE_PROGRESS, "{}");
+    mf_live_feed_push(&feed, LIVE_PROGRESS, "{}");
     return NULL;
 }
 
@@ -68,7 +68,7 @@ static void test_listener_is_woken_by_news_and_by_the_end(void **state) {
 }
 
 static void test_particles_are_wanted_for_a_second_and_given_once(void **state) {
-    struct live_bytes bytes = {.bytes = malloc(4), .size = 4, .room = 4};
+    struct live_bytes bytes = {.bytes = malloc(4), .size = 4, .capacity = 4};
     (void)state;
     assert_false(mf_live_feed_wants_particles(&feed));
     struct live_bytes got = mf_live_feed_get_particles(&feed, 0, false);
@@ -76,7 +76,7 @@ static void test_particles_are_wanted_for_a_second_and_given_once(void **state) 
     assert_true(mf_live_feed_wants_particles(&feed));
     assert_false(mf_live_feed_wants_energies(&feed));
     memcpy(bytes.bytes, "abc", 4);
-    mf_live_feed_put_particles(&feed, &bytes);
+    mf_live_feed_push_particles(&feed, &bytes);
     assert_null(bytes.bytes);
     got = mf_live_feed_get_particles(&feed, 0, false);
     assert_string_equal((const char *)got.bytes, "abc");

@@ -30,7 +30,7 @@ static bool exists(const char *path) {
     return access(path, F_OK) == 0;
 }
 
-static bool put_file(const char *folder) {
+static bool write_file(const char *folder) {
     char path[OUTPUT_PATH_SIZE + 16];
     snprintf(path, sizeof path, "%.4000s/rdf.tsv", folder);
     FILE *file = fopen(path, "w");
@@ -38,7 +38,7 @@ static bool put_file(const char *folder) {
 }
 
 /// A table of the program, in a folder that it has made.
-static bool put_table(const char *folder) {
+static bool write_table(const char *folder) {
     char path[OUTPUT_PATH_SIZE];
     struct output output;
     snprintf(path, sizeof path, "%.4000s/rdf.tsv", folder);
@@ -54,7 +54,7 @@ static pid_t begin_other(char *path) {
         struct live_scratch scratch;
         prctl(PR_SET_PDEATHSIG, SIGKILL); // should the test have ended without killing it
         mf_live_scratch_make(&scratch);
-        if (put_table(scratch.path) && write(ends[1], scratch.path, sizeof scratch.path) > 0)
+        if (write_table(scratch.path) && write(ends[1], scratch.path, sizeof scratch.path) > 0)
             pause();
         _exit(0);
     }
@@ -78,7 +78,7 @@ static void test_scratch_goes_with_its_files(void **state) {
     snprintf(path, sizeof path, "%s", scratch.path);
     assert_int_equal(stat(path, &about), 0);
     assert_int_equal(about.st_mode & 0777, 0700);
-    assert_true(put_table(path));
+    assert_true(write_table(path));
     mf_live_scratch_remove(&scratch);
     assert_false(exists(path));
     assert_string_equal(scratch.path, "");
@@ -111,7 +111,7 @@ static void test_what_is_of_others_stays(void **state) {
     for (size_t k = 0; k < 3; k++) {
         snprintf(path[k], sizeof path[k], "%s/%s", place, names[k]);
         assert_int_equal(mkdir(path[k], 0700), 0);
-        assert_true(put_file(path[k]));
+        assert_true(write_file(path[k]));
     }
     snprintf(path[3], sizeof path[3], "%s/mesofit-live-linked", place);
     assert_int_equal(symlink(path[2], path[3]), 0);

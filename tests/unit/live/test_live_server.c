@@ -59,7 +59,7 @@ static int connect_to_server(void) {
 
 /// Send bytes and read to the end, or until `until` has come, into `to`; returns the code, 0
 /// without one.
-static int talk(const char *bytes, size_t size, const char *until, char *to, size_t room) {
+static int talk(const char *bytes, size_t size, const char *until, char *to, size_t capacity) {
     const int connection = connect_to_server();
     size_t got = 0;
     for (size_t sent = 0; sent < size;) {
@@ -69,7 +69,7 @@ static int talk(const char *bytes, size_t size, const char *until, char *to, siz
         sent += (size_t)now;
     }
     for (ssize_t now;
-         got + 1 < room && (now = recv(connection, to + got, room - 1 - got, 0)) > 0;) {
+         got + 1 < capacity && (now = recv(connection, to + got, capacity - 1 - got, 0)) > 0;) {
         got += (size_t)now;
         to[got] = '\0';
         if (until && strstr(to, until))
@@ -215,7 +215,7 @@ static void test_file_is_opened_and_ordered(void **state) {
 static void test_events_come_while_the_stream_is_open(void **state) {
     static const char request[] = "GET /api/events HTTP/1.1\r\n" GOOD "\r\n";
     (void)state;
-    mf_live_feed_put(&view.feed, LIVE_LOG, "hello");
+    mf_live_feed_push(&view.feed, LIVE_LOG, "hello");
     assert_int_equal(exchange(request, sizeof request - 1, "data: hello"), 200);
     assert_contains(answer, "event: state");
     assert_contains(answer, "event: log\ndata: hello\n\n");
@@ -269,7 +269,7 @@ static void test_connections_that_say_little_do_not_keep_the_page_out(void **sta
     setsockopt(silent[SILENT - 1], SOL_SOCKET, SO_RCVTIMEO, &(struct timeval){.tv_usec = 50000},
                sizeof(struct timeval));
     assert_true(recv(silent[SILENT - 1], &byte, 1, 0) < 0);
-    mf_live_feed_put(&view.feed, LIVE_LOG, "still here");
+    mf_live_feed_push(&view.feed, LIVE_LOG, "still here");
     ssize_t got = 0;
     for (ssize_t now; (now = recv(page, answer + got, sizeof answer - 1 - (size_t)got, 0)) > 0;) {
         got += now;

@@ -16,21 +16,21 @@ static void test_failures_are_told_by_their_most_common_cause(void **state) {
     const struct evaluate_result hot = failed(EVALUATE_TEMPERATURE, 1.5),
                                  hotter = failed(EVALUATE_TEMPERATURE, 2.25),
                                  cold = failed(EVALUATE_TEMPERATURE, 0.75),
-                                 torn = failed(EVALUATE_BLEW_UP, 0), good = {.error = 3};
+                                 broken = failed(EVALUATE_BLEW_UP, 0), good = {.error = 3};
     char reason[INVERSE_REASON_SIZE] = "";
-    mf_population_add_failure(failures, &torn);
+    mf_population_add_failure(failures, &broken);
     mf_population_add_failure(failures, &hot);
     mf_population_add_failure(failures, &good);
     mf_population_add_failure(failures, &hotter);
     mf_population_add_failure(failures, &cold);
-    mf_population_tell_failure(&population, "but why", reason);
+    mf_population_report_failure(&population, "but why", reason);
     assert_string_equal(reason,
                         "6 of 10 simulations succeeded, but why; 3 of 4 that failed had 0.75 to "
                         "2.25 times their temperature after \"equilibration\": a longer one or a "
                         "shorter \"time_step\" may help");
     for (int k = 0; k < 6; k++)
-        mf_population_add_failure(failures, &torn);
-    mf_population_tell_failure(&population, "but why", reason);
+        mf_population_add_failure(failures, &broken);
+    mf_population_report_failure(&population, "but why", reason);
     assert_contains(reason, "not one simulation of the fit succeeded; 7 of 10 blew up: ");
     assert_null(strstr(reason, "but why"));
 }
@@ -40,11 +40,11 @@ static void test_a_single_cause_is_told_of_all(void **state) {
     struct population population = {.totals.evaluations = 3};
     const struct evaluate_result drop = failed(EVALUATE_COLLAPSED, 1);
     char reason[INVERSE_REASON_SIZE] = "";
-    mf_population_tell_failure(&population, "but why", reason);
+    mf_population_report_failure(&population, "but why", reason);
     assert_string_equal(reason, "all 3 simulations succeeded, but why");
     for (int k = 0; k < 3; k++)
         mf_population_add_failure(&population.totals.failures, &drop);
-    mf_population_tell_failure(&population, "but why", reason);
+    mf_population_report_failure(&population, "but why", reason);
     assert_contains(reason, "not one simulation of the fit succeeded; all 3 collapsed into a drop");
 }
 

@@ -227,7 +227,7 @@ static void test_surrogate_is_not_known_when_there_are_too_few_rows(void **state
     struct rng_sequence random = mf_rng_sequence_begin(9, RNG_INITIAL, 0, 0);
     bool known = true;
     begin(&data, &e, 0.1, 0);
-    for (size_t k = 0; k + 1 < mf_surrogate_least_rows(VARIABLES); k++)
+    for (size_t k = 0; k + 1 < mf_surrogate_min_rows(VARIABLES); k++)
         add_row(&data, &e, &random);
     assert_ok(mf_surrogate_fit(&data.surrogate, data.centre, 0.3, &model, &known));
     assert_false(known);

@@ -22,9 +22,9 @@ static void make_counts(uint64_t *counts, uint32_t frame, uint32_t seed) {
 }
 
 /// @param[in] spoil  changes the counts of the first EARLY frames
-static struct frame_features_slowest judge(uint32_t frames, uint32_t seed,
-                                           void (*spoil)(uint64_t *counts, uint32_t frame),
-                                           double first_volume) {
+static struct frame_features_slowest assess(uint32_t frames, uint32_t seed,
+                                            void (*spoil)(uint64_t *counts, uint32_t frame),
+                                            double first_volume) {
     const struct frame_pairs_plan plan = {
         .range = range, .bins = BINS, .composition = mf_composition_of_one(100)};
     struct frame_pairs pairs = {.counts = calloc(BINS + 1, sizeof *pairs.counts)};
@@ -39,7 +39,7 @@ static struct frame_features_slowest judge(uint32_t frames, uint32_t seed,
         assert_ok(mf_frame_features_add(&features, &plan, &pairs,
                                         (t < EARLY ? first_volume : 27) + 0.1 * normal[0]));
     }
-    assert_ok(mf_frame_features_judge(&features, &plan, &slowest));
+    assert_ok(mf_frame_features_assess(&features, &plan, &slowest));
     mf_frame_features_clear(&features);
     free(pairs.counts);
     return slowest;
@@ -49,7 +49,7 @@ static struct frame_features_slowest judge(uint32_t frames, uint32_t seed,
 static void test_frame_features_of_equilibrium_leave_nothing_out(void **state) {
     (void)state;
     for (uint32_t seed = 1; seed <= 30; seed++)
-        assert_int_equal(judge(50 + 20 * seed, seed, NULL, 27).frames, 0);
+        assert_int_equal(assess(50 + 20 * seed, seed, NULL, 27).frames, 0);
 }
 
 /// A peak at 0.8 to 0.9 that is not there yet.
@@ -61,7 +61,7 @@ static void flatten(uint64_t *counts, uint32_t frame) {
 
 static void test_frame_features_name_the_range_that_changes(void **state) {
     (void)state;
-    const struct frame_features_slowest slowest = judge(300, 4, flatten, 27);
+    const struct frame_features_slowest slowest = assess(300, 4, flatten, 27);
     assert_in_range(slowest.frames, EARLY - 4, EARLY + 10);
     assert_false(slowest.volume);
     assert_true(slowest.from > 0.7 && slowest.to < 1);
@@ -75,14 +75,14 @@ static void overlap(uint64_t *counts, uint32_t frame) {
 /// Overlaps are too few to change a number of pairs, but no later frame has one.
 static void test_frame_features_see_overlaps(void **state) {
     (void)state;
-    const struct frame_features_slowest slowest = judge(300, 5, overlap, 27);
+    const struct frame_features_slowest slowest = assess(300, 5, overlap, 27);
     assert_int_equal(slowest.frames, 12);
     assert_true(slowest.from == 0 && slowest.to < 0.3);
 }
 
 static void test_frame_features_see_the_volume(void **state) {
     (void)state;
-    const struct frame_features_slowest slowest = judge(200, 6, NULL, 30);
+    const struct frame_features_slowest slowest = assess(200, 6, NULL, 30);
     assert_true(slowest.volume);
     assert_in_range(slowest.frames, EARLY - 4, EARLY + 10);
 }
@@ -90,7 +90,7 @@ static void test_frame_features_see_the_volume(void **state) {
 /// Blocks of eight frames: what is left out is as long.
 static void test_frame_features_join_the_frames_of_long_trajectories(void **state) {
     (void)state;
-    const struct frame_features_slowest slowest = judge(5 * FEATURE_BLOCKS, 7, flatten, 27);
+    const struct frame_features_slowest slowest = assess(5 * FEATURE_BLOCKS, 7, flatten, 27);
     assert_in_range(slowest.frames, EARLY - 4, EARLY + 16);
     assert_int_equal(slowest.frames % 8, 0);
 }

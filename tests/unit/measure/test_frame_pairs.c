@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_BEADS = 600, BINS = 50, MOST_COUNTS = 6 * (BINS + 1) };
+enum { MAX_BEADS = 600, BINS = 50, MAX_COUNTS = 6 * (BINS + 1) };
 
 /// A distance is known to some units of 2⁻³² of the box: a pair as near to an edge of a bin may be
 /// counted on its other side.
@@ -31,9 +31,9 @@ struct system {
     struct trajectory_frame frame;
     struct frame_box box;
     struct frame_pairs_plan plan;
-    double position[MOST_BEADS][3];
-    uint32_t molecule[MOST_BEADS];
-    int32_t memory[3][MOST_BEADS], *place[3];
+    double position[MAX_BEADS][3];
+    uint32_t molecule[MAX_BEADS];
+    int32_t memory[3][MAX_BEADS], *place[3];
 };
 
 /// Beads anywhere, in any image of the box.
@@ -56,7 +56,7 @@ static struct system *make_system(const double box[3][3], const struct compositi
         s->place[i] = s->memory[i];
     assert_ok(mf_frame_box_find(&s->box, &s->frame));
     assert_ok(mf_frame_box_places(&s->box, &s->frame, s->place));
-    s->plan.range = share * mf_frame_box_least_height(&s->box);
+    s->plan.range = share * mf_frame_box_min_height(&s->box);
     return s;
 }
 
@@ -64,7 +64,7 @@ static struct system *make_system(const double box[3][3], const struct compositi
 static double find_distance(const struct system *s, size_t i, size_t j) {
     enum { IMAGES = 5 };
     const double(*box)[3] = s->frame.box;
-    double difference[3], least = INFINITY;
+    double difference[3], min = INFINITY;
     for (int d = 0; d < 3; d++)
         difference[d] = s->position[i][d] - s->position[j][d];
     for (int i_ = 0; i_ < 3; i_++) {
@@ -82,16 +82,16 @@ static double find_distance(const struct system *s, size_t i, size_t j) {
                     const double x = difference[d] + a * box[0][d] + b * box[1][d] + c * box[2][d];
                     square += x * x;
                 }
-                least = fmin(least, square);
+                min = fmin(min, square);
             }
-    return sqrt(least);
+    return sqrt(min);
 }
 
 /// Counts of all pairs; returns how many are as near to an edge as the resolution.
-static size_t count_slowly(const struct system *s, uint64_t counts[MOST_COUNTS]) {
+static size_t count_slowly(const struct system *s, uint64_t counts[MAX_COUNTS]) {
     const double width = s->plan.range / BINS;
     size_t doubtful = 0;
-    memset(counts, 0, MOST_COUNTS * sizeof *counts);
+    memset(counts, 0, MAX_COUNTS * sizeof *counts);
     for (size_t i = 0; i < s->frame.atoms; i++)
         for (size_t j = 0; j < i; j++) {
             const double place = find_distance(s, i, j) / width;
@@ -107,7 +107,7 @@ static size_t count_slowly(const struct system *s, uint64_t counts[MOST_COUNTS])
 /// A doubtful pair may be missing in one bin and be in the next.
 static void check_counts(struct system *s) {
     struct frame_pairs pairs = {.counts = NULL};
-    uint64_t counts[MOST_COUNTS], differences = 0;
+    uint64_t counts[MAX_COUNTS], differences = 0;
     const size_t doubtful = count_slowly(s, counts);
     assert_true(doubtful < 10);
     assert_ok(mf_frame_pairs_count(&pairs, &s->plan, &s->box, s->place));
@@ -240,7 +240,7 @@ static void test_frame_box_is_refused_when_it_is_none_or_too_small(void **state)
     // 3/√2.
     for (int i = 0; i < 3; i++)
         assert_close(s->box.height[i], i < 2 ? sqrt(6) : 3 / sqrt(2), 1e-4);
-    assert_close(mf_frame_box_least_height(&s->box), s->box.height[2], 0);
+    assert_close(mf_frame_box_min_height(&s->box), s->box.height[2], 0);
     assert_close(s->box.volume, 3 * 3 * 2.1213, 1e-12);
     assert_ok(mf_frame_box_check_range(&s->box, &s->frame, 1.06, "r"));
     assert_fails(mf_frame_box_check_range(&s->box, &s->frame, 1.07, "the range of g(r)"),

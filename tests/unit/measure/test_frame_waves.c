@@ -42,11 +42,11 @@ static void scene_clear(struct scene *scene) {
         free(scene->place[i]);
 }
 
-static struct density_waves_plan make_plan(double q_maximum, size_t bins, size_t most) {
+static struct density_waves_plan make_plan(double q_maximum, size_t bins, size_t max) {
     return (struct density_waves_plan){.composition = mf_composition_of_one(BEADS),
                                        .q_maximum = q_maximum,
                                        .bins = bins,
-                                       .most = most};
+                                       .max = max};
 }
 
 /// (1/N) Σ_ij cos q·(r_i − r_j).
@@ -66,7 +66,7 @@ static double sum_over_pairs(const struct scene *scene, const double q[3]) {
 /// by hand: one after the other, all of ±q.
 static void test_frame_waves_are_sums_over_pairs_when_a_box_is_tilted(void **state) {
     (void)state;
-    enum { BINS = 300, MOST = 6 };
+    enum { BINS = 300, MAX = 6 };
     static const double tilted[3][3] = {{3, 0, 0}, {1, 2.8, 0}, {-1, 1.4, 2.5}};
     const double q_maximum = 6, turn = 2 * acos(-1);
     const struct density_waves_plan plan = make_plan(q_maximum, BINS, 0);
@@ -74,9 +74,9 @@ static void test_frame_waves_are_sums_over_pairs_when_a_box_is_tilted(void **sta
     struct scene scene;
     scene_init(&scene, tilted, 3);
     assert_ok(mf_frame_waves_find(&scene.waves, &plan, &scene.box, scene.place));
-    for (int a = -MOST; a <= MOST; a++)
-        for (int b = -MOST; b <= MOST; b++)
-            for (int c = -MOST; c <= MOST; c++) {
+    for (int a = -MAX; a <= MAX; a++)
+        for (int b = -MAX; b <= MAX; b++)
+            for (int c = -MAX; c <= MAX; c++) {
                 const double x = turn * a / 3, y = (turn * b - x) / 2.8,
                              z = (turn * c + x - 1.4 * y) / 2.5;
                 const double size = sqrt(x * x + y * y + z * z);
@@ -118,25 +118,25 @@ static void test_frame_waves_are_the_same_when_another_cell_tells_the_lattice(vo
 /// A bin keeps all of few waves, and just as many as wanted of more; their S are of the whole bin.
 static void test_frame_waves_are_evenly_fewer_when_a_bin_has_many(void **state) {
     (void)state;
-    enum { BINS = 20, MOST = 7 };
+    enum { BINS = 20, MAX = 7 };
     static const double cube[3][3] = {{3, 0, 0}, {0, 3.3, 0}, {0, 0, 2.7}};
-    const struct density_waves_plan all = make_plan(12, BINS, 0), some = make_plan(12, BINS, MOST);
+    const struct density_waves_plan all = make_plan(12, BINS, 0), some = make_plan(12, BINS, MAX);
     struct scene one, other;
-    double least = 1e9, most = 0;
+    double min = 1e9, max = 0;
     scene_init(&one, cube, 5);
     scene_init(&other, cube, 5);
     assert_ok(mf_frame_waves_find(&one.waves, &all, &one.box, one.place));
     assert_ok(mf_frame_waves_find(&other.waves, &some, &other.box, other.place));
     for (size_t k = 0; k < BINS; k++)
-        assert_close(other.waves.numbers[2 * BINS + k], fmin(one.waves.numbers[2 * BINS + k], MOST),
+        assert_close(other.waves.numbers[2 * BINS + k], fmin(one.waves.numbers[2 * BINS + k], MAX),
                      0);
     // Of the last bin, from one end of the list to the other.
     for (size_t k = 0; k < other.waves.waves.vectors; k++)
         if (other.waves.waves.wave[k].bin == BINS - 1) {
-            least = fmin(least, other.waves.waves.wave[k].n[2]);
-            most = fmax(most, other.waves.waves.wave[k].n[2]);
+            min = fmin(min, other.waves.waves.wave[k].n[2]);
+            max = fmax(max, other.waves.waves.wave[k].n[2]);
         }
-    assert_true(least <= 1 && most >= 4);
+    assert_true(min <= 1 && max >= 4);
     scene_clear(&one);
     scene_clear(&other);
 }

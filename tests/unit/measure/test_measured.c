@@ -197,7 +197,7 @@ static void test_measured_msd_is_ballistic_when_beads_fly_through_a_box(void **s
 /// Oscillators of all phases: ⟨v(t)·v(0)⟩ = ½ A² ω² cos ωt; by differences over 2 Δt it is
 /// (sin ωΔt/(ωΔt))² of that. Times are in single precision, from `begin` on.
 static void check_oscillators(int velocities, double begin, double interval, int lags) {
-    enum { FRAMES = 120, MOST_LAGS = 15 };
+    enum { FRAMES = 120, MAX_LAGS = 15 };
     static const double amplitude = 0.3, omega = 0.9;
     struct film *film = make_film(FRAMES, 1);
     struct measured measured;
@@ -216,7 +216,7 @@ static void check_oscillators(int velocities, double begin, double interval, int
     plan.motion.velocities = velocities;
     measure(film, &plan, 5, &measured);
     assert_int_equal(measured.motion.motion.plan.lags, lags);
-    double curve[4][MOST_LAGS + 1];
+    double curve[4][MAX_LAGS + 1];
     mf_motion_result(&measured.motion.motion,
                      &(struct motion_curves){curve[0], curve[1], curve[2], curve[3]});
     const double blur = velocities == MEASURED_VELOCITIES_DIFFERENCES
@@ -264,7 +264,7 @@ static struct film *make_walk(uint32_t seed) {
 }
 
 static double find_distance(const struct trajectory_frame *frame, size_t i, size_t j) {
-    double inverse[3][3], least = INFINITY;
+    double inverse[3][3], min = INFINITY;
     mf_frame_reciprocal(frame, inverse);
     for (int n = 0; n < 7 * 7 * 7; n++) {
         const int image[3] = {n % 7 - 3, n / 7 % 7 - 3, n / 49 - 3};
@@ -280,9 +280,9 @@ static double find_distance(const struct trajectory_frame *frame, size_t i, size
         }
         for (int d = 0; d < 3; d++)
             square += difference[d] * difference[d];
-        least = fmin(least, square);
+        min = fmin(min, square);
     }
-    return sqrt(least);
+    return sqrt(min);
 }
 
 static void test_measured_escapes_are_those_of_all_images_when_beads_walk(void **state) {

@@ -96,7 +96,7 @@ static double deviation_of_size(const void *state) {
     char line[256];
     double value, digits;
     int point, bracket;
-    mf_molecule_sizes.say(state, &results, line, sizeof line);
+    mf_molecule_sizes.print(state, &results, line, sizeof line);
     const char *number = strstr(line, "R_e^2 ") + 6;
     assert_int_equal(sscanf(number, "%lf(%lf)", &value, &digits), 2);
     point = (int)strcspn(number, ".");

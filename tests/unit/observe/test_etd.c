@@ -212,8 +212,8 @@ static void test_etd_result_is_not_known_without_pairs(void **state) {
         for (int time = 0; time < 2; time++) {
             assert_true(pairs[bin] ? survival[2 * time + bin] == 1
                                    : isnan(survival[2 * time + bin]));
-            const double least = time == 0 ? 0 : 1 / (double)(pairs[bin] + 1);
-            assert_true(pairs[bin] ? error[2 * time + bin] == least : isnan(error[2 * time + bin]));
+            const double min = time == 0 ? 0 : 1 / (double)(pairs[bin] + 1);
+            assert_true(pairs[bin] ? error[2 * time + bin] == min : isnan(error[2 * time + bin]));
         }
     mf_etd_clear(&etd);
     mf_simulation_clear(&simulation);

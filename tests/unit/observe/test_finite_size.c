@@ -155,17 +155,17 @@ static void test_finite_size_factor_of_knows_which_pairs_g_leaves_out(void **sta
     const struct finite_size_fluid of = {.box = &cube,
                                          .composition = &composition,
                                          .topology = &topology},
-                                   apart = {.box = &cube,
-                                            .composition = &composition,
-                                            .topology = &topology,
-                                            .apart = true};
+                                   intermolecular = {.box = &cube,
+                                                     .composition = &composition,
+                                                     .topology = &topology,
+                                                     .intermolecular = true};
     for (int pair = 0; pair < TRIMER_PAIRS; pair++) {
         const double here = ideal_trimers(pair, TRIMERS);
         const double exact = ideal_trimers(pair, 10 * TRIMERS) / here;
         print_message("pairs %d of ideal trimers: %.6f, exact %.6f\n", pair,
                       factor_in(1, here, 1e-7, &of, pair, 1), exact);
         assert_close(factor_in(1, here, 1e-7, &of, pair, 1), exact, 3e-6);
-        assert_close(factor_in(1, here, 1e-7, &apart, pair, 1), exact, 3e-6);
+        assert_close(factor_in(1, here, 1e-7, &intermolecular, pair, 1), exact, 3e-6);
     }
     mf_topology_clear(&topology);
 }

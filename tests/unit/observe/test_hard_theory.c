@@ -96,7 +96,7 @@ static void test_hard_theory_lets_points_feel_the_free_volume(void **state) {
 
 static void test_hard_theory_does_not_know_the_rates_of_too_many_species(void **state) {
     (void)state;
-    enum { COUNT = 2 * HARD_THEORY_MOST_SPECIES };
+    enum { COUNT = 2 * HARD_THEORY_MAX_SPECIES };
     double radius[COUNT], mass[COUNT];
     for (int k = 0; k < COUNT; k++) {
         radius[k] = 0.5 + 0.01 * k;

@@ -66,11 +66,11 @@ static void assert_free_flight(int dimensions, double drift) {
     assert_close(s.msd, square * 2 * 3 / (2 * dimensions), rounding);
     assert_close(s.green_kubo, square * 4 / dimensions, rounding);
     assert_true(isnan(s.maxwell.probability));
-    int32_t most = 0;
+    int32_t max = 0;
     for (size_t k = 0; k < PARTICLES; k++)
-        most = abs(simulation.particles.image[0][k]) > most ? abs(simulation.particles.image[0][k])
-                                                            : most;
-    assert_true(most >= 5);
+        max = abs(simulation.particles.image[0][k]) > max ? abs(simulation.particles.image[0][k])
+                                                          : max;
+    assert_true(max >= 5);
     mf_motion_clear(&motion);
     mf_simulation_clear(&simulation);
     fluid_clear(&fluid);
@@ -170,11 +170,11 @@ static void test_green_kubo_knows_what_its_sampling_costs(void **state) {
     (void)state;
     struct motion_summary fine = of_decay(0.2, 1), coarse = of_decay(2, 1);
     assert_close_relative(fine.green_kubo_sampling, fabs(fine.green_kubo - 1), 0.05);
-    assert_ok(mf_motion_judge(&fine));
+    assert_ok(mf_motion_assess(&fine));
     assert_true(coarse.green_kubo > 1.3);
     assert_close_relative(coarse.green_kubo_sampling, fabs(coarse.green_kubo - 1), 0.3);
     assert_true(mf_motion_green_kubo_uncertainty(&coarse) > 0.25);
-    assert_fails(mf_motion_judge(&coarse), STATUS_UNCONVERGED, "the VACF falls by 86 %");
+    assert_fails(mf_motion_assess(&coarse), STATUS_UNCONVERGED, "the VACF falls by 86 %");
 }
 
 /// A window that ends at 1.2 relaxation times leaves out exp(−1.2) of D.
@@ -189,12 +189,13 @@ static void test_green_kubo_knows_what_its_window_leaves_out(void **state) {
 static void test_judge_tells_when_both_diffusion_coefficients_disagree(void **state) {
     (void)state;
     struct motion_summary s = of_decay(0.2, 1.5);
-    assert_ok(mf_motion_judge(&s)); // one window: the errors are not known
+    assert_ok(mf_motion_assess(&s)); // one window: the errors are not known
     s.msd_error = s.green_kubo_error = 0.01;
     assert_close(s.msd, 1.5, 1e-9);
-    assert_fails(mf_motion_judge(&s), STATUS_UNCONVERGED, "1.5 by the MSD and 1 by Green and Kubo");
+    assert_fails(mf_motion_assess(&s), STATUS_UNCONVERGED,
+                 "1.5 by the MSD and 1 by Green and Kubo");
     s.msd_error = 0.2;
-    assert_ok(mf_motion_judge(&s));
+    assert_ok(mf_motion_assess(&s));
 }
 
 int main(void) {

@@ -28,7 +28,7 @@ static void test_series_keep_their_numbers_when_they_grow(void **state) {
     assert_null(sample_series_column(&series, 1));
     add(&series, SAMPLES);
     assert_numbers(&series, SAMPLES);
-    assert_true(series.room < 2 * SAMPLES + 256);
+    assert_true(series.capacity < 2 * SAMPLES + 256);
     mf_sample_series_clear(&series);
 }
 
@@ -42,7 +42,7 @@ static void test_series_are_restored_from_their_spans(void **state) {
     add(&saved, SAMPLES);
     mf_sample_series_spans(&saved, from);
     restored.count = saved.count;
-    assert_ok(mf_sample_series_make_room(&restored));
+    assert_ok(mf_sample_series_reserve(&restored));
     mf_sample_series_spans(&restored, to);
     for (int c = 1; c <= COLUMNS; c++) {
         assert_int_equal(from[c].bytes, SAMPLES * sizeof(double));

@@ -8,7 +8,7 @@
 #include <math.h>
 #include <stdbool.h>
 
-enum { MOST_CHAINS = 8, MOST_NUMBERS = 60 };
+enum { MAX_CHAINS = 8, MAX_NUMBERS = 60 };
 
 /// x_t = r x_{t−1} + noise in time, of unit variance, and alike from number to number.
 struct kind {
@@ -20,12 +20,12 @@ struct kind {
     double start, drift; ///< drift along all samples
 };
 
-static double part[MOST_CHAINS][STATIONARY_PARTS * MOST_NUMBERS];
+static double part[MAX_CHAINS][STATIONARY_PARTS * MAX_NUMBERS];
 
 static void make_chain(const struct kind *kind, gsl_rng *rng, double *means) {
     const double fresh = sqrt(1 - kind->memory * kind->memory);
     const double own = sqrt(1 - kind->beside * kind->beside);
-    double x[MOST_NUMBERS];
+    double x[MAX_NUMBERS];
     for (int n = 0; n < STATIONARY_PARTS * kind->numbers; n++)
         means[n] = 0;
     for (int t = 0; t < STATIONARY_PARTS * kind->each; t++)
@@ -40,9 +40,9 @@ static void make_chain(const struct kind *kind, gsl_rng *rng, double *means) {
 }
 
 static struct stationary test(const struct kind *kind) {
-    const double *chain[MOST_CHAINS];
-    size_t number[MOST_NUMBERS];
-    double weight[MOST_NUMBERS];
+    const double *chain[MAX_CHAINS];
+    size_t number[MAX_NUMBERS];
+    double weight[MAX_NUMBERS];
     struct stationary result;
     for (int c = 0; c < kind->chains; c++)
         chain[c] = part[c];

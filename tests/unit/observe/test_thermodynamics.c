@@ -187,7 +187,7 @@ static void test_thermodynamics_errors_grow_when_samples_are_correlated(void **s
     assert_close_relative(sqrt(squares.mean), 1.15 * 0.1 / sqrt(SAMPLES / 10), 0.04);
 }
 
-static double count_companions(const struct simulation_setup *setup) {
+static double count_solvent_particles(const struct simulation_setup *setup) {
     (void)setup;
     return 1000;
 }
@@ -201,30 +201,30 @@ static void test_judge_tells_when_a_temperature_is_off(void **state) {
                                        .temperature_error = 0.002,
                                        .temperature_configurational = 0.75,
                                        .temperature_configurational_error = 0.01};
-    assert_fails(mf_thermodynamics_judge(&s, &fluid.setup), STATUS_UNSTABLE,
+    assert_fails(mf_thermodynamics_assess(&s, &fluid.setup), STATUS_UNSTABLE,
                  "0.75 by the positions");
     s.temperature_configurational_error = 0.04; // it may be 0.9
-    assert_ok(mf_thermodynamics_judge(&s, &fluid.setup));
+    assert_ok(mf_thermodynamics_assess(&s, &fluid.setup));
     s.temperature_configurational = 1.05;
     s.temperature = 1.12;
-    assert_fails(mf_thermodynamics_judge(&s, &fluid.setup), STATUS_UNSTABLE,
+    assert_fails(mf_thermodynamics_assess(&s, &fluid.setup), STATUS_UNSTABLE,
                  "1.12 by the velocities");
     s.temperature_configurational = NAN;
     s.temperature = 1.02;
-    assert_ok(mf_thermodynamics_judge(&s, &fluid.setup));
+    assert_ok(mf_thermodynamics_assess(&s, &fluid.setup));
     s.temperature = NAN;
-    assert_fails(mf_thermodynamics_judge(&s, &fluid.setup), STATUS_UNSTABLE, "time_step");
+    assert_fails(mf_thermodynamics_assess(&s, &fluid.setup), STATUS_UNSTABLE, "time_step");
     // Without friction the two are held to each other.
     fluid.setup.omega = NULL;
     s.temperature = 1.4;
     s.temperature_configurational = 1.45;
     s.temperature_configurational_error = 0.01;
-    assert_ok(mf_thermodynamics_judge(&s, &fluid.setup));
+    assert_ok(mf_thermodynamics_assess(&s, &fluid.setup));
     s.temperature_configurational = 1.1;
-    assert_fails(mf_thermodynamics_judge(&s, &fluid.setup), STATUS_UNSTABLE,
+    assert_fails(mf_thermodynamics_assess(&s, &fluid.setup), STATUS_UNSTABLE,
                  "1.1 by the positions");
     s.blocks = 4;
-    assert_ok(mf_thermodynamics_judge(&s, &fluid.setup));
+    assert_ok(mf_thermodynamics_assess(&s, &fluid.setup));
     fluid_clear(&fluid);
 }
 
@@ -237,37 +237,37 @@ static void test_judge_of_a_fit_sees_a_few_percent(void **state) {
                                        .temperature_error = 0.002,
                                        .temperature_configurational = 0.965,
                                        .temperature_configurational_error = 0.005};
-    assert_ok(mf_thermodynamics_judge(&s, &fluid.setup));
-    assert_fails(mf_thermodynamics_judge_fit(&s, &fluid.setup), STATUS_UNSTABLE, "-3.5 % off");
+    assert_ok(mf_thermodynamics_assess(&s, &fluid.setup));
+    assert_fails(mf_thermodynamics_assess_fit(&s, &fluid.setup), STATUS_UNSTABLE, "-3.5 % off");
     // Beads that a wall pushes, by no force that the positions would tell of.
     const struct integrator *without = fluid.setup.integrator;
     struct integrator with = *without;
-    with.companions = count_companions;
+    with.solvent_particles = count_solvent_particles;
     fluid.setup.integrator = &with;
-    assert_ok(mf_thermodynamics_judge_fit(&s, &fluid.setup));
+    assert_ok(mf_thermodynamics_assess_fit(&s, &fluid.setup));
     fluid.setup.integrator = without;
     s.temperature_configurational_error = 0.013; // it may be chance
-    assert_ok(mf_thermodynamics_judge_fit(&s, &fluid.setup));
+    assert_ok(mf_thermodynamics_assess_fit(&s, &fluid.setup));
     s.temperature_configurational = 1.02;
     s.temperature_configurational_error = 0.001; // sure, and little
-    assert_ok(mf_thermodynamics_judge_fit(&s, &fluid.setup));
+    assert_ok(mf_thermodynamics_assess_fit(&s, &fluid.setup));
     s.temperature_configurational = NAN;
-    assert_ok(mf_thermodynamics_judge_fit(&s, &fluid.setup));
+    assert_ok(mf_thermodynamics_assess_fit(&s, &fluid.setup));
     s.temperature = 1.059; // of a g(r) that was 1.05 times too large
-    assert_ok(mf_thermodynamics_judge(&s, &fluid.setup));
-    assert_fails(mf_thermodynamics_judge_fit(&s, &fluid.setup), STATUS_UNSTABLE,
+    assert_ok(mf_thermodynamics_assess(&s, &fluid.setup));
+    assert_fails(mf_thermodynamics_assess_fit(&s, &fluid.setup), STATUS_UNSTABLE,
                  "kinetic temperature is 1.059(2), 5.9 % off");
     s.temperature_error = 0.02;
-    assert_ok(mf_thermodynamics_judge_fit(&s, &fluid.setup));
+    assert_ok(mf_thermodynamics_assess_fit(&s, &fluid.setup));
     // A simulation may go where its energy leads it, but a target has its temperature.
     fluid.setup.omega = NULL;
-    assert_ok(mf_thermodynamics_judge_fit(&s, &fluid.setup));
+    assert_ok(mf_thermodynamics_assess_fit(&s, &fluid.setup));
     s.temperature = 0.79;
-    assert_ok(mf_thermodynamics_judge(&s, &fluid.setup));
-    assert_fails(mf_thermodynamics_judge_fit(&s, &fluid.setup), STATUS_UNSTABLE,
+    assert_ok(mf_thermodynamics_assess(&s, &fluid.setup));
+    assert_fails(mf_thermodynamics_assess_fit(&s, &fluid.setup), STATUS_UNSTABLE,
                  "0.79, not 1: there is no thermostat");
     s.blocks = 4;
-    assert_ok(mf_thermodynamics_judge_fit(&s, &fluid.setup));
+    assert_ok(mf_thermodynamics_assess_fit(&s, &fluid.setup));
     fluid_clear(&fluid);
 }
 

@@ -25,7 +25,7 @@ static double evaluations(const struct landscape *landscape, double step, int lo
             .landscape = landscape, .variables = VARIABLES, .seed = seed, .target = 1e-10};
         const struct landscape_result result =
             landscape_minimise(&mf_cmaes_optimiser, parameters, &drive);
-        if (result.least > 1e-10)
+        if (result.min > 1e-10)
             continue;
         sum += (double)result.evaluations;
         found++;
@@ -60,7 +60,8 @@ static double noisy_sphere(double noise, uint64_t evaluations) {
                                               .noise = noise,
                                               .target = -HUGE_VAL,
                                               .evaluations = evaluations};
-        sum += log(landscape_minimise(&mf_cmaes_optimiser, parameters, &drive).incumbent) / SEEDS;
+        sum +=
+            log(landscape_minimise(&mf_cmaes_optimiser, parameters, &drive).best_candidate) / SEEDS;
     }
     mf_memory_free(parameters);
     return exp(sum);
@@ -88,7 +89,7 @@ static size_t population_after(int rounds, double noise) {
     const struct landscape_drive drive = {
         .landscape = &landscape_sphere, .variables = VARIABLES, .seed = 2, .noise = noise};
     void *parameters = landscape_parameters(&mf_cmaes_optimiser);
-    struct landscape_result result = {.least = HUGE_VAL};
+    struct landscape_result result = {.min = HUGE_VAL};
     struct landscape_run run = landscape_begin(&mf_cmaes_optimiser, parameters, &drive);
     struct optimiser_round round;
     for (int k = 0; k < rounds; k++)
@@ -111,20 +112,20 @@ static void test_cmaes_population_grows_only_when_there_is_noise(void **state) {
 static void test_cmaes_population_stays_within_the_largest_round(void **state) {
     (void)state;
     const struct landscape_drive drive = {
-        .landscape = &landscape_sphere, .variables = VARIABLES, .seed = 2, .noise = 1, .most = 100};
+        .landscape = &landscape_sphere, .variables = VARIABLES, .seed = 2, .noise = 1, .max = 100};
     void *parameters = landscape_parameters(&mf_cmaes_optimiser);
     landscape_set(&mf_cmaes_optimiser, parameters, "population", 70);
     landscape_set(&mf_cmaes_optimiser, parameters, "rounds", 100);
-    struct landscape_result result = {.least = HUGE_VAL};
+    struct landscape_result result = {.min = HUGE_VAL};
     struct landscape_run run = landscape_begin(&mf_cmaes_optimiser, parameters, &drive);
     struct optimiser_round round;
     size_t largest = 0;
     do {
         assert_ok(mf_cmaes_optimiser.ask(run.state, &round));
-        assert_true(round.count <= drive.most);
+        assert_true(round.count <= drive.max);
         largest = round.count > largest ? round.count : largest;
     } while (landscape_step(&run, &drive, &result));
-    assert_int_equal(largest, drive.most);
+    assert_int_equal(largest, drive.max);
     landscape_end(&run);
     mf_memory_free(parameters);
 }

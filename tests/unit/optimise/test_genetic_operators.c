@@ -20,10 +20,10 @@ static struct rng_sequence begin(uint64_t seed) {
 
 enum { POPULATION = 6 };
 
-/// Probability that at most `most` of n draws fall on a share of the population.
-static double at_most(int most, int n, double share) {
+/// Probability that at most `max` of n draws fall on a share of the population.
+static double at_most(int max, int n, double share) {
     double sum = 0, choose = 1;
-    for (int k = 0; k <= most; k++) {
+    for (int k = 0; k <= max; k++) {
         sum += choose * pow(share, k) * pow(1 - share, n - k);
         choose *= (double)(n - k) / (k + 1);
     }

@@ -57,18 +57,18 @@ static void copy_row(const struct run *run, size_t number, double genes[GENES]) 
 }
 
 static void test_challenger_becomes_elite_by_fresh_measurements_alone(void **state) {
-    double challenger[GENES], better[GENES], incumbent[GENES];
+    double challenger[GENES], better[GENES], best_candidate[GENES];
     struct run run = begin(10);
     (void)state;
     assert_int_equal(run.round.count, POPULATION);
-    assert_false(mf_genetic_optimiser.incumbent(run.state, incumbent));
+    assert_false(mf_genetic_optimiser.best_candidate(run.state, best_candidate));
     copy_row(&run, 4, challenger);
     tell(&run, (double[]){5, 4, 3, 2, 1, 6});
     assert_int_equal(run.round.count, ROWS);
     assert_genes(row(&run, POPULATION), challenger);
     assert_genes(row(&run, POPULATION + 1), challenger);
-    assert_true(mf_genetic_optimiser.incumbent(run.state, incumbent));
-    assert_genes(incumbent, challenger);
+    assert_true(mf_genetic_optimiser.best_candidate(run.state, best_candidate));
+    assert_genes(best_candidate, challenger);
 
     // Measured again, it is 2 on average. Nobody of this generation is below.
     tell(&run, (double[]){5, 4, 3, 2, 2.5, 6, 1.5, 2.5});
@@ -87,8 +87,8 @@ static void test_challenger_becomes_elite_by_fresh_measurements_alone(void **sta
     tell(&run, (double[]){2, 9, 0.1, 9, 9, 9});
     tell(&run, (double[]){2, 9, 9, 9, 9, 9, 1.5, 1});
     assert_genes(row(&run, 0), better);
-    assert_true(mf_genetic_optimiser.incumbent(run.state, incumbent));
-    assert_genes(incumbent, better);
+    assert_true(mf_genetic_optimiser.best_candidate(run.state, best_candidate));
+    assert_genes(best_candidate, better);
     end(&run);
 }
 
@@ -106,7 +106,7 @@ static void test_elite_falls_when_it_turns_out_to_be_bad(void **state) {
 }
 
 static void test_last_round_measures_the_last_challenger_alone(void **state) {
-    double challenger[GENES], incumbent[GENES];
+    double challenger[GENES], best_candidate[GENES];
     struct run run = begin(2);
     (void)state;
     tell(&run, (double[]){5, 4, 3, 2, 1, 6});
@@ -116,9 +116,9 @@ static void test_last_round_measures_the_last_challenger_alone(void **state) {
     assert_genes(row(&run, 0), challenger);
     tell(&run, (double[]){0.5, 0.7});
     assert_int_equal(run.round.count, 0);
-    assert_true(mf_genetic_optimiser.incumbent(run.state, incumbent));
-    assert_genes(incumbent, challenger);
-    assert_int_equal(mf_genetic_optimiser.most_rounds(&run.parameters, GENES), 3);
+    assert_true(mf_genetic_optimiser.best_candidate(run.state, best_candidate));
+    assert_genes(best_candidate, challenger);
+    assert_int_equal(mf_genetic_optimiser.max_rounds(&run.parameters, GENES), 3);
     end(&run);
 }
 

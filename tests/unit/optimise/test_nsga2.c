@@ -9,7 +9,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { MOST_ROWS = 512, MOST_GENES = 10 };
+enum { MAX_ROWS = 512, MAX_GENES = 10 };
 
 /// Two objectives of some genes in [0, 1].
 struct problem {
@@ -63,11 +63,11 @@ static struct nsga2 begin(const struct problem *problem, size_t population, size
 
 /// One round; asks twice, and no candidate is beyond the bounds. False if there is none.
 static bool step(struct nsga2 *nsga2, const struct problem *problem) {
-    static double value[MOST_ROWS * 2];
+    static double value[MAX_ROWS * 2];
     const struct optimiser_round round = mf_nsga2_ask(nsga2), again = mf_nsga2_ask(nsga2);
     assert_ptr_equal(round.variables, again.variables);
     assert_int_equal(round.count, again.count);
-    assert_true(round.count <= MOST_ROWS);
+    assert_true(round.count <= MAX_ROWS);
     for (size_t k = 0; k < round.count; k++) {
         const double *x = round.variables + k * problem->genes;
         double normal[4];
@@ -120,7 +120,7 @@ static int compare_pairs(const void *a, const void *b) {
 
 /// Area that the members dominate below (1, 1), by their true objectives.
 static double hypervolume(const struct nsga2 *nsga2, const struct problem *problem) {
-    double pairs[MOST_ROWS][2], volume = 0, height = 1;
+    double pairs[MAX_ROWS][2], volume = 0, height = 1;
     const size_t count = mf_nsga2_parents(nsga2);
     for (size_t k = 0; k < count; k++)
         problem->value(mf_nsga2_parent(nsga2, k), problem->genes, pairs[k]);
@@ -249,16 +249,16 @@ static void test_nsga2_begins_about_the_start(void **state) {
 }
 
 static void test_nsga2_plants_children_once(void **state) {
-    static const double planted[] = {0.123, 2};
+    static const double injected[] = {0.123, 2};
     const struct problem problem = {zdt1, zdt1_front, 2, 0, 0};
     struct nsga2 nsga2 = begin(&problem, 6, 5, 1);
     (void)state;
     for (int k = 0; k < 4; k++)
-        mf_nsga2_plant(&nsga2, planted);
+        mf_nsga2_inject(&nsga2, injected);
     for (int k = 0; k < 3; k++) {
         const double *x = mf_nsga2_ask(&nsga2).variables;
         for (int child = 0; child < 6; child++)
-            assert_true((x[2 * child] == planted[0] && x[2 * child + 1] == 1) ==
+            assert_true((x[2 * child] == injected[0] && x[2 * child + 1] == 1) ==
                         (k == 1 && child >= 3));
         step(&nsga2, &problem);
     }

@@ -64,10 +64,10 @@ static void check_minimum(const struct variant *variant, struct landscape_drive 
     for (drive.seed = 1; drive.seed <= SEEDS; drive.seed++) {
         const struct landscape_result result =
             landscape_minimise(variant->optimiser, parameters, &drive);
-        if (!(result.incumbent <= bound))
+        if (!(result.best_candidate <= bound))
             fail_msg("%s, variant %d, %s, seed %d: %g is above %g", variant->optimiser->name,
                      (int)(variant - variants), drive.landscape->name, (int)drive.seed,
-                     result.incumbent, bound);
+                     result.best_candidate, bound);
     }
     mf_memory_free(parameters);
 }
@@ -115,7 +115,7 @@ static void test_every_optimiser_has_no_incumbent_when_all_have_failed(void **st
         void *parameters = parameters_of(v);
         const struct landscape_result result = landscape_minimise(v->optimiser, parameters, &drive);
         assert_true(result.rounds > 0);
-        assert_true(result.incumbent == HUGE_VAL);
+        assert_true(result.best_candidate == HUGE_VAL);
         mf_memory_free(parameters);
     }
 }
@@ -160,8 +160,8 @@ static void compare_candidates(struct landscape_run *a, struct landscape_run *b)
 
 static void compare_beliefs(struct landscape_run *a, struct landscape_run *b) {
     double first[VARIABLES] = {0}, second[VARIABLES] = {0};
-    assert_int_equal(a->optimiser->incumbent(a->state, first),
-                     b->optimiser->incumbent(b->state, second));
+    assert_int_equal(a->optimiser->best_candidate(a->state, first),
+                     b->optimiser->best_candidate(b->state, second));
     assert_memory_equal(first, second, sizeof first);
     assert_identical(a->optimiser->spread(a->state), b->optimiser->spread(b->state));
     assert_identical(a->optimiser->discard_above(a->state), b->optimiser->discard_above(b->state));
@@ -175,7 +175,7 @@ static void check_restart(const struct variant *variant, double noise, int befor
                                           .noise = noise,
                                           .failing = noise > 0 ? 0.1 : 0};
     void *parameters = parameters_of(variant);
-    struct landscape_result result = {.least = HUGE_VAL};
+    struct landscape_result result = {.min = HUGE_VAL};
     struct landscape_run old = landscape_begin(variant->optimiser, parameters, &drive);
     for (int k = 0; k < before; k++)
         landscape_step(&old, &drive, &result);
@@ -246,7 +246,7 @@ static void test_only_what_ended_by_itself_has_settled(void **state) {
         const bool may_settle = local || v->optimiser == &mf_cmaes_optimiser;
         for (int ample = 0; ample < 2; ample++) {
             void *parameters = parameters_of(v);
-            struct landscape_result result = {.least = HUGE_VAL};
+            struct landscape_result result = {.min = HUGE_VAL};
             landscape_set(v->optimiser, parameters, v->optimiser->budget, ample ? 5000 : 10);
             struct landscape_run run = landscape_begin(v->optimiser, parameters, &drive);
             while ((!ample || may_settle) && landscape_step(&run, &drive, &result))
@@ -316,14 +316,14 @@ static void test_every_optimiser_refuses_a_space_without_room(void **state) {
 static void test_populations_larger_than_a_round_are_refused(void **state) {
     static const struct {
         const struct optimiser *optimiser;
-        size_t most; ///< for a population of 60
+        size_t max; ///< for a population of 60
     } populations[] = {{&mf_genetic_optimiser, 62}, {&mf_cmaes_optimiser, 60}};
     (void)state;
     for (int k = 0; k < 2; k++)
         for (size_t less = 0; less < 2; less++) {
             const struct optimiser *optimiser = populations[k].optimiser;
             const struct optimiser_space space = {
-                .variables = VARIABLES, .maximum = 1, .most = populations[k].most - less};
+                .variables = VARIABLES, .maximum = 1, .max = populations[k].max - less};
             void *parameters = landscape_parameters(optimiser),
                  *memory = mf_memory_zeroed(1, optimiser->state_size);
             assert_non_null(memory);
@@ -345,12 +345,12 @@ static void test_discard_above_is_unknown_before_a_round_is_told(void **state) {
     (void)state;
     for (const struct variant *v = variants; v < variants + VARIANTS; v++) {
         void *parameters = parameters_of(v);
-        struct landscape_result result = {.least = HUGE_VAL};
+        struct landscape_result result = {.min = HUGE_VAL};
         struct landscape_run run = landscape_begin(v->optimiser, parameters, &drive);
         assert_true(v->optimiser->discard_above(run.state) == HUGE_VAL);
         landscape_step(&run, &drive, &result);
         if (v->optimiser != &mf_nlopt_optimiser) {
-            assert_true(v->optimiser->discard_above(run.state) > result.least);
+            assert_true(v->optimiser->discard_above(run.state) > result.min);
             assert_true(v->optimiser->discard_above(run.state) < VARIABLES);
         }
         landscape_end(&run);

@@ -56,7 +56,7 @@ static const struct programming_parameters usual = {12, 8, 6, 1000}, longer = {1
 static struct programming_member search(const struct sample *sample, uint64_t seed, int threads,
                                         const struct programming_parameters *parameters) {
     struct programming programming;
-    struct programming_member front[PROGRAMMING_MOST_NODES];
+    struct programming_member front[PROGRAMMING_MAX_NODES];
     size_t members;
     assert_ok(mf_programming_init(&programming, &sample->points, parameters, seed, threads, NULL));
     for (int64_t round = 0; round < parameters->rounds; round++)
@@ -121,7 +121,7 @@ static void test_programming_finds_lennard_jones_when_its_points_are_noisy(void 
     (void)state;
     struct sample sample;
     struct programming programming;
-    struct programming_member front[PROGRAMMING_MOST_NODES];
+    struct programming_member front[PROGRAMMING_MAX_NODES];
     size_t members, found = 0;
     take(&sample, lennard_jones, 0.85, 2.5, 2.5, 1);
     assert_ok(mf_programming_init(&programming, &sample.points, &usual, 1, 2, NULL));

@@ -112,7 +112,7 @@ static void test_bonded_grid_has_no_constant(void **state) {
     static struct twin twin;
     struct bonded_grid grid;
     struct bonded_curve curve = {0};
-    double values[POINTS], shifted[POINTS] = {0}, least = INFINITY;
+    double values[POINTS], shifted[POINTS] = {0}, min = INFINITY;
     make_twin(&twin, BONDED_BOND, (struct bonded_bins){0.6, 0.4 / BINS, BINS}, bond_energy);
     begin(&twin, &grid, values, &curve);
     for (size_t k = grid.below; k < grid.below + grid.known; k++)
@@ -121,9 +121,9 @@ static void test_bonded_grid_has_no_constant(void **state) {
     mf_bonded_grid_complete(&grid, shifted);
     for (size_t k = 0; k < grid.points; k++) {
         assert_close(shifted[k], values[k], 1e-9);
-        least = fmin(least, values[k]);
+        min = fmin(min, values[k]);
     }
-    assert_close(least, 0, 1e-12);
+    assert_close(min, 0, 1e-12);
     mf_bonded_clear(&curve);
     clear_twin(&twin);
 }
@@ -210,13 +210,13 @@ static double mean_over(const struct bonded_grid *grid, const double *values, do
 /// Of the points at an end, beside it and in the middle, against the curve that the engine reads.
 static void assert_means(int order, struct bonded_bins bins, double unit,
                          double (*energy)(double)) {
-    enum { MOST = 60 };
+    enum { MAX = 60 };
     static struct twin twin;
     struct bonded_grid grid;
-    double values[POINTS], means[MOST * MOST];
+    double values[POINTS], means[MAX * MAX];
     make_twin(&twin, order, bins, energy);
     assert_ok(mf_bonded_grid_init(&grid, &twin.problem, &twin.problem.group[0]));
-    assert_true(grid.known <= MOST);
+    assert_true(grid.known <= MAX);
     assert_ok(mf_bonded_grid_means(&grid, means));
     const size_t points[] = {0, 1, grid.known / 2, grid.known - 1};
     for (size_t n = 0; n < sizeof points / sizeof *points; n++) {

@@ -190,7 +190,7 @@ static void test_numbers_are_variables_from_minimum_to_maximum_with_errors(void 
     (void)state;
     struct mixture mixture;
     struct parametrisation parametrisation;
-    struct inverse_parameter found[INVERSE_MOST_NUMBERS];
+    struct inverse_parameter found[INVERSE_MAX_NUMBERS];
     double variables[4], covariance[16] = {0};
     begin(&mixture);
     assert_ok(mf_parametrisation_init(&parametrisation, &mixture.problem));

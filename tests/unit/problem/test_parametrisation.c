@@ -9,7 +9,7 @@
 
 #include <math.h>
 
-enum { BINS = 40, CORE = 8, POTENTIAL_GENES = 12, WEIGHT_GENES = 10, MOST_POINTS = 256 };
+enum { BINS = 40, CORE = 8, POTENTIAL_GENES = 12, WEIGHT_GENES = 10, MAX_POINTS = 256 };
 
 /// A problem with both unknowns, and what it borrows.
 struct both {
@@ -56,7 +56,7 @@ static void begin(struct both *both, bool potential, bool omega) {
 
 static void check_curve(const struct both *both, enum unknown_kind kind, const struct curve *start,
                         size_t first, double tolerance) {
-    double curve[MOST_POINTS];
+    double curve[MAX_POINTS];
     const double *r = mf_unknowns_r(&both->parametrisation.unknowns, kind);
     mf_parametrisation_curve(&both->parametrisation, kind, both->variables, curve);
     for (size_t k = first; k < mf_unknowns_points(&both->parametrisation.unknowns, kind); k++)
@@ -134,7 +134,7 @@ static void test_parametrisation_start_falls_from_the_middle_when_no_weight_is_g
 static void test_parametrisation_adds_coefficients_to_the_base(void **state) {
     (void)state;
     struct both both;
-    double base[MOST_POINTS] = {0}, curve[MOST_POINTS], moved[MOST_POINTS], without[2][MOST_POINTS];
+    double base[MAX_POINTS] = {0}, curve[MAX_POINTS], moved[MAX_POINTS], without[2][MAX_POINTS];
     begin(&both, true, false);
     for (int k = CORE; k < BINS; k++)
         base[k] = 3 * sin(0.7 * k) * (k % 2 ? 1.5 : 1); // as rough as no 12 coefficients are
@@ -194,9 +194,9 @@ static void make_covariance(double *covariance, size_t variables) {
 /// The band is what the covariance makes of the curve's derivatives, which differences show.
 static void check_band(const struct both *both, enum unknown_kind kind, size_t first) {
     enum { ALL = POTENTIAL_GENES + WEIGHT_GENES };
-    static double slope[ALL][MOST_POINTS];
-    double covariance[ALL * ALL], zero[MOST_POINTS], error[MOST_POINTS], variables[ALL] = {0};
-    double flat[INVERSE_FLAT * MOST_POINTS];
+    static double slope[ALL][MAX_POINTS];
+    double covariance[ALL * ALL], zero[MAX_POINTS], error[MAX_POINTS], variables[ALL] = {0};
+    double flat[INVERSE_FLAT * MAX_POINTS];
     const size_t points = mf_unknowns_points(&both->parametrisation.unknowns, kind);
     make_covariance(covariance, ALL);
     mf_parametrisation_curve(&both->parametrisation, kind, variables, zero);

@@ -13,7 +13,7 @@
 
 #include <math.h>
 
-enum { BINS = 60, PAIR_BINS = 20, MOST = 8 * BINS };
+enum { BINS = 60, PAIR_BINS = 20, MAX = 8 * BINS };
 
 static const double temperature = 1.5;
 static const int types[4] = {0};
@@ -101,8 +101,8 @@ static void solve(double *rows, size_t count, size_t width) {
 /// What is left of `values` beside the basis and a constant, by least squares with weights.
 static void take_off(const double *basis, size_t own, const double *weight, size_t points,
                      double *values) {
-    enum { MOST_TERMS = 12 };
-    double rows[MOST_TERMS * (MOST_TERMS + 1)] = {0}, row[MOST_TERMS + 1];
+    enum { MAX_TERMS = 12 };
+    double rows[MAX_TERMS * (MAX_TERMS + 1)] = {0}, row[MAX_TERMS + 1];
     const size_t count = own + 1, width = count + 1;
     for (size_t k = 0; k < points; k++) {
         for (size_t a = 0; a < count; a++)
@@ -123,7 +123,7 @@ static void take_off(const double *basis, size_t own, const double *weight, size
 static void test_bonded_basis_makes_smooth_curves_without_a_constant(void **state) {
     (void)state;
     static struct twin twin;
-    double basis[MOST], weight[BINS], values[BINS];
+    double basis[MAX], weight[BINS], values[BINS];
     make_twin(&twin);
     for (size_t g = 0; g < BONDED_KINDS; g++) {
         const struct bonded_grid *grid = grid_of(&twin, g);
@@ -156,7 +156,7 @@ static void test_bonded_rough_is_the_noise_that_no_coefficients_make_up_for(void
     (void)state;
     enum { DRAWS = 4000 };
     static struct twin twin;
-    double basis[MOST], weight[BINS], rough[BINS];
+    double basis[MAX], weight[BINS], rough[BINS];
     make_twin(&twin);
     for (size_t g = 0; g < BONDED_KINDS; g++) {
         const struct bonded_grid *grid = grid_of(&twin, g);
@@ -193,7 +193,7 @@ static void test_parametrisation_has_groups_behind_the_pairs(void **state) {
     (void)state;
     static struct twin twin;
     struct parametrisation p;
-    double x[7 + 4 + 5 + 6], first[3 * MOST], moved[3 * MOST], wanted[3 * MOST];
+    double x[7 + 4 + 5 + 6], first[3 * MAX], moved[3 * MAX], wanted[3 * MAX];
     size_t block[32];
     make_twin(&twin);
     assert_ok(mf_parametrisation_init(&p, &twin.problem));
@@ -206,7 +206,7 @@ static void test_parametrisation_has_groups_behind_the_pairs(void **state) {
     mf_unknowns_start(&p.unknowns, UNKNOWN_BONDED, wanted);
     mf_parametrisation_curve(&p, UNKNOWN_BONDED, x, first);
     const size_t points = mf_unknowns_points(&p.unknowns, UNKNOWN_BONDED);
-    assert_true(points <= 3 * MOST);
+    assert_true(points <= 3 * MAX);
     for (size_t k = 0; k < points; k++)
         assert_close(first[k], wanted[k], 1e-12);
     // The second coefficient of the angle, a quarter of its range of ±3 up.
@@ -214,7 +214,7 @@ static void test_parametrisation_has_groups_behind_the_pairs(void **state) {
     mf_parametrisation_curve(&p, UNKNOWN_BONDED, x, moved);
     const struct bonded_grid *angle = &p.unknowns.potential.group[1].own;
     const struct unknowns_part part = mf_unknowns_part(&p.unknowns, UNKNOWN_BONDED, 1);
-    double basis[MOST];
+    double basis[MAX];
     assert_ok(mf_parametrisation_bonded_basis(angle, 5, basis));
     for (size_t k = 0; k < points; k++) {
         const size_t known = k - part.first - angle->below;
@@ -239,7 +239,7 @@ static void test_parametrisation_laws_have_the_groups(void **state) {
     static struct twin twin;
     struct parametrisation p;
     struct unknowns_laws laws;
-    double x[7 + 4 + 5 + 6], curve[3 * MOST], energy;
+    double x[7 + 4 + 5 + 6], curve[3 * MAX], energy;
     make_twin(&twin);
     assert_ok(mf_parametrisation_init(&p, &twin.problem));
     assert_ok(mf_parametrisation_start(&p, x));
@@ -265,8 +265,8 @@ static void test_parametrisation_band_of_groups_holds_both_noises(void **state) 
     (void)state;
     static struct twin twin;
     struct parametrisation p;
-    double x[22], covariance[22 * 22] = {0}, error[3 * MOST], flat[INVERSE_FLAT * 3 * MOST];
-    double basis[MOST], rough[BINS];
+    double x[22], covariance[22 * 22] = {0}, error[3 * MAX], flat[INVERSE_FLAT * 3 * MAX];
+    double basis[MAX], rough[BINS];
     make_twin(&twin);
     assert_ok(mf_parametrisation_init(&p, &twin.problem));
     assert_ok(mf_parametrisation_start(&p, x));

@@ -28,7 +28,7 @@ static void test_targets_kinds_are_named_as_the_observables_supply_them(void **s
         places++;
     while (mf_targets_name(kinds))
         kinds++;
-    assert_in_range(places, 1, OBSERVABLES_MOST);
+    assert_in_range(places, 1, OBSERVABLES_MAX);
     assert_in_range(kinds, TARGET_PRESSURE + 1, TARGETS);
 }
 
@@ -173,13 +173,13 @@ static void test_targets_blocks_hold_a_fiftieth_of_their_group(void **state) {
     (void)state;
     enum { FIRST = 200, SECOND = 30 };
     double value[FIRST + SECOND];
-    size_t block[2 * TARGETS_MOST_BLOCKS + 1];
+    size_t block[2 * TARGETS_MAX_BLOCKS + 1];
     for (size_t k = 0; k < FIRST + SECOND; k++)
         value[k] = k < FIRST ? exp(-0.5 * pow(((double)k - 80) / 25, 2)) : 1;
     const size_t first = mf_targets_blocks(value, FIRST, 0, block);
     const size_t all = first + mf_targets_blocks(value + FIRST, SECOND, FIRST, block + first);
     block[all] = FIRST + SECOND;
-    assert_in_range(first, 30, TARGETS_MOST_BLOCKS);
+    assert_in_range(first, 30, TARGETS_MAX_BLOCKS);
     assert_int_equal(block[0], 0);
     assert_int_equal(block[first], FIRST);
     // Bins that hold more than a 50th are blocks of one.

@@ -31,7 +31,7 @@ static void test_verification_that_has_not_settled_goes_on(void **state) {
     const uint64_t first = (uint64_t)REPLICAS * SAMPLES;
     print_message("%d steps\n", (int)verification.engine_steps);
     assert_true(verification.engine_steps > first);
-    assert_string_equal(verification.unsettled, "");
+    assert_string_equal(verification.unequilibrated, "");
     mf_verify_clear(&verification);
     fluid_clear(&fluid);
 }

@@ -89,7 +89,7 @@ static void test_verify_step_is_halved_until_the_temperatures_hold(void **state)
     assert_true(mf_verify_step_again(&step, &far, false));
     assert_true(mf_verify_step_again(&step, &near, false));
     assert_false(mf_verify_step_again(&step, &good, false));
-    assert_int_equal(step.verdict, VERIFY_STEP_HOLDS);
+    assert_int_equal(step.result, VERIFY_STEP_HOLDS);
     assert_identical(step.used, 0.0025);
     assert_true(step.first_blew_up);
 }
@@ -103,11 +103,11 @@ static void test_verify_step_is_tested_by_the_errors(void **state) {
     assert_true(mf_verify_step_again(&step, &sure, false));
     step = begin(true);
     assert_false(mf_verify_step_again(&step, &chance, false));
-    assert_int_equal(step.verdict, VERIFY_STEP_HOLDS);
+    assert_int_equal(step.result, VERIFY_STEP_HOLDS);
     assert_false(mf_verify_step_again(&step, &none, false));
-    assert_int_equal(step.verdict, VERIFY_STEP_UNKNOWN);
+    assert_int_equal(step.result, VERIFY_STEP_UNKNOWN);
     assert_false(mf_verify_step_again(&step, &vague, false));
-    assert_int_equal(step.verdict, VERIFY_STEP_UNKNOWN);
+    assert_int_equal(step.result, VERIFY_STEP_UNKNOWN);
 }
 
 /// What half a step leaves as it was is no error of the step; a quarter is what Δt² leaves.
@@ -121,7 +121,7 @@ static void test_verify_step_is_blamed_for_what_a_shorter_one_changes(void **sta
     step = begin(true);
     assert_true(mf_verify_step_again(&step, &before, false));
     assert_false(mf_verify_step_again(&step, &same, false));
-    assert_int_equal(step.verdict, VERIFY_STEP_BLAMELESS);
+    assert_int_equal(step.result, VERIFY_STEP_NOT_THE_CAUSE);
     // Steps that are much too long are wrong in any way.
     step = begin(true);
     assert_true(mf_verify_step_again(&step, &wild, false));
@@ -137,7 +137,7 @@ static void test_verify_step_ends_at_a_sixteenth(void **state) {
         steps++;
     assert_int_equal(steps, 5);
     assert_identical(step.used, 0.02 / 16);
-    assert_int_equal(step.verdict, VERIFY_STEP_LONG);
+    assert_int_equal(step.result, VERIFY_STEP_LONG);
 }
 
 /// Of an error of 4 % as Δt² half the step leaves 1 %; of one that is too large for that, what the
@@ -147,7 +147,7 @@ static void test_verify_step_tells_what_would_hold_if_it_is_given(void **state) 
     struct verify_step step = begin(false);
     const struct thermodynamics_off some = off(-0.09, 0.003), none = {.known = false};
     assert_false(mf_verify_step_again(&step, &some, false));
-    assert_int_equal(step.verdict, VERIFY_STEP_LONG);
+    assert_int_equal(step.result, VERIFY_STEP_LONG);
     assert_identical(step.used, 0.02);
     assert_close(step.would_hold, 0.02 / 3, 1e-9);
     step = begin(false);

@@ -100,8 +100,8 @@ static void test_draws_generations_of_which_all_failed(void **state) {
     snprintf(table, sizeof table, "%s%s%s", names, known, failed);
     figure_folders_write(folder, "history.tsv", table);
     figure_folders_draw(folder);
-    assert_true(figure_folders_say(folder, "generations", ">50<"));
-    assert_true(figure_folders_say(folder, "generations", ">100<"));
+    assert_true(figure_folders_print(folder, "generations", ">50<"));
+    assert_true(figure_folders_print(folder, "generations", ">100<"));
 }
 
 static void test_draws_simulation_and_no_fit(void **state) {
@@ -137,14 +137,14 @@ static void test_draws_simulation_of_a_mixture_in_its_units(void **state) {
                          "0\t0\t1\t1\t3\tnan\t0\t2.5\t900\n1\t0.1\t1\t2\t3\tnan\t70\t5\t900\n");
     figure_folders_draw(folder);
     assert_true(figure_folders_drawn(folder, "simulation"));
-    assert_true(figure_folders_say(folder, "simulation", "A-B"));
-    assert_true(figure_folders_say(folder, "simulation", "nm") &&
-                figure_folders_say(folder, "simulation", "ps"));
-    assert_true(figure_folders_say(folder, "simulation", "kJ/mol") &&
-                figure_folders_say(folder, "simulation", "bar"));
-    assert_true(figure_folders_say(folder, "simulation", ">3.5<")); // a distance in nm
-    assert_true(figure_folders_say(folder, "simulation", ">60<"));  // a time in ps
-    assert_true(figure_folders_say(folder, "simulation", ">900<"));
+    assert_true(figure_folders_print(folder, "simulation", "A-B"));
+    assert_true(figure_folders_print(folder, "simulation", "nm") &&
+                figure_folders_print(folder, "simulation", "ps"));
+    assert_true(figure_folders_print(folder, "simulation", "kJ/mol") &&
+                figure_folders_print(folder, "simulation", "bar"));
+    assert_true(figure_folders_print(folder, "simulation", ">3.5<")); // a distance in nm
+    assert_true(figure_folders_print(folder, "simulation", ">60<"));  // a time in ps
+    assert_true(figure_folders_print(folder, "simulation", ">900<"));
 }
 
 /// A barrier of 1.33 behind a core of 50, and a well of 0.3: all of it is seen.
@@ -159,8 +159,8 @@ static void test_potential_is_shown_up_to_its_barrier(void **state) {
                          "0.375\t1.33\t0\tnan\n0.5\t-0.3\t0\tnan\n1\t0\t0\tnan\n");
     figure_folders_draw(folder);
     assert_true(figure_folders_drawn(folder, "potential"));
-    assert_true(figure_folders_say(folder, "potential", ">1.4<"));
-    assert_false(figure_folders_say(folder, "potential", ">2<"));
+    assert_true(figure_folders_print(folder, "potential", ">1.4<"));
+    assert_false(figure_folders_print(folder, "potential", ">2<"));
 }
 
 /// Ideal particles, distances that no pair has, laws of one strength, and one bin: no axis is
@@ -205,11 +205,11 @@ static void test_soft_potential_is_shown_almost_whole(void **state) {
     figure_folders_write(folder, "potential.tsv", table);
     figure_folders_draw(folder);
     assert_true(figure_folders_drawn(folder, "potential"));
-    assert_true(figure_folders_say(folder, "potential", "nm") &&
-                figure_folders_say(folder, "potential", "kJ/mol"));
-    assert_true(figure_folders_say(folder, "potential", ">0.8<")); // nm: 0.4 lambda
-    assert_true(figure_folders_say(folder, "potential", ">40<"));
-    assert_false(figure_folders_say(folder, "potential", ">300<"));
+    assert_true(figure_folders_print(folder, "potential", "nm") &&
+                figure_folders_print(folder, "potential", "kJ/mol"));
+    assert_true(figure_folders_print(folder, "potential", ">0.8<")); // nm: 0.4 lambda
+    assert_true(figure_folders_print(folder, "potential", ">40<"));
+    assert_false(figure_folders_print(folder, "potential", ">300<"));
 }
 
 /// Two times, three bins; no result at time 0, nothing known of the last bin.
@@ -231,8 +231,8 @@ static void test_draws_dynamics_of_a_fit(void **state) {
                          "0\t3\t0.01\t3.1\tnan\n0.1\t1\t0.01\t1.2\tnan\n0.2\t-0.1\t0.01\t0\tnan\n");
     figure_folders_draw(folder);
     assert_true(figure_folders_drawn(folder, "etd_cells"));
-    assert_true(figure_folders_say(folder, "etd_cells", "0.700"));
-    assert_false(figure_folders_say(folder, "etd_cells", "0.800"));
+    assert_true(figure_folders_print(folder, "etd_cells", "0.700"));
+    assert_false(figure_folders_print(folder, "etd_cells", "0.800"));
     assert_true(figure_folders_drawn(folder, "vacf"));
     assert_false(figure_folders_drawn(folder, "etd"));
     assert_false(figure_folders_drawn(folder, "msd"));
@@ -260,15 +260,15 @@ static void test_draws_etd_of_the_bins_with_pairs_enough(void **state) {
                          "# r0[lambda]\tpairs[1]\n0.1\t0\n0.3\t1\n0.5\t150\n0.7\t5000\n");
     figure_folders_draw(folder);
     assert_true(figure_folders_drawn(folder, "etd"));
-    assert_false(figure_folders_say(folder, "etd", "0.300"));
-    assert_true(figure_folders_say(folder, "etd", "0.500"));
-    assert_true(figure_folders_say(folder, "etd", "0.700"));
+    assert_false(figure_folders_print(folder, "etd", "0.300"));
+    assert_true(figure_folders_print(folder, "etd", "0.500"));
+    assert_true(figure_folders_print(folder, "etd", "0.700"));
     figure_folders_write(folder, "etd_bins.tsv",
                          "# r0[lambda]\tpairs[1]\n0.1\t0\n0.3\t1\n0.5\t15\n0.7\t50\n");
     figure_folders_draw(folder);
-    assert_false(figure_folders_say(folder, "etd", "0.100"));
-    assert_true(figure_folders_say(folder, "etd", "0.300"));
-    assert_true(figure_folders_say(folder, "etd", "0.700"));
+    assert_false(figure_folders_print(folder, "etd", "0.100"));
+    assert_true(figure_folders_print(folder, "etd", "0.300"));
+    assert_true(figure_folders_print(folder, "etd", "0.700"));
 }
 
 static void test_draws_etd_of_no_known_result(void **state) {
@@ -297,8 +297,8 @@ static void test_draws_bands_and_truth_where_they_are_known(void **state) {
         "# r[lambda]\tomega[sqrt(mu/tau)]\tomega_error[sqrt(mu/tau)]\n0\t2\tnan\n1\t0\tnan\n");
     figure_folders_draw(folder);
     assert_true(figure_folders_drawn(folder, "omega"));
-    assert_false(figure_folders_say(folder, "omega", "95 % band"));
-    assert_false(figure_folders_say(folder, "omega", "truth"));
+    assert_false(figure_folders_print(folder, "omega", "95 % band"));
+    assert_false(figure_folders_print(folder, "omega", "truth"));
     figure_folders_write(
         folder, "omega.tsv",
         "# r[lambda]\tomega[sqrt(mu/tau)]\tomega_error[sqrt(mu/tau)]\ttruth[sqrt(mu/tau)]\n"
@@ -310,10 +310,10 @@ static void test_draws_bands_and_truth_where_they_are_known(void **state) {
                          "1.5\t0\t0\tnan\t0\t0.6\n");
     figure_folders_draw(folder);
     assert_true(figure_folders_drawn(folder, "omega"));
-    assert_true(figure_folders_say(folder, "omega", "95 % band") &&
-                figure_folders_say(folder, "omega", "truth"));
-    assert_true(figure_folders_say(folder, "potential", "95 % band") &&
-                figure_folders_say(folder, "potential", "truth"));
+    assert_true(figure_folders_print(folder, "omega", "95 % band") &&
+                figure_folders_print(folder, "omega", "truth"));
+    assert_true(figure_folders_print(folder, "potential", "95 % band") &&
+                figure_folders_print(folder, "potential", "truth"));
 }
 
 static void test_error_is_named_after_what_was_fitted(void **state) {
@@ -328,13 +328,13 @@ static void test_error_is_named_after_what_was_fitted(void **state) {
                          "\t\t\"etd\":\t{\n\t\t\t\"fitted\":\t\"yes\"\n\t\t},\n"
                          "\t\t\"vacf\":\t{\n\t\t\t\"fitted\":\t\"yes\"\n\t\t}\n\t}\n}\n");
     figure_folders_draw(folder);
-    assert_true(figure_folders_say(folder, "error", "weighted error"));
+    assert_true(figure_folders_print(folder, "error", "weighted error"));
     figure_folders_write(folder, "used.json",
                          "{\n\t\"target\":\t{\n\t\t\"diffusion\":\t{\n\t\t\t\"fitted\":\t\"yes\"\n"
                          "\t\t}\n\t}\n}\n");
     figure_folders_draw(folder);
-    assert_true(figure_folders_say(folder, "error", "rmse of"));
-    assert_true(figure_folders_say(folder, "error", "τ")); // its unit
+    assert_true(figure_folders_print(folder, "error", "rmse of"));
+    assert_true(figure_folders_print(folder, "error", "τ")); // its unit
 }
 
 /// Of a mixture's inversion: tables whose names look like those of a pair type are others, since no

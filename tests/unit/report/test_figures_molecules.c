@@ -27,12 +27,12 @@ static void test_energy_of_a_group_is_drawn_where_it_is_known(void **state) {
     assert_true(figure_folders_drawn(folder, "bonds_back-bone_1"));
     assert_false(figure_folders_drawn(folder, "bonds_back-bone_1_flat"));
     assert_false(figure_folders_drawn(folder, "bonds_back-bone_1_history"));
-    assert_true(figure_folders_say(folder, "bonds_back-bone_1", "kJ/mol"));
-    assert_true(figure_folders_say(folder, "bonds_back-bone_1", "95 % band"));
-    assert_true(figure_folders_say(folder, "bonds_back-bone_1", "iteration"));
-    assert_true(figure_folders_say(folder, "bonds_back-bone_1", ">0.16<"));
-    assert_false(figure_folders_say(folder, "bonds_back-bone_1", ">0.25<"));
-    assert_false(figure_folders_say(folder, "bonds_back-bone_1", ">800<"));
+    assert_true(figure_folders_print(folder, "bonds_back-bone_1", "kJ/mol"));
+    assert_true(figure_folders_print(folder, "bonds_back-bone_1", "95 % band"));
+    assert_true(figure_folders_print(folder, "bonds_back-bone_1", "iteration"));
+    assert_true(figure_folders_print(folder, "bonds_back-bone_1", ">0.16<"));
+    assert_false(figure_folders_print(folder, "bonds_back-bone_1", ">0.25<"));
+    assert_false(figure_folders_print(folder, "bonds_back-bone_1", ">800<"));
 }
 
 /// A curve without errors is drawn whole and has no band.
@@ -47,10 +47,10 @@ static void test_energy_of_a_group_is_drawn_without_errors(void **state) {
     figure_folders_write(folder, "angles_'; system('touch pwned'); '.tsv", bond);
     figure_folders_draw(folder);
     assert_true(figure_folders_drawn(folder, "dihedrals_turn"));
-    assert_true(figure_folders_say(folder, "dihedrals_turn", "degrees"));
-    assert_true(figure_folders_say(folder, "dihedrals_turn", ">100<"));
-    assert_false(figure_folders_say(folder, "dihedrals_turn", "95 % band"));
-    assert_false(figure_folders_say(folder, "dihedrals_turn", "continued"));
+    assert_true(figure_folders_print(folder, "dihedrals_turn", "degrees"));
+    assert_true(figure_folders_print(folder, "dihedrals_turn", ">100<"));
+    assert_false(figure_folders_print(folder, "dihedrals_turn", "95 % band"));
+    assert_false(figure_folders_print(folder, "dihedrals_turn", "continued"));
 }
 
 /// A density per length or per degree has that unit.
@@ -67,9 +67,9 @@ static void test_distributions_have_their_units(void **state) {
                          "# r[nm]\tbond[1/nm]\tbond_error[1/nm]\tbond_boltzmann[1]\n"
                          "0.1\t5\t1\t1\n0.2\t6\t1\t1\n");
     figure_folders_draw(folder);
-    assert_true(figure_folders_say(folder, "bond_angles_bend", "degrees"));
-    assert_true(figure_folders_say(folder, "bond_angles_bend", "target"));
-    assert_true(figure_folders_say(folder, "bond_lengths", ">-1<"));
+    assert_true(figure_folders_print(folder, "bond_angles_bend", "degrees"));
+    assert_true(figure_folders_print(folder, "bond_angles_bend", "target"));
+    assert_true(figure_folders_print(folder, "bond_lengths", ">-1<"));
 }
 
 /// g(r) between molecules: of a simulation all pair types in one figure, of a fit one each.
@@ -83,15 +83,15 @@ static void test_draws_structure_between_molecules(void **state) {
     figure_folders_write(folder, "intermolecular_rdf_A-B.tsv", counted);
     figure_folders_draw(folder);
     assert_true(figure_folders_drawn(folder, "intermolecular_rdf"));
-    assert_true(figure_folders_say(folder, "intermolecular_rdf", "A-B"));
+    assert_true(figure_folders_print(folder, "intermolecular_rdf", "A-B"));
     assert_false(figure_folders_drawn(folder, "intermolecular_rdf_A-B"));
 
     figure_folders_make(folder, "fitted between");
     figure_folders_write(folder, "intermolecular_rdf_A-A.tsv", figure_folders_fit_rdf);
     figure_folders_write(folder, "intermolecular_rdf_A-B.tsv", figure_folders_fit_rdf);
     figure_folders_draw(folder);
-    assert_true(figure_folders_say(folder, "intermolecular_rdf_A-A", "target"));
-    assert_true(figure_folders_say(folder, "intermolecular_rdf_A-B", "target"));
+    assert_true(figure_folders_print(folder, "intermolecular_rdf_A-A", "target"));
+    assert_true(figure_folders_print(folder, "intermolecular_rdf_A-B", "target"));
     assert_false(figure_folders_drawn(folder, "intermolecular_rdf"));
 }
 
@@ -113,8 +113,8 @@ static void test_draws_the_population_of_each_pair_type(void **state) {
                              "# r\tphi\tforce\tphi_error\n0.5\t1\t0\tnan\n1\t0\t0\tnan\n");
     }
     figure_folders_draw(folder);
-    assert_true(figure_folders_say(folder, "population_A-A", "last generation"));
-    assert_true(figure_folders_say(folder, "population_A-B", "last generation"));
+    assert_true(figure_folders_print(folder, "population_A-A", "last generation"));
+    assert_true(figure_folders_print(folder, "population_A-B", "last generation"));
     assert_false(figure_folders_drawn(folder, "population"));
 }
 

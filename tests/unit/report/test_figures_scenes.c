@@ -47,7 +47,7 @@ static void test_particles_are_discs_of_their_size_and_type(void **state) {
     // 10 λ are about as wide as the figure without its margins; a rim is 0.3 pixels.
     assert_true(big > 60 && big < 110);
     assert_close_relative((big + 0.3) / (small + 0.3), 4, 0.01);
-    assert_true(figure_folders_say(folder, "configuration", ">small<"));
+    assert_true(figure_folders_print(folder, "configuration", ">small<"));
 }
 
 /// Discs without radii touch where they begin to repel each other.
@@ -115,7 +115,7 @@ static void test_bonds_are_drawn_over_the_edges_of_the_box(void **state) {
                              "# rows\n# first\tsecond\n1\t3\n2\t4\n");
         figure_folders_draw(folder);
         assert_true(figure_folders_drawn(folder, "configuration"));
-        assert_true(figure_folders_say(folder, "configuration", ">B<"));
+        assert_true(figure_folders_print(folder, "configuration", ">B<"));
         int halves[2];
         const double radius = radius_of(folder, blue) + 0.3, longest = halves_of(folder, halves);
         assert_int_equal(halves[0], 2);
@@ -146,12 +146,12 @@ static void test_flow_shows_its_obstacle(void **state) {
     figure_folders_write(folder, "flow_field.tsv", text);
     figure_folders_draw(folder);
     assert_true(figure_folders_drawn(folder, "flow_field"));
-    assert_true(figure_folders_say(folder, "flow_field", grey));
+    assert_true(figure_folders_print(folder, "flow_field", grey));
     figure_folders_make(folder, "no-obstacle");
     figure_folders_write(folder, "used.json", "{\n\t\"box\":\t[4, 4]\n}\n");
     figure_folders_write(folder, "flow_field.tsv", text);
     figure_folders_draw(folder);
-    assert_false(figure_folders_say(folder, "flow_field", grey));
+    assert_false(figure_folders_print(folder, "flow_field", grey));
 }
 
 static void test_pressure_is_over_lengths_of_as_many_dimensions(void **state) {
@@ -168,7 +168,7 @@ static void test_pressure_is_over_lengths_of_as_many_dimensions(void **state) {
         figure_folders_write(folder, "used.json", text);
         figure_folders_draw(folder);
         // The only raised figure.
-        assert_true(figure_folders_say(
+        assert_true(figure_folders_print(
             folder, "simulation", dimensions == 2 ? "dy=\"-6.50px\">2<" : "dy=\"-6.50px\">3<"));
     }
 }
@@ -186,9 +186,9 @@ static void test_vectors_of_molecules_live_for_times_or_sweeps(void **state) {
         figure_folders_write(folder, "molecule_sizes.tsv", text);
         figure_folders_draw(folder);
         assert_true(figure_folders_drawn(folder, "molecule_sizes"));
-        assert_int_equal(figure_folders_say(folder, "molecule_sizes", "sweeps"), sweeps);
-        assert_int_equal(figure_folders_say(folder, "molecule_sizes", "τ"), !sweeps);
-        assert_true(figure_folders_say(folder, "molecule_sizes", "⟨"));
+        assert_int_equal(figure_folders_print(folder, "molecule_sizes", "sweeps"), sweeps);
+        assert_int_equal(figure_folders_print(folder, "molecule_sizes", "τ"), !sweeps);
+        assert_true(figure_folders_print(folder, "molecule_sizes", "⟨"));
     }
 }
 
@@ -210,13 +210,13 @@ static void test_groups_of_a_fit_have_the_colours_of_its_rdf(void **state) {
     figure_folders_draw(folder);
     static const char *const names[] = {"rdf", "bond_lengths_arm"};
     for (int k = 0; k < 2; k++) {
-        assert_true(figure_folders_say(folder, names[k], ">target<"));
-        assert_true(figure_folders_say(folder, names[k], blue));
-        assert_true(figure_folders_say(folder, names[k], "xlink:href='#gpPt6'"));
-        assert_false(figure_folders_say(folder, names[k], vermillion));
+        assert_true(figure_folders_print(folder, names[k], ">target<"));
+        assert_true(figure_folders_print(folder, names[k], blue));
+        assert_true(figure_folders_print(folder, names[k], "xlink:href='#gpPt6'"));
+        assert_false(figure_folders_print(folder, names[k], vermillion));
     }
-    assert_true(figure_folders_say(folder, "bond_lengths", vermillion));
-    assert_false(figure_folders_say(folder, "bond_lengths", "xlink:href='#gpPt6'"));
+    assert_true(figure_folders_print(folder, "bond_lengths", vermillion));
+    assert_false(figure_folders_print(folder, "bond_lengths", "xlink:href='#gpPt6'"));
 }
 
 int main(void) {

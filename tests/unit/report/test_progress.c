@@ -25,7 +25,7 @@ static void test_pace_of_even_parts_is_their_time(void **state) {
         struct progress_pace pace = mf_progress_pace_begin(100, before, 1);
         for (uint64_t k = 1; k <= 20; k++) {
             const double clock = 100 + 10 * (double)k;
-            mf_progress_pace_tell(&pace, clock, before + k);
+            mf_progress_pace_update(&pace, clock, before + k);
             assert_close(mf_progress_pace_left(&pace, clock, before + k, before + 20),
                          200 - 10 * (double)k, 1e-9);
         }
@@ -39,10 +39,10 @@ static void test_pace_runs_down_inside_a_period(void **state) {
     struct progress_pace pace = mf_progress_pace_begin(0, 0, 8);
     for (uint64_t period = 1; period <= 2; period++)
         for (uint64_t k = 1; k <= 8; k++)
-            mf_progress_pace_tell(&pace, 10 * (double)period, 8 * (period - 1) + k);
+            mf_progress_pace_update(&pace, 10 * (double)period, 8 * (period - 1) + k);
     assert_close(mf_progress_pace_left(&pace, 20, 16, 40), 30, 1e-9);
     assert_close(mf_progress_pace_left(&pace, 25, 16, 40), 25, 1e-9);
-    mf_progress_pace_tell(&pace, 29, 17);
+    mf_progress_pace_update(&pace, 29, 17);
     assert_close(mf_progress_pace_left(&pace, 29, 17, 40), 21, 1e-9);
     assert_close(mf_progress_pace_left(&pace, 30, 24, 24), 0, 0);
 }
@@ -54,7 +54,7 @@ static void test_pace_ages_while_a_period_is_overdue(void **state) {
     (void)state;
     struct progress_pace pace = mf_progress_pace_begin(0, 0, 8);
     for (uint64_t period = 1; period <= 2; period++)
-        mf_progress_pace_tell(&pace, 10 * (double)period, 8 * period);
+        mf_progress_pace_update(&pace, 10 * (double)period, 8 * period);
     assert_close(mf_progress_pace_rate(&pace, 29.9, 23), 0.8, 1e-9);
     assert_close(mf_progress_pace_rate(&pace, 90, 17), 0.2, 1e-9);
     // Two whole periods, and some of this one, of which 7 parts are to come.
@@ -76,7 +76,7 @@ static void test_pace_has_a_rate_that_agrees_with_the_time_left(void **state) {
     assert_close(mf_progress_pace_rate(&pace, 5, 20), 2, 1e-12);
     const double clocks[] = {100, 101, 102, 104, 107};
     for (uint64_t k = 0; k < 5; k++) {
-        mf_progress_pace_tell(&pace, clocks[k], 11 + k);
+        mf_progress_pace_update(&pace, clocks[k], 11 + k);
         const double rate = mf_progress_pace_rate(&pace, clocks[k], 11 + k);
         assert_close(rate * mf_progress_pace_left(&pace, clocks[k], 11 + k, 40), 29 - (double)k,
                      1e-9);
@@ -88,7 +88,7 @@ static void test_pace_forgets_a_slow_beginning(void **state) {
     (void)state;
     struct progress_pace pace = mf_progress_pace_begin(0, 0, 2);
     for (uint64_t period = 1; period <= 4; period++)
-        mf_progress_pace_tell(&pace, 90 + 10 * (double)period, 2 * period);
+        mf_progress_pace_update(&pace, 90 + 10 * (double)period, 2 * period);
     assert_close(mf_progress_pace_left(&pace, 130, 8, 20), 60, 1e-9);
 }
 
@@ -102,19 +102,19 @@ static void test_iterations_go_on_when_their_passes_begin_anew(void **state) {
     (void)state;
     static const struct {
         uint32_t iteration;
-        uint64_t done, total, told;
+        uint64_t done, total, reported;
     } words[] = {{0, 1, 4, 1}, {0, 4, 4, 4}, {0, 1, 4, 4}, {0, 4, 4, 4},
                  {1, 1, 2, 6}, {1, 2, 2, 8}, {2, 1, 8, 8}, {2, 8, 8, 12}};
     struct watcher_progress last = {0};
-    const struct watcher watcher = {.context = &last, .tell = keep};
+    const struct watcher watcher = {.context = &last, .report = keep};
     struct progress progress = mf_progress_begin(true, &watcher);
     for (size_t k = 0; k < sizeof words / sizeof *words; k++) {
         const struct inverse_progress now = {.iteration = words[k].iteration,
                                              .iterations = 3,
                                              .done = words[k].done,
                                              .total = words[k].total};
-        mf_progress_tell_iteration(&progress, &now, "");
-        assert_int_equal(last.done, words[k].told);
+        mf_progress_report_iteration(&progress, &now, "");
+        assert_int_equal(last.done, words[k].reported);
         assert_int_equal(last.total, 12);
     }
 }
@@ -123,7 +123,7 @@ static void test_iterations_go_on_when_their_passes_begin_anew(void **state) {
 static void test_iteration_that_doubles_its_samples_has_no_time_left(void **state) {
     struct temporary_folder *folder = *state;
     struct watcher_progress last = {0};
-    const struct watcher watcher = {.context = &last, .tell = keep};
+    const struct watcher watcher = {.context = &last, .report = keep};
     struct progress progress = mf_progress_begin(true, &watcher);
     struct inverse_progress now = {.iterations = 3, .done = 4, .total = 4};
     progress.folder = folder->path;
@@ -131,7 +131,7 @@ static void test_iteration_that_doubles_its_samples_has_no_time_left(void **stat
     for (int number = 0; number <= 1; number++) {
         now.doubling.number = number;
         progress.next = 0;
-        mf_progress_tell_iteration(&progress, &now, "some");
+        mf_progress_report_iteration(&progress, &now, "some");
         char *text = temporary_folder_read(temporary_folder_file(folder, "progress.json"));
         assert_int_equal(strstr(text, "\"left\"") == NULL, number > 0);
         free(text);
@@ -149,7 +149,7 @@ static void test_progress_is_in_the_folder_until_the_end(void **state) {
     progress.folder = folder->path;
     progress.started -= 100;
     progress.next = 0;
-    mf_progress_tell(&progress, 25, 100, "steps", "step 25  T \x1b[2J");
+    mf_progress_report(&progress, 25, 100, "steps", "step 25  T \x1b[2J");
     const char *file = temporary_folder_file(folder, "progress.json");
     assert_close(results_number(file, "done"), 25, 0);
     assert_close(results_number(file, "total"), 100, 0);

@@ -109,7 +109,7 @@ static void test_attributes_are_refused_when_there_are_too_many(void **state) {
     struct particles particles;
     int number;
     assert_ok(mf_particles_init(&particles, &(struct box){2, {5, 5, 1}}, 4));
-    for (int k = 0; k < PARTICLES_MOST_ATTRIBUTES; k++) {
+    for (int k = 0; k < PARTICLES_MAX_ATTRIBUTES; k++) {
         assert_ok(mf_particles_add_attribute(&particles, &radius, &number));
         assert_int_equal(number, k);
     }

@@ -75,7 +75,7 @@ static void test_components_refuse_names_that_tell_nothing(void **state) {
     assert_refused(&topology, &beads, "sixteen-letters-", "two", "up to 15 characters");
     name(&topology, "fifteen-letters", "A");
     assert_ok(mf_components_find(&components, &beads, 17, &topology));
-    for (; beads.types < COMPOSITION_MOST_TYPES; beads.types++) {
+    for (; beads.types < COMPOSITION_MAX_TYPES; beads.types++) {
         beads.count[beads.types] = 1;
         snprintf(beads.name[beads.types], COMPOSITION_NAME_SIZE, "T%d", beads.types);
     }

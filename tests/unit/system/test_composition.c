@@ -15,7 +15,7 @@ static void test_composition_type_follows_from_the_id(void **state) {
 
 static void test_composition_pairs_come_in_order_whatever_the_number_of_types(void **state) {
     (void)state;
-    for (int types = 2; types <= COMPOSITION_MOST_TYPES; types++) {
+    for (int types = 2; types <= COMPOSITION_MAX_TYPES; types++) {
         const struct composition composition = {.types = types};
         int next = 0;
         for (int a = 0; a < types; a++)
@@ -112,7 +112,7 @@ static void test_composition_scaled_leaves_each_type_a_pair(void **state) {
     const struct composition larger = mf_composition_scaled(&single, 4000);
     assert_int_equal(larger.count[0], 1);
     assert_true(mf_composition_distortion(&single, &larger) < 2e-3);
-    assert_true(mf_composition_least_particles(&single, 4000, 0.05) == 4000);
+    assert_true(mf_composition_min_particles(&single, 4000, 0.05) == 4000);
     assert_false(mf_composition_has_pairs(&single, 0));
     assert_true(mf_composition_has_pairs(&single, 1) && mf_composition_has_pairs(&rare, 0));
 }
@@ -126,9 +126,9 @@ static void test_composition_distortion_is_of_the_share_that_changes_most(void *
     assert_close(mf_composition_distortion(&rare, &small), 200.0 / 101 - 1, 1e-12);
     assert_close(mf_composition_distortion(&rare, &rare), 0, 0);
     // 2 of 167 are 1.198 of 1 in 100.
-    assert_int_equal(mf_composition_least_particles(&rare, 100, 0.2), 167);
-    assert_int_equal(mf_composition_least_particles(&rare, 180, 0.2), 180);
-    assert_int_equal(mf_composition_least_particles(&rare, 100, 0), 200);
+    assert_int_equal(mf_composition_min_particles(&rare, 100, 0.2), 167);
+    assert_int_equal(mf_composition_min_particles(&rare, 180, 0.2), 180);
+    assert_int_equal(mf_composition_min_particles(&rare, 100, 0), 200);
 }
 
 static void test_composition_particles_are_those_of_all_types(void **state) {

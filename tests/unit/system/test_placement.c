@@ -5,8 +5,8 @@
 #include "shared/testing.h"
 
 /// Least distance of any two particles, nearest images.
-static double least_distance(const struct particles *particles) {
-    double least = INFINITY;
+static double min_distance(const struct particles *particles) {
+    double min = INFINITY;
     for (size_t i = 0; i < particles->count; i++)
         for (size_t j = i + 1; j < particles->count; j++) {
             double square = 0;
@@ -15,9 +15,9 @@ static double least_distance(const struct particles *particles) {
                                               particles->box.length[d]);
                 square += dx * dx;
             }
-            least = fmin(least, square);
+            min = fmin(min, square);
         }
-    return sqrt(least);
+    return sqrt(min);
 }
 
 /// All positions are in the box, and the fractions are up to date.
@@ -37,7 +37,7 @@ static void test_placement_lattice_is_simple_cubic_when_count_is_a_cube(void **s
     assert_ok(mf_particles_init(&particles, &box, 2744));
     mf_placement_lattice(&particles, 0, 1);
     check_in_box(&particles);
-    assert_close(least_distance(&particles), 9.427 / 14, 1e-12);
+    assert_close(min_distance(&particles), 9.427 / 14, 1e-12);
     mf_particles_clear(&particles);
 }
 
@@ -65,7 +65,7 @@ static void test_placement_lattice_is_square_when_in_two_dimensions(void **state
     assert_ok(mf_particles_init(&particles, &box, 144));
     mf_placement_lattice(&particles, 0, 1);
     check_in_box(&particles);
-    assert_close(least_distance(&particles), 0.5, 1e-12);
+    assert_close(min_distance(&particles), 0.5, 1e-12);
     mf_particles_clear(&particles);
 }
 
@@ -82,7 +82,7 @@ static void test_placement_lattice_keeps_particles_apart_when_count_is_odd(void 
             check_in_box(&particles);
             const double spacing =
                 pow(mf_box_volume(&boxes[b]) / (double)count, 1.0 / boxes[b].dimensions);
-            assert_true(least_distance(&particles) > 0.55 * spacing);
+            assert_true(min_distance(&particles) > 0.55 * spacing);
             mf_particles_clear(&particles);
         }
 }
@@ -151,7 +151,7 @@ static void check_random(const struct box *box, size_t count, double separation)
     assert_ok(mf_placement_random(&particles, separation, 3));
     assert_ok(mf_placement_random(&again, separation, 3));
     check_in_box(&particles);
-    assert_true(least_distance(&particles) >= separation);
+    assert_true(min_distance(&particles) >= separation);
     for (int d = 0; d < box->dimensions; d++)
         assert_memory_equal(particles.position[d], again.position[d], count * sizeof(double));
     mf_particles_clear(&particles);
@@ -203,7 +203,7 @@ static void test_placement_disordered_has_no_planes_when_the_count_is_a_cube(voi
     assert_ok(mf_particles_init(&particles, &box, COUNT));
     assert_ok(mf_placement_disordered(&particles, 5));
     check_in_box(&particles);
-    assert_true(least_distance(&particles) >= 0.7 * 9 / EDGE);
+    assert_true(min_distance(&particles) >= 0.7 * 9 / EDGE);
     for (int d = 0; d < 3; d++) {
         double real = 0, imaginary = 0;
         for (size_t k = 0; k < COUNT; k++) {

@@ -43,7 +43,7 @@ static void test_ids_follow_from_types_and_molecules(void **state) {
 
 static void test_pairs_inside_are_those_that_can_be_counted(void **state) {
     (void)state;
-    for (int exclude = 0; exclude <= TOPOLOGY_MOST_EXCLUDE; exclude++) {
+    for (int exclude = 0; exclude <= TOPOLOGY_MAX_EXCLUDE; exclude++) {
         struct topology topology;
         const struct composition composition = make(&topology, exclude);
         for (int n = 0; n < 9; n++) {
@@ -56,8 +56,8 @@ static void test_pairs_inside_are_those_that_can_be_counted(void **state) {
                     excluded += counts && mf_topology_excludes(&topology, i, j);
                     all += counts && topology.molecule[i] == topology.molecule[j];
                 }
-            assert_identical(mf_topology_pairs_inside(&topology, type, true), excluded);
-            assert_identical(mf_topology_pairs_inside(&topology, type, false), all);
+            assert_identical(mf_topology_intramolecular_pairs(&topology, type, true), excluded);
+            assert_identical(mf_topology_intramolecular_pairs(&topology, type, false), all);
         }
         mf_topology_clear(&topology);
     }
@@ -67,7 +67,7 @@ static void test_beads_within_so_many_bonds_exclude_each_other(void **state) {
     (void)state;
     // Of the chain 0-6-7-1, by hand.
     static const uint32_t chain[] = {0, 6, 7, 1};
-    for (int exclude = 0; exclude <= TOPOLOGY_MOST_EXCLUDE; exclude++) {
+    for (int exclude = 0; exclude <= TOPOLOGY_MAX_EXCLUDE; exclude++) {
         struct topology topology;
         make(&topology, exclude);
         for (int a = 0; a < 4; a++)
@@ -146,15 +146,15 @@ static void test_a_kind_in_pieces_is_found(void **state) {
     (void)state;
     int bead;
     struct topology_kind kind = molecules_chain(1, abba, 4, BONDED_BOND, 1);
-    assert_ok(mf_topology_apart(&kind, &bead));
+    assert_ok(mf_topology_find_disconnected(&kind, &bead));
     assert_int_equal(bead, -1);
     kind.terms[BONDED_BOND] = 2;
     kind.term[BONDED_BOND][1].bead[0] = 2;
     kind.term[BONDED_BOND][1].bead[1] = 3;
-    assert_ok(mf_topology_apart(&kind, &bead));
+    assert_ok(mf_topology_find_disconnected(&kind, &bead));
     assert_int_equal(bead, 2);
     kind.term[BONDED_BOND][1].bead[0] = 1;
-    assert_ok(mf_topology_apart(&kind, &bead));
+    assert_ok(mf_topology_find_disconnected(&kind, &bead));
     assert_int_equal(bead, 2);
     mf_topology_kind_clear(&kind);
 }

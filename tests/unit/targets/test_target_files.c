@@ -123,7 +123,7 @@ static void test_targets_read_gives_the_structure_between_molecules_its_own_bins
 
 /// A λ of half a nanometre: 1 nm³ is 8 λ³.
 static void test_targets_read_converts_integrals_of_kirkwood_and_buff(void **state) {
-    static const struct units spoken = {
+    static const struct units physical = {
         .system = UNITS_NM_PS, .length = 0.5, .temperature = 300, .mass = 1e-26, .dimensions = 3};
     static const char text[] =
         "{\"target\": {\"kirkwood_buff\": {\"A-B\": {\"value\": -0.25, \"error\": 0.125}, "
@@ -135,10 +135,10 @@ static void test_targets_read_converts_integrals_of_kirkwood_and_buff(void **sta
     struct targets fitted, compared;
     assert_ok(
         mf_json_open(&document, temporary_folder_write(*state, "a.json", text, strlen(text))));
-    mf_json_speak(document, &spoken);
+    mf_json_set_units(document, &physical);
     struct json_object root = mf_json_root(document);
     assert_ok(
-        mf_target_files_read(&t, &root, &(struct target_scene){&box, &binary, NULL, &spoken}));
+        mf_target_files_read(&t, &root, &(struct target_scene){&box, &binary, NULL, &physical}));
     mf_json_finish(&root);
     assert_ok(mf_json_close(document, STATUS_OK));
     mf_target_files_targets(&t, false, &fitted, &compared);
@@ -327,8 +327,8 @@ static void test_targets_digest_knows_every_number(void **state) {
     mf_target_files_digest(&t, &before);
     double *const numbers[] = {target_files_rdf(&t)->g,
                                target_files_rdf(&t)->error,
-                               target_files_apart(&t)->g,
-                               target_files_apart(&t)->error,
+                               target_files_intermolecular(&t)->g,
+                               target_files_intermolecular(&t)->error,
                                target_files_etd(&t)->survival,
                                target_files_etd(&t)->error,
                                target_files_curve(&t, TARGET_VACF)->value,

@@ -105,7 +105,7 @@ static void test_target_read_takes_a_g_slightly_below_0_as_0(void **state) {
     struct target_rdf target;
     assert_ok(read(state, "0.05 -0.004\n0.15 0.002\n0.25 -0.02\n0.35 1.5\n0.45 1\n", "", &target));
     assert_int_equal(target.negative, 2);
-    assert_close(target.least, -0.02, 0);
+    assert_close(target.min, -0.02, 0);
     assert_close(target.g[0] + target.g[2], 0, 0);
     mf_target_rdf_clear(&target);
     assert_refused(state, "0.05 0\n0.15 0\n0.25 -0.04\n0.35 1.5\n0.45 1\n", "",

@@ -7,7 +7,7 @@
 
 #include <math.h>
 
-enum { MOST = 400 };
+enum { MAX = 400 };
 static const double step = 0.03, end = 6;
 
 /// A liquid's g: a steep flank at 1, and oscillations that fade.
@@ -27,8 +27,8 @@ static double normal(uint32_t draw, size_t k) {
 static void fill(struct target_rows *rows, double noise, uint32_t draw) {
     double r = 0.4;
     *rows = (struct target_rows){.dimensions = 3};
-    assert_ok(mf_target_rows_allocate(rows, MOST));
-    for (rows->count = 0; r < end && rows->count < MOST; rows->count++) {
+    assert_ok(mf_target_rows_allocate(rows, MAX));
+    for (rows->count = 0; r < end && rows->count < MAX; rows->count++) {
         const size_t k = rows->count;
         const double g = liquid(r);
         rows->x[k] = r;

@@ -11,29 +11,29 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { MOST = 1 << 16, ATOMS = 3, FRAMES = 2 };
+enum { MAX = 1 << 16, ATOMS = 3, FRAMES = 2 };
 
-static unsigned char file_bytes[MOST];
+static unsigned char file_bytes[MAX];
 static size_t file_size;
 static bool big;
 
-static void put_bytes(const void *bytes, size_t size, bool swapped) {
-    assert_true(file_size + size <= MOST);
+static void write_bytes(const void *bytes, size_t size, bool swapped) {
+    assert_true(file_size + size <= MAX);
     for (size_t k = 0; k < size; k++)
         file_bytes[file_size++] = ((const unsigned char *)bytes)[swapped ? size - 1 - k : k];
 }
 
 /// This machine's order is little-endian, as all that the program is built for.
-static void put_int(int32_t value) {
-    put_bytes(&value, sizeof value, big);
+static void write_int(int32_t value) {
+    write_bytes(&value, sizeof value, big);
 }
 
-static void put_float(double value) {
-    put_bytes(&(float){(float)value}, sizeof(float), big);
+static void write_float(double value) {
+    write_bytes(&(float){(float)value}, sizeof(float), big);
 }
 
-static void put_double(double value) {
-    put_bytes(&value, sizeof value, big);
+static void write_double(double value) {
+    write_bytes(&value, sizeof value, big);
 }
 
 static double coordinate(int frame, int atom, int d) {
@@ -71,44 +71,44 @@ static void assert_positions(int number, double scale) {
 
 enum cell { NO_CELL, DEGREES, COSINES };
 
-static void put_dcd(bool big_endian, enum cell cell, int version, int fixed, bool fourth) {
+static void write_dcd(bool big_endian, enum cell cell, int version, int fixed, bool fourth) {
     file_size = 0;
     big = big_endian;
     const int header[20] = {FRAMES,          500,    50, 0, 0, 0, 0, 0, fixed, 0,
                             cell != NO_CELL, fourth, 0,  0, 0, 0, 0, 0, 0,     version};
-    put_int(84);
-    put_bytes("CORD", 4, false);
+    write_int(84);
+    write_bytes("CORD", 4, false);
     for (int k = 0; k < 20; k++) {
         if (k == 9 && version)
-            put_float(0.5);
+            write_float(0.5);
         else if (k == 9)
-            put_double(0.5), k++;
+            write_double(0.5), k++;
         else
-            put_int(header[k]);
+            write_int(header[k]);
     }
-    put_int(84);
-    put_int(84);
-    put_int(1);
+    write_int(84);
+    write_int(84);
+    write_int(1);
     for (int k = 0; k < 80; k++)
-        put_bytes("x", 1, false);
-    put_int(84);
-    put_int(4), put_int(ATOMS), put_int(4);
+        write_bytes("x", 1, false);
+    write_int(84);
+    write_int(4), write_int(ATOMS), write_int(4);
     for (int number = 0; number < FRAMES; number++) {
         const double angle[3] = {60, 90, 120};
         double v[6] = {20 + number, angle[2], 30, angle[1], angle[0], 40};
         for (int k = 1; cell == COSINES && k < 5; k += k == 1 ? 2 : 1)
             v[k] = v[k] == 90 ? 0 : cos(v[k] * acos(-1) / 180);
         if (cell != NO_CELL) {
-            put_int(48);
+            write_int(48);
             for (int k = 0; k < 6; k++)
-                put_double(v[k]);
-            put_int(48);
+                write_double(v[k]);
+            write_int(48);
         }
         for (int d = 0; d < 3 + fourth; d++) {
-            put_int(4 * ATOMS);
+            write_int(4 * ATOMS);
             for (int k = 0; k < ATOMS; k++)
-                put_float(coordinate(number, k, d));
-            put_int(4 * ATOMS);
+                write_float(coordinate(number, k, d));
+            write_int(4 * ATOMS);
         }
     }
 }
@@ -130,7 +130,7 @@ static void assert_cell(int number) {
 static void test_dcd_is_read_in_all_its_kinds(void **state) {
     for (int kind = 0; kind < 2 * 3 * 2; kind++) {
         const enum cell cell = (enum cell)(kind / 4);
-        put_dcd(kind & 1, cell, 24, 0, kind & 2);
+        write_dcd(kind & 1, cell, 24, 0, kind & 2);
         assert_ok(try(state, &(struct trajectory_options){0}));
         assert_string_equal(trajectory.format->name, "dcd");
         for (int number = 0; number < FRAMES; number++) {
@@ -150,7 +150,7 @@ static void test_dcd_is_read_in_all_its_kinds(void **state) {
 
 /// X-PLOR's time step is double; a told one comes first; "lj" leaves lengths alone.
 static void test_dcd_has_the_time_and_the_units_that_are_told(void **state) {
-    put_dcd(false, NO_CELL, 0, 0, false);
+    write_dcd(false, NO_CELL, 0, 0, false);
     assert_ok(try(state, &(struct trajectory_options){0}));
     next(true);
     assert_true(fabs(frame.time - 500 * 0.5 * 0.0488882129) < 1e-12);
@@ -163,10 +163,10 @@ static void test_dcd_has_the_time_and_the_units_that_are_told(void **state) {
 }
 
 static void test_dcd_is_refused_when_its_records_do_not_fit(void **state) {
-    put_dcd(true, DEGREES, 24, 2, false);
+    write_dcd(true, DEGREES, 24, 2, false);
     assert_int_equal(try(state, &(struct trajectory_options){0}), STATUS_BAD_INPUT);
     assert_contains(mf_status_message(), "fixed atoms");
-    put_dcd(true, DEGREES, 24, 0, false);
+    write_dcd(true, DEGREES, 24, 0, false);
     file_bytes[file_size - 1] = 99;
     assert_ok(try(state, &(struct trajectory_options){0}));
     bool more;
@@ -182,34 +182,34 @@ static void test_dcd_is_refused_when_its_records_do_not_fit(void **state) {
 
 // trr ---------------------------------------------------------------------------------------------
 
-static void put_trr(int number, bool positions, bool velocities, bool forces) {
+static void write_trr(int number, bool positions, bool velocities, bool forces) {
     const int vectors = ATOMS * 3 * 8;
     const int size[10] = {
         0, 0, 72, 72, 0, 0, 0, vectors * positions, vectors * velocities, vectors * forces};
     big = true;
-    put_int(1993), put_int(13), put_int(12);
-    put_bytes("GMX_trn_file", 12, false);
+    write_int(1993), write_int(13), write_int(12);
+    write_bytes("GMX_trn_file", 12, false);
     for (int k = 0; k < 10; k++)
-        put_int(size[k]);
-    put_int(ATOMS), put_int(50 * number), put_int(0);
-    put_double(0.1 * number), put_double(0);
+        write_int(size[k]);
+    write_int(ATOMS), write_int(50 * number), write_int(0);
+    write_double(0.1 * number), write_double(0);
     for (int k = 0; k < 9; k++)
-        put_double(k % 4 == 0 ? 3 : k == 6 ? 1.5 : 0);
+        write_double(k % 4 == 0 ? 3 : k == 6 ? 1.5 : 0);
     for (int k = 0; k < 9; k++)
-        put_double(7); // virial
+        write_double(7); // virial
     for (int part = 0; part < positions + velocities + forces; part++)
         for (int k = 0; k < ATOMS; k++)
             for (int d = 0; d < 3; d++)
-                put_double((part ? -1 : 1) * coordinate(number, k, d));
+                write_double((part ? -1 : 1) * coordinate(number, k, d));
 }
 
 static void test_trr_is_read_in_double_precision(void **state) {
     file_size = 0;
-    put_trr(0, false, true, true); // passed over, even as the first
-    put_trr(1, true, true, true);
-    put_trr(2, false, true, false);
-    put_trr(3, true, false, true);
-    put_trr(4, false, false, true);
+    write_trr(0, false, true, true); // passed over, even as the first
+    write_trr(1, true, true, true);
+    write_trr(2, false, true, false);
+    write_trr(3, true, false, true);
+    write_trr(4, false, false, true);
     assert_ok(try(state, &(struct trajectory_options){0}));
     next(true);
     assert_positions(1, 1);
@@ -229,13 +229,13 @@ static void test_xtc_has_few_atoms_unpacked(void **state) {
     file_size = 0;
     big = true;
     for (int number = 0; number < FRAMES; number++) {
-        put_int(1995), put_int(ATOMS), put_int(number), put_float(number);
+        write_int(1995), write_int(ATOMS), write_int(number), write_float(number);
         for (int k = 0; k < 9; k++)
-            put_float(k % 4 == 0 ? 5 : 0);
-        put_int(ATOMS);
+            write_float(k % 4 == 0 ? 5 : 0);
+        write_int(ATOMS);
         for (int k = 0; k < ATOMS; k++)
             for (int d = 0; d < 3; d++)
-                put_float(coordinate(number, k, d));
+                write_float(coordinate(number, k, d));
     }
     assert_ok(try(state, &(struct trajectory_options){0}));
     for (int number = 0; number < FRAMES; number++) {

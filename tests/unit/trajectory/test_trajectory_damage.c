@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { MOST = 1 << 18 };
+enum { MAX = 1 << 18 };
 
 /// Files, how much of each is used, and where its frames end.
 static const struct sample {
@@ -26,7 +26,7 @@ static const struct sample {
 };
 enum { SAMPLES = sizeof samples / sizeof *samples };
 
-static unsigned char bytes[MOST];
+static unsigned char bytes[MAX];
 static struct trajectory trajectory;
 static struct trajectory_frame frame;
 
@@ -124,7 +124,7 @@ static void test_files_are_read_or_refused_when_bytes_are_others(void **state) {
         }
 }
 
-static void put_word(size_t at, uint32_t value) {
+static void write_word(size_t at, uint32_t value) {
     for (int k = 0; k < 4; k++)
         bytes[at + (size_t)k] = (unsigned char)(value >> (24 - 8 * k));
 }
@@ -133,13 +133,13 @@ static void put_word(size_t at, uint32_t value) {
 static void test_promises_of_a_header_take_no_memory(void **state) {
     size_t frames;
     read_sample(&samples[0]);
-    put_word(4, INT32_MAX);
-    put_word(52, INT32_MAX);
+    write_word(4, INT32_MAX);
+    write_word(52, INT32_MAX);
     mf_frame_clear(&frame);
     assert_int_equal(read_all(state, samples[0].size, NULL, &frames), STATUS_BAD_INPUT);
     assert_contains(mf_status_message(), "too few bytes for the number of atoms");
-    assert_int_equal(frame.room, 0);
-    put_word(88, INT32_MAX);
+    assert_int_equal(frame.capacity, 0);
+    write_word(88, INT32_MAX);
     assert_int_equal(read_all(state, samples[0].size, NULL, &frames), STATUS_BAD_INPUT);
     assert_contains(mf_status_message(), "the file ends within the frame");
     assert_true(frame.raw.capacity < 1 << 26);

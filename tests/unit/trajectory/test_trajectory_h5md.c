@@ -31,16 +31,16 @@ static hid_t make_group(hid_t place, const char *name) {
 }
 
 /// Texts of units take so many bytes at least: others write all of them as long as the longest.
-static size_t least_text;
+static size_t min_text;
 
-static void put_text(hid_t object, const char *name, const char *text) {
+static void write_text(hid_t object, const char *name, const char *text) {
     const hid_t type = H5Tcopy(H5T_C_S1), space = H5Screate(H5S_SCALAR);
-    char room[1024] = "";
-    snprintf(room, sizeof room, "%s", text);
-    H5Tset_size(type, strlen(text) < least_text ? least_text : strlen(text) + 1);
-    H5Tset_cset(type, least_text > 0 ? H5T_CSET_UTF8 : H5T_CSET_ASCII);
+    char capacity[1024] = "";
+    snprintf(capacity, sizeof capacity, "%s", text);
+    H5Tset_size(type, strlen(text) < min_text ? min_text : strlen(text) + 1);
+    H5Tset_cset(type, min_text > 0 ? H5T_CSET_UTF8 : H5T_CSET_ASCII);
     const hid_t attribute = H5Acreate(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
-    assert_true(H5Awrite(attribute, type, room) >= 0);
+    assert_true(H5Awrite(attribute, type, capacity) >= 0);
     H5Aclose(attribute);
     H5Sclose(space);
     H5Tclose(type);
@@ -59,15 +59,15 @@ static void put(hid_t place, const char *name, hid_t stored, hid_t type, int ran
     const hid_t dataset = H5Dcreate(place, name, stored, space, H5P_DEFAULT, how, H5P_DEFAULT);
     assert_true(H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers) >= 0);
     if (unit)
-        put_text(dataset, "unit", unit);
+        write_text(dataset, "unit", unit);
     H5Dclose(dataset);
     H5Pclose(how);
     H5Sclose(space);
 }
 
 /// A group with values, steps 10, 20, … and times 0.5, 1, ….
-static void put_element(hid_t place, const char *name, hid_t stored, hid_t type, int rank,
-                        const hsize_t *size, const void *values, const char *unit) {
+static void write_element(hid_t place, const char *name, hid_t stored, hid_t type, int rank,
+                          const hsize_t *size, const void *values, const char *unit) {
     int step[FRAMES];
     double time[FRAMES];
     const hid_t group = make_group(place, name);
@@ -93,13 +93,13 @@ static double coordinate(int frame, int atom, int d) {
 }
 
 /// Positions of all frames, or of the first.
-static void put_positions(hid_t group, hid_t stored, bool timed, const char *unit) {
+static void write_positions(hid_t group, hid_t stored, bool timed, const char *unit) {
     double numbers[FRAMES][ATOMS][3];
     for (int t = 0; t < FRAMES; t++)
         for (int k = 0; k < 3 * ATOMS; k++)
             numbers[t][k / 3][k % 3] = coordinate(t, k / 3, k % 3);
     if (timed)
-        put_element(group, "position", stored, H5T_NATIVE_DOUBLE, 3, vectors, numbers, unit);
+        write_element(group, "position", stored, H5T_NATIVE_DOUBLE, 3, vectors, numbers, unit);
     else
         put(group, "position", stored, H5T_NATIVE_DOUBLE, 2, vectors + 1, numbers, unit);
 }
@@ -111,7 +111,7 @@ static hid_t begin_group(const char *name) {
     return group;
 }
 
-static void put_boundary(hid_t box, const char *text) {
+static void write_boundary(hid_t box, const char *text) {
     const hsize_t size = 3;
     const hid_t type = H5Tcopy(H5T_C_S1), space = H5Screate_simple(1, &size, NULL);
     char texts[3][9] = {"periodic", "periodic", "periodic"};
@@ -125,10 +125,10 @@ static void put_boundary(hid_t box, const char *text) {
 }
 
 /// A cube of fixed edges.
-static void put_cube(hid_t group, double edge) {
+static void write_cube(hid_t group, double edge) {
     const double edges[3] = {edge, edge, edge};
     const hid_t box = make_group(group, "box");
-    put_boundary(box, "periodic");
+    write_boundary(box, "periodic");
     put(box, "edges", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, 1, (const hsize_t[]){3}, edges, NULL);
     H5Gclose(box);
 }
@@ -168,8 +168,8 @@ static const struct trajectory_options nothing = {0};
 static void test_h5md_is_in_nm_and_ps_when_it_does_not_say(void **state) {
     begin_file(state);
     const hid_t group = begin_group("all");
-    put_positions(group, H5T_IEEE_F64LE, true, NULL);
-    put_cube(group, 400);
+    write_positions(group, H5T_IEEE_F64LE, true, NULL);
+    write_cube(group, 400);
     H5Gclose(group);
     end_file();
     assert_ok(try(&nothing));
@@ -201,10 +201,10 @@ static void test_h5md_is_in_nm_and_ps_when_it_does_not_say(void **state) {
 static void test_h5md_unit_is_read_when_its_text_has_room_to_spare(void **state) {
     begin_file(state);
     const hid_t group = begin_group("all");
-    least_text = 256;
-    put_positions(group, H5T_IEEE_F64LE, true, "Angstrom");
-    least_text = 0;
-    put_cube(group, 400);
+    min_text = 256;
+    write_positions(group, H5T_IEEE_F64LE, true, "Angstrom");
+    min_text = 0;
+    write_cube(group, 400);
     H5Gclose(group);
     end_file();
     assert_ok(try(&nothing));
@@ -224,17 +224,17 @@ static void test_h5md_gives_all_that_it_has_when_it_speaks_angstrom(void **state
     const signed char species[ATOMS] = {8, 1, 1};
     begin_file(state);
     const hid_t group = begin_group("all"), box = make_group(group, "box");
-    put_positions(group, H5T_IEEE_F32LE, true, "Angstrom");
+    write_positions(group, H5T_IEEE_F32LE, true, "Angstrom");
     for (int t = 0; t < FRAMES; t++)
         for (int k = 0; k < 9; k++) {
             edges[t][k / 3][k % 3] = (double[]){30, 0, 0, 10, 28, 0, -10, 14, 25}[k] + t;
             image[t][k / 3][k % 3] = k == 4 ? -2 : 0; // of atom 1, along b
             velocity[t / 2][k / 3][k % 3] = -coordinate(t / 2, k / 3, k % 3);
         }
-    put_boundary(box, "none");
-    put_element(box, "edges", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, 3, (const hsize_t[]){FRAMES, 3, 3},
-                edges, "Angstrom");
-    put_element(group, "image", H5T_STD_I32LE, H5T_NATIVE_INT, 3, vectors, image, NULL);
+    write_boundary(box, "none");
+    write_element(box, "edges", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, 3,
+                  (const hsize_t[]){FRAMES, 3, 3}, edges, "Angstrom");
+    write_element(group, "image", H5T_STD_I32LE, H5T_NATIVE_INT, 3, vectors, image, NULL);
     const hid_t velocities = make_group(group, "velocity");
     put(velocities, "value", H5T_IEEE_F32LE, H5T_NATIVE_DOUBLE, 3, (const hsize_t[]){2, ATOMS, 3},
         velocity, "Angstrom ps-1");
@@ -275,7 +275,7 @@ static void test_h5md_gives_all_that_it_has_when_it_speaks_angstrom(void **state
 static void test_h5md_has_no_times_when_its_positions_are_fixed(void **state) {
     begin_file(state);
     const hid_t group = begin_group("all");
-    put_positions(group, H5T_IEEE_F32LE, false, "nm");
+    write_positions(group, H5T_IEEE_F32LE, false, "nm");
     H5Gclose(group);
     end_file();
     assert_ok(try(&nothing));
@@ -341,7 +341,7 @@ static void test_h5md_is_refused_when_some_frames_have_no_ids(void **state) {
     const int id[1][ATOMS] = {{9, 7, 8}}, first = 10;
     begin_file(state);
     const hid_t group = begin_group("all"), ids = make_group(group, "id");
-    put_positions(group, H5T_IEEE_F64LE, true, "nm");
+    write_positions(group, H5T_IEEE_F64LE, true, "nm");
     put(ids, "value", H5T_STD_I32LE, H5T_NATIVE_INT, 2, (const hsize_t[]){1, ATOMS}, id, NULL);
     put(ids, "step", H5T_STD_I32LE, H5T_NATIVE_INT, 1, (const hsize_t[]){1}, &first, NULL);
     H5Gclose(ids);
@@ -361,8 +361,8 @@ static void test_h5md_names_its_groups_when_there_are_several(void **state) {
     begin_file(state);
     const hid_t one = begin_group("solvent"), two = begin_group("polymer"),
                 none = begin_group("no");
-    put_positions(one, H5T_IEEE_F64LE, true, "nm");
-    put_positions(two, H5T_IEEE_F64LE, true, "pm");
+    write_positions(one, H5T_IEEE_F64LE, true, "nm");
+    write_positions(two, H5T_IEEE_F64LE, true, "pm");
     H5Gclose(one);
     H5Gclose(two);
     H5Gclose(none);
@@ -420,7 +420,7 @@ static void test_h5md_is_refused_when_its_box_or_steps_do_not_fit(void **state) 
     const double edges[4] = {1, 1, 1, 1};
     begin_file(state);
     hid_t group = begin_group("all"), box = make_group(group, "box");
-    put_positions(group, H5T_IEEE_F64LE, true, "nm");
+    write_positions(group, H5T_IEEE_F64LE, true, "nm");
     put(box, "edges", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, 1, (const hsize_t[]){2}, edges, NULL);
     H5Gclose(box);
     H5Gclose(group);
@@ -428,7 +428,7 @@ static void test_h5md_is_refused_when_its_box_or_steps_do_not_fit(void **state) 
     assert_fails(try(&nothing), STATUS_BAD_INPUT, "expected 3 lengths or 3 vectors");
     begin_file(state);
     group = begin_group("all");
-    put_positions(group, H5T_IEEE_F64LE, true, "nm");
+    write_positions(group, H5T_IEEE_F64LE, true, "nm");
     const hid_t position = H5Gopen(group, "position", H5P_DEFAULT);
     H5Ldelete(position, "step", H5P_DEFAULT);
     put(position, "step", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, 1, (const hsize_t[]){2}, edges, NULL);
@@ -438,7 +438,7 @@ static void test_h5md_is_refused_when_its_box_or_steps_do_not_fit(void **state) 
     assert_fails(try(&nothing), STATUS_BAD_INPUT, "not have one step and one time for each");
     begin_file(state);
     group = begin_group("all");
-    put_positions(group, H5T_IEEE_F64LE, true, "kg");
+    write_positions(group, H5T_IEEE_F64LE, true, "kg");
     H5Gclose(group);
     end_file();
     assert_fails(try(&nothing), STATUS_BAD_INPUT,
@@ -466,7 +466,7 @@ static void test_h5md_is_refused_when_it_is_cut_or_damaged(void **state) {
     struct stat is;
     begin_file(state);
     hid_t group = begin_group("all");
-    put_positions(group, H5T_IEEE_F32LE, true, "nm");
+    write_positions(group, H5T_IEEE_F32LE, true, "nm");
     H5Gclose(group);
     end_file();
     assert_int_equal(stat(path, &is), 0);
@@ -514,8 +514,8 @@ static void make_other(void **state) {
     char other[1100];
     begin_file(state);
     const hid_t group = begin_group("all");
-    put_positions(group, H5T_IEEE_F64LE, true, NULL);
-    put_cube(group, 400);
+    write_positions(group, H5T_IEEE_F64LE, true, NULL);
+    write_cube(group, 400);
     H5Gclose(group);
     end_file();
     snprintf(other, sizeof other, "%s/other.h5", ((struct temporary_folder *)*state)->path);
@@ -539,7 +539,7 @@ static void test_h5md_is_refused_when_links_lead_into_other_files(void **state) 
     assert_elsewhere("\"position\" is a group without a dataset \"value\" of this file");
     begin_file(state);
     group = begin_group("all");
-    put_positions(group, H5T_IEEE_F64LE, true, NULL);
+    write_positions(group, H5T_IEEE_F64LE, true, NULL);
     link_elsewhere(group, "box", "/particles/all/box");
     H5Gclose(group);
     assert_elsewhere("\"box\" is not a group of this file");

@@ -72,8 +72,8 @@ static void write_whole(struct sample *sample, const int32_t atom[3]) {
     uint32_t radix[3], digit[3];
     bool apart = false;
     for (int d = 0; d < 3; d++) {
-        radix[d] = (uint32_t)(packing->most[d] - packing->least[d]) + 1;
-        digit[d] = (uint32_t)(atom[d] - packing->least[d]);
+        radix[d] = (uint32_t)(packing->max[d] - packing->min[d]) + 1;
+        digit[d] = (uint32_t)(atom[d] - packing->min[d]);
         apart |= radix[d] > 0xFFFFFF;
     }
     const unsigned __int128 product = (unsigned __int128)radix[0] * radix[1] * radix[2];
@@ -88,8 +88,8 @@ static void take_step(const struct xtc_packing *packing, uint32_t radix, const i
                       int32_t to[3]) {
     for (int d = 0; d < 3; d++) {
         int64_t next = from[d] + (int64_t)random_below(radix) - radix / 2;
-        next = next < packing->least[d] ? packing->least[d] : next;
-        next = next > packing->most[d] ? packing->most[d] : next;
+        next = next < packing->min[d] ? packing->min[d] : next;
+        next = next > packing->max[d] ? packing->max[d] : next;
         to[d] = (int32_t)next;
     }
 }
@@ -110,8 +110,8 @@ static void pack(struct sample *sample, int level, int32_t range) {
     memset(sample, 0, sizeof *sample);
     *packing = (struct xtc_packing){.atoms = ATOMS, .precision = 1000, .level = level};
     for (int d = 0; d < 3; d++) {
-        packing->least[d] = -range / 3 * d;
-        packing->most[d] = packing->least[d] + range - d;
+        packing->min[d] = -range / 3 * d;
+        packing->max[d] = packing->min[d] + range - d;
     }
     for (int k = 0; k < ATOMS;) {
         const uint32_t radix = radix_of(level);
@@ -122,8 +122,8 @@ static void pack(struct sample *sample, int level, int32_t range) {
         change = level + change < FIRST_LEVEL || level + change >= LEVELS ? 0 : change;
         int32_t whole[3];
         for (int d = 0; d < 3; d++)
-            whole[d] = packing->least[d] +
-                       (int32_t)random_below((uint32_t)(packing->most[d] - packing->least[d]) + 1);
+            whole[d] = packing->min[d] +
+                       (int32_t)random_below((uint32_t)(packing->max[d] - packing->min[d]) + 1);
         write_whole(sample, whole);
         const bool told = next != run || change != 0;
         write_bit(&sample->writer, told);
@@ -200,7 +200,7 @@ static void test_damaged_bits_are_refused_or_harmless(void **state) {
 
 static void test_packing_is_refused_when_it_cannot_be(void **state) {
     const struct xtc_packing good = {
-        .atoms = 100, .precision = 1000, .least = {0}, .most = {9, 9, 9}, .level = 9};
+        .atoms = 100, .precision = 1000, .min = {0}, .max = {9, 9, 9}, .level = 9};
     struct xtc_packing bad = good;
     (void)state;
     assert_null(mf_xtc_coordinates_check(&good, 200));
@@ -214,10 +214,10 @@ static void test_packing_is_refused_when_it_cannot_be(void **state) {
     bad.precision = NAN;
     assert_non_null(mf_xtc_coordinates_check(&bad, 200));
     bad = good;
-    bad.most[1] = -1;
+    bad.max[1] = -1;
     assert_non_null(mf_xtc_coordinates_check(&bad, 200));
-    bad.least[1] = INT32_MIN;
-    bad.most[1] = INT32_MAX;
+    bad.min[1] = INT32_MIN;
+    bad.max[1] = INT32_MAX;
     assert_non_null(mf_xtc_coordinates_check(&bad, 200));
 }
 

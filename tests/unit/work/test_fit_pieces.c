@@ -37,7 +37,7 @@ struct impatient {
     int words, patience; ///< 0: never
 };
 
-static void tell(void *context, const struct watcher_progress *progress) {
+static void report(void *context, const struct watcher_progress *progress) {
     struct impatient *impatient = context;
     (void)progress;
     if (++impatient->words == impatient->patience)
@@ -48,7 +48,7 @@ static void begin(void *context, const struct watcher_run *run) {
     (void)context, (void)run;
 }
 
-static void say(void *context, const char *line) {
+static void print(void *context, const char *line) {
     (void)context, (void)line;
 }
 
@@ -59,7 +59,7 @@ static void write(void *context) {
 static enum status run(const char *folder, bool resume, int patience) {
     struct impatient impatient = {.patience = patience};
     const struct watcher watcher = {
-        .context = &impatient, .begin = begin, .tell = tell, .say = say, .write = write};
+        .context = &impatient, .begin = begin, .report = report, .print = print, .write = write};
     const struct run_options options = {
         .folder = folder, .threads = 1, .quiet = true, .resume = resume, .watcher = &watcher};
     const enum status status = mf_fit_run("run.json", &options);

@@ -100,7 +100,7 @@ static size_t list(struct run *run, struct memory_span *spans) {
 }
 
 static size_t bytes_of(struct temporary_folder *folder, const char *text, int64_t samples) {
-    static struct memory_span spans[SIMULATE_MOST_SPANS];
+    static struct memory_span spans[SIMULATE_MAX_SPANS];
     struct run run;
     size_t bytes = 0;
     begin(&run, folder, text, samples);
@@ -131,7 +131,7 @@ static void run_to(struct run *run, int64_t samples) {
 }
 
 static void assert_same(struct run *a, struct run *b) {
-    static struct memory_span first[SIMULATE_MOST_SPANS], second[SIMULATE_MOST_SPANS];
+    static struct memory_span first[SIMULATE_MAX_SPANS], second[SIMULATE_MAX_SPANS];
     const size_t count = list(a, first);
     assert_int_equal(list(b, second), count);
     for (size_t k = 0; k < count; k++) {
@@ -141,7 +141,7 @@ static void assert_same(struct run *a, struct run *b) {
 }
 
 static void test_all_observables_go_on_with_the_same_bits(void **state) {
-    static struct memory_span spans[1 + SIMULATE_MOST_SPANS];
+    static struct memory_span spans[1 + SIMULATE_MAX_SPANS];
     uint64_t before = 7;
     for (int k = 0; k < SCENES; k++) {
         struct run whole, second;

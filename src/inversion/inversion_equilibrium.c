@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "inversion/inversion_equilibrium.h"
+
+#include "base/statistics.h"
+#include "inversion/inversion_state.h"
+
+#include <math.h>
+#include <stdio.h>
+
+/// Chance with which one of all tests of one look complains of samples in equilibrium.
+static const double false_alarm = 1e-3;
+
+/// Room for what is told apart: sections, and the sums of a sample.
+enum { TESTS = 2, MAX_QUANTITIES = INVERSION_MAX_SECTIONS + SAMPLER_SUMS };
+
+/// Σ t² of the middles of the blocks, in parts of the samples from their middle.
+static const double times_squared =
+    (REPLICAS_BLOCKS * REPLICAS_BLOCKS - 1) / (12.0 * REPLICAS_BLOCKS);
+
+static double time_of(int block) {
+    return (block + 0.5) / REPLICAS_BLOCKS - 0.5;
+}
+
+static const char *const sums[SAMPLER_SUMS] = {[SAMPLER_VIRIAL] = "the pressure",
+                                               [SAMPLER_ENERGY] = "the energy",
+                                               [SAMPLER_GYRATION] = "R_g^2 of the molecules",
+                                               [SAMPLER_ENDS] = "R_e^2 of the molecules"};
+
+/// Numbers of a sample that are judged together.
+struct quantity {
+    size_t count, first;  ///< in a row of numbers, if there is no list of them
+    const size_t *number; ///< or NULL
+    const char *name;
+};
+
+static size_t list(const struct inversion_state *state, struct quantity quantity[MAX_QUANTITIES]) {
+    size_t n = 0;
+    for (size_t k = 0; k < SAMPLER_SUMS; k++)
+        if (mf_comoments_covariance(&state->replicas.counts, state->bins + k, state->bins + k) > 0)
+            quantity[n++] = (struct quantity){1, state->bins + k, NULL, sums[k]};
+    for (int k = 0; k < state->assessment.sections; k++) {
+        const struct inversion_section *section = &state->assessment.section[k];
+        quantity[n++] = (struct quantity){
+            section->known_count, 0, state->grid.known_bin + section->known,
+            section->kind == TARGET_RDF ? "g(r)" : mf_targets_name(section->kind)};
+    }
+    return n;
+}
+
+static enum status test(const struct inversion_state *state, const struct quantity *quantity,
+                        struct stationary *result) {
+    enum status status = STATUS_OK;
+    const struct replicas *replicas = &state->replicas;
+    const double *chain[REPLICAS_MAX];
+    double *weight = NULL;
+    NEW_ARRAY(weight, quantity->count);
+    for (size_t k = 0; k < replicas->count; k++)
+        chain[k] = replicas->member[k].block;
+    for (size_t n = 0; n < quantity->count; n++) {
+        const size_t number = quantity->number ? quantity->number[n] : quantity->first;
+        const double variance = mf_comoments_covariance(&replicas->counts, number, number);
+        weight[n] = variance > 0 ? 1 / variance : 0;
+    }
+    CHECK(mf_stationary_test(&(struct stationary_numbers){.chains = replicas->count,
+                                                          .chain = chain,
+                                                          .row = replicas->numbers,
+                                                          .count = quantity->count,
+                                                          .number = quantity->number
+                                                                        ? quantity->number
+                                                                        : &quantity->first,
+                                                          .weight = weight},
+                             result));
+done:
+    mf_memory_free(weight);
+    return status;
+}
+
+/// The line through the blocks of a replica: returns the squares of what they are off it.
+static double fit_line(const double *block, size_t numbers, double *mean, double *slope) {
+    double squares = 0;
+    *mean = *slope = 0;
+    for (int b = 0; b < REPLICAS_BLOCKS; b++) {
+        *mean += block[b * (ptrdiff_t)numbers] / REPLICAS_BLOCKS;
+        *slope += block[b * (ptrdiff_t)numbers] * time_of(b) / times_squared;
+    }
+    for (int b = 0; b < REPLICAS_BLOCKS; b++)
+        squares += pow(block[b * (ptrdiff_t)numbers] - *mean - *slope * time_of(b), 2);
+    return squares;
+}
+
+double mf_inversion_equilibrium_shift(const struct replicas *replicas, size_t number) {
+    struct running_mean chains = {0};
+    const double count = (double)replicas->count;
+    double shift = 0, squares = 0;
+    for (size_t k = 0; k < replicas->count; k++) {
+        double mean, slope;
+        squares += fit_line(replicas->member[k].block + number, replicas->numbers, &mean, &slope);
+        mf_statistics_add(&chains, mean);
+        shift += slope / count;
+    }
+    const double noise = squares / (count * (REPLICAS_BLOCKS - 2));
+    return shift * shift + pow(mf_statistics_standard_error(&chains), 2) -
+           noise / count * (1 / times_squared + 1.0 / REPLICAS_BLOCKS);
+}
+
+enum status mf_inversion_equilibrium_check(const struct inversion_state *state,
+                                           struct inversion_unequilibrated *unequilibrated) {
+    struct quantity quantity[MAX_QUANTITIES];
+    const size_t count = list(state, quantity);
+    double min = false_alarm / (double)(TESTS * count);
+    const double limit = min;
+    unequilibrated->found = unequilibrated->drifts = false;
+    for (size_t k = 0; k < count; k++) {
+        struct stationary is;
+        TRY(test(state, &quantity[k], &is));
+        const double chance = stationary_p_value(&is);
+        unequilibrated->drifts = unequilibrated->drifts || is.drift < limit;
+        if (!(chance < min))
+            continue;
+        min = chance;
+        unequilibrated->found = true;
+        unequilibrated->is = is;
+        snprintf(unequilibrated->quantity, sizeof unequilibrated->quantity, "%s", quantity[k].name);
+    }
+    return STATUS_OK;
+}
+
+void mf_inversion_equilibrium_reset(struct inversion_state *state) {
+    struct inversion_unequilibrated *unequilibrated = &state->assessment.unequilibrated;
+    if (!unequilibrated->found)
+        state->work.mixed = true;
+    if (state->work.mixed)
+        unequilibrated->found = unequilibrated->drifts;
+}

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file Whether the samples of an inversion are those of equilibrium.
+///
+/// The energy, the virial, the counts of each section, R_g² and R_e² of molecules are looked at in
+/// the quarters of all replicas' samples (observe/stationary.h). Where one of them drifts or
+/// remembers where it began, the samples are equilibration, and as many are taken again; where they
+/// remember, or drift still, with twice as many sweeps between them. What the samples of one
+/// potential have cost so is where those of the next begin, which may need half of it.
+#pragma once
+
+#include "observe/stationary.h"
+
+#include <stdint.h>
+
+struct inversion_state;
+struct replicas;
+
+enum { INVERSION_QUANTITY_SIZE = 32 };
+
+/// What had not settled, with the least chance to be so in equilibrium.
+struct inversion_unequilibrated {
+    bool found;
+    bool drifts;                            ///< something does, and not only remembers
+    char quantity[INVERSION_QUANTITY_SIZE]; ///< in words
+    struct stationary is;
+    uint64_t sweeps; ///< of each replica since the potential was changed
+    bool for_long;   ///< they are as many as one potential may cost
+};
+
+/// Square of how far from that of equilibrium the mean of a number of the samples may be: of its
+/// way along them, which it may go once more, and of its error by the scatter of the replicas, each
+/// of which may remember its begin, less what the noise of the blocks makes of both: 0 on average
+/// in equilibrium. Tested: test_inversion_equilibrium.
+double mf_inversion_equilibrium_shift(const struct replicas *replicas, size_t number);
+
+/// Judge the present samples. Of samples in equilibrium a thousandth is found not to be. Fails:
+/// NO_MEMORY. Tested: test_inversion_equilibrium.
+enum status
+mf_inversion_equilibrium_check(const struct inversion_state *state,
+                               struct inversion_unequilibrated *unequilibrated) MUST_USE;
+
+/// What the replicas remember is noise once they have been told apart by no more than that since
+/// they were placed: each goes on from a state of its own of the potential before, and
+/// mf_inversion_assess has taken the scatter of their means for the error. What drifts is none.
+/// Tested: test_inversion_equilibrium.
+void mf_inversion_equilibrium_reset(struct inversion_state *state);

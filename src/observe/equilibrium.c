@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "observe/equilibrium.h"
+
+#include "base/memory.h"
+#include "base/statistics.h"
+
+#include <math.h>
+
+/// Longer series are averaged in blocks first, so that their autocovariances stay cheap.
+enum { MAX_BLOCKS = 4096 };
+
+/// What halves, and independent samples, are judged by.
+static const size_t min_of_halves = 20, min_of_all = 50;
+static const double deviations = 4, enough = 10;
+
+/// Relative scatter that sums of doubles have by themselves.
+static const double rounding = 1e-9;
+
+static double mean_of(const double *values, size_t count) {
+    double sum = 0;
+    for (size_t k = 0; k < count; k++)
+        sum += values[k];
+    return sum / (double)count;
+}
+
+/// Means of blocks of `each` samples.
+static void average(const double *series, size_t each, double *block, size_t blocks) {
+    for (size_t b = 0; b < blocks; b++)
+        block[b] = mean_of(series + b * each, each);
+}
+
+static enum status assess_halves(const char *name, const double *block, size_t blocks) {
+    const size_t half = blocks / 2;
+    double mean[2], error[2];
+    for (int h = 0; h < 2; h++) {
+        const double *own = block + (h ? blocks - half : 0);
+        mean[h] = mean_of(own, half);
+        error[h] = mf_statistics_correlated_error(own, half, 1);
+    }
+    if (fabs(mean[0] - mean[1]) <= deviations * hypot(error[0], error[1]))
+        return STATUS_OK;
+    return mf_status_fail(STATUS_UNCONVERGED,
+                          "the %s is %.6g +- %.1g in the first half of the samples and %.6g +- "
+                          "%.1g in the second: the run had not settled; equilibrate for longer",
+                          name, mean[0], error[0], mean[1], error[1]);
+}
+
+static enum status assess_correlation(const char *name, const double *block, size_t blocks,
+                                      size_t samples) {
+    const double independent = (double)blocks / mf_statistics_inefficiency(block, blocks, 1, 1);
+    if (independent >= enough)
+        return STATUS_OK;
+    return mf_status_fail(
+        STATUS_UNCONVERGED,
+        "the %zu samples of the %s, %.6g, are so correlated that they count as "
+        "%.0f: its error is not well known, and the run may not have settled; let "
+        "it run for longer",
+        samples, name, mean_of(block, blocks), fmax(1, independent));
+}
+
+enum status mf_equilibrium_check(const char *name, const double *series, size_t samples) {
+    enum status status = STATUS_OK;
+    struct running_mean all = {0};
+    double *block = NULL;
+    for (size_t k = 0; k < samples; k++)
+        mf_statistics_add(&all, series[k]);
+    if (samples < min_of_halves || !(sqrt(all.squares / all.count) > rounding * fabs(all.mean)))
+        return STATUS_OK;
+    const size_t each = (samples + MAX_BLOCKS - 1) / MAX_BLOCKS, blocks = samples / each;
+    NEW_ARRAY(block, blocks);
+    average(series, each, block, blocks);
+    CHECK(assess_halves(name, block, blocks));
+    if (samples >= min_of_all)
+        CHECK(assess_correlation(name, block, blocks, samples));
+done:
+    mf_memory_free(block);
+    return status;
+}

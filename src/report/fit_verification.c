@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "report/fit_verification.h"
+
+#include "base/number_text.h"
+#include "observe/kirkwood_buff_observable.h"
+#include "report/fit_step.h"
+
+#include <math.h>
+#include <stdio.h>
+
+/// A kinetic temperature farther off than this is told whatever the targets say.
+static const double hot = 0.05;
+
+/// Why the verification may differ from the samples of the fit, by what was found: temperatures
+/// and what shorter time steps do to them, tension, the number of particles.
+static void find_cause(const struct verification *verification, double temperature,
+                       const struct units *units, char cause[FIT_STEP_TEXT_SIZE]) {
+    const struct thermodynamics_summary *found = &verification->thermodynamics;
+    const bool holds = verification->step.result == VERIFY_STEP_HOLDS;
+    const char *known = NULL;
+    mf_fit_step_cause(verification, units, cause);
+    if (found->temperature / temperature < 1 - hot)
+        known = "too little friction holds the temperature: more \"dissipative\" friction does, or "
+                "a shorter \"verification.time_step\"";
+    else if (cause[0])
+        return;
+    else if (found->temperature / temperature > 1 + hot)
+        known = "the temperature is off, and too few \"samples\" tell whether the time step is the "
+                "cause";
+    else if (found->pressure < 0)
+        known = "a liquid under tension tears: g(r) leaves the pressure open, so give it as a "
+                "second target";
+    if (known == NULL && verification->unequilibrated[0])
+        snprintf(cause, FIT_STEP_TEXT_SIZE,
+                 "it has not settled, %.150s: the liquid freezes, tears or condenses under this "
+                 "potential, of which another temperature, density or target is the way out, or it "
+                 "needs a longer \"verification.equilibration\"",
+                 verification->unequilibrated);
+    else if (known)
+        snprintf(cause, FIT_STEP_TEXT_SIZE, "%s", known);
+    else if (verification->sampled > 0 && verification->sampled != verification->particles)
+        snprintf(cause, FIT_STEP_TEXT_SIZE,
+                 "%sthe samples have %zu particles and the verification %zu: \"particles\": %zu of "
+                 "the method tells whether the size is the cause, else longer \"equilibration\" of "
+                 "either may",
+                 holds ? "the temperatures are right, but " : "", verification->sampled,
+                 verification->particles, verification->particles);
+    else
+        snprintf(cause, FIT_STEP_TEXT_SIZE, "%slonger \"equilibration\" of either may tell why",
+                 holds ? "the temperatures are right, and the samples as large: " : "");
+}
+
+/// An integral of Kirkwood and Buff is off.
+static bool contradicts_integrals(const struct verification *verification, double noise_margin,
+                                  const struct units *units, char reason[INVERSE_REASON_SIZE]) {
+    const struct target_distance *worst = &verification->worst[mf_kirkwood_buff_kind()];
+    const double volume = mf_units_factor(units, "lambda^d");
+    char unit[UNITS_NAME_SIZE];
+    if (!(worst->rms > noise_margin * worst->noise))
+        return false;
+    snprintf(reason, INVERSE_REASON_SIZE,
+             "an integral of Kirkwood and Buff is off by %.2g%.16s in the verification (%.2g by "
+             "statistics), though the fit's samples agree with it: more \"samples\", or more "
+             "\"particles\", whose waves are as long as the scene's, may tell why",
+             volume * worst->rms, mf_units_suffix(units, "lambda^d", unit), volume * worst->noise);
+    return true;
+}
+
+/// "T = 1.02, pressure 3.4".
+enum { STATE_SIZE = 96 };
+static void report_state(const struct thermodynamics_summary *found, const struct units *units,
+                         char text[STATE_SIZE]) {
+    const double temperature =
+        isnan(found->temperature) ? found->temperature_configurational : found->temperature;
+    char unit[UNITS_NAME_SIZE], kelvin[UNITS_NAME_SIZE];
+    snprintf(text, STATE_SIZE, "T = %.3g%.8s, pressure %.3g%.16s",
+             mf_units_factor(units, "T_0") * temperature, mf_units_suffix(units, "T_0", kelvin),
+             mf_units_factor(units, "k_B T_0/lambda^d") * found->pressure,
+             mf_units_suffix(units, "k_B T_0/lambda^d", unit));
+}
+
+/// A structure that the fit's samples have.
+static void report_structure(const char *name, const struct target_distance *distance,
+                             const struct verification *verification, double temperature,
+                             const struct units *units, char reason[INVERSE_REASON_SIZE]) {
+    char state[STATE_SIZE], cause[FIT_STEP_TEXT_SIZE];
+    report_state(&verification->thermodynamics, units, state);
+    find_cause(verification, temperature, units, cause);
+    snprintf(reason, INVERSE_REASON_SIZE,
+             "the fit's samples agree with %.24s, its verification is off by %.2g (%.2g by "
+             "statistics) at %.60s: %s",
+             name, distance->rms, distance->noise, state, cause);
+}
+
+/// Beads that are hotter or colder than the friction holds them have another structure, even if the
+/// noise hides it.
+static bool contradicts_temperature(const struct verification *verification, double temperature,
+                                    const struct units *units, char reason[INVERSE_REASON_SIZE]) {
+    const struct thermodynamics_summary *found = &verification->thermodynamics;
+    char kelvin[UNITS_NAME_SIZE], cause[FIT_STEP_TEXT_SIZE];
+    if (!verification->warning[0] || !(fabs(found->temperature / temperature - 1) > hot))
+        return false;
+    mf_units_suffix(units, "T_0", kelvin);
+    find_cause(verification, temperature, units, cause);
+    snprintf(reason, INVERSE_REASON_SIZE, "the verification is at T = %.4g%.8s, not %.4g%.8s: %s",
+             mf_units_factor(units, "T_0") * found->temperature, kelvin,
+             mf_units_factor(units, "T_0") * temperature, kelvin, cause);
+    return true;
+}
+
+bool mf_fit_verification_contradicts(const struct verification *verification,
+                                     const struct verify_agreement *agreement,
+                                     const struct targets *fitted, double temperature,
+                                     double noise_margin, const struct units *units,
+                                     char reason[INVERSE_REASON_SIZE]) {
+    const double bar = mf_units_factor(units, "k_B T_0/lambda^d");
+    char unit[UNITS_NAME_SIZE];
+    mf_units_suffix(units, "k_B T_0/lambda^d", unit);
+    const struct target_distance *rdf = &agreement[TARGET_RDF].distance;
+    const bool several = fitted->bins.count < fitted->target[TARGET_RDF].count;
+    const struct thermodynamics_summary *found = &verification->thermodynamics;
+    const struct target_distance *pressure = &verification->distance[TARGET_PRESSURE];
+    if (targets_ask(fitted, TARGET_PRESSURE) && pressure->rms > noise_margin * pressure->noise) {
+        char cause[FIT_STEP_TEXT_SIZE];
+        if (mf_fit_step_shifts_pressure(verification))
+            snprintf(cause, sizeof cause,
+                     "its time step shifts it by about %.2g, as the configurational temperature "
+                     "tells: set a shorter \"verification.time_step\"",
+                     bar * verification->shift.pressure);
+        else
+            find_cause(verification, temperature, units, cause);
+        snprintf(reason, INVERSE_REASON_SIZE,
+                 "the verification's pressure, %.4g%.16s, is off by %.2g (%.2g by statistics): %s",
+                 bar * found->pressure, unit, bar * pressure->rms, bar * pressure->noise, cause);
+        return true;
+    }
+    if (targets_ask(fitted, mf_kirkwood_buff_kind()) &&
+        contradicts_integrals(verification, noise_margin, units, reason))
+        return true;
+    for (int order = 0; order < BONDED_KINDS; order++) {
+        const int kind = mf_bonded_distribution_kind(order);
+        if (verify_agreement_holds(&agreement[kind]))
+            continue;
+        report_structure(mf_targets_name(kind), &agreement[kind].distance, verification,
+                         temperature, units, reason);
+        return true;
+    }
+    if (!targets_ask(fitted, TARGET_RDF) || verify_agreement_holds(&agreement[TARGET_RDF]))
+        return contradicts_temperature(verification, temperature, units, reason);
+    report_structure(several ? "g(r) of all pair types" : "g(r)", rdf, verification, temperature,
+                     units, reason);
+    return true;
+}
+
+void mf_fit_verification_add_units(const struct units *units, struct verification *verification) {
+    char cause[FIT_STEP_TEXT_SIZE];
+    mf_fit_step_cause(verification, units, cause);
+    if (verification->warning[0] && cause[0]) {
+        snprintf(verification->warning, sizeof verification->warning, "%s", cause);
+        return;
+    }
+    if (verification->warning[0] == '\0' && verification->unequilibrated[0]) {
+        snprintf(verification->warning, sizeof verification->warning,
+                 "the verification has not settled: %s; a longer \"verification.equilibration\" or "
+                 "\"every\" may help",
+                 verification->unequilibrated);
+        return;
+    }
+    if (verification->warning[0] == '\0' || !mf_units_are_physical(units))
+        return;
+    mf_units_add_to_message(units, mf_status_fail(STATUS_UNSTABLE, "%s", verification->warning));
+    snprintf(verification->warning, sizeof verification->warning, "%s", mf_status_message());
+}
+
+/// By more than chance, and by a quarter.
+static bool is_larger(double verified, double own, double error, double variance) {
+    static const double deviations = 5, part = 0.25;
+    return verified > error + deviations * sqrt(variance + own) && verified > (1 + part) * error;
+}
+
+bool mf_fit_verification_is_worse(const struct verification *verification,
+                                  const struct targets *targets, double error, double variance,
+                                  char reason[INVERSE_REASON_SIZE]) {
+    const double verified = mf_targets_error(targets, verification->distance);
+    const double own = mf_targets_variance(targets, verification->distance);
+    if (!is_larger(verified, own, error, variance))
+        return false;
+    snprintf(
+        reason, INVERSE_REASON_SIZE,
+        "the fit's own error is %.2g +- %.1g, that of its verification %.2g +- %.1g: its "
+        "simulations "
+        "were too short, or too coarse in time: longer \"equilibration\", more \"samples\" or a "
+        "shorter time step may tell why",
+        error, sqrt(variance), verified, sqrt(own));
+    return true;
+}
+
+bool mf_fit_verification_is_worse_than_samples(const struct verification *verification,
+                                               const struct targets *targets, double error,
+                                               double variance, double temperature,
+                                               const struct units *units,
+                                               char reason[INVERSE_REASON_SIZE]) {
+    const double verified = mf_targets_error(targets, verification->distance);
+    const double own = mf_targets_variance(targets, verification->distance);
+    char of_samples[NUMBER_TEXT_SIZE], of_verification[NUMBER_TEXT_SIZE], state[STATE_SIZE];
+    char cause[FIT_STEP_TEXT_SIZE];
+    if (!is_larger(verified, own, error, variance))
+        return contradicts_temperature(verification, temperature, units, reason);
+    mf_number_text(error, sqrt(variance), of_samples);
+    mf_number_text(verified, sqrt(own), of_verification);
+    report_state(&verification->thermodynamics, units, state);
+    find_cause(verification, temperature, units, cause);
+    snprintf(reason, INVERSE_REASON_SIZE,
+             "the fit's samples are off from %s by %.16s%s, its verification by %.16s at %.60s: %s",
+             mf_targets_count(targets) > 1 ? "the targets" : "the target", of_samples,
+             mf_targets_count(targets) > 1 ? " of their errors (rms)" : "", of_verification, state,
+             cause);
+    return true;
+}

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file Whether the verification bears out a fit that took itself for converged.
+///
+/// The samples of an inversion are of another size, and by moves that know no time step: they can
+/// agree with g(r) where a simulation does not. A liquid under tension holds in a small box and
+/// tears in a large one; a rough potential heats a simulation of too long a step.
+#pragma once
+
+#include "problem/verify.h"
+
+/// Why the verified g(r), or the pressure or an integral of Kirkwood and Buff if it was fitted, is
+/// not what the fit says it is, or the temperature more than 5 % off, into `reason`.
+/// @param[in] agreement     of distributions, shape [TARGETS]
+/// @param[in] fitted        the targets that were fitted
+/// @param[in] noise_margin  a pressure or an integral may be off by this many times its
+///                          statistical error
+/// Returns whether there is something to say. Tested: test_fit_verification.
+bool mf_fit_verification_contradicts(const struct verification *verification,
+                                     const struct verify_agreement *agreement,
+                                     const struct targets *fitted, double temperature,
+                                     double noise_margin, const struct units *units,
+                                     char reason[INVERSE_REASON_SIZE]);
+
+/// Why the verified error of all targets is not the one that a method measured itself: it is larger
+/// by five standard errors of the difference and by a quarter. The best of many candidates is a
+/// lucky draw of one to two standard errors, and a finer time step of the verification makes some
+/// per cent.
+/// @param[in] error, variance  mf_targets_error by the method, and its variance
+/// Returns whether there is something to say. Tested: test_fit_verification.
+bool mf_fit_verification_is_worse(const struct verification *verification,
+                                  const struct targets *targets, double error, double variance,
+                                  char reason[INVERSE_REASON_SIZE]);
+
+/// The same of an inversion whose potentials need not meet the targets: the verification is worse
+/// than the samples were, or its temperature more than 5 % off, with the likely cause. Tested:
+/// test_fit_verification.
+bool mf_fit_verification_is_worse_than_samples(const struct verification *verification,
+                                               const struct targets *targets, double error,
+                                               double variance, double temperature,
+                                               const struct units *units,
+                                               char reason[INVERSE_REASON_SIZE]);
+
+/// Simulations warn in reduced units: add the scale to a warning if the file speaks in others. What
+/// other time steps have told of temperatures takes its place.
+void mf_fit_verification_add_units(const struct units *units, struct verification *verification);

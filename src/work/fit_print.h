@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file What a fit says before it begins, and inside its iterations.
+#pragma once
+
+#include "defaults/fit_file.h"
+#include "targets/target_sanity.h"
+#include "report/progress.h"
+
+enum { FIT_TELL_SIZE = 160 };
+
+/// Where an iteration is, in words for the line of its progress. Tested: test_fit_print.
+void mf_fit_print_iteration(const struct inverse_progress *now, const struct units *units,
+                            char text[FIT_TELL_SIZE]);
+
+/// Say what is to be fitted, so that a wrong column or unit is seen before the work. Fails: as
+/// mf_target_sanity_report.
+enum status mf_fit_print_targets(struct progress *to, const struct fit_file *fit) MUST_USE;
+
+/// The lines about the targets of one state, and a warning if the steps of the verification are too
+/// long for the bonds among them. Fails: as mf_target_sanity_report. Tested: test_fit_molecules,
+/// test_fit_print.
+enum status mf_fit_print_state(const struct fit_file *fit,
+                               const struct target_sanity_listener *listener) MUST_USE;

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The structure of free molecules: dimers of one type, whose bonds are as long as Boltzmann's
+// factor makes them, and dimers of two types, which g of the types cannot tell apart at small q.
+#include "inversion/inversion.h"
+#include "inversion/inversion_intramolecular.h"
+#include "shared/fluids.h"
+#include "shared/is_close.h"
+#include "shared/molecules.h"
+#include "shared/testing.h"
+
+#include <math.h>
+
+enum { DIMERS = 100, BINS = 40, TYPES = 2, MAX_PAIRS = TYPES * (TYPES + 1) / 2 };
+
+static const double spring = 120, rest = 0.6;
+static const struct molecules_number bond_numbers[] = {{"k", 120}, {"length", 0.6}, {NULL, 0}};
+
+struct made {
+    struct fluid fluid;
+    struct molecules molecules;
+    double g[MAX_PAIRS * BINS], error[MAX_PAIRS * BINS];
+    struct inverse_problem problem;
+    struct inversion_parameters settings;
+    struct inversion inversion;
+};
+
+static void ignore(void *context, const struct inverse_progress *progress) {
+    (void)context, (void)progress;
+}
+static const struct inverse_listener listener = {ignore, NULL};
+
+/// Dimers of beads of these types, with a target of some liquid from `low` to 2.
+static void make(struct made *made, const int *type, double low) {
+    const int types = type[1] + 1, pairs = types * (types + 1) / 2;
+    *made = (struct made){0};
+    const struct composition composition =
+        molecules_topology(&made->molecules.topology, molecules_chain(DIMERS, type, 2, 0, 1),
+                           (struct topology_kind){0}, types, NULL);
+    molecules_add_group(&made->molecules, BONDED_BOND, &mf_bond_harmonic, bond_numbers);
+    fluid_groot_warren(&made->fluid, 2 * DIMERS, 0.004);
+    molecules_enter(&made->fluid.setup, &made->molecules, &composition);
+    const struct rdf_bins bins = {low, (2 - low) / BINS, BINS};
+    for (int n = 0; n < pairs * BINS; n++) {
+        const double r = mf_rdf_bins_centre(&bins, (size_t)(n % BINS));
+        made->g[n] = 1 - 0.9 * exp(-4 * r * r);
+        made->error[n] = 0.01;
+    }
+    made->problem =
+        (struct inverse_problem){.targets = {.bins = bins,
+                                             .target[TARGET_RDF] = {.count = (size_t)(pairs * BINS),
+                                                                    .value = made->g,
+                                                                    .error = made->error}},
+                                 .unknown[UNKNOWN_POTENTIAL] = {.wanted = true},
+                                 .scene = made->fluid.setup,
+                                 .core_threshold = 1e-3,
+                                 .core_stiffness = 2000,
+                                 .seed = 3,
+                                 .threads = 2};
+    made->settings = (struct inversion_parameters){.replicas = 4,
+                                                   .equilibration = 10,
+                                                   .samples = 8,
+                                                   .every = 1,
+                                                   .iterations = 2,
+                                                   .precision = 1,
+                                                   .sampler = SAMPLER_AUTO};
+    assert_ok(
+        mf_inversion_create(&made->inversion, &mf_automatic, &made->problem, &made->settings));
+    assert_ok(mf_inversion_intramolecular_find(made->inversion.state, made->inversion.course.phi,
+                                               &listener));
+}
+
+static void clear(struct made *made) {
+    mf_inversion_destroy(&made->inversion);
+    mf_molecules_clear(&made->molecules);
+    fluid_clear(&made->fluid);
+}
+
+/// Mean of r in a bin's middle over r² exp(−k (r − r_0)²/2), and its standard deviation.
+static double find_mean_length(double *deviation) {
+    double norm = 0, sum = 0, squares = 0;
+    for (double r = 0.0005; r < 2; r += 0.001) {
+        const double weight = r * r * exp(-0.5 * spring * pow(r - rest, 2));
+        norm += weight;
+        sum += r * weight;
+        squares += r * r * weight;
+    }
+    *deviation = sqrt(squares / norm - pow(sum / norm, 2));
+    return sum / norm;
+}
+
+static void test_inside_of_dimers_is_the_distribution_of_their_bonds(void **state) {
+    (void)state;
+    static struct made made;
+    make(&made, (const int[]){0, 0}, 0);
+    const struct inversion_state *own = made.inversion.state;
+    double counts = 0, sum = 0, deviation;
+    for (size_t k = 0; k < BINS; k++) {
+        const double here = own->inside.g[k] * own->target.ideal[k];
+        counts += here;
+        sum += here * mf_rdf_bins_centre(&made.problem.targets.bins, k);
+    }
+    const double exact = find_mean_length(&deviation);
+    print_message("%.1f bonds of %.4f, exactly %.4f\n", counts, sum / counts, exact);
+    assert_close(counts, DIMERS, 1e-9);
+    // 4 replicas and 10 configurations, which hardly remember each other; and the bins' middles.
+    assert_close(sum / counts, exact, 5 * deviation / sqrt(4 * 10 * DIMERS));
+    // 1 + min sin x/x of bonds of one length is 0.783.
+    assert_true(own->inside.min > 0.783 && own->inside.min < 0.9);
+    assert_true(mf_inversion_knows_intramolecular(own));
+    clear(&made);
+}
+
+/// Ω of the difference of the types is 1 − w(q), 0 at small q.
+static void test_inside_of_two_types_that_always_go_together_is_of_no_use(void **state) {
+    (void)state;
+    static struct made made;
+    make(&made, (const int[]){0, 1}, 0);
+    const struct inversion_state *own = made.inversion.state;
+    assert_true(own->inside.min < 0.05);
+    assert_false(mf_inversion_knows_intramolecular(own));
+    clear(&made);
+}
+
+/// Bonds of 0.6 are in no bin from 1 on: single beads' S would be taken for theirs.
+static void test_inside_of_dimers_whose_bonds_are_below_the_first_bin_is_not_known(void **state) {
+    (void)state;
+    static struct made made;
+    make(&made, (const int[]){0, 0}, 1);
+    assert_false(mf_inversion_knows_intramolecular(made.inversion.state));
+    assert_null(mf_inversion_liquid(made.inversion.state).inside);
+    clear(&made);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_inside_of_dimers_is_the_distribution_of_their_bonds),
+        cmocka_unit_test(test_inside_of_two_types_that_always_go_together_is_of_no_use),
+        cmocka_unit_test(test_inside_of_dimers_whose_bonds_are_below_the_first_bin_is_not_known),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
