@@ -94,12 +94,12 @@ static bool must_settle(const struct inversion *inversion) {
            !targets_ask(&inversion->problem->targets, TARGET_PRESSURE);
 }
 
-/// Whether the sum of the last `count` ways of a number is a part of so many errors.
+/// Whether the sum of the last `count` drifts of a number is a part of so many errors.
 static bool cancels(double sum, uint32_t count, const struct inversion_band_drift *last) {
     return fabs(sum) <= count * settled_drift * last->open;
 }
 
-/// Whether the ways of the last iterations near the targets, `min` of them or more, cancel but
+/// Whether the drifts of the last iterations near the targets, `min` of them or more, cancel but
 /// for a part of their errors: each one has the noise of its samples, and what goes on goes on in
 /// one direction. Each state has a pressure of its own, and so a sum.
 static bool has_settled(const struct inversion *inversion, uint32_t min) {
