@@ -34,7 +34,7 @@ static double error_of_g(const struct replicas *replicas, const double *ideal,
     for (size_t a = 0; a < replicas->bins; a++)
         if (counts->mean[a] > 0)
             seen[count++] = a;
-    *inefficiency = mf_replicas_inefficiency(replicas, REPLICAS_BLOCKS, ideal, seen, count);
+    *inefficiency = mf_replicas_inefficiency(replicas, REPLICAS_BLOCKS, seen, count);
     for (size_t n = 0; n < count; n++)
         sum +=
             mf_comoments_covariance(counts, seen[n], seen[n]) / (ideal[seen[n]] * ideal[seen[n]]);

@@ -167,13 +167,11 @@ void mf_inversion_find_factor(const struct inversion_state *state,
 static double assess(struct inversion_state *state, struct inversion_section *section) {
     const struct comoments *counts = &state->replicas.counts;
     const size_t *known_bin = state->grid.known_bin;
-    const double *ideal = state->target.ideal;
     const size_t *known = known_bin + section->known;
     // Blocks do not see what lasts longer than they do.
-    section->inefficiency =
-        fmax(mf_replicas_inefficiency(&state->replicas, REPLICAS_BLOCKS, ideal, known,
-                                      section->known_count),
-             mf_replicas_inefficiency(&state->replicas, 1, ideal, known, section->known_count));
+    section->inefficiency = fmax(
+        mf_replicas_inefficiency(&state->replicas, REPLICAS_BLOCKS, known, section->known_count),
+        mf_replicas_inefficiency(&state->replicas, 1, known, section->known_count));
     const double independent = counts->count / section->inefficiency;
     const double bins = (double)section->bins;
     double sum = 0, own = 0, both = 0, whole = 0, alone = 0, followed = 0, seen = 0;

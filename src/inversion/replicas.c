@@ -162,22 +162,23 @@ static double mean_of_part(const struct replicas *replicas, size_t k, size_t p, 
     return sum / (double)length;
 }
 
-double mf_replicas_inefficiency(const struct replicas *replicas, size_t parts, const double *ideal,
-                                const size_t *seen, size_t count) {
-    double scatter = 0, variance = 0;
+double mf_replicas_inefficiency(const struct replicas *replicas, size_t parts, const size_t *seen,
+                                size_t count) {
+    double sum = 0, bins = 0;
     for (size_t n = 0; n < count; n++) {
         const size_t a = seen[n];
+        const double variance = mf_comoments_covariance(&replicas->counts, a, a);
         struct running_mean means = {0};
+        if (!(variance > 0))
+            continue;
         for (size_t k = 0; k < replicas->count; k++)
             for (size_t p = 0; p < parts; p++)
                 mf_statistics_add(&means, mean_of_part(replicas, k, p, parts, a));
-        // Weighted by 1/S²: bins with many pairs would drown the others.
-        const double weight = 1 / (ideal[a] * ideal[a]);
-        scatter += weight * means.squares / (means.count - 1);
-        variance += weight * mf_comoments_covariance(&replicas->counts, a, a);
+        sum += means.squares / (means.count - 1) / variance;
+        bins++;
     }
     const double samples = replicas->counts.count / (double)(replicas->count * parts);
-    return variance > 0 ? fmax(1, scatter / variance * samples) : 1;
+    return bins > 0 ? fmax(1, sum / bins * samples) : 1;
 }
 
 double mf_replicas_disagreement(const struct replicas *replicas, const double *ideal,

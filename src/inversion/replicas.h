@@ -71,15 +71,15 @@ double mf_replicas_acceptance(const struct replicas *replicas);
 
 /// How many samples count as one independent, from the scatter of the means of parts of each
 /// replica's samples, averaged over `count` bins, the numbers of which are in `seen`, because that
-/// of one bin is noisy.
+/// of one bin is noisy. Each bin counts as much: by their variances few of them would decide.
 /// @param[in] parts  REPLICAS_BLOCKS, or 1 where samples remember more than a block
-/// @param[in] ideal  shape [bins]: S if g were 1
-double mf_replicas_inefficiency(const struct replicas *replicas, size_t parts, const double *ideal,
-                                const size_t *seen, size_t count);
+double mf_replicas_inefficiency(const struct replicas *replicas, size_t parts, const size_t *seen,
+                                size_t count);
 
 /// Variance of the replicas' means over what the scatter of the blocks within them makes of it:
 /// near 1 if all sample the same, and large if they are frozen in structures of their own. A.
 /// Gelman and D. B. Rubin, Stat. Sci. 7, 457 (1992). Parameters as mf_replicas_inefficiency.
+/// @param[in] ideal  shape [bins]: S if g were 1
 /// Tested: test_replicas.
 double mf_replicas_disagreement(const struct replicas *replicas, const double *ideal,
                                 const size_t *seen, size_t count);

@@ -46,7 +46,7 @@ static double observe(double target, double precision, struct told *told) {
     const struct inversion_parameters settings = {.replicas = REPLICAS,
                                                   .equilibration = 10,
                                                   .samples = 16,
-                                                  .every = 2,
+                                                  .every = 8,
                                                   .iterations = 2,
                                                   .precision = precision,
                                                   .start = INVERSION_FROM_MEAN_FORCE};

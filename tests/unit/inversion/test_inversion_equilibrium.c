@@ -122,10 +122,8 @@ static void test_error_of_samples_is_that_of_replicas_that_remember(void **state
     (void)state;
     enum { TRIALS = 400 };
     static struct made made;
-    double ideal[BINS], blocks = 0, whole = 0;
+    double blocks = 0, whole = 0;
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
-    for (int n = 0; n < BINS; n++)
-        ideal[n] = 1;
     for (int trial = 0; trial < TRIALS; trial++) {
         make(&made, rng, 0, 0);
         for (size_t k = 0; k < REPLICAS; k++)
@@ -135,9 +133,9 @@ static void test_error_of_samples_is_that_of_replicas_that_remember(void **state
                     made.block[k][b * NUMBERS + n] += off;
             }
         const struct replicas *replicas = &made.state.replicas;
-        blocks += mf_replicas_inefficiency(replicas, REPLICAS_BLOCKS, ideal, made.known_bin, BINS) /
+        blocks += mf_replicas_inefficiency(replicas, REPLICAS_BLOCKS, made.known_bin, BINS) /
                   replicas->counts.count / TRIALS;
-        whole += mf_replicas_inefficiency(replicas, 1, ideal, made.known_bin, BINS) /
+        whole += mf_replicas_inefficiency(replicas, 1, made.known_bin, BINS) /
                  replicas->counts.count / TRIALS;
     }
     print_message("variance %.3f by replicas, %.3f by blocks; 4.25/8 is right\n", whole, blocks);

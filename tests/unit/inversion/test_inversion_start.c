@@ -250,6 +250,7 @@ static void test_inversion_band_looks_at_the_pressures_of_all_states(void **stat
     }
     double *slope[2] = {first->pressure.slope, other};
     states[0] = states[1] = *first;
+    states[1].bins = 0; // room is for the samples of one
     inversion->state = states;
     inversion->states = 2;
     for (int n = 0; n < 2; n++) {
