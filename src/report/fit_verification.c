@@ -8,11 +8,11 @@
 #include <math.h>
 #include <stdio.h>
 
-/// A kinetic temperature farther off than this is told whatever the targets say.
+/// A kinetic temperature that is off by more than this is reported even if all targets agree.
 static const double hot = 0.05;
 
-/// Why the verification may differ from the samples of the fit, by what was found: temperatures
-/// and what shorter time steps do to them, tension, the number of particles.
+/// Why the verification may differ from the samples of the fit: temperatures and how they depend on
+/// the time step, tension, the number of particles.
 static void find_cause(const struct verification *verification, double temperature,
                        const struct units *units, char cause[FIT_STEP_TEXT_SIZE]) {
     const struct thermodynamics_summary *found = &verification->thermodynamics;
@@ -20,37 +20,39 @@ static void find_cause(const struct verification *verification, double temperatu
     const char *known = NULL;
     mf_fit_step_cause(verification, units, cause);
     if (found->temperature / temperature < 1 - hot)
-        known = "too little friction holds the temperature: more \"dissipative\" friction does, or "
-                "a shorter \"verification.time_step\"";
+        known = "the friction is too weak to hold the temperature: increase the \"dissipative\" "
+                "friction or shorten \"verification.time_step\"";
     else if (cause[0])
         return;
     else if (found->temperature / temperature > 1 + hot)
-        known = "the temperature is off, and too few \"samples\" tell whether the time step is the "
-                "cause";
+        known = "the temperature is off, and there are too few \"samples\" to tell whether the "
+                "time step is the cause";
     else if (found->pressure < 0)
-        known = "a liquid under tension tears: g(r) leaves the pressure open, so give it as a "
-                "second target";
+        known = "the liquid is under tension and cavitates: g(r) does not determine the pressure, "
+                "so give it as a second target";
     if (known == NULL && verification->unequilibrated[0])
-        snprintf(cause, FIT_STEP_TEXT_SIZE,
-                 "it has not settled, %.150s: the liquid freezes, tears or condenses under this "
-                 "potential, of which another temperature, density or target is the way out, or it "
-                 "needs a longer \"verification.equilibration\"",
-                 verification->unequilibrated);
+        snprintf(
+            cause, FIT_STEP_TEXT_SIZE,
+            "it is not in equilibrium, %.150s: the liquid freezes, cavitates or condenses with "
+            "this potential, so that another temperature, density or target is needed, or it "
+            "needs a longer \"verification.equilibration\"",
+            verification->unequilibrated);
     else if (known)
         snprintf(cause, FIT_STEP_TEXT_SIZE, "%s", known);
     else if (verification->sampled > 0 && verification->sampled != verification->particles)
-        snprintf(cause, FIT_STEP_TEXT_SIZE,
-                 "%sthe samples have %zu particles and the verification %zu: \"particles\": %zu of "
-                 "the method tells whether the size is the cause, else longer \"equilibration\" of "
-                 "either may",
-                 holds ? "the temperatures are right, but " : "", verification->sampled,
-                 verification->particles, verification->particles);
+        snprintf(
+            cause, FIT_STEP_TEXT_SIZE,
+            "%sthe fit simulates %zu particles and the verification %zu: set \"particles\": %zu "
+            "in the method to see whether the size is the cause, or try a longer "
+            "\"equilibration\" of both",
+            holds ? "the temperatures are right, but " : "", verification->sampled,
+            verification->particles, verification->particles);
     else
-        snprintf(cause, FIT_STEP_TEXT_SIZE, "%slonger \"equilibration\" of either may tell why",
-                 holds ? "the temperatures are right, and the samples as large: " : "");
+        snprintf(cause, FIT_STEP_TEXT_SIZE, "%stry a longer \"equilibration\" of both",
+                 holds ? "the temperatures are right and both systems have the same size: " : "");
 }
 
-/// An integral of Kirkwood and Buff is off.
+/// Whether a Kirkwood-Buff integral is off.
 static bool contradicts_integrals(const struct verification *verification, double noise_margin,
                                   const struct units *units, char reason[INVERSE_REASON_SIZE]) {
     const struct target_distance *worst = &verification->worst[mf_kirkwood_buff_kind()];
@@ -59,9 +61,9 @@ static bool contradicts_integrals(const struct verification *verification, doubl
     if (!(worst->rms > noise_margin * worst->noise))
         return false;
     snprintf(reason, INVERSE_REASON_SIZE,
-             "an integral of Kirkwood and Buff is off by %.2g%.16s in the verification (%.2g by "
-             "statistics), though the fit's samples agree with it: more \"samples\", or more "
-             "\"particles\", whose waves are as long as the scene's, may tell why",
+             "a Kirkwood-Buff integral of the verification is off by %.2g%.16s (statistical error "
+             "%.2g), although the fit's samples agree with it: try more \"samples\", or more "
+             "\"particles\", up to those of the scene",
              volume * worst->rms, mf_units_suffix(units, "lambda^d", unit), volume * worst->noise);
     return true;
 }
@@ -79,7 +81,7 @@ static void report_state(const struct thermodynamics_summary *found, const struc
              mf_units_suffix(units, "k_B T_0/lambda^d", unit));
 }
 
-/// A structure that the fit's samples have.
+/// Report a distribution that agrees in the samples of the fit and not in the verification.
 static void report_structure(const char *name, const struct target_distance *distance,
                              const struct verification *verification, double temperature,
                              const struct units *units, char reason[INVERSE_REASON_SIZE]) {
@@ -87,13 +89,12 @@ static void report_structure(const char *name, const struct target_distance *dis
     report_state(&verification->thermodynamics, units, state);
     find_cause(verification, temperature, units, cause);
     snprintf(reason, INVERSE_REASON_SIZE,
-             "the fit's samples agree with %.24s, its verification is off by %.2g (%.2g by "
-             "statistics) at %.60s: %s",
+             "the fit's samples agree with %.24s, but its verification is off by %.2g (statistical "
+             "error %.2g) at %.60s: %s",
              name, distance->rms, distance->noise, state, cause);
 }
 
-/// Beads that are hotter or colder than the friction holds them have another structure, even if the
-/// noise hides it.
+/// Whether the kinetic temperature is off; the structure is then another, even within its noise.
 static bool contradicts_temperature(const struct verification *verification, double temperature,
                                     const struct units *units, char reason[INVERSE_REASON_SIZE]) {
     const struct thermodynamics_summary *found = &verification->thermodynamics;
@@ -102,7 +103,8 @@ static bool contradicts_temperature(const struct verification *verification, dou
         return false;
     mf_units_suffix(units, "T_0", kelvin);
     find_cause(verification, temperature, units, cause);
-    snprintf(reason, INVERSE_REASON_SIZE, "the verification is at T = %.4g%.8s, not %.4g%.8s: %s",
+    snprintf(reason, INVERSE_REASON_SIZE,
+             "the temperature of the verification is %.4g%.8s, not %.4g%.8s: %s",
              mf_units_factor(units, "T_0") * found->temperature, kelvin,
              mf_units_factor(units, "T_0") * temperature, kelvin, cause);
     return true;
@@ -125,13 +127,15 @@ bool mf_fit_verification_contradicts(const struct verification *verification,
         if (mf_fit_step_shifts_pressure(verification))
             snprintf(cause, sizeof cause,
                      "its time step shifts it by about %.2g, as the configurational temperature "
-                     "tells: set a shorter \"verification.time_step\"",
+                     "shows: set a shorter \"verification.time_step\"",
                      bar * verification->shift.pressure);
         else
             find_cause(verification, temperature, units, cause);
-        snprintf(reason, INVERSE_REASON_SIZE,
-                 "the verification's pressure, %.4g%.16s, is off by %.2g (%.2g by statistics): %s",
-                 bar * found->pressure, unit, bar * pressure->rms, bar * pressure->noise, cause);
+        snprintf(
+            reason, INVERSE_REASON_SIZE,
+            "the pressure of the verification, %.4g%.16s, is off by %.2g (statistical error %.2g): "
+            "%s",
+            bar * found->pressure, unit, bar * pressure->rms, bar * pressure->noise, cause);
         return true;
     }
     if (targets_ask(fitted, mf_kirkwood_buff_kind()) &&
@@ -161,7 +165,8 @@ void mf_fit_verification_add_units(const struct units *units, struct verificatio
     }
     if (verification->warning[0] == '\0' && verification->unequilibrated[0]) {
         snprintf(verification->warning, sizeof verification->warning,
-                 "the verification has not settled: %s; a longer \"verification.equilibration\" or "
+                 "the verification is not in equilibrium: %s; a longer "
+                 "\"verification.equilibration\" or "
                  "\"every\" may help",
                  verification->unequilibrated);
         return;
@@ -172,7 +177,7 @@ void mf_fit_verification_add_units(const struct units *units, struct verificatio
     snprintf(verification->warning, sizeof verification->warning, "%s", mf_status_message());
 }
 
-/// By more than chance, and by a quarter.
+/// Whether an error is larger by a quarter, and by five standard errors.
 static bool is_larger(double verified, double own, double error, double variance) {
     static const double deviations = 5, part = 0.25;
     return verified > error + deviations * sqrt(variance + own) && verified > (1 + part) * error;
@@ -187,10 +192,9 @@ bool mf_fit_verification_is_worse(const struct verification *verification,
         return false;
     snprintf(
         reason, INVERSE_REASON_SIZE,
-        "the fit's own error is %.2g +- %.1g, that of its verification %.2g +- %.1g: its "
-        "simulations "
-        "were too short, or too coarse in time: longer \"equilibration\", more \"samples\" or a "
-        "shorter time step may tell why",
+        "the error measured by the fit is %.2g +- %.1g, that of its verification %.2g +- %.1g: the "
+        "simulations of the fit were too short or their time step too long: try a longer "
+        "\"equilibration\", more \"samples\" or a shorter time step",
         error, sqrt(variance), verified, sqrt(own));
     return true;
 }
@@ -211,7 +215,7 @@ bool mf_fit_verification_is_worse_than_samples(const struct verification *verifi
     report_state(&verification->thermodynamics, units, state);
     find_cause(verification, temperature, units, cause);
     snprintf(reason, INVERSE_REASON_SIZE,
-             "the fit's samples are off from %s by %.16s%s, its verification by %.16s at %.60s: %s",
+             "the fit's samples differ from %s by %.16s%s, its verification by %.16s at %.60s: %s",
              mf_targets_count(targets) > 1 ? "the targets" : "the target", of_samples,
              mf_targets_count(targets) > 1 ? " of their errors (rms)" : "", of_verification, state,
              cause);

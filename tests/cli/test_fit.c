@@ -328,7 +328,7 @@ static void test_summary_has_what_other_programs_read(void **state) {
     char *summary = temporary_folder_read("out/summary.json");
     // Which of the two it is depends on the noise.
     assert_true(strstr(summary, "\"reason\":\t\"after 4 iterations") ||
-                strstr(summary, "\"precision\\\" asks for 0.0001"));
+                strstr(summary, "\"precision\\\" is 0.0001"));
     free(summary);
     results_assert_number("out/summary.json", "iterations", 4);
     results_assert_number("out/summary.json", "evaluations", 16);

@@ -50,7 +50,7 @@ static void test_inversion_reason_is_the_start_when_no_step_from_it_helped(void 
     inversion->course.progress.second_error = 0.83;
     inversion->course.progress.damping = 1.0 / 128;
     assert_says(inversion, "rose from 0.11 to 0.83 with the first step");
-    assert_says(inversion, "outside the basin of \"imc\"");
+    assert_says(inversion, "outside the basin of convergence of \"imc\"");
 }
 
 static void test_inversion_reason_is_not_the_start_when_shorter_steps_helped(void **state) {
@@ -58,9 +58,9 @@ static void test_inversion_reason_is_not_the_start_when_shorter_steps_helped(voi
     struct fit fit;
     struct inversion *inversion = make_fit(&fit, 0.05, false);
     inversion->course.progress.second_error = 0.83;
-    assert_says(inversion, "after 30 iterations the error of g is 0.05, from 0.11 at first");
+    assert_says(inversion, "after 30 iterations the error of g(r) is 0.05 (0.11 at first)");
     inversion->course.progress.damping = 1.0 / 128;
-    assert_says(inversion, "shrunk to 1/128 without progress: the error of g is 0.05, its "
+    assert_says(inversion, "reduced to 1/128 without progress: the error of g(r) is 0.05, its "
                            "statistical error 0.003");
 }
 
@@ -79,15 +79,14 @@ static void test_inversion_reason_is_the_precision_when_the_curves_agree(void **
     (void)state;
     struct fit fit;
     const struct inversion *inversion = make_fit(&fit, 0.004, false);
-    assert_says(inversion,
-                "within a statistical error of 0.0025, but \"precision\" asks for 0.002");
+    assert_says(inversion, "within a statistical error of 0.0025, but \"precision\" is 0.002");
 }
 
 static void test_inversion_reason_is_the_pressure_when_only_that_is_off(void **state) {
     (void)state;
     struct fit fit;
     struct inversion *inversion = make_fit(&fit, 0.004, true);
-    assert_says(inversion, "the pressure is 2 off, with an error of 0.1");
+    assert_says(inversion, "the pressure is off by 2 (statistical error 0.1)");
     inversion->course.progress.best.distance[TARGET_PRESSURE].rms = 0.1;
     assert_says(inversion, "\"precision\"");
 }
@@ -123,13 +122,13 @@ static void test_inversion_reason_is_a_target_that_is_off_as_a_whole(void **stat
     worst->noise = 0.003;
     assert_says(inversion, "after 30 iterations");
     worst->rms = 0.004;
-    assert_says(inversion, "too small as a whole by 0.4 %");
-    assert_says(inversion, "\"normalisation\" allow by 0.1 %");
+    assert_says(inversion, "too small at all distances by 0.4 %");
+    assert_says(inversion, "\"normalisation\" is 0.1 %");
     double excess[] = {9, 9, 5, 2, 1};
     inversion->history = (struct inversion_history){.bins = 1, .iterations = 5, .excess = excess};
     assert_says(inversion, "after 30 iterations"); // it still improves
     excess[4] = 4.9;
-    assert_says(inversion, "too small as a whole by 0.4 %");
+    assert_says(inversion, "too small at all distances by 0.4 %");
     inversion->course.progress.best.factor.missing = -0.0029;
     assert_says(inversion, "after 30 iterations");
 }
@@ -149,7 +148,7 @@ static void test_inversion_reason_of_groups_is_the_one_that_is_off(void **state)
     fit.state.grid.groups = 1;
     fit.state.assessment.sections = 1;
     assert_says(inversion, "the error of bond_lengths is 0.3, its statistical error 0.2, and "
-                           "chi^2 by bin is 3.4 where noise makes 1.9");
+                           "chi^2 per bin is 3.4 (at most 1.9 by noise)");
     inversion->course.progress.best.worst.misfit = 1.8;
     assert_says(inversion, "the distributions agree within a statistical error of 0.0025 of");
 }

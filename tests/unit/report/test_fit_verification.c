@@ -59,7 +59,7 @@ static void test_fit_verification_sees_each_pair_type_that_was_fitted(void **sta
     struct verification hidden = make(0.005, 1.5, 3);
     hidden.distance[TARGET_RDF].count = 90;
     hidden.worst[TARGET_RDF] = (struct target_distance){.rms = 0.008, .noise = 0.002, .count = 30};
-    assert_says(&hidden, "agree with g(r) of all pair types, its verification is off by 0.008");
+    assert_says(&hidden, "agree with g(r) of all pair types, but its verification is off by 0.008");
     assert_false(contradicts(&hidden, &of_bonds, reason));
 }
 
@@ -86,15 +86,15 @@ static void test_fit_verification_names_the_cause_when_g_is_off(void **state) {
     assert_says(&blameless, "was so with twice the time step: that is not the cause");
     smaller.sampled = 700;
     smaller.particles = 1000;
-    assert_says(&smaller, "the samples have 700 particles and the verification 1000");
-    assert_says(&heated, "too few \"samples\" tell whether the time step is the cause");
-    assert_says(&broken, "off by 0.16 (0.002 by statistics) at T = 1.53, pressure -2.19: a liquid "
-                         "under tension tears");
-    assert_says(&other, "longer \"equilibration\" of either");
+    assert_says(&smaller, "the fit simulates 700 particles and the verification 1000");
+    assert_says(&heated, "too few \"samples\" to tell whether the time step is the cause");
+    assert_says(&broken, "off by 0.16 (statistical error 0.002) at T = 1.53, pressure -2.19: the "
+                         "liquid is under tension");
+    assert_says(&other, "longer \"equilibration\" of both");
     struct verification early = other;
     snprintf(early.unequilibrated, sizeof early.unequilibrated, "g(r) still changes");
     assert_says(&early,
-                "it has not settled, g(r) still changes: the liquid freezes, tears or condenses");
+                "it is not in equilibrium, g(r) still changes: the liquid freezes, cavitates");
     assert_says(&early, "or it needs a longer \"verification.equilibration\"");
 }
 
@@ -106,8 +106,8 @@ static void test_fit_verification_names_friction_when_the_beads_are_cold(void **
     cold.worst[TARGET_RDF].rms = 0;
     cold.worst[mf_bonded_distribution_kind(BONDED_BOND)] =
         (struct target_distance){.rms = 3.4, .noise = 0.18};
-    assert_says(&cold, "agree with bond_lengths, its verification is off by 3.4 (0.18 by "
-                       "statistics) at T = 1, pressure 2: too little friction");
+    assert_says(&cold, "agree with bond_lengths, but its verification is off by 3.4 (statistical "
+                       "error 0.18) at T = 1, pressure 2: the friction is too weak");
 }
 
 /// g(r) within its noise, at a temperature that the friction does not hold.
@@ -119,7 +119,8 @@ static void test_fit_verification_names_the_temperature_when_it_is_off(void **st
     assert_false(contradicts(&hot, &only_rdf, reason)); // held by none
     snprintf(hot.warning, sizeof hot.warning, "the kinetic temperature is off");
     assert_true(contradicts(&hot, &only_rdf, reason));
-    assert_contains(reason, "the verification is at T = 1.59, not 1.5: the temperature is off");
+    assert_contains(reason,
+                    "the temperature of the verification is 1.59, not 1.5: the temperature is off");
     hot.thermodynamics.temperature = 1.5 * 1.04;
     assert_false(contradicts(&hot, &only_rdf, reason));
 }
@@ -131,7 +132,8 @@ static void test_fit_verification_names_the_pressure_when_it_was_fitted_and_is_o
     found.distance[TARGET_PRESSURE] = (struct target_distance){.rms = 0.4, .noise = 0.1};
     assert_false(contradicts(&found, &only_rdf, reason));
     assert_true(contradicts(&found, &with_pressure, reason));
-    assert_contains(reason, "pressure, 1.9, is off by 0.4 (0.1 by statistics)");
+    assert_contains(reason,
+                    "pressure of the verification, 1.9, is off by 0.4 (statistical error 0.1)");
     found.shift = (struct thermodynamics_shift){-0.35, 0.05};
     assert_true(contradicts(&found, &with_pressure, reason));
     assert_contains(reason, "its time step shifts it by about -0.35");
@@ -149,7 +151,7 @@ static void test_fit_verification_names_an_integral_when_it_was_fitted_and_is_of
     found.worst[kind] = (struct target_distance){.rms = 0.4, .noise = 0.1};
     assert_false(contradicts(&found, &only_rdf, reason));
     assert_true(contradicts(&found, &fitted, reason));
-    assert_contains(reason, "Kirkwood and Buff is off by 0.4");
+    assert_contains(reason, "Kirkwood-Buff integral of the verification is off by 0.4");
     assert_true(strlen(reason) + 1 < INVERSE_REASON_SIZE);
     found.worst[kind].rms = 0.29;
     assert_false(contradicts(&found, &fitted, reason));
@@ -169,7 +171,8 @@ static void test_fit_verification_is_worse_when_the_difference_is_no_chance(void
                      [TARGET_DIFFUSION] = {.rms = 0.02, .variance = 1e-6}}};
     one.target[TARGET_DIFFUSION].count = 0;
     assert_true(mf_fit_verification_is_worse(&found, &one, 0.088, 0.0001, reason));
-    assert_contains(reason, "own error is 0.088 +- 0.01, that of its verification 1.1 +- 0.01");
+    assert_contains(
+        reason, "error measured by the fit is 0.088 +- 0.01, that of its verification 1.1 +- 0.01");
     assert_true(strlen(reason) + 1 < INVERSE_REASON_SIZE);
     // Better, or worse by 4 errors, or by a tenth, are no contradiction.
     assert_false(mf_fit_verification_is_worse(&found, &one, 1.3, 0, reason));
@@ -193,15 +196,16 @@ static void test_fit_verification_tells_why_a_verification_is_worse_than_samples
     assert_true(
         mf_fit_verification_is_worse_than_samples(&found, &only_rdf, 0.011, 4e-8, 1, NULL, reason));
     assert_string_equal(reason,
-                        "the fit's samples are off from the target by 0.01100(20), its "
-                        "verification by 0.0413(10) at T = 0.64, pressure 2: too little friction "
-                        "holds the temperature: more \"dissipative\" friction does, or a shorter "
-                        "\"verification.time_step\"");
+                        "the fit's samples differ from the target by 0.01100(20), its "
+                        "verification by 0.0413(10) at T = 0.64, pressure 2: the friction is too "
+                        "weak to hold the temperature: increase the \"dissipative\" friction or "
+                        "shorten \"verification.time_step\"");
     // No worse, but cold.
     snprintf(found.warning, sizeof found.warning, "the temperature is off");
     assert_true(
         mf_fit_verification_is_worse_than_samples(&found, &only_rdf, 0.041, 4e-8, 1, NULL, reason));
-    assert_contains(reason, "the verification is at T = 0.64, not 1: too little friction");
+    assert_contains(reason,
+                    "the temperature of the verification is 0.64, not 1: the friction is too weak");
 }
 
 int main(void) {
