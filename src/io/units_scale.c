@@ -41,13 +41,6 @@ double mf_units_diffusion_cm2_per_s(const struct units *units) {
     return centimetres * centimetres / (mf_units_time_ps(units) * 1e-12);
 }
 
-double *mf_units_column(const double *values, size_t count, double factor) {
-    double *column = mf_memory_zeroed(count, sizeof *column);
-    for (size_t k = 0; column && k < count; k++)
-        column[k] = factor * values[k];
-    return column;
-}
-
 // Reduced units in those that are spoken ----------------------------------------------------------
 
 /// What the spoken names are made of, in the order in which they stand in a name.

@@ -81,6 +81,3 @@ enum status mf_units_from(const struct units *units, const char *from, const cha
 
 /// "nm-ps: lambda = 0.465 nm, …", the scale in one line.
 void mf_units_print(const struct units *units, char line[UNITS_LINE_SIZE]);
-
-/// A column of a table in another unit: factor · values; the caller frees it. NULL: no memory.
-double *mf_units_column(const double *values, size_t count, double factor);

@@ -35,42 +35,20 @@ static size_t spans(void *state, struct memory_span *spans) {
 static enum status write(const void *state, const struct observable_results *results) {
     enum status status = STATUS_OK;
     const struct motion *motion = state;
-    const struct units *units = results->units;
     const size_t rows = (size_t)motion->plan.lags + 1;
-    const bool known = mf_units_have_second_columns(units);
-    const double ps = known ? mf_units_time_ps(units) : 1, nm2 = units->length * units->length;
-    double *time = NULL, *values = NULL, *picoseconds = NULL, *physical = NULL;
+    static const char *const beside[MOTION_COLUMNS] = {"%.10g", "%.8g", "%.3g", "%.8g", "%.3g"};
+    double *values = NULL;
     char path[OUTPUT_PATH_SIZE];
-    NEW_ARRAY(time, rows);
-    NEW_ARRAY(values, 4 * rows);
-    const struct motion_curves curves = {values, values + rows, values + 2 * rows,
-                                         values + 3 * rows};
-    mf_motion_result(motion, &curves);
-    mf_statistics_mark_unknown_errors(curves.msd_error, rows);
-    mf_statistics_mark_unknown_errors(curves.vacf_error, rows);
-    for (size_t k = 0; k < rows; k++)
-        time[k] = (double)k * (double)motion->plan.every * motion->time_step;
-    picoseconds = mf_units_column(time, rows, ps);
-    physical = mf_units_column(values, 4 * rows, nm2);
-    CHECK(picoseconds && physical ? STATUS_OK : STATUS_NO_MEMORY);
-    for (size_t k = 2 * rows; k < 4 * rows; k++)
-        physical[k] /= ps * ps;
-    const struct data_column columns[] = {{"time[tau]", time, NULL},
-                                          {"msd[lambda^2]", curves.msd, "%.8g"},
-                                          {"msd_error[lambda^2]", curves.msd_error, "%.3g"},
-                                          {"vacf[lambda^2/tau^2]", curves.vacf, "%.8g"},
-                                          {"vacf_error[lambda^2/tau^2]", curves.vacf_error, "%.3g"},
-                                          {"time[ps]", picoseconds, NULL},
-                                          {"msd[nm^2]", physical, "%.8g"},
-                                          {"msd_error[nm^2]", physical + rows, "%.3g"},
-                                          {"vacf[nm^2/ps^2]", physical + 2 * rows, "%.8g"},
-                                          {"vacf_error[nm^2/ps^2]", physical + 3 * rows, "%.3g"}};
+    CHECK(mf_motion_table(motion, &values));
+    const struct data_column columns[MOTION_COLUMNS] = {
+        {"time[tau]", values, NULL},
+        {"msd[lambda^2]", values + rows, "%.8g"},
+        {"msd_error[lambda^2]", values + 2 * rows, "%.3g"},
+        {"vacf[lambda^2/tau^2]", values + 3 * rows, "%.8g"},
+        {"vacf_error[lambda^2/tau^2]", values + 4 * rows, "%.3g"}};
     mf_observable_file(results, "motion.tsv", path);
-    CHECK(mf_data_table_write_in(path, results->units, NULL, columns, known ? 10 : 5, rows));
+    CHECK(mf_data_table_write_beside(path, results->units, columns, beside, MOTION_COLUMNS, rows));
 done:
-    mf_memory_free(time);
-    mf_memory_free(picoseconds);
-    mf_memory_free(physical);
     mf_memory_free(values);
     return status;
 }

@@ -154,9 +154,8 @@ static enum status write(const void *state, const struct observable_results *res
     const struct rdf_bins *bins = &rdf->bins;
     const bool force = observed->force.planned > 0;
     const size_t all = rdf->pairs * bins->count;
-    const struct units *units = results->units;
+    static const char *const beside[5] = {"%.10g"};
     double *r = NULL, *g = NULL, *error = NULL, *counted = NULL, *counted_error = NULL;
-    double *nanometres = NULL;
     char path[OUTPUT_PATH_SIZE];
     NEW_ARRAY(r, bins->count);
     NEW_ARRAY(g, bins->count);
@@ -165,33 +164,28 @@ static enum status write(const void *state, const struct observable_results *res
     NEW_ARRAY(counted_error, all);
     for (size_t k = 0; k < bins->count; k++)
         r[k] = mf_rdf_bins_centre(bins, k);
-    nanometres = mf_units_column(r, bins->count, units->length);
-    CHECK(nanometres ? STATUS_OK : STATUS_NO_MEMORY);
     CHECK(mf_rdf_result(rdf, 1, counted, counted_error));
     if (force)
         CHECK(mf_rdf_force_result(&observed->force, 1, RDF_FORCE_COUNTED, g, error));
     for (size_t pair = 0; pair < rdf->pairs; pair++) {
         const size_t first = pair * bins->count;
-        size_t count = force ? 5 : 3;
         if (!mf_composition_has_pairs(&rdf->composition, (int)pair))
             continue;
         mf_statistics_mark_unknown_errors(counted_error + first, bins->count);
         mf_statistics_mark_unknown_errors(error, force ? bins->count : 0);
-        struct data_column columns[6] = {
+        const struct data_column columns[5] = {
             {"r[lambda]", r, NULL},
             {"g[1]", force ? g : counted + first, "%.8g"},
             {"g_error[1]", force ? error : counted_error + first, "%.3g"},
             {"g_histogram[1]", counted + first, "%.8g"},
             {"g_histogram_error[1]", counted_error + first, "%.3g"}};
-        if (mf_units_have_second_columns(units))
-            columns[count++] = (struct data_column){"r[nm]", nanometres, NULL};
         mf_rdf_observable_file(results->folder, rdf->intermolecular ? "intermolecular_rdf" : "rdf",
                                &rdf->composition, (int)pair, path);
-        CHECK(mf_data_table_write_in(path, results->units, NULL, columns, count, bins->count));
+        CHECK(mf_data_table_write_beside(path, results->units, columns, beside, force ? 5 : 3,
+                                         bins->count));
     }
 done:
     mf_memory_free(r);
-    mf_memory_free(nanometres);
     mf_memory_free(g);
     mf_memory_free(error);
     mf_memory_free(counted);

@@ -147,10 +147,10 @@ enum status mf_structure_factor_write(const struct structure_factor *factor,
                                       const struct observable_results *results) {
     enum status status = STATUS_OK;
     struct structure_factor_curves curves = {0};
-    struct data_column columns[4 + 2 * (1 + COMPOSITION_MAX_PAIRS)];
+    struct data_column columns[2 + 2 * (1 + COMPOSITION_MAX_PAIRS)];
+    static const char *const beside[sizeof columns / sizeof *columns] = {"%.10g"};
     char names[2 * (1 + COMPOSITION_MAX_PAIRS)][COMPOSITION_PAIR_NAME_SIZE + 16];
     char path[OUTPUT_PATH_SIZE];
-    double *nanometres = NULL;
     size_t n = 0;
     CHECK(mf_structure_factor_find(factor, &curves));
     columns[n++] = (struct data_column){"q[1/lambda]", curves.q, NULL};
@@ -170,16 +170,9 @@ enum status mf_structure_factor_write(const struct structure_factor *factor,
         columns[n++] = (struct data_column){names[2 * curve + 1], error, "%.3g"};
     }
     columns[n++] = (struct data_column){"vectors[1]", curves.members, "%.7g"};
-    nanometres = mf_units_column(
-        curves.q, curves.bins,
-        mf_units_have_second_columns(results->units) ? 1 / results->units->length : 0);
-    CHECK(nanometres ? STATUS_OK : STATUS_NO_MEMORY);
-    if (mf_units_have_second_columns(results->units))
-        columns[n++] = (struct data_column){"q[1/nm]", nanometres, NULL};
     mf_observable_file(results, "structure_factor.tsv", path);
-    CHECK(mf_data_table_write_in(path, results->units, NULL, columns, n, curves.bins));
+    CHECK(mf_data_table_write_beside(path, results->units, columns, beside, n, curves.bins));
 done:
     mf_structure_factor_curves_clear(&curves);
-    mf_memory_free(nanometres);
     return status;
 }
