@@ -152,11 +152,6 @@ void mf_json_write_text(struct json_writer *writer, const char *key, const char 
     append(writer, key, cJSON_CreateString(value));
 }
 
-void mf_json_write_numbers(struct json_writer *writer, const char *key, const double *values,
-                           size_t count) {
-    mf_json_write_quantities(writer, key, "", values, count);
-}
-
 void mf_json_write_quantities(struct json_writer *writer, const char *key, const char *unit,
                               const double *values, size_t count) {
     const double factor = mf_units_factor(&writer->units, unit);

@@ -39,8 +39,6 @@ void mf_json_write_quantity(struct json_writer *writer, const char *key, const c
 /// All digits are written, but mf_json_fields refuses 2^53 and beyond.
 void mf_json_write_integer(struct json_writer *writer, const char *key, int64_t value);
 void mf_json_write_text(struct json_writer *writer, const char *key, const char *value);
-void mf_json_write_numbers(struct json_writer *writer, const char *key, const double *values,
-                           size_t count);
 void mf_json_write_quantities(struct json_writer *writer, const char *key, const char *unit,
                               const double *values, size_t count);
 void mf_json_write_texts(struct json_writer *writer, const char *key, const char *const *texts,

@@ -397,18 +397,6 @@ done:
     return status;
 }
 
-enum status mf_programming_residuals(const struct programming_points *points,
-                                     const struct expression *expression, double *residual) {
-    enum status status = STATUS_OK;
-    struct programming_scratch scratch;
-    CHECK(mf_programming_fit_init(&scratch, points));
-    mf_programming_fit_error(points, &scratch, expression);
-    memcpy(residual, scratch.residual, points->rows * sizeof *residual);
-done:
-    mf_programming_fit_clear(&scratch);
-    return status;
-}
-
 size_t mf_programming_spans(struct programming *programming, struct memory_span *spans) {
     const size_t islands = (size_t)programming->parameters.islands;
     spans[0] = (struct memory_span){programming->island, islands * sizeof *programming->island};
