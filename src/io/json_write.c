@@ -136,6 +136,14 @@ void mf_json_write_quantity(struct json_writer *writer, const char *key, const c
                          mf_units_file_value(value, mf_units_factor(&writer->units, unit)));
 }
 
+void mf_json_put_measured(struct json_writer *writer, const char *key, const char *unit,
+                          double value, double error) {
+    char name[128];
+    snprintf(name, sizeof name, "%s_error", key);
+    mf_json_write_quantity(writer, key, unit, value);
+    mf_json_write_quantity(writer, name, unit, error);
+}
+
 void mf_json_write_integer(struct json_writer *writer, const char *key, int64_t value) {
     char text[32];
     snprintf(text, sizeof text, "%" PRId64, value);

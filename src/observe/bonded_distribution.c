@@ -306,7 +306,7 @@ static enum status write_table(const struct bonded_state *s, const char *file,
     const int groups = s->molecules->groups[s->order];
     const size_t bins = s->bins[0].count;
     struct data_column columns[MAX];
-    char names[MAX][TOPOLOGY_NAME_SIZE + 32], path[OUTPUT_PATH_SIZE];
+    char names[MAX][TOPOLOGY_NAME_SIZE + 32];
     double *values = NULL;
     NEW_ARRAY(values, (1 + COLUMNS * (size_t)groups) * bins);
     for (size_t bin = 0; bin < bins; bin++)
@@ -324,9 +324,7 @@ static enum status write_table(const struct bonded_state *s, const char *file,
                 (struct data_column){names[n], own + (size_t)c * bins, c == 1 ? "%.3g" : "%.8g"};
         }
     }
-    mf_observable_file(results, file, path);
-    CHECK(mf_data_table_write_in(path, results->units, NULL, columns,
-                                 (size_t)(1 + COLUMNS * groups), bins));
+    CHECK(mf_observable_table(results, file, columns, (size_t)(1 + COLUMNS * groups), bins));
 done:
     mf_memory_free(values);
     return status;

@@ -275,9 +275,7 @@ static struct result free_path(const struct collisions *c) {
 static void write_result(struct json_writer *writer, const char *name, const char *unit,
                          struct result result, double theory) {
     char key[64];
-    mf_json_write_quantity(writer, name, unit, result.mean);
-    snprintf(key, sizeof key, "%s_error", name);
-    mf_json_write_quantity(writer, key, unit, result.error);
+    mf_json_put_measured(writer, name, unit, result.mean, result.error);
     snprintf(key, sizeof key, "%s_theory", name);
     if (!isnan(theory))
         mf_json_write_quantity(writer, key, unit, theory);
@@ -321,7 +319,6 @@ static void print(const void *state, const struct observable_results *results, c
 static enum status write_series(const struct collisions *c,
                                 const struct observable_results *results) {
     enum status status = STATUS_OK;
-    char path[OUTPUT_PATH_SIZE];
     double *step = NULL, *time = NULL;
     NEW_ARRAY(step, c->series.count);
     NEW_ARRAY(time, c->series.count);
@@ -336,9 +333,8 @@ static enum status write_series(const struct collisions *c,
         {"collision_rate[1/tau]", series(c, RATE), "%.8g"},
         {"mean_speed[lambda/tau]", series(c, SPEED), "%.8g"},
         {"compressibility_factor_walls[1]", series(c, WALL_FACTOR), "%.8g"}};
-    mf_observable_file(results, "collisions.tsv", path);
-    CHECK(mf_data_table_write_in(path, results->units, NULL, columns, c->walls ? 6 : 5,
-                                 c->series.count));
+    CHECK(
+        mf_observable_table(results, "collisions.tsv", columns, c->walls ? 6 : 5, c->series.count));
 done:
     mf_memory_free(step);
     mf_memory_free(time);
@@ -350,7 +346,6 @@ done:
 static enum status write_speeds(const struct collisions *c,
                                 const struct observable_results *results) {
     enum status status = STATUS_OK;
-    char path[OUTPUT_PATH_SIZE];
     const size_t bins = (size_t)c->settings.bins;
     const int dimensions = results->setup->box.dimensions;
     const double width = speed_maximum / (double)bins;
@@ -373,8 +368,7 @@ static enum status write_speeds(const struct collisions *c,
                                           {"density[1]", density, "%.8g"},
                                           {"density_error[1]", error, "%.3g"},
                                           {"maxwell[1]", theory, "%.8g"}};
-    mf_observable_file(results, "speeds.tsv", path);
-    CHECK(mf_data_table_write_in(path, results->units, NULL, columns, 4, bins));
+    CHECK(mf_observable_table(results, "speeds.tsv", columns, 4, bins));
 done:
     mf_memory_free(values);
     return status;
@@ -387,11 +381,9 @@ static enum status write(const void *state, const struct observable_results *res
     const struct data_column columns[] = {{"seconds[s]", &c->seconds, NULL},
                                           {"collisions", &c->collisions, NULL},
                                           {"collisions_per_second[1/s]", &rate, "%.6g"}};
-    char path[OUTPUT_PATH_SIZE];
     TRY(write_series(c, results));
     TRY(write_speeds(c, results));
-    mf_observable_file(results, "timing.tsv", path);
-    return mf_data_table_write_in(path, results->units, NULL, columns, 3, 1);
+    return mf_observable_table(results, "timing.tsv", columns, 3, 1);
 }
 
 /// Nanoseconds of a particle and sample: its speed, and where it stands in the distribution.

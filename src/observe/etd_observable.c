@@ -54,7 +54,6 @@ static enum status write_matrix(const struct etd *etd, const struct observable_r
     double *columns = NULL;
     struct data_column *column = NULL;
     char(*name)[48] = NULL;
-    char path[OUTPUT_PATH_SIZE];
     NEW_ARRAY(columns, (bins + 1) * times);
     NEW_ARRAY(column, bins + 1);
     NEW_ARRAY(name, bins + 1);
@@ -66,8 +65,7 @@ static enum status write_matrix(const struct etd *etd, const struct observable_r
             columns[k * times + t] =
                 k ? values[t * bins + k - 1] : (double)t * interval(etd, results);
     }
-    mf_observable_file(results, file, path);
-    status = mf_data_table_write_in(path, results->units, NULL, column, bins + 1, times);
+    status = mf_observable_table(results, file, column, bins + 1, times);
 done:
     mf_memory_free(columns);
     mf_memory_free(column);
@@ -80,7 +78,6 @@ static enum status write_bins(const struct etd *etd, const struct observable_res
     enum status status = STATUS_OK;
     const size_t bins = (size_t)etd->grid.bins;
     double *r = NULL, *n = NULL;
-    char path[OUTPUT_PATH_SIZE];
     NEW_ARRAY(r, bins);
     NEW_ARRAY(n, bins);
     for (size_t k = 0; k < bins; k++) {
@@ -88,8 +85,7 @@ static enum status write_bins(const struct etd *etd, const struct observable_res
         n[k] = (double)pairs[k];
     }
     const struct data_column columns[] = {{"r0[lambda]", r, NULL}, {"pairs[1]", n, "%.0f"}};
-    mf_observable_file(results, "etd_bins.tsv", path);
-    status = mf_data_table_write_in(path, results->units, NULL, columns, 2, bins);
+    status = mf_observable_table(results, "etd_bins.tsv", columns, 2, bins);
 done:
     mf_memory_free(r);
     mf_memory_free(n);

@@ -265,7 +265,6 @@ static enum status write(const void *state, const struct observable_results *res
     const size_t blocks = complete_blocks(p);
     const struct line line = fit(p, 0, blocks);
     double *values = NULL;
-    char path[OUTPUT_PATH_SIZE];
     NEW_ARRAY(values, 5 * p->bins);
     double *y = values, *v = y + p->bins, *error = v + p->bins, *fitted = error + p->bins,
            *count = fitted + p->bins;
@@ -289,8 +288,7 @@ static enum status write(const void *state, const struct observable_results *res
                                           {"v_x_error[lambda/tau]", error, "%.3g"},
                                           {"fit[lambda/tau]", fitted, "%.8g"},
                                           {"particles[1]", count, "%.6g"}};
-    mf_observable_file(results, "flow_profile.tsv", path);
-    status = mf_data_table_write_in(path, results->units, NULL, columns, 5, p->bins);
+    status = mf_observable_table(results, "flow_profile.tsv", columns, 5, p->bins);
 done:
     mf_memory_free(values);
     return status;
@@ -303,32 +301,29 @@ static void write_summary(const void *state, const struct observable_results *re
     (void)results;
     if (is_driven(p)) {
         mf_statistics_mark_unknown_errors(&found.viscosity_error, 1);
-        mf_json_write_quantity(writer, "viscosity", "lambda^2/tau", found.viscosity);
-        mf_json_write_quantity(writer, "viscosity_error", "lambda^2/tau", found.viscosity_error);
+        mf_json_put_measured(writer, "viscosity", "lambda^2/tau", found.viscosity,
+                             found.viscosity_error);
         if (p->parameters.grid_shift)
             mf_json_write_quantity(writer, "viscosity_theory", "lambda^2/tau",
                                    mf_collision_dynamics_viscosity(&p->setup));
     }
     if (is_driven(p) && p->parameters.walls == COLLISION_PLATES) {
         mf_statistics_mark_unknown_errors(&found.slip_error, 1);
-        mf_json_write_number(writer, "slip", found.slip);
-        mf_json_write_number(writer, "slip_error", found.slip_error);
+        mf_json_put_measured(writer, "slip", "1", found.slip, found.slip_error);
     }
     if (isfinite(found.diffusion)) {
-        mf_json_write_quantity(writer, "bead_diffusion", "lambda^2/tau", found.diffusion);
-        mf_json_write_quantity(writer, "bead_diffusion_error", "lambda^2/tau",
-                               found.diffusion_error);
+        mf_json_put_measured(writer, "bead_diffusion", "lambda^2/tau", found.diffusion,
+                             found.diffusion_error);
         if (p->setup.potential == NULL && p->setup.interactions == 0)
             mf_json_write_quantity(writer, "bead_diffusion_theory", "lambda^2/tau",
                                    mf_collision_dynamics_diffusion(&p->setup, p->bead_mass));
     }
     if (is_driven(p) && isfinite(found.schmidt)) {
-        mf_json_write_number(writer, "schmidt_number", found.schmidt);
-        mf_json_write_number(writer, "schmidt_number_error", found.schmidt_error);
+        mf_json_put_measured(writer, "schmidt_number", "1", found.schmidt, found.schmidt_error);
     }
     mf_statistics_mark_unknown_errors(&found.temperature_error, 1);
-    mf_json_write_quantity(writer, "solvent_temperature", "T_0", found.temperature);
-    mf_json_write_quantity(writer, "solvent_temperature_error", "T_0", found.temperature_error);
+    mf_json_put_measured(writer, "solvent_temperature", "T_0", found.temperature,
+                         found.temperature_error);
 }
 
 static void print(const void *state, const struct observable_results *results, char *line,

@@ -28,7 +28,6 @@ static enum status write(const void *state, const struct observable_results *res
     const struct force_covariance *covariance = state;
     const size_t bins = covariance->bins;
     double *values = NULL;
-    char path[OUTPUT_PATH_SIZE];
     NEW_ARRAY(values, 3 * bins);
     double *r = values, *kappa = r + bins, *error = kappa + bins;
     mf_force_covariance_result(covariance, kappa, error);
@@ -37,8 +36,7 @@ static enum status write(const void *state, const struct observable_results *res
     const struct data_column columns[] = {{"r[lambda]", r, NULL},
                                           {"kappa[k_B.T_0.mu/tau]", kappa, "%.8g"},
                                           {"kappa_error[k_B.T_0.mu/tau]", error, "%.3g"}};
-    mf_observable_file(results, "force_covariance.tsv", path);
-    status = mf_data_table_write_in(path, results->units, NULL, columns, 3, bins);
+    status = mf_observable_table(results, "force_covariance.tsv", columns, 3, bins);
 done:
     mf_memory_free(values);
     return status;

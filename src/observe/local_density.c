@@ -92,7 +92,6 @@ static enum status write(const void *state, const struct observable_results *res
     enum status status = STATUS_OK;
     const struct state *s = state;
     double *values = NULL;
-    char path[OUTPUT_PATH_SIZE];
     size_t rows = s->count + 1;
     NEW_ARRAY(values, 4 * rows);
     double *number = values, *density = number + rows, *packing = density + rows,
@@ -109,9 +108,8 @@ static enum status write(const void *state, const struct observable_results *res
                                           {"density[1/lambda^d]", density, "%.6g"},
                                           {"share[1]", share, "%.6g"},
                                           {"packing[1]", packing, "%.6g"}};
-    mf_observable_file(results, "local_density.tsv", path);
-    CHECK(mf_data_table_write_in(path, results->units, NULL, columns,
-                                 s->settings.diameter > 0 ? 4 : 3, rows));
+    CHECK(mf_observable_table(results, "local_density.tsv", columns,
+                              s->settings.diameter > 0 ? 4 : 3, rows));
 done:
     mf_memory_free(values);
     return status;

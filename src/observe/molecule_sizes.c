@@ -226,7 +226,7 @@ static enum status write_sizes(const struct state *s, const struct observable_re
     enum status status = STATUS_OK;
     const struct topology *topology = &s->molecules->topology;
     struct data_column columns[MAX_COLUMNS];
-    char names[MAX_COLUMNS][HEAD_SIZE], path[OUTPUT_PATH_SIZE];
+    char names[MAX_COLUMNS][HEAD_SIZE];
     double *time = NULL;
     size_t n = 0;
     NEW_ARRAY(time, s->blocks.taken);
@@ -240,8 +240,7 @@ static enum status write_sizes(const struct state *s, const struct observable_re
             columns[n] = (struct data_column){names[n], series_of(s, k, which), "%.8g"};
             n++;
         }
-    mf_observable_file(results, "molecule_sizes.tsv", path);
-    CHECK(mf_data_table_write_in(path, results->units, NULL, columns, n, s->blocks.taken));
+    CHECK(mf_observable_table(results, "molecule_sizes.tsv", columns, n, s->blocks.taken));
 done:
     mf_memory_free(time);
     return status;
@@ -319,7 +318,7 @@ static enum status write_correlation(const struct state *s,
     const struct topology *topology = &s->molecules->topology;
     const size_t row = s->lags + 1, rows = row < s->blocks.taken ? row : s->blocks.taken;
     struct data_column columns[MAX_COLUMNS];
-    char names[MAX_COLUMNS][HEAD_SIZE], path[OUTPUT_PATH_SIZE];
+    char names[MAX_COLUMNS][HEAD_SIZE];
     double *values = NULL;
     size_t n = 0;
     NEW_ARRAY(values, (1 + 2 * (size_t)topology->kinds) * row);
@@ -337,8 +336,7 @@ static enum status write_correlation(const struct state *s,
             n++;
         }
     }
-    mf_observable_file(results, "end_to_end.tsv", path);
-    CHECK(mf_data_table_write_in(path, results->units, NULL, columns, n, rows));
+    CHECK(mf_observable_table(results, "end_to_end.tsv", columns, n, rows));
 done:
     mf_memory_free(values);
     return status;
@@ -352,14 +350,10 @@ static enum status write(const void *state, const struct observable_results *res
 }
 
 static double mean_of(const struct state *s, int k, int which, double *error) {
-    const double *own = series_of(s, k, which);
-    double sum = 0;
-    for (size_t n = 0; n < s->blocks.taken; n++)
-        sum += own[n];
     const double of_parts = error_of_parts(s, k, (size_t)which, (double)s->blocks.taken, 0);
-    *error = mf_statistics_correlated_error(own, s->blocks.taken, 1);
+    const double mean = mf_sample_series_mean(&s->series, (size_t)(NUMBERS * k + which), error);
     mf_statistics_take_larger(error, &of_parts, 1);
-    return sum / (double)s->blocks.taken;
+    return mean;
 }
 
 static void write_summary(const void *state, const struct observable_results *results,
@@ -370,11 +364,9 @@ static void write_summary(const void *state, const struct observable_results *re
     for (int k = 0; k < s->molecules->topology.kinds; k++) {
         double error, mean = mean_of(s, k, GYRATION, &error);
         mf_json_begin(writer, s->molecules->topology.kind[k].name);
-        mf_json_write_quantity(writer, "gyration_squared", "lambda^2", mean);
-        mf_json_write_quantity(writer, "gyration_squared_error", "lambda^2", error);
+        mf_json_put_measured(writer, "gyration_squared", "lambda^2", mean, error);
         mean = mean_of(s, k, END, &error);
-        mf_json_write_quantity(writer, "end_to_end_squared", "lambda^2", mean);
-        mf_json_write_quantity(writer, "end_to_end_squared_error", "lambda^2", error);
+        mf_json_put_measured(writer, "end_to_end_squared", "lambda^2", mean, error);
         mf_json_end(writer);
     }
     mf_json_end(writer);
@@ -385,13 +377,12 @@ static void print(const void *state, const struct observable_results *results, c
                   size_t size) {
     const struct state *s = state;
     const double factor = mf_units_factor(results->units, "lambda^2");
-    char end[NUMBER_TEXT_SIZE], gyration[NUMBER_TEXT_SIZE], unit[UNITS_NAME_SIZE];
+    char end[NUMBER_TEXT_SIZE], gyration[UNITS_MEASURED_SIZE];
     double error, mean = mean_of(s, 0, END, &error);
     mf_number_text(factor * mean, factor * error, end);
     mean = mean_of(s, 0, GYRATION, &error);
-    mf_number_text(factor * mean, factor * error, gyration);
-    snprintf(line, size, "%s: R_e^2 %s, R_g^2 %s%s", s->molecules->topology.kind[0].name, end,
-             gyration, mf_units_suffix(results->units, "lambda^2", unit));
+    snprintf(line, size, "%s: R_e^2 %s, R_g^2 %s", s->molecules->topology.kind[0].name, end,
+             mf_units_measured(results->units, "lambda^2", mean, error, gyration));
 }
 
 /// Nanoseconds of a bead in a molecule and sample, and of a molecule and lag.

@@ -59,8 +59,7 @@ static void write_infinite(const struct motion_summary *s, const struct observab
     double diffusion = s->msd, error = s->msd_error;
     if (!mf_shear_viscosity_correct(results, &diffusion, &error))
         return;
-    mf_json_write_quantity(writer, "diffusion_infinite", "lambda^2/tau", diffusion);
-    mf_json_write_quantity(writer, "diffusion_infinite_error", "lambda^2/tau", error);
+    mf_json_put_measured(writer, "diffusion_infinite", "lambda^2/tau", diffusion, error);
 }
 
 /// The object "motion": diffusion coefficients with errors, in cm²/s too when the units are known,
@@ -73,8 +72,7 @@ static void write_summary(const void *state, const struct observable_results *re
     mf_statistics_mark_unknown_errors(&s.msd_error, 1);
     if (mf_units_add_to_message(units, mf_motion_assess(&s)) != STATUS_OK)
         mf_json_write_text(writer, "warning", mf_status_message());
-    mf_json_write_quantity(writer, "diffusion_msd", "lambda^2/tau", s.msd);
-    mf_json_write_quantity(writer, "diffusion_msd_error", "lambda^2/tau", s.msd_error);
+    mf_json_put_measured(writer, "diffusion_msd", "lambda^2/tau", s.msd, s.msd_error);
     write_infinite(&s, results, writer);
     mf_json_write_quantity(writer, "diffusion_green_kubo", "lambda^2/tau", s.green_kubo);
     const double error = mf_motion_green_kubo_uncertainty(&s);
@@ -105,19 +103,17 @@ static void write_summary(const void *state, const struct observable_results *re
 static void print(const void *state, const struct observable_results *results, char *line,
                   size_t size) {
     const struct motion *motion = state;
-    char msd[NUMBER_TEXT_SIZE], green_kubo[NUMBER_TEXT_SIZE];
+    char msd[UNITS_MEASURED_SIZE], green_kubo[NUMBER_TEXT_SIZE], time_unit[UNITS_NAME_SIZE];
     const struct motion_summary s = mf_motion_result(motion, NULL);
     const struct units *units = results->units;
     const double factor = mf_units_factor(units, "lambda^2/tau");
     const double time = mf_units_factor(units, "tau");
-    char unit[UNITS_NAME_SIZE], time_unit[UNITS_NAME_SIZE];
-    mf_number_text(factor * s.msd, factor * s.msd_error, msd);
     mf_number_text(factor * s.green_kubo, factor * mf_motion_green_kubo_uncertainty(&s),
                    green_kubo);
-    snprintf(line, size, "D = %s%s by the MSD from %.4g to %.4g %s%s%s%s", msd,
-             mf_units_suffix(units, "lambda^2/tau", unit), time * s.fit_begin, time * s.fit_end,
-             mf_units_name(units, "tau", time_unit), motion->has_velocities ? ", " : "",
-             motion->has_velocities ? green_kubo : "",
+    snprintf(line, size, "D = %s by the MSD from %.4g to %.4g %s%s%s%s",
+             mf_units_measured(units, "lambda^2/tau", s.msd, s.msd_error, msd), time * s.fit_begin,
+             time * s.fit_end, mf_units_name(units, "tau", time_unit),
+             motion->has_velocities ? ", " : "", motion->has_velocities ? green_kubo : "",
              motion->has_velocities ? " by Green and Kubo" : "");
 }
 

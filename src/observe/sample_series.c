@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "observe/sample_series.h"
 
+#include "base/statistics.h"
+
 #include <string.h>
 
 enum { FIRST_ROOM = 256 };
@@ -39,6 +41,15 @@ enum status mf_sample_series_add(struct sample_series *series, const double *num
         series->values[c * series->capacity + series->count] = numbers[c];
     series->count++;
     return STATUS_OK;
+}
+
+double mf_sample_series_mean(const struct sample_series *series, size_t column, double *error) {
+    const double *values = sample_series_column(series, column);
+    double sum = 0;
+    for (size_t k = 0; k < series->count; k++)
+        sum += values[k];
+    *error = mf_statistics_correlated_error(values, series->count, 1);
+    return sum / (double)series->count;
 }
 
 size_t mf_sample_series_spans(struct sample_series *series, struct memory_span *spans) {

@@ -292,7 +292,6 @@ static enum status write(const void *state, const struct observable_results *res
     const size_t rows = (size_t)v->settings.lags + 1;
     const double interval = (double)v->settings.every * v->setup.time_step;
     double *values = NULL;
-    char path[OUTPUT_PATH_SIZE];
     if (v->driven)
         return STATUS_OK;
     NEW_ARRAY(values, 6 * rows);
@@ -317,8 +316,7 @@ static enum status write(const void *state, const struct observable_results *res
         {"lag[tau]", lag, NULL},
         {"stress_correlation[k_B.T_0/lambda^3]", correlation, "%.8g"},
         {"stress_correlation_error[k_B.T_0/lambda^3]", correlation_error, "%.3g"}};
-    mf_observable_file(results, "shear_viscosity.tsv", path);
-    status = mf_data_table_write_in(path, results->units, NULL, columns, 6, rows);
+    status = mf_observable_table(results, "shear_viscosity.tsv", columns, 6, rows);
 done:
     mf_memory_free(values);
     return status;
@@ -347,8 +345,7 @@ static void write_summary(const void *state, const struct observable_results *re
     }
     if (s.driven) {
         mf_json_write_quantity(writer, "wave_number", "1/lambda", s.wave_number);
-        mf_json_write_quantity(writer, "velocity", "lambda/tau", s.velocity);
-        mf_json_write_quantity(writer, "velocity_error", "lambda/tau", s.velocity_error);
+        mf_json_put_measured(writer, "velocity", "lambda/tau", s.velocity, s.velocity_error);
         mf_json_write_quantity(writer, "temperature", "T_0", s.temperature);
         mf_json_write_quantity(writer, "settling_time", "tau", s.settling);
     } else {

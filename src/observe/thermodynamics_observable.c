@@ -86,30 +86,22 @@ static enum status assess(const void *state, const struct simulation_setup *setu
                                 t->series.count);
 }
 
-/// One sample tells no error: null.
-static void write_error(struct json_writer *writer, const char *name, const char *unit,
-                        const struct thermodynamics_summary *summary, double error) {
-    mf_json_write_quantity(writer, name, unit, summary->blocks > 1 ? error : NAN);
-}
-
 /// Means with errors, and the object "physical" when the units are known.
 static void write_summary(const void *state, const struct observable_results *results,
                           struct json_writer *writer) {
     const struct thermodynamics_summary s = mf_thermodynamics_result(state, 1);
+    const double known = s.blocks > 1 ? 1 : NAN; // one sample tells no error
     if (mf_units_add_to_message(results->units, assess(state, results->setup)) != STATUS_OK)
         mf_json_write_text(writer, "warning", mf_status_message());
-    mf_json_write_quantity(writer, "temperature", "T_0", s.temperature);
-    write_error(writer, "temperature_error", "T_0", &s, s.temperature_error);
-    if (isfinite(s.temperature_configurational)) {
-        mf_json_write_quantity(writer, "temperature_configurational", "T_0",
-                               s.temperature_configurational);
-        write_error(writer, "temperature_configurational_error", "T_0", &s,
-                    s.temperature_configurational_error);
-    }
-    mf_json_write_quantity(writer, "potential_energy", "k_B T_0", s.potential_energy);
-    write_error(writer, "potential_energy_error", "k_B T_0", &s, s.potential_energy_error);
-    mf_json_write_quantity(writer, "pressure", "k_B T_0/lambda^d", s.pressure);
-    write_error(writer, "pressure_error", "k_B T_0/lambda^d", &s, s.pressure_error);
+    mf_json_put_measured(writer, "temperature", "T_0", s.temperature, known * s.temperature_error);
+    if (isfinite(s.temperature_configurational))
+        mf_json_put_measured(writer, "temperature_configurational", "T_0",
+                             s.temperature_configurational,
+                             known * s.temperature_configurational_error);
+    mf_json_put_measured(writer, "potential_energy", "k_B T_0", s.potential_energy,
+                         known * s.potential_energy_error);
+    mf_json_put_measured(writer, "pressure", "k_B T_0/lambda^d", s.pressure,
+                         known * s.pressure_error);
     if (!simulation_holds_temperature(results->setup) &&
         !results->setup->integrator->solvent_particles)
         mf_json_write_number(writer, "energy_drift", mf_thermodynamics_energy_drift(state));
