@@ -60,12 +60,11 @@ enum status mf_reference_configurational(const struct table *potential,
                                          const struct particles *particles,
                                          const struct neighbours *neighbours, double *const *beside,
                                          double *squares, double *laplacian) {
-    enum status status = STATUS_OK;
     const int dimensions = particles->box.dimensions;
-    double *force = NULL;
+    OWNED double *force = NULL;
     double density[COMPOSITION_MAX_PAIRS] = {0}; // of each pair type
     *squares = *laplacian = 0;
-    NEW_ARRAY(force, 3 * particles->count);
+    TRY_ARRAY(force, 3 * particles->count);
     for (size_t i = 0; i < particles->count; i++)
         for (size_t k = neighbours->start[i]; k < neighbours->stop[i]; k++) {
             const size_t j = (size_t)neighbours->list[k];
@@ -94,7 +93,5 @@ enum status mf_reference_configurational(const struct table *potential,
     for (int d = 0; d < dimensions && beside; d++)
         for (size_t k = 0; k < particles->count; k++)
             *squares += force[3 * k + (size_t)d] * beside[d][k];
-done:
-    mf_memory_free(force);
-    return status;
+    return STATUS_OK;
 }

@@ -36,7 +36,6 @@ static void clear(void *state) {
 
 static enum status begin(void *state, const void *settings, const struct simulation *simulation,
                          const struct measure_plan *plan) {
-    enum status status = STATUS_OK;
     struct state *s = state;
     (void)plan;
     *s = (struct state){.settings = *(const struct settings *)settings,
@@ -52,11 +51,10 @@ static enum status begin(void *state, const void *settings, const struct simulat
         return mf_status_fail(STATUS_BAD_INPUT,
                               "clusters: pairs that molecules exclude would join none; "
                               "\"exclude\": 0 leaves none out");
-    NEW_ARRAY(s->root, s->count);
-    NEW_ARRAY(s->size, s->count);
-    NEW_ARRAY(s->members, s->count + 1);
-done:
-    return status;
+    TRY_ARRAY(s->root, s->count);
+    TRY_ARRAY(s->size, s->count);
+    TRY_ARRAY(s->members, s->count + 1);
+    return STATUS_OK;
 }
 
 static uint32_t find_root(uint32_t *root, uint32_t k) {
@@ -113,11 +111,10 @@ static enum status reserve(void *state) {
 /// clusters.tsv: sizes that were seen, the share of particles in clusters of each, and how many
 /// clusters there were in a sample.
 static enum status write(const void *state, const struct observable_results *results) {
-    enum status status = STATUS_OK;
     const struct state *s = state;
-    double *values = NULL;
+    OWNED double *values = NULL;
     size_t rows = 0;
-    NEW_ARRAY(values, 3 * (s->count + 1));
+    TRY_ARRAY(values, 3 * (s->count + 1));
     double *size = values, *share = size + s->count + 1, *number = share + s->count + 1;
     for (size_t k = 1; k <= s->count; k++) {
         if (s->members[k] == 0)
@@ -128,10 +125,7 @@ static enum status write(const void *state, const struct observable_results *res
     }
     const struct data_column columns[] = {
         {"size[1]", size, "%.0f"}, {"share[1]", share, "%.6g"}, {"clusters[1]", number, "%.6g"}};
-    CHECK(mf_observable_table(results, "clusters.tsv", columns, 3, rows));
-done:
-    mf_memory_free(values);
-    return status;
+    return mf_observable_table(results, "clusters.tsv", columns, 3, rows);
 }
 
 static void write_summary(const void *state, const struct observable_results *results,

@@ -104,10 +104,9 @@ static double mean_speed(const struct hard_gas *gas, const double drift[3]) {
 
 static enum status begin(void *state, const void *settings, const struct simulation *simulation,
                          const struct measure_plan *plan) {
-    enum status status = STATUS_OK;
     struct collisions *c = state;
     const struct event_driven *engine = mf_event_driven_state(simulation);
-    double *radius = NULL, *mass = NULL;
+    OWNED double *radius = NULL, *mass = NULL;
     if (engine == NULL)
         return mf_status_fail(STATUS_BAD_INPUT,
                               "collisions: only the integrator \"event-driven\" has any");
@@ -119,20 +118,17 @@ static enum status begin(void *state, const void *settings, const struct simulat
     c->series.columns = QUANTITIES;
     c->walls = gas->walls != 0;
     c->particles = (size_t)gas->count;
-    NEW_ARRAY(c->speeds, (size_t)c->settings.bins + 1);
-    CHECK(mf_maxwell_init(&c->maxwell, c->planned));
-    NEW_ARRAY(radius, c->particles);
-    NEW_ARRAY(mass, c->particles);
+    TRY_ARRAY(c->speeds, (size_t)c->settings.bins + 1);
+    TRY(mf_maxwell_init(&c->maxwell, c->planned));
+    TRY_ARRAY(radius, c->particles);
+    TRY_ARRAY(mass, c->particles);
     for (size_t k = 0; k < c->particles; k++) {
         radius[k] = gas->body[k].radius;
         mass[k] = gas->label[k].mass;
     }
     c->theory = mf_hard_theory(gas->dimensions, mf_box_volume(&simulation->setup.box),
                                temperature_of(gas), radius, mass, c->particles);
-done:
-    mf_memory_free(radius);
-    mf_memory_free(mass);
-    return status;
+    return STATUS_OK;
 }
 
 static void clear(void *state) {
@@ -318,10 +314,9 @@ static void print(const void *state, const struct observable_results *results, c
 /// collisions.tsv: a row for each sample.
 static enum status write_series(const struct collisions *c,
                                 const struct observable_results *results) {
-    enum status status = STATUS_OK;
-    double *step = NULL, *time = NULL;
-    NEW_ARRAY(step, c->series.count);
-    NEW_ARRAY(time, c->series.count);
+    OWNED double *step = NULL, *time = NULL;
+    TRY_ARRAY(step, c->series.count);
+    TRY_ARRAY(time, c->series.count);
     for (size_t k = 0; k < c->series.count; k++) {
         step[k] = (double)(c->first + (int64_t)(k + 1) * c->every);
         time[k] = step[k] * results->setup->time_step;
@@ -333,27 +328,22 @@ static enum status write_series(const struct collisions *c,
         {"collision_rate[1/tau]", series(c, RATE), "%.8g"},
         {"mean_speed[lambda/tau]", series(c, SPEED), "%.8g"},
         {"compressibility_factor_walls[1]", series(c, WALL_FACTOR), "%.8g"}};
-    CHECK(
-        mf_observable_table(results, "collisions.tsv", columns, c->walls ? 6 : 5, c->series.count));
-done:
-    mf_memory_free(step);
-    mf_memory_free(time);
-    return status;
+    return mf_observable_table(results, "collisions.tsv", columns, c->walls ? 6 : 5,
+                               c->series.count);
 }
 
 /// speeds.tsv: the middle of a bin, the density of speeds there with the error of as many counts as
 /// are independent, Maxwell's mean density in the bin.
 static enum status write_speeds(const struct collisions *c,
                                 const struct observable_results *results) {
-    enum status status = STATUS_OK;
     const size_t bins = (size_t)c->settings.bins;
     const int dimensions = results->setup->box.dimensions;
     const double width = speed_maximum / (double)bins;
     const double all = (double)c->series.count * (double)c->particles * width;
     const struct maxwell_summary tested = mf_maxwell_result(&c->maxwell);
     const double each = sqrt(tested.numbers / tested.independent);
-    double *values = NULL;
-    NEW_ARRAY(values, 4 * bins);
+    OWNED double *values = NULL;
+    TRY_ARRAY(values, 4 * bins);
     double *speed = values, *density = speed + bins, *error = density + bins,
            *theory = error + bins;
     for (size_t k = 0; k < bins; k++) {
@@ -368,10 +358,7 @@ static enum status write_speeds(const struct collisions *c,
                                           {"density[1]", density, "%.8g"},
                                           {"density_error[1]", error, "%.3g"},
                                           {"maxwell[1]", theory, "%.8g"}};
-    CHECK(mf_observable_table(results, "speeds.tsv", columns, 4, bins));
-done:
-    mf_memory_free(values);
-    return status;
+    return mf_observable_table(results, "speeds.tsv", columns, 4, bins);
 }
 
 /// timing.tsv: of this process alone, after a restart.

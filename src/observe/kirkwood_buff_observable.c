@@ -101,11 +101,10 @@ static void find(const struct state *s, size_t pair, double *value, double *erro
 
 static enum status result(const void *const *states, size_t count,
                           const struct observable_values *values) {
-    enum status status = STATUS_OK;
-    double *found = NULL;
-    struct pooled_curve *replicas = NULL;
-    NEW_ARRAY(found, 2 * count * values->count);
-    NEW_ARRAY(replicas, count);
+    OWNED double *found = NULL;
+    OWNED struct pooled_curve *replicas = NULL;
+    TRY_ARRAY(found, 2 * count * values->count);
+    TRY_ARRAY(replicas, count);
     for (size_t k = 0; k < count; k++) {
         const struct state *s = states[k];
         double *value = found + 2 * k * values->count, *error = value + values->count;
@@ -115,10 +114,7 @@ static enum status result(const void *const *states, size_t count,
             (struct pooled_curve){value, error, (double)mf_sample_blocks_whole(&s->blocks)};
     }
     mf_pooled_join(values, replicas, count);
-done:
-    mf_memory_free(found);
-    mf_memory_free(replicas);
-    return status;
+    return STATUS_OK;
 }
 
 /// A number that is known.

@@ -112,16 +112,15 @@ enum { MAX_COLUMNS = 1 + 2 * TOPOLOGY_MAX_KINDS, HEAD_SIZE = TOPOLOGY_NAME_SIZE 
 
 /// molecule_motion.tsv: time, MSD and error of each kind.
 static enum status write(const void *state, const struct observable_results *results) {
-    enum status status = STATUS_OK;
     const struct state *s = state;
     const struct topology *topology = &s->molecules->topology;
     const struct motion *first = &s->motion[0];
     const size_t rows = (size_t)first->plan.lags + 1, kinds = (size_t)topology->kinds;
     struct data_column columns[MAX_COLUMNS];
     char names[MAX_COLUMNS][HEAD_SIZE];
-    double *values = NULL;
+    OWNED double *values = NULL;
     size_t n = 0;
-    NEW_ARRAY(values, (1 + 4 * kinds) * rows);
+    TRY_ARRAY(values, (1 + 4 * kinds) * rows);
     for (size_t k = 0; k < rows; k++)
         values[k] = (double)k * (double)first->plan.every * first->time_step;
     columns[n++] = (struct data_column){"time[tau]", values, NULL};
@@ -138,10 +137,7 @@ static enum status write(const void *state, const struct observable_results *res
             n++;
         }
     }
-    CHECK(mf_observable_table(results, "molecule_motion.tsv", columns, n, rows));
-done:
-    mf_memory_free(values);
-    return status;
+    return mf_observable_table(results, "molecule_motion.tsv", columns, n, rows);
 }
 
 static void write_summary(const void *state, const struct observable_results *results,

@@ -74,7 +74,6 @@ static double find_gyration(const struct state *s, const struct particles *parti
 
 static enum status begin(void *state, const void *settings, const struct simulation *simulation,
                          const struct measure_plan *plan) {
-    enum status status = STATUS_OK;
     struct state *s = state;
     const struct simulation_setup *setup = &simulation->setup;
     const struct molecules *molecules = mf_molecules_find(setup->interaction, setup->interactions);
@@ -91,14 +90,12 @@ static enum status begin(void *state, const void *settings, const struct simulat
                         .time_step = sweeps ? 1 : setup->time_step,
                         .clock = sweeps ? "sweeps[1]" : "time[tau]",
                         .series.columns = NUMBERS * kinds};
-    CHECK(mf_sample_blocks_init(&s->blocks, planned));
-    NEW_ARRAY(s->ends, 3 * (s->lags + 1) * (size_t)topology->molecules);
-    NEW_ARRAY(s->products, s->blocks.count * kinds * (s->lags + 1));
-    NEW_ARRAY(s->origins, s->blocks.count * (s->lags + 1));
-    NEW_ARRAY(s->of_part, kinds * MAX_PARTS * (NUMBERS + s->lags + 1));
-    CHECK(mf_whole_molecules_init(&s->whole, topology));
-done:
-    return status;
+    TRY(mf_sample_blocks_init(&s->blocks, planned));
+    TRY_ARRAY(s->ends, 3 * (s->lags + 1) * (size_t)topology->molecules);
+    TRY_ARRAY(s->products, s->blocks.count * kinds * (s->lags + 1));
+    TRY_ARRAY(s->origins, s->blocks.count * (s->lags + 1));
+    TRY_ARRAY(s->of_part, kinds * MAX_PARTS * (NUMBERS + s->lags + 1));
+    return mf_whole_molecules_init(&s->whole, topology);
 }
 
 static void clear(void *state) {
@@ -223,13 +220,12 @@ static const double *series_of(const struct state *s, int k, int which) {
 
 /// molecule_sizes.tsv: time, and means over the molecules of each kind.
 static enum status write_sizes(const struct state *s, const struct observable_results *results) {
-    enum status status = STATUS_OK;
     const struct topology *topology = &s->molecules->topology;
     struct data_column columns[MAX_COLUMNS];
     char names[MAX_COLUMNS][HEAD_SIZE];
-    double *time = NULL;
+    OWNED double *time = NULL;
     size_t n = 0;
-    NEW_ARRAY(time, s->blocks.taken);
+    TRY_ARRAY(time, s->blocks.taken);
     for (size_t k = 0; k < s->blocks.taken; k++)
         time[k] = (s->begin + (double)((k + 1) * s->every)) * s->time_step;
     columns[n++] = (struct data_column){s->clock, time, NULL};
@@ -240,10 +236,7 @@ static enum status write_sizes(const struct state *s, const struct observable_re
             columns[n] = (struct data_column){names[n], series_of(s, k, which), "%.8g"};
             n++;
         }
-    CHECK(mf_observable_table(results, "molecule_sizes.tsv", columns, n, s->blocks.taken));
-done:
-    mf_memory_free(time);
-    return status;
+    return mf_observable_table(results, "molecule_sizes.tsv", columns, n, s->blocks.taken);
 }
 
 /// Standard error of a mean of a kind's molecules by their parts, which count as independent: of
@@ -278,12 +271,12 @@ static size_t find_products(const struct state *s, int k, size_t lag, double *pr
 /// The normalised correlation of a kind and its error by blocks; shape [2, lags + 1]. It is a ratio
 /// c of means, and its error that of the mean of R(t)·R(0) − c R(0)².
 static enum status find_correlation(const struct state *s, int k, double *values) {
-    enum status status = STATUS_OK;
     const size_t kinds = (size_t)s->molecules->topology.kinds, row = s->lags + 1;
-    double *products = NULL, *squares = NULL, *of_parts = NULL, square = NAN;
-    NEW_ARRAY(products, s->blocks.count);
-    NEW_ARRAY(squares, s->blocks.count);
-    NEW_ARRAY(of_parts, row);
+    OWNED double *products = NULL, *squares = NULL, *of_parts = NULL;
+    double square = NAN;
+    TRY_ARRAY(products, s->blocks.count);
+    TRY_ARRAY(squares, s->blocks.count);
+    TRY_ARRAY(of_parts, row);
     const size_t whole = find_products(s, k, 0, squares);
     for (size_t lag = 0; lag < row; lag++) {
         double sum = 0, origins = 0;
@@ -304,30 +297,25 @@ static enum status find_correlation(const struct state *s, int k, double *values
     }
     mf_statistics_take_larger(values + row, of_parts, row);
     mf_statistics_mark_unknown_errors(values + row, row);
-done:
-    mf_memory_free(products);
-    mf_memory_free(squares);
-    mf_memory_free(of_parts);
-    return status;
+    return STATUS_OK;
 }
 
 /// end_to_end.tsv: time, correlation and error of each kind.
 static enum status write_correlation(const struct state *s,
                                      const struct observable_results *results) {
-    enum status status = STATUS_OK;
     const struct topology *topology = &s->molecules->topology;
     const size_t row = s->lags + 1, rows = row < s->blocks.taken ? row : s->blocks.taken;
     struct data_column columns[MAX_COLUMNS];
     char names[MAX_COLUMNS][HEAD_SIZE];
-    double *values = NULL;
+    OWNED double *values = NULL;
     size_t n = 0;
-    NEW_ARRAY(values, (1 + 2 * (size_t)topology->kinds) * row);
+    TRY_ARRAY(values, (1 + 2 * (size_t)topology->kinds) * row);
     for (size_t lag = 0; lag < row; lag++)
         values[lag] = (double)(lag * s->every) * s->time_step;
     columns[n++] = (struct data_column){s->clock, values, NULL};
     for (int k = 0; k < topology->kinds; k++) {
         double *own = values + (1 + 2 * (size_t)k) * row;
-        CHECK(find_correlation(s, k, own));
+        TRY(find_correlation(s, k, own));
         for (int which = 0; which < 2; which++) {
             snprintf(names[n], HEAD_SIZE, "%s%s[1]", topology->kind[k].name,
                      which == 0 ? "" : "_error");
@@ -336,10 +324,7 @@ static enum status write_correlation(const struct state *s,
             n++;
         }
     }
-    CHECK(mf_observable_table(results, "end_to_end.tsv", columns, n, rows));
-done:
-    mf_memory_free(values);
-    return status;
+    return mf_observable_table(results, "end_to_end.tsv", columns, n, rows);
 }
 
 static enum status write(const void *state, const struct observable_results *results) {

@@ -33,13 +33,12 @@ static size_t spans(void *state, struct memory_span *spans) {
 
 /// motion.tsv: time, MSD, VACF, each with its standard error.
 static enum status write(const void *state, const struct observable_results *results) {
-    enum status status = STATUS_OK;
     const struct motion *motion = state;
     const size_t rows = (size_t)motion->plan.lags + 1;
     static const char *const beside[MOTION_COLUMNS] = {"%.10g", "%.8g", "%.3g", "%.8g", "%.3g"};
-    double *values = NULL;
+    OWNED double *values = NULL;
     char path[OUTPUT_PATH_SIZE];
-    CHECK(mf_motion_table(motion, &values));
+    TRY(mf_motion_table(motion, &values));
     const struct data_column columns[MOTION_COLUMNS] = {
         {"time[tau]", values, NULL},
         {"msd[lambda^2]", values + rows, "%.8g"},
@@ -47,10 +46,7 @@ static enum status write(const void *state, const struct observable_results *res
         {"vacf[lambda^2/tau^2]", values + 3 * rows, "%.8g"},
         {"vacf_error[lambda^2/tau^2]", values + 4 * rows, "%.3g"}};
     mf_observable_file(results, "motion.tsv", path);
-    CHECK(mf_data_table_write_beside(path, results->units, columns, beside, MOTION_COLUMNS, rows));
-done:
-    mf_memory_free(values);
-    return status;
+    return mf_data_table_write_beside(path, results->units, columns, beside, MOTION_COLUMNS, rows);
 }
 
 /// D of an infinite box, where the viscosity is known.
@@ -139,16 +135,15 @@ static void explain(const void *settings, const struct simulation_setup *setup,
 /// VACF, MSD, and D of the MSD.
 static enum status result(const void *const *states, size_t count,
                           const struct observable_values *values) {
-    enum status status = STATUS_OK;
     const size_t times = (size_t)((const struct motion *)states[0])->plan.lags + 1;
-    double *memory = NULL;
-    struct motion_summary *summary = NULL;
-    struct pooled_curve *vacf = NULL, *msd = NULL, *diffusion = NULL;
-    NEW_ARRAY(memory, 4 * times * count);
-    NEW_ARRAY(summary, count);
-    NEW_ARRAY(vacf, count);
-    NEW_ARRAY(msd, count);
-    NEW_ARRAY(diffusion, count);
+    OWNED double *memory = NULL;
+    OWNED struct motion_summary *summary = NULL;
+    OWNED struct pooled_curve *vacf = NULL, *msd = NULL, *diffusion = NULL;
+    TRY_ARRAY(memory, 4 * times * count);
+    TRY_ARRAY(summary, count);
+    TRY_ARRAY(vacf, count);
+    TRY_ARRAY(msd, count);
+    TRY_ARRAY(diffusion, count);
     for (size_t k = 0; k < count; k++) {
         double *own = memory + 4 * times * k;
         const struct motion_curves curves = {own, own + times, own + 2 * times, own + 3 * times};
@@ -161,13 +156,7 @@ static enum status result(const void *const *states, size_t count,
     mf_pooled_join(&values[0], vacf, count);
     mf_pooled_join(&values[1], msd, count);
     mf_pooled_join(&values[2], diffusion, count);
-done:
-    mf_memory_free(summary);
-    mf_memory_free(vacf);
-    mf_memory_free(msd);
-    mf_memory_free(diffusion);
-    mf_memory_free(memory);
-    return status;
+    return STATUS_OK;
 }
 
 static const struct observable_target targets[] = {

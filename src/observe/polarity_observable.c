@@ -20,20 +20,18 @@ static bool is_noninteracting(const struct simulation_setup *setup) {
 
 static enum status begin(void *state, const void *settings, const struct simulation *simulation,
                          const struct measure_plan *plan) {
-    enum status status = STATUS_OK;
     struct polarity *polarity = state;
     const int64_t steps = plan->samples * plan->every;
     if (mf_orientation_of(&simulation->particles).angle == NULL)
         return mf_status_fail(STATUS_BAD_INPUT,
                               "polarity: particles have no orientations; \"self-propulsion\" of "
                               "\"interactions\" gives them some");
-    CHECK(mf_motion_init(&polarity->motion, settings, simulation, plan->equilibration, steps));
+    TRY(mf_motion_init(&polarity->motion, settings, simulation, plan->equilibration, steps));
     polarity->motion.polar = true;
     polarity->order.columns = 1;
     polarity->noninteracting = is_noninteracting(&simulation->setup);
     polarity->free = mf_brownian_free(&simulation->setup);
-done:
-    return status;
+    return STATUS_OK;
 }
 
 static void clear(void *state) {
@@ -89,11 +87,10 @@ static double interval(const struct motion *motion) {
 /// alone if that is known.
 static enum status write_curves(const struct polarity *polarity,
                                 const struct observable_results *results) {
-    enum status status = STATUS_OK;
     const struct motion *motion = &polarity->motion;
     const size_t rows = (size_t)motion->plan.lags + 1;
-    double *values = NULL;
-    NEW_ARRAY(values, 7 * rows);
+    OWNED double *values = NULL;
+    TRY_ARRAY(values, 7 * rows);
     double *time = values + 4 * rows, *exact = time + rows, *exact_msd = exact + rows;
     const struct motion_curves curves = {values, values + rows, values + 2 * rows,
                                          values + 3 * rows};
@@ -112,28 +109,21 @@ static enum status write_curves(const struct polarity *polarity,
                                           {"msd_error[lambda^2]", curves.msd_error, "%.3g"},
                                           {"correlation_theory[1]", exact, "%.8g"},
                                           {"msd_theory[lambda^2]", exact_msd, "%.8g"}};
-    CHECK(mf_observable_table(results, "polarity.tsv", columns, polarity->noninteracting ? 7 : 5,
-                              rows));
-done:
-    mf_memory_free(values);
-    return status;
+    return mf_observable_table(results, "polarity.tsv", columns, polarity->noninteracting ? 7 : 5,
+                               rows);
 }
 
 static enum status write(const void *state, const struct observable_results *results) {
-    enum status status = STATUS_OK;
     const struct polarity *polarity = state;
     const struct motion *motion = &polarity->motion;
-    double *time = NULL;
-    NEW_ARRAY(time, motion->samples);
+    OWNED double *time = NULL;
+    TRY_ARRAY(time, motion->samples);
     for (size_t k = 0; k < motion->samples; k++)
         time[k] = (double)motion->begin * motion->time_step + (double)k * interval(motion);
     const struct data_column columns[] = {{"time[tau]", time, NULL},
                                           {"order[1]", orders_of(polarity), "%.8g"}};
-    CHECK(mf_observable_table(results, "polar_order.tsv", columns, 2, motion->samples));
-    CHECK(write_curves(polarity, results));
-done:
-    mf_memory_free(time);
-    return status;
+    TRY(mf_observable_table(results, "polar_order.tsv", columns, 2, motion->samples));
+    return write_curves(polarity, results);
 }
 
 static void write_summary(const void *state, const struct observable_results *results,
@@ -184,14 +174,13 @@ static double read_at(const struct motion *motion, const double *curve, double t
 
 static enum status result(const void *const *states, size_t count,
                           const struct observable_values *values) {
-    enum status status = STATUS_OK;
     const size_t times = (size_t)((const struct polarity *)states[0])->motion.plan.lags + 1;
-    double *curve = NULL, *read = NULL;
-    struct pooled_curve *replicas = NULL, *orders = NULL;
-    NEW_ARRAY(curve, 4 * times);
-    NEW_ARRAY(read, 2 * count * (values->count + 1));
-    NEW_ARRAY(replicas, count);
-    NEW_ARRAY(orders, count);
+    OWNED double *curve = NULL, *read = NULL;
+    OWNED struct pooled_curve *replicas = NULL, *orders = NULL;
+    TRY_ARRAY(curve, 4 * times);
+    TRY_ARRAY(read, 2 * count * (values->count + 1));
+    TRY_ARRAY(replicas, count);
+    TRY_ARRAY(orders, count);
     const struct motion_curves curves = {curve, curve + times, curve + 2 * times,
                                          curve + 3 * times};
     for (size_t k = 0; k < count; k++) {
@@ -211,12 +200,7 @@ static enum status result(const void *const *states, size_t count,
     }
     mf_pooled_join(&values[0], replicas, count);
     mf_pooled_join(&values[1], orders, count);
-done:
-    mf_memory_free(curve);
-    mf_memory_free(read);
-    mf_memory_free(replicas);
-    mf_memory_free(orders);
-    return status;
+    return STATUS_OK;
 }
 
 // Record ------------------------------------------------------------------------------------------

@@ -14,20 +14,18 @@ void mf_sample_series_clear(struct sample_series *series) {
 
 /// Twice the room, or more, so that it is made seldom.
 static enum status grow(struct sample_series *series, size_t wanted) {
-    enum status status = STATUS_OK;
     size_t capacity = series->capacity > 0 ? series->capacity : FIRST_ROOM;
     double *values = NULL;
     while (capacity < wanted)
         capacity *= 2;
-    NEW_ARRAY(values, series->columns * capacity);
+    TRY_ARRAY(values, series->columns * capacity);
     for (size_t c = 0; c < series->columns && series->capacity > 0; c++)
         memcpy(values + c * capacity, sample_series_column(series, c),
                series->capacity * sizeof *values);
     mf_memory_free(series->values);
     series->values = values;
     series->capacity = capacity;
-done:
-    return status;
+    return STATUS_OK;
 }
 
 enum status mf_sample_series_reserve(struct sample_series *series) {

@@ -33,16 +33,15 @@ static enum status reserve(void *state) {
 
 /// thermodynamics.tsv: a row for each sample.
 static enum status write(const void *state, const struct observable_results *results) {
-    enum status status = STATUS_OK;
     const struct thermodynamics *t = state;
-    double *step = NULL, *time = NULL, *configurational = NULL;
+    OWNED double *step = NULL, *time = NULL, *configurational = NULL;
     const struct simulation_setup *setup = results->setup;
     const bool sweeps = setup->integrator->samples; // in the place of times
     const double time_step = sweeps ? 1 : setup->time_step;
     char path[OUTPUT_PATH_SIZE];
-    NEW_ARRAY(step, t->series.count);
-    NEW_ARRAY(time, t->series.count);
-    NEW_ARRAY(configurational, t->series.count);
+    TRY_ARRAY(step, t->series.count);
+    TRY_ARRAY(time, t->series.count);
+    TRY_ARRAY(configurational, t->series.count);
     for (size_t k = 0; k < t->series.count; k++) {
         step[k] = (double)(results->plan->equilibration + (int64_t)(k + 1) * results->plan->every);
         time[k] = step[k] * time_step;
@@ -65,13 +64,8 @@ static enum status write(const void *state, const struct observable_results *res
     const char *const beside[COLUMNS] = {
         [TIME] = sweeps ? NULL : "%.10g", [ENERGY] = "%.8g", [PRESSURE] = in_space ? "%.8g" : NULL};
     mf_observable_file(results, "thermodynamics.tsv", path);
-    CHECK(mf_data_table_write_beside(path, results->units, columns, beside, COLUMNS,
-                                     t->series.count));
-done:
-    mf_memory_free(step);
-    mf_memory_free(time);
-    mf_memory_free(configurational);
-    return status;
+    return mf_data_table_write_beside(path, results->units, columns, beside, COLUMNS,
+                                      t->series.count);
 }
 
 /// Temperatures first: a step that is too long tells more than the drift that it makes.

@@ -54,19 +54,17 @@ enum status mf_programming_init(struct programming *programming,
                                 const struct programming_points *points,
                                 const struct programming_parameters *parameters, uint64_t seed,
                                 int threads, const atomic_bool *cancel) {
-    enum status status = STATUS_OK;
     *programming = (struct programming){.parameters = *parameters,
                                         .points = points,
                                         .seed = seed,
                                         .threads = threads,
                                         .cancel = cancel};
-    NEW_ARRAY(programming->island, (size_t)parameters->islands);
+    TRY_ARRAY(programming->island, (size_t)parameters->islands);
     for (int length = 0; length <= PROGRAMMING_MAX_NODES; length++)
         programming->best[length].error = INFINITY;
     for (int64_t k = 0; k < parameters->islands; k++)
         clear_island(&programming->island[k]);
-done:
-    return status;
+    return STATUS_OK;
 }
 
 void mf_programming_clear(struct programming *programming) {

@@ -31,22 +31,21 @@ static void curve_file(const struct unknowns *unknowns, enum unknown_kind kind, 
 static enum status write_potential(const struct fit_file *fit, const struct unknowns *unknowns,
                                    const struct fit_result *result, const struct table *table,
                                    size_t pair, const struct run_folder *folder) {
-    enum status status = STATUS_OK;
     const struct units *units = &fit->scene.units;
     const size_t points = unknowns->potential.bins + 1;
     const size_t first = mf_potential_grid_block(&unknowns->potential, pair);
     const double *r = unknowns->potential.r + first;
     const double *phi = result->curve[UNKNOWN_POTENTIAL] + first;
-    double *force = NULL, *truth = NULL;
+    OWNED double *force = NULL, *truth = NULL;
     size_t count = 0;
     char path[OUTPUT_PATH_SIZE];
-    NEW_ARRAY(force, points);
+    TRY_ARRAY(force, points);
     for (size_t k = 0; k < points; k++) {
         mf_table_evaluate_pair(table, (int)pair, r[k], NULL, &force[k], NULL);
         force[k] = -force[k];
     }
     truth = truth_at(fit, UNKNOWN_POTENTIAL, pair, r, points);
-    CHECK(truth ? STATUS_OK : STATUS_NO_MEMORY);
+    TRY(truth ? STATUS_OK : STATUS_NO_MEMORY);
     static const char *const beside[6] = {"%.10g", "%.10g"};
     struct data_column columns[6] = {
         {"r[lambda]", r, "%.17g"},
@@ -60,29 +59,23 @@ static enum status write_potential(const struct fit_file *fit, const struct unkn
     if (mf_scene_law_curve(&fit->unknown[UNKNOWN_POTENTIAL].truth, (int)pair))
         columns[count++] = (struct data_column){"truth[k_B.T_0]", truth, "%.8g"};
     curve_file(unknowns, UNKNOWN_POTENTIAL, pair, ".tsv", folder, path);
-    CHECK(mf_data_table_write_beside(path, units, columns, beside, count, points));
+    TRY(mf_data_table_write_beside(path, units, columns, beside, count, points));
     if (mf_units_known(units)) {
         const struct votca_scale scale = {units->length, mf_units_energy_kj_per_mol(units)};
         curve_file(unknowns, UNKNOWN_POTENTIAL, pair, ".pot", folder, path);
-        CHECK(mf_votca_write(path, r, phi, scale, points, unknowns->potential.core[pair]));
+        TRY(mf_votca_write(path, r, phi, scale, points, unknowns->potential.core[pair]));
     }
-done:
-    mf_memory_free(force);
-    mf_memory_free(truth);
-    return status;
+    return STATUS_OK;
 }
 
 static enum status write_potentials(const struct fit_file *fit, const struct unknowns *unknowns,
                                     const struct fit_result *result,
                                     const struct run_folder *folder) {
-    enum status status = STATUS_OK;
-    struct table table = {0};
-    CHECK(mf_potential_grid_table(&unknowns->potential, result->curve[UNKNOWN_POTENTIAL], &table));
+    CLEARED_BY(mf_table_clear) struct table table = {0};
+    TRY(mf_potential_grid_table(&unknowns->potential, result->curve[UNKNOWN_POTENTIAL], &table));
     for (size_t pair = 0; pair < unknowns->potential.pairs; pair++)
-        CHECK(write_potential(fit, unknowns, result, &table, pair, folder));
-done:
-    mf_table_clear(&table);
-    return status;
+        TRY(write_potential(fit, unknowns, result, &table, pair, folder));
+    return STATUS_OK;
 }
 
 static enum status write_omega(const struct fit_file *fit, const struct unknowns *unknowns,
@@ -171,17 +164,15 @@ enum { PLACES = 2, VALUES = 4, MAX_COLUMNS = PLACES + VALUES + 1 };
 /// Where the values are: columns of their own.
 static enum status find_places(const struct target_files *files, int kind,
                                const struct target_table *table, double *place[PLACES]) {
-    enum status status = STATUS_OK;
     for (size_t n = 0; n < table->places; n++)
-        NEW_ARRAY(place[n], table->count);
+        TRY_ARRAY(place[n], table->count);
     for (size_t k = 0; k < table->count; k++) {
         double at[PLACES];
         mf_target_record(kind)->place(files, kind, table, k, at);
         for (size_t n = 0; n < table->places; n++)
             place[n][k] = at[n];
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /// A table of a target beside the result, each with its error, as rdf_A-B.tsv.

@@ -112,15 +112,14 @@ static double share_inside(const struct measured *measured) {
 /// Kirkwood and Buff's integral of what is of one type.
 static enum status write_kirkwood_buff(const struct measure_result *result,
                                        struct json_writer *writer) {
-    enum status status = STATUS_OK;
     const struct rdf *const rdf = &result->measured->rdf.counted;
     const struct box box = mf_measured_box(result->measured);
-    double *g = NULL, *error = NULL;
+    OWNED double *g = NULL, *error = NULL;
     if (composition_is_mixed(&rdf->composition))
         return STATUS_OK;
-    NEW_ARRAY(g, rdf->bins.count);
-    NEW_ARRAY(error, rdf->bins.count);
-    CHECK(mf_rdf_result(rdf, 1, g, error));
+    TRY_ARRAY(g, rdf->bins.count);
+    TRY_ARRAY(error, rdf->bins.count);
+    TRY(mf_rdf_result(rdf, 1, g, error));
     const double inside = mf_box_volume(&box) * share_inside(result->measured);
     const bool possible = result->measured->molecules.molecules != NULL;
     struct kirkwood_buff found = mf_kirkwood_buff_integrate(
@@ -134,10 +133,7 @@ static enum status write_kirkwood_buff(const struct measure_result *result,
     mf_json_put_measured(writer, "kirkwood_buff", "lambda^3", found.integral, found.integral_error);
     mf_json_put_measured(writer, "compressibility", "1", found.compressibility,
                          found.compressibility_error);
-done:
-    mf_memory_free(g);
-    mf_memory_free(error);
-    return status;
+    return STATUS_OK;
 }
 
 static void write_temperature(const struct measure_result *result, struct json_writer *writer) {

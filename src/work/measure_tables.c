@@ -31,23 +31,20 @@ static enum status write_curve(const struct measure_result *result, const char *
 
 /// msd.tsv and vacf.tsv: time, value, standard error.
 static enum status write_motion(const struct measure_result *result) {
-    enum status status = STATUS_OK;
     const struct measured_motion *const measured = &result->measured->motion;
     const size_t rows = (size_t)measured->motion.plan.lags + 1;
-    double *values = NULL;
-    CHECK(mf_motion_table(&measured->motion, &values));
+    OWNED double *values = NULL;
+    TRY(mf_motion_table(&measured->motion, &values));
     const struct data_column msd[] = {{"time[tau]", values, NULL},
                                       {"msd[lambda^2]", values + rows, "%.8g"},
                                       {"msd_error[lambda^2]", values + 2 * rows, "%.3g"}};
     const struct data_column vacf[] = {{"time[tau]", values, NULL},
                                        {"vacf[lambda^2/tau^2]", values + 3 * rows, "%.8g"},
                                        {"vacf_error[lambda^2/tau^2]", values + 4 * rows, "%.3g"}};
-    CHECK(write_curve(result, "msd.tsv", msd, rows));
+    TRY(write_curve(result, "msd.tsv", msd, rows));
     if (measured->has_vacf)
-        CHECK(write_curve(result, "vacf.tsv", vacf, rows));
-done:
-    mf_memory_free(values);
-    return status;
+        TRY(write_curve(result, "vacf.tsv", vacf, rows));
+    return STATUS_OK;
 }
 
 /// g(r) between molecules, and what observables have of them.
