@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Radial distribution function of the result on that of the target, and their difference.
-# Reads rdf.tsv: r, target, target_error, result, result_error, and perhaps r[nm], given[1].
+# Reads rdf.tsv: r, target, target_error, result, result_error, and perhaps given[1], r[nm].
 
 load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
 

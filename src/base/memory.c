@@ -29,6 +29,12 @@ void mf_memory_free(void *array) {
     free(array);
 }
 
+void mf_memory_release(void *pointer) {
+    void *array;
+    memcpy(&array, pointer, sizeof array);
+    mf_memory_free(array);
+}
+
 void mf_memory_keep(void) {
     enum { LARGE = 1 << 28 };
     mallopt(M_MMAP_THRESHOLD, LARGE);

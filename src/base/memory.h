@@ -43,6 +43,18 @@ void mf_memory_keep(void);
 /// Free an array of mf_memory_zeroed; NULL is allowed.
 void mf_memory_free(void *array);
 
-/// Allocate an array for `pointer`, or leave the function through CHECK's `done`.
+/// Allocate an array for `pointer`, or leave the function: by TRY's return or through CHECK's
+/// `done`.
+#define TRY_ARRAY(pointer, count)                                                                  \
+    TRY(((pointer) = mf_memory_zeroed((count), sizeof *(pointer))) ? STATUS_OK : STATUS_NO_MEMORY)
 #define NEW_ARRAY(pointer, count)                                                                  \
     CHECK(((pointer) = mf_memory_zeroed((count), sizeof *(pointer))) ? STATUS_OK : STATUS_NO_MEMORY)
+
+/// Before the declaration of a local array, which begins as NULL: it is freed where its scope ends,
+/// however the function is left.
+#define OWNED __attribute__((cleanup(mf_memory_release)))
+/// The same of a struct, which begins zeroed, by the function that clears it.
+#define CLEARED_BY(clear) __attribute__((cleanup(clear)))
+
+/// For OWNED: free the array that a pointer points to. @param[in] pointer  the address of that
+void mf_memory_release(void *pointer);

@@ -24,17 +24,15 @@ const void *mf_names_find(const void *list, const char *name) {
 }
 
 enum status mf_names_collect(const void *list, const char *before, const char ***names) {
-    enum status status = STATUS_OK;
     size_t records = 0, count = 0;
     while (record(list, records))
         records++;
-    NEW_ARRAY(*names, records + 2);
+    TRY_ARRAY(*names, records + 2);
     if (before)
         (*names)[count++] = before;
     for (size_t k = 0; k < records; k++)
         (*names)[count++] = name_of(record(list, k));
-done:
-    return status;
+    return STATUS_OK;
 }
 
 bool mf_names_is_reserved(const char *name) {

@@ -99,19 +99,17 @@ size_t mf_task_log_spans(struct task_log *log, struct memory_span *spans) {
 
 static enum status grow(struct task_log *log, uint64_t wanted) {
     enum { FIRST_ROOM = 1 << 16 };
-    enum status status = STATUS_OK;
     uint64_t capacity = log->capacity > 0 ? log->capacity : FIRST_ROOM;
     char *records = NULL;
     while (capacity < wanted)
         capacity *= 2;
-    NEW_ARRAY(records, capacity);
+    TRY_ARRAY(records, capacity);
     if (log->capacity > 0)
         memcpy(records, log->records, log->capacity);
     mf_memory_free(log->records);
     log->records = records;
     log->capacity = capacity;
-done:
-    return status;
+    return STATUS_OK;
 }
 
 enum status mf_task_log_reserve(struct task_log *log) {

@@ -101,16 +101,14 @@ static enum status read_shipped(struct run *run) {
 }
 
 static enum status read_scenes(struct run *run, const char *const *files, size_t count) {
-    enum status status = STATUS_OK;
     run->scene_count = count > 0 ? count : SHIPPED;
-    NEW_ARRAY(run->scenes, run->scene_count);
+    TRY_ARRAY(run->scenes, run->scene_count);
     if (count == 0)
-        CHECK(read_shipped(run));
+        TRY(read_shipped(run));
     for (size_t k = 0; k < count; k++)
-        CHECK(mf_bench_scene_read(&run->scenes[k], files[k], run->options->output, run->common));
-    NEW_ARRAY(run->results, run->scene_count * run->how_count);
-done:
-    return status;
+        TRY(mf_bench_scene_read(&run->scenes[k], files[k], run->options->output, run->common));
+    TRY_ARRAY(run->results, run->scene_count * run->how_count);
+    return STATUS_OK;
 }
 
 // Timing ------------------------------------------------------------------------------------------

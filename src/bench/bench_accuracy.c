@@ -146,32 +146,29 @@ static void report(void *context, uint64_t steps) {
 
 /// All points begin with the same equilibrated configuration: without ω with the same energy.
 static enum status prepare(struct run *run) {
-    enum status status = STATUS_OK;
     const struct scene *scene = &run->scene.scene;
     const size_t particles = (size_t)scene->setup.placement.count;
     const struct bench_method *method =
         mf_bench_reference_method(run->suitable, run->suitable_count);
     const struct simulation_start *start =
         scene->setup.placement.kind == PLACEMENT_FILE ? &scene->start : NULL;
-    NEW_ARRAY(run->start_values, 6 * particles);
+    TRY_ARRAY(run->start_values, 6 * particles);
     mf_progress_report(&run->progress, 0, run->steps_total, "steps", run->scene.name);
-    CHECK(mf_bench_point_prepare(&scene->setup, start, method, run->time_steps[0],
-                                 preparation_share * run->time, run->start_values));
+    TRY(mf_bench_point_prepare(&scene->setup, start, method, run->time_steps[0],
+                               preparation_share * run->time, run->start_values));
     for (size_t d = 0; d < 3; d++) {
         run->start.position[d] = run->start_values + d * particles;
         run->start.velocity[d] = run->start_values + (3 + d) * particles;
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 static enum status plan(struct run *run) {
-    enum status status = STATUS_OK;
     const struct simulation_setup *setup = &run->scene.scene.setup;
     const struct pair_law law = {.potential = setup->potential, .omega = setup->omega};
     const size_t points = run->method_count * run->step_count;
-    NEW_ARRAY(run->points, points);
-    NEW_ARRAY(run->rows, points);
+    TRY_ARRAY(run->points, points);
+    TRY_ARRAY(run->rows, points);
     run->points_common = (struct bench_common){
         .setup = setup,
         .start = &run->start,
@@ -194,8 +191,7 @@ static enum status plan(struct run *run) {
     }
     for (size_t m = 0; m < run->method_count; m++)
         run->unstable_from[m] = INFINITY;
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /// The longest first, then time step by time step: what is compared runs at about the same time.

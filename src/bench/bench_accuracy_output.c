@@ -211,10 +211,8 @@ static void write_limit(struct json_writer *writer, const char *role,
     mf_json_begin(writer, NULL);
     mf_json_write_text(writer, "role", role);
     mf_json_write_text(writer, "integrator", limit->method);
-    mf_json_write_number(writer, "time_step", limit->time_step);
-    mf_json_write_number(writer, "time_step_error", limit->time_step_error);
-    mf_json_write_number(writer, "cpu", limit->cpu);
-    mf_json_write_number(writer, "cpu_error", limit->cpu_error);
+    mf_json_put_measured(writer, "time_step", "1", limit->time_step, limit->time_step_error);
+    mf_json_put_measured(writer, "cpu", "1", limit->cpu, limit->cpu_error);
     mf_json_end(writer);
 }
 

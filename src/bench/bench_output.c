@@ -122,12 +122,11 @@ static void append_number(char *const *lines, const struct bench_result *results
 enum status mf_bench_output_table(FILE *stream, const struct bench_result *results, size_t count,
                                   bool lammps) {
     enum { LINE_SIZE = (COLUMNS + 2) * (CELL_SIZE + 2) };
-    enum status status = STATUS_OK;
     const size_t rows = count + 2;
-    char(*cells)[CELL_SIZE] = NULL, *text = NULL, **lines = NULL;
-    NEW_ARRAY(cells, rows);
-    NEW_ARRAY(text, rows * LINE_SIZE);
-    NEW_ARRAY(lines, rows);
+    OWNED char(*cells)[CELL_SIZE] = NULL, *text = NULL, **lines = NULL;
+    TRY_ARRAY(cells, rows);
+    TRY_ARRAY(text, rows * LINE_SIZE);
+    TRY_ARRAY(lines, rows);
     for (size_t row = 0; row < rows; row++)
         lines[row] = text + row * LINE_SIZE;
     append_text(lines, results, count, "isa", MEMBER(isa), cells);
@@ -142,11 +141,7 @@ enum status mf_bench_output_table(FILE *stream, const struct bench_result *resul
             lammps ? results->lammps_style : "");
     for (size_t row = 0; row < rows; row++)
         fprintf(stream, "%s\n", lines[row]);
-done:
-    mf_memory_free(cells);
-    mf_memory_free(text);
-    mf_memory_free(lines);
-    return status;
+    return STATUS_OK;
 }
 
 // For programs ------------------------------------------------------------------------------------

@@ -248,14 +248,13 @@ static void join_bins(const struct bench_bins *bins, const struct rdf *rdf, cons
 
 static enum status find_results(const struct bench_common *common,
                                 const struct bench_measured *measured, struct bench_point *point) {
-    enum status status = STATUS_OK;
     const struct bench_bins *bins = &common->bins;
     const struct rdf *rdf = &measured->rdf.counted;
     const struct thermodynamics_summary s = mf_thermodynamics_result(&measured->thermodynamics, 1);
-    double *g = NULL, *error = NULL;
-    NEW_ARRAY(g, bins->fine.count);
-    NEW_ARRAY(error, bins->fine.count);
-    CHECK(mf_rdf_result(rdf, 1, g, error));
+    OWNED double *g = NULL, *error = NULL;
+    TRY_ARRAY(g, bins->fine.count);
+    TRY_ARRAY(error, bins->fine.count);
+    TRY(mf_rdf_result(rdf, 1, g, error));
     join_bins(bins, rdf, g, error, point->g);
     struct bench_number *quantity = point->quantity;
     quantity[BENCH_TEMPERATURE] = (struct bench_number){s.temperature, s.temperature_error};
@@ -269,10 +268,7 @@ static enum status find_results(const struct bench_common *common,
         quantity[BENCH_DIFFUSION] = (struct bench_number){motion.msd, motion.msd_error};
     }
     find_total(&measured->thermodynamics, &rdf->box, (double)rdf->particle_count, point);
-done:
-    mf_memory_free(g);
-    mf_memory_free(error);
-    return status;
+    return STATUS_OK;
 }
 
 static struct simulation_setup setup_of(const struct simulation_setup *scene,
@@ -337,12 +333,11 @@ enum status mf_bench_point_prepare(const struct simulation_setup *setup,
                                    const struct simulation_start *start,
                                    const struct bench_method *method, double time_step, double time,
                                    double *values) {
-    enum status status = STATUS_OK;
-    struct simulation simulation = {0};
+    CLEARED_BY(mf_simulation_clear) struct simulation simulation = {0};
     const struct simulation_setup changed = setup_of(setup, NULL, method, time_step);
-    CHECK(mf_simulation_init(&simulation, &changed, start));
+    TRY(mf_simulation_init(&simulation, &changed, start));
     for (double done = 0; done < time; done += SCALE_EVERY * time_step) {
-        CHECK(mf_simulation_run(&simulation, SCALE_EVERY));
+        TRY(mf_simulation_run(&simulation, SCALE_EVERY));
         if (setup->omega == NULL)
             scale_velocities(&simulation);
     }
@@ -353,7 +348,5 @@ enum status mf_bench_point_prepare(const struct simulation_setup *setup,
         memcpy(values + (size_t)(3 + d) * particles->count, particles->velocity[d],
                particles->count * sizeof *values);
     }
-done:
-    mf_simulation_clear(&simulation);
-    return status;
+    return STATUS_OK;
 }

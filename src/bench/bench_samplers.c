@@ -59,23 +59,22 @@ static void print_moves(const struct sampler *sampler) {
 /// Time one sampler, and print its row.
 static enum status time_sampler(const struct sampler_system *system, enum sampler_kind kind,
                                 int threads) {
-    enum status status = STATUS_OK;
     const struct inverse_progress progress = {0};
     const struct inverse_listener listener = {ignore, NULL};
     const struct rdf_bins bins = {system->low, system->width, system->bins};
     struct running_mean merit = {0}, seconds = {0}, inefficiency = {0};
-    struct replicas replicas = {0};
+    CLEARED_BY(mf_replicas_clear) struct replicas replicas = {0};
     double ideal[MAX_BINS];
     for (int pair = 0; pair < mf_composition_pairs(system->composition); pair++)
         for (size_t a = 0; a < BINS; a++)
             ideal[(size_t)pair * BINS + a] =
                 mf_rdf_ideal_pairs_of(&bins, a, system->box, system->composition, pair);
-    CHECK(mf_replicas_init(&replicas, REPLICAS, kind, system));
-    CHECK(mf_replicas_run(&replicas, &warm_up, threads, &progress, &listener));
+    TRY(mf_replicas_init(&replicas, REPLICAS, kind, system));
+    TRY(mf_replicas_run(&replicas, &warm_up, threads, &progress, &listener));
     for (int repeat = 0; repeat < REPEATS; repeat++) {
         double correlated;
         const double begin = processor_seconds();
-        CHECK(mf_replicas_run(&replicas, &timed, threads, &progress, &listener));
+        TRY(mf_replicas_run(&replicas, &timed, threads, &progress, &listener));
         const double used = processor_seconds() - begin;
         mf_statistics_add(&merit, error_of_g(&replicas, ideal, &correlated) * sqrt(used));
         mf_statistics_add(&seconds, used / replicas.counts.count);
@@ -85,9 +84,7 @@ static enum status time_sampler(const struct sampler_system *system, enum sample
            (long long)mf_composition_particles(system->composition), mf_sampler_kinds[kind],
            1e3 * seconds.mean, inefficiency.mean, merit.mean, mf_statistics_standard_error(&merit));
     print_moves(&replicas.member[0].sampler);
-done:
-    mf_replicas_clear(&replicas);
-    return status;
+    return STATUS_OK;
 }
 
 /// All samplers of a system with the scene's densities, or of the scene with its molecules.

@@ -33,21 +33,17 @@ const struct shape *mf_shape_find(const char *name) {
 
 enum status mf_shape_basis(const struct shape *shape, size_t coefficients, const double *t,
                            size_t points, double *basis) {
-    enum status status = STATUS_OK;
-    double *unit = NULL, *column = NULL;
-    NEW_ARRAY(unit, coefficients);
-    NEW_ARRAY(column, points);
+    OWNED double *unit = NULL, *column = NULL;
+    TRY_ARRAY(unit, coefficients);
+    TRY_ARRAY(column, points);
     for (size_t k = 0; k < coefficients; k++) {
         unit[k] = 1;
-        CHECK(shape->values(unit, coefficients, t, column, points));
+        TRY(shape->values(unit, coefficients, t, column, points));
         unit[k] = 0;
         for (size_t p = 0; p < points; p++)
             basis[p * coefficients + k] = column[p];
     }
-done:
-    mf_memory_free(unit);
-    mf_memory_free(column);
-    return status;
+    return STATUS_OK;
 }
 
 /// Relative to the largest singular value: rounding of a basis is 1e-16 of it, and what a curve
@@ -109,20 +105,16 @@ static enum status rows_solve(struct rows *rows) {
 
 enum status mf_shape_fit(const struct shape *shape, const double *t, const double *values,
                          const double *weights, size_t points, double *coefficients, size_t count) {
-    enum status status = STATUS_OK;
-    struct rows rows = {0};
-    double *basis = NULL;
+    CLEARED_BY(rows_clear) struct rows rows = {0};
+    OWNED double *basis = NULL;
     if (points < 1)
         return mf_status_fail(STATUS_BAD_INPUT, "a curve without points has no coefficients");
-    NEW_ARRAY(basis, points * count);
-    CHECK(mf_shape_basis(shape, count, t, points, basis));
-    CHECK(rows_init(&rows, points, count));
-    CHECK(rows_fill(&rows, basis, values, weights, points));
-    CHECK(rows_solve(&rows));
+    TRY_ARRAY(basis, points * count);
+    TRY(mf_shape_basis(shape, count, t, points, basis));
+    TRY(rows_init(&rows, points, count));
+    TRY(rows_fill(&rows, basis, values, weights, points));
+    TRY(rows_solve(&rows));
     for (size_t k = 0; k < count; k++)
         coefficients[k] = gsl_vector_get(rows.coefficients, k);
-done:
-    rows_clear(&rows);
-    mf_memory_free(basis);
-    return status;
+    return STATUS_OK;
 }

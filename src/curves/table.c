@@ -6,18 +6,16 @@
 #include <string.h>
 
 static enum status allocate(struct table *table, double cutoff, int terms, int curves) {
-    enum status status = STATUS_OK;
     *table = (struct table){.cutoff = cutoff,
                             .inverse_spacing = TABLE_INTERVALS / cutoff,
                             .terms = terms,
                             .curves = curves,
                             .cutoffs = {cutoff}};
     const size_t rows = (size_t)(TABLE_INTERVALS + 1) * (size_t)curves;
-    NEW_ARRAY(table->coefficient, rows * (size_t)terms);
-    NEW_ARRAY(table->precise, rows);
-    NEW_ARRAY(table->single, rows);
-done:
-    return status;
+    TRY_ARRAY(table->coefficient, rows * (size_t)terms);
+    TRY_ARRAY(table->precise, rows);
+    TRY_ARRAY(table->single, rows);
+    return STATUS_OK;
 }
 
 /// Rows for the kernels from the coefficients.

@@ -71,20 +71,17 @@ static enum status fill_base(const struct fit_file *fit, const struct unknowns *
 }
 
 enum status mf_fit_base_find(struct fit_file *fit) {
-    enum status status = STATUS_OK;
-    struct unknowns unknowns = {0};
+    CLEARED_BY(mf_unknowns_clear) struct unknowns unknowns = {0};
     if (fit->method->kind == INVERSE_INVERSION)
         return STATUS_OK;
-    CHECK(mf_unknowns_init(&unknowns, &fit->problem));
+    TRY(mf_unknowns_init(&unknowns, &fit->problem));
     for (int kind = 0; kind < UNKNOWNS; kind++) {
         struct fit_unknown *unknown = &fit->unknown[kind];
         if (!unknown->wanted || kind == UNKNOWN_BONDED || base_of(unknown) == BASE_NONE)
             continue;
-        NEW_ARRAY(unknown->base, mf_unknowns_points(&unknowns, kind));
-        CHECK(fill_base(fit, &unknowns, kind, unknown->base));
+        TRY_ARRAY(unknown->base, mf_unknowns_points(&unknowns, kind));
+        TRY(fill_base(fit, &unknowns, kind, unknown->base));
         fit->problem.unknown[kind].base = unknown->base;
     }
-done:
-    mf_unknowns_clear(&unknowns);
-    return status;
+    return STATUS_OK;
 }

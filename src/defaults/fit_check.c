@@ -14,12 +14,11 @@
 /// Begin one simulation, so that a box too small for the forces or particles without room are found
 /// now and not by the verification after the fit.
 static enum status begin_one(const struct fit_file *fit, const struct inverse_problem *problem) {
-    enum status status = STATUS_OK;
-    struct unknowns unknowns = {0};
-    struct unknowns_laws laws = {0};
-    struct measurement measurement = {0};
-    CHECK(mf_unknowns_init(&unknowns, problem));
-    CHECK(mf_unknowns_laws_start(&unknowns, &laws));
+    CLEARED_BY(mf_unknowns_clear) struct unknowns unknowns = {0};
+    CLEARED_BY(mf_unknowns_laws_clear) struct unknowns_laws laws = {0};
+    CLEARED_BY(mf_measurement_clear) struct measurement measurement = {0};
+    TRY(mf_unknowns_init(&unknowns, problem));
+    TRY(mf_unknowns_laws_start(&unknowns, &laws));
     const struct measurement_setup setup = {.targets = &problem->compared,
                                             .potential = laws.table[UNKNOWN_POTENTIAL],
                                             .omega = laws.table[UNKNOWN_OMEGA],
@@ -28,13 +27,8 @@ static enum status begin_one(const struct fit_file *fit, const struct inverse_pr
                                             .thermodynamics = true,
                                             .threads = 1,
                                             .seed = problem->seed};
-    CHECK(mf_units_add_to_message(&fit->scene.units,
-                                  mf_measurement_init(&measurement, &laws.problem, &setup)));
-done:
-    mf_measurement_clear(&measurement);
-    mf_unknowns_laws_clear(&laws);
-    mf_unknowns_clear(&unknowns);
-    return status;
+    return mf_units_add_to_message(&fit->scene.units,
+                                   mf_measurement_init(&measurement, &laws.problem, &setup));
 }
 
 /// The same with each number at the ends of its range.

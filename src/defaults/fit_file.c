@@ -296,19 +296,17 @@ static enum status parse_state(struct fit_file *fit, struct reading *reading) {
 
 /// The states behind the first. What they read is read by the run.
 static enum status parse_others(struct fit_file *fit, const struct reading *first) {
-    enum status status = STATUS_OK;
     if (first->states < 2)
         return STATUS_OK;
-    NEW_ARRAY(fit->other, first->states - 1);
+    TRY_ARRAY(fit->other, first->states - 1);
     while (fit->others < first->states - 1) {
         struct fit_file *other = &fit->other[fit->others++];
         struct reading reading = {first->file, first->options, fit->others, fit, 0, NULL};
-        CHECK(mf_fit_states_mark(other, parse_state(other, &reading)));
+        TRY(mf_fit_states_mark(other, parse_state(other, &reading)));
         for (size_t k = 0; k < other->inputs.count; k++)
-            CHECK(mf_input_files_add(&fit->inputs, other->inputs.file[k].name));
+            TRY(mf_input_files_add(&fit->inputs, other->inputs.file[k].name));
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 enum status mf_fit_file_parse(struct fit_file *fit, const char *file,

@@ -207,8 +207,7 @@ static const char *sought_group(const struct scene *scene, const char *path) {
 /// No key of the scene: the nearest that could be found, or why there is none.
 static enum status fault_unknown(struct json_object *numbers, const char *path,
                                  const struct entries *entries, const struct scene *scene) {
-    enum status status = STATUS_OK;
-    const char **known = NULL;
+    OWNED const char **known = NULL;
     size_t count = 0;
     char hint[1024];
     const bool in_potential =
@@ -228,15 +227,13 @@ static enum status fault_unknown(struct json_object *numbers, const char *path,
             sought_group(scene, path));
         return STATUS_OK;
     }
-    NEW_ARRAY(known, entries->count);
+    TRY_ARRAY(known, entries->count);
     for (size_t k = 0; k < entries->count; k++)
         if (entries->entry[k].fixed == NULL)
             known[count++] = entries->entry[k].path;
     mf_nearest_hint(path, known, count, hint, sizeof hint);
     mf_json_fault(numbers, path, "the scene has no such number; %s", hint);
-done:
-    mf_memory_free(known);
-    return status;
+    return STATUS_OK;
 }
 
 /// The range lies within that of the field, and the start within the range.

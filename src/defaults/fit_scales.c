@@ -260,10 +260,9 @@ size_t mf_fit_scales_joined(const struct fit_scales_rdf *rdf, double finest, dou
 }
 
 enum status mf_fit_scales_rdf_join(struct fit_scales_rdf *rdf, size_t of) {
-    enum status status = STATUS_OK;
     const size_t count = rdf->bins.count / of, values = pairs_of(rdf) * count;
     double *own = NULL;
-    NEW_ARRAY(own, 2 * values);
+    TRY_ARRAY(own, 2 * values);
     for (size_t n = 0; n < values; n++) {
         double variance;
         join_bins(rdf, n / count, n % count * of, of, &own[n], &variance);
@@ -275,8 +274,7 @@ enum status mf_fit_scales_rdf_join(struct fit_scales_rdf *rdf, size_t of) {
     rdf->error = own + values;
     rdf->bins.count = count;
     rdf->bins.width *= (double)of;
-done:
-    return status;
+    return STATUS_OK;
 }
 
 // g(r) --------------------------------------------------------------------------------------------
@@ -285,13 +283,12 @@ done:
 static enum status make_rdf(struct fit_scales_rdf *rdf, const struct scene *scene) {
     enum { BINS = 200 };
     static const double known = 0.001;
-    enum status status = STATUS_OK;
     const size_t pairs = pairs_of(rdf);
     double range = 0;
     for (size_t pair = 0; pair < pairs; pair++)
         range = fmax(range, mf_curve_cutoff(mf_scene_law_curve(&scene->potential, (int)pair)));
     rdf->bins = (struct rdf_bins){.width = range / BINS, .count = BINS};
-    NEW_ARRAY(rdf->own, 2 * pairs * BINS);
+    TRY_ARRAY(rdf->own, 2 * pairs * BINS);
     for (size_t n = 0; n < pairs * BINS; n++) {
         const struct curve *phi = mf_scene_law_curve(&scene->potential, (int)(n / BINS));
         const double r = mf_rdf_bins_centre(&rdf->bins, n % BINS);
@@ -300,8 +297,7 @@ static enum status make_rdf(struct fit_scales_rdf *rdf, const struct scene *scen
     }
     rdf->g = rdf->own;
     rdf->error = rdf->own + pairs * BINS;
-done:
-    return status;
+    return STATUS_OK;
 }
 
 enum status mf_fit_scales_rdf_init(struct fit_scales_rdf *rdf, const struct target_files *files,

@@ -73,29 +73,24 @@ static enum status check_inside(const struct particles *particles, int walls) {
 }
 
 static enum status begin(struct simulation *simulation) {
-    enum status status = STATUS_OK;
     struct event_driven *state = simulation->integrator_state;
     struct particles *particles = &simulation->particles;
     const int walls = parameters_of(simulation)->walls;
-    double *radius = NULL, *mass = NULL;
-    CHECK(check(&simulation->setup, walls));
-    NEW_ARRAY(radius, particles->count);
-    NEW_ARRAY(mass, particles->count);
+    OWNED double *radius = NULL, *mass = NULL;
+    TRY(check(&simulation->setup, walls));
+    TRY_ARRAY(radius, particles->count);
+    TRY_ARRAY(mass, particles->count);
     fill(radius, mf_particles_numbers(particles, "radius"), usual_radius, particles->count);
     fill(mass, particles_masses(particles), usual_mass, particles->count);
     if (simulation->velocities_drawn)
-        CHECK(scale_velocities(particles, walls, simulation->setup.temperature));
+        TRY(scale_velocities(particles, walls, simulation->setup.temperature));
     if (simulation->setup.placement.kind != PLACEMENT_FILE)
-        CHECK(mf_hard_start_part(particles, radius, walls));
+        TRY(mf_hard_start_part(particles, radius, walls));
     else
-        CHECK(check_inside(particles, walls));
-    CHECK(mf_hard_start_check(particles, radius, walls));
-    CHECK(mf_hard_gas_init(&state->gas, particles, radius, mass, walls));
-    CHECK(mf_simulation_compute_forces(simulation, 0));
-done:
-    mf_memory_free(radius);
-    mf_memory_free(mass);
-    return status;
+        TRY(check_inside(particles, walls));
+    TRY(mf_hard_start_check(particles, radius, walls));
+    TRY(mf_hard_gas_init(&state->gas, particles, radius, mass, walls));
+    return mf_simulation_compute_forces(simulation, 0);
 }
 
 static void clear(void *state) {

@@ -37,19 +37,16 @@ static void shape_cells(struct hard_gas *gas, const struct box *box, double diam
 }
 
 static enum status allocate(struct hard_gas *gas) {
-    enum status status = STATUS_OK;
     const size_t count = (size_t)gas->count;
-    NEW_ARRAY(gas->body, count);
-    NEW_ARRAY(gas->spare_body, count);
-    NEW_ARRAY(gas->label, count);
-    NEW_ARRAY(gas->spare_label, count);
-    NEW_ARRAY(gas->event, count);
-    NEW_ARRAY(gas->link, count);
-    NEW_ARRAY(gas->first, cells_total(gas->cells) + 1);
-    NEW_ARRAY(gas->place, count);
-    CHECK(mf_hard_gas_calendar_init(gas));
-done:
-    return status;
+    TRY_ARRAY(gas->body, count);
+    TRY_ARRAY(gas->spare_body, count);
+    TRY_ARRAY(gas->label, count);
+    TRY_ARRAY(gas->spare_label, count);
+    TRY_ARRAY(gas->event, count);
+    TRY_ARRAY(gas->link, count);
+    TRY_ARRAY(gas->first, cells_total(gas->cells) + 1);
+    TRY_ARRAY(gas->place, count);
+    return mf_hard_gas_calendar_init(gas);
 }
 
 static void take_particles(struct hard_gas *gas, const struct particles *particles,

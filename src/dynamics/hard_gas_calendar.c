@@ -10,17 +10,15 @@ enum { BUCKETS_A_BODY = 2, ENTRIES_A_BODY = 3 };
 enum { FETCHED_FROM = 30000 };
 
 enum status mf_hard_gas_calendar_init(struct hard_gas *gas) {
-    enum status status = STATUS_OK;
     struct hard_gas_calendar *calendar = &gas->calendar;
     const int64_t count = gas->count;
     for (calendar->buckets = 1; calendar->buckets < BUCKETS_A_BODY * count;)
         calendar->buckets *= 2;
     calendar->entries = (int32_t)(ENTRIES_A_BODY * count + 8);
     calendar->fetches = count >= FETCHED_FROM;
-    NEW_ARRAY(calendar->first, (size_t)calendar->buckets);
-    NEW_ARRAY(calendar->entry, (size_t)calendar->entries);
-done:
-    return status;
+    TRY_ARRAY(calendar->first, (size_t)calendar->buckets);
+    TRY_ARRAY(calendar->entry, (size_t)calendar->entries);
+    return STATUS_OK;
 }
 
 void mf_hard_gas_calendar_clear(struct hard_gas_calendar *calendar) {

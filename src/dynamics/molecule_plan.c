@@ -137,15 +137,14 @@ static size_t list_entries(const struct topology_kind *kind, struct entry *entry
 }
 
 static enum status find_runs(struct molecule_plan *plan, const struct topology_kind *kind) {
-    enum status status = STATUS_OK;
-    struct entry *entry = NULL;
+    OWNED struct entry *entry = NULL;
     const size_t entries = list_entries(kind, NULL);
     size_t used = 0;
     int runs = 0;
-    NEW_ARRAY(entry, entries);
-    NEW_ARRAY(plan->run_start, kind->beads + 1);
-    NEW_ARRAY(plan->run, entries);
-    NEW_ARRAY(plan->term_bead, BONDED_MAX_TERM_BEADS * entries);
+    TRY_ARRAY(entry, entries);
+    TRY_ARRAY(plan->run_start, kind->beads + 1);
+    TRY_ARRAY(plan->run, entries);
+    TRY_ARRAY(plan->term_bead, BONDED_MAX_TERM_BEADS * entries);
     list_entries(kind, entry);
     qsort(entry, entries, sizeof *entry, compare_entries);
     for (size_t e = 0; e < entries; e++) {
@@ -161,9 +160,7 @@ static enum status find_runs(struct molecule_plan *plan, const struct topology_k
     for (int bead = 0; bead < kind->beads; bead++)
         if (plan->run_start[bead + 1] < plan->run_start[bead])
             plan->run_start[bead + 1] = plan->run_start[bead]; // without terms
-done:
-    mf_memory_free(entry);
-    return status;
+    return STATUS_OK;
 }
 
 enum status mf_molecule_plan_init(struct molecule_plan *plan, const struct topology_kind *kind) {

@@ -145,7 +145,6 @@ static bool is_listed(const struct trial *trial) {
 
 /// The neighbours of particle k that do not move with it.
 static enum status find_others(struct trial *trial, size_t k, const int32_t **list, size_t *count) {
-    enum status status = STATUS_OK;
     struct molecule_moves *moves = trial->moves;
     const struct neighbours *neighbours = &trial->metropolis->neighbours;
     *count = neighbours->stop[k] - neighbours->start[k];
@@ -155,7 +154,7 @@ static enum status find_others(struct trial *trial, size_t k, const int32_t **li
     if (*count > moves->list_capacity) {
         mf_memory_free(moves->list);
         moves->list_capacity = 0;
-        NEW_ARRAY(moves->list, 2 * *count);
+        TRY_ARRAY(moves->list, 2 * *count);
         moves->list_capacity = 2 * *count;
     }
     size_t others = 0;
@@ -165,8 +164,7 @@ static enum status find_others(struct trial *trial, size_t k, const int32_t **li
     }
     *list = moves->list;
     *count = others;
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /// Of the pairs with what does not move.

@@ -7,7 +7,6 @@
 
 enum status mf_respa_init(struct respa *respa, const struct simulation *simulation,
                           int64_t inner_steps) {
-    enum status status = STATUS_OK;
     if (inner_steps <= 1)
         return STATUS_OK;
     if (simulation->setup.interactions == 0)
@@ -15,9 +14,8 @@ enum status mf_respa_init(struct respa *respa, const struct simulation *simulati
                               "dynamics.inner_steps: only bonds, angles, dihedrals and "
                               "interactions take them, and there are none; leave it out");
     for (int d = 0; d < simulation->setup.box.dimensions; d++)
-        NEW_ARRAY(respa->fast[d], simulation->particles.count);
-done:
-    return status;
+        TRY_ARRAY(respa->fast[d], simulation->particles.count);
+    return STATUS_OK;
 }
 
 void mf_respa_clear(void *state) {

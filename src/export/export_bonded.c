@@ -53,20 +53,18 @@ static void find_range(const struct export_model *model, int order,
 
 static enum status fill_table(struct export_bonded_table *table, const struct bonded_curve *curve,
                               double low, double high, size_t intervals) {
-    enum status status = STATUS_OK;
     mf_memory_free(table->q);
     mf_memory_free(table->energy);
     mf_memory_free(table->slope);
     *table = (struct export_bonded_table){.number = table->number};
-    NEW_ARRAY(table->q, intervals + 1);
-    NEW_ARRAY(table->energy, intervals + 1);
-    NEW_ARRAY(table->slope, intervals + 1);
+    TRY_ARRAY(table->q, intervals + 1);
+    TRY_ARRAY(table->energy, intervals + 1);
+    TRY_ARRAY(table->slope, intervals + 1);
     for (size_t k = 0; k <= intervals; k++) {
         table->q[k] = low + (high - low) * (double)k / (double)intervals;
         mf_bonded_value(curve, table->q[k], &table->energy[k], &table->slope[k]);
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /// Compare what is linear between the rows with the law, where terms are.

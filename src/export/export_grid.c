@@ -67,12 +67,11 @@ static void open_value(const struct export_grid *grid, double r, double *phi, do
 
 /// Second derivatives of the natural cubic spline through Φ.
 static enum status spline_prepare(struct export_grid *grid) {
-    enum status status = STATUS_OK;
     const size_t n = grid->rows;
     const double h = (grid->last - grid->first) / (double)(n - 1);
-    double *upper = NULL;
-    NEW_ARRAY(grid->second, n);
-    NEW_ARRAY(upper, n);
+    OWNED double *upper = NULL;
+    TRY_ARRAY(grid->second, n);
+    TRY_ARRAY(upper, n);
     for (size_t k = 1; k + 1 < n; k++) {
         const double pivot = 4 - upper[k - 1];
         const double bend = grid->phi[k + 1] - 2 * grid->phi[k] + grid->phi[k - 1];
@@ -81,9 +80,7 @@ static enum status spline_prepare(struct export_grid *grid) {
     }
     for (size_t k = n - 1; k-- > 1;)
         grid->second[k] -= upper[k] * grid->second[k + 1];
-done:
-    mf_memory_free(upper);
-    return status;
+    return STATUS_OK;
 }
 
 static void spline_value(const struct export_grid *grid, double r, double *phi, double *force) {

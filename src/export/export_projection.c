@@ -97,8 +97,7 @@ static enum status read_results(const struct run *run, struct export_measured *m
 /// A simulation from the model's start; `seed` tells one from another.
 static enum status simulate(const struct export_model *model, const struct table *omega,
                             uint64_t seed, struct plan *plan, struct export_measured *measured) {
-    enum status status = STATUS_OK;
-    struct run run = {0};
+    CLEARED_BY(clear) struct run run = {0};
     struct simulation_setup setup = model->setup;
     struct simulation_start start = {0};
     setup.omega = omega;
@@ -109,12 +108,9 @@ static enum status simulate(const struct export_model *model, const struct table
         start.position[d] = model->position[d];
         start.velocity[d] = model->velocity[d];
     }
-    CHECK(mf_simulation_init(&run.simulation, &setup, &start));
-    CHECK(sample(&run, plan));
-    CHECK(read_results(&run, measured));
-done:
-    clear(&run);
-    return status;
+    TRY(mf_simulation_init(&run.simulation, &setup, &start));
+    TRY(sample(&run, plan));
+    return read_results(&run, measured);
 }
 
 static enum status tabulate(const struct export_power *power, int pairs, struct table *omega) {
@@ -153,23 +149,20 @@ static void compare(struct export_projection *projection) {
 enum status mf_export_project(const struct export_model *model, const struct export_power *power,
                               int threads, const struct measure_listener *listener,
                               struct export_projection *projection) {
-    enum status status = STATUS_OK;
     const uint64_t seed = model->setup.seed;
     struct plan plan = make_plan(model);
     struct halves halves = {.listener = listener};
-    struct table omega = {0};
+    CLEARED_BY(mf_table_clear) struct table omega = {0};
     *projection =
         (struct export_projection){.interval = (double)plan.etd.plan.every * model->setup.time_step,
                                    .r_maximum = plan.etd.grid.r_maximum,
                                    .steps = plan.measure.samples * plan.measure.every};
     plan.threads = threads;
     plan.half = (struct measure_listener){.report = report_half, .context = &halves};
-    CHECK(tabulate(power, mf_export_model_pairs(model), &omega));
-    CHECK(simulate(model, model->setup.omega, seed + 1, &plan, &projection->result));
+    TRY(tabulate(power, mf_export_model_pairs(model), &omega));
+    TRY(simulate(model, model->setup.omega, seed + 1, &plan, &projection->result));
     halves.done = 1;
-    CHECK(simulate(model, &omega, seed + 2, &plan, &projection->projected));
+    TRY(simulate(model, &omega, seed + 2, &plan, &projection->projected));
     compare(projection);
-done:
-    mf_table_clear(&omega);
-    return status;
+    return STATUS_OK;
 }

@@ -63,19 +63,16 @@ static enum status keep_masses(struct export_model *model, const struct particle
 
 /// Positions and velocities by id.
 static enum status keep_state(struct export_model *model, const struct particles *particles) {
-    enum status status = STATUS_OK;
     model->count = particles->count;
     for (int d = 0; d < 3; d++) {
-        NEW_ARRAY(model->position[d], model->count);
-        NEW_ARRAY(model->velocity[d], model->count);
+        TRY_ARRAY(model->position[d], model->count);
+        TRY_ARRAY(model->velocity[d], model->count);
         for (size_t k = 0; d < model->setup.box.dimensions && k < model->count; k++) {
             model->position[d][particles->id[k]] = particles->position[d][k];
             model->velocity[d][particles->id[k]] = particles->velocity[d][k];
         }
     }
-    CHECK(keep_masses(model, particles));
-done:
-    return status;
+    return keep_masses(model, particles);
 }
 
 /// In which image of the box each bead is, if molecules are whole and begin inside.

@@ -56,7 +56,3 @@ struct export_units mf_export_units(enum export_system system, const struct unit
         .pressure_name = flat ? scale->flat_pressure_name : scale->pressure_name,
     };
 }
-
-double mf_export_units_boltzmann(const struct export_units *units) {
-    return units->energy / units->temperature;
-}

@@ -33,6 +33,3 @@ static inline double export_units_velocity(const struct export_units *units) {
 static inline double export_units_friction(const struct export_units *units) {
     return units->energy * units->time / (units->length * units->length);
 }
-
-/// k_B in these units; 1 in reduced ones.
-double mf_export_units_boltzmann(const struct export_units *units);

@@ -6,26 +6,17 @@
 #include "io/votca.h"
 
 static enum status write_curve(const struct export_job *job, enum export_curve curve, int pair) {
-    enum status status = STATUS_OK;
     const struct export_grid *grid = &job->grids.grid[curve][pair];
-    double *r = NULL, *phi = NULL;
     char path[OUTPUT_PATH_SIZE], name[COMPOSITION_PAIR_NAME_SIZE];
     int type[2];
     size_t first = 0;
-    NEW_ARRAY(r, grid->rows);
-    NEW_ARRAY(phi, grid->rows);
-    for (size_t k = 0; k < grid->rows; k++) {
-        r[k] = grid->r[k] * job->units.length;
-        phi[k] = grid->phi[k] * job->units.energy;
+    for (size_t k = 0; k < grid->rows; k++)
         first += grid->r[k] < job->grids.error.from;
-    }
     mf_export_model_pair(job->model, pair, type, name);
     snprintf(path, sizeof path, "%.3800s/%s%s.pot", job->folder, name, mf_export_curve_name(curve));
-    CHECK(mf_votca_write(path, r, phi, grid->rows, first));
-done:
-    mf_memory_free(r);
-    mf_memory_free(phi);
-    return status;
+    return mf_votca_write(path, grid->r, grid->phi,
+                          (struct votca_scale){job->units.length, job->units.energy}, grid->rows,
+                          first);
 }
 
 static enum status write(const struct export_job *job) {

@@ -18,15 +18,14 @@ struct friction_factors mf_friction_factors_of(const struct friction_method *met
 
 enum status mf_friction_init(struct friction *friction, const struct table *table, double time_step,
                              double temperature, const struct friction_method *method) {
-    enum status status = STATUS_OK;
     *friction =
         (struct friction){.method = method,
                           .kick = method->square ? sqrt(method->square(time_step, temperature)) : 0,
                           .bound = method->bound};
     mf_normal_table_init(&friction->normal);
     const int rows = (TABLE_INTERVALS + 1) * table->curves;
-    NEW_ARRAY(friction->precise, rows);
-    NEW_ARRAY(friction->single, rows);
+    TRY_ARRAY(friction->precise, rows);
+    TRY_ARRAY(friction->single, rows);
     for (int k = 0; k < rows; k++) {
         if (k % (TABLE_INTERVALS + 1) == TABLE_INTERVALS) // beyond the cutoff is nothing
             continue;
@@ -38,17 +37,14 @@ enum status mf_friction_init(struct friction *friction, const struct table *tabl
         for (int n = 0; n < 2; n++)
             friction->single[k][n] = (float)friction->precise[k][n];
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 enum status mf_friction_reserve_work(struct friction *friction, size_t count) {
-    enum status status = STATUS_OK;
     for (int n = 0; n < FRICTION_WORK; n++)
         if (friction->work[n] == NULL)
-            NEW_ARRAY(friction->work[n], count);
-done:
-    return status;
+            TRY_ARRAY(friction->work[n], count);
+    return STATUS_OK;
 }
 
 void mf_friction_clear(struct friction *friction) {

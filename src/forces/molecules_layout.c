@@ -30,7 +30,6 @@ static int bundles_each(const struct molecules_motif *motif) {
 }
 
 static enum status reserve(struct molecules_layout *layout, const struct particles *particles) {
-    enum status status = STATUS_OK;
     size_t bundles = 0, rows = 0;
     for (int k = 0; k < layout->topology->kinds; k++)
         for (int n = 0; n < layout->motifs[k].count; n++) {
@@ -40,12 +39,11 @@ static enum status reserve(struct molecules_layout *layout, const struct particl
             bundles += more;
             rows += more * (size_t)motif->beads;
         }
-    NEW_ARRAY(layout->bundle, bundles);
-    NEW_ARRAY(layout->place, rows * LANES);
-    NEW_ARRAY(layout->sequence, (size_t)layout->topology->molecules);
-    NEW_ARRAY(layout->bucket, particles->count / BUCKET + 2);
-done:
-    return status;
+    TRY_ARRAY(layout->bundle, bundles);
+    TRY_ARRAY(layout->place, rows * LANES);
+    TRY_ARRAY(layout->sequence, (size_t)layout->topology->molecules);
+    TRY_ARRAY(layout->bucket, particles->count / BUCKET + 2);
+    return STATUS_OK;
 }
 
 /// Append the bundles of a team of molecules.

@@ -66,13 +66,12 @@ static int number_beads(struct molecules_motif *motif, const struct numbered_ter
 /// @param[out] taken  how many they are
 static enum status add_piece(struct molecules_motifs *motifs, struct numbered_term *terms,
                              int count, int *number, int *taken) {
-    enum status status = STATUS_OK;
     struct molecules_motif *motif = &motifs->motif[motifs->count++];
     int *next;
     motif->copies = 1;
-    NEW_ARRAY(motif->bead, BONDED_MAX_BEADS);
+    TRY_ARRAY(motif->bead, BONDED_MAX_BEADS);
     *taken = number_beads(motif, terms, count, number);
-    NEW_ARRAY(motif->term_bead, (size_t)*taken * BONDED_MAX_TERM_BEADS);
+    TRY_ARRAY(motif->term_bead, (size_t)*taken * BONDED_MAX_TERM_BEADS);
     next = motif->term_bead;
     qsort(terms, (size_t)*taken, sizeof *terms, compare_groups);
     for (int n = 0; n < *taken; n++) {
@@ -82,8 +81,7 @@ static enum status add_piece(struct molecules_motifs *motifs, struct numbered_te
     }
     for (int b = 0; b < motif->beads; b++)
         number[motif->bead[b]] = -1;
-done:
-    return status;
+    return STATUS_OK;
 }
 
 static enum status add_pieces(struct molecules_motifs *motifs, const struct topology_kind *kind,
@@ -105,13 +103,12 @@ done:
 /// @param[out] taken  how many they are
 static enum status add_single(struct molecules_motifs *motifs, const struct numbered_term *terms,
                               int count, int *taken) {
-    enum status status = STATUS_OK;
     struct molecules_motif *motif = &motifs->motif[motifs->count++];
     const int order = terms->order, group = terms->term->group;
     motif->beads = mf_bonded_kinds[order]->beads;
     motif->terms[order][group] = 1;
-    NEW_ARRAY(motif->bead, (size_t)count * BONDED_MAX_TERM_BEADS);
-    NEW_ARRAY(motif->term_bead, BONDED_MAX_TERM_BEADS);
+    TRY_ARRAY(motif->bead, (size_t)count * BONDED_MAX_TERM_BEADS);
+    TRY_ARRAY(motif->term_bead, BONDED_MAX_TERM_BEADS);
     for (int k = 0; k < motif->beads; k++)
         motif->term_bead[k] = k;
     for (; motif->copies < count && terms[motif->copies].order == order &&
@@ -120,8 +117,7 @@ static enum status add_single(struct molecules_motifs *motifs, const struct numb
         for (int k = 0; k < motif->beads; k++)
             motif->bead[motif->copies * motif->beads + k] = terms[motif->copies].term->bead[k];
     *taken = motif->copies;
-done:
-    return status;
+    return STATUS_OK;
 }
 
 static enum status add_singles(struct molecules_motifs *motifs, struct numbered_term *terms,
@@ -137,20 +133,16 @@ enum status mf_molecules_motifs_find(struct molecules_motifs *motifs,
                                      const struct topology_kind *kind, bool single) {
     // A piece that is full has this many terms at least.
     enum { FEWEST_TERMS = BONDED_MAX_BEADS / BONDED_MAX_TERM_BEADS - 1 };
-    enum status status = STATUS_OK;
-    struct numbered_term *terms = NULL;
+    OWNED struct numbered_term *terms = NULL;
     size_t count = 0;
     for (int order = 0; order < BONDED_KINDS; order++)
         count += (size_t)kind->terms[order];
-    NEW_ARRAY(terms, count);
-    NEW_ARRAY(motifs->motif,
+    TRY_ARRAY(terms, count);
+    TRY_ARRAY(motifs->motif,
               single ? (size_t)BONDED_KINDS * MOLECULES_MAX_GROUPS : count / FEWEST_TERMS + 1);
     list_terms(kind, terms);
-    CHECK(single ? add_singles(motifs, terms, (int)count)
-                 : add_pieces(motifs, kind, terms, (int)count));
-done:
-    mf_memory_free(terms);
-    return status;
+    return single ? add_singles(motifs, terms, (int)count)
+                  : add_pieces(motifs, kind, terms, (int)count);
 }
 
 void mf_molecules_motifs_clear(struct molecules_motifs *motifs) {

@@ -53,9 +53,8 @@ static int find_before(const struct molecules *molecules, const struct topology_
 /// joins to the rest begins anew at the first bead.
 static enum status plan_growth(const struct molecules *molecules, const struct topology_kind *kind,
                                struct joint *joints) {
-    enum status status = STATUS_OK;
-    bool *placed = NULL;
-    NEW_ARRAY(placed, kind->beads);
+    OWNED bool *placed = NULL;
+    TRY_ARRAY(placed, kind->beads);
     for (int n = 0; n < kind->beads; n++) {
         const struct topology_term *bond = next_bond(kind, placed);
         struct joint joint = {.parent = -1, .before = -1, .angle = NAN};
@@ -72,9 +71,7 @@ static enum status plan_growth(const struct molecules *molecules, const struct t
         placed[joint.bead] = true;
         joints[n] = joint;
     }
-done:
-    mf_memory_free(placed);
-    return status;
+    return STATUS_OK;
 }
 
 // Growth ------------------------------------------------------------------------------------------
@@ -145,12 +142,11 @@ struct starts {
 static enum status grow_kind(const struct molecules *molecules, const struct topology_kind *kind,
                              const struct starts *starts, struct particles *particles,
                              uint64_t seed) {
-    enum status status = STATUS_OK;
-    struct joint *joints = NULL;
-    double(*place)[3] = NULL;
-    NEW_ARRAY(joints, kind->beads);
-    NEW_ARRAY(place, kind->beads);
-    CHECK(plan_growth(molecules, kind, joints));
+    OWNED struct joint *joints = NULL;
+    OWNED double(*place)[3] = NULL;
+    TRY_ARRAY(joints, kind->beads);
+    TRY_ARRAY(place, kind->beads);
+    TRY(plan_growth(molecules, kind, joints));
     for (int64_t m = 0; m < kind->count; m++) {
         const uint32_t molecule = (uint32_t)(kind->first + m), site = starts->site[molecule];
         for (int n = 0; n < kind->beads; n++) {
@@ -163,27 +159,22 @@ static enum status grow_kind(const struct molecules *molecules, const struct top
                 particles->position[d][topology_id(kind, m, bead)] =
                     starts->particles.position[d][site] + place[bead][d];
     }
-done:
-    mf_memory_free(joints);
-    mf_memory_free(place);
-    return status;
+    return STATUS_OK;
 }
 
 static enum status place_starts(struct starts *starts, const struct placement *placement,
                                 uint64_t seed) {
-    enum status status = STATUS_OK;
     struct particles *particles = &starts->particles;
-    NEW_ARRAY(starts->site, particles->count);
+    TRY_ARRAY(starts->site, particles->count);
     if (placement->kind == PLACEMENT_RANDOM) {
-        CHECK(mf_placement_random(particles, placement->separation, seed));
+        TRY(mf_placement_random(particles, placement->separation, seed));
     } else {
         mf_placement_lattice(particles, placement->jitter, seed);
         mf_placement_mix(particles, seed);
     }
     for (size_t k = 0; k < particles->count; k++)
         starts->site[particles->id[k]] = (uint32_t)k;
-done:
-    return status;
+    return STATUS_OK;
 }
 
 enum status mf_molecules_place(const struct molecules *molecules, struct particles *particles,

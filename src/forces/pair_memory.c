@@ -36,9 +36,8 @@ bool mf_pair_memory_is_coarse(const struct pair_memory_law *law, double time_ste
 /// The other two are 0: kernels read records of four.
 static enum status tabulate(float (**rows)[4], const struct table *omega,
                             double (*of)(double omega, double number), double number) {
-    enum status status = STATUS_OK;
     const int count = (TABLE_INTERVALS + 1) * omega->curves;
-    NEW_ARRAY(*rows, count);
+    TRY_ARRAY(*rows, count);
     for (int k = 0; k < count; k++) {
         if (k % (TABLE_INTERVALS + 1) == TABLE_INTERVALS) // beyond the cutoff is nothing
             continue;
@@ -47,8 +46,7 @@ static enum status tabulate(float (**rows)[4], const struct table *omega,
         (*rows)[k][0] = (float)value;
         (*rows)[k][1] = (float)(of(c[0] + c[1], number) - value);
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /// tan(g Δt/√2), half the angle, with g Δt = ω `number`. A rotation of nearly half a turn a step
@@ -149,33 +147,29 @@ void mf_pair_memory_clear(struct pair_memory *memory) {
 
 /// Room for `count` pairs; what the arrays held is lost if they are too small.
 static enum status reserve(struct pair_memory_pairs *pairs, size_t count, int variables) {
-    enum status status = STATUS_OK;
     if (count <= pairs->capacity)
         return STATUS_OK;
     const size_t capacity = count + count / 8;
     free_pairs(pairs);
-    NEW_ARRAY(pairs->first, capacity + PARTICLES_PADDING);
-    NEW_ARRAY(pairs->second, capacity + PARTICLES_PADDING);
-    NEW_ARRAY(pairs->first_id, capacity);
-    NEW_ARRAY(pairs->second_id, capacity);
+    TRY_ARRAY(pairs->first, capacity + PARTICLES_PADDING);
+    TRY_ARRAY(pairs->second, capacity + PARTICLES_PADDING);
+    TRY_ARRAY(pairs->first_id, capacity);
+    TRY_ARRAY(pairs->second_id, capacity);
     for (int k = 0; k < variables; k++)
-        NEW_ARRAY(pairs->value[k], capacity + 1);
+        TRY_ARRAY(pairs->value[k], capacity + 1);
     pairs->capacity = capacity;
-done:
-    return status;
+    return STATUS_OK;
 }
 
 static enum status reserve_index(struct pair_memory_index *index, size_t particles) {
-    enum status status = STATUS_OK;
     if (index->mark)
         return STATUS_OK;
-    NEW_ARRAY(index->built, particles);
-    NEW_ARRAY(index->begin, particles);
-    NEW_ARRAY(index->end, particles);
-    NEW_ARRAY(index->seen, particles);
-    NEW_ARRAY(index->mark, particles);
-done:
-    return status;
+    TRY_ARRAY(index->built, particles);
+    TRY_ARRAY(index->begin, particles);
+    TRY_ARRAY(index->end, particles);
+    TRY_ARRAY(index->seen, particles);
+    TRY_ARRAY(index->mark, particles);
+    return STATUS_OK;
 }
 
 /// Find the pairs of each first particle. There is no branch that a processor would not foresee.

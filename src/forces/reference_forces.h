@@ -1,15 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file The pair forces the slow way: the oracle of the tests, and the configurational
+/// @file What the pair kernels do not find: energies of particles, and the configurational
 /// temperature.
 #pragma once
 
 #include "forces/pair.h"
-
-/// Forces from all pairs, nearest image by division, double precision, library random numbers.
-/// Reads `velocity` (not kernel_motion) and writes `force` [k_B T_0 / λ].
-/// @param[out] sums  energy and virial, or NULL
-void mf_reference_forces(const struct pair_law *law, struct particles *particles, uint64_t step,
-                         struct pair_sums *sums);
 
 /// Energy that each particle has of its pairs: half of Φ of each of them.
 /// @param[in] neighbours  half list, complete for the cutoff of the potential

@@ -69,29 +69,27 @@ static int choose_cells(struct soft_discs_cells *cells, const struct box *box) {
 
 enum status mf_soft_discs_cells_init(struct soft_discs_cells *cells,
                                      const struct particles *particles, bool precise) {
-    enum status status = STATUS_OK;
     const size_t count = particles->count, capacity = count + PARTICLES_PADDING;
     *cells = (struct soft_discs_cells){.count = count};
     choose_classes(cells, mf_particles_numbers(particles, "radius"));
     const int total = choose_cells(cells, &particles->box);
-    CHECK(mf_cells_shape(&cells->sorted, (const int[3]){1, 1, total}, count));
+    TRY(mf_cells_shape(&cells->sorted, (const int[3]){1, 1, total}, count));
     size_t rows = 0;
     for (int c = 0; c < cells->classes; c++)
         rows += (size_t)cells->of[c].rows;
-    NEW_ARRAY(cells->block, count / SOFT_DISCS_BLOCK + rows);
-    NEW_ARRAY(cells->radius, capacity);
-    NEW_ARRAY(cells->stiffness, capacity);
+    TRY_ARRAY(cells->block, count / SOFT_DISCS_BLOCK + rows);
+    TRY_ARRAY(cells->radius, capacity);
+    TRY_ARRAY(cells->stiffness, capacity);
     for (int d = 0; d < 2; d++) {
-        NEW_ARRAY(cells->fraction[d], capacity);
+        TRY_ARRAY(cells->fraction[d], capacity);
         if (precise)
-            NEW_ARRAY(cells->position[d], capacity);
+            TRY_ARRAY(cells->position[d], capacity);
     }
     if (precise) {
-        NEW_ARRAY(cells->precise_radius, capacity);
-        NEW_ARRAY(cells->precise_stiffness, capacity);
+        TRY_ARRAY(cells->precise_radius, capacity);
+        TRY_ARRAY(cells->precise_stiffness, capacity);
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 void mf_soft_discs_cells_clear(struct soft_discs_cells *cells) {

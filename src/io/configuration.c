@@ -36,20 +36,16 @@ static void list_bonds(const struct topology *topology, double *first, double *s
 }
 
 static enum status write_bonds(const char *file, const struct topology *topology) {
-    enum status status = STATUS_OK;
     const size_t bonds = count_bonds(topology);
-    double *beads = NULL;
+    OWNED double *beads = NULL;
     if (bonds == 0)
         return STATUS_OK;
-    NEW_ARRAY(beads, 2 * bonds);
+    TRY_ARRAY(beads, 2 * bonds);
     list_bonds(topology, beads, beads + bonds);
     const struct data_column columns[] = {{"first", beads, "%.0f"},
                                           {"second", beads + bonds, "%.0f"}};
-    CHECK(mf_data_table_write(file, "rows of " CONFIGURATION_FILE " that are bonded, from 1 on",
-                              columns, 2, bonds));
-done:
-    mf_memory_free(beads);
-    return status;
+    return mf_data_table_write(file, "rows of " CONFIGURATION_FILE " that are bonded, from 1 on",
+                               columns, 2, bonds);
 }
 
 enum status mf_configuration_write(const char *file, const char *bonds_file,

@@ -124,7 +124,7 @@ double mf_data_table_translate(const struct units *units, const char *heading, c
     size_t length;
     const char *found = mf_units_text_in_brackets(heading, &length);
     snprintf(name, size, "%s", heading);
-    if (found == NULL || length >= sizeof unit)
+    if (!mf_units_are_physical(units) || found == NULL || length >= sizeof unit)
         return 1;
     snprintf(unit, sizeof unit, "%.*s", (int)length, found);
     const double factor = mf_units_factor(units, unit);
@@ -141,32 +141,72 @@ void mf_data_table_name(const struct units *units, const char *name, const char 
         snprintf(heading, size, "%s[%s]", name, unit);
 }
 
+/// Columns that are written, and the room for those that are converted.
+struct columns {
+    struct data_column *column;
+    char (*name)[NAME_SIZE];
+    double *values; ///< shape [columns, rows]
+    size_t count, rows;
+};
+
+/// Nobody reads it back.
+static double multiply(double reduced, double factor) {
+    return factor * reduced;
+}
+
+/// Add a column in the units that `units` speak.
+static void add_column(struct columns *columns, const struct units *units,
+                       const struct data_column *from, const char *format,
+                       double (*convert)(double, double)) {
+    double *const values = columns->values + columns->count * columns->rows;
+    char *const name = columns->name[columns->count];
+    struct data_column *const to = &columns->column[columns->count++];
+    const double factor = mf_data_table_translate(units, from->name, name, NAME_SIZE);
+    *to = (struct data_column){name, from->values, from->format};
+    if (factor == 1)
+        return;
+    for (size_t k = 0; k < columns->rows; k++)
+        values[k] = convert(from->values[k], factor);
+    to->values = values;
+    to->format = format;
+}
+
+static enum status write_all(const char *file, const struct units *units, const char *comment,
+                             const struct data_column *column, const char *const *beside,
+                             size_t count, size_t rows) {
+    enum status status = STATUS_OK;
+    struct units physical = *units;
+    struct columns all = {.rows = rows};
+    physical.system = UNITS_NM_PS;
+    NEW_ARRAY(all.column, 2 * count);
+    NEW_ARRAY(all.name, 2 * count);
+    NEW_ARRAY(all.values, 2 * count * rows + 1);
+    for (size_t c = 0; c < count; c++)
+        add_column(&all, units, &column[c], format_of(&column[c]), mf_units_file_value);
+    for (size_t c = 0; beside && c < count; c++) {
+        const struct data_column again = {column[c].name, column[c].values, beside[c]};
+        if (beside[c])
+            add_column(&all, &physical, &again, beside[c], multiply);
+    }
+    status = mf_data_table_write(file, comment, all.column, all.count, rows);
+done:
+    mf_memory_free(all.column);
+    mf_memory_free(all.name);
+    mf_memory_free(all.values);
+    return status;
+}
+
 enum status mf_data_table_write_in(const char *file, const struct units *units, const char *comment,
                                    const struct data_column *columns, size_t column_count,
                                    size_t rows) {
-    enum status status = STATUS_OK;
-    struct data_column *converted = NULL;
-    double *values = NULL;
-    char(*names)[NAME_SIZE] = NULL;
-    if (!mf_units_are_physical(units))
-        return mf_data_table_write(file, comment, columns, column_count, rows);
-    NEW_ARRAY(converted, column_count);
-    NEW_ARRAY(names, column_count);
-    NEW_ARRAY(values, column_count * rows + 1);
-    for (size_t c = 0; c < column_count; c++) {
-        const double factor = mf_data_table_translate(units, columns[c].name, names[c], NAME_SIZE);
-        converted[c] = (struct data_column){names[c], columns[c].values, columns[c].format};
-        if (factor == 1)
-            continue;
-        for (size_t k = 0; k < rows; k++)
-            values[c * rows + k] = mf_units_file_value(columns[c].values[k], factor);
-        converted[c].values = values + c * rows;
-        converted[c].format = format_of(&columns[c]);
-    }
-    status = mf_data_table_write(file, comment, converted, column_count, rows);
-done:
-    mf_memory_free(converted);
-    mf_memory_free(names);
-    mf_memory_free(values);
-    return status;
+    return mf_units_are_physical(units)
+               ? write_all(file, units, comment, columns, NULL, column_count, rows)
+               : mf_data_table_write(file, comment, columns, column_count, rows);
+}
+
+enum status mf_data_table_write_beside(const char *file, const struct units *units,
+                                       const struct data_column *columns, const char *const *beside,
+                                       size_t column_count, size_t rows) {
+    return write_all(file, units, NULL, columns,
+                     mf_units_have_second_columns(units) ? beside : NULL, column_count, rows);
 }

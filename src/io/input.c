@@ -35,19 +35,17 @@ enum status mf_input_open(FILE **stream, const char *file) {
 }
 
 static enum status reserve(struct input_files *inputs) {
-    enum status status = STATUS_OK;
     struct input_file *larger = NULL;
     const size_t capacity = inputs->capacity ? 2 * inputs->capacity : 16;
     if (inputs->count < inputs->capacity)
         return STATUS_OK;
-    NEW_ARRAY(larger, capacity);
+    TRY_ARRAY(larger, capacity);
     if (inputs->count > 0)
         memcpy(larger, inputs->file, inputs->count * sizeof *larger);
     mf_memory_free(inputs->file);
     inputs->file = larger;
     inputs->capacity = capacity;
-done:
-    return status;
+    return STATUS_OK;
 }
 
 enum status mf_input_files_add(struct input_files *inputs, const char *name) {

@@ -136,6 +136,14 @@ void mf_json_write_quantity(struct json_writer *writer, const char *key, const c
                          mf_units_file_value(value, mf_units_factor(&writer->units, unit)));
 }
 
+void mf_json_put_measured(struct json_writer *writer, const char *key, const char *unit,
+                          double value, double error) {
+    char name[128];
+    snprintf(name, sizeof name, "%s_error", key);
+    mf_json_write_quantity(writer, key, unit, value);
+    mf_json_write_quantity(writer, name, unit, error);
+}
+
 void mf_json_write_integer(struct json_writer *writer, const char *key, int64_t value) {
     char text[32];
     snprintf(text, sizeof text, "%" PRId64, value);
@@ -150,11 +158,6 @@ static void write_seed(struct json_writer *writer, const char *key, uint64_t val
 
 void mf_json_write_text(struct json_writer *writer, const char *key, const char *value) {
     append(writer, key, cJSON_CreateString(value));
-}
-
-void mf_json_write_numbers(struct json_writer *writer, const char *key, const double *values,
-                           size_t count) {
-    mf_json_write_quantities(writer, key, "", values, count);
 }
 
 void mf_json_write_quantities(struct json_writer *writer, const char *key, const char *unit,

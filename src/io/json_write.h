@@ -36,11 +36,12 @@ void mf_json_write_number(struct json_writer *writer, const char *key, double va
 /// A number of a reduced unit, as of a field table. Tested: test_units.
 void mf_json_write_quantity(struct json_writer *writer, const char *key, const char *unit,
                             double value);
+/// The same with its standard error, "…_error".
+void mf_json_put_measured(struct json_writer *writer, const char *key, const char *unit,
+                          double value, double error);
 /// All digits are written, but mf_json_fields refuses 2^53 and beyond.
 void mf_json_write_integer(struct json_writer *writer, const char *key, int64_t value);
 void mf_json_write_text(struct json_writer *writer, const char *key, const char *value);
-void mf_json_write_numbers(struct json_writer *writer, const char *key, const double *values,
-                           size_t count);
 void mf_json_write_quantities(struct json_writer *writer, const char *key, const char *unit,
                               const double *values, size_t count);
 void mf_json_write_texts(struct json_writer *writer, const char *key, const char *const *texts,

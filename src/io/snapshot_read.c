@@ -27,15 +27,14 @@ static size_t list_columns(struct json_object *particles, int dimensions,
 
 static enum status read_columns(struct data_table *table, struct json_object *particles,
                                 int dimensions) {
-    enum status status = STATUS_OK;
     const char *names[MAX_COLUMNS];
-    double *column = NULL;
+    OWNED double *column = NULL;
     table->columns = list_columns(particles, dimensions, names);
     table->rows = (size_t)mf_json_count(particles, "x");
-    NEW_ARRAY(table->values, table->rows * table->columns);
-    NEW_ARRAY(table->line, table->rows);
-    NEW_ARRAY(table->header, HEADER_SIZE);
-    NEW_ARRAY(column, table->rows);
+    TRY_ARRAY(table->values, table->rows * table->columns);
+    TRY_ARRAY(table->line, table->rows);
+    TRY_ARRAY(table->header, HEADER_SIZE);
+    TRY_ARRAY(column, table->rows);
     for (size_t c = 0; c < table->columns; c++) {
         strcat(strcat(table->header, names[c]), " ");
         mf_json_list_numbers(particles, names[c], column, table->rows);
@@ -44,9 +43,7 @@ static enum status read_columns(struct data_table *table, struct json_object *pa
     }
     for (size_t k = 0; k < table->rows; k++)
         table->line[k] = k + 1;
-done:
-    mf_memory_free(column);
-    return status;
+    return STATUS_OK;
 }
 
 /// Types, which follow from the order of the particles, are those of the scene.

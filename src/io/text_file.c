@@ -97,15 +97,13 @@ static const char *find_memory_file(const char *file) {
 
 static enum status copy_memory_file(const char *file, const char *memory_files, char **text,
                                     size_t *length) {
-    enum status status = STATUS_OK;
     const size_t bytes = strlen(memory_files);
-    CHECK(check_is_text(file, memory_files, bytes));
-    NEW_ARRAY(*text, bytes + 1);
+    TRY(check_is_text(file, memory_files, bytes));
+    TRY_ARRAY(*text, bytes + 1);
     memcpy(*text, memory_files, bytes + 1);
     end_lines(*text, bytes);
     *length = bytes;
-done:
-    return status;
+    return STATUS_OK;
 }
 
 enum status mf_text_file_read(const char *file, char **text, size_t *length) {

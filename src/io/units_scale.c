@@ -2,6 +2,7 @@
 #include "io/units_scale.h"
 
 #include "base/memory.h"
+#include "base/number_text.h"
 #include "io/units_text.h"
 
 #include <math.h>
@@ -39,13 +40,6 @@ double mf_units_pressure_bar(const struct units *units) {
 double mf_units_diffusion_cm2_per_s(const struct units *units) {
     const double centimetres = units->length * 1e-7;
     return centimetres * centimetres / (mf_units_time_ps(units) * 1e-12);
-}
-
-double *mf_units_column(const double *values, size_t count, double factor) {
-    double *column = mf_memory_zeroed(count, sizeof *column);
-    for (size_t k = 0; column && k < count; k++)
-        column[k] = factor * values[k];
-    return column;
 }
 
 // Reduced units in those that are spoken ----------------------------------------------------------
@@ -164,6 +158,15 @@ const char *mf_units_suffix(const struct units *units, const char *unit, char *n
     mf_units_name(units, unit, text);
     snprintf(name, UNITS_NAME_SIZE, "%s%.120s", text[0] ? " " : "", text);
     return name;
+}
+
+const char *mf_units_measured(const struct units *units, const char *unit, double value,
+                              double error, char text[UNITS_MEASURED_SIZE]) {
+    const double factor = mf_units_factor(units, unit);
+    char name[UNITS_NAME_SIZE];
+    mf_number_text(factor * value, factor * error, text);
+    strncat(text, mf_units_suffix(units, unit, name), UNITS_MEASURED_SIZE - NUMBER_TEXT_SIZE);
+    return text;
 }
 
 double mf_units_file_value(double reduced, double factor) {

@@ -50,7 +50,7 @@ double mf_units_time_ps(const struct units *units);             ///< λ sqrt(μ 
 double mf_units_pressure_bar(const struct units *units);        ///< k_B T_0 / λ³ [bar]
 double mf_units_diffusion_cm2_per_s(const struct units *units); ///< λ²/τ [cm²/s]
 
-enum { UNITS_NAME_SIZE = 128, UNITS_LINE_SIZE = 256 };
+enum { UNITS_NAME_SIZE = 128, UNITS_LINE_SIZE = 256, UNITS_MEASURED_SIZE = 192 };
 
 /// How many of the spoken units one reduced `unit` of a field table or heading is: with "lambda"
 /// and nm-ps, λ in nm. 1 for reduced files, units that the scene does not set, and what is no unit.
@@ -65,6 +65,10 @@ const char *mf_units_name(const struct units *units, const char *unit, char *nam
 /// " nm", the name of a unit behind a number of a message, or "" in reduced units, which are left
 /// out.
 const char *mf_units_suffix(const struct units *units, const char *unit, char *name);
+
+/// A number of a reduced unit with its error, for a person: "0.29(1) nm^2/ps". Returns `text`.
+const char *mf_units_measured(const struct units *units, const char *unit, double value,
+                              double error, char text[UNITS_MEASURED_SIZE]);
 
 /// The engine speaks in reduced units: add the scale to the message of the calling thread if the
 /// file does not, and return `status` unchanged.
@@ -81,6 +85,3 @@ enum status mf_units_from(const struct units *units, const char *from, const cha
 
 /// "nm-ps: lambda = 0.465 nm, …", the scale in one line.
 void mf_units_print(const struct units *units, char line[UNITS_LINE_SIZE]);
-
-/// A column of a table in another unit: factor · values; the caller frees it. NULL: no memory.
-double *mf_units_column(const double *values, size_t count, double factor);

@@ -97,11 +97,12 @@ void mf_votca_clear(struct votca_table *table) {
     *table = (struct votca_table){0};
 }
 
-enum status mf_votca_write(const char *file, const double *x, const double *y, size_t rows,
-                           size_t first) {
+enum status mf_votca_write(const char *file, const double *x, const double *y,
+                           struct votca_scale scale, size_t rows, size_t first) {
     struct output output;
     TRY(mf_output_open(&output, file));
     for (size_t k = 0; k < rows; k++)
-        fprintf(output.stream, "%.10g %.10g %c\n", x[k], y[k], k < first ? 'o' : 'i');
+        fprintf(output.stream, "%.10g %.10g %c\n", scale.x * x[k], scale.y * y[k],
+                k < first ? 'o' : 'i');
     return mf_output_commit(&output);
 }

@@ -22,6 +22,11 @@ struct votca_table {
 enum status mf_votca_read(struct votca_table *table, const char *file) MUST_USE;
 void mf_votca_clear(struct votca_table *table);
 
+/// What a file's units are in numbers of its writer: 1 of x in nm, 1 of y in kJ/mol.
+struct votca_scale {
+    double x, y;
+};
+
 /// Write rows "x y flag": o before row `first`, i from there on. Fails: IO.
-enum status mf_votca_write(const char *file, const double *x, const double *y, size_t rows,
-                           size_t first) MUST_USE;
+enum status mf_votca_write(const char *file, const double *x, const double *y,
+                           struct votca_scale scale, size_t rows, size_t first) MUST_USE;

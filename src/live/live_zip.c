@@ -82,24 +82,21 @@ static enum status read_whole(int file, unsigned char *bytes, size_t size, const
 
 static enum status add(void *context, int file, size_t size, const char *name) {
     struct zip *zip = context;
-    enum status status = STATUS_OK;
-    unsigned char *bytes = NULL;
+    OWNED unsigned char *bytes = NULL;
     if (zip->count == MAX_MEMBERS || zip->written > LARGEST || size > LARGEST - zip->written)
         return mf_status_fail(STATUS_BAD_INPUT, "the folder is too large to be downloaded");
-    NEW_ARRAY(bytes, size + 1);
-    CHECK(read_whole(file, bytes, size, name));
+    TRY_ARRAY(bytes, size + 1);
+    TRY(read_whole(file, bytes, size, name));
     struct member *member = &zip->member[zip->count];
     *member = (struct member){strdup(name), find_check(zip->table, bytes, size), (uint32_t)size,
                               zip->written};
-    CHECK(member->name ? STATUS_OK : STATUS_NO_MEMORY);
+    TRY(member->name ? STATUS_OK : STATUS_NO_MEMORY);
     zip->count++;
     append(zip, 0x04034b50, 4);
     write_header(zip, member);
     write_bytes(zip, member->name, strlen(member->name));
     write_bytes(zip, bytes, size);
-done:
-    mf_memory_free(bytes);
-    return status;
+    return STATUS_OK;
 }
 
 static void write_directory(struct zip *zip) {

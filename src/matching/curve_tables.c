@@ -12,17 +12,16 @@ static enum status write_curve(const struct parametrisation *parametrisation,
                                enum unknown_kind kind, size_t curve,
                                const struct curve_tables_member *member, size_t members,
                                const char *comment, const struct units *units, const char *path) {
-    enum status status = STATUS_OK;
     const struct unknowns *unknowns = &parametrisation->unknowns;
     const size_t points = mf_unknowns_points(unknowns, kind);
     const struct unknowns_part part = mf_unknowns_part(unknowns, kind, curve);
     const size_t each = part.points, first = part.first;
-    struct data_column *column = NULL;
-    double *values = NULL;
-    char(*names)[CURVE_TABLES_NAME_SIZE + 24] = NULL;
-    NEW_ARRAY(column, members + 1);
-    NEW_ARRAY(names, members);
-    NEW_ARRAY(values, (members + 1) * points);
+    OWNED struct data_column *column = NULL;
+    OWNED double *values = NULL;
+    OWNED char(*names)[CURVE_TABLES_NAME_SIZE + 24] = NULL;
+    TRY_ARRAY(column, members + 1);
+    TRY_ARRAY(names, members);
+    TRY_ARRAY(values, (members + 1) * points);
     column[0] = (struct data_column){mf_unknowns_heading(unknowns, kind, curve),
                                      mf_unknowns_r(unknowns, kind) + first, NULL};
     for (size_t k = 0; k < members; k++) {
@@ -32,12 +31,7 @@ static enum status write_curve(const struct parametrisation *parametrisation,
                            sizeof names[k]);
         column[k + 1] = (struct data_column){names[k], value + first, "%.8g"};
     }
-    CHECK(mf_data_table_write_in(path, units, comment, column, members + 1, each));
-done:
-    mf_memory_free(column);
-    mf_memory_free(names);
-    mf_memory_free(values);
-    return status;
+    return mf_data_table_write_in(path, units, comment, column, members + 1, each);
 }
 
 enum status mf_curve_tables_write(const struct parametrisation *parametrisation,

@@ -89,26 +89,23 @@ static void set_inner(struct formulas_inner *inner, const char *name, int64_t wh
 
 /// The inversion of g(r), and of the pressure and the integrals of it if they are fitted.
 static enum status create_inner(struct formulas_state *state) {
-    enum status status = STATUS_OK;
     struct formulas_inner *inner = &state->inner;
     inner->method = inner_method;
     inner->problem = *state->problem;
     for (int kind = 0; kind < TARGETS; kind++)
         if (kind != TARGET_RDF && kind != TARGET_PRESSURE && kind != mf_kirkwood_buff_kind())
             inner->problem.targets.target[kind].count = 0;
-    CHECK((inner->parameters = mf_memory_zeroed(1, inner->method->parameters_size))
-              ? STATUS_OK
-              : STATUS_NO_MEMORY);
+    TRY((inner->parameters = mf_memory_zeroed(1, inner->method->parameters_size))
+            ? STATUS_OK
+            : STATUS_NO_MEMORY);
     for (const struct inverse_table *table = inner->method->tables; table->fields; table++)
         mf_fields_set_defaults(table->fields, (char *)inner->parameters + table->offset);
     set_inner(inner, "particles", state->own.curve_particles, 0);
     set_inner(inner, "precision", 0, state->own.curve_precision);
-    CHECK((inner->state = mf_memory_zeroed(1, inner->method->state_size)) ? STATUS_OK
-                                                                          : STATUS_NO_MEMORY);
+    TRY((inner->state = mf_memory_zeroed(1, inner->method->state_size)) ? STATUS_OK
+                                                                        : STATUS_NO_MEMORY);
     inner->created = true;
-    CHECK(inner->method->create(inner->state, inner->method, &inner->problem, inner->parameters));
-done:
-    return status;
+    return inner->method->create(inner->state, inner->method, &inner->problem, inner->parameters);
 }
 
 /// The points of the curve that a formula is to describe: the known bins of a potential; all of a
@@ -129,19 +126,18 @@ static void find_points(struct formulas_state *state) {
 }
 
 static enum status allocate(struct formulas_state *state) {
-    enum status status = STATUS_OK;
     const size_t points = mf_unknowns_points(&state->unknowns, state->kind);
     state->features = mf_targets_features(&state->problem->targets);
-    NEW_ARRAY(state->y, state->count);
-    NEW_ARRAY(state->weight, state->count);
-    NEW_ARRAY(state->response, 2 * state->count * state->count);
-    NEW_ARRAY(state->offset, 2 * state->count);
-    NEW_ARRAY(state->start, state->count);
-    NEW_ARRAY(state->softness, state->count);
-    NEW_ARRAY(state->curve, points);
-    NEW_ARRAY(state->curve_error, points);
-    NEW_ARRAY(state->target, state->features);
-    NEW_ARRAY(state->found, (PROGRAMMING_MAX_NODES + 1) * state->features);
+    TRY_ARRAY(state->y, state->count);
+    TRY_ARRAY(state->weight, state->count);
+    TRY_ARRAY(state->response, 2 * state->count * state->count);
+    TRY_ARRAY(state->offset, 2 * state->count);
+    TRY_ARRAY(state->start, state->count);
+    TRY_ARRAY(state->softness, state->count);
+    TRY_ARRAY(state->curve, points);
+    TRY_ARRAY(state->curve_error, points);
+    TRY_ARRAY(state->target, state->features);
+    TRY_ARRAY(state->found, (PROGRAMMING_MAX_NODES + 1) * state->features);
     state->points.y = state->y;
     state->points.offset = state->offset;
     state->points.softness = state->softness;
@@ -149,8 +145,7 @@ static enum status allocate(struct formulas_state *state) {
         state->points.response = state->response;
     else
         state->points.weight = state->weight;
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /// Where a g below 1 says that pairs are few, they see differences the less the higher they are.

@@ -149,22 +149,16 @@ static void compare_with(const struct formulas_state *state, int length, double 
 /// A formula that was simulated with constants by which the response makes up for what that showed.
 static enum status refine(const struct formulas_state *state, int length,
                           struct formulas_member *refined) {
-    enum status status = STATUS_OK;
-    double *curve = NULL, *y = NULL, *offset = NULL;
-    NEW_ARRAY(curve, mf_unknowns_points(&state->unknowns, state->kind));
-    NEW_ARRAY(y, state->count);
-    NEW_ARRAY(offset, 2 * state->count);
+    OWNED double *curve = NULL, *y = NULL, *offset = NULL;
+    TRY_ARRAY(curve, mf_unknowns_points(&state->unknowns, state->kind));
+    TRY_ARRAY(y, state->count);
+    TRY_ARRAY(offset, 2 * state->count);
     compare_with(state, length, curve, y, offset);
     struct programming_points points = state->points;
     points.y = y;
     points.offset = offset;
     *refined = state->front[length];
-    CHECK(mf_programming_polish(&points, &refined->formula));
-done:
-    mf_memory_free(curve);
-    mf_memory_free(y);
-    mf_memory_free(offset);
-    return status;
+    return mf_programming_polish(&points, &refined->formula);
 }
 
 /// The front as it was bred, and what is best of what was simulated before with other constants.

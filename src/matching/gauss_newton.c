@@ -234,28 +234,24 @@ static void watch(struct progress *progress, double step) {
 
 /// Measure what the model says, if enough simulations succeeded to have one.
 static enum status propose(struct state *state) {
-    enum status status = STATUS_OK;
-    struct surrogate_model model = {0};
+    CLEARED_BY(mf_surrogate_model_clear) struct surrogate_model model = {0};
     bool known;
     mf_population_expect(&state->population, state->progress.error, state->progress.noise);
-    CHECK(mf_surrogate_fit(&state->population.surrogate, state->best, state->progress.reach, &model,
-                           &known));
+    TRY(mf_surrogate_fit(&state->population.surrogate, state->best, state->progress.reach, &model,
+                         &known));
     if (known) {
         const double step = step_in_errors(state, &model);
         memcpy(state->proposal, model.best, state->parametrisation.variables * sizeof *model.best);
         struct population_check check;
-        CHECK(mf_population_check(&state->population, state->proposal, (size_t)state->own.checks, 1,
-                                  &check));
+        TRY(mf_population_check(&state->population, state->proposal, (size_t)state->own.checks, 1,
+                                &check));
         assess(state, &check);
         if (state->progress.known)
             watch(&state->progress, step);
     }
     state->has_model = known;
-    CHECK(mf_parametrisation_curves_bands(&state->parametrisation, state->best,
-                                          known ? model.covariance : NULL, &state->curves));
-done:
-    mf_surrogate_model_clear(&model);
-    return status;
+    return mf_parametrisation_curves_bands(&state->parametrisation, state->best,
+                                           known ? model.covariance : NULL, &state->curves);
 }
 
 /// Why there is no result, or why it is not the last word.

@@ -19,13 +19,11 @@ static double *row_of(const struct individuals *individuals, uint64_t number) {
 }
 
 enum status mf_individuals_init(struct individuals *individuals, size_t variables) {
-    enum status status = STATUS_OK;
     const size_t width = INDIVIDUALS_HEAD + variables;
     *individuals =
         (struct individuals){.variables = variables, .capacity = 1 + MAX_NUMBERS / width};
-    NEW_ARRAY(individuals->row, individuals->capacity * width);
-done:
-    return status;
+    TRY_ARRAY(individuals->row, individuals->capacity * width);
+    return STATUS_OK;
 }
 
 void mf_individuals_clear(struct individuals *individuals) {
@@ -114,17 +112,16 @@ static enum status write_individuals(const struct individuals *individuals,
                                      const struct inverse_folder *folder) {
     static const char *const head[INDIVIDUALS_HEAD + 1] = {"iteration", "individual", "error[1]",
                                                            "parent_1", "parent_2"};
-    enum status status = STATUS_OK;
     const size_t rows = individuals->count < individuals->capacity ? (size_t)individuals->count
                                                                    : individuals->capacity;
     const size_t columns = INDIVIDUALS_HEAD + 1 + individuals->variables;
     char path[OUTPUT_PATH_SIZE];
-    struct data_column *column = NULL;
-    struct gene *gene = NULL;
-    double *values = NULL;
-    NEW_ARRAY(column, columns);
-    NEW_ARRAY(gene, individuals->variables);
-    NEW_ARRAY(values, columns * rows + 1);
+    OWNED struct data_column *column = NULL;
+    OWNED struct gene *gene = NULL;
+    OWNED double *values = NULL;
+    TRY_ARRAY(column, columns);
+    TRY_ARRAY(gene, individuals->variables);
+    TRY_ARRAY(values, columns * rows + 1);
     name_all(parametrisation, folder->units, gene);
     fill_columns(individuals, gene, rows, values);
     for (size_t n = 0; n < columns; n++)
@@ -132,29 +129,23 @@ static enum status write_individuals(const struct individuals *individuals,
             n <= INDIVIDUALS_HEAD ? head[n] : gene[n - INDIVIDUALS_HEAD - 1].name,
             values + n * rows, n == 2 || n > INDIVIDUALS_HEAD ? "%.8g" : NULL};
     folder->file(folder->context, "individuals.tsv", path);
-    CHECK(mf_data_table_write_in(path, folder->units, "parents are individuals; 0: none", column,
-                                 columns, rows));
-done:
-    mf_memory_free(column);
-    mf_memory_free(gene);
-    mf_memory_free(values);
-    return status;
+    return mf_data_table_write_in(path, folder->units, "parents are individuals; 0: none", column,
+                                  columns, rows);
 }
 
 /// Where a curve's points lie among its control points, and what it is added to.
 static enum status write_genes(const struct parametrisation *parametrisation,
                                enum unknown_kind kind, size_t curve,
                                const struct inverse_folder *folder) {
-    enum status status = STATUS_OK;
     const struct unknowns *unknowns = &parametrisation->unknowns;
     const double *base = unknowns->problem->unknown[kind].base;
     const size_t points = mf_unknowns_part(unknowns, kind, curve).points, begin = curve * points;
     const size_t first = mf_parametrisation_first_point(parametrisation, kind, curve);
     char name[UNKNOWNS_NAME_SIZE], file[UNKNOWNS_NAME_SIZE + 16], heading[64];
     char path[OUTPUT_PATH_SIZE];
-    double *place = NULL, *added = NULL;
-    NEW_ARRAY(place, points);
-    NEW_ARRAY(added, points);
+    OWNED double *place = NULL, *added = NULL;
+    TRY_ARRAY(place, points);
+    TRY_ARRAY(added, points);
     mf_parametrisation_places(parametrisation, kind, curve, place);
     for (size_t k = first; base && k < points; k++)
         added[k - first] = base[begin + k];
@@ -166,11 +157,7 @@ static enum status write_genes(const struct parametrisation *parametrisation,
     mf_unknowns_curve_name(unknowns, kind, curve, name);
     snprintf(file, sizeof file, "genes_%s.tsv", name);
     folder->file(folder->context, file, path);
-    CHECK(mf_data_table_write_in(path, folder->units, NULL, columns, 3, points - first));
-done:
-    mf_memory_free(place);
-    mf_memory_free(added);
-    return status;
+    return mf_data_table_write_in(path, folder->units, NULL, columns, 3, points - first);
 }
 
 enum status mf_individuals_write(const struct individuals *individuals,

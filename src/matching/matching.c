@@ -112,12 +112,11 @@ static void destroy(void *memory) {
 }
 
 static enum status create_optimiser(struct state *state, const void *parameters) {
-    enum status status = STATUS_OK;
-    double *start = NULL;
-    size_t *block = NULL;
-    NEW_ARRAY(start, state->parametrisation.variables);
-    NEW_ARRAY(block, state->parametrisation.variables);
-    CHECK(mf_parametrisation_start(&state->parametrisation, start));
+    OWNED double *start = NULL;
+    OWNED size_t *block = NULL;
+    TRY_ARRAY(start, state->parametrisation.variables);
+    TRY_ARRAY(block, state->parametrisation.variables);
+    TRY(mf_parametrisation_start(&state->parametrisation, start));
     const struct optimiser_space space = {
         .variables = state->parametrisation.variables,
         .minimum = 0,
@@ -128,36 +127,31 @@ static enum status create_optimiser(struct state *state, const void *parameters)
         .blocks = mf_parametrisation_blocks(&state->parametrisation, block),
         .block = block};
     state->optimiser_state = mf_memory_zeroed(1, state->optimiser->state_size);
-    CHECK(state->optimiser_state ? STATUS_OK : STATUS_NO_MEMORY);
-    CHECK(state->optimiser->create(state->optimiser_state, &space, parameters));
+    TRY(state->optimiser_state ? STATUS_OK : STATUS_NO_MEMORY);
+    TRY(state->optimiser->create(state->optimiser_state, &space, parameters));
     state->created = true;
-done:
-    mf_memory_free(block);
-    mf_memory_free(start);
-    return status;
+    return STATUS_OK;
 }
 
 static enum status create(void *memory, const struct inverse_method *method,
                           const struct inverse_problem *problem, const void *parameters) {
-    enum status status = STATUS_OK;
     struct state *state = memory;
     const struct driven *driven = method->own;
     state->parameters = *(const struct parameters *)parameters;
     state->problem = problem;
     state->optimiser = driven->optimiser;
     state->progress.error = NAN;
-    CHECK(mf_parametrisation_init(&state->parametrisation, problem));
-    NEW_ARRAY(state->best_candidate, state->parametrisation.variables);
-    NEW_ARRAY(state->best, state->parametrisation.variables);
-    CHECK(mf_parametrisation_curves_init(&state->parametrisation, &state->curves));
-    CHECK(create_optimiser(state, (const char *)parameters + driven->parameters));
-    CHECK(mf_population_init(&state->population, &state->parametrisation,
-                             &state->parameters.population));
-    CHECK(mf_individuals_init(&state->individuals, state->parametrisation.variables));
+    TRY(mf_parametrisation_init(&state->parametrisation, problem));
+    TRY_ARRAY(state->best_candidate, state->parametrisation.variables);
+    TRY_ARRAY(state->best, state->parametrisation.variables);
+    TRY(mf_parametrisation_curves_init(&state->parametrisation, &state->curves));
+    TRY(create_optimiser(state, (const char *)parameters + driven->parameters));
+    TRY(mf_population_init(&state->population, &state->parametrisation,
+                           &state->parameters.population));
+    TRY(mf_individuals_init(&state->individuals, state->parametrisation.variables));
     state->population.singles = min_evaluations;
     state->population.iterations = max_iterations(method, problem, parameters);
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /// Whether an iteration has the evaluations that it should.

@@ -49,23 +49,18 @@ static size_t log_rows(const struct pareto_state *state) {
 }
 
 static enum status create_nsga2(struct pareto_state *state) {
-    enum status status = STATUS_OK;
-    double *start = NULL;
-    NEW_ARRAY(start, state->parametrisation.variables);
-    CHECK(mf_parametrisation_start(&state->parametrisation, start));
+    OWNED double *start = NULL;
+    TRY_ARRAY(start, state->parametrisation.variables);
+    TRY(mf_parametrisation_start(&state->parametrisation, start));
     const struct nsga2_space space = {.genes = state->parametrisation.variables,
                                       .objectives = state->objectives,
                                       .start = start,
                                       .seed = state->problem->seed};
-    CHECK(mf_nsga2_init(&state->nsga2, &state->own.nsga2, &space));
-done:
-    mf_memory_free(start);
-    return status;
+    return mf_nsga2_init(&state->nsga2, &state->own.nsga2, &space);
 }
 
 static enum status create(void *memory, const struct inverse_method *method,
                           const struct inverse_problem *problem, const void *parameters) {
-    enum status status = STATUS_OK;
     struct pareto_state *state = memory;
     state->own = *(const struct pareto_parameters *)parameters;
     state->problem = problem;
@@ -76,17 +71,16 @@ static enum status create(void *memory, const struct inverse_method *method,
         return mf_status_fail(STATUS_BAD_INPUT,
                               "method.name: \"%s\" needs two fitted targets at least",
                               method->name);
-    CHECK(mf_parametrisation_init(&state->parametrisation, problem));
-    CHECK(create_nsga2(state));
-    NEW_ARRAY(state->value, POPULATION_MAX * state->objectives);
-    NEW_ARRAY(state->log, log_rows(state) * mf_pareto_log_width(state));
-    CHECK(mf_parametrisation_curves_init(&state->parametrisation, &state->curves));
-    CHECK(mf_population_init(&state->population, &state->parametrisation, &state->own.population));
+    TRY(mf_parametrisation_init(&state->parametrisation, problem));
+    TRY(create_nsga2(state));
+    TRY_ARRAY(state->value, POPULATION_MAX * state->objectives);
+    TRY_ARRAY(state->log, log_rows(state) * mf_pareto_log_width(state));
+    TRY(mf_parametrisation_curves_init(&state->parametrisation, &state->curves));
+    TRY(mf_population_init(&state->population, &state->parametrisation, &state->own.population));
     state->population.iterations =
         (uint32_t)((const struct pareto_parameters *)parameters)->nsga2.generations;
     state->progress.min = OPTIMISER_FAILED;
-done:
-    return status;
+    return STATUS_OK;
 }
 
 double mf_pareto_error(const struct pareto_state *state, const double *value) {
@@ -192,24 +186,21 @@ static enum status choose(struct pareto_state *state) {
 
 /// Standard errors of the curves, and children where the linear model sees the targets met best.
 static enum status ask_surrogate(struct pareto_state *state) {
-    enum status status = STATUS_OK;
-    struct surrogate_model model = {0};
+    CLEARED_BY(mf_surrogate_model_clear) struct surrogate_model model = {0};
     bool known = state->progress.known;
     const double *chosen = mf_nsga2_parent(&state->nsga2, state->progress.chosen);
-    CHECK(mf_parametrisation_curves_bands(&state->parametrisation, chosen, NULL, &state->curves));
+    TRY(mf_parametrisation_curves_bands(&state->parametrisation, chosen, NULL, &state->curves));
     for (int64_t k = 0; known && (k == 0 || k < state->own.surrogate); k++) {
         mf_surrogate_model_clear(&model);
-        CHECK(mf_surrogate_fit(&state->population.surrogate, chosen, ldexp(reach, (int)-k), &model,
-                               &known));
+        TRY(mf_surrogate_fit(&state->population.surrogate, chosen, ldexp(reach, (int)-k), &model,
+                             &known));
         if (known && k == 0)
-            CHECK(mf_parametrisation_curves_bands(&state->parametrisation, chosen, model.covariance,
-                                                  &state->curves));
+            TRY(mf_parametrisation_curves_bands(&state->parametrisation, chosen, model.covariance,
+                                                &state->curves));
         if (known && k < state->own.surrogate)
             mf_nsga2_inject(&state->nsga2, model.best);
     }
-done:
-    mf_surrogate_model_clear(&model);
-    return status;
+    return STATUS_OK;
 }
 
 static void describe(struct pareto_state *state, struct inverse_step *step) {

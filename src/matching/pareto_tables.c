@@ -76,15 +76,14 @@ static void fill_front(const struct pareto_state *state, const struct line *line
 static enum status write_front(const struct pareto_state *state,
                                const struct inverse_folder *folder, const struct line *lines,
                                size_t rows) {
-    enum status status = STATUS_OK;
     const size_t objectives = state->objectives, of_targets = EXTRA_COLUMNS + 2 * objectives;
     const struct inverse_problem *problem = state->problem;
     const size_t max = of_targets + problem->numbers;
     char names[2 * TARGETS][NAME_SIZE], path[OUTPUT_PATH_SIZE];
-    struct data_column *column = NULL;
-    double *memory = NULL;
-    NEW_ARRAY(column, max);
-    NEW_ARRAY(memory, max * (rows + 1));
+    OWNED struct data_column *column = NULL;
+    OWNED double *memory = NULL;
+    TRY_ARRAY(column, max);
+    TRY_ARRAY(memory, max * (rows + 1));
     double *value[EXTRA_COLUMNS + 2 * TARGETS + INVERSE_MAX_NUMBERS];
     static const char *const extra[EXTRA_COLUMNS] = {"member", "rank", "chosen", "measured",
                                                      "error[1]"};
@@ -102,23 +101,18 @@ static enum status write_front(const struct pareto_state *state,
     }
     fill_front(state, lines, rows, value);
     folder->file(folder->context, "pareto.tsv", path);
-    CHECK(mf_data_table_write_in(path, folder->units, NULL, column, max, rows));
-done:
-    mf_memory_free(column);
-    mf_memory_free(memory);
-    return status;
+    return mf_data_table_write_in(path, folder->units, NULL, column, max, rows);
 }
 
 /// pareto_history.tsv: the log.
 static enum status write_log(const struct pareto_state *state,
                              const struct inverse_folder *folder) {
-    enum status status = STATUS_OK;
     static const char *const first[LOG_OBJECTIVES] = {"iteration", "front", "error[1]"};
     const size_t rows = state->progress.rows, width = mf_pareto_log_width(state);
     char names[TARGETS][NAME_SIZE], path[OUTPUT_PATH_SIZE];
     struct data_column column[LOG_OBJECTIVES + TARGETS];
-    double *memory = NULL;
-    NEW_ARRAY(memory, width * (rows + 1));
+    OWNED double *memory = NULL;
+    TRY_ARRAY(memory, width * (rows + 1));
     for (size_t c = 0; c < width; c++) {
         if (c >= LOG_OBJECTIVES)
             snprintf(names[c - LOG_OBJECTIVES], NAME_SIZE, "%s_rmse[1]",
@@ -130,40 +124,29 @@ static enum status write_log(const struct pareto_state *state,
             value[k] = state->log[k * width + c];
     }
     folder->file(folder->context, "pareto_history.tsv", path);
-    CHECK(mf_data_table_write_in(path, folder->units, NULL, column, width, rows));
-done:
-    mf_memory_free(memory);
-    return status;
+    return mf_data_table_write_in(path, folder->units, NULL, column, width, rows);
 }
 
 /// pareto_potential.tsv and so on: the members of the front, named by their numbers in pareto.tsv.
 static enum status write_curves(const struct pareto_state *state,
                                 const struct inverse_folder *folder, const struct line *lines,
                                 size_t members) {
-    enum status status = STATUS_OK;
-    struct curve_tables_member *member = NULL;
-    NEW_ARRAY(member, members);
+    OWNED struct curve_tables_member *member = NULL;
+    TRY_ARRAY(member, members);
     for (size_t k = 0; k < members; k++) {
         member[k].variables = mf_nsga2_parent(&state->nsga2, lines[k].parent);
         snprintf(member[k].name, sizeof member[k].name, "%zu", k + 1);
     }
-    CHECK(mf_curve_tables_write(&state->parametrisation, folder, "pareto", NULL, member, members));
-done:
-    mf_memory_free(member);
-    return status;
+    return mf_curve_tables_write(&state->parametrisation, folder, "pareto", NULL, member, members);
 }
 
 enum status mf_pareto_write_tables(const void *memory, const struct inverse_folder *folder) {
-    enum status status = STATUS_OK;
     const struct pareto_state *state = memory;
-    struct line *lines = NULL;
-    NEW_ARRAY(lines, state->nsga2.population);
+    OWNED struct line *lines = NULL;
+    TRY_ARRAY(lines, state->nsga2.population);
     size_t members;
     const size_t rows = sort_lines(state, lines, &members);
-    CHECK(write_front(state, folder, lines, rows));
-    CHECK(write_log(state, folder));
-    CHECK(write_curves(state, folder, lines, members));
-done:
-    mf_memory_free(lines);
-    return status;
+    TRY(write_front(state, folder, lines, rows));
+    TRY(write_log(state, folder));
+    return write_curves(state, folder, lines, members);
 }

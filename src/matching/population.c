@@ -56,32 +56,30 @@ size_t mf_population_coordinates(const struct population *population) {
 enum status mf_population_init(struct population *population,
                                const struct parametrisation *parametrisation,
                                const struct population_parameters *parameters) {
-    enum status status = STATUS_OK;
     *population = (struct population){
         .parametrisation = parametrisation, .parameters = *parameters, .best = NAN};
-    NEW_ARRAY(population->errors, POPULATION_MAX);
-    NEW_ARRAY(population->variances, POPULATION_MAX);
-    NEW_ARRAY(population->distances, POPULATION_MAX * TARGETS);
-    NEW_ARRAY(population->first, parametrisation->variables);
-    NEW_ARRAY(population->shown, POPULATION_MAX * parametrisation->variables);
-    NEW_ARRAY(population->shown_error, POPULATION_MAX);
+    TRY_ARRAY(population->errors, POPULATION_MAX);
+    TRY_ARRAY(population->variances, POPULATION_MAX);
+    TRY_ARRAY(population->distances, POPULATION_MAX * TARGETS);
+    TRY_ARRAY(population->first, parametrisation->variables);
+    TRY_ARRAY(population->shown, POPULATION_MAX * parametrisation->variables);
+    TRY_ARRAY(population->shown_error, POPULATION_MAX);
     const struct targets *targets = &parametrisation->unknowns.problem->targets;
     const size_t features = mf_targets_features(targets);
-    NEW_ARRAY(population->features, POPULATION_MAX * features);
-    NEW_ARRAY(population->target, features);
-    NEW_ARRAY(population->target_error, features);
-    NEW_ARRAY(population->excess, features);
+    TRY_ARRAY(population->features, POPULATION_MAX * features);
+    TRY_ARRAY(population->target, features);
+    TRY_ARRAY(population->target_error, features);
+    TRY_ARRAY(population->excess, features);
     mf_targets_take_features(targets, NULL, population->target, population->target_error);
-    CHECK(mf_surrogate_init(&population->surrogate, parametrisation->variables, features,
-                            POPULATION_MAX, population->target, population->target_error,
-                            population->excess));
-    NEW_ARRAY(population->position, mf_population_coordinates(population));
-    NEW_ARRAY(population->best_position, mf_population_coordinates(population));
+    TRY(mf_surrogate_init(&population->surrogate, parametrisation->variables, features,
+                          POPULATION_MAX, population->target, population->target_error,
+                          population->excess));
+    TRY_ARRAY(population->position, mf_population_coordinates(population));
+    TRY_ARRAY(population->best_position, mf_population_coordinates(population));
     mf_population_next_round(population);
     mf_population_reset_survey(population);
     population->totals.rounds = 0;
-done:
-    return status;
+    return STATUS_OK;
 }
 
 void mf_population_clear(struct population *population) {

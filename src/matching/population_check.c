@@ -18,20 +18,18 @@ struct fresh {
 };
 
 static enum status fresh_init(struct fresh *fresh, size_t count, int64_t length) {
-    enum status status = STATUS_OK;
     const struct population *population = fresh->population;
     fresh->parameters = population->parameters.evaluate;
     fresh->parameters.plan.equilibration *= length;
     fresh->parameters.plan.samples *= length;
     fresh->parameters.precision = 0;
-    NEW_ARRAY(fresh->results, count);
-    NEW_ARRAY(fresh->features, count * population->surrogate.features);
-    NEW_ARRAY(fresh->observed, count);
+    TRY_ARRAY(fresh->results, count);
+    TRY_ARRAY(fresh->features, count * population->surrogate.features);
+    TRY_ARRAY(fresh->observed, count);
     for (size_t k = 0; k < count; k++)
-        CHECK(mf_measurement_values_init(&fresh->observed[k],
-                                         &population->parametrisation->unknowns.problem->targets));
-done:
-    return status;
+        TRY(mf_measurement_values_init(&fresh->observed[k],
+                                       &population->parametrisation->unknowns.problem->targets));
+    return STATUS_OK;
 }
 
 static void fresh_clear(struct fresh *fresh, size_t count) {
@@ -83,19 +81,16 @@ static struct target_distance mean_distance(const struct evaluate_result *result
 /// The mean of all, as one measurement.
 static enum status compare_mean(const struct fresh *fresh, size_t count,
                                 struct population_check *check) {
-    enum status status = STATUS_OK;
     const struct targets *targets = &fresh->population->parametrisation->unknowns.problem->targets;
     struct target_distance distance[TARGETS];
-    struct observed mean = {0};
-    CHECK(mf_measurement_values_init(&mean, targets));
+    CLEARED_BY(mf_measurement_values_clear) struct observed mean = {0};
+    TRY(mf_measurement_values_init(&mean, targets));
     mf_measurement_mean(fresh->observed, count, targets, &mean);
     mf_measurement_distance(&mean, targets, distance);
     check->error = mf_targets_error(targets, distance);
     check->noise = mf_targets_noise(targets, distance);
     check->variance = mf_targets_variance(targets, distance);
-done:
-    mf_measurement_values_clear(&mean);
-    return status;
+    return STATUS_OK;
 }
 
 enum status mf_population_check(struct population *population, const double *variables,

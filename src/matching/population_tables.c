@@ -34,24 +34,19 @@ static size_t sort_lines(const struct population *population, struct line *lines
 
 enum status mf_population_write(const struct population *population,
                                 const struct inverse_folder *folder) {
-    enum status status = STATUS_OK;
-    struct line *lines = NULL;
-    struct curve_tables_member *member = NULL;
+    OWNED struct line *lines = NULL;
+    OWNED struct curve_tables_member *member = NULL;
     if (population->shown_count == 0)
         return STATUS_OK;
-    NEW_ARRAY(lines, population->shown_count);
-    NEW_ARRAY(member, population->shown_count);
+    TRY_ARRAY(lines, population->shown_count);
+    TRY_ARRAY(member, population->shown_count);
     const size_t count = sort_lines(population, lines);
     for (size_t k = 0; k < count; k++) {
         member[k].variables =
             population->shown + lines[k].candidate * population->parametrisation->variables;
         snprintf(member[k].name, sizeof member[k].name, "%.4g", lines[k].error);
     }
-    CHECK(mf_curve_tables_write(population->parametrisation, folder, "population",
-                                "columns are named by the error of their candidate", member,
-                                count));
-done:
-    mf_memory_free(member);
-    mf_memory_free(lines);
-    return status;
+    return mf_curve_tables_write(population->parametrisation, folder, "population",
+                                 "columns are named by the error of their candidate", member,
+                                 count);
 }

@@ -124,7 +124,6 @@ static void set(const struct part *part, const char *name, const void *value, si
 /// A part with the defaults of its method, for the unknown and the targets that are its own.
 static enum status create_part(struct state *state, enum unknown_kind kind,
                                const struct parameters *own) {
-    enum status status = STATUS_OK;
     struct part *part = &state->part[kind];
     part->method = methods[kind];
     part->problem = *state->problem;
@@ -132,9 +131,8 @@ static enum status create_part(struct state *state, enum unknown_kind kind,
     for (int target = 0; target < TARGETS; target++)
         if (is_of_potential(target) != (kind == UNKNOWN_POTENTIAL))
             part->problem.targets.target[target].count = 0;
-    CHECK((part->parameters = mf_memory_zeroed(1, part->method->parameters_size))
-              ? STATUS_OK
-              : STATUS_NO_MEMORY);
+    TRY((part->parameters = mf_memory_zeroed(1, part->method->parameters_size)) ? STATUS_OK
+                                                                                : STATUS_NO_MEMORY);
     for (const struct inverse_table *table = part->method->tables; table->fields; table++)
         mf_fields_set_defaults(table->fields, (char *)part->parameters + table->offset);
     if (kind == UNKNOWN_POTENTIAL) {
@@ -144,40 +142,36 @@ static enum status create_part(struct state *state, enum unknown_kind kind,
         memcpy(part->parameters, &own->population, sizeof own->population);
         part->problem.scene.potential = &state->table;
     }
-    CHECK((part->state = mf_memory_zeroed(1, part->method->state_size)) ? STATUS_OK
-                                                                        : STATUS_NO_MEMORY);
+    TRY((part->state = mf_memory_zeroed(1, part->method->state_size)) ? STATUS_OK
+                                                                      : STATUS_NO_MEMORY);
     part->created = true;
-    CHECK(part->method->create(part->state, part->method, &part->problem, part->parameters));
-done:
-    return status;
+    return part->method->create(part->state, part->method, &part->problem, part->parameters);
 }
 
 static enum status create(void *memory, const struct inverse_method *method,
                           const struct inverse_problem *problem, const void *parameters) {
-    enum status status = STATUS_OK;
     struct state *state = memory;
     state->problem = problem;
-    CHECK(refuse(method, problem));
-    CHECK(mf_unknowns_init(&state->unknowns, problem));
+    TRY(refuse(method, problem));
+    TRY(mf_unknowns_init(&state->unknowns, problem));
     for (int kind = 0; kind < PARTS; kind++) {
         const size_t points = mf_unknowns_points(&state->unknowns, kind);
         struct outcome *outcome = &state->progress.outcome[kind];
         outcome->error = outcome->noise = outcome->variance = NAN;
-        NEW_ARRAY(state->curve[kind], points);
-        NEW_ARRAY(state->error[kind], points);
-        NEW_ARRAY(state->flat[kind], INVERSE_FLAT * points);
+        TRY_ARRAY(state->curve[kind], points);
+        TRY_ARRAY(state->error[kind], points);
+        TRY_ARRAY(state->flat[kind], INVERSE_FLAT * points);
         for (size_t k = 0; k < points; k++)
             state->error[kind][k] = NAN;
         for (size_t k = 0; k < INVERSE_FLAT * points; k++)
             state->flat[kind][k] = NAN;
-        CHECK(create_part(state, kind, parameters));
+        TRY(create_part(state, kind, parameters));
         mf_unknowns_start(&state->unknowns, kind, state->curve[kind]);
     }
-    NEW_ARRAY(state->without_ramp, mf_unknowns_points(&state->unknowns, UNKNOWN_POTENTIAL));
+    TRY_ARRAY(state->without_ramp, mf_unknowns_points(&state->unknowns, UNKNOWN_POTENTIAL));
     for (int n = 0; n < INVERSE_PARAMETERS; n++)
         state->progress.parameter[n].value = state->progress.parameter[n].error = NAN;
-done:
-    return status;
+    return STATUS_OK;
 }
 
 // A step ------------------------------------------------------------------------------------------

@@ -19,7 +19,6 @@ static const double min_error = 1e-4;
 enum status mf_surrogate_init(struct surrogate *surrogate, size_t variables, size_t features,
                               size_t capacity, const double *target, const double *target_error,
                               const double *excess) {
-    enum status status = STATUS_OK;
     *surrogate = (struct surrogate){.variables = variables,
                                     .features = features,
                                     .capacity = capacity,
@@ -27,10 +26,9 @@ enum status mf_surrogate_init(struct surrogate *surrogate, size_t variables, siz
                                     .target = target,
                                     .target_error = target_error,
                                     .excess = excess};
-    NEW_ARRAY(surrogate->x, capacity * variables);
-    NEW_ARRAY(surrogate->y, capacity * features);
-done:
-    return status;
+    TRY_ARRAY(surrogate->x, capacity * variables);
+    TRY_ARRAY(surrogate->y, capacity * features);
+    return STATUS_OK;
 }
 
 void mf_surrogate_clear(struct surrogate *surrogate) {
@@ -409,19 +407,16 @@ static enum status find_covariance(const struct surrogate *surrogate, const doub
 
 enum status mf_surrogate_fit(const struct surrogate *surrogate, const double *centre, double reach,
                              struct surrogate_model *model, bool *known) {
-    enum status status = STATUS_OK;
     const size_t variables = surrogate->variables, added = (size_t)surrogate->rows.added;
     const size_t kept = added < surrogate->capacity ? added : surrogate->capacity;
     *model = (struct surrogate_model){.variables = variables};
     *known = kept >= mf_surrogate_min_rows(variables);
     if (!*known)
         return STATUS_OK;
-    NEW_ARRAY(model->best, variables);
-    NEW_ARRAY(model->covariance, variables * variables);
-    CHECK(find_best(surrogate, centre, kept, reach, model));
-    CHECK(find_covariance(surrogate, centre, kept, model));
-done:
-    return status;
+    TRY_ARRAY(model->best, variables);
+    TRY_ARRAY(model->covariance, variables * variables);
+    TRY(find_best(surrogate, centre, kept, reach, model));
+    return find_covariance(surrogate, centre, kept, model);
 }
 
 void mf_surrogate_model_clear(struct surrogate_model *model) {

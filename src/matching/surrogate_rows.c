@@ -27,24 +27,22 @@ void mf_surrogate_clear_rows(struct surrogate_work *work) {
 
 static enum status work_init(struct surrogate_work *work, const struct surrogate *surrogate,
                              size_t kept, size_t rows) {
-    enum status status = STATUS_OK;
     const size_t terms = surrogate->variables + 1;
     *work = (struct surrogate_work){.surrogate = surrogate, .rows = rows, .terms = terms};
-    NEW_ARRAY(work->near, kept);
-    NEW_ARRAY(work->weight, rows);
-    NEW_ARRAY(work->design, rows * terms);
-    NEW_ARRAY(work->normal, terms * terms);
-    NEW_ARRAY(work->model, surrogate->features * terms);
-    NEW_ARRAY(work->residual, rows * surrogate->features);
-    NEW_ARRAY(work->scatter, surrogate->features);
-    NEW_ARRAY(work->spread, terms * terms);
-    NEW_ARRAY(work->term, terms);
-    NEW_ARRAY(work->hessian, surrogate->variables * surrogate->variables);
-    NEW_ARRAY(work->miss, surrogate->features);
-    NEW_ARRAY(work->scale, surrogate->features);
-    NEW_ARRAY(work->delta, surrogate->variables);
-done:
-    return status;
+    TRY_ARRAY(work->near, kept);
+    TRY_ARRAY(work->weight, rows);
+    TRY_ARRAY(work->design, rows * terms);
+    TRY_ARRAY(work->normal, terms * terms);
+    TRY_ARRAY(work->model, surrogate->features * terms);
+    TRY_ARRAY(work->residual, rows * surrogate->features);
+    TRY_ARRAY(work->scatter, surrogate->features);
+    TRY_ARRAY(work->spread, terms * terms);
+    TRY_ARRAY(work->term, terms);
+    TRY_ARRAY(work->hessian, surrogate->variables * surrogate->variables);
+    TRY_ARRAY(work->miss, surrogate->features);
+    TRY_ARRAY(work->scale, surrogate->features);
+    TRY_ARRAY(work->delta, surrogate->variables);
+    return STATUS_OK;
 }
 
 /// exp(−d²/2h²) with h the distance of the middle row.
@@ -162,20 +160,16 @@ static int by_size(const void *a, const void *b) {
 /// inverse square, as if all missed as much: a few candidates far away, where a liquid is none,
 /// would drown the others (P. J. Huber, Robust Statistics (1981)).
 static enum status weigh_down(struct surrogate_work *work) {
-    enum status status = STATUS_OK;
     static const double usual = 2;
-    double *miss = NULL, *sorted = NULL;
-    NEW_ARRAY(miss, work->rows);
-    NEW_ARRAY(sorted, work->rows);
+    OWNED double *miss = NULL, *sorted = NULL;
+    TRY_ARRAY(miss, work->rows);
+    TRY_ARRAY(sorted, work->rows);
     for (size_t k = 0; k < work->rows; k++)
         miss[k] = sorted[k] = miss_of(work, k);
     qsort(sorted, work->rows, sizeof *sorted, by_size);
     for (size_t k = 0; k < work->rows; k++)
         work->weight[k] *= fmin(1, pow(usual * sorted[work->rows / 2] / fmax(miss[k], 1e-300), 2));
-done:
-    mf_memory_free(miss);
-    mf_memory_free(sorted);
-    return status;
+    return STATUS_OK;
 }
 
 static void reset_fit(struct surrogate_work *work) {

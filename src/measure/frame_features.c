@@ -41,12 +41,11 @@ static size_t range_of(const struct frame_pairs_plan *plan, size_t bin) {
 enum status mf_frame_features_add(struct frame_features *features,
                                   const struct frame_pairs_plan *plan,
                                   const struct frame_pairs *pairs, double volume) {
-    enum status status = STATUS_OK;
     const size_t types = (size_t)mf_composition_pairs(&plan->composition);
     if (features->block == NULL) {
         features->features = features_of(plan);
         features->each = 1;
-        NEW_ARRAY(features->block, FEATURE_BLOCKS * features->features);
+        TRY_ARRAY(features->block, FEATURE_BLOCKS * features->features);
     }
     if (features->frames == FEATURE_BLOCKS * features->each)
         halve(features);
@@ -62,8 +61,7 @@ enum status mf_frame_features_add(struct frame_features *features,
                 block[to + types * FEATURE_RANGES] += (double)pairs->within[from] - apart;
         }
     features->frames++;
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /// One series after the other.

@@ -32,18 +32,16 @@ static size_t find_counts(const struct frame_pairs_plan *plan) {
 }
 
 static enum status reserve(struct frame_pairs *pairs, const struct frame_pairs_plan *plan) {
-    enum status status = STATUS_OK;
     if (pairs->counts)
         return STATUS_OK;
     for (int i = 0; i < 3; i++)
-        NEW_ARRAY(pairs->place[i], find_beads(plan));
-    NEW_ARRAY(pairs->type, find_beads(plan));
-    NEW_ARRAY(pairs->molecule, find_beads(plan));
-    NEW_ARRAY(pairs->counts, find_counts(plan));
+        TRY_ARRAY(pairs->place[i], find_beads(plan));
+    TRY_ARRAY(pairs->type, find_beads(plan));
+    TRY_ARRAY(pairs->molecule, find_beads(plan));
+    TRY_ARRAY(pairs->counts, find_counts(plan));
     if (plan->within)
-        NEW_ARRAY(pairs->within, find_counts(plan));
-done:
-    return status;
+        TRY_ARRAY(pairs->within, find_counts(plan));
+    return STATUS_OK;
 }
 
 /// Two beads nearer than the range differ by less than range/height of a vector of the box, so that

@@ -8,13 +8,11 @@
 static const double turn = 2 * 3.14159265358979323846;
 
 static enum status begin(struct frame_waves *waves, const struct density_waves_plan *plan) {
-    enum status status = STATUS_OK;
     if (waves->numbers)
         return STATUS_OK;
-    CHECK(mf_density_waves_init(&waves->waves, plan));
-    NEW_ARRAY(waves->numbers, (waves->waves.curves + 2) * plan->bins);
-done:
-    return status;
+    TRY(mf_density_waves_init(&waves->waves, plan));
+    TRY_ARRAY(waves->numbers, (waves->waves.curves + 2) * plan->bins);
+    return STATUS_OK;
 }
 
 void mf_frame_waves_clear(struct frame_waves *waves) {

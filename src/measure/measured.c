@@ -49,11 +49,11 @@ static enum status find_composition(const struct mapping *mapping,
 
 /// Molecules matter if one has several beads.
 static enum status find_molecules(struct measured *measured) {
-    enum status status = STATUS_OK;
     const struct mapping *const mapping = measured->mapping;
-    bool *seen = NULL, several = false;
-    NEW_ARRAY(seen, mapping->atoms);
-    NEW_ARRAY(measured->molecule, mapping->beads);
+    OWNED bool *seen = NULL;
+    bool several = false;
+    TRY_ARRAY(seen, mapping->atoms);
+    TRY_ARRAY(measured->molecule, mapping->beads);
     for (size_t k = 0; k < mapping->beads; k++) {
         const size_t molecule = mapping->bead[k].molecule;
         several = several || seen[molecule];
@@ -61,9 +61,7 @@ static enum status find_molecules(struct measured *measured) {
         measured->molecule[k] = (uint32_t)molecule;
     }
     measured->pairs.molecule = several ? measured->molecule : NULL;
-done:
-    mf_memory_free(seen);
-    return status;
+    return STATUS_OK;
 }
 
 /// The molecules that a file tells of: their pairs are counted apart.
@@ -194,17 +192,15 @@ void mf_measured_clear(struct measured *measured) {
 }
 
 static enum status make_slots(struct measured *measured, size_t count) {
-    enum status status = STATUS_OK;
     if (count <= measured->slots)
         return STATUS_OK;
     clear_slots(measured);
-    NEW_ARRAY(measured->slot, count);
+    TRY_ARRAY(measured->slot, count);
     measured->slots = count;
     for (size_t k = 0; k < count; k++)
         for (int d = 0; d < 3; d++)
-            NEW_ARRAY(measured->slot[k].place[d], measured->mapping->beads);
-done:
-    return status;
+            TRY_ARRAY(measured->slot[k].place[d], measured->mapping->beads);
+    return STATUS_OK;
 }
 
 // Frames ------------------------------------------------------------------------------------------

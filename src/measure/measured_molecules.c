@@ -14,24 +14,21 @@ static const double without_end = 1e9;
 // Preparing ---------------------------------------------------------------------------------------
 
 static enum status plan_walks(struct measured_molecules *measured) {
-    enum status status = STATUS_OK;
     const struct topology *topology = &measured->molecules->topology;
     for (int k = 0; k < topology->kinds; k++)
         if ((size_t)topology->kind[k].beads > measured->max_beads)
             measured->max_beads = (size_t)topology->kind[k].beads;
-    NEW_ARRAY(measured->order, (size_t)topology->kinds * measured->max_beads);
-    NEW_ARRAY(measured->parent, (size_t)topology->kinds * measured->max_beads);
+    TRY_ARRAY(measured->order, (size_t)topology->kinds * measured->max_beads);
+    TRY_ARRAY(measured->parent, (size_t)topology->kinds * measured->max_beads);
     for (int k = 0; k < topology->kinds; k++)
         mf_topology_walk(&topology->kind[k], measured->order + (size_t)k * measured->max_beads,
                          measured->parent + (size_t)k * measured->max_beads);
-done:
-    return status;
+    return STATUS_OK;
 }
 
 static enum status list_excluded(struct measured_molecules *measured) {
-    enum status status = STATUS_OK;
     const struct topology *topology = &measured->molecules->topology;
-    NEW_ARRAY(measured->excluded, topology->excluded_start[topology->particles] / 2);
+    TRY_ARRAY(measured->excluded, topology->excluded_start[topology->particles] / 2);
     for (uint32_t id = 0; id < topology->particles; id++)
         for (size_t n = topology->excluded_start[id]; n < topology->excluded_start[id + 1]; n++) {
             const uint32_t other = topology->excluded[n];
@@ -41,8 +38,7 @@ static enum status list_excluded(struct measured_molecules *measured) {
             pair[0] = (uint32_t)measured->match.bead[id];
             pair[1] = (uint32_t)measured->match.bead[other];
         }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 enum status mf_measured_molecules_begin(struct measured_molecules *measured,
@@ -74,24 +70,21 @@ static enum status add_masses(struct measured_molecules *measured, struct partic
 
 /// A simulation with the beads where the mapping has them.
 static enum status make_shell(struct measured_molecules *measured, double interval) {
-    enum status status = STATUS_OK;
     const struct topology *topology = &measured->molecules->topology;
     const struct box box = {3, {without_end, without_end, without_end}};
-    NEW_ARRAY(measured->shell, 1);
+    TRY_ARRAY(measured->shell, 1);
     struct simulation *shell = measured->shell;
     shell->setup = (struct simulation_setup){.box = box,
                                              .placement = {.count = (int64_t)topology->particles},
                                              .time_step = interval,
                                              .interaction = {{&mf_molecules, measured->molecules}},
                                              .interactions = 1};
-    CHECK(mf_particles_init(&shell->particles, &box, topology->particles));
-    CHECK(mf_particles_join(&shell->particles, topology));
+    TRY(mf_particles_init(&shell->particles, &box, topology->particles));
+    TRY(mf_particles_join(&shell->particles, topology));
     for (uint32_t id = 0; id < topology->particles; id++)
         shell->particles.id[measured->match.bead[id]] = id;
     mf_particles_label_places(&shell->particles);
-    CHECK(add_masses(measured, &shell->particles));
-done:
-    return status;
+    return add_masses(measured, &shell->particles);
 }
 
 // Frames ------------------------------------------------------------------------------------------
@@ -193,18 +186,15 @@ static const struct observable *find_observable(const char *name) {
 static enum status add_observable(struct measured_molecules *measured,
                                   const struct observable *observable, int64_t bins,
                                   struct observable_use *use) {
-    enum status status = STATUS_OK;
     const struct measure_plan plan = {.equilibration = -1, .samples = 0, .every = 1};
     use->observable = observable;
     use->state = mf_memory_zeroed(1, observable->state_size);
     use->settings = mf_memory_zeroed(1, observable->settings_size);
-    CHECK(use->state && use->settings ? STATUS_OK : STATUS_NO_MEMORY);
+    TRY(use->state && use->settings ? STATUS_OK : STATUS_NO_MEMORY);
     mf_fields_set_defaults(observable->fields, use->settings);
     if (bins > 0)
         ((struct bonded_settings *)use->settings)->bins = bins;
-    CHECK(observable->begin(use->state, use->settings, measured->shell, &plan));
-done:
-    return status;
+    return observable->begin(use->state, use->settings, measured->shell, &plan);
 }
 
 enum status mf_measured_molecules_start(struct measured_molecules *measured,

@@ -25,15 +25,13 @@ static const double interval_tolerance = 1e-3;
 // Preparing ---------------------------------------------------------------------------------------
 
 static enum status copy_masses(struct measured_motion *motion, const struct mapping *mapping) {
-    enum status status = STATUS_OK;
     for (size_t k = 0; k < mapping->beads; k++)
         if (!(mapping->bead[k].mass > 0))
             return STATUS_OK;
-    NEW_ARRAY(motion->mass, mapping->beads);
+    TRY_ARRAY(motion->mass, mapping->beads);
     for (size_t k = 0; k < mapping->beads; k++)
         motion->mass[k] = mapping->bead[k].mass;
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /// Momentum is that of all atoms: beads of some of them have a share that comes and goes.

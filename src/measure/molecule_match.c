@@ -63,17 +63,15 @@ static enum status translate_types(const struct work *work, const struct composi
 }
 
 static enum status list_beads(struct work *work) {
-    enum status status = STATUS_OK;
     const struct mapping *mapping = work->mapping;
-    NEW_ARRAY(work->entry, mapping->beads);
-    NEW_ARRAY(work->begin, mapping->beads + 1);
-    NEW_ARRAY(work->kind, mapping->beads);
+    TRY_ARRAY(work->entry, mapping->beads);
+    TRY_ARRAY(work->begin, mapping->beads + 1);
+    TRY_ARRAY(work->kind, mapping->beads);
     for (size_t k = 0; k < mapping->beads; k++)
         work->entry[k] = (struct entry){.group = mapping->bead[k].molecule,
                                         .atom = mapping->atom[mapping->bead[k].first],
                                         .bead = k};
-done:
-    return status;
+    return STATUS_OK;
 }
 
 // By residues -------------------------------------------------------------------------------------
@@ -190,10 +188,9 @@ static void keep_counts(struct work *work) {
 /// The ids of molecules' beads, and of single ones behind them.
 static enum status number_beads(const struct work *work, const struct composition *composition,
                                 struct molecule_match *match) {
-    enum status status = STATUS_OK;
     int64_t found[TOPOLOGY_MAX_KINDS] = {0};
     size_t single[COMPOSITION_MAX_TYPES] = {0};
-    NEW_ARRAY(match->bead, work->mapping->beads);
+    TRY_ARRAY(match->bead, work->mapping->beads);
     for (int type = 0; type < composition->types; type++)
         for (int before = 0; before <= type; before++)
             single[type] += (size_t)composition->count[before];
@@ -212,8 +209,7 @@ static enum status number_beads(const struct work *work, const struct compositio
                 work->entry[work->begin[group] + (size_t)bead].bead;
         found[k]++;
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 enum status mf_molecule_match(struct molecule_match *match, struct topology *topology,

@@ -84,7 +84,6 @@ static struct bonded_bins choose_bins(const struct molecules *molecules, int ord
 
 static enum status begin(struct bonded_state *s, int order, const struct bonded_settings *settings,
                          const struct simulation *simulation, const struct measure_plan *plan) {
-    enum status status = STATUS_OK;
     const struct simulation_setup *setup = &simulation->setup;
     const struct molecules *molecules = mf_molecules_find(setup->interaction, setup->interactions);
     if (molecules == NULL || molecules->groups[order] == 0)
@@ -93,7 +92,7 @@ static enum status begin(struct bonded_state *s, int order, const struct bonded_
                               mf_bonded_kinds[order]->plural);
     *s = (struct bonded_state){
         .molecules = molecules, .order = order, .dimensions = setup->box.dimensions};
-    CHECK(mf_sample_blocks_init(&s->blocks, (size_t)plan->samples));
+    TRY(mf_sample_blocks_init(&s->blocks, (size_t)plan->samples));
     for (int g = 0; g < molecules->groups[order]; g++) {
         s->bins[g] = settings->bins > 0
                          ? choose_bins(molecules, order, settings->bins, setup->temperature)
@@ -102,10 +101,9 @@ static enum status begin(struct bonded_state *s, int order, const struct bonded_
     }
     s->parts = (size_t)molecules->topology.molecules;
     s->parts = s->parts < MAX_PARTS ? s->parts : MAX_PARTS;
-    NEW_ARRAY(s->counts, s->blocks.count * s->first[molecules->groups[order]]);
-    NEW_ARRAY(s->of_part, s->parts * s->first[molecules->groups[order]]);
-done:
-    return status;
+    TRY_ARRAY(s->counts, s->blocks.count * s->first[molecules->groups[order]]);
+    TRY_ARRAY(s->of_part, s->parts * s->first[molecules->groups[order]]);
+    return STATUS_OK;
 }
 
 static void clear(void *state) {
@@ -246,13 +244,12 @@ static void find_errors_of_parts(const struct bonded_state *const *states, size_
 /// them scatters more.
 static enum status average(const struct bonded_state *const *states, size_t count, int group,
                            double *value, double *error) {
-    enum status status = STATUS_OK;
     const size_t bins = states[0]->bins[group].count,
                  blocks = mf_bonded_series_blocks(states, count);
     const size_t values = count * blocks;
-    double *series = NULL, *of_parts = NULL;
-    NEW_ARRAY(series, bins * values + 1);
-    NEW_ARRAY(of_parts, bins + 1);
+    OWNED double *series = NULL, *of_parts = NULL;
+    TRY_ARRAY(series, bins * values + 1);
+    TRY_ARRAY(of_parts, bins + 1);
     mf_bonded_series_find(states, count, group, blocks, series);
     for (size_t bin = 0; bin < bins; bin++) {
         struct running_mean mean = {0};
@@ -264,10 +261,7 @@ static enum status average(const struct bonded_state *const *states, size_t coun
     find_errors_of_parts(states, count, group, of_parts);
     if (values > 1)
         mf_statistics_take_larger(error, of_parts, bins);
-done:
-    mf_memory_free(series);
-    mf_memory_free(of_parts);
-    return status;
+    return STATUS_OK;
 }
 
 /// p, its error and p over the Jacobian with a largest value of 1; shape [COLUMNS, bins].
@@ -302,20 +296,19 @@ static enum status write_table(const struct bonded_state *s, const char *file,
                                const struct observable_results *results) {
     enum { MAX = 1 + COLUMNS * MOLECULES_MAX_GROUPS };
     static const char *const endings[COLUMNS] = {"", "_error", "_boltzmann"};
-    enum status status = STATUS_OK;
     const int groups = s->molecules->groups[s->order];
     const size_t bins = s->bins[0].count;
     struct data_column columns[MAX];
-    char names[MAX][TOPOLOGY_NAME_SIZE + 32], path[OUTPUT_PATH_SIZE];
-    double *values = NULL;
-    NEW_ARRAY(values, (1 + COLUMNS * (size_t)groups) * bins);
+    char names[MAX][TOPOLOGY_NAME_SIZE + 32];
+    OWNED double *values = NULL;
+    TRY_ARRAY(values, (1 + COLUMNS * (size_t)groups) * bins);
     for (size_t bin = 0; bin < bins; bin++)
         values[bin] = bonded_bins_centre(&s->bins[0], bin);
     columns[0] =
         (struct data_column){mf_bonded_distribution_of(s->order)->targets->argument, values, NULL};
     for (int g = 0; g < groups; g++) {
         double *own = values + (1 + COLUMNS * (size_t)g) * bins;
-        CHECK(find_columns(s, g, own));
+        TRY(find_columns(s, g, own));
         for (int c = 0; c < COLUMNS; c++) {
             const int n = 1 + COLUMNS * g + c;
             snprintf(names[n], sizeof names[n], "%s%s[%s]", s->molecules->group[s->order][g].name,
@@ -324,12 +317,7 @@ static enum status write_table(const struct bonded_state *s, const char *file,
                 (struct data_column){names[n], own + (size_t)c * bins, c == 1 ? "%.3g" : "%.8g"};
         }
     }
-    mf_observable_file(results, file, path);
-    CHECK(mf_data_table_write_in(path, results->units, NULL, columns,
-                                 (size_t)(1 + COLUMNS * groups), bins));
-done:
-    mf_memory_free(values);
-    return status;
+    return mf_observable_table(results, file, columns, (size_t)(1 + COLUMNS * groups), bins);
 }
 
 /// Nanoseconds of a term and sample.

@@ -31,14 +31,10 @@ void mf_bonded_series_find(const struct bonded_state *const *states, size_t coun
 enum status mf_bonded_distribution_independence(const void *const *states, size_t count, int group,
                                                 size_t first, size_t bins,
                                                 struct statistics_independence *found) {
-    enum status status = STATUS_OK;
     const struct bonded_state *const *all = (const struct bonded_state *const *)states;
     const size_t blocks = mf_bonded_series_blocks(all, count), values = count * blocks;
-    double *series = NULL;
-    NEW_ARRAY(series, all[0]->bins[group].count * values + 1);
+    OWNED double *series = NULL;
+    TRY_ARRAY(series, all[0]->bins[group].count * values + 1);
     mf_bonded_series_find(all, count, group, blocks, series);
-    CHECK(mf_statistics_independence(series + first * values, blocks, count, bins, found));
-done:
-    mf_memory_free(series);
-    return status;
+    return mf_statistics_independence(series + first * values, blocks, count, bins, found);
 }

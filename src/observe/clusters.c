@@ -36,7 +36,6 @@ static void clear(void *state) {
 
 static enum status begin(void *state, const void *settings, const struct simulation *simulation,
                          const struct measure_plan *plan) {
-    enum status status = STATUS_OK;
     struct state *s = state;
     (void)plan;
     *s = (struct state){.settings = *(const struct settings *)settings,
@@ -52,11 +51,10 @@ static enum status begin(void *state, const void *settings, const struct simulat
         return mf_status_fail(STATUS_BAD_INPUT,
                               "clusters: pairs that molecules exclude would join none; "
                               "\"exclude\": 0 leaves none out");
-    NEW_ARRAY(s->root, s->count);
-    NEW_ARRAY(s->size, s->count);
-    NEW_ARRAY(s->members, s->count + 1);
-done:
-    return status;
+    TRY_ARRAY(s->root, s->count);
+    TRY_ARRAY(s->size, s->count);
+    TRY_ARRAY(s->members, s->count + 1);
+    return STATUS_OK;
 }
 
 static uint32_t find_root(uint32_t *root, uint32_t k) {
@@ -113,12 +111,10 @@ static enum status reserve(void *state) {
 /// clusters.tsv: sizes that were seen, the share of particles in clusters of each, and how many
 /// clusters there were in a sample.
 static enum status write(const void *state, const struct observable_results *results) {
-    enum status status = STATUS_OK;
     const struct state *s = state;
-    double *values = NULL;
-    char path[OUTPUT_PATH_SIZE];
+    OWNED double *values = NULL;
     size_t rows = 0;
-    NEW_ARRAY(values, 3 * (s->count + 1));
+    TRY_ARRAY(values, 3 * (s->count + 1));
     double *size = values, *share = size + s->count + 1, *number = share + s->count + 1;
     for (size_t k = 1; k <= s->count; k++) {
         if (s->members[k] == 0)
@@ -129,37 +125,19 @@ static enum status write(const void *state, const struct observable_results *res
     }
     const struct data_column columns[] = {
         {"size[1]", size, "%.0f"}, {"share[1]", share, "%.6g"}, {"clusters[1]", number, "%.6g"}};
-    mf_observable_file(results, "clusters.tsv", path);
-    CHECK(mf_data_table_write_in(path, results->units, NULL, columns, 3, rows));
-done:
-    mf_memory_free(values);
-    return status;
-}
-
-static double mean_of(const double *values, size_t samples) {
-    double sum = 0;
-    for (size_t k = 0; k < samples; k++)
-        sum += values[k];
-    return sum / (double)samples;
-}
-
-static void write_mean(struct json_writer *writer, const char *name,
-                       const struct sample_series *series, size_t column) {
-    char key[64];
-    const double *values = sample_series_column(series, column);
-    double error = mf_statistics_correlated_error(values, series->count, 1);
-    mf_statistics_mark_unknown_errors(&error, 1);
-    snprintf(key, sizeof key, "%s_error", name);
-    mf_json_write_number(writer, name, mean_of(values, series->count));
-    mf_json_write_number(writer, key, error);
+    return mf_observable_table(results, "clusters.tsv", columns, 3, rows);
 }
 
 static void write_summary(const void *state, const struct observable_results *results,
                           struct json_writer *writer) {
     const struct state *s = state;
+    static const char *const names[NUMBERS] = {"cluster_size", "largest_cluster"};
     (void)results;
-    write_mean(writer, "cluster_size", &s->series, MEAN);
-    write_mean(writer, "largest_cluster", &s->series, LARGEST);
+    for (size_t n = 0; n < NUMBERS; n++) {
+        double error, mean = mf_sample_series_mean(&s->series, n, &error);
+        mf_statistics_mark_unknown_errors(&error, 1);
+        mf_json_put_measured(writer, names[n], "1", mean, error);
+    }
 }
 
 /// Nanoseconds of an entry of the list.

@@ -104,10 +104,9 @@ static double mean_speed(const struct hard_gas *gas, const double drift[3]) {
 
 static enum status begin(void *state, const void *settings, const struct simulation *simulation,
                          const struct measure_plan *plan) {
-    enum status status = STATUS_OK;
     struct collisions *c = state;
     const struct event_driven *engine = mf_event_driven_state(simulation);
-    double *radius = NULL, *mass = NULL;
+    OWNED double *radius = NULL, *mass = NULL;
     if (engine == NULL)
         return mf_status_fail(STATUS_BAD_INPUT,
                               "collisions: only the integrator \"event-driven\" has any");
@@ -119,20 +118,17 @@ static enum status begin(void *state, const void *settings, const struct simulat
     c->series.columns = QUANTITIES;
     c->walls = gas->walls != 0;
     c->particles = (size_t)gas->count;
-    NEW_ARRAY(c->speeds, (size_t)c->settings.bins + 1);
-    CHECK(mf_maxwell_init(&c->maxwell, c->planned));
-    NEW_ARRAY(radius, c->particles);
-    NEW_ARRAY(mass, c->particles);
+    TRY_ARRAY(c->speeds, (size_t)c->settings.bins + 1);
+    TRY(mf_maxwell_init(&c->maxwell, c->planned));
+    TRY_ARRAY(radius, c->particles);
+    TRY_ARRAY(mass, c->particles);
     for (size_t k = 0; k < c->particles; k++) {
         radius[k] = gas->body[k].radius;
         mass[k] = gas->label[k].mass;
     }
     c->theory = mf_hard_theory(gas->dimensions, mf_box_volume(&simulation->setup.box),
                                temperature_of(gas), radius, mass, c->particles);
-done:
-    mf_memory_free(radius);
-    mf_memory_free(mass);
-    return status;
+    return STATUS_OK;
 }
 
 static void clear(void *state) {
@@ -275,9 +271,7 @@ static struct result free_path(const struct collisions *c) {
 static void write_result(struct json_writer *writer, const char *name, const char *unit,
                          struct result result, double theory) {
     char key[64];
-    mf_json_write_quantity(writer, name, unit, result.mean);
-    snprintf(key, sizeof key, "%s_error", name);
-    mf_json_write_quantity(writer, key, unit, result.error);
+    mf_json_put_measured(writer, name, unit, result.mean, result.error);
     snprintf(key, sizeof key, "%s_theory", name);
     if (!isnan(theory))
         mf_json_write_quantity(writer, key, unit, theory);
@@ -320,11 +314,9 @@ static void print(const void *state, const struct observable_results *results, c
 /// collisions.tsv: a row for each sample.
 static enum status write_series(const struct collisions *c,
                                 const struct observable_results *results) {
-    enum status status = STATUS_OK;
-    char path[OUTPUT_PATH_SIZE];
-    double *step = NULL, *time = NULL;
-    NEW_ARRAY(step, c->series.count);
-    NEW_ARRAY(time, c->series.count);
+    OWNED double *step = NULL, *time = NULL;
+    TRY_ARRAY(step, c->series.count);
+    TRY_ARRAY(time, c->series.count);
     for (size_t k = 0; k < c->series.count; k++) {
         step[k] = (double)(c->first + (int64_t)(k + 1) * c->every);
         time[k] = step[k] * results->setup->time_step;
@@ -336,29 +328,22 @@ static enum status write_series(const struct collisions *c,
         {"collision_rate[1/tau]", series(c, RATE), "%.8g"},
         {"mean_speed[lambda/tau]", series(c, SPEED), "%.8g"},
         {"compressibility_factor_walls[1]", series(c, WALL_FACTOR), "%.8g"}};
-    mf_observable_file(results, "collisions.tsv", path);
-    CHECK(mf_data_table_write_in(path, results->units, NULL, columns, c->walls ? 6 : 5,
-                                 c->series.count));
-done:
-    mf_memory_free(step);
-    mf_memory_free(time);
-    return status;
+    return mf_observable_table(results, "collisions.tsv", columns, c->walls ? 6 : 5,
+                               c->series.count);
 }
 
 /// speeds.tsv: the middle of a bin, the density of speeds there with the error of as many counts as
 /// are independent, Maxwell's mean density in the bin.
 static enum status write_speeds(const struct collisions *c,
                                 const struct observable_results *results) {
-    enum status status = STATUS_OK;
-    char path[OUTPUT_PATH_SIZE];
     const size_t bins = (size_t)c->settings.bins;
     const int dimensions = results->setup->box.dimensions;
     const double width = speed_maximum / (double)bins;
     const double all = (double)c->series.count * (double)c->particles * width;
     const struct maxwell_summary tested = mf_maxwell_result(&c->maxwell);
     const double each = sqrt(tested.numbers / tested.independent);
-    double *values = NULL;
-    NEW_ARRAY(values, 4 * bins);
+    OWNED double *values = NULL;
+    TRY_ARRAY(values, 4 * bins);
     double *speed = values, *density = speed + bins, *error = density + bins,
            *theory = error + bins;
     for (size_t k = 0; k < bins; k++) {
@@ -373,11 +358,7 @@ static enum status write_speeds(const struct collisions *c,
                                           {"density[1]", density, "%.8g"},
                                           {"density_error[1]", error, "%.3g"},
                                           {"maxwell[1]", theory, "%.8g"}};
-    mf_observable_file(results, "speeds.tsv", path);
-    CHECK(mf_data_table_write_in(path, results->units, NULL, columns, 4, bins));
-done:
-    mf_memory_free(values);
-    return status;
+    return mf_observable_table(results, "speeds.tsv", columns, 4, bins);
 }
 
 /// timing.tsv: of this process alone, after a restart.
@@ -387,11 +368,9 @@ static enum status write(const void *state, const struct observable_results *res
     const struct data_column columns[] = {{"seconds[s]", &c->seconds, NULL},
                                           {"collisions", &c->collisions, NULL},
                                           {"collisions_per_second[1/s]", &rate, "%.6g"}};
-    char path[OUTPUT_PATH_SIZE];
     TRY(write_series(c, results));
     TRY(write_speeds(c, results));
-    mf_observable_file(results, "timing.tsv", path);
-    return mf_data_table_write_in(path, results->units, NULL, columns, 3, 1);
+    return mf_observable_table(results, "timing.tsv", columns, 3, 1);
 }
 
 /// Nanoseconds of a particle and sample: its speed, and where it stands in the distribution.

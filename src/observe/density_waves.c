@@ -94,32 +94,28 @@ static void go_through(struct density_waves *waves, size_t *seen, const size_t *
 }
 
 static enum status reserve_for_waves(struct density_waves *waves, size_t all) {
-    enum status status = STATUS_OK;
     if (all <= waves->capacity)
         return STATUS_OK;
     mf_memory_free(waves->wave);
     mf_memory_free(waves->amplitude);
     waves->wave = NULL, waves->amplitude = NULL, waves->capacity = 0;
-    NEW_ARRAY(waves->wave, all);
-    NEW_ARRAY(waves->amplitude, all * (size_t)waves->plan.composition.types * 2);
+    TRY_ARRAY(waves->wave, all);
+    TRY_ARRAY(waves->amplitude, all * (size_t)waves->plan.composition.types * 2);
     waves->capacity = all;
-done:
-    return status;
+    return STATUS_OK;
 }
 
 static enum status reserve_for_phases(struct density_waves *waves) {
-    enum status status = STATUS_OK;
     for (int i = 0; i < 3; i++) {
         const size_t along = (size_t)waves->largest[i] + 1;
         if (along <= waves->phase_capacity[i])
             continue;
         mf_memory_free(waves->phase[i]);
         waves->phase[i] = NULL, waves->phase_capacity[i] = 0;
-        NEW_ARRAY(waves->phase[i], along * 2 * STRETCH);
+        TRY_ARRAY(waves->phase[i], along * 2 * STRETCH);
         waves->phase_capacity[i] = along;
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 static enum status fail_of_many(const struct density_waves *waves, double all) {
@@ -159,24 +155,20 @@ static void begin_list(struct density_waves *waves, const double lattice[3][3],
 
 enum status mf_density_waves_list(struct density_waves *waves, const double lattice[3][3],
                                   const double length[3]) {
-    enum status status = STATUS_OK;
     static const double max_tested = 1e3 * DENSITY_WAVES_MAX;
     const double all = mf_density_waves_expected(waves->plan.q_maximum, length);
-    size_t *seen = NULL, *members = NULL;
+    OWNED size_t *seen = NULL, *members = NULL;
     if (waves->vectors > 0 && memcmp(waves->lattice, lattice, sizeof waves->lattice) == 0)
         return STATUS_OK;
     if (all > max_tested)
         return fail_of_many(waves, all);
-    NEW_ARRAY(seen, waves->plan.bins);
-    NEW_ARRAY(members, waves->plan.bins);
+    TRY_ARRAY(seen, waves->plan.bins);
+    TRY_ARRAY(members, waves->plan.bins);
     begin_list(waves, lattice, length);
     go_through(waves, members, NULL);
-    CHECK(reserve(waves, members));
+    TRY(reserve(waves, members));
     go_through(waves, seen, members);
-done:
-    mf_memory_free(seen);
-    mf_memory_free(members);
-    return status;
+    return STATUS_OK;
 }
 
 // Their amplitudes --------------------------------------------------------------------------------

@@ -59,20 +59,17 @@ static enum status assess_correlation(const char *name, const double *block, siz
 }
 
 enum status mf_equilibrium_check(const char *name, const double *series, size_t samples) {
-    enum status status = STATUS_OK;
     struct running_mean all = {0};
-    double *block = NULL;
+    OWNED double *block = NULL;
     for (size_t k = 0; k < samples; k++)
         mf_statistics_add(&all, series[k]);
     if (samples < min_of_halves || !(sqrt(all.squares / all.count) > rounding * fabs(all.mean)))
         return STATUS_OK;
     const size_t each = (samples + MAX_BLOCKS - 1) / MAX_BLOCKS, blocks = samples / each;
-    NEW_ARRAY(block, blocks);
+    TRY_ARRAY(block, blocks);
     average(series, each, block, blocks);
-    CHECK(assess_halves(name, block, blocks));
+    TRY(assess_halves(name, block, blocks));
     if (samples >= min_of_all)
-        CHECK(assess_correlation(name, block, blocks, samples));
-done:
-    mf_memory_free(block);
-    return status;
+        TRY(assess_correlation(name, block, blocks, samples));
+    return STATUS_OK;
 }

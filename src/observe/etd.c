@@ -63,16 +63,13 @@ static enum status count_origins(struct etd *etd, int64_t steps) {
 }
 
 static enum status allocate(struct etd *etd, size_t count) {
-    enum status status = STATUS_OK;
-    NEW_ARRAY(etd->began, etd->slots);
-    NEW_ARRAY(etd->open, etd->slots * etd_cells(etd));
-    NEW_ARRAY(etd->counts, etd->blocks * etd_cells(etd));
+    TRY_ARRAY(etd->began, etd->slots);
+    TRY_ARRAY(etd->open, etd->slots * etd_cells(etd));
+    TRY_ARRAY(etd->counts, etd->blocks * etd_cells(etd));
     for (int d = 0; d < 3; d++)
-        NEW_ARRAY(etd->place[d], count);
-    NEW_ARRAY(etd->squares, count + BATCH);
-    status = mf_etd_reserve(etd);
-done:
-    return status;
+        TRY_ARRAY(etd->place[d], count);
+    TRY_ARRAY(etd->squares, count + BATCH);
+    return mf_etd_reserve(etd);
 }
 
 enum status mf_etd_init(struct etd *etd, const struct etd_grid *grid, const struct etd_plan *plan,

@@ -48,16 +48,14 @@ static double interval(const struct etd *etd, const struct observable_results *r
 static enum status write_matrix(const struct etd *etd, const struct observable_results *results,
                                 const char *file, const char *what, const double *values,
                                 const char *format) {
-    enum status status = STATUS_OK;
     const size_t times = (size_t)etd->grid.times, bins = (size_t)etd->grid.bins;
     const double length = mf_units_factor(results->units, "lambda");
-    double *columns = NULL;
-    struct data_column *column = NULL;
-    char(*name)[48] = NULL;
-    char path[OUTPUT_PATH_SIZE];
-    NEW_ARRAY(columns, (bins + 1) * times);
-    NEW_ARRAY(column, bins + 1);
-    NEW_ARRAY(name, bins + 1);
+    OWNED double *columns = NULL;
+    OWNED struct data_column *column = NULL;
+    OWNED char(*name)[48] = NULL;
+    TRY_ARRAY(columns, (bins + 1) * times);
+    TRY_ARRAY(column, bins + 1);
+    TRY_ARRAY(name, bins + 1);
     for (size_t k = 0; k <= bins; k++) {
         column[k] = (struct data_column){name[k], columns + k * times, k ? format : NULL};
         snprintf(name[k], sizeof *name, k ? "%s(r0=%.6g)[1]" : "time[tau]", what,
@@ -66,34 +64,21 @@ static enum status write_matrix(const struct etd *etd, const struct observable_r
             columns[k * times + t] =
                 k ? values[t * bins + k - 1] : (double)t * interval(etd, results);
     }
-    mf_observable_file(results, file, path);
-    status = mf_data_table_write_in(path, results->units, NULL, column, bins + 1, times);
-done:
-    mf_memory_free(columns);
-    mf_memory_free(column);
-    mf_memory_free(name);
-    return status;
+    return mf_observable_table(results, file, column, bins + 1, times);
 }
 
 static enum status write_bins(const struct etd *etd, const struct observable_results *results,
                               const uint64_t *pairs) {
-    enum status status = STATUS_OK;
     const size_t bins = (size_t)etd->grid.bins;
-    double *r = NULL, *n = NULL;
-    char path[OUTPUT_PATH_SIZE];
-    NEW_ARRAY(r, bins);
-    NEW_ARRAY(n, bins);
+    OWNED double *r = NULL, *n = NULL;
+    TRY_ARRAY(r, bins);
+    TRY_ARRAY(n, bins);
     for (size_t k = 0; k < bins; k++) {
         r[k] = centre(&etd->grid, k);
         n[k] = (double)pairs[k];
     }
     const struct data_column columns[] = {{"r0[lambda]", r, NULL}, {"pairs[1]", n, "%.0f"}};
-    mf_observable_file(results, "etd_bins.tsv", path);
-    status = mf_data_table_write_in(path, results->units, NULL, columns, 2, bins);
-done:
-    mf_memory_free(r);
-    mf_memory_free(n);
-    return status;
+    return mf_observable_table(results, "etd_bins.tsv", columns, 2, bins);
 }
 
 /// Tables without a number are not written, and that is told.
@@ -111,24 +96,18 @@ static enum status assess(const void *state, const struct simulation_setup *setu
 /// etd.tsv and etd_error.tsv: time, then E or its standard error for each bin of r_0, nan where no
 /// pair began; and etd_bins.tsv: r_0, pairs.
 static enum status write(const void *state, const struct observable_results *results) {
-    enum status status = STATUS_OK;
     const struct etd *etd = state;
-    double *survival = NULL, *error = NULL;
-    uint64_t *pairs = NULL;
+    OWNED double *survival = NULL, *error = NULL;
+    OWNED uint64_t *pairs = NULL;
     if (mf_etd_pairs(etd) == 0)
         return STATUS_OK;
-    NEW_ARRAY(survival, etd_cells(etd));
-    NEW_ARRAY(error, etd_cells(etd));
-    NEW_ARRAY(pairs, (size_t)etd->grid.bins);
-    CHECK(mf_etd_result(&etd, 1, survival, error, pairs));
-    CHECK(write_matrix(etd, results, "etd.tsv", "E", survival, "%.8g"));
-    CHECK(write_matrix(etd, results, "etd_error.tsv", "E_error", error, "%.3g"));
-    CHECK(write_bins(etd, results, pairs));
-done:
-    mf_memory_free(survival);
-    mf_memory_free(error);
-    mf_memory_free(pairs);
-    return status;
+    TRY_ARRAY(survival, etd_cells(etd));
+    TRY_ARRAY(error, etd_cells(etd));
+    TRY_ARRAY(pairs, (size_t)etd->grid.bins);
+    TRY(mf_etd_result(&etd, 1, survival, error, pairs));
+    TRY(write_matrix(etd, results, "etd.tsv", "E", survival, "%.8g"));
+    TRY(write_matrix(etd, results, "etd_error.tsv", "E_error", error, "%.3g"));
+    return write_bins(etd, results, pairs);
 }
 
 static void write_summary(const void *state, const struct observable_results *results,

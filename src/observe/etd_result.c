@@ -64,13 +64,12 @@ static struct tally advance(const struct etd *const *replicas, size_t count, siz
 
 enum status mf_etd_result(const struct etd *const *replicas, size_t count, double *survival,
                           double *error, uint64_t *pairs) {
-    enum status status = STATUS_OK;
     const size_t times = (size_t)replicas[0]->grid.times, bins = (size_t)replicas[0]->grid.bins;
     size_t block_count = 0;
-    struct tally *blocks = NULL;
+    OWNED struct tally *blocks = NULL;
     for (size_t r = 0; r < count; r++)
         block_count += replicas[r]->blocks;
-    NEW_ARRAY(blocks, block_count);
+    TRY_ARRAY(blocks, block_count);
     for (size_t bin = 0; bin < bins; bin++)
         for (size_t time = 0; time < times; time++) {
             const struct tally sum = advance(replicas, count, time, bin, blocks);
@@ -83,7 +82,5 @@ enum status mf_etd_result(const struct etd *const *replicas, size_t count, doubl
             if (pairs)
                 pairs[bin] = (uint64_t)sum.begun;
         }
-done:
-    mf_memory_free(blocks);
-    return status;
+    return STATUS_OK;
 }

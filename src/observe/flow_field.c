@@ -49,7 +49,6 @@ static double mass_of(const struct particles *beads) {
 
 static enum status begin(void *state, const void *settings, const struct simulation *simulation,
                          const struct measure_plan *plan) {
-    enum status status = STATUS_OK;
     const struct settings *given = settings;
     const struct solvent *solvent = mf_collision_dynamics_solvent(simulation);
     struct flow_field *f = state;
@@ -69,9 +68,8 @@ static enum status begin(void *state, const void *settings, const struct simulat
     f->thickness = f->box.dimensions == 3 ? f->width[0] : 0;
     f->series.columns = NUMBERS;
     f->every = (double)plan->every;
-    NEW_ARRAY(f->sums, 3 * f->bins[0] * f->bins[1]);
-done:
-    return status;
+    TRY_ARRAY(f->sums, 3 * f->bins[0] * f->bins[1]);
+    return STATUS_OK;
 }
 
 static void clear(void *state) {
@@ -176,12 +174,10 @@ static void find_tables(const struct flow_field *f, const struct flow_tables *t)
 }
 
 static enum status write(const void *state, const struct observable_results *results) {
-    enum status status = STATUS_OK;
     const struct flow_field *f = state;
     const size_t rows = f->bins[0] * f->bins[1];
-    double *values = NULL;
-    char path[OUTPUT_PATH_SIZE];
-    NEW_ARRAY(values, 7 * rows);
+    OWNED double *values = NULL;
+    TRY_ARRAY(values, 7 * rows);
     const struct flow_tables t = {values,
                                   values + rows,
                                   values + 2 * rows,
@@ -197,11 +193,7 @@ static enum status write(const void *state, const struct observable_results *res
                                           {"density[1/lambda^d]", t.density, "%.5g"},
                                           {"vorticity[1/tau]", t.vorticity, "%.5g"},
                                           {"stream_function[lambda^2/tau]", t.stream, "%.6g"}};
-    mf_observable_file(results, "flow_field.tsv", path);
-    status = mf_data_table_write_in(path, results->units, NULL, columns, 7, rows);
-done:
-    mf_memory_free(values);
-    return status;
+    return mf_observable_table(results, "flow_field.tsv", columns, 7, rows);
 }
 
 /// Mean of a series and its error.
@@ -243,12 +235,11 @@ static void write_summary(const void *state, const struct observable_results *re
     (void)results;
     mf_json_begin(writer, "flow_field");
     if (f->parameters.wave_acceleration == 0) { // whose noise lets the whole solvent wander
-        mf_json_write_quantity(writer, "mean_velocity", "lambda/tau", found.velocity);
-        mf_json_write_quantity(writer, "mean_velocity_error", "lambda/tau", found.velocity_error);
+        mf_json_put_measured(writer, "mean_velocity", "lambda/tau", found.velocity,
+                             found.velocity_error);
     }
     if (f->parameters.obstacle_radius > 0) {
-        mf_json_write_quantity(writer, "drag", "k_B T_0/lambda", found.drag);
-        mf_json_write_quantity(writer, "drag_error", "k_B T_0/lambda", found.drag_error);
+        mf_json_put_measured(writer, "drag", "k_B T_0/lambda", found.drag, found.drag_error);
         mf_json_write_quantity(writer, "driving_force", "k_B T_0/lambda", found.driving_force);
         mf_json_write_number(writer, "drag_coefficient", found.coefficient);
         mf_json_write_number(writer, "reynolds_number", found.reynolds);

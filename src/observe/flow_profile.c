@@ -73,7 +73,6 @@ static double peak_shape(const struct profile *p) {
 static enum status begin(void *state, const void *settings, const struct simulation *simulation,
                          const struct measure_plan *plan) {
     enum { MIN_BINS = 3 }; // two of a parabola are as fast
-    enum status status = STATUS_OK;
     const struct solvent *solvent = mf_collision_dynamics_solvent(simulation);
     struct profile *p = state;
     if (solvent == NULL)
@@ -94,13 +93,12 @@ static enum status begin(void *state, const void *settings, const struct simulat
     p->interval = (double)plan->every * simulation->setup.time_step;
     p->each = ((size_t)plan->samples + MAX_BLOCKS - 1) / MAX_BLOCKS;
     p->blocks = (size_t)plan->samples / p->each;
-    NEW_ARRAY(p->sums, p->blocks * p->bins);
-    NEW_ARRAY(p->now, 4 * p->bins);
+    TRY_ARRAY(p->sums, p->blocks * p->bins);
+    TRY_ARRAY(p->now, 4 * p->bins);
     p->beads = beads_diffuse_alone(&p->parameters) ? simulation->particles.count : 0;
     p->bead_mass = mass_of(&simulation->particles);
-    NEW_ARRAY(p->before, 2 * p->beads);
-done:
-    return status;
+    TRY_ARRAY(p->before, 2 * p->beads);
+    return STATUS_OK;
 }
 
 static void clear(void *state) {
@@ -260,13 +258,11 @@ static bool is_driven(const struct profile *p) {
 
 /// flow_profile.tsv: y, v_x with its error, the fitted curve, and how many particles there were.
 static enum status write(const void *state, const struct observable_results *results) {
-    enum status status = STATUS_OK;
     const struct profile *p = state;
     const size_t blocks = complete_blocks(p);
     const struct line line = fit(p, 0, blocks);
-    double *values = NULL;
-    char path[OUTPUT_PATH_SIZE];
-    NEW_ARRAY(values, 5 * p->bins);
+    OWNED double *values = NULL;
+    TRY_ARRAY(values, 5 * p->bins);
     double *y = values, *v = y + p->bins, *error = v + p->bins, *fitted = error + p->bins,
            *count = fitted + p->bins;
     for (size_t bin = 0; bin < p->bins; bin++) {
@@ -289,11 +285,7 @@ static enum status write(const void *state, const struct observable_results *res
                                           {"v_x_error[lambda/tau]", error, "%.3g"},
                                           {"fit[lambda/tau]", fitted, "%.8g"},
                                           {"particles[1]", count, "%.6g"}};
-    mf_observable_file(results, "flow_profile.tsv", path);
-    status = mf_data_table_write_in(path, results->units, NULL, columns, 5, p->bins);
-done:
-    mf_memory_free(values);
-    return status;
+    return mf_observable_table(results, "flow_profile.tsv", columns, 5, p->bins);
 }
 
 static void write_summary(const void *state, const struct observable_results *results,
@@ -303,32 +295,29 @@ static void write_summary(const void *state, const struct observable_results *re
     (void)results;
     if (is_driven(p)) {
         mf_statistics_mark_unknown_errors(&found.viscosity_error, 1);
-        mf_json_write_quantity(writer, "viscosity", "lambda^2/tau", found.viscosity);
-        mf_json_write_quantity(writer, "viscosity_error", "lambda^2/tau", found.viscosity_error);
+        mf_json_put_measured(writer, "viscosity", "lambda^2/tau", found.viscosity,
+                             found.viscosity_error);
         if (p->parameters.grid_shift)
             mf_json_write_quantity(writer, "viscosity_theory", "lambda^2/tau",
                                    mf_collision_dynamics_viscosity(&p->setup));
     }
     if (is_driven(p) && p->parameters.walls == COLLISION_PLATES) {
         mf_statistics_mark_unknown_errors(&found.slip_error, 1);
-        mf_json_write_number(writer, "slip", found.slip);
-        mf_json_write_number(writer, "slip_error", found.slip_error);
+        mf_json_put_measured(writer, "slip", "1", found.slip, found.slip_error);
     }
     if (isfinite(found.diffusion)) {
-        mf_json_write_quantity(writer, "bead_diffusion", "lambda^2/tau", found.diffusion);
-        mf_json_write_quantity(writer, "bead_diffusion_error", "lambda^2/tau",
-                               found.diffusion_error);
+        mf_json_put_measured(writer, "bead_diffusion", "lambda^2/tau", found.diffusion,
+                             found.diffusion_error);
         if (p->setup.potential == NULL && p->setup.interactions == 0)
             mf_json_write_quantity(writer, "bead_diffusion_theory", "lambda^2/tau",
                                    mf_collision_dynamics_diffusion(&p->setup, p->bead_mass));
     }
     if (is_driven(p) && isfinite(found.schmidt)) {
-        mf_json_write_number(writer, "schmidt_number", found.schmidt);
-        mf_json_write_number(writer, "schmidt_number_error", found.schmidt_error);
+        mf_json_put_measured(writer, "schmidt_number", "1", found.schmidt, found.schmidt_error);
     }
     mf_statistics_mark_unknown_errors(&found.temperature_error, 1);
-    mf_json_write_quantity(writer, "solvent_temperature", "T_0", found.temperature);
-    mf_json_write_quantity(writer, "solvent_temperature_error", "T_0", found.temperature_error);
+    mf_json_put_measured(writer, "solvent_temperature", "T_0", found.temperature,
+                         found.temperature_error);
 }
 
 static void print(const void *state, const struct observable_results *results, char *line,

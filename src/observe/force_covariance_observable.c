@@ -24,12 +24,10 @@ static size_t spans(void *state, struct memory_span *spans) {
 
 /// force_covariance.tsv: r, κ with its standard error.
 static enum status write(const void *state, const struct observable_results *results) {
-    enum status status = STATUS_OK;
     const struct force_covariance *covariance = state;
     const size_t bins = covariance->bins;
-    double *values = NULL;
-    char path[OUTPUT_PATH_SIZE];
-    NEW_ARRAY(values, 3 * bins);
+    OWNED double *values = NULL;
+    TRY_ARRAY(values, 3 * bins);
     double *r = values, *kappa = r + bins, *error = kappa + bins;
     mf_force_covariance_result(covariance, kappa, error);
     for (size_t k = 0; k < bins; k++)
@@ -37,11 +35,7 @@ static enum status write(const void *state, const struct observable_results *res
     const struct data_column columns[] = {{"r[lambda]", r, NULL},
                                           {"kappa[k_B.T_0.mu/tau]", kappa, "%.8g"},
                                           {"kappa_error[k_B.T_0.mu/tau]", error, "%.3g"}};
-    mf_observable_file(results, "force_covariance.tsv", path);
-    status = mf_data_table_write_in(path, results->units, NULL, columns, 3, bins);
-done:
-    mf_memory_free(values);
-    return status;
+    return mf_observable_table(results, "force_covariance.tsv", columns, 3, bins);
 }
 
 /// Nanoseconds of a pair and sample.

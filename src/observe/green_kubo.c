@@ -13,7 +13,6 @@ enum { DOUBLINGS = 3 };
 
 enum status mf_green_kubo_init(struct green_kubo *green_kubo, size_t lags, size_t components,
                                size_t samples) {
-    enum status status = STATUS_OK;
     *green_kubo = (struct green_kubo){.lags = lags, .components = components};
     if (samples < 2 * lags)
         return mf_status_fail(STATUS_BAD_INPUT,
@@ -23,10 +22,9 @@ enum status mf_green_kubo_init(struct green_kubo *green_kubo, size_t lags, size_
     const size_t origins = samples - lags;
     green_kubo->each = (origins + MAX_BLOCKS - 1) / MAX_BLOCKS;
     green_kubo->blocks = origins / green_kubo->each;
-    NEW_ARRAY(green_kubo->last, (lags + 1) * components);
-    NEW_ARRAY(green_kubo->products, green_kubo->blocks * (lags + 1));
-done:
-    return status;
+    TRY_ARRAY(green_kubo->last, (lags + 1) * components);
+    TRY_ARRAY(green_kubo->products, green_kubo->blocks * (lags + 1));
+    return STATUS_OK;
 }
 
 void mf_green_kubo_clear(struct green_kubo *green_kubo) {

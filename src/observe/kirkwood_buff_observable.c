@@ -101,11 +101,10 @@ static void find(const struct state *s, size_t pair, double *value, double *erro
 
 static enum status result(const void *const *states, size_t count,
                           const struct observable_values *values) {
-    enum status status = STATUS_OK;
-    double *found = NULL;
-    struct pooled_curve *replicas = NULL;
-    NEW_ARRAY(found, 2 * count * values->count);
-    NEW_ARRAY(replicas, count);
+    OWNED double *found = NULL;
+    OWNED struct pooled_curve *replicas = NULL;
+    TRY_ARRAY(found, 2 * count * values->count);
+    TRY_ARRAY(replicas, count);
     for (size_t k = 0; k < count; k++) {
         const struct state *s = states[k];
         double *value = found + 2 * k * values->count, *error = value + values->count;
@@ -115,10 +114,7 @@ static enum status result(const void *const *states, size_t count,
             (struct pooled_curve){value, error, (double)mf_sample_blocks_whole(&s->blocks)};
     }
     mf_pooled_join(values, replicas, count);
-done:
-    mf_memory_free(found);
-    mf_memory_free(replicas);
-    return status;
+    return STATUS_OK;
 }
 
 /// A number that is known.
@@ -150,8 +146,8 @@ static void write_summary(const void *state, const struct observable_results *re
                                mf_kirkwood_buff_waves_components(&s->waves), pair, value, error);
     }
     if (s->pairs == 1) {
-        mf_json_write_number(writer, "compressibility", 1 + s->density * value);
-        mf_json_write_number(writer, "compressibility_error", s->density * error);
+        mf_json_put_measured(writer, "compressibility", "1", 1 + s->density * value,
+                             s->density * error);
     }
     mf_json_write_quantity(writer, "kirkwood_buff_q_maximum", "1/lambda", s->waves.q_maximum);
     mf_json_write_number(writer, "kirkwood_buff_waves", (double)s->waves.waves.waves.vectors);
@@ -160,18 +156,15 @@ static void write_summary(const void *state, const struct observable_results *re
 static void print(const void *state, const struct observable_results *results, char *line,
                   size_t size) {
     const struct state *s = state;
-    const double factor = mf_units_factor(results->units, unit);
-    char suffix[UNITS_NAME_SIZE];
     int length = snprintf(line, size, "Kirkwood-Buff integral%s", s->pairs > 1 ? "s" : "");
     for (size_t pair = 0; pair < s->pairs && length < (int)size; pair++) {
-        char name[COMPOSITION_PAIR_NAME_SIZE], text[NUMBER_TEXT_SIZE];
+        char name[COMPOSITION_PAIR_NAME_SIZE], text[UNITS_MEASURED_SIZE];
         double value, error;
         find(s, pair, &value, &error);
         mf_composition_pair_name(mf_kirkwood_buff_waves_components(&s->waves), (int)pair, name);
-        mf_number_text(factor * value, factor * error, text);
-        length +=
-            snprintf(line + length, size - (size_t)length, "%s %s%s%s%s", pair ? "," : "", name,
-                     name[0] ? " " : "", text, mf_units_suffix(results->units, unit, suffix));
+        length += snprintf(line + length, size - (size_t)length, "%s %s%s%s", pair ? "," : "", name,
+                           name[0] ? " " : "",
+                           mf_units_measured(results->units, unit, value, error, text));
     }
 }
 

@@ -65,17 +65,14 @@ static enum status find_weights(struct kirkwood_buff_waves *kb) {
 enum status mf_kirkwood_buff_waves_init(struct kirkwood_buff_waves *kb, const struct box *box,
                                         const struct composition *composition, size_t count,
                                         const struct topology *topology, double q_maximum) {
-    enum status status = STATUS_OK;
     struct composition components;
     *kb = (struct kirkwood_buff_waves){.box = *box};
-    CHECK(mf_components_find(&components, composition, count, topology));
+    TRY(mf_components_find(&components, composition, count, topology));
     kb->q_maximum = mf_kirkwood_buff_waves_maximum(
         box, (size_t)mf_composition_particles(&components), count, topology, q_maximum);
-    CHECK(mf_particle_waves_init(&kb->waves, box, composition, count, topology, kb->q_maximum, 1));
-    NEW_ARRAY(kb->weight, kb->waves.waves.vectors);
-    CHECK(find_weights(kb));
-done:
-    return status;
+    TRY(mf_particle_waves_init(&kb->waves, box, composition, count, topology, kb->q_maximum, 1));
+    TRY_ARRAY(kb->weight, kb->waves.waves.vectors);
+    return find_weights(kb);
 }
 
 void mf_kirkwood_buff_waves_clear(struct kirkwood_buff_waves *kb) {

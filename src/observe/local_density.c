@@ -31,7 +31,6 @@ static void clear(void *state) {
 
 static enum status begin(void *state, const void *settings, const struct simulation *simulation,
                          const struct measure_plan *plan) {
-    enum status status = STATUS_OK;
     struct state *s = state;
     const struct box *box = &simulation->setup.box;
     (void)plan;
@@ -54,10 +53,9 @@ static enum status begin(void *state, const void *settings, const struct simulat
     s->volume = mf_box_volume(box) / total;
     const double radius = 0.5 * s->settings.diameter;
     s->body = mf_box_shell_volume(box, 0, radius);
-    NEW_ARRAY(s->members, s->total);
-    NEW_ARRAY(s->histogram, s->count + 1);
-done:
-    return status;
+    TRY_ARRAY(s->members, s->total);
+    TRY_ARRAY(s->histogram, s->count + 1);
+    return STATUS_OK;
 }
 
 static enum status sample(void *state, struct simulation *simulation) {
@@ -89,12 +87,10 @@ static size_t spans(void *state, struct memory_span *spans) {
 /// local_density.tsv: particles in a cell, density, packing fraction if the particles have a size,
 /// and the share of the cells.
 static enum status write(const void *state, const struct observable_results *results) {
-    enum status status = STATUS_OK;
     const struct state *s = state;
-    double *values = NULL;
-    char path[OUTPUT_PATH_SIZE];
+    OWNED double *values = NULL;
     size_t rows = s->count + 1;
-    NEW_ARRAY(values, 4 * rows);
+    TRY_ARRAY(values, 4 * rows);
     double *number = values, *density = number + rows, *packing = density + rows,
            *share = packing + rows;
     while (rows > 1 && s->histogram[rows - 1] == 0)
@@ -109,12 +105,8 @@ static enum status write(const void *state, const struct observable_results *res
                                           {"density[1/lambda^d]", density, "%.6g"},
                                           {"share[1]", share, "%.6g"},
                                           {"packing[1]", packing, "%.6g"}};
-    mf_observable_file(results, "local_density.tsv", path);
-    CHECK(mf_data_table_write_in(path, results->units, NULL, columns,
-                                 s->settings.diameter > 0 ? 4 : 3, rows));
-done:
-    mf_memory_free(values);
-    return status;
+    return mf_observable_table(results, "local_density.tsv", columns,
+                               s->settings.diameter > 0 ? 4 : 3, rows);
 }
 
 static void explain(const void *settings, const struct simulation_setup *setup, double every,

@@ -11,13 +11,11 @@
 enum { MAX_BLOCKS = 512 };
 
 enum status mf_maxwell_init(struct maxwell *maxwell, size_t planned) {
-    enum status status = STATUS_OK;
     *maxwell = (struct maxwell){.each = planned / MAX_BLOCKS + 1};
     maxwell->blocks = planned / maxwell->each + 1;
-    NEW_ARRAY(maxwell->counts, MAXWELL_BINS);
-    NEW_ARRAY(maxwell->cells, maxwell->blocks * MAXWELL_CELLS);
-done:
-    return status;
+    TRY_ARRAY(maxwell->counts, MAXWELL_BINS);
+    TRY_ARRAY(maxwell->cells, maxwell->blocks * MAXWELL_CELLS);
+    return STATUS_OK;
 }
 
 void mf_maxwell_clear(struct maxwell *maxwell) {

@@ -4,7 +4,6 @@
 /// of mass of all particles. Errors as those of observe/motion.h. Tested: cli/test_molecule_motion.
 
 #include "base/memory.h"
-#include "base/number_text.h"
 #include "base/statistics.h"
 #include "forces/molecules.h"
 #include "io/data_table.h"
@@ -113,16 +112,15 @@ enum { MAX_COLUMNS = 1 + 2 * TOPOLOGY_MAX_KINDS, HEAD_SIZE = TOPOLOGY_NAME_SIZE 
 
 /// molecule_motion.tsv: time, MSD and error of each kind.
 static enum status write(const void *state, const struct observable_results *results) {
-    enum status status = STATUS_OK;
     const struct state *s = state;
     const struct topology *topology = &s->molecules->topology;
     const struct motion *first = &s->motion[0];
     const size_t rows = (size_t)first->plan.lags + 1, kinds = (size_t)topology->kinds;
     struct data_column columns[MAX_COLUMNS];
-    char names[MAX_COLUMNS][HEAD_SIZE], path[OUTPUT_PATH_SIZE];
-    double *values = NULL;
+    char names[MAX_COLUMNS][HEAD_SIZE];
+    OWNED double *values = NULL;
     size_t n = 0;
-    NEW_ARRAY(values, (1 + 4 * kinds) * rows);
+    TRY_ARRAY(values, (1 + 4 * kinds) * rows);
     for (size_t k = 0; k < rows; k++)
         values[k] = (double)k * (double)first->plan.every * first->time_step;
     columns[n++] = (struct data_column){"time[tau]", values, NULL};
@@ -139,11 +137,7 @@ static enum status write(const void *state, const struct observable_results *res
             n++;
         }
     }
-    mf_observable_file(results, "molecule_motion.tsv", path);
-    CHECK(mf_data_table_write_in(path, results->units, NULL, columns, n, rows));
-done:
-    mf_memory_free(values);
-    return status;
+    return mf_observable_table(results, "molecule_motion.tsv", columns, n, rows);
 }
 
 static void write_summary(const void *state, const struct observable_results *results,
@@ -155,8 +149,7 @@ static void write_summary(const void *state, const struct observable_results *re
         struct motion_summary found = mf_motion_result(&s->motion[k], NULL);
         mf_statistics_mark_unknown_errors(&found.msd_error, 1);
         mf_json_begin(writer, s->molecules->topology.kind[k].name);
-        mf_json_write_quantity(writer, "diffusion", "lambda^2/tau", found.msd);
-        mf_json_write_quantity(writer, "diffusion_error", "lambda^2/tau", found.msd_error);
+        mf_json_put_measured(writer, "diffusion", "lambda^2/tau", found.msd, found.msd_error);
         mf_json_write_quantity(writer, "fit_begin", "tau", found.fit_begin);
         mf_json_write_quantity(writer, "fit_end", "tau", found.fit_end);
         mf_json_end(writer);
@@ -169,11 +162,9 @@ static void print(const void *state, const struct observable_results *results, c
                   size_t size) {
     const struct state *s = state;
     const struct motion_summary found = mf_motion_result(&s->motion[0], NULL);
-    const double factor = mf_units_factor(results->units, "lambda^2/tau");
-    char text[NUMBER_TEXT_SIZE], unit[UNITS_NAME_SIZE];
-    mf_number_text(factor * found.msd, factor * found.msd_error, text);
-    snprintf(line, size, "%s: D = %s%s of the centres of mass", s->molecules->topology.kind[0].name,
-             text, mf_units_suffix(results->units, "lambda^2/tau", unit));
+    char text[UNITS_MEASURED_SIZE];
+    snprintf(line, size, "%s: D = %s of the centres of mass", s->molecules->topology.kind[0].name,
+             mf_units_measured(results->units, "lambda^2/tau", found.msd, found.msd_error, text));
 }
 
 /// Nanoseconds of a bead and sample, and of a molecule and time origin.

@@ -74,7 +74,6 @@ static double find_gyration(const struct state *s, const struct particles *parti
 
 static enum status begin(void *state, const void *settings, const struct simulation *simulation,
                          const struct measure_plan *plan) {
-    enum status status = STATUS_OK;
     struct state *s = state;
     const struct simulation_setup *setup = &simulation->setup;
     const struct molecules *molecules = mf_molecules_find(setup->interaction, setup->interactions);
@@ -91,14 +90,12 @@ static enum status begin(void *state, const void *settings, const struct simulat
                         .time_step = sweeps ? 1 : setup->time_step,
                         .clock = sweeps ? "sweeps[1]" : "time[tau]",
                         .series.columns = NUMBERS * kinds};
-    CHECK(mf_sample_blocks_init(&s->blocks, planned));
-    NEW_ARRAY(s->ends, 3 * (s->lags + 1) * (size_t)topology->molecules);
-    NEW_ARRAY(s->products, s->blocks.count * kinds * (s->lags + 1));
-    NEW_ARRAY(s->origins, s->blocks.count * (s->lags + 1));
-    NEW_ARRAY(s->of_part, kinds * MAX_PARTS * (NUMBERS + s->lags + 1));
-    CHECK(mf_whole_molecules_init(&s->whole, topology));
-done:
-    return status;
+    TRY(mf_sample_blocks_init(&s->blocks, planned));
+    TRY_ARRAY(s->ends, 3 * (s->lags + 1) * (size_t)topology->molecules);
+    TRY_ARRAY(s->products, s->blocks.count * kinds * (s->lags + 1));
+    TRY_ARRAY(s->origins, s->blocks.count * (s->lags + 1));
+    TRY_ARRAY(s->of_part, kinds * MAX_PARTS * (NUMBERS + s->lags + 1));
+    return mf_whole_molecules_init(&s->whole, topology);
 }
 
 static void clear(void *state) {
@@ -223,13 +220,12 @@ static const double *series_of(const struct state *s, int k, int which) {
 
 /// molecule_sizes.tsv: time, and means over the molecules of each kind.
 static enum status write_sizes(const struct state *s, const struct observable_results *results) {
-    enum status status = STATUS_OK;
     const struct topology *topology = &s->molecules->topology;
     struct data_column columns[MAX_COLUMNS];
-    char names[MAX_COLUMNS][HEAD_SIZE], path[OUTPUT_PATH_SIZE];
-    double *time = NULL;
+    char names[MAX_COLUMNS][HEAD_SIZE];
+    OWNED double *time = NULL;
     size_t n = 0;
-    NEW_ARRAY(time, s->blocks.taken);
+    TRY_ARRAY(time, s->blocks.taken);
     for (size_t k = 0; k < s->blocks.taken; k++)
         time[k] = (s->begin + (double)((k + 1) * s->every)) * s->time_step;
     columns[n++] = (struct data_column){s->clock, time, NULL};
@@ -240,11 +236,7 @@ static enum status write_sizes(const struct state *s, const struct observable_re
             columns[n] = (struct data_column){names[n], series_of(s, k, which), "%.8g"};
             n++;
         }
-    mf_observable_file(results, "molecule_sizes.tsv", path);
-    CHECK(mf_data_table_write_in(path, results->units, NULL, columns, n, s->blocks.taken));
-done:
-    mf_memory_free(time);
-    return status;
+    return mf_observable_table(results, "molecule_sizes.tsv", columns, n, s->blocks.taken);
 }
 
 /// Standard error of a mean of a kind's molecules by their parts, which count as independent: of
@@ -279,12 +271,12 @@ static size_t find_products(const struct state *s, int k, size_t lag, double *pr
 /// The normalised correlation of a kind and its error by blocks; shape [2, lags + 1]. It is a ratio
 /// c of means, and its error that of the mean of R(t)·R(0) − c R(0)².
 static enum status find_correlation(const struct state *s, int k, double *values) {
-    enum status status = STATUS_OK;
     const size_t kinds = (size_t)s->molecules->topology.kinds, row = s->lags + 1;
-    double *products = NULL, *squares = NULL, *of_parts = NULL, square = NAN;
-    NEW_ARRAY(products, s->blocks.count);
-    NEW_ARRAY(squares, s->blocks.count);
-    NEW_ARRAY(of_parts, row);
+    OWNED double *products = NULL, *squares = NULL, *of_parts = NULL;
+    double square = NAN;
+    TRY_ARRAY(products, s->blocks.count);
+    TRY_ARRAY(squares, s->blocks.count);
+    TRY_ARRAY(of_parts, row);
     const size_t whole = find_products(s, k, 0, squares);
     for (size_t lag = 0; lag < row; lag++) {
         double sum = 0, origins = 0;
@@ -305,30 +297,25 @@ static enum status find_correlation(const struct state *s, int k, double *values
     }
     mf_statistics_take_larger(values + row, of_parts, row);
     mf_statistics_mark_unknown_errors(values + row, row);
-done:
-    mf_memory_free(products);
-    mf_memory_free(squares);
-    mf_memory_free(of_parts);
-    return status;
+    return STATUS_OK;
 }
 
 /// end_to_end.tsv: time, correlation and error of each kind.
 static enum status write_correlation(const struct state *s,
                                      const struct observable_results *results) {
-    enum status status = STATUS_OK;
     const struct topology *topology = &s->molecules->topology;
     const size_t row = s->lags + 1, rows = row < s->blocks.taken ? row : s->blocks.taken;
     struct data_column columns[MAX_COLUMNS];
-    char names[MAX_COLUMNS][HEAD_SIZE], path[OUTPUT_PATH_SIZE];
-    double *values = NULL;
+    char names[MAX_COLUMNS][HEAD_SIZE];
+    OWNED double *values = NULL;
     size_t n = 0;
-    NEW_ARRAY(values, (1 + 2 * (size_t)topology->kinds) * row);
+    TRY_ARRAY(values, (1 + 2 * (size_t)topology->kinds) * row);
     for (size_t lag = 0; lag < row; lag++)
         values[lag] = (double)(lag * s->every) * s->time_step;
     columns[n++] = (struct data_column){s->clock, values, NULL};
     for (int k = 0; k < topology->kinds; k++) {
         double *own = values + (1 + 2 * (size_t)k) * row;
-        CHECK(find_correlation(s, k, own));
+        TRY(find_correlation(s, k, own));
         for (int which = 0; which < 2; which++) {
             snprintf(names[n], HEAD_SIZE, "%s%s[1]", topology->kind[k].name,
                      which == 0 ? "" : "_error");
@@ -337,11 +324,7 @@ static enum status write_correlation(const struct state *s,
             n++;
         }
     }
-    mf_observable_file(results, "end_to_end.tsv", path);
-    CHECK(mf_data_table_write_in(path, results->units, NULL, columns, n, rows));
-done:
-    mf_memory_free(values);
-    return status;
+    return mf_observable_table(results, "end_to_end.tsv", columns, n, rows);
 }
 
 static enum status write(const void *state, const struct observable_results *results) {
@@ -352,14 +335,10 @@ static enum status write(const void *state, const struct observable_results *res
 }
 
 static double mean_of(const struct state *s, int k, int which, double *error) {
-    const double *own = series_of(s, k, which);
-    double sum = 0;
-    for (size_t n = 0; n < s->blocks.taken; n++)
-        sum += own[n];
     const double of_parts = error_of_parts(s, k, (size_t)which, (double)s->blocks.taken, 0);
-    *error = mf_statistics_correlated_error(own, s->blocks.taken, 1);
+    const double mean = mf_sample_series_mean(&s->series, (size_t)(NUMBERS * k + which), error);
     mf_statistics_take_larger(error, &of_parts, 1);
-    return sum / (double)s->blocks.taken;
+    return mean;
 }
 
 static void write_summary(const void *state, const struct observable_results *results,
@@ -370,11 +349,9 @@ static void write_summary(const void *state, const struct observable_results *re
     for (int k = 0; k < s->molecules->topology.kinds; k++) {
         double error, mean = mean_of(s, k, GYRATION, &error);
         mf_json_begin(writer, s->molecules->topology.kind[k].name);
-        mf_json_write_quantity(writer, "gyration_squared", "lambda^2", mean);
-        mf_json_write_quantity(writer, "gyration_squared_error", "lambda^2", error);
+        mf_json_put_measured(writer, "gyration_squared", "lambda^2", mean, error);
         mean = mean_of(s, k, END, &error);
-        mf_json_write_quantity(writer, "end_to_end_squared", "lambda^2", mean);
-        mf_json_write_quantity(writer, "end_to_end_squared_error", "lambda^2", error);
+        mf_json_put_measured(writer, "end_to_end_squared", "lambda^2", mean, error);
         mf_json_end(writer);
     }
     mf_json_end(writer);
@@ -385,13 +362,12 @@ static void print(const void *state, const struct observable_results *results, c
                   size_t size) {
     const struct state *s = state;
     const double factor = mf_units_factor(results->units, "lambda^2");
-    char end[NUMBER_TEXT_SIZE], gyration[NUMBER_TEXT_SIZE], unit[UNITS_NAME_SIZE];
+    char end[NUMBER_TEXT_SIZE], gyration[UNITS_MEASURED_SIZE];
     double error, mean = mean_of(s, 0, END, &error);
     mf_number_text(factor * mean, factor * error, end);
     mean = mean_of(s, 0, GYRATION, &error);
-    mf_number_text(factor * mean, factor * error, gyration);
-    snprintf(line, size, "%s: R_e^2 %s, R_g^2 %s%s", s->molecules->topology.kind[0].name, end,
-             gyration, mf_units_suffix(results->units, "lambda^2", unit));
+    snprintf(line, size, "%s: R_e^2 %s, R_g^2 %s", s->molecules->topology.kind[0].name, end,
+             mf_units_measured(results->units, "lambda^2", mean, error, gyration));
 }
 
 /// Nanoseconds of a bead in a molecule and sample, and of a molecule and lag.

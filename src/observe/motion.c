@@ -404,6 +404,21 @@ struct motion_summary mf_motion_result(const struct motion *motion,
     return s;
 }
 
+enum status mf_motion_table(const struct motion *motion, double **columns) {
+    const size_t rows = (size_t)motion->plan.lags + 1;
+    double *column[MOTION_COLUMNS] = {NULL};
+    *columns = NULL;
+    TRY_ARRAY(*columns, MOTION_COLUMNS * rows);
+    for (size_t n = 0; n < MOTION_COLUMNS; n++)
+        column[n] = *columns + n * rows;
+    mf_motion_result(motion, &(struct motion_curves){column[1], column[2], column[3], column[4]});
+    mf_statistics_mark_unknown_errors(column[2], rows);
+    mf_statistics_mark_unknown_errors(column[4], rows);
+    for (size_t k = 0; k < rows; k++)
+        column[0][k] = lag_time(motion, k);
+    return STATUS_OK;
+}
+
 double mf_motion_green_kubo_uncertainty(const struct motion_summary *summary) {
     return hypot(hypot(summary->green_kubo_error, summary->green_kubo_sampling),
                  summary->green_kubo_truncation);

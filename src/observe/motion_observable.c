@@ -33,46 +33,20 @@ static size_t spans(void *state, struct memory_span *spans) {
 
 /// motion.tsv: time, MSD, VACF, each with its standard error.
 static enum status write(const void *state, const struct observable_results *results) {
-    enum status status = STATUS_OK;
     const struct motion *motion = state;
-    const struct units *units = results->units;
     const size_t rows = (size_t)motion->plan.lags + 1;
-    const bool known = mf_units_have_second_columns(units);
-    const double ps = known ? mf_units_time_ps(units) : 1, nm2 = units->length * units->length;
-    double *time = NULL, *values = NULL, *picoseconds = NULL, *physical = NULL;
+    static const char *const beside[MOTION_COLUMNS] = {"%.10g", "%.8g", "%.3g", "%.8g", "%.3g"};
+    OWNED double *values = NULL;
     char path[OUTPUT_PATH_SIZE];
-    NEW_ARRAY(time, rows);
-    NEW_ARRAY(values, 4 * rows);
-    const struct motion_curves curves = {values, values + rows, values + 2 * rows,
-                                         values + 3 * rows};
-    mf_motion_result(motion, &curves);
-    mf_statistics_mark_unknown_errors(curves.msd_error, rows);
-    mf_statistics_mark_unknown_errors(curves.vacf_error, rows);
-    for (size_t k = 0; k < rows; k++)
-        time[k] = (double)k * (double)motion->plan.every * motion->time_step;
-    picoseconds = mf_units_column(time, rows, ps);
-    physical = mf_units_column(values, 4 * rows, nm2);
-    CHECK(picoseconds && physical ? STATUS_OK : STATUS_NO_MEMORY);
-    for (size_t k = 2 * rows; k < 4 * rows; k++)
-        physical[k] /= ps * ps;
-    const struct data_column columns[] = {{"time[tau]", time, NULL},
-                                          {"msd[lambda^2]", curves.msd, "%.8g"},
-                                          {"msd_error[lambda^2]", curves.msd_error, "%.3g"},
-                                          {"vacf[lambda^2/tau^2]", curves.vacf, "%.8g"},
-                                          {"vacf_error[lambda^2/tau^2]", curves.vacf_error, "%.3g"},
-                                          {"time[ps]", picoseconds, NULL},
-                                          {"msd[nm^2]", physical, "%.8g"},
-                                          {"msd_error[nm^2]", physical + rows, "%.3g"},
-                                          {"vacf[nm^2/ps^2]", physical + 2 * rows, "%.8g"},
-                                          {"vacf_error[nm^2/ps^2]", physical + 3 * rows, "%.3g"}};
+    TRY(mf_motion_table(motion, &values));
+    const struct data_column columns[MOTION_COLUMNS] = {
+        {"time[tau]", values, NULL},
+        {"msd[lambda^2]", values + rows, "%.8g"},
+        {"msd_error[lambda^2]", values + 2 * rows, "%.3g"},
+        {"vacf[lambda^2/tau^2]", values + 3 * rows, "%.8g"},
+        {"vacf_error[lambda^2/tau^2]", values + 4 * rows, "%.3g"}};
     mf_observable_file(results, "motion.tsv", path);
-    CHECK(mf_data_table_write_in(path, results->units, NULL, columns, known ? 10 : 5, rows));
-done:
-    mf_memory_free(time);
-    mf_memory_free(picoseconds);
-    mf_memory_free(physical);
-    mf_memory_free(values);
-    return status;
+    return mf_data_table_write_beside(path, results->units, columns, beside, MOTION_COLUMNS, rows);
 }
 
 /// D of an infinite box, where the viscosity is known.
@@ -81,8 +55,7 @@ static void write_infinite(const struct motion_summary *s, const struct observab
     double diffusion = s->msd, error = s->msd_error;
     if (!mf_shear_viscosity_correct(results, &diffusion, &error))
         return;
-    mf_json_write_quantity(writer, "diffusion_infinite", "lambda^2/tau", diffusion);
-    mf_json_write_quantity(writer, "diffusion_infinite_error", "lambda^2/tau", error);
+    mf_json_put_measured(writer, "diffusion_infinite", "lambda^2/tau", diffusion, error);
 }
 
 /// The object "motion": diffusion coefficients with errors, in cm²/s too when the units are known,
@@ -95,8 +68,7 @@ static void write_summary(const void *state, const struct observable_results *re
     mf_statistics_mark_unknown_errors(&s.msd_error, 1);
     if (mf_units_add_to_message(units, mf_motion_assess(&s)) != STATUS_OK)
         mf_json_write_text(writer, "warning", mf_status_message());
-    mf_json_write_quantity(writer, "diffusion_msd", "lambda^2/tau", s.msd);
-    mf_json_write_quantity(writer, "diffusion_msd_error", "lambda^2/tau", s.msd_error);
+    mf_json_put_measured(writer, "diffusion_msd", "lambda^2/tau", s.msd, s.msd_error);
     write_infinite(&s, results, writer);
     mf_json_write_quantity(writer, "diffusion_green_kubo", "lambda^2/tau", s.green_kubo);
     const double error = mf_motion_green_kubo_uncertainty(&s);
@@ -127,19 +99,17 @@ static void write_summary(const void *state, const struct observable_results *re
 static void print(const void *state, const struct observable_results *results, char *line,
                   size_t size) {
     const struct motion *motion = state;
-    char msd[NUMBER_TEXT_SIZE], green_kubo[NUMBER_TEXT_SIZE];
+    char msd[UNITS_MEASURED_SIZE], green_kubo[NUMBER_TEXT_SIZE], time_unit[UNITS_NAME_SIZE];
     const struct motion_summary s = mf_motion_result(motion, NULL);
     const struct units *units = results->units;
     const double factor = mf_units_factor(units, "lambda^2/tau");
     const double time = mf_units_factor(units, "tau");
-    char unit[UNITS_NAME_SIZE], time_unit[UNITS_NAME_SIZE];
-    mf_number_text(factor * s.msd, factor * s.msd_error, msd);
     mf_number_text(factor * s.green_kubo, factor * mf_motion_green_kubo_uncertainty(&s),
                    green_kubo);
-    snprintf(line, size, "D = %s%s by the MSD from %.4g to %.4g %s%s%s%s", msd,
-             mf_units_suffix(units, "lambda^2/tau", unit), time * s.fit_begin, time * s.fit_end,
-             mf_units_name(units, "tau", time_unit), motion->has_velocities ? ", " : "",
-             motion->has_velocities ? green_kubo : "",
+    snprintf(line, size, "D = %s by the MSD from %.4g to %.4g %s%s%s%s",
+             mf_units_measured(units, "lambda^2/tau", s.msd, s.msd_error, msd), time * s.fit_begin,
+             time * s.fit_end, mf_units_name(units, "tau", time_unit),
+             motion->has_velocities ? ", " : "", motion->has_velocities ? green_kubo : "",
              motion->has_velocities ? " by Green and Kubo" : "");
 }
 
@@ -165,16 +135,15 @@ static void explain(const void *settings, const struct simulation_setup *setup,
 /// VACF, MSD, and D of the MSD.
 static enum status result(const void *const *states, size_t count,
                           const struct observable_values *values) {
-    enum status status = STATUS_OK;
     const size_t times = (size_t)((const struct motion *)states[0])->plan.lags + 1;
-    double *memory = NULL;
-    struct motion_summary *summary = NULL;
-    struct pooled_curve *vacf = NULL, *msd = NULL, *diffusion = NULL;
-    NEW_ARRAY(memory, 4 * times * count);
-    NEW_ARRAY(summary, count);
-    NEW_ARRAY(vacf, count);
-    NEW_ARRAY(msd, count);
-    NEW_ARRAY(diffusion, count);
+    OWNED double *memory = NULL;
+    OWNED struct motion_summary *summary = NULL;
+    OWNED struct pooled_curve *vacf = NULL, *msd = NULL, *diffusion = NULL;
+    TRY_ARRAY(memory, 4 * times * count);
+    TRY_ARRAY(summary, count);
+    TRY_ARRAY(vacf, count);
+    TRY_ARRAY(msd, count);
+    TRY_ARRAY(diffusion, count);
     for (size_t k = 0; k < count; k++) {
         double *own = memory + 4 * times * k;
         const struct motion_curves curves = {own, own + times, own + 2 * times, own + 3 * times};
@@ -187,13 +156,7 @@ static enum status result(const void *const *states, size_t count,
     mf_pooled_join(&values[0], vacf, count);
     mf_pooled_join(&values[1], msd, count);
     mf_pooled_join(&values[2], diffusion, count);
-done:
-    mf_memory_free(summary);
-    mf_memory_free(vacf);
-    mf_memory_free(msd);
-    mf_memory_free(diffusion);
-    mf_memory_free(memory);
-    return status;
+    return STATUS_OK;
 }
 
 static const struct observable_target targets[] = {

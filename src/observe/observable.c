@@ -50,3 +50,10 @@ struct observable_kind mf_observable_kind(int kind) {
 void mf_observable_file(const struct observable_results *results, const char *name, char *path) {
     snprintf(path, OUTPUT_PATH_SIZE, "%.*s/%.255s", OUTPUT_PATH_SIZE - 258, results->folder, name);
 }
+
+enum status mf_observable_table(const struct observable_results *results, const char *name,
+                                const struct data_column *columns, size_t count, size_t rows) {
+    char path[OUTPUT_PATH_SIZE];
+    mf_observable_file(results, name, path);
+    return mf_data_table_write_in(path, results->units, NULL, columns, count, rows);
+}

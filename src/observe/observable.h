@@ -10,6 +10,7 @@
 #include "base/fields.h"
 #include "base/memory.h"
 #include "dynamics/simulation.h"
+#include "io/data_table.h"
 #include "io/json_write.h"
 #include "io/output.h"
 #include "io/units.h"
@@ -142,6 +143,11 @@ struct observable_kind mf_observable_kind(int kind);
 
 /// Path of a table in the folder of the results, into OUTPUT_PATH_SIZE bytes.
 void mf_observable_file(const struct observable_results *results, const char *name, char *path);
+
+/// Write a table of that name, in the units of the results. Fails: IO, NO_MEMORY.
+enum status mf_observable_table(const struct observable_results *results, const char *name,
+                                const struct data_column *columns, size_t count,
+                                size_t rows) MUST_USE;
 
 extern const struct observable mf_rdf_observable, mf_etd_observable, mf_motion_observable;
 extern const struct observable mf_thermodynamics_observable, mf_force_covariance_observable;

@@ -6,20 +6,17 @@ static const double pi = 3.14159265358979323846;
 enum status mf_particle_waves_init(struct particle_waves *waves, const struct box *box,
                                    const struct composition *composition, size_t count,
                                    const struct topology *topology, double q_maximum, size_t bins) {
-    enum status status = STATUS_OK;
     double lattice[3][3] = {{0}}, length[3] = {0};
     *waves = (struct particle_waves){0};
     for (int d = 0; d < box->dimensions; d++) {
         length[d] = box->length[d];
         lattice[d][d] = waves->unit[d] = 2 * pi / box->length[d];
     }
-    CHECK(mf_component_sites_init(&waves->sites, box->dimensions, composition, count, topology));
+    TRY(mf_component_sites_init(&waves->sites, box->dimensions, composition, count, topology));
     const struct density_waves_plan plan = {
         .composition = waves->sites.components, .q_maximum = q_maximum, .bins = bins};
-    CHECK(mf_density_waves_init(&waves->waves, &plan));
-    CHECK(mf_density_waves_list(&waves->waves, lattice, length));
-done:
-    return status;
+    TRY(mf_density_waves_init(&waves->waves, &plan));
+    return mf_density_waves_list(&waves->waves, lattice, length);
 }
 
 void mf_particle_waves_clear(struct particle_waves *waves) {

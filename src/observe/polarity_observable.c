@@ -20,20 +20,18 @@ static bool is_noninteracting(const struct simulation_setup *setup) {
 
 static enum status begin(void *state, const void *settings, const struct simulation *simulation,
                          const struct measure_plan *plan) {
-    enum status status = STATUS_OK;
     struct polarity *polarity = state;
     const int64_t steps = plan->samples * plan->every;
     if (mf_orientation_of(&simulation->particles).angle == NULL)
         return mf_status_fail(STATUS_BAD_INPUT,
                               "polarity: particles have no orientations; \"self-propulsion\" of "
                               "\"interactions\" gives them some");
-    CHECK(mf_motion_init(&polarity->motion, settings, simulation, plan->equilibration, steps));
+    TRY(mf_motion_init(&polarity->motion, settings, simulation, plan->equilibration, steps));
     polarity->motion.polar = true;
     polarity->order.columns = 1;
     polarity->noninteracting = is_noninteracting(&simulation->setup);
     polarity->free = mf_brownian_free(&simulation->setup);
-done:
-    return status;
+    return STATUS_OK;
 }
 
 static void clear(void *state) {
@@ -89,12 +87,10 @@ static double interval(const struct motion *motion) {
 /// alone if that is known.
 static enum status write_curves(const struct polarity *polarity,
                                 const struct observable_results *results) {
-    enum status status = STATUS_OK;
     const struct motion *motion = &polarity->motion;
     const size_t rows = (size_t)motion->plan.lags + 1;
-    double *values = NULL;
-    char path[OUTPUT_PATH_SIZE];
-    NEW_ARRAY(values, 7 * rows);
+    OWNED double *values = NULL;
+    TRY_ARRAY(values, 7 * rows);
     double *time = values + 4 * rows, *exact = time + rows, *exact_msd = exact + rows;
     const struct motion_curves curves = {values, values + rows, values + 2 * rows,
                                          values + 3 * rows};
@@ -113,81 +109,54 @@ static enum status write_curves(const struct polarity *polarity,
                                           {"msd_error[lambda^2]", curves.msd_error, "%.3g"},
                                           {"correlation_theory[1]", exact, "%.8g"},
                                           {"msd_theory[lambda^2]", exact_msd, "%.8g"}};
-    mf_observable_file(results, "polarity.tsv", path);
-    CHECK(mf_data_table_write_in(path, results->units, NULL, columns,
-                                 polarity->noninteracting ? 7 : 5, rows));
-done:
-    mf_memory_free(values);
-    return status;
+    return mf_observable_table(results, "polarity.tsv", columns, polarity->noninteracting ? 7 : 5,
+                               rows);
 }
 
 static enum status write(const void *state, const struct observable_results *results) {
-    enum status status = STATUS_OK;
     const struct polarity *polarity = state;
     const struct motion *motion = &polarity->motion;
-    double *time = NULL;
-    char path[OUTPUT_PATH_SIZE];
-    NEW_ARRAY(time, motion->samples);
+    OWNED double *time = NULL;
+    TRY_ARRAY(time, motion->samples);
     for (size_t k = 0; k < motion->samples; k++)
         time[k] = (double)motion->begin * motion->time_step + (double)k * interval(motion);
     const struct data_column columns[] = {{"time[tau]", time, NULL},
                                           {"order[1]", orders_of(polarity), "%.8g"}};
-    mf_observable_file(results, "polar_order.tsv", path);
-    CHECK(mf_data_table_write_in(path, results->units, NULL, columns, 2, motion->samples));
-    CHECK(write_curves(polarity, results));
-done:
-    mf_memory_free(time);
-    return status;
-}
-
-static double mean_order(const struct polarity *polarity, double *error) {
-    const size_t samples = polarity->order.count;
-    const double *orders = orders_of(polarity);
-    double sum = 0;
-    for (size_t k = 0; k < samples; k++)
-        sum += orders[k];
-    *error = mf_statistics_correlated_error(orders, samples, 1);
-    return sum / (double)samples;
+    TRY(mf_observable_table(results, "polar_order.tsv", columns, 2, motion->samples));
+    return write_curves(polarity, results);
 }
 
 static void write_summary(const void *state, const struct observable_results *results,
                           struct json_writer *writer) {
     const struct polarity *polarity = state;
     const struct polarity_fit fit = mf_polarity_fit(polarity);
-    double error;
+    double error, order = mf_sample_series_mean(&polarity->order, 0, &error);
     (void)results;
-    mf_json_write_number(writer, "polar_order", mean_order(polarity, &error));
-    mf_json_write_number(writer, "polar_order_error", error);
+    mf_json_put_measured(writer, "polar_order", "1", order, error);
     mf_json_write_number(writer, "polar_order_last",
                          orders_of(polarity)[polarity->order.count - 1]);
-    mf_json_write_quantity(writer, "effective_diffusion", "lambda^2/tau", fit.effective_diffusion);
-    mf_json_write_quantity(writer, "effective_diffusion_error", "lambda^2/tau",
-                           fit.effective_diffusion_error);
+    mf_json_put_measured(writer, "effective_diffusion", "lambda^2/tau", fit.effective_diffusion,
+                         fit.effective_diffusion_error);
     if (polarity->noninteracting)
         mf_json_write_quantity(writer, "effective_diffusion_theory", "lambda^2/tau",
                                mf_brownian_free_long_time(&polarity->free));
-    mf_json_write_quantity(writer, "msd_speed", "lambda/tau", fit.speed);
-    mf_json_write_quantity(writer, "msd_speed_error", "lambda/tau", fit.speed_error);
-    mf_json_write_quantity(writer, "msd_orientation_diffusion", "1/tau", fit.orientation_diffusion);
-    mf_json_write_quantity(writer, "msd_orientation_diffusion_error", "1/tau",
-                           fit.orientation_diffusion_error);
+    mf_json_put_measured(writer, "msd_speed", "lambda/tau", fit.speed, fit.speed_error);
+    mf_json_put_measured(writer, "msd_orientation_diffusion", "1/tau", fit.orientation_diffusion,
+                         fit.orientation_diffusion_error);
 }
 
 static void print(const void *state, const struct observable_results *results, char *line,
                   size_t size) {
     const struct polarity *polarity = state;
     const struct polarity_fit fit = mf_polarity_fit(polarity);
-    char order[NUMBER_TEXT_SIZE], diffusion[NUMBER_TEXT_SIZE];
+    char order[NUMBER_TEXT_SIZE], diffusion[UNITS_MEASURED_SIZE];
     double error;
-    const double mean = mean_order(polarity, &error);
+    const double mean = mf_sample_series_mean(&polarity->order, 0, &error);
     mf_number_text(mean, error, order);
-    const double factor = mf_units_factor(results->units, "lambda^2/tau");
-    char unit[UNITS_NAME_SIZE];
-    mf_number_text(factor * fit.effective_diffusion, factor * fit.effective_diffusion_error,
-                   diffusion);
+    mf_units_measured(results->units, "lambda^2/tau", fit.effective_diffusion,
+                      fit.effective_diffusion_error, diffusion);
     if (isfinite(fit.effective_diffusion)) // the MSD of those that fly together has no such law
-        snprintf(line, size, "polar order %s, effective diffusion %s%s", order, diffusion,
-                 mf_units_suffix(results->units, "lambda^2/tau", unit));
+        snprintf(line, size, "polar order %s, effective diffusion %s", order, diffusion);
     else
         snprintf(line, size, "polar order %s", order);
 }
@@ -205,14 +174,13 @@ static double read_at(const struct motion *motion, const double *curve, double t
 
 static enum status result(const void *const *states, size_t count,
                           const struct observable_values *values) {
-    enum status status = STATUS_OK;
     const size_t times = (size_t)((const struct polarity *)states[0])->motion.plan.lags + 1;
-    double *curve = NULL, *read = NULL;
-    struct pooled_curve *replicas = NULL, *orders = NULL;
-    NEW_ARRAY(curve, 4 * times);
-    NEW_ARRAY(read, 2 * count * (values->count + 1));
-    NEW_ARRAY(replicas, count);
-    NEW_ARRAY(orders, count);
+    OWNED double *curve = NULL, *read = NULL;
+    OWNED struct pooled_curve *replicas = NULL, *orders = NULL;
+    TRY_ARRAY(curve, 4 * times);
+    TRY_ARRAY(read, 2 * count * (values->count + 1));
+    TRY_ARRAY(replicas, count);
+    TRY_ARRAY(orders, count);
     const struct motion_curves curves = {curve, curve + times, curve + 2 * times,
                                          curve + 3 * times};
     for (size_t k = 0; k < count; k++) {
@@ -224,19 +192,15 @@ static enum status result(const void *const *states, size_t count,
             value[n] = read_at(motion, curves.vacf, values->x[n]);
             error[n] = read_at(motion, curves.vacf_error, values->x[n]);
         }
-        order[0] = mean_order(states[k], &order[1]);
+        order[0] =
+            mf_sample_series_mean(&((const struct polarity *)states[k])->order, 0, &order[1]);
         const double blocks = (double)mf_motion_blocks(motion);
         replicas[k] = (struct pooled_curve){value, error, blocks};
         orders[k] = (struct pooled_curve){&order[0], &order[1], blocks};
     }
     mf_pooled_join(&values[0], replicas, count);
     mf_pooled_join(&values[1], orders, count);
-done:
-    mf_memory_free(curve);
-    mf_memory_free(read);
-    mf_memory_free(replicas);
-    mf_memory_free(orders);
-    return status;
+    return STATUS_OK;
 }
 
 // Record ------------------------------------------------------------------------------------------

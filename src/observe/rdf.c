@@ -280,9 +280,8 @@ static size_t filled_blocks(const struct rdf *replicas, size_t count) {
 /// g of every block, shape [pairs, bins, count, blocks]. Fails: NO_MEMORY.
 static enum status find_series(const struct rdf *replicas, size_t count, size_t blocks,
                                double **series) {
-    enum status status = STATUS_OK;
     const size_t all = all_bins(replicas);
-    NEW_ARRAY(*series, all * count * blocks + 1);
+    TRY_ARRAY(*series, all * count * blocks + 1);
     for (size_t k = 0; k < all; k++) {
         const double ideal = ideal_at(replicas, k);
         for (size_t r = 0; r < count; r++)
@@ -290,22 +289,18 @@ static enum status find_series(const struct rdf *replicas, size_t count, size_t 
                 (*series)[(k * count + r) * blocks + b] =
                     replicas[r].histogram[b * all + k] / replicas[r].block_samples[b] / ideal;
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 static enum status find_errors(const struct rdf *replicas, size_t count, double *error) {
-    enum status status = STATUS_OK;
     const size_t bins = replicas->bins.count, blocks = filled_blocks(replicas, count);
     const size_t values = count * blocks;
-    double *series = NULL;
-    CHECK(find_series(replicas, count, blocks, &series));
+    OWNED double *series = NULL;
+    TRY(find_series(replicas, count, blocks, &series));
     for (size_t pair = 0; pair < replicas->pairs; pair++)
         mf_statistics_correlated_errors(series + pair * bins * values, blocks, count, bins,
                                         error + pair * bins);
-done:
-    mf_memory_free(series);
-    return status;
+    return STATUS_OK;
 }
 
 enum status mf_rdf_result(const struct rdf *replicas, size_t count, double *g, double *error) {
@@ -324,14 +319,10 @@ enum status mf_rdf_result(const struct rdf *replicas, size_t count, double *g, d
 
 enum status mf_rdf_independence(const struct rdf *replicas, size_t count, size_t first, size_t bins,
                                 struct statistics_independence *found) {
-    enum status status = STATUS_OK;
     const size_t blocks = filled_blocks(replicas, count);
-    double *series = NULL;
-    CHECK(find_series(replicas, count, blocks, &series));
-    CHECK(mf_statistics_independence(series + first * count * blocks, blocks, count, bins, found));
-done:
-    mf_memory_free(series);
-    return status;
+    OWNED double *series = NULL;
+    TRY(find_series(replicas, count, blocks, &series));
+    return mf_statistics_independence(series + first * count * blocks, blocks, count, bins, found);
 }
 
 double mf_rdf_rmse(const double *g, const double *target, size_t count) {

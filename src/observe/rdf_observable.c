@@ -148,55 +148,42 @@ void mf_rdf_observable_file(const char *folder, const char *name,
 /// rdf.tsv, or in a mixture rdf_A-A.tsv, rdf_A-B.tsv and so on: r, g as the estimator tells it, g
 /// as counted, each with its standard error.
 static enum status write(const void *state, const struct observable_results *results) {
-    enum status status = STATUS_OK;
     const struct rdf_observed *observed = state;
     const struct rdf *rdf = &observed->counted;
     const struct rdf_bins *bins = &rdf->bins;
     const bool force = observed->force.planned > 0;
     const size_t all = rdf->pairs * bins->count;
-    const struct units *units = results->units;
-    double *r = NULL, *g = NULL, *error = NULL, *counted = NULL, *counted_error = NULL;
-    double *nanometres = NULL;
+    static const char *const beside[5] = {"%.10g"};
+    OWNED double *r = NULL, *g = NULL, *error = NULL, *counted = NULL, *counted_error = NULL;
     char path[OUTPUT_PATH_SIZE];
-    NEW_ARRAY(r, bins->count);
-    NEW_ARRAY(g, bins->count);
-    NEW_ARRAY(error, bins->count);
-    NEW_ARRAY(counted, all);
-    NEW_ARRAY(counted_error, all);
+    TRY_ARRAY(r, bins->count);
+    TRY_ARRAY(g, bins->count);
+    TRY_ARRAY(error, bins->count);
+    TRY_ARRAY(counted, all);
+    TRY_ARRAY(counted_error, all);
     for (size_t k = 0; k < bins->count; k++)
         r[k] = mf_rdf_bins_centre(bins, k);
-    nanometres = mf_units_column(r, bins->count, units->length);
-    CHECK(nanometres ? STATUS_OK : STATUS_NO_MEMORY);
-    CHECK(mf_rdf_result(rdf, 1, counted, counted_error));
+    TRY(mf_rdf_result(rdf, 1, counted, counted_error));
     if (force)
-        CHECK(mf_rdf_force_result(&observed->force, 1, RDF_FORCE_COUNTED, g, error));
+        TRY(mf_rdf_force_result(&observed->force, 1, RDF_FORCE_COUNTED, g, error));
     for (size_t pair = 0; pair < rdf->pairs; pair++) {
         const size_t first = pair * bins->count;
-        size_t count = force ? 5 : 3;
         if (!mf_composition_has_pairs(&rdf->composition, (int)pair))
             continue;
         mf_statistics_mark_unknown_errors(counted_error + first, bins->count);
         mf_statistics_mark_unknown_errors(error, force ? bins->count : 0);
-        struct data_column columns[6] = {
+        const struct data_column columns[5] = {
             {"r[lambda]", r, NULL},
             {"g[1]", force ? g : counted + first, "%.8g"},
             {"g_error[1]", force ? error : counted_error + first, "%.3g"},
             {"g_histogram[1]", counted + first, "%.8g"},
             {"g_histogram_error[1]", counted_error + first, "%.3g"}};
-        if (mf_units_have_second_columns(units))
-            columns[count++] = (struct data_column){"r[nm]", nanometres, NULL};
         mf_rdf_observable_file(results->folder, rdf->intermolecular ? "intermolecular_rdf" : "rdf",
                                &rdf->composition, (int)pair, path);
-        CHECK(mf_data_table_write_in(path, results->units, NULL, columns, count, bins->count));
+        TRY(mf_data_table_write_beside(path, results->units, columns, beside, force ? 5 : 3,
+                                       bins->count));
     }
-done:
-    mf_memory_free(r);
-    mf_memory_free(nanometres);
-    mf_memory_free(g);
-    mf_memory_free(error);
-    mf_memory_free(counted);
-    mf_memory_free(counted_error);
-    return status;
+    return STATUS_OK;
 }
 
 /// A table without a number is not written, and that is told.
@@ -255,24 +242,20 @@ static void explain(const void *settings, const struct simulation_setup *setup, 
 /// Values have the shape [pairs, bins].
 static enum status result(const void *const *states, size_t count,
                           const struct observable_values *values) {
-    enum status status = STATUS_OK;
-    struct rdf *rdf = NULL;
-    struct rdf_force *force = NULL;
-    NEW_ARRAY(rdf, count);
-    NEW_ARRAY(force, count);
+    OWNED struct rdf *rdf = NULL;
+    OWNED struct rdf_force *force = NULL;
+    TRY_ARRAY(rdf, count);
+    TRY_ARRAY(force, count);
     for (size_t k = 0; k < count; k++) {
         const struct rdf_observed *observed = states[k];
         rdf[k] = observed->counted;
         force[k] = observed->force;
     }
     if (force->planned > 0)
-        CHECK(mf_rdf_force_result(force, count, RDF_FORCE_COUNTED, values->value, values->error));
+        TRY(mf_rdf_force_result(force, count, RDF_FORCE_COUNTED, values->value, values->error));
     else
-        CHECK(mf_rdf_result(rdf, count, values->value, values->error));
-done:
-    mf_memory_free(rdf);
-    mf_memory_free(force);
-    return status;
+        TRY(mf_rdf_result(rdf, count, values->value, values->error));
+    return STATUS_OK;
 }
 
 static const struct observable_target targets[] = {

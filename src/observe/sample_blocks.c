@@ -6,12 +6,10 @@
 enum { BLOCKS = 20 };
 
 enum status mf_sample_blocks_init(struct sample_blocks *blocks, size_t planned) {
-    enum status status = STATUS_OK;
     *blocks = (struct sample_blocks){.planned = planned, .each = planned == 0};
     blocks->count = planned == 0 ? 2 * BLOCKS : planned < BLOCKS ? planned : BLOCKS;
-    NEW_ARRAY(blocks->samples, blocks->count);
-done:
-    return status;
+    TRY_ARRAY(blocks->samples, blocks->count);
+    return STATUS_OK;
 }
 
 void mf_sample_blocks_clear(struct sample_blocks *blocks) {

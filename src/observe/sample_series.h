@@ -22,6 +22,9 @@ static inline double *sample_series_column(const struct sample_series *series, s
     return series->capacity > 0 ? series->values + column * series->capacity : NULL;
 }
 
+/// The mean of one series, and its standard error, which sees that samples are correlated.
+double mf_sample_series_mean(const struct sample_series *series, size_t column, double *error);
+
 /// What goes with a checkpoint: 1 + columns spans. The lengths of all but the first depend on it:
 /// after it was restored there is to be made room.
 size_t mf_sample_series_spans(struct sample_series *series, struct memory_span *spans);

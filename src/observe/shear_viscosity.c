@@ -287,15 +287,13 @@ static enum status assess(const void *state, const struct simulation_setup *setu
 /// shear_viscosity.tsv: the integral by the length of its window, and the autocorrelation of the
 /// stress over intervals times V/(k_B T), whose integral it is.
 static enum status write(const void *state, const struct observable_results *results) {
-    enum status status = STATUS_OK;
     const struct viscosity *v = state;
     const size_t rows = (size_t)v->settings.lags + 1;
     const double interval = (double)v->settings.every * v->setup.time_step;
-    double *values = NULL;
-    char path[OUTPUT_PATH_SIZE];
+    OWNED double *values = NULL;
     if (v->driven)
         return STATUS_OK;
-    NEW_ARRAY(values, 6 * rows);
+    TRY_ARRAY(values, 6 * rows);
     double *time = values, *integral = time + rows, *error = integral + rows, *lag = error + rows,
            *correlation = lag + rows, *correlation_error = correlation + rows;
     mf_green_kubo_result(&v->green_kubo, &(struct green_kubo_curves){integral, error, correlation,
@@ -317,11 +315,7 @@ static enum status write(const void *state, const struct observable_results *res
         {"lag[tau]", lag, NULL},
         {"stress_correlation[k_B.T_0/lambda^3]", correlation, "%.8g"},
         {"stress_correlation_error[k_B.T_0/lambda^3]", correlation_error, "%.3g"}};
-    mf_observable_file(results, "shear_viscosity.tsv", path);
-    status = mf_data_table_write_in(path, results->units, NULL, columns, 6, rows);
-done:
-    mf_memory_free(values);
-    return status;
+    return mf_observable_table(results, "shear_viscosity.tsv", columns, 6, rows);
 }
 
 /// mPa s of one k_B T_0 τ/λ³.
@@ -347,8 +341,7 @@ static void write_summary(const void *state, const struct observable_results *re
     }
     if (s.driven) {
         mf_json_write_quantity(writer, "wave_number", "1/lambda", s.wave_number);
-        mf_json_write_quantity(writer, "velocity", "lambda/tau", s.velocity);
-        mf_json_write_quantity(writer, "velocity_error", "lambda/tau", s.velocity_error);
+        mf_json_put_measured(writer, "velocity", "lambda/tau", s.velocity, s.velocity_error);
         mf_json_write_quantity(writer, "temperature", "T_0", s.temperature);
         mf_json_write_quantity(writer, "settling_time", "tau", s.settling);
     } else {
@@ -396,20 +389,16 @@ static void explain(const void *settings, const struct simulation_setup *setup, 
 
 static enum status result(const void *const *states, size_t count,
                           const struct observable_values *values) {
-    enum status status = STATUS_OK;
-    struct shear_viscosity_summary *found = NULL;
-    struct pooled_curve *replicas = NULL;
-    NEW_ARRAY(found, count);
-    NEW_ARRAY(replicas, count);
+    OWNED struct shear_viscosity_summary *found = NULL;
+    OWNED struct pooled_curve *replicas = NULL;
+    TRY_ARRAY(found, count);
+    TRY_ARRAY(replicas, count);
     for (size_t k = 0; k < count; k++) {
         found[k] = mf_shear_viscosity_result(states[k]);
         replicas[k] = (struct pooled_curve){&found[k].value, &found[k].error, found[k].blocks};
     }
     mf_pooled_join(values, replicas, count);
-done:
-    mf_memory_free(found);
-    mf_memory_free(replicas);
-    return status;
+    return STATUS_OK;
 }
 
 static const struct observable_target targets[] = {{.name = "shear_viscosity",

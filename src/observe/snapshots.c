@@ -82,17 +82,14 @@ static int64_t due(const void *state) {
 }
 
 static enum status write_formats(struct state *s) {
-    enum status status = STATUS_OK;
     char folder[OUTPUT_PATH_SIZE];
-    struct snapshot converted = {0};
+    CLEARED_BY(mf_snapshot_clear) struct snapshot converted = {0};
     mf_observable_file(&s->results, SNAPSHOT_FOLDER, folder);
-    CHECK(mf_snapshot_translate(&converted, &s->last, s->results.units));
+    TRY(mf_snapshot_translate(&converted, &s->last, s->results.units));
     for (int k = 0; mf_snapshot_formats[k]; k++)
         if (s->settings.formats >> k & 1)
-            CHECK(mf_snapshot_write(&converted, mf_snapshot_formats[k], folder, &s->size[k]));
-done:
-    mf_snapshot_clear(&converted);
-    return status;
+            TRY(mf_snapshot_write(&converted, mf_snapshot_formats[k], folder, &s->size[k]));
+    return STATUS_OK;
 }
 
 /// Whether a scene can give particles this column at the start.

@@ -12,7 +12,6 @@ enum { MAX_BLOCKS = 64 };
 
 enum status mf_structure_factor_init(struct structure_factor *factor,
                                      const struct density_waves_plan *plan, size_t planned) {
-    enum status status = STATUS_OK;
     const struct composition *const composition = &plan->composition;
     *factor = (struct structure_factor){
         .composition = *composition,
@@ -22,9 +21,8 @@ enum status mf_structure_factor_init(struct structure_factor *factor,
         .endless = planned == 0};
     factor->each = planned > 0 ? (planned + MAX_BLOCKS - 1) / MAX_BLOCKS : 1;
     factor->blocks = planned > 0 ? planned / factor->each : MAX_BLOCKS;
-    NEW_ARRAY(factor->sums, factor->blocks * mf_structure_factor_numbers(factor));
-done:
-    return status;
+    TRY_ARRAY(factor->sums, factor->blocks * mf_structure_factor_numbers(factor));
+    return STATUS_OK;
 }
 
 void mf_structure_factor_clear(struct structure_factor *factor) {
@@ -145,14 +143,13 @@ void mf_structure_factor_curves_clear(struct structure_factor_curves *curves) {
 
 enum status mf_structure_factor_write(const struct structure_factor *factor,
                                       const struct observable_results *results) {
-    enum status status = STATUS_OK;
-    struct structure_factor_curves curves = {0};
-    struct data_column columns[4 + 2 * (1 + COMPOSITION_MAX_PAIRS)];
+    CLEARED_BY(mf_structure_factor_curves_clear) struct structure_factor_curves curves = {0};
+    struct data_column columns[2 + 2 * (1 + COMPOSITION_MAX_PAIRS)];
+    static const char *const beside[sizeof columns / sizeof *columns] = {"%.10g"};
     char names[2 * (1 + COMPOSITION_MAX_PAIRS)][COMPOSITION_PAIR_NAME_SIZE + 16];
     char path[OUTPUT_PATH_SIZE];
-    double *nanometres = NULL;
     size_t n = 0;
-    CHECK(mf_structure_factor_find(factor, &curves));
+    TRY(mf_structure_factor_find(factor, &curves));
     columns[n++] = (struct data_column){"q[1/lambda]", curves.q, NULL};
     for (size_t curve = 0; curve < factor->curves; curve++) {
         char pair[COMPOSITION_PAIR_NAME_SIZE] = "", brackets[COMPOSITION_PAIR_NAME_SIZE + 2] = "";
@@ -170,16 +167,6 @@ enum status mf_structure_factor_write(const struct structure_factor *factor,
         columns[n++] = (struct data_column){names[2 * curve + 1], error, "%.3g"};
     }
     columns[n++] = (struct data_column){"vectors[1]", curves.members, "%.7g"};
-    nanometres = mf_units_column(
-        curves.q, curves.bins,
-        mf_units_have_second_columns(results->units) ? 1 / results->units->length : 0);
-    CHECK(nanometres ? STATUS_OK : STATUS_NO_MEMORY);
-    if (mf_units_have_second_columns(results->units))
-        columns[n++] = (struct data_column){"q[1/nm]", nanometres, NULL};
     mf_observable_file(results, "structure_factor.tsv", path);
-    CHECK(mf_data_table_write_in(path, results->units, NULL, columns, n, curves.bins));
-done:
-    mf_structure_factor_curves_clear(&curves);
-    mf_memory_free(nanometres);
-    return status;
+    return mf_data_table_write_beside(path, results->units, columns, beside, n, curves.bins);
 }

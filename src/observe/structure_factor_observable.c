@@ -96,16 +96,15 @@ static void read_at(const struct structure_factor_curves *s, double q, double *v
 
 static enum status result(const void *const *states, size_t count,
                           const struct observable_values *values) {
-    enum status status = STATUS_OK;
     struct structure_factor_curves curves = {0};
-    double *read = NULL;
-    struct pooled_curve *replicas = NULL;
-    NEW_ARRAY(read, 2 * count * values->count);
-    NEW_ARRAY(replicas, count);
+    OWNED double *read = NULL;
+    OWNED struct pooled_curve *replicas = NULL;
+    TRY_ARRAY(read, 2 * count * values->count);
+    TRY_ARRAY(replicas, count);
     for (size_t k = 0; k < count; k++) {
         const struct structure_factor *const factor = &((const struct state *)states[k])->factor;
         double *value = read + 2 * k * values->count, *error = value + values->count;
-        CHECK(mf_structure_factor_find(factor, &curves));
+        TRY(mf_structure_factor_find(factor, &curves));
         for (size_t n = 0; n < values->count; n++)
             read_at(&curves, values->x[n], &value[n], &error[n]);
         mf_structure_factor_curves_clear(&curves);
@@ -113,10 +112,7 @@ static enum status result(const void *const *states, size_t count,
             (struct pooled_curve){value, error, (double)mf_structure_factor_blocks(factor)};
     }
     mf_pooled_join(values, replicas, count);
-done:
-    mf_memory_free(read);
-    mf_memory_free(replicas);
-    return status;
+    return STATUS_OK;
 }
 
 // Record ------------------------------------------------------------------------------------------

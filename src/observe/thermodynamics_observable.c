@@ -33,19 +33,15 @@ static enum status reserve(void *state) {
 
 /// thermodynamics.tsv: a row for each sample.
 static enum status write(const void *state, const struct observable_results *results) {
-    enum status status = STATUS_OK;
     const struct thermodynamics *t = state;
-    const struct units *units = results->units;
-    const double *energy = mf_thermodynamics_series(t, THERMODYNAMICS_POTENTIAL_ENERGY);
-    const double *pressure = mf_thermodynamics_series(t, THERMODYNAMICS_PRESSURE);
-    double *step = NULL, *time = NULL, *configurational = NULL, *physical[3] = {NULL};
+    OWNED double *step = NULL, *time = NULL, *configurational = NULL;
     const struct simulation_setup *setup = results->setup;
     const bool sweeps = setup->integrator->samples; // in the place of times
     const double time_step = sweeps ? 1 : setup->time_step;
     char path[OUTPUT_PATH_SIZE];
-    NEW_ARRAY(step, t->series.count);
-    NEW_ARRAY(time, t->series.count);
-    NEW_ARRAY(configurational, t->series.count);
+    TRY_ARRAY(step, t->series.count);
+    TRY_ARRAY(time, t->series.count);
+    TRY_ARRAY(configurational, t->series.count);
     for (size_t k = 0; k < t->series.count; k++) {
         step[k] = (double)(results->plan->equilibration + (int64_t)(k + 1) * results->plan->every);
         time[k] = step[k] * time_step;
@@ -53,37 +49,23 @@ static enum status write(const void *state, const struct observable_results *res
                              mf_thermodynamics_series(t, THERMODYNAMICS_LAPLACIAN)[k];
     }
     // bar is a force on an area.
-    const bool known = mf_units_have_second_columns(units), in_space = setup->box.dimensions == 3;
-    physical[0] = mf_units_column(time, t->series.count, known ? mf_units_time_ps(units) : 0);
-    physical[1] =
-        mf_units_column(energy, t->series.count, known ? mf_units_energy_kj_per_mol(units) : 0);
-    physical[2] =
-        mf_units_column(pressure, t->series.count, known ? mf_units_pressure_bar(units) : 0);
-    CHECK(physical[0] && physical[1] && physical[2] ? STATUS_OK : STATUS_NO_MEMORY);
-    enum { REDUCED = 6, PHYSICAL = 3 };
-    struct data_column columns[REDUCED + PHYSICAL] = {
-        {"step", step, NULL},
-        {sweeps ? "sweeps[1]" : "time[tau]", time, NULL},
-        {"temperature[T_0]", mf_thermodynamics_series(t, THERMODYNAMICS_TEMPERATURE), "%.8g"},
-        {"potential_energy[k_B.T_0]", energy, "%.12g"},
-        {"pressure[k_B.T_0/lambda^d]", pressure, "%.8g"},
-        {"temperature_configurational[T_0]", configurational, "%.8g"}};
-    size_t n = REDUCED;
-    if (known && !sweeps)
-        columns[n++] = (struct data_column){"time[ps]", physical[0], NULL};
-    if (known)
-        columns[n++] = (struct data_column){"potential_energy[kJ/mol]", physical[1], "%.8g"};
-    if (known && in_space)
-        columns[n++] = (struct data_column){"pressure[bar]", physical[2], "%.8g"};
+    const bool in_space = setup->box.dimensions == 3;
+    enum { STEP, TIME, TEMPERATURE, ENERGY, PRESSURE, CONFIGURATIONAL, COLUMNS };
+    const struct data_column columns[COLUMNS] = {
+        [STEP] = {"step", step, NULL},
+        [TIME] = {sweeps ? "sweeps[1]" : "time[tau]", time, NULL},
+        [TEMPERATURE] = {"temperature[T_0]",
+                         mf_thermodynamics_series(t, THERMODYNAMICS_TEMPERATURE), "%.8g"},
+        [ENERGY] = {"potential_energy[k_B.T_0]",
+                    mf_thermodynamics_series(t, THERMODYNAMICS_POTENTIAL_ENERGY), "%.12g"},
+        [PRESSURE] = {"pressure[k_B.T_0/lambda^d]",
+                      mf_thermodynamics_series(t, THERMODYNAMICS_PRESSURE), "%.8g"},
+        [CONFIGURATIONAL] = {"temperature_configurational[T_0]", configurational, "%.8g"}};
+    const char *const beside[COLUMNS] = {
+        [TIME] = sweeps ? NULL : "%.10g", [ENERGY] = "%.8g", [PRESSURE] = in_space ? "%.8g" : NULL};
     mf_observable_file(results, "thermodynamics.tsv", path);
-    CHECK(mf_data_table_write_in(path, results->units, NULL, columns, n, t->series.count));
-done:
-    for (int k = 0; k < 3; k++)
-        mf_memory_free(physical[k]);
-    mf_memory_free(step);
-    mf_memory_free(time);
-    mf_memory_free(configurational);
-    return status;
+    return mf_data_table_write_beside(path, results->units, columns, beside, COLUMNS,
+                                      t->series.count);
 }
 
 /// Temperatures first: a step that is too long tells more than the drift that it makes.
@@ -98,30 +80,22 @@ static enum status assess(const void *state, const struct simulation_setup *setu
                                 t->series.count);
 }
 
-/// One sample tells no error: null.
-static void write_error(struct json_writer *writer, const char *name, const char *unit,
-                        const struct thermodynamics_summary *summary, double error) {
-    mf_json_write_quantity(writer, name, unit, summary->blocks > 1 ? error : NAN);
-}
-
 /// Means with errors, and the object "physical" when the units are known.
 static void write_summary(const void *state, const struct observable_results *results,
                           struct json_writer *writer) {
     const struct thermodynamics_summary s = mf_thermodynamics_result(state, 1);
+    const double known = s.blocks > 1 ? 1 : NAN; // one sample tells no error
     if (mf_units_add_to_message(results->units, assess(state, results->setup)) != STATUS_OK)
         mf_json_write_text(writer, "warning", mf_status_message());
-    mf_json_write_quantity(writer, "temperature", "T_0", s.temperature);
-    write_error(writer, "temperature_error", "T_0", &s, s.temperature_error);
-    if (isfinite(s.temperature_configurational)) {
-        mf_json_write_quantity(writer, "temperature_configurational", "T_0",
-                               s.temperature_configurational);
-        write_error(writer, "temperature_configurational_error", "T_0", &s,
-                    s.temperature_configurational_error);
-    }
-    mf_json_write_quantity(writer, "potential_energy", "k_B T_0", s.potential_energy);
-    write_error(writer, "potential_energy_error", "k_B T_0", &s, s.potential_energy_error);
-    mf_json_write_quantity(writer, "pressure", "k_B T_0/lambda^d", s.pressure);
-    write_error(writer, "pressure_error", "k_B T_0/lambda^d", &s, s.pressure_error);
+    mf_json_put_measured(writer, "temperature", "T_0", s.temperature, known * s.temperature_error);
+    if (isfinite(s.temperature_configurational))
+        mf_json_put_measured(writer, "temperature_configurational", "T_0",
+                             s.temperature_configurational,
+                             known * s.temperature_configurational_error);
+    mf_json_put_measured(writer, "potential_energy", "k_B T_0", s.potential_energy,
+                         known * s.potential_energy_error);
+    mf_json_put_measured(writer, "pressure", "k_B T_0/lambda^d", s.pressure,
+                         known * s.pressure_error);
     if (!simulation_holds_temperature(results->setup) &&
         !results->setup->integrator->solvent_particles)
         mf_json_write_number(writer, "energy_drift", mf_thermodynamics_energy_drift(state));

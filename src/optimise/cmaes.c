@@ -126,34 +126,32 @@ static void sample(struct state *state) {
 
 static enum status create(void *memory, const struct optimiser_space *space,
                           const void *parameters) {
-    enum status status = STATUS_OK;
     struct state *state = memory;
     state->parameters = *(const struct cmaes_parameters *)parameters;
-    CHECK(mf_optimiser_check_space(space));
+    TRY(mf_optimiser_check_space(space));
     if (state->parameters.population > 0 && state->parameters.population < 4)
-        CHECK(mf_status_fail(STATUS_BAD_INPUT, "cma-es: a population of %d is below 4",
-                             (int)state->parameters.population));
+        TRY(mf_status_fail(STATUS_BAD_INPUT, "cma-es: a population of %d is below 4",
+                           (int)state->parameters.population));
     state->space = *space;
     state->space.start = NULL;
     const size_t usual = usual_population(&state->parameters, space->variables);
-    CHECK(mf_optimiser_check_round(space, usual));
+    TRY(mf_optimiser_check_round(space, usual));
     state->max = MAX_GROWTH * usual;
     if (space->max > 0 && state->max > space->max)
         state->max = space->max;
-    NEW_ARRAY(state->strategy.weights, state->max);
-    NEW_ARRAY(state->steps, state->max * space->variables);
-    NEW_ARRAY(state->variables, state->max * space->variables);
-    NEW_ARRAY(state->errors, state->max);
-    NEW_ARRAY(state->record, space->variables);
-    NEW_ARRAY(state->history, max_history(state));
-    CHECK(mf_cmaes_init(&state->distribution, space->variables));
+    TRY_ARRAY(state->strategy.weights, state->max);
+    TRY_ARRAY(state->steps, state->max * space->variables);
+    TRY_ARRAY(state->variables, state->max * space->variables);
+    TRY_ARRAY(state->errors, state->max);
+    TRY_ARRAY(state->record, space->variables);
+    TRY_ARRAY(state->history, max_history(state));
+    TRY(mf_cmaes_init(&state->distribution, space->variables));
     state->progress.record_error = state->progress.discard_above = HUGE_VAL;
     state->progress.population = (double)usual;
     mf_cmaes_begin(&state->distribution, state->parameters.step);
     for (size_t k = 0; k < space->variables; k++)
         state->distribution.mean[k] = mf_optimiser_start(space, k);
-done:
-    return status;
+    return STATUS_OK;
 }
 
 static enum status ask(void *memory, struct optimiser_round *round) {

@@ -33,18 +33,15 @@ done:
 }
 
 enum status mf_cmaes_init(struct cmaes_distribution *d, size_t variables) {
-    enum status status = STATUS_OK;
     *d = (struct cmaes_distribution){.variables = variables};
-    NEW_ARRAY(d->mean, variables);
-    NEW_ARRAY(d->path_sigma, variables);
-    NEW_ARRAY(d->path, variables);
-    NEW_ARRAY(d->covariance, variables * variables);
-    NEW_ARRAY(d->axes, variables * variables);
-    NEW_ARRAY(d->lengths, variables);
-    NEW_ARRAY(d->scratch, 1);
-    CHECK(workspace_init(d->scratch, variables));
-done:
-    return status;
+    TRY_ARRAY(d->mean, variables);
+    TRY_ARRAY(d->path_sigma, variables);
+    TRY_ARRAY(d->path, variables);
+    TRY_ARRAY(d->covariance, variables * variables);
+    TRY_ARRAY(d->axes, variables * variables);
+    TRY_ARRAY(d->lengths, variables);
+    TRY_ARRAY(d->scratch, 1);
+    return workspace_init(d->scratch, variables);
 }
 
 void mf_cmaes_clear(struct cmaes_distribution *d) {

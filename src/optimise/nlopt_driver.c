@@ -154,22 +154,20 @@ static void destroy(void *memory) {
 
 static enum status create(void *memory, const struct optimiser_space *space,
                           const void *parameters) {
-    enum status status = STATUS_OK;
     struct state *state = memory;
     state->parameters = *(const struct nlopt_parameters *)parameters;
-    CHECK(mf_optimiser_check_space(space));
+    TRY(mf_optimiser_check_space(space));
     state->space = *space;
     state->space.start = NULL;
     state->progress.best_error = OPTIMISER_FAILED;
-    NEW_ARRAY(state->start, space->variables);
-    NEW_ARRAY(state->told, (size_t)state->parameters.evaluations);
-    NEW_ARRAY(state->variables, space->variables);
-    NEW_ARRAY(state->best, space->variables);
-    NEW_ARRAY(state->recent, RECENT * space->variables);
+    TRY_ARRAY(state->start, space->variables);
+    TRY_ARRAY(state->told, (size_t)state->parameters.evaluations);
+    TRY_ARRAY(state->variables, space->variables);
+    TRY_ARRAY(state->best, space->variables);
+    TRY_ARRAY(state->recent, RECENT * space->variables);
     for (size_t k = 0; k < space->variables; k++)
         state->start[k] = mf_optimiser_start(space, k);
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /// The algorithm's next candidate as fractions, NULL if it has finished. Begins the algorithm if it

@@ -73,7 +73,6 @@ static void make_first(struct nsga2 *nsga2, const double *start) {
 
 enum status mf_nsga2_init(struct nsga2 *nsga2, const struct nsga2_parameters *parameters,
                           const struct nsga2_space *space) {
-    enum status status = STATUS_OK;
     const size_t population = (size_t)parameters->population;
     *nsga2 = (struct nsga2){.parameters = *parameters,
                             .genes = space->genes,
@@ -83,17 +82,16 @@ enum status mf_nsga2_init(struct nsga2 *nsga2, const struct nsga2_parameters *pa
     if (space->genes < 1 || space->objectives < 1)
         return mf_status_fail(STATUS_BAD_INPUT, "nothing to optimise: %zu genes, %zu objectives",
                               space->genes, space->objectives);
-    NEW_ARRAY(nsga2->x, 3 * population * space->genes);
-    NEW_ARRAY(nsga2->value, 2 * population * space->objectives);
-    NEW_ARRAY(nsga2->measured, 2 * population);
-    NEW_ARRAY(nsga2->rank, 2 * population);
-    NEW_ARRAY(nsga2->crowding, 2 * population);
-    NEW_ARRAY(nsga2->again, population);
-    NEW_ARRAY(nsga2->injected, NSGA2_INJECTED * space->genes);
+    TRY_ARRAY(nsga2->x, 3 * population * space->genes);
+    TRY_ARRAY(nsga2->value, 2 * population * space->objectives);
+    TRY_ARRAY(nsga2->measured, 2 * population);
+    TRY_ARRAY(nsga2->rank, 2 * population);
+    TRY_ARRAY(nsga2->crowding, 2 * population);
+    TRY_ARRAY(nsga2->again, population);
+    TRY_ARRAY(nsga2->injected, NSGA2_INJECTED * space->genes);
     make_first(nsga2, space->start);
     nsga2->progress.is_made = 1;
-done:
-    return status;
+    return STATUS_OK;
 }
 
 void mf_nsga2_clear(struct nsga2 *nsga2) {
@@ -258,15 +256,14 @@ static int compare_rivals(const void *a, const void *b) {
 
 /// The best of parents and children become the parents.
 static enum status select_parents(struct nsga2 *nsga2) {
-    enum status status = STATUS_OK;
     const size_t first = first_row(nsga2), end = 2 * nsga2->population;
     const size_t genes = nsga2->genes, objectives = nsga2->objectives;
-    struct rival *rivals = NULL;
-    double *copy = NULL;
+    OWNED struct rival *rivals = NULL;
+    OWNED double *copy = NULL;
     const size_t width = genes + objectives + 1;
-    NEW_ARRAY(rivals, end - first);
-    NEW_ARRAY(copy, nsga2->population * width);
-    CHECK(sort(nsga2, first, end - first));
+    TRY_ARRAY(rivals, end - first);
+    TRY_ARRAY(copy, nsga2->population * width);
+    TRY(sort(nsga2, first, end - first));
     for (size_t k = first; k < end; k++)
         rivals[k - first] = (struct rival){nsga2, k};
     qsort(rivals, end - first, sizeof *rivals, compare_rivals);
@@ -282,11 +279,7 @@ static enum status select_parents(struct nsga2 *nsga2) {
         memcpy(value_of(nsga2, k), from + genes, objectives * sizeof *from);
         nsga2->measured[k] = from[genes + objectives];
     }
-    CHECK(sort(nsga2, 0, nsga2->population));
-done:
-    mf_memory_free(rivals);
-    mf_memory_free(copy);
-    return status;
+    return sort(nsga2, 0, nsga2->population);
 }
 
 enum status mf_nsga2_tell(struct nsga2 *nsga2, const double *value) {

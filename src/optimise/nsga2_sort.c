@@ -63,10 +63,9 @@ static void crowd_along(struct place *place, size_t count, double *crowding) {
 
 enum status mf_nsga2_crowd(const double *value, size_t count, size_t objectives,
                            const uint32_t *rank, double *crowding) {
-    enum status status = STATUS_OK;
-    struct place *place = NULL;
+    OWNED struct place *place = NULL;
     size_t done_with = 0;
-    NEW_ARRAY(place, count);
+    TRY_ARRAY(place, count);
     for (uint32_t front = 1; done_with < count; front++) {
         size_t members = 0;
         for (size_t m = 0; m < objectives; m++) {
@@ -82,7 +81,5 @@ enum status mf_nsga2_crowd(const double *value, size_t count, size_t objectives,
         }
         done_with += members;
     }
-done:
-    mf_memory_free(place);
-    return status;
+    return STATUS_OK;
 }

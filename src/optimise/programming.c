@@ -54,19 +54,17 @@ enum status mf_programming_init(struct programming *programming,
                                 const struct programming_points *points,
                                 const struct programming_parameters *parameters, uint64_t seed,
                                 int threads, const atomic_bool *cancel) {
-    enum status status = STATUS_OK;
     *programming = (struct programming){.parameters = *parameters,
                                         .points = points,
                                         .seed = seed,
                                         .threads = threads,
                                         .cancel = cancel};
-    NEW_ARRAY(programming->island, (size_t)parameters->islands);
+    TRY_ARRAY(programming->island, (size_t)parameters->islands);
     for (int length = 0; length <= PROGRAMMING_MAX_NODES; length++)
         programming->best[length].error = INFINITY;
     for (int64_t k = 0; k < parameters->islands; k++)
         clear_island(&programming->island[k]);
-done:
-    return status;
+    return STATUS_OK;
 }
 
 void mf_programming_clear(struct programming *programming) {
@@ -392,18 +390,6 @@ enum status mf_programming_front(const struct programming *programming,
             continue;
         min = front[(*members)++].error;
     }
-done:
-    mf_programming_fit_clear(&scratch);
-    return status;
-}
-
-enum status mf_programming_residuals(const struct programming_points *points,
-                                     const struct expression *expression, double *residual) {
-    enum status status = STATUS_OK;
-    struct programming_scratch scratch;
-    CHECK(mf_programming_fit_init(&scratch, points));
-    mf_programming_fit_error(points, &scratch, expression);
-    memcpy(residual, scratch.residual, points->rows * sizeof *residual);
 done:
     mf_programming_fit_clear(&scratch);
     return status;

@@ -94,9 +94,4 @@ enum status mf_programming_front(const struct programming *programming,
 enum status mf_programming_polish(const struct programming_points *points,
                                   struct programming_member *member) MUST_USE;
 
-/// Residuals of a formula, shape [rows]. Fails: NO_MEMORY.
-enum status mf_programming_residuals(const struct programming_points *points,
-                                     const struct expression *expression,
-                                     double *residual) MUST_USE;
-
 size_t mf_programming_spans(struct programming *programming, struct memory_span *spans);

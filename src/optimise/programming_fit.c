@@ -9,17 +9,15 @@ static const double largest_constant = 1e9, largest_exponent = 30;
 
 enum status mf_programming_fit_init(struct programming_scratch *scratch,
                                     const struct programming_points *points) {
-    enum status status = STATUS_OK;
     *scratch = (struct programming_scratch){0};
-    NEW_ARRAY(scratch->value, EXPRESSION_MAX * (points->count + 1));
-    NEW_ARRAY(scratch->adjoint, EXPRESSION_MAX * (points->count + 1));
-    NEW_ARRAY(scratch->difference, points->count);
-    NEW_ARRAY(scratch->slope, points->count);
-    NEW_ARRAY(scratch->jacobian, EXPRESSION_MAX * points->count);
-    NEW_ARRAY(scratch->residual, points->rows);
-    NEW_ARRAY(scratch->columns, EXPRESSION_MAX * points->rows);
-done:
-    return status;
+    TRY_ARRAY(scratch->value, EXPRESSION_MAX * (points->count + 1));
+    TRY_ARRAY(scratch->adjoint, EXPRESSION_MAX * (points->count + 1));
+    TRY_ARRAY(scratch->difference, points->count);
+    TRY_ARRAY(scratch->slope, points->count);
+    TRY_ARRAY(scratch->jacobian, EXPRESSION_MAX * points->count);
+    TRY_ARRAY(scratch->residual, points->rows);
+    TRY_ARRAY(scratch->columns, EXPRESSION_MAX * points->rows);
+    return STATUS_OK;
 }
 
 void mf_programming_fit_clear(struct programming_scratch *scratch) {

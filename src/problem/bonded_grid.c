@@ -253,14 +253,10 @@ void mf_bonded_grid_complete(const struct bonded_grid *grid, double *energy) {
 
 enum status mf_bonded_grid_curve(const struct bonded_grid *grid, const double *energy,
                                  struct bonded_curve *curve) {
-    enum status status = STATUS_OK;
-    double *q = NULL;
-    NEW_ARRAY(q, grid->points);
+    OWNED double *q = NULL;
+    TRY_ARRAY(q, grid->points);
     for (size_t k = 0; k < grid->points; k++)
         q[k] = mf_bonded_grid_place(grid, k);
-    CHECK(mf_bonded_create(curve, mf_bonded_kinds[grid->unknown->order]->table));
-    CHECK(mf_bonded_table_set_points(curve, q, energy, grid->points));
-done:
-    mf_memory_free(q);
-    return status;
+    TRY(mf_bonded_create(curve, mf_bonded_kinds[grid->unknown->order]->table));
+    return mf_bonded_table_set_points(curve, q, energy, grid->points);
 }

@@ -167,16 +167,14 @@ const void *mf_measurement_state(const struct measurement *measurement,
 // Results -----------------------------------------------------------------------------------------
 
 enum status mf_measurement_values_init(struct observed *observed, const struct targets *targets) {
-    enum status status = STATUS_OK;
     *observed = (struct observed){0};
     for (int kind = 0; kind < TARGETS; kind++) {
         if (!targets_ask(targets, kind))
             continue;
-        NEW_ARRAY(observed->value[kind], targets->target[kind].count);
-        NEW_ARRAY(observed->error[kind], targets->target[kind].count);
+        TRY_ARRAY(observed->value[kind], targets->target[kind].count);
+        TRY_ARRAY(observed->error[kind], targets->target[kind].count);
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 void mf_measurement_values_clear(struct observed *observed) {
@@ -209,11 +207,10 @@ static void clear_values(struct observed *observed, const struct targets *target
 /// All targets of the observable number `use` of the replicas.
 static enum status find_result(const struct measurement *replicas, size_t count, size_t use,
                                struct observed *observed) {
-    enum status status = STATUS_OK;
     const struct observable *observable = replicas->use[use].observable;
     struct observable_values values[TARGETS] = {0};
     struct observable_kind found;
-    const void **states = NULL;
+    OWNED const void **states = NULL;
     bool asked = false;
     for (int kind = 0; (found = mf_observable_kind(kind)).observable; kind++)
         if (found.observable == observable) {
@@ -224,13 +221,10 @@ static enum status find_result(const struct measurement *replicas, size_t count,
         }
     if (!asked)
         return STATUS_OK;
-    NEW_ARRAY(states, count);
+    TRY_ARRAY(states, count);
     for (size_t k = 0; k < count; k++)
         states[k] = replicas[k].use[use].state;
-    CHECK(observable->result(states, count, values));
-done:
-    mf_memory_free(states);
-    return status;
+    return observable->result(states, count, values);
 }
 
 enum status mf_measurement_result(const struct measurement *replicas, size_t count,

@@ -88,49 +88,41 @@ static struct unknowns_part moving_part(const struct parametrisation *parametris
 /// What each coefficient of a curve adds to its moving points, shape [points, coefficients].
 static enum status curve_basis(const struct parametrisation *parametrisation,
                                enum unknown_kind kind, size_t curve, size_t points, double *block) {
-    enum status status = STATUS_OK;
-    double *place = NULL;
+    OWNED double *place = NULL;
     if (kind == UNKNOWN_BONDED)
         return mf_parametrisation_bonded_basis(
             &parametrisation->unknowns.potential.group[curve].own,
             mf_parametrisation_variables_of(parametrisation, kind, curve), block);
-    NEW_ARRAY(place, points);
+    TRY_ARRAY(place, points);
     mf_parametrisation_places(parametrisation, kind, curve, place);
-    CHECK(mf_shape_basis(mf_shapes[unknown_of(parametrisation, kind)->parameters.shape],
-                         mf_parametrisation_variables_of(parametrisation, kind, curve), place,
-                         points, block));
-done:
-    mf_memory_free(place);
-    return status;
+    return mf_shape_basis(mf_shapes[unknown_of(parametrisation, kind)->parameters.shape],
+                          mf_parametrisation_variables_of(parametrisation, kind, curve), place,
+                          points, block);
 }
 
 /// Basis of one curve: its block of the whole.
 static enum status fill_block(struct parametrisation *parametrisation, enum unknown_kind kind,
                               size_t curve) {
-    enum status status = STATUS_OK;
     const struct inverse_problem *problem = parametrisation->unknowns.problem;
     const size_t variables = mf_parametrisation_variables(parametrisation, kind),
                  own = coefficients_of(problem, kind, curve),
                  before = coefficients_before(problem, kind, curve);
     const struct unknowns_part moving = moving_part(parametrisation, kind, curve);
-    double *block = NULL;
-    NEW_ARRAY(block, moving.points * own);
-    CHECK(curve_basis(parametrisation, kind, curve, moving.points, block));
+    OWNED double *block = NULL;
+    TRY_ARRAY(block, moving.points * own);
+    TRY(curve_basis(parametrisation, kind, curve, moving.points, block));
     for (size_t k = 0; k < moving.points; k++)
         memcpy(parametrisation->basis[kind] + (moving.first + k) * variables + before,
                block + k * own, own * sizeof *block);
-done:
-    mf_memory_free(block);
-    return status;
+    return STATUS_OK;
 }
 
 /// The ranges of all coefficients and numbers.
 static enum status find_ranges(struct parametrisation *parametrisation) {
-    enum status status = STATUS_OK;
     const struct inverse_problem *problem = parametrisation->unknowns.problem;
     size_t n = 0;
-    NEW_ARRAY(parametrisation->min, parametrisation->variables);
-    NEW_ARRAY(parametrisation->range, parametrisation->variables);
+    TRY_ARRAY(parametrisation->min, parametrisation->variables);
+    TRY_ARRAY(parametrisation->range, parametrisation->variables);
     for (int kind = 0; kind < UNKNOWNS; kind++)
         for (size_t curve = 0; curve < curves_of(problem, kind); curve++) {
             const struct unknown_parameters *p = &problem->unknown[kind].parameters;
@@ -150,27 +142,23 @@ static enum status find_ranges(struct parametrisation *parametrisation) {
         parametrisation->min[n] = problem->number[k].minimum;
         parametrisation->range[n] = problem->number[k].maximum - problem->number[k].minimum;
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 static enum status make_basis(struct parametrisation *parametrisation, enum unknown_kind kind) {
-    enum status status = STATUS_OK;
     if (is_formula(parametrisation, kind))
         return STATUS_OK;
-    NEW_ARRAY(parametrisation->basis[kind],
+    TRY_ARRAY(parametrisation->basis[kind],
               mf_unknowns_points(&parametrisation->unknowns, kind) *
                   mf_parametrisation_variables(parametrisation, kind));
     for (size_t curve = 0; curve < mf_unknowns_curve_count(&parametrisation->unknowns, kind);
          curve++)
-        CHECK(fill_block(parametrisation, kind, curve));
-done:
-    return status;
+        TRY(fill_block(parametrisation, kind, curve));
+    return STATUS_OK;
 }
 
 enum status mf_parametrisation_init(struct parametrisation *parametrisation,
                                     const struct inverse_problem *problem) {
-    enum status status = STATUS_OK;
     *parametrisation = (struct parametrisation){0};
     TRY(mf_unknowns_init(&parametrisation->unknowns, problem));
     for (int kind = 0; kind < UNKNOWNS; kind++) {
@@ -182,13 +170,11 @@ enum status mf_parametrisation_init(struct parametrisation *parametrisation,
     parametrisation->first_number = parametrisation->variables;
     parametrisation->variables += problem->numbers;
     if (problem->unknown[UNKNOWN_BONDED].wanted) {
-        NEW_ARRAY(parametrisation->bonded,
+        TRY_ARRAY(parametrisation->bonded,
                   mf_unknowns_points(&parametrisation->unknowns, UNKNOWN_BONDED));
         mf_unknowns_start(&parametrisation->unknowns, UNKNOWN_BONDED, parametrisation->bonded);
     }
-    CHECK(find_ranges(parametrisation));
-done:
-    return status;
+    return find_ranges(parametrisation);
 }
 
 void mf_parametrisation_clear(struct parametrisation *parametrisation) {
@@ -286,28 +272,25 @@ done:
 static enum status start_of_curve(const struct parametrisation *parametrisation,
                                   enum unknown_kind kind, size_t number, double *curve,
                                   double *variables) {
-    enum status status = STATUS_OK;
     const struct unknown_parameters *p = &unknown_of(parametrisation, kind)->parameters;
     const size_t count = mf_parametrisation_variables_of(parametrisation, kind, number),
                  all = mf_parametrisation_variables(parametrisation, kind);
     const size_t first = mf_parametrisation_first_point(parametrisation, kind, number),
                  points = mf_unknowns_part(&parametrisation->unknowns, kind, 0).points;
     const double *block = parametrisation->basis[kind] + number * (points * all + count);
-    double *place = NULL;
-    NEW_ARRAY(place, points);
+    OWNED double *place = NULL;
+    TRY_ARRAY(place, points);
     mf_parametrisation_places(parametrisation, kind, number, place);
     // Variables that the curve leaves open stay in the middle of their range.
     const double middle = 0.5 * (p->minimum + p->maximum), range = p->maximum - p->minimum;
     for (size_t k = first; k < points; k++)
         for (size_t n = 0; n < count; n++)
             curve[k] -= middle * block[k * all + n];
-    CHECK(mf_shape_fit(mf_shapes[p->shape], place, curve + first, NULL, points - first, variables,
-                       count));
+    TRY(mf_shape_fit(mf_shapes[p->shape], place, curve + first, NULL, points - first, variables,
+                     count));
     for (size_t k = 0; k < count; k++)
         variables[k] = fmin(1, fmax(0, 0.5 + variables[k] / range));
-done:
-    mf_memory_free(place);
-    return status;
+    return STATUS_OK;
 }
 
 /// What coefficients add up to where the fit begins.
@@ -325,8 +308,7 @@ static void start_curve(const struct parametrisation *parametrisation, enum unkn
 
 static enum status start_of(const struct parametrisation *parametrisation, enum unknown_kind kind,
                             double *variables) {
-    enum status status = STATUS_OK;
-    double *curve = NULL;
+    OWNED double *curve = NULL;
     if (is_formula(parametrisation, kind)) {
         mf_parametrisation_power_start(parametrisation, variables);
         return STATUS_OK;
@@ -336,16 +318,14 @@ static enum status start_of(const struct parametrisation *parametrisation, enum 
         variables[n] = 0.5;
     if (kind == UNKNOWN_BONDED)
         return STATUS_OK;
-    NEW_ARRAY(curve, mf_unknowns_points(&parametrisation->unknowns, kind));
+    TRY_ARRAY(curve, mf_unknowns_points(&parametrisation->unknowns, kind));
     start_curve(parametrisation, kind, curve);
     for (size_t n = 0; n < mf_unknowns_curve_count(&parametrisation->unknowns, kind); n++)
-        CHECK(start_of_curve(
-            parametrisation, kind, n,
-            curve + n * mf_unknowns_part(&parametrisation->unknowns, kind, 0).points,
-            variables + n * mf_parametrisation_variables_of(parametrisation, kind, n)));
-done:
-    mf_memory_free(curve);
-    return status;
+        TRY(start_of_curve(parametrisation, kind, n,
+                           curve + n * mf_unknowns_part(&parametrisation->unknowns, kind, 0).points,
+                           variables +
+                               n * mf_parametrisation_variables_of(parametrisation, kind, n)));
+    return STATUS_OK;
 }
 
 enum status mf_parametrisation_start(const struct parametrisation *parametrisation,

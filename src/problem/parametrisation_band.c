@@ -9,18 +9,17 @@
 /// How the curve changes with each variable, shape [points, variables of it].
 static enum status find_slopes(const struct parametrisation *parametrisation,
                                enum unknown_kind kind, const double *variables, double *slopes) {
-    enum status status = STATUS_OK;
     const double *range = parametrisation->range + parametrisation->first[kind];
     const size_t count = mf_parametrisation_variables(parametrisation, kind),
                  points = mf_unknowns_points(&parametrisation->unknowns, kind);
-    double *moved = NULL, *curve = NULL;
+    OWNED double *moved = NULL, *curve = NULL;
     if (parametrisation->basis[kind]) {
         for (size_t k = 0; k < points * count; k++)
             slopes[k] = parametrisation->basis[kind][k] * range[k % count];
         return STATUS_OK;
     }
-    NEW_ARRAY(moved, parametrisation->variables);
-    NEW_ARRAY(curve, 2 * points);
+    TRY_ARRAY(moved, parametrisation->variables);
+    TRY_ARRAY(curve, 2 * points);
     for (size_t n = 0; n < count; n++) {
         static const double step = 1e-3;
         for (int side = 0; side < 2; side++) {
@@ -31,10 +30,7 @@ static enum status find_slopes(const struct parametrisation *parametrisation,
         for (size_t k = 0; k < points; k++)
             slopes[k * count + n] = (curve[points + k] - curve[k]) / (2 * step);
     }
-done:
-    mf_memory_free(moved);
-    mf_memory_free(curve);
-    return status;
+    return STATUS_OK;
 }
 
 /// Make a vector's length 1, upwards where it is largest; returns what it was.
@@ -78,10 +74,10 @@ enum { POWER_ROUNDS = 200 };
 static enum status find_flat(const double *slopes, const double *covariance, size_t points,
                              size_t count, const double *before, size_t before_count,
                              double *flat) {
-    enum status status = STATUS_OK;
-    double *variable = NULL, *moved = NULL, length = 0;
-    NEW_ARRAY(variable, count);
-    NEW_ARRAY(moved, count);
+    OWNED double *variable = NULL, *moved = NULL;
+    double length = 0;
+    TRY_ARRAY(variable, count);
+    TRY_ARRAY(moved, count);
     for (size_t k = 0; k < points; k++)
         flat[k] = 1 + 0.1 * sin((double)(k * (before_count + 1)));
     for (int round = 0; round < POWER_ROUNDS; round++) {
@@ -97,10 +93,7 @@ static enum status find_flat(const double *slopes, const double *covariance, siz
     length = normalise(points, flat);
     for (size_t k = 0; k < points; k++)
         flat[k] *= sqrt(length);
-done:
-    mf_memory_free(variable);
-    mf_memory_free(moved);
-    return status;
+    return STATUS_OK;
 }
 
 /// Errors of the points that follow the variables, from the slopes and the covariance of these
@@ -129,10 +122,9 @@ static void clear_core(const struct parametrisation *parametrisation, enum unkno
 
 /// The noise of the targets in the base of the groups.
 static enum status add_rough(const struct parametrisation *parametrisation, double *error) {
-    enum status status = STATUS_OK;
     const struct potential_grid *grid = &parametrisation->unknowns.potential;
     const struct targets *targets = &parametrisation->unknowns.problem->targets;
-    double *basis = NULL, *rough = NULL;
+    OWNED double *basis = NULL, *rough = NULL;
     for (size_t g = 0; g < grid->groups; g++) {
         const struct bonded_grid *own = &grid->group[g].own;
         const int kind = mf_bonded_distribution_kind(own->unknown->order);
@@ -141,51 +133,43 @@ static enum status add_rough(const struct parametrisation *parametrisation, doub
         mf_memory_free(basis);
         mf_memory_free(rough);
         basis = rough = NULL;
-        NEW_ARRAY(basis, own->known * (size_t)own->unknown->shape.coefficients);
-        NEW_ARRAY(rough, own->known);
-        CHECK(
-            mf_parametrisation_bonded_basis(own, (size_t)own->unknown->shape.coefficients, basis));
-        CHECK(mf_parametrisation_bonded_rough(
-            own, targets->target[kind].error + own->unknown->first, basis, rough));
+        TRY_ARRAY(basis, own->known * (size_t)own->unknown->shape.coefficients);
+        TRY_ARRAY(rough, own->known);
+        TRY(mf_parametrisation_bonded_basis(own, (size_t)own->unknown->shape.coefficients, basis));
+        TRY(mf_parametrisation_bonded_rough(own, targets->target[kind].error + own->unknown->first,
+                                            basis, rough));
         for (size_t k = 0; k < own->known; k++)
             at[k] = hypot(at[k], rough[k]);
     }
-done:
-    mf_memory_free(basis);
-    mf_memory_free(rough);
-    return status;
+    return STATUS_OK;
 }
 
 enum status mf_parametrisation_band(const struct parametrisation *parametrisation,
                                     enum unknown_kind kind, const double *variables,
                                     const double *covariance, double *error, double *flat) {
-    enum status status = STATUS_OK;
     const size_t count = mf_parametrisation_variables(parametrisation, kind),
                  at = parametrisation->first[kind];
     const size_t points = mf_unknowns_points(&parametrisation->unknowns, kind);
-    double *slopes = NULL, *own = NULL;
+    OWNED double *slopes = NULL, *own = NULL;
     for (size_t k = 0; k < points; k++)
         error[k] = NAN;
     for (size_t k = 0; k < INVERSE_FLAT * points; k++)
         flat[k] = NAN;
     if (covariance == NULL)
         return STATUS_OK;
-    NEW_ARRAY(slopes, points * count);
-    NEW_ARRAY(own, count * count);
+    TRY_ARRAY(slopes, points * count);
+    TRY_ARRAY(own, count * count);
     for (size_t a = 0; a < count; a++)
         for (size_t b = 0; b < count; b++)
             own[a * count + b] = covariance[(at + a) * parametrisation->variables + at + b];
-    CHECK(find_slopes(parametrisation, kind, variables, slopes));
+    TRY(find_slopes(parametrisation, kind, variables, slopes));
     find_errors(slopes, own, points, count, error);
     if (kind == UNKNOWN_BONDED)
-        CHECK(add_rough(parametrisation, error));
+        TRY(add_rough(parametrisation, error));
     for (size_t n = 0; n < INVERSE_FLAT; n++)
-        CHECK(find_flat(slopes, own, points, count, flat, n, flat + n * points));
+        TRY(find_flat(slopes, own, points, count, flat, n, flat + n * points));
     clear_core(parametrisation, kind, error);
     for (size_t n = 0; n < INVERSE_FLAT; n++)
         clear_core(parametrisation, kind, flat + n * points);
-done:
-    mf_memory_free(slopes);
-    mf_memory_free(own);
-    return status;
+    return STATUS_OK;
 }

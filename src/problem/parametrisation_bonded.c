@@ -21,15 +21,11 @@ static void fill_waves(const struct bonded_grid *grid, size_t count, double *bas
 /// B-splines from the first to the last known bin. The one that is left out at the end is the sum
 /// of the others but for a constant.
 static enum status fill_splines(const struct bonded_grid *grid, size_t count, double *basis) {
-    enum status status = STATUS_OK;
-    double *place = NULL;
-    NEW_ARRAY(place, grid->known);
+    OWNED double *place = NULL;
+    TRY_ARRAY(place, grid->known);
     for (size_t k = 0; k < grid->known; k++)
         place[k] = (double)k / (double)(grid->known - 1);
-    CHECK(mf_shape_basis(mf_shapes[INVERSE_CURVE_BSPLINE], count, place, grid->known, basis));
-done:
-    mf_memory_free(place);
-    return status;
+    return mf_shape_basis(mf_shapes[INVERSE_CURVE_BSPLINE], count, place, grid->known, basis);
 }
 
 enum status mf_parametrisation_bonded_basis(const struct bonded_grid *grid, size_t count,
@@ -67,13 +63,12 @@ enum status mf_parametrisation_bonded_rough(const struct bonded_grid *grid,
                                             const double *target_error, const double *basis,
                                             double *error) {
     static const double ridge = 1e-12;
-    enum status status = STATUS_OK;
     const size_t own = (size_t)grid->unknown->shape.coefficients, count = own + 1;
-    double *normal = NULL, *row = NULL, *solved = NULL, *variance = NULL;
-    NEW_ARRAY(normal, count * count);
-    NEW_ARRAY(row, count);
-    NEW_ARRAY(solved, count);
-    NEW_ARRAY(variance, grid->known);
+    OWNED double *normal = NULL, *row = NULL, *solved = NULL, *variance = NULL;
+    TRY_ARRAY(normal, count * count);
+    TRY_ARRAY(row, count);
+    TRY_ARRAY(solved, count);
+    TRY_ARRAY(variance, grid->known);
     find_variances(grid, target_error, variance);
     gsl_matrix_view factor = gsl_matrix_view_array(normal, count, count);
     const gsl_vector_const_view right = gsl_vector_const_view_array(row, count);
@@ -97,10 +92,5 @@ enum status mf_parametrisation_bonded_rough(const struct bonded_grid *grid,
         if (pass == 0)
             gsl_linalg_cholesky_decomp1(&factor.matrix);
     }
-done:
-    mf_memory_free(normal);
-    mf_memory_free(row);
-    mf_memory_free(solved);
-    mf_memory_free(variance);
-    return status;
+    return STATUS_OK;
 }

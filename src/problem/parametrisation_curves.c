@@ -7,7 +7,6 @@
 
 enum status mf_parametrisation_curves_init(const struct parametrisation *parametrisation,
                                            struct parametrisation_curves *curves) {
-    enum status status = STATUS_OK;
     *curves = (struct parametrisation_curves){0};
     for (int k = 0; k < INVERSE_PARAMETERS; k++)
         curves->parameter[k].error = NAN;
@@ -17,12 +16,11 @@ enum status mf_parametrisation_curves_init(const struct parametrisation *paramet
         const size_t points = mf_unknowns_points(&parametrisation->unknowns, kind);
         if (points == 0)
             continue;
-        NEW_ARRAY(curves->value[kind], points);
-        NEW_ARRAY(curves->error[kind], points);
-        NEW_ARRAY(curves->flat[kind], INVERSE_FLAT * points);
+        TRY_ARRAY(curves->value[kind], points);
+        TRY_ARRAY(curves->error[kind], points);
+        TRY_ARRAY(curves->flat[kind], INVERSE_FLAT * points);
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 void mf_parametrisation_curves_clear(struct parametrisation_curves *curves) {

@@ -357,16 +357,13 @@ enum status mf_potential_grid_virials(const struct potential_grid *grid,
                                       const double *phi, double *virial) {
     // The table is linear in its values but for the kink of the core: any small step will do.
     const double change = 1e-3;
-    enum status status = STATUS_OK;
-    double *changed = NULL;
-    NEW_ARRAY(changed, grid->points);
+    OWNED double *changed = NULL;
+    TRY_ARRAY(changed, grid->points);
     for (size_t k = 0; k < grid->pairs * bins->count * grid->known; k++)
         virial[k] = 0;
     for (size_t b = 0; b < grid->pairs_known; b++)
         for (int sign = -1; sign <= 1; sign += 2)
-            CHECK(add_virials(grid, bins, dimensions, phi, grid->known_point[b], sign * change,
-                              sign / (2 * change), changed, virial + b));
-done:
-    mf_memory_free(changed);
-    return status;
+            TRY(add_virials(grid, bins, dimensions, phi, grid->known_point[b], sign * change,
+                            sign / (2 * change), changed, virial + b));
+    return STATUS_OK;
 }

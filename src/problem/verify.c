@@ -163,24 +163,21 @@ done:
 /// The error of g(r)'s distance by leaving out blocks, of which there are more than replicas.
 static enum status find_rdf_error(const struct measurement *replicas, size_t count,
                                   struct verification *verification) {
-    enum status status = STATUS_OK;
-    struct rdf *rdf = NULL;
+    OWNED struct rdf *rdf = NULL;
     const struct targets *targets = replicas->targets;
     if (!targets_ask(targets, TARGET_RDF))
         return STATUS_OK;
-    NEW_ARRAY(rdf, count);
+    TRY_ARRAY(rdf, count);
     for (size_t k = 0; k < count; k++) {
         const struct rdf_observed *observed =
             mf_measurement_state(&replicas[k], &mf_rdf_observable);
         rdf[k] = observed->counted;
     }
-    CHECK(mf_rdf_distance(rdf, count, targets->target[TARGET_RDF].value,
-                          &verification->distance[TARGET_RDF].rms,
-                          &verification->distance_error[TARGET_RDF]));
+    TRY(mf_rdf_distance(rdf, count, targets->target[TARGET_RDF].value,
+                        &verification->distance[TARGET_RDF].rms,
+                        &verification->distance_error[TARGET_RDF]));
     mf_statistics_mark_unknown_errors(&verification->distance_error[TARGET_RDF], 1);
-done:
-    mf_memory_free(rdf);
-    return status;
+    return STATUS_OK;
 }
 
 /// Keep the distance of a part of a target if it is the farthest so far, by its noise.
@@ -220,10 +217,9 @@ static void find_worst(const struct inverse_problem *problem, struct verificatio
 /// Results of all replicas together, in their order.
 static enum status summarise(struct measurement *replicas, size_t count,
                              struct verification *verification) {
-    enum status status = STATUS_OK;
     const struct targets *targets = replicas->targets;
-    struct thermodynamics *thermodynamics = NULL;
-    NEW_ARRAY(thermodynamics, count);
+    OWNED struct thermodynamics *thermodynamics = NULL;
+    TRY_ARRAY(thermodynamics, count);
     for (size_t k = 0; k < count; k++)
         thermodynamics[k] = *(const struct thermodynamics *)mf_measurement_state(
             &replicas[k], &mf_thermodynamics_observable);
@@ -244,34 +240,30 @@ static enum status summarise(struct measurement *replicas, size_t count,
         verification->diffusion_begin = motion.fit_begin;
         verification->diffusion_end = motion.fit_end;
     }
-    CHECK(mf_measurement_values_init(&verification->observed, targets));
-    CHECK(mf_measurement_result(replicas, count, &verification->observed));
+    TRY(mf_measurement_values_init(&verification->observed, targets));
+    TRY(mf_measurement_result(replicas, count, &verification->observed));
     mf_measurement_distance(&verification->observed, targets, verification->distance);
-    CHECK(find_errors(replicas, count, verification));
-    CHECK(find_rdf_error(replicas, count, verification));
+    TRY(find_errors(replicas, count, verification));
+    TRY(find_rdf_error(replicas, count, verification));
     for (int kind = 0; kind < TARGETS; kind++)
         mf_statistics_mark_unknown_errors(verification->observed.error[kind],
                                           targets->target[kind].count);
-done:
-    mf_memory_free(thermodynamics);
-    return status;
+    return STATUS_OK;
 }
 
 /// The state of a simulation, from which another can go on.
 static enum status keep_configuration(const struct particles *particles,
                                       struct verification *verification) {
-    enum status status = STATUS_OK;
     const size_t count = particles->count;
     verification->particles = count;
-    NEW_ARRAY(verification->configuration, 6 * count);
+    TRY_ARRAY(verification->configuration, 6 * count);
     for (size_t k = 0; k < count; k++)
         for (size_t d = 0; d < (size_t)particles->box.dimensions; d++) {
             verification->configuration[d * count + particles->id[k]] = particles->position[d][k];
             verification->configuration[(3 + d) * count + particles->id[k]] =
                 particles->velocity[d][k];
         }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 static void clear_replicas(struct measurement *replicas, size_t count) {

@@ -29,10 +29,9 @@ static struct verify_section *add(struct verify_sections *sections,
 
 static enum status add_pairs(const struct potential_grid *grid, const struct measurement *replicas,
                              size_t count, struct verify_sections *sections) {
-    enum status status = STATUS_OK;
-    struct rdf *rdf = NULL;
+    OWNED struct rdf *rdf = NULL;
     size_t known = 0;
-    NEW_ARRAY(rdf, count);
+    TRY_ARRAY(rdf, count);
     for (size_t k = 0; k < count && grid->pairs > 0; k++) {
         const struct rdf_observed *observed =
             mf_measurement_state(&replicas[k], &mf_rdf_observable);
@@ -43,19 +42,16 @@ static enum status add_pairs(const struct potential_grid *grid, const struct mea
         struct verify_section *const section = add(sections, grid, known, end, TARGET_RDF);
         known = end;
         if (section)
-            CHECK(mf_rdf_independence(rdf, count, section->first, section->count, &section->known));
+            TRY(mf_rdf_independence(rdf, count, section->first, section->count, &section->known));
     }
-done:
-    mf_memory_free(rdf);
-    return status;
+    return STATUS_OK;
 }
 
 static enum status add_groups(const struct potential_grid *grid, const struct measurement *replicas,
                               size_t count, struct verify_sections *sections) {
-    enum status status = STATUS_OK;
-    const void **states = NULL;
+    OWNED const void **states = NULL;
     size_t known = grid->pairs_known;
-    NEW_ARRAY(states, count);
+    TRY_ARRAY(states, count);
     for (size_t g = 0; g < grid->groups; g++) {
         const struct bonded_unknown *const unknown = grid->group[g].own.unknown;
         const size_t end = known + grid->group[g].own.known;
@@ -68,30 +64,24 @@ static enum status add_groups(const struct potential_grid *grid, const struct me
             states[k] =
                 mf_measurement_state(&replicas[k], mf_bonded_distribution_of(unknown->order));
         section->first -= grid->group[g].bin;
-        CHECK(mf_bonded_distribution_independence(states, count, unknown->group, section->first,
-                                                  section->count, &section->known));
+        TRY(mf_bonded_distribution_independence(states, count, unknown->group, section->first,
+                                                section->count, &section->known));
         section->first += unknown->first;
     }
-done:
-    mf_memory_free(states);
-    return status;
+    return STATUS_OK;
 }
 
 enum status mf_verify_sections_find(const struct inverse_problem *problem,
                                     const struct measurement *replicas, size_t count,
                                     struct verify_sections *sections) {
-    enum status status = STATUS_OK;
-    struct potential_grid grid = {0};
+    CLEARED_BY(mf_potential_grid_clear) struct potential_grid grid = {0};
     const bool pairs = problem->unknown[UNKNOWN_POTENTIAL].wanted;
     *sections = (struct verify_sections){0};
     if (pairs ? !targets_ask(&problem->targets, TARGET_RDF) : problem->bonded == 0)
         return STATUS_OK;
-    CHECK(mf_potential_grid_init(&grid, problem));
-    CHECK(add_pairs(&grid, replicas, count, sections));
-    CHECK(add_groups(&grid, replicas, count, sections));
-done:
-    mf_potential_grid_clear(&grid);
-    return status;
+    TRY(mf_potential_grid_init(&grid, problem));
+    TRY(add_pairs(&grid, replicas, count, sections));
+    return add_groups(&grid, replicas, count, sections);
 }
 
 // Judging -----------------------------------------------------------------------------------------

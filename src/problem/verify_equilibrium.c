@@ -17,11 +17,9 @@ struct parts {
 };
 
 static enum status parts_init(struct parts *parts, size_t replicas, size_t row) {
-    enum status status = STATUS_OK;
     *parts = (struct parts){.replicas = replicas, .row = row};
-    NEW_ARRAY(parts->values, replicas * STATIONARY_PARTS * row);
-done:
-    return status;
+    TRY_ARRAY(parts->values, replicas * STATIONARY_PARTS * row);
+    return STATUS_OK;
 }
 
 static double *part_of(const struct parts *parts, size_t replica, size_t part) {
@@ -31,29 +29,26 @@ static double *part_of(const struct parts *parts, size_t replica, size_t part) {
 /// Look at numbers of all parts; the least likely so far is what is told.
 static enum status look(const struct parts *parts, const char *name, const double *weight,
                         double *min, char text[VERIFY_EQUILIBRIUM_SIZE]) {
-    enum status status = STATUS_OK;
     const double *chain[STATIONARY_MAX_CHAINS];
     struct stationary is;
-    size_t *number = NULL;
-    NEW_ARRAY(number, parts->row);
+    OWNED size_t *number = NULL;
+    TRY_ARRAY(number, parts->row);
     for (size_t n = 0; n < parts->row; n++)
         number[n] = n;
     for (size_t k = 0; k < parts->replicas; k++)
         chain[k] = part_of(parts, k, 0);
-    CHECK(mf_stationary_test(&(struct stationary_numbers){.chains = parts->replicas,
-                                                          .chain = chain,
-                                                          .row = parts->row,
-                                                          .count = parts->row,
-                                                          .number = number,
-                                                          .weight = weight},
-                             &is));
+    TRY(mf_stationary_test(&(struct stationary_numbers){.chains = parts->replicas,
+                                                        .chain = chain,
+                                                        .row = parts->row,
+                                                        .count = parts->row,
+                                                        .number = number,
+                                                        .weight = weight},
+                           &is));
     if (stationary_p_value(&is) < *min) {
         *min = stationary_p_value(&is);
         mf_stationary_describe(name, &is, text, VERIFY_EQUILIBRIUM_SIZE);
     }
-done:
-    mf_memory_free(number);
-    return status;
+    return STATUS_OK;
 }
 
 static enum status look_at_series(const struct measurement *replicas, size_t count, int quantity,

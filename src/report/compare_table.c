@@ -234,15 +234,15 @@ static bool fill_numbers(double *values, const struct field *field, const struct
 }
 
 enum status mf_compare_table_write(const char *out, const struct compared *fits, size_t count) {
-    enum status status = STATUS_OK;
-    char file[PATH_SIZE], headers[MAX_NUMBERS][HEADER_SIZE], *comment = NULL;
+    OWNED char *comment = NULL;
+    char file[PATH_SIZE], headers[MAX_NUMBERS][HEADER_SIZE];
     struct data_column written[MAX_NUMBERS] = {{.name = "index[1]"}};
     const struct units units = fits[0].result.summary.units;
     const struct field *field;
     struct result_field capacity;
-    double *values = NULL;
+    OWNED double *values = NULL;
     size_t used = 1;
-    NEW_ARRAY(values, MAX_NUMBERS * count);
+    TRY_ARRAY(values, MAX_NUMBERS * count);
     for (size_t k = 0; k < count; k++)
         values[k] = (double)k;
     written[0].values = values;
@@ -255,11 +255,7 @@ enum status mf_compare_table_write(const char *out, const struct compared *fits,
         written[used] = (struct data_column){headers[used], values + used * count, "%.16g"};
         used++;
     }
-    CHECK(list_names(&comment, fits, count));
+    TRY(list_names(&comment, fits, count));
     snprintf(file, sizeof file, "%s/compare.tsv", out);
-    CHECK(mf_data_table_write(file, comment, written, used, count));
-done:
-    mf_memory_free(comment);
-    mf_memory_free(values);
-    return status;
+    return mf_data_table_write(file, comment, written, used, count);
 }

@@ -31,26 +31,23 @@ static void curve_file(const struct unknowns *unknowns, enum unknown_kind kind, 
 static enum status write_potential(const struct fit_file *fit, const struct unknowns *unknowns,
                                    const struct fit_result *result, const struct table *table,
                                    size_t pair, const struct run_folder *folder) {
-    enum status status = STATUS_OK;
     const struct units *units = &fit->scene.units;
     const size_t points = unknowns->potential.bins + 1;
     const size_t first = mf_potential_grid_block(&unknowns->potential, pair);
     const double *r = unknowns->potential.r + first;
     const double *phi = result->curve[UNKNOWN_POTENTIAL] + first;
-    double *force = NULL, *truth = NULL, *nanometres = NULL, *energy = NULL;
+    OWNED double *force = NULL, *truth = NULL;
     size_t count = 0;
     char path[OUTPUT_PATH_SIZE];
-    NEW_ARRAY(force, points);
+    TRY_ARRAY(force, points);
     for (size_t k = 0; k < points; k++) {
         mf_table_evaluate_pair(table, (int)pair, r[k], NULL, &force[k], NULL);
         force[k] = -force[k];
     }
-    nanometres = mf_units_column(r, points, units->length);
-    energy =
-        mf_units_column(phi, points, mf_units_known(units) ? mf_units_energy_kj_per_mol(units) : 0);
     truth = truth_at(fit, UNKNOWN_POTENTIAL, pair, r, points);
-    CHECK(nanometres && energy && truth ? STATUS_OK : STATUS_NO_MEMORY);
-    struct data_column columns[8] = {
+    TRY(truth ? STATUS_OK : STATUS_NO_MEMORY);
+    static const char *const beside[6] = {"%.10g", "%.10g"};
+    struct data_column columns[6] = {
         {"r[lambda]", r, "%.17g"},
         {"phi[k_B.T_0]", phi, "%.17g"},
         {"force[k_B.T_0/lambda]", force, NULL},
@@ -61,62 +58,47 @@ static enum status write_potential(const struct fit_file *fit, const struct unkn
                                                 result->without_ramp + first, "%.3g"};
     if (mf_scene_law_curve(&fit->unknown[UNKNOWN_POTENTIAL].truth, (int)pair))
         columns[count++] = (struct data_column){"truth[k_B.T_0]", truth, "%.8g"};
-    if (mf_units_have_second_columns(units)) {
-        columns[count++] = (struct data_column){"r[nm]", nanometres, NULL};
-        columns[count++] = (struct data_column){"phi[kJ/mol]", energy, NULL};
-    }
     curve_file(unknowns, UNKNOWN_POTENTIAL, pair, ".tsv", folder, path);
-    CHECK(mf_data_table_write_in(path, &fit->scene.units, NULL, columns, count, points));
+    TRY(mf_data_table_write_beside(path, units, columns, beside, count, points));
     if (mf_units_known(units)) {
+        const struct votca_scale scale = {units->length, mf_units_energy_kj_per_mol(units)};
         curve_file(unknowns, UNKNOWN_POTENTIAL, pair, ".pot", folder, path);
-        CHECK(mf_votca_write(path, nanometres, energy, points, unknowns->potential.core[pair]));
+        TRY(mf_votca_write(path, r, phi, scale, points, unknowns->potential.core[pair]));
     }
-done:
-    mf_memory_free(force);
-    mf_memory_free(truth);
-    mf_memory_free(nanometres);
-    mf_memory_free(energy);
-    return status;
+    return STATUS_OK;
 }
 
 static enum status write_potentials(const struct fit_file *fit, const struct unknowns *unknowns,
                                     const struct fit_result *result,
                                     const struct run_folder *folder) {
-    enum status status = STATUS_OK;
-    struct table table = {0};
-    CHECK(mf_potential_grid_table(&unknowns->potential, result->curve[UNKNOWN_POTENTIAL], &table));
+    CLEARED_BY(mf_table_clear) struct table table = {0};
+    TRY(mf_potential_grid_table(&unknowns->potential, result->curve[UNKNOWN_POTENTIAL], &table));
     for (size_t pair = 0; pair < unknowns->potential.pairs; pair++)
-        CHECK(write_potential(fit, unknowns, result, &table, pair, folder));
-done:
-    mf_table_clear(&table);
-    return status;
+        TRY(write_potential(fit, unknowns, result, &table, pair, folder));
+    return STATUS_OK;
 }
 
 static enum status write_omega(const struct fit_file *fit, const struct unknowns *unknowns,
                                const struct fit_result *result, enum unknown_kind kind,
                                const struct run_folder *folder) {
     const bool truth_known = fit->unknown[kind].truth.curves > 0;
-    const struct units *units = &fit->scene.units;
+    static const char *const beside[4] = {"%.10g"};
     enum status status = STATUS_NO_MEMORY;
     const double *r = mf_unknowns_r(unknowns, kind);
     double *truth = truth_at(fit, kind, 0, r, OMEGA_POINTS);
-    double *nanometres = mf_units_column(r, OMEGA_POINTS, units->length);
     char path[OUTPUT_PATH_SIZE];
-    struct data_column columns[5] = {
+    struct data_column columns[4] = {
         {"r[lambda]", r, "%.17g"},
         {"omega[sqrt(mu/tau)]", result->curve[kind], "%.17g"},
         {"omega_error[sqrt(mu/tau)]", result->curve_error[kind], "%.3g"}};
     size_t count = 3;
     if (truth_known)
         columns[count++] = (struct data_column){"truth[sqrt(mu/tau)]", truth, "%.8g"};
-    if (mf_units_have_second_columns(units))
-        columns[count++] = (struct data_column){"r[nm]", nanometres, NULL};
     curve_file(unknowns, kind, 0, ".tsv", folder, path);
-    if (truth && nanometres)
-        status =
-            mf_data_table_write_in(path, &fit->scene.units, NULL, columns, count, OMEGA_POINTS);
+    if (truth)
+        status = mf_data_table_write_beside(path, &fit->scene.units, columns, beside, count,
+                                            OMEGA_POINTS);
     mf_memory_free(truth);
-    mf_memory_free(nanometres);
     return status;
 }
 
@@ -150,27 +132,16 @@ static enum status write_flat(const struct fit_file *fit, enum unknown_kind kind
 static enum status write_group(const struct fit_file *fit, const struct unknowns *unknowns,
                                const struct fit_result *result, size_t group,
                                const struct run_folder *folder) {
-    enum status status = STATUS_OK;
+    static const char *const beside[] = {NULL, "%.10g", NULL};
     const struct unknowns_part part = mf_unknowns_part(unknowns, UNKNOWN_BONDED, group);
-    const double *energy = result->curve[UNKNOWN_BONDED] + part.first;
-    const double unit = mf_units_have_second_columns(&fit->scene.units)
-                            ? mf_units_energy_kj_per_mol(&fit->scene.units)
-                            : 0;
-    double *beside = mf_units_column(energy, part.points, unit);
     char path[OUTPUT_PATH_SIZE];
     const struct data_column columns[] = {
         {mf_unknowns_heading(unknowns, UNKNOWN_BONDED, group),
          mf_unknowns_r(unknowns, UNKNOWN_BONDED) + part.first, "%.17g"},
-        {"energy[k_B.T_0]", energy, "%.17g"},
-        {"energy_error[k_B.T_0]", result->curve_error[UNKNOWN_BONDED] + part.first, "%.3g"},
-        {"energy[kJ/mol]", beside, NULL}};
-    CHECK(beside ? STATUS_OK : STATUS_NO_MEMORY);
+        {"energy[k_B.T_0]", result->curve[UNKNOWN_BONDED] + part.first, "%.17g"},
+        {"energy_error[k_B.T_0]", result->curve_error[UNKNOWN_BONDED] + part.first, "%.3g"}};
     curve_file(unknowns, UNKNOWN_BONDED, group, ".tsv", folder, path);
-    CHECK(mf_data_table_write_in(path, &fit->scene.units, NULL, columns, unit > 0 ? 4 : 3,
-                                 part.points));
-done:
-    mf_memory_free(beside);
-    return status;
+    return mf_data_table_write_beside(path, &fit->scene.units, columns, beside, 3, part.points);
 }
 
 enum status mf_fit_output_curves(const struct fit_file *fit, const struct unknowns *unknowns,
@@ -188,57 +159,20 @@ enum status mf_fit_output_curves(const struct fit_file *fit, const struct unknow
     return STATUS_OK;
 }
 
-enum { PLACES = 2, VALUES = 4, MAX_COLUMNS = 2 * (PLACES + VALUES) + 1 };
+enum { PLACES = 2, VALUES = 4, MAX_COLUMNS = PLACES + VALUES + 1 };
 
-/// Columns of a table in reduced units, and what is made for them.
-struct columns {
-    size_t count;
-    struct data_column column[MAX_COLUMNS];
-    char name[MAX_COLUMNS][64];
-    double *own[MAX_COLUMNS]; ///< NULL: the values are somebody else's
-};
-
-static void add_column(struct columns *columns, const char *name, const double *values,
-                       const char *format) {
-    snprintf(columns->name[columns->count], sizeof *columns->name, "%s", name);
-    columns->column[columns->count] =
-        (struct data_column){columns->name[columns->count], values, format};
-    columns->count++;
-}
-
-/// The columns from `first` to `end` in nm and ps, beside those in reduced units.
-static enum status add_beside(struct columns *columns, size_t first, size_t end,
-                              const struct units *units, size_t rows, const char *format) {
-    struct units physical = *units;
-    physical.system = UNITS_NM_PS;
-    for (size_t n = first; n < end; n++) {
-        const struct data_column *from = &columns->column[n];
-        char name[sizeof *columns->name];
-        const double factor = mf_data_table_translate(&physical, from->name, name, sizeof name);
-        double *values = mf_units_column(from->values, rows, factor);
-        if (values == NULL)
-            return STATUS_NO_MEMORY;
-        columns->own[columns->count] = values;
-        add_column(columns, name, values, format ? format : from->format);
+/// Where the values are: columns of their own.
+static enum status find_places(const struct target_files *files, int kind,
+                               const struct target_table *table, double *place[PLACES]) {
+    for (size_t n = 0; n < table->places; n++)
+        TRY_ARRAY(place[n], table->count);
+    for (size_t k = 0; k < table->count; k++) {
+        double at[PLACES];
+        mf_target_record(kind)->place(files, kind, table, k, at);
+        for (size_t n = 0; n < table->places; n++)
+            place[n][k] = at[n];
     }
     return STATUS_OK;
-}
-
-/// Where the values are.
-static enum status add_places(struct columns *columns, const struct target_files *files, int kind,
-                              const struct target_table *table) {
-    enum status status = STATUS_OK;
-    for (size_t n = 0; n < table->places; n++) {
-        NEW_ARRAY(columns->own[n], table->count);
-        for (size_t k = 0; k < table->count; k++) {
-            double at[PLACES];
-            mf_target_record(kind)->place(files, kind, table, k, at);
-            columns->own[n][k] = at[n];
-        }
-        add_column(columns, table->place[n], columns->own[n], table->place_format);
-    }
-done:
-    return status;
 }
 
 /// A table of a target beside the result, each with its error, as rdf_A-B.tsv.
@@ -251,32 +185,35 @@ static enum status write_table(const struct fit_file *fit, int kind,
     const char *unit = mf_observable_kind(kind).target->unit;
     const double *const values[VALUES] = {target->value, target->error, observed->value[kind],
                                           observed->error[kind]};
-    const bool beside = table->beside && mf_units_have_second_columns(&fit->scene.units);
-    struct columns columns = {.count = 0};
-    char path[OUTPUT_PATH_SIZE], name[64], file[8 + sizeof table->name];
-    CHECK(add_places(&columns, &fit->files, kind, table));
-    for (int k = 0; k < VALUES; k++) {
-        snprintf(name, sizeof name, "%s[%s]", words[k], unit ? unit : "1");
-        add_column(&columns, name, values[k] + table->first,
-                   k % 2                 ? "%.3g"
-                   : table->value_format ? table->value_format
-                                         : "%.8g");
+    const char *const usual = table->value_format ? table->value_format : "%.8g";
+    struct data_column columns[MAX_COLUMNS];
+    const char *beside[MAX_COLUMNS] = {NULL};
+    char path[OUTPUT_PATH_SIZE], names[VALUES][64], file[8 + sizeof table->name];
+    double *place[PLACES] = {NULL};
+    size_t count = 0;
+    CHECK(find_places(&fit->files, kind, table, place));
+    for (; count < table->places; count++) {
+        columns[count] =
+            (struct data_column){table->place[count], place[count], table->place_format};
+        if (table->beside)
+            beside[count] = table->place_format ? "%.6g" : "%.10g";
     }
-    if (beside)
-        CHECK(add_beside(&columns, 0, table->places, &fit->scene.units, table->count,
-                         table->place_format ? "%.6g" : NULL));
-    if (beside && table->values_beside)
-        CHECK(add_beside(&columns, table->places, table->places + VALUES, &fit->scene.units,
-                         table->count, NULL));
+    for (size_t k = 0; k < VALUES; k++, count++) {
+        snprintf(names[k], sizeof *names, "%s[%s]", words[k], unit ? unit : "1");
+        columns[count] =
+            (struct data_column){names[k], values[k] + table->first, k % 2 ? "%.3g" : usual};
+        if (table->values_beside)
+            beside[count] = columns[count].format;
+    }
     if (table->given)
-        add_column(&columns, "given[1]", table->given, "%.8g");
+        columns[count++] = (struct data_column){"given[1]", table->given, "%.8g"};
     snprintf(file, sizeof file, "%s.tsv", table->name);
     mf_run_folder_file(folder, file, path);
-    CHECK(mf_data_table_write_in(path, &fit->scene.units, NULL, columns.column, columns.count,
-                                 table->count));
+    CHECK(
+        mf_data_table_write_beside(path, &fit->scene.units, columns, beside, count, table->count));
 done:
-    for (size_t n = 0; n < MAX_COLUMNS; n++)
-        mf_memory_free(columns.own[n]);
+    for (size_t n = 0; n < PLACES; n++)
+        mf_memory_free(place[n]);
     return status;
 }
 

@@ -32,12 +32,12 @@ void mf_fit_report_formula(const struct fit_file *fit, const char *formula,
 static void print_parameters(struct progress *to, const struct fit_file *fit,
                              const struct inverse_parameter *parameter) {
     const struct unknown_parameters *p = &fit->unknown[UNKNOWN_OMEGA].parameters;
-    char line[256], name[UNITS_NAME_SIZE];
+    char line[256];
     int length = snprintf(line, sizeof line, "%s:", mf_inverse_unknown_names[UNKNOWN_OMEGA]);
     if (!fit->unknown[UNKNOWN_OMEGA].wanted || p->shape != INVERSE_CURVE_POWER)
         return;
     for (int k = 0; k < INVERSE_PARAMETERS; k++) {
-        char text[NUMBER_TEXT_SIZE];
+        char text[UNITS_MEASURED_SIZE];
         const char *bound = mf_parametrisation_parameter_bound(p, k, parameter[k].value);
         char mark[32] = "";
         if (!isnan(p->fixed[k]))
@@ -45,11 +45,11 @@ static void print_parameters(struct progress *to, const struct fit_file *fit,
         else if (bound)
             snprintf(mark, sizeof mark, " (at its %s)", bound);
         const char *unit = mf_inverse_fixed_fields[k].unit;
-        const double factor = mf_units_factor(&fit->scene.units, unit);
-        mf_number_text(factor * parameter[k].value, factor * parameter[k].error, text);
-        length += snprintf(line + length, sizeof line - (size_t)length, "%s %s = %s%s%s",
-                           k > 0 ? "," : "", mf_inverse_fixed_fields[k].name, text,
-                           mf_units_suffix(&fit->scene.units, unit, name), mark);
+        length += snprintf(line + length, sizeof line - (size_t)length, "%s %s = %s%s",
+                           k > 0 ? "," : "", mf_inverse_fixed_fields[k].name,
+                           mf_units_measured(&fit->scene.units, unit, parameter[k].value,
+                                             parameter[k].error, text),
+                           mark);
     }
     mf_progress_print(to, "%s", line);
 }
@@ -155,14 +155,13 @@ static void print_distances(struct progress *to, const struct fit_file *fit,
 
 static void print_diffusion(struct progress *to, const struct units *units,
                             const struct verification *v) {
-    const double factor = mf_units_factor(units, "lambda^2/tau");
     const double time = mf_units_factor(units, "tau");
-    char diffusion[NUMBER_TEXT_SIZE], unit[UNITS_NAME_SIZE], times[UNITS_NAME_SIZE];
-    mf_number_text(factor * *v->observed.value[TARGET_DIFFUSION],
-                   factor * *v->observed.error[TARGET_DIFFUSION], diffusion);
-    mf_progress_print(to, "D = %s%s, the slope of the MSD from %.4g to %.4g %s", diffusion,
-                      mf_units_suffix(units, "lambda^2/tau", unit), time * v->diffusion_begin,
-                      time * v->diffusion_end, mf_units_name(units, "tau", times));
+    char diffusion[UNITS_MEASURED_SIZE], times[UNITS_NAME_SIZE];
+    mf_units_measured(units, "lambda^2/tau", *v->observed.value[TARGET_DIFFUSION],
+                      *v->observed.error[TARGET_DIFFUSION], diffusion);
+    mf_progress_print(to, "D = %s, the slope of the MSD from %.4g to %.4g %s", diffusion,
+                      time * v->diffusion_begin, time * v->diffusion_end,
+                      mf_units_name(units, "tau", times));
 }
 
 /// "G of A-B = -0.31(2) lambda^3, target -0.30(1)".
@@ -172,18 +171,17 @@ static void print_integrals(struct progress *to, const struct fit_file *fit,
     const struct target *target = &fit->problem.compared.target[kind];
     const double factor = mf_units_factor(&fit->scene.units, "lambda^d");
     for (size_t pair = 0; pair < target->count; pair++) {
-        char name[COMPOSITION_PAIR_NAME_SIZE], unit[UNITS_NAME_SIZE];
-        char found[NUMBER_TEXT_SIZE], wanted[NUMBER_TEXT_SIZE];
+        char name[COMPOSITION_PAIR_NAME_SIZE];
+        char found[UNITS_MEASURED_SIZE], wanted[NUMBER_TEXT_SIZE];
         if (isnan(target->value[pair]))
             continue;
         mf_composition_pair_name(&target_files_kirkwood_buff(&fit->files)->components, (int)pair,
                                  name);
-        mf_number_text(factor * v->observed.value[kind][pair],
-                       factor * v->observed.error[kind][pair], found);
+        mf_units_measured(&fit->scene.units, "lambda^d", v->observed.value[kind][pair],
+                          v->observed.error[kind][pair], found);
         mf_number_text(factor * target->value[pair], factor * target->error[pair], wanted);
-        mf_progress_print(to, "Kirkwood-Buff integral%s%s = %s%s, target %s", name[0] ? " of " : "",
-                          name, found, mf_units_suffix(&fit->scene.units, "lambda^d", unit),
-                          wanted);
+        mf_progress_print(to, "Kirkwood-Buff integral%s%s = %s, target %s", name[0] ? " of " : "",
+                          name, found, wanted);
     }
 }
 

@@ -250,8 +250,9 @@ static void write_normalisation(struct json_writer *writer, const struct fit_fil
     const bool mixed = composition_is_mixed(&fit->scene.setup.composition);
     if (!fit->files.given[TARGET_RDF])
         return;
-    mf_json_write_number(writer, "normalisation", !mixed && given > 0 ? given : found->factor);
-    mf_json_write_number(writer, "normalisation_error", !mixed && given > 0 ? 0 : found->error);
+    const bool divided = !mixed && given > 0;
+    mf_json_put_measured(writer, "normalisation", "1", divided ? given : found->factor,
+                         divided ? 0 : found->error);
 }
 
 /// Those of the target "kirkwood_buff" and of the result.
@@ -314,17 +315,15 @@ static void write_verification(struct json_writer *writer, const struct fit_file
         write_integrals(writer, fit, v);
     else
         write_compressibility(writer, fit, v);
-    mf_json_write_quantity(writer, "temperature", "T_0", t->temperature);
-    mf_json_write_quantity(writer, "temperature_error", "T_0", known_error(t->temperature_error));
+    mf_json_put_measured(writer, "temperature", "T_0", t->temperature,
+                         known_error(t->temperature_error));
     write_quantity(writer, "temperature_configurational", "T_0", t->temperature_configurational);
     write_quantity(writer, "temperature_configurational_error", "T_0",
                    known_error(t->temperature_configurational_error));
-    mf_json_write_quantity(writer, "potential_energy", "k_B T_0", t->potential_energy);
-    mf_json_write_quantity(writer, "potential_energy_error", "k_B T_0",
-                           known_error(t->potential_energy_error));
-    mf_json_write_quantity(writer, "pressure", "k_B T_0/lambda^d", t->pressure);
-    mf_json_write_quantity(writer, "pressure_error", "k_B T_0/lambda^d",
-                           known_error(t->pressure_error));
+    mf_json_put_measured(writer, "potential_energy", "k_B T_0", t->potential_energy,
+                         known_error(t->potential_energy_error));
+    mf_json_put_measured(writer, "pressure", "k_B T_0/lambda^d", t->pressure,
+                         known_error(t->pressure_error));
     write_quantity(writer, "pressure_of_time_step", "k_B T_0/lambda^d", v->shift.pressure);
     write_quantity(writer, "pressure_of_time_step_error", "k_B T_0/lambda^d", v->shift.error);
     mf_json_write_number(writer, "verification_steps", (double)v->engine_steps);

@@ -20,17 +20,15 @@ void mf_history_init(struct history *history, const struct inverse_method *metho
 
 /// Move rows of `row` numbers to where there is room for more.
 static enum status enlarge(double **values, size_t row, size_t used, size_t capacity) {
-    enum status status = STATUS_OK;
     double *larger = NULL;
     if (row == 0)
         return STATUS_OK;
-    NEW_ARRAY(larger, row * capacity);
+    TRY_ARRAY(larger, row * capacity);
     if (used > 0)
         memcpy(larger, *values, row * used * sizeof *larger);
     mf_memory_free(*values);
     *values = larger;
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /// Twice the room, or more, so that it is made seldom.
@@ -95,11 +93,10 @@ static enum status write_transposed(const char *path, const struct units *units,
                                     const double *values, size_t rows, size_t columns,
                                     const struct data_column *first, size_t first_count,
                                     const char *const *names) {
-    enum status status = STATUS_OK;
-    double *transposed = NULL;
-    struct data_column *column = NULL;
-    NEW_ARRAY(transposed, rows * columns);
-    NEW_ARRAY(column, first_count + columns);
+    OWNED double *transposed = NULL;
+    OWNED struct data_column *column = NULL;
+    TRY_ARRAY(transposed, rows * columns);
+    TRY_ARRAY(column, first_count + columns);
     for (size_t k = 0; k < first_count; k++)
         column[k] = first[k];
     for (size_t c = 0; c < columns; c++) {
@@ -107,11 +104,7 @@ static enum status write_transposed(const char *path, const struct units *units,
             transposed[c * rows + k] = values[k * columns + c];
         column[first_count + c] = (struct data_column){names[c], transposed + c * rows, NULL};
     }
-    CHECK(mf_data_table_write_in(path, units, NULL, column, first_count + columns, rows));
-done:
-    mf_memory_free(transposed);
-    mf_memory_free(column);
-    return status;
+    return mf_data_table_write_in(path, units, NULL, column, first_count + columns, rows);
 }
 
 /// Unit of a method's column that physical files have in theirs, or NULL.
@@ -143,19 +136,15 @@ static enum status write_history(const struct history *history, const struct inv
 }
 
 static enum status write_timing(const struct history *history, const struct run_folder *folder) {
-    enum status status = STATUS_OK;
-    double *iteration = NULL;
+    OWNED double *iteration = NULL;
     char path[OUTPUT_PATH_SIZE];
-    NEW_ARRAY(iteration, history->iterations);
+    TRY_ARRAY(iteration, history->iterations);
     for (size_t k = 0; k < history->iterations; k++)
         iteration[k] = history->rows[k * (COMMON + history->extra)];
     const struct data_column columns[] = {{"iteration", iteration, NULL},
                                           {"seconds[s]", history->seconds, "%.3f"}};
     mf_run_folder_file(folder, "timing.tsv", path);
-    CHECK(mf_data_table_write(path, NULL, columns, 2, history->iterations));
-done:
-    mf_memory_free(iteration);
-    return status;
+    return mf_data_table_write(path, NULL, columns, 2, history->iterations);
 }
 
 /// A field's unit as in the heads of columns, which have no blanks.
@@ -172,9 +161,8 @@ static enum status write_numbers(const struct history *history, const struct uni
     const struct inverse_problem *problem = history->problem;
     char names[2 * INVERSE_MAX_NUMBERS][NAME_SIZE], path[OUTPUT_PATH_SIZE];
     const char *name[2 * INVERSE_MAX_NUMBERS];
-    enum status status = STATUS_OK;
-    double *iteration = NULL;
-    NEW_ARRAY(iteration, history->iterations);
+    OWNED double *iteration = NULL;
+    TRY_ARRAY(iteration, history->iterations);
     for (size_t k = 0; k < history->iterations; k++)
         iteration[k] = history->rows[k * (COMMON + history->extra)];
     for (size_t n = 0; n < 2 * problem->numbers; n++) {
@@ -185,11 +173,9 @@ static enum status write_numbers(const struct history *history, const struct uni
         name[n] = names[n];
     }
     mf_run_folder_file(folder, "numbers_history.tsv", path);
-    CHECK(write_transposed(path, units, history->numbers, history->iterations, 2 * problem->numbers,
-                           &(struct data_column){"iteration", iteration, NULL}, 1, name));
-done:
-    mf_memory_free(iteration);
-    return status;
+    return write_transposed(path, units, history->numbers, history->iterations,
+                            2 * problem->numbers,
+                            &(struct data_column){"iteration", iteration, NULL}, 1, name);
 }
 
 /// A curve of an unknown: one column an iteration, named by its number.
@@ -197,13 +183,12 @@ static enum status write_curve(const struct history *history, const struct unkno
                                enum unknown_kind kind, size_t curve, const struct units *units,
                                const struct run_folder *folder) {
     enum { NAME_SIZE = 48 };
-    enum status status = STATUS_OK;
     const struct unknowns_part part = mf_unknowns_part(unknowns, kind, curve);
-    struct data_column *columns = NULL;
-    char *names = NULL;
+    OWNED struct data_column *columns = NULL;
+    OWNED char *names = NULL;
     char path[OUTPUT_PATH_SIZE], name[UNKNOWNS_NAME_SIZE], file[UNKNOWNS_NAME_SIZE + 16];
-    NEW_ARRAY(columns, history->iterations + 1);
-    NEW_ARRAY(names, history->iterations * NAME_SIZE);
+    TRY_ARRAY(columns, history->iterations + 1);
+    TRY_ARRAY(names, history->iterations * NAME_SIZE);
     columns[0] = (struct data_column){mf_unknowns_heading(unknowns, kind, curve),
                                       mf_unknowns_r(unknowns, kind) + part.first, NULL};
     for (size_t k = 0; k < history->iterations; k++) {
@@ -218,11 +203,7 @@ static enum status write_curve(const struct history *history, const struct unkno
     mf_unknowns_curve_name(unknowns, kind, curve, name);
     snprintf(file, sizeof file, "%s_history.tsv", name);
     mf_run_folder_file(folder, file, path);
-    CHECK(mf_data_table_write_in(path, units, NULL, columns, history->iterations + 1, part.points));
-done:
-    mf_memory_free(columns);
-    mf_memory_free(names);
-    return status;
+    return mf_data_table_write_in(path, units, NULL, columns, history->iterations + 1, part.points);
 }
 
 enum status mf_history_write(const struct history *history, const struct inverse_method *method,

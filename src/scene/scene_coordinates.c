@@ -106,15 +106,14 @@ void mf_scene_coordinates_check_bonds(const struct scene *scene, struct json_obj
 
 static enum status take_frame(struct scene *scene, struct json_object *particles,
                               const struct trajectory_frame *frame) {
-    enum status status = STATUS_OK;
     const size_t beads = (size_t)scene->setup.placement.count;
     const int dimensions = scene->setup.box.dimensions;
     const bool known = mf_units_known(&scene->units);
     const double length = known ? scene->units.length : 1;
     const double speed = known ? length / mf_units_time_ps(&scene->units) : 1;
-    size_t *number = NULL;
-    NEW_ARRAY(number, beads);
-    NEW_ARRAY(scene->start_values, 2 * (size_t)dimensions * beads);
+    OWNED size_t *number = NULL;
+    TRY_ARRAY(number, beads);
+    TRY_ARRAY(scene->start_values, 2 * (size_t)dimensions * beads);
     number_ids(scene, number);
     for (size_t id = 0; id < beads && scene->molecules.order; id++)
         number[id] = scene->molecules.order[number[id]];
@@ -131,9 +130,7 @@ static enum status take_frame(struct scene *scene, struct json_object *particles
     }
     if (is_box(scene, particles, frame, length))
         mf_scene_coordinates_check_bonds(scene, particles, number);
-done:
-    mf_memory_free(number);
-    return status;
+    return STATUS_OK;
 }
 
 /// In which order the file has the atoms.

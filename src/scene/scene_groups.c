@@ -150,8 +150,7 @@ static void fault_unnamed(const struct scene_fitted *fitted, int order, struct m
 
 enum status mf_scene_groups_check_fitted(const struct scene_fitted *fitted,
                                          struct json_object *scene) {
-    enum status status = STATUS_OK;
-    struct molecules named = {0};
+    CLEARED_BY(mf_molecules_clear) struct molecules named = {0};
     const char *name;
     struct json_object kinds = mf_json_child(scene, "molecules", false);
     if (kinds.item == NULL || scene_molecules_are_of_file(&kinds))
@@ -160,13 +159,11 @@ enum status mf_scene_groups_check_fitted(const struct scene_fitted *fitted,
         if (!mf_json_is_object(&kinds, name))
             continue;
         struct json_object kind = mf_json_child(&kinds, name, false);
-        CHECK(mf_scene_groups_open(&named, &kind));
+        TRY(mf_scene_groups_open(&named, &kind));
     }
     for (int order = 0; order < BONDED_KINDS; order++)
         fault_unnamed(fitted, order, &named);
-done:
-    mf_molecules_clear(&named);
-    return status;
+    return STATUS_OK;
 }
 
 enum status mf_scene_groups_clear_tables(struct molecules *molecules) {

@@ -16,45 +16,37 @@
 enum status mf_scene_read_columns(const char *file, const char *const unit[2], double min,
                                   const struct units *units, double **x, double **value,
                                   size_t *count) {
-    struct data_table table = {0};
-    enum status status = STATUS_OK;
-    CHECK(mf_data_table_read(&table, file, 2));
-    CHECK(mf_data_table_check_increasing(&table, file, 0, min));
-    CHECK(mf_data_table_convert(&table, file, 0, unit[0], units));
-    CHECK(mf_data_table_convert(&table, file, 1, unit[1], units));
-    NEW_ARRAY(*x, table.rows);
-    NEW_ARRAY(*value, table.rows);
+    CLEARED_BY(mf_data_table_clear) struct data_table table = {0};
+    TRY(mf_data_table_read(&table, file, 2));
+    TRY(mf_data_table_check_increasing(&table, file, 0, min));
+    TRY(mf_data_table_convert(&table, file, 0, unit[0], units));
+    TRY(mf_data_table_convert(&table, file, 1, unit[1], units));
+    TRY_ARRAY(*x, table.rows);
+    TRY_ARRAY(*value, table.rows);
     for (size_t k = 0; k < table.rows; k++) {
         (*x)[k] = table.values[k * table.columns];
         (*value)[k] = table.values[k * table.columns + 1];
     }
     *count = table.rows;
-done:
-    mf_data_table_clear(&table);
-    return status;
+    return STATUS_OK;
 }
 
 /// VOTCA's points, from nm and kJ/mol.
 static enum status read_votca(const char *file, const struct units *units, double **r,
                               double **value, size_t *count) {
-    struct votca_table table = {0};
-    enum status status = STATUS_OK;
-    CHECK(mf_votca_read(&table, file));
-    NEW_ARRAY(*r, table.rows);
-    NEW_ARRAY(*value, table.rows);
+    CLEARED_BY(mf_votca_clear) struct votca_table table = {0};
+    TRY(mf_votca_read(&table, file));
+    TRY_ARRAY(*r, table.rows);
+    TRY_ARRAY(*value, table.rows);
     for (size_t k = 0; k < table.rows; k++) {
-        if (table.x[k] < 0) {
-            status = mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: r = %g is negative", file,
-                                    table.line[k], table.x[k]);
-            goto done;
-        }
+        if (table.x[k] < 0)
+            return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: r = %g is negative", file,
+                                  table.line[k], table.x[k]);
         (*r)[k] = table.x[k] / units->length;
         (*value)[k] = table.y[k] / mf_units_energy_kj_per_mol(units);
     }
     *count = table.rows;
-done:
-    mf_votca_clear(&table);
-    return status;
+    return STATUS_OK;
 }
 
 /// Points of a table file for a curve of the law "table".

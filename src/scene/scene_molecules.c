@@ -123,11 +123,10 @@ static struct scene_molecule no_chain(void) {
 
 /// "beads": the type of each.
 static enum status read_beads(struct reading *reading, struct json_object *object) {
-    enum status status = STATUS_OK;
-    const char **names = NULL;
+    OWNED const char **names = NULL;
     const int count = mf_json_count(object, "beads");
-    NEW_ARRAY(names, count);
-    NEW_ARRAY(reading->kind.type, count);
+    TRY_ARRAY(names, count);
+    TRY_ARRAY(reading->kind.type, count);
     if (count < 1)
         mf_json_fault(object, "beads", "missing: expected a list of the types of the beads");
     else if (mf_json_list_texts(object, "beads", names, (size_t)count))
@@ -135,14 +134,11 @@ static enum status read_beads(struct reading *reading, struct json_object *objec
             reading->kind.type[k] = find_type(reading, object, "beads", names[k]);
     mf_json_has(object, "beads");
     reading->kind.beads = count;
-done:
-    mf_memory_free(names);
-    return status;
+    return STATUS_OK;
 }
 
 static enum status read_chain_of_one(struct reading *reading, struct json_object *object,
                                      const struct chain_input *chain) {
-    enum status status = STATUS_OK;
     if (mf_json_has(object, "length") && chain->length == 0)
         return STATUS_OK; // out of range, which is told
     if (chain->type[0] == '\0' || chain->length == 0) {
@@ -151,28 +147,25 @@ static enum status read_chain_of_one(struct reading *reading, struct json_object
         return STATUS_OK;
     }
     const int type = find_type(reading, object, "type", chain->type);
-    NEW_ARRAY(reading->kind.type, chain->length);
+    TRY_ARRAY(reading->kind.type, chain->length);
     for (int k = 0; k < chain->length; k++)
         reading->kind.type[k] = type;
     reading->kind.beads = (int)chain->length;
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /// The terms of a chain: all that follow each other.
 static enum status link_chain(struct topology_kind *kind, int order, int group) {
-    enum status status = STATUS_OK;
     const struct bonded_kind *of = mf_bonded_kinds[order];
     const int span = of->chain[of->beads - 1];
     kind->terms[order] = span > 0 && kind->beads > span ? kind->beads - span : 0;
-    NEW_ARRAY(kind->term[order], kind->terms[order]);
+    TRY_ARRAY(kind->term[order], kind->terms[order]);
     for (int n = 0; n < kind->terms[order]; n++) {
         kind->term[order][n].group = group;
         for (int k = 0; k < of->beads; k++)
             kind->term[order][n].bead[k] = n + of->chain[k];
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /// Whether a chain is too short for the terms of an order, or cannot have them, which is a fault.
@@ -224,18 +217,17 @@ static enum status read_chain(struct reading *reading) {
 /// "bonds": {"backbone": [[1, 2], [2, 3]], …}, likewise "angles" and "dihedrals": in the order of
 /// the groups, in which they are written.
 static enum status read_terms(struct reading *reading, int order) {
-    enum status status = STATUS_OK;
     const struct molecules *molecules = &reading->molecules->molecules;
     struct topology_kind *kind = &reading->kind;
     struct json_object object =
         mf_json_child(&reading->object, mf_bonded_kinds[order]->plural, false);
     const size_t beads = (size_t)mf_bonded_kinds[order]->beads;
-    int *rows = NULL;
+    OWNED int *rows = NULL;
     size_t all = 0;
     for (int g = 0; g < molecules->groups[order]; g++)
         all += (size_t)mf_json_count(&object, molecules->group[order][g].name);
-    NEW_ARRAY(kind->term[order], all);
-    NEW_ARRAY(rows, all * beads);
+    TRY_ARRAY(kind->term[order], all);
+    TRY_ARRAY(rows, all * beads);
     for (int g = 0; g < molecules->groups[order]; g++) {
         const char *name = molecules->group[order][g].name;
         const size_t count = (size_t)mf_json_count(&object, name);
@@ -251,9 +243,7 @@ static enum status read_terms(struct reading *reading, int order) {
     }
     if (object.item)
         mf_json_finish(&object);
-done:
-    mf_memory_free(rows);
-    return status;
+    return STATUS_OK;
 }
 
 // Kinds -------------------------------------------------------------------------------------------

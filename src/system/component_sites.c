@@ -18,18 +18,16 @@ static void find_single(struct component_sites *sites, const struct composition 
 enum status mf_component_sites_init(struct component_sites *sites, int dimensions,
                                     const struct composition *beads, size_t count,
                                     const struct topology *topology) {
-    enum status status = STATUS_OK;
     *sites = (struct component_sites){.kinds = topology ? topology->kinds : 0, .beads = count};
-    CHECK(mf_components_find(&sites->components, beads, count, topology));
+    TRY(mf_components_find(&sites->components, beads, count, topology));
     find_single(sites, beads, topology);
     if (topology)
-        CHECK(mf_whole_molecules_init(&sites->whole, topology));
+        TRY(mf_whole_molecules_init(&sites->whole, topology));
     else
-        NEW_ARRAY(sites->place, count);
+        TRY_ARRAY(sites->place, count);
     for (int d = 0; d < dimensions; d++)
-        NEW_ARRAY(sites->site[d], mf_composition_particles(&sites->components));
-done:
-    return status;
+        TRY_ARRAY(sites->site[d], mf_composition_particles(&sites->components));
+    return STATUS_OK;
 }
 
 void mf_component_sites_clear(struct component_sites *sites) {

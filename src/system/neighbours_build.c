@@ -183,7 +183,6 @@ static void place_parts(struct neighbours *neighbours) {
 
 /// A list with as many places for each particle as entries_each says. Its contents are lost.
 static enum status reserve_list(struct neighbours *neighbours) {
-    enum status status = STATUS_OK;
     const size_t capacity = (size_t)(neighbours->entries_each * (double)neighbours->count) +
                             (size_t)(neighbours->parts + 1) * 16 * PARTICLES_PADDING;
     if (capacity <= neighbours->list_capacity)
@@ -192,11 +191,10 @@ static enum status reserve_list(struct neighbours *neighbours) {
     mf_memory_free(neighbours->owner);
     neighbours->list = neighbours->owner = NULL;
     neighbours->list_capacity = 0;
-    NEW_ARRAY(neighbours->list, capacity);
-    NEW_ARRAY(neighbours->owner, capacity / NEIGHBOURS_ROW + PARTICLES_PADDING);
+    TRY_ARRAY(neighbours->list, capacity);
+    TRY_ARRAY(neighbours->owner, capacity / NEIGHBOURS_ROW + PARTICLES_PADDING);
     neighbours->list_capacity = capacity;
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /// Try to build all parts; *complete tells whether the list had room.

@@ -14,7 +14,6 @@ static size_t row_count(const struct neighbours *neighbours) {
 }
 
 enum status mf_neighbours_init_rows(struct neighbours *neighbours, const struct box *box) {
-    enum status status = STATUS_OK;
     struct neighbours_rows *rows = &neighbours->rows;
     rows->wrap = false;
     for (int d = 0; d < box->dimensions; d++)
@@ -23,12 +22,11 @@ enum status mf_neighbours_init_rows(struct neighbours *neighbours, const struct 
     const size_t images = rows->margin > 0 ? 2 * neighbours->count : 0;
     const size_t capacity = neighbours->count + images + row_count(neighbours) * ROW_PADDING;
     for (int d = 0; d < 3; d++)
-        NEW_ARRAY(rows->place[d], capacity);
-    NEW_ARRAY(rows->particle, capacity);
+        TRY_ARRAY(rows->place[d], capacity);
+    TRY_ARRAY(rows->particle, capacity);
     rows->cells = (size_t)(neighbours->cells.count[2] + 2 * rows->margin);
-    NEW_ARRAY(rows->start, row_count(neighbours) * (rows->cells + 1));
-done:
-    return status;
+    TRY_ARRAY(rows->start, row_count(neighbours) * (rows->cells + 1));
+    return STATUS_OK;
 }
 
 void mf_neighbours_clear_rows(struct neighbours *neighbours) {

@@ -91,16 +91,14 @@ struct occupied {
 
 static enum status occupied_init(struct occupied *occupied, const struct particles *particles,
                                  double separation) {
-    enum status status = STATUS_OK;
     *occupied = (struct occupied){0};
     mf_cells_fit_box(&particles->box, separation, floor(cbrt((double)particles->count)),
                      occupied->cells);
     const size_t total = cells_total(occupied->cells);
-    NEW_ARRAY(occupied->first, total);
-    NEW_ARRAY(occupied->link, particles->count);
+    TRY_ARRAY(occupied->first, total);
+    TRY_ARRAY(occupied->link, particles->count);
     memset(occupied->first, 0xff, total * sizeof *occupied->first); // −1: empty
-done:
-    return status;
+    return STATUS_OK;
 }
 
 static void cell_of(const struct occupied *occupied, const struct box *box, const double x[3],

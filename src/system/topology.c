@@ -101,11 +101,10 @@ const struct topology_term *mf_topology_unbonded(const struct topology_kind *kin
 // What is excluded --------------------------------------------------------------------------------
 
 enum status mf_topology_bonds(const struct topology_kind *kind, struct topology_bonds *bonds) {
-    enum status status = STATUS_OK;
     const int count = kind->terms[BONDED_BOND];
     const struct topology_term *term = kind->term[BONDED_BOND];
-    NEW_ARRAY(bonds->start, kind->beads + 2);
-    NEW_ARRAY(bonds->to, 2 * count);
+    TRY_ARRAY(bonds->start, kind->beads + 2);
+    TRY_ARRAY(bonds->to, 2 * count);
     int *next = bonds->start + 1; // of each bead; they end as starts
     for (int n = 0; n < count; n++)
         for (int k = 0; k < 2; k++)
@@ -115,8 +114,7 @@ enum status mf_topology_bonds(const struct topology_kind *kind, struct topology_
     for (int n = 0; n < count; n++)
         for (int k = 0; k < 2; k++)
             bonds->to[next[term[n].bead[k]]++] = term[n].bead[1 - k];
-done:
-    return status;
+    return STATUS_OK;
 }
 
 static int compare_beads(const void *a, const void *b) {
@@ -132,14 +130,12 @@ struct search {
 };
 
 static enum status search_begin(struct search *search, const struct topology_kind *kind) {
-    enum status status = STATUS_OK;
     *search = (struct search){0};
-    NEW_ARRAY(search->distance, kind->beads);
-    NEW_ARRAY(search->reached, kind->beads);
-    CHECK(mf_topology_bonds(kind, &search->bonds));
+    TRY_ARRAY(search->distance, kind->beads);
+    TRY_ARRAY(search->reached, kind->beads);
+    TRY(mf_topology_bonds(kind, &search->bonds));
     memset(search->distance, 0xff, (size_t)kind->beads * sizeof *search->distance);
-done:
-    return status;
+    return STATUS_OK;
 }
 
 static void search_end(struct search *search) {
@@ -225,18 +221,16 @@ enum status mf_topology_count_excluded(const struct topology_kind *kind, int exc
 
 /// Ids of a kind's beads, given the next one of each type, which go on.
 static enum status number_beads(struct topology_kind *kind, int64_t next[COMPOSITION_MAX_TYPES]) {
-    enum status status = STATUS_OK;
     int64_t of_type[COMPOSITION_MAX_TYPES] = {0};
-    NEW_ARRAY(kind->id, kind->beads);
-    NEW_ARRAY(kind->step, kind->beads);
+    TRY_ARRAY(kind->id, kind->beads);
+    TRY_ARRAY(kind->step, kind->beads);
     for (int bead = 0; bead < kind->beads; bead++)
         kind->id[bead] = (uint32_t)(next[kind->type[bead]] + of_type[kind->type[bead]]++);
     for (int bead = 0; bead < kind->beads; bead++)
         kind->step[bead] = (uint32_t)of_type[kind->type[bead]];
     for (int type = 0; type < COMPOSITION_MAX_TYPES; type++)
         next[type] += of_type[type] * kind->count;
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /// By id: molecules, and how many pairs each bead is excluded from.
@@ -272,7 +266,6 @@ static void enter_excluded(struct topology *topology) {
 }
 
 enum status mf_topology_complete(struct topology *topology, const struct composition *composition) {
-    enum status status = STATUS_OK;
     int64_t next[COMPOSITION_MAX_TYPES] = {0};
     for (int type = 1; type < composition->types; type++)
         next[type] = next[type - 1] + composition->count[type - 1];
@@ -280,19 +273,18 @@ enum status mf_topology_complete(struct topology *topology, const struct composi
     for (int k = 0; k < topology->kinds; k++) {
         topology->kind[k].first = topology->molecules;
         topology->molecules += topology->kind[k].count;
-        CHECK(number_beads(&topology->kind[k], next));
-        CHECK(find_near(&topology->kind[k]));
+        TRY(number_beads(&topology->kind[k], next));
+        TRY(find_near(&topology->kind[k]));
     }
-    NEW_ARRAY(topology->molecule, topology->particles);
+    TRY_ARRAY(topology->molecule, topology->particles);
     memset(topology->molecule, 0xff, topology->particles * sizeof *topology->molecule);
-    NEW_ARRAY(topology->excluded_start, topology->particles + 1);
+    TRY_ARRAY(topology->excluded_start, topology->particles + 1);
     enter_molecules(topology);
     const size_t excluded = topology->excluded_start[topology->particles];
-    NEW_ARRAY(topology->excluded, excluded);
+    TRY_ARRAY(topology->excluded, excluded);
     topology->excludes = excluded > 0;
     enter_excluded(topology);
-done:
-    return status;
+    return STATUS_OK;
 }
 
 int mf_topology_beads_of(const struct topology_kind *kind, int type) {

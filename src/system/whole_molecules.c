@@ -5,20 +5,18 @@
 
 enum status mf_whole_molecules_init(struct whole_molecules *whole,
                                     const struct topology *topology) {
-    enum status status = STATUS_OK;
     const size_t kinds = (size_t)topology->kinds;
     *whole = (struct whole_molecules){.topology = topology};
     for (size_t k = 0; k < kinds; k++)
         if ((size_t)topology->kind[k].beads > whole->max_beads)
             whole->max_beads = (size_t)topology->kind[k].beads;
-    NEW_ARRAY(whole->place, whole->max_beads);
-    NEW_ARRAY(whole->parent, kinds * whole->max_beads);
-    NEW_ARRAY(whole->order, kinds * whole->max_beads);
+    TRY_ARRAY(whole->place, whole->max_beads);
+    TRY_ARRAY(whole->parent, kinds * whole->max_beads);
+    TRY_ARRAY(whole->order, kinds * whole->max_beads);
     for (size_t k = 0; k < kinds; k++)
         mf_topology_walk(&topology->kind[k], whole->order + k * whole->max_beads,
                          whole->parent + k * whole->max_beads);
-done:
-    return status;
+    return STATUS_OK;
 }
 
 void mf_whole_molecules_clear(struct whole_molecules *whole) {

@@ -191,11 +191,11 @@ static enum status find_scatter(const struct target_rows *rows, int order, int d
                                 const struct bonded_bins *bins, double *square) {
     enum { TAPS = 5, MIN_DIFFERENCES = 8 };
     static const double taps[TAPS] = {1, -4, 6, -4, 1}, min = 0.05;
-    enum status status = STATUS_OK;
-    double peak = 0, *all = NULL;
+    OWNED double *all = NULL;
+    double peak = 0;
     size_t count = 0;
     *square = NAN;
-    NEW_ARRAY(all, rows->count);
+    TRY_ARRAY(all, rows->count);
     for (size_t k = 0; k < rows->count; k++)
         peak = fmax(peak, rows->y[k]);
     for (size_t k = 0; k + TAPS <= rows->count; k++) {
@@ -212,9 +212,7 @@ static enum status find_scatter(const struct target_rows *rows, int order, int d
     }
     if (count >= MIN_DIFFERENCES)
         *square = mf_target_rows_robust_mean(all, count);
-done:
-    mf_memory_free(all);
-    return status;
+    return STATUS_OK;
 }
 
 /// Errors that a file gives are the scatter of counts, which is 0 where nothing was seen. That of

@@ -30,7 +30,6 @@ static void fault_unknown(const struct target_groups *groups, struct json_object
 
 /// Values of all members, one behind the other.
 static enum status collect(struct target_groups *groups) {
-    enum status status = STATUS_OK;
     mf_memory_free(groups->value);
     mf_memory_free(groups->error);
     mf_memory_free(groups->block);
@@ -39,9 +38,9 @@ static enum status collect(struct target_groups *groups) {
     groups->blocks = 0;
     for (size_t g = 0; g < groups->groups; g++)
         groups->first[g + 1] = groups->first[g] + groups->member[g].bins.count;
-    NEW_ARRAY(groups->value, groups->first[groups->groups]);
-    NEW_ARRAY(groups->error, groups->first[groups->groups]);
-    NEW_ARRAY(groups->block, groups->groups * TARGETS_MAX_BLOCKS + 1);
+    TRY_ARRAY(groups->value, groups->first[groups->groups]);
+    TRY_ARRAY(groups->error, groups->first[groups->groups]);
+    TRY_ARRAY(groups->block, groups->groups * TARGETS_MAX_BLOCKS + 1);
     for (size_t g = 0; g < groups->groups; g++) {
         const struct target_bonded *member = &groups->member[g];
         const size_t bytes = member->bins.count * sizeof(double);
@@ -53,8 +52,7 @@ static enum status collect(struct target_groups *groups) {
                                             groups->block + groups->blocks);
     }
     groups->block[groups->blocks] = groups->first[groups->groups];
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /// What the observable is to measure for them.
@@ -101,10 +99,9 @@ done:
 /// By the numbers of the scene's groups.
 static enum status allocate(struct target_groups *groups, struct json_object *object,
                             const struct molecules *molecules) {
-    enum status status = STATUS_OK;
     const int order = groups->order;
     groups->groups = molecules ? (size_t)molecules->groups[order] : 0;
-    NEW_ARRAY(groups->member, groups->groups);
+    TRY_ARRAY(groups->member, groups->groups);
     for (size_t g = 0; g < groups->groups; g++) {
         if (is_use(molecules->group[order][g].name))
             mf_json_fault(
@@ -112,8 +109,7 @@ static enum status allocate(struct target_groups *groups, struct json_object *ob
                 "is both a setting of the target and a group of the scene: rename the group");
         memcpy(groups->name[g], molecules->group[order][g].name, sizeof groups->name[g]);
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 static enum status read(struct target_files *files, int kind, struct json_object *object,

@@ -53,15 +53,14 @@ static void check_bins(const struct target_pairs *target, const struct compositi
 /// g and errors of all pair types in the numbers of the scene, one behind the other, if all
 /// could be read.
 static enum status collect(struct target_pairs *target, const struct finite_size_fluid *fluid) {
-    enum status status = STATUS_OK;
     const size_t bins = target_pairs_bins(target)->count;
     for (size_t pair = 0; pair < target->pairs; pair++)
         if (target->member[pair].bins.count != bins)
             return STATUS_OK;
-    NEW_ARRAY(target->g, target->pairs * bins);
-    NEW_ARRAY(target->error, target->pairs * bins);
-    NEW_ARRAY(target->given, target->pairs * bins);
-    NEW_ARRAY(target->factor_error, target->pairs);
+    TRY_ARRAY(target->g, target->pairs * bins);
+    TRY_ARRAY(target->error, target->pairs * bins);
+    TRY_ARRAY(target->given, target->pairs * bins);
+    TRY_ARRAY(target->factor_error, target->pairs);
     for (size_t pair = 0; pair < target->pairs; pair++)
         if (mf_composition_has_pairs(fluid->composition, (int)pair))
             mf_target_rdf_convert(&target->member[pair], fluid, (int)pair, target->g + pair * bins,
@@ -70,8 +69,7 @@ static enum status collect(struct target_pairs *target, const struct finite_size
             for (size_t k = pair * bins; k < (pair + 1) * bins; k++)
                 target->g[k] = target->error[k] = NAN;
     memcpy(target->given, target->g, target->pairs * bins * sizeof(double));
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /// All pair types end with the shortest. Faults go to the document.

@@ -203,27 +203,24 @@ static size_t rows_of_a_bin(const struct target_rdf_parameters *p, const struct 
 }
 
 static enum status load(struct target_rdf *target, const struct units *units, int dimensions) {
-    enum status status = STATUS_OK;
     const struct target_rdf_parameters *p = &target->parameters;
-    struct target_rows rows = {.dimensions = dimensions};
+    CLEARED_BY(mf_target_rows_clear) struct target_rows rows = {.dimensions = dimensions};
     struct rdf_bins bins;
-    CHECK(p->format == TARGET_ROWS_VOTCA ? read_votca(p, units, &rows)
-                                         : read_columns(p, units, &rows));
+    TRY(p->format == TARGET_ROWS_VOTCA ? read_votca(p, units, &rows)
+                                       : read_columns(p, units, &rows));
     leave_out_half_bin(&rows);
     target->tail = mf_target_rows_tail(&rows);
     cut(p, &rows);
-    CHECK(check_values(target, &rows));
-    CHECK(resample(target, &rows));
-    CHECK(find_bins(&rows, p->file, &bins));
+    TRY(check_values(target, &rows));
+    TRY(resample(target, &rows));
+    TRY(find_bins(&rows, p->file, &bins));
     target->joined = rows_of_a_bin(p, &bins);
-    CHECK(join(target, &rows));
-    CHECK(find_bins(&rows, p->file, &target->bins));
+    TRY(join(target, &rows));
+    TRY(find_bins(&rows, p->file, &target->bins));
     target->g = rows.y;
     target->error = rows.error;
     rows.y = rows.error = NULL;
-done:
-    mf_target_rows_clear(&rows);
-    return status;
+    return STATUS_OK;
 }
 
 enum status mf_target_rdf_read(struct target_rdf *target, struct json_object *object,

@@ -104,31 +104,27 @@ static double find_variance_in_r(const struct difference *difference, size_t cou
 /// The errors of points in g and in r: the first by those where g is flat. Sorts the differences.
 static enum status find_errors(struct difference *difference, size_t count,
                                struct target_resampling *done) {
-    enum status status = STATUS_OK;
-    double *square = NULL;
+    OWNED double *square = NULL;
     const size_t flat = (count + 1) / 2;
     qsort(difference, count, sizeof *difference, compare_steepness);
-    NEW_ARRAY(square, flat);
+    TRY_ARRAY(square, flat);
     for (size_t k = 0; k < flat; k++)
         square[k] = difference[k].square;
     const double variance = mf_target_rows_robust_mean(square, flat);
     done->error = sqrt(variance);
     done->error_in_r = sqrt(find_variance_in_r(difference, count, variance));
-done:
-    mf_memory_free(square);
-    return status;
+    return STATUS_OK;
 }
 
 /// The errors of points by their scatter, or `assumed` if there is none.
 static enum status set_errors(struct target_rows *rows, double assumed,
                               struct target_resampling *done) {
     enum { MIN = 24 };
-    enum status status = STATUS_OK;
-    struct difference *difference = NULL;
-    NEW_ARRAY(difference, rows->count);
+    OWNED struct difference *difference = NULL;
+    TRY_ARRAY(difference, rows->count);
     const size_t count = find_differences(rows, difference);
     if (count >= MIN)
-        CHECK(find_errors(difference, count, done));
+        TRY(find_errors(difference, count, done));
     done->assumed = !(done->error > target_rows_min_scatter);
     if (done->assumed) {
         done->error = assumed;
@@ -136,9 +132,7 @@ static enum status set_errors(struct target_rows *rows, double assumed,
     }
     for (size_t k = 0; k < rows->count; k++)
         rows->error[k] = hypot(done->error, done->error_in_r * slope_of(rows, k));
-done:
-    mf_memory_free(difference);
-    return status;
+    return STATUS_OK;
 }
 
 /// The last point at or before x, but for the last of all.
@@ -253,21 +247,18 @@ static void describe(const struct target_rows *rows, struct target_resampling *d
 
 enum status mf_target_resample(struct target_rows *rows, const char *file, bool has_errors,
                                double assumed, struct target_resampling *done) {
-    enum status status = STATUS_OK;
-    struct target_rows equal = {.dimensions = rows->dimensions};
+    CLEARED_BY(mf_target_rows_clear) struct target_rows equal = {.dimensions = rows->dimensions};
     *done = (struct target_resampling){0};
     describe(rows, done);
     merge_close(rows);
-    if (rows->count < NEXT) {
-        status = mf_status_fail(STATUS_BAD_INPUT, "%s: only %zu points at different r", file,
-                                rows->count);
-        goto done;
-    }
-    CHECK(check_gaps(rows, file));
+    if (rows->count < NEXT)
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: only %zu points at different r", file,
+                              rows->count);
+    TRY(check_gaps(rows, file));
     if (!has_errors)
-        CHECK(set_errors(rows, assumed, done));
+        TRY(set_errors(rows, assumed, done));
     const struct target_grid grid = find_grid(rows);
-    CHECK(mf_target_rows_allocate(&equal, grid.count));
+    TRY(mf_target_rows_allocate(&equal, grid.count));
     for (size_t k = 0; k < grid.count; k++) {
         const double r = grid.first + (double)k * grid.width;
         const struct reading at = read_at(rows, r, grid.width);
@@ -283,7 +274,5 @@ enum status mf_target_resample(struct target_rows *rows, const char *file, bool 
     mf_target_rows_clear(rows);
     *rows = equal;
     equal = (struct target_rows){0};
-done:
-    mf_target_rows_clear(&equal);
-    return status;
+    return STATUS_OK;
 }

@@ -31,14 +31,12 @@ void mf_target_rows_clear(struct target_rows *rows) {
 }
 
 enum status mf_target_rows_allocate(struct target_rows *rows, size_t count) {
-    enum status status = STATUS_OK;
     rows->count = count;
-    NEW_ARRAY(rows->x, count);
-    NEW_ARRAY(rows->y, count);
-    NEW_ARRAY(rows->error, count);
-    NEW_ARRAY(rows->line, count);
-done:
-    return status;
+    TRY_ARRAY(rows->x, count);
+    TRY_ARRAY(rows->y, count);
+    TRY_ARRAY(rows->error, count);
+    TRY_ARRAY(rows->line, count);
+    return STATUS_OK;
 }
 
 // Files -------------------------------------------------------------------------------------------
@@ -98,15 +96,14 @@ static enum status convert(struct data_table *table, const struct target_columns
 
 enum status mf_target_rows_read(struct target_rows *rows, struct target_columns *columns,
                                 const struct units *units) {
-    enum status status = STATUS_OK;
-    struct data_table table = {0};
+    CLEARED_BY(mf_data_table_clear) struct data_table table = {0};
     const int64_t min = columns->y > 0 ? columns->y : 2;
-    CHECK(mf_data_table_read(&table, columns->file, (size_t)(columns->x > min ? columns->x : min)));
-    CHECK(find_columns(columns, &table));
-    CHECK(mf_data_table_check_increasing(&table, columns->file, (size_t)columns->x - 1,
-                                         columns->min));
-    CHECK(convert(&table, columns, units));
-    CHECK(mf_target_rows_allocate(rows, table.rows));
+    TRY(mf_data_table_read(&table, columns->file, (size_t)(columns->x > min ? columns->x : min)));
+    TRY(find_columns(columns, &table));
+    TRY(mf_data_table_check_increasing(&table, columns->file, (size_t)columns->x - 1,
+                                       columns->min));
+    TRY(convert(&table, columns, units));
+    TRY(mf_target_rows_allocate(rows, table.rows));
     for (size_t k = 0; k < table.rows; k++) {
         rows->x[k] = cell(&table, k, columns->x);
         rows->y[k] = cell(&table, k, columns->y);
@@ -114,9 +111,7 @@ enum status mf_target_rows_read(struct target_rows *rows, struct target_columns 
         rows->line[k] = table.line[k];
     }
     rows->has_errors = columns->error > 0;
-done:
-    mf_data_table_clear(&table);
-    return status;
+    return STATUS_OK;
 }
 
 enum status mf_target_rows_read_votca(struct target_rows *rows, const char *file) {

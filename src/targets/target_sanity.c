@@ -181,12 +181,11 @@ static size_t step_of_ranges(const struct view *view) {
 /// of what is known on; +∞ where it is not defined.
 static enum status largest_compressibility(const struct view *view, double factor,
                                            double *largest) {
-    enum status status = STATUS_OK;
-    double *g = NULL;
+    OWNED double *g = NULL;
     *largest = INFINITY;
     if (view->scene->setup.box.dimensions != 3 || view->like < 2)
         return STATUS_OK;
-    NEW_ARRAY(g, view->bins->count);
+    TRY_ARRAY(g, view->bins->count);
     for (size_t k = 0; k < view->bins->count; k++)
         g[k] = factor * view->g[k];
     *largest = -INFINITY;
@@ -196,9 +195,7 @@ static enum status largest_compressibility(const struct view *view, double facto
             &part, g, view->error, &view->scene->setup.box, view->like, 0);
         *largest = fmax(*largest, kb.compressibility + standard_errors * kb.compressibility_error);
     }
-done:
-    mf_memory_free(g);
-    return status;
+    return STATUS_OK;
 }
 
 /// "1 + rho G = -8.42(12)": the error is by noise or, where that is more, by the range, half of how

@@ -75,14 +75,13 @@ static int compare_terms(const void *a, const void *b) {
 /// Terms of a molecule name its beads, from the smaller end, in an order that is the same for
 /// molecules that are alike.
 static enum status gather_terms(struct finding *finding, int order) {
-    enum status status = STATUS_OK;
     const struct lammps_terms *terms = finding->source->terms;
     const size_t count = terms->terms[order];
     const int beads = mf_bonded_kinds[order]->beads;
-    size_t *next = NULL;
-    NEW_ARRAY(finding->term_begin[order], finding->atoms + 1);
-    NEW_ARRAY(finding->term[order], count);
-    NEW_ARRAY(next, finding->atoms);
+    OWNED size_t *next = NULL;
+    TRY_ARRAY(finding->term_begin[order], finding->atoms + 1);
+    TRY_ARRAY(finding->term[order], count);
+    TRY_ARRAY(next, finding->atoms);
     size_t *begin = finding->term_begin[order];
     for (size_t n = 0; n < count; n++)
         begin[finding->root[terms->term[order][n].atom[0]] + 1]++;
@@ -102,9 +101,7 @@ static enum status gather_terms(struct finding *finding, int order) {
         if (begin[atom + 1] > begin[atom])
             qsort(finding->term[order] + begin[atom], begin[atom + 1] - begin[atom],
                   sizeof **finding->term, compare_terms);
-done:
-    mf_memory_free(next);
-    return status;
+    return STATUS_OK;
 }
 
 // Types -------------------------------------------------------------------------------------------
@@ -157,7 +154,6 @@ static bool is_of(const struct finding *finding, size_t molecule,
 }
 
 static enum status add_kind(struct finding *finding, size_t molecule) {
-    enum status status = STATUS_OK;
     struct topology *topology = finding->topology;
     const size_t beads = beads_of(finding, molecule);
     const long long id = (long long)finding->source->structure->atom[molecule].id;
@@ -171,19 +167,18 @@ static enum status add_kind(struct finding *finding, size_t molecule) {
     struct topology_kind *kind = &topology->kind[topology->kinds++];
     *kind = (struct topology_kind){.exclude = finding->source->exclude, .beads = (int)beads};
     snprintf(kind->name, sizeof kind->name, "molecule-%d", topology->kinds);
-    NEW_ARRAY(kind->type, beads);
+    TRY_ARRAY(kind->type, beads);
     for (size_t bead = 0; bead < beads; bead++)
         kind->type[bead] = finding->type[finding->member[finding->begin[molecule] + bead]];
     for (int order = 0; order < BONDED_KINDS; order++) {
         const size_t *begin = finding->term_begin[order] + molecule;
         kind->terms[order] = (int)(begin[1] - begin[0]);
-        NEW_ARRAY(kind->term[order], kind->terms[order]);
+        TRY_ARRAY(kind->term[order], kind->terms[order]);
         if (kind->terms[order] > 0)
             memcpy(kind->term[order], finding->term[order] + begin[0],
                    (size_t)kind->terms[order] * sizeof *kind->term[order]);
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 static enum status find_kinds(struct finding *finding) {
@@ -209,9 +204,8 @@ static enum status find_kinds(struct finding *finding) {
 // Order -------------------------------------------------------------------------------------------
 
 static enum status find_order(const struct finding *finding, size_t **order) {
-    enum status status = STATUS_OK;
     size_t next = 0;
-    NEW_ARRAY(*order, finding->atoms);
+    TRY_ARRAY(*order, finding->atoms);
     for (int k = 0; k < finding->topology->kinds; k++)
         for (size_t molecule = 0; molecule < finding->atoms; molecule++)
             for (size_t n = finding->begin[molecule];
@@ -221,8 +215,7 @@ static enum status find_order(const struct finding *finding, size_t **order) {
         for (size_t atom = 0; atom < finding->atoms; atom++)
             if (finding->type[atom] == type && beads_of(finding, (size_t)finding->root[atom]) == 1)
                 (*order)[next++] = atom;
-done:
-    return status;
+    return STATUS_OK;
 }
 
 static void clear(struct finding *finding) {
@@ -241,24 +234,21 @@ static void clear(struct finding *finding) {
 enum status mf_lammps_kinds_find(const struct lammps_kinds_source *source,
                                  struct topology *topology, struct composition *composition,
                                  size_t **order) {
-    enum status status = STATUS_OK;
     const size_t atoms = source->structure->atoms;
+    CLEARED_BY(clear)
     struct finding finding = {
         .source = source, .topology = topology, .composition = composition, .atoms = atoms};
-    NEW_ARRAY(finding.root, atoms);
-    NEW_ARRAY(finding.local, atoms);
-    NEW_ARRAY(finding.type, atoms);
-    NEW_ARRAY(finding.member, atoms);
-    NEW_ARRAY(finding.begin, atoms + 1);
-    NEW_ARRAY(finding.kind, atoms);
+    TRY_ARRAY(finding.root, atoms);
+    TRY_ARRAY(finding.local, atoms);
+    TRY_ARRAY(finding.type, atoms);
+    TRY_ARRAY(finding.member, atoms);
+    TRY_ARRAY(finding.begin, atoms + 1);
+    TRY_ARRAY(finding.kind, atoms);
     join_atoms(&finding);
     gather_members(&finding);
     for (int n = 0; n < BONDED_KINDS; n++)
-        CHECK(gather_terms(&finding, n));
-    CHECK(find_types(&finding));
-    CHECK(find_kinds(&finding));
-    CHECK(find_order(&finding, order));
-done:
-    clear(&finding);
-    return status;
+        TRY(gather_terms(&finding, n));
+    TRY(find_types(&finding));
+    TRY(find_kinds(&finding));
+    return find_order(&finding, order);
 }

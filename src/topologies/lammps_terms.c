@@ -195,13 +195,11 @@ static enum status add_coefficient(struct reading *reading, const struct words *
 }
 
 static enum status make_coefficients(struct reading *reading) {
-    enum status status = STATUS_OK;
     struct lammps_terms *terms = reading->terms;
     for (int order = 0; order < BONDED_KINDS; order++)
         if (terms->coefficient[order] == NULL)
-            NEW_ARRAY(terms->coefficient[order], terms->types[order] + 1);
-done:
-    return status;
+            TRY_ARRAY(terms->coefficient[order], terms->types[order] + 1);
+    return STATUS_OK;
 }
 
 static enum status read_line(struct reading *reading, const char *line) {
@@ -235,12 +233,11 @@ static int compare_terms(const void *a, const void *b) {
 }
 
 static enum status check_doubled(struct reading *reading, int order) {
-    enum status status = STATUS_OK;
     const struct lammps_terms *terms = reading->terms;
     const size_t count = terms->terms[order];
     const int beads = mf_bonded_kinds[order]->beads;
-    struct lammps_term *sorted = NULL;
-    NEW_ARRAY(sorted, count);
+    OWNED struct lammps_term *sorted = NULL;
+    TRY_ARRAY(sorted, count);
     for (size_t n = 0; n < count; n++) {
         const struct lammps_term *from = &terms->term[order][n];
         const bool turned = from->atom[0] > from->atom[beads - 1];
@@ -254,12 +251,10 @@ static enum status check_doubled(struct reading *reading, int order) {
                           (order == BONDED_BOND || sorted[n].type == sorted[n - 1].type);
         reading->line = sorted[n].line;
         if (same)
-            CHECK(FAIL(reading, "the same %s as in line %zu", mf_bonded_kinds[order]->name,
-                       sorted[n - 1].line));
+            TRY(FAIL(reading, "the same %s as in line %zu", mf_bonded_kinds[order]->name,
+                     sorted[n - 1].line));
     }
-done:
-    mf_memory_free(sorted);
-    return status;
+    return STATUS_OK;
 }
 
 static enum status check_whole(struct reading *reading) {

@@ -113,19 +113,16 @@ static enum status find_groups(struct reading *reading) {
 // The file ----------------------------------------------------------------------------------------
 
 static enum status read_terms(struct reading *reading, const struct structure *structure) {
-    enum status status = STATUS_OK;
-    char *text = NULL;
+    OWNED char *text = NULL;
     size_t length;
-    CHECK(mf_text_file_read(reading->file, &text, &length));
-    CHECK(mf_lammps_terms_read(&reading->terms, reading->file, text, length, structure));
+    TRY(mf_text_file_read(reading->file, &text, &length));
+    TRY(mf_lammps_terms_read(&reading->terms, reading->file, text, length, structure));
     for (int order = 0; order < BONDED_KINDS; order++) {
-        NEW_ARRAY(reading->group[order], reading->terms.types[order] + 1);
+        TRY_ARRAY(reading->group[order], reading->terms.types[order] + 1);
         for (int64_t type = 0; type <= reading->terms.types[order]; type++)
             reading->group[order][type] = -1;
     }
-done:
-    mf_memory_free(text);
-    return status;
+    return STATUS_OK;
 }
 
 static void clear(struct reading *reading) {

@@ -231,25 +231,21 @@ static enum status decode_vectors(const struct trajectory *trajectory,
 }
 
 static enum status decode(const struct trajectory *trajectory, struct trajectory_frame *frame) {
-    enum status status = STATUS_OK;
     const struct h5md_file *const h5md = trajectory->state;
     struct header header;
-    size_t *place = NULL;
+    OWNED size_t *place = NULL;
     memcpy(&header, frame->raw.data, sizeof header);
     frame->step = isfinite(header.step) && fabs(header.step) < 9e15 ? (int64_t)header.step : -1;
     frame->time = header.time;
     mf_frame_set_box(frame, (const double(*)[3])header.box);
     for (int i = 0; i < 3; i++)
         frame->periodic[i] = frame->has_box && h5md->periodic[i];
-    CHECK(mf_frame_reserve(frame, trajectory->structure.atoms, header.has_velocities));
+    TRY(mf_frame_reserve(frame, trajectory->structure.atoms, header.has_velocities));
     if (header.has_ids) {
-        NEW_ARRAY(place, frame->atoms);
-        CHECK(find_atoms(trajectory, frame, place));
+        TRY_ARRAY(place, frame->atoms);
+        TRY(find_atoms(trajectory, frame, place));
     }
-    CHECK(decode_vectors(trajectory, frame, &header, place));
-done:
-    mf_memory_free(place);
-    return status;
+    return decode_vectors(trajectory, frame, &header, place);
 }
 
 static const char *const extensions[] = {"h5md", "h5", "hdf5", NULL};

@@ -102,21 +102,17 @@ static enum status describe_atoms(struct structure *structure, const struct lamm
 }
 
 static enum status describe(struct trajectory *trajectory, struct trajectory_frame *first) {
-    enum status status = STATUS_OK;
     struct lammps_data data;
-    double *mass = NULL;
-    CHECK(mf_lammps_data_read(&data, first));
-    CHECK(check(&data, first));
+    OWNED double *mass = NULL;
+    TRY(mf_lammps_data_read(&data, first));
+    TRY(check(&data, first));
     if (data.units[0])
-        CHECK(mf_trajectory_found_units(trajectory, data.units));
-    NEW_ARRAY(mass, data.types + 1);
-    CHECK(mf_structure_init(&trajectory->structure, data.atoms));
-    CHECK(read_masses(&data, first, trajectory->scale.mass, mass));
-    CHECK(describe_atoms(&trajectory->structure, &data, first, mass));
-    CHECK(mf_trajectory_sort(trajectory, first));
-done:
-    mf_memory_free(mass);
-    return status;
+        TRY(mf_trajectory_found_units(trajectory, data.units));
+    TRY_ARRAY(mass, data.types + 1);
+    TRY(mf_structure_init(&trajectory->structure, data.atoms));
+    TRY(read_masses(&data, first, trajectory->scale.mass, mass));
+    TRY(describe_atoms(&trajectory->structure, &data, first, mass));
+    return mf_trajectory_sort(trajectory, first);
 }
 
 /// Positions, with the images of their lines if these have them.

@@ -19,12 +19,11 @@ struct work {
 
 /// Sort the atoms by residue, keeping their order; without residues each is one.
 static enum status sort_residues(struct work *work) {
-    enum status status = STATUS_OK;
     const struct structure *const structure = work->structure;
     const bool known = structure->residues > 0;
     work->residues = known ? structure->residues : structure->atoms;
-    NEW_ARRAY(work->first, work->residues + 2);
-    NEW_ARRAY(work->member, structure->atoms);
+    TRY_ARRAY(work->first, work->residues + 2);
+    TRY_ARRAY(work->member, structure->atoms);
     size_t *const next = work->first + 1;
     for (size_t k = 0; k < structure->atoms; k++)
         next[(known ? structure->atom[k].residue : k) + 1]++;
@@ -32,8 +31,7 @@ static enum status sort_residues(struct work *work) {
         next[r + 1] += next[r];
     for (size_t k = 0; k < structure->atoms; k++)
         work->member[next[known ? structure->atom[k].residue : k]++] = k;
-done:
-    return status;
+    return STATUS_OK;
 }
 
 static enum status fail_atom(const struct work *work, size_t atom, const char *what) {

@@ -51,9 +51,8 @@ static int by_molecule(const void *a, const void *b) {
 }
 
 static enum status number_molecules(struct structure *structure) {
-    enum status status = STATUS_OK;
-    struct structure_atom **sorted = NULL;
-    NEW_ARRAY(sorted, structure->atoms);
+    OWNED struct structure_atom **sorted = NULL;
+    TRY_ARRAY(sorted, structure->atoms);
     for (size_t k = 0; k < structure->atoms; k++)
         sorted[k] = &structure->atom[k];
     qsort(sorted, structure->atoms, sizeof *sorted, by_molecule);
@@ -63,9 +62,7 @@ static enum status number_molecules(struct structure *structure) {
         structure->residues += !goes_on;
         sorted[k]->residue = structure->residues - 1;
     }
-done:
-    mf_memory_free(sorted);
-    return status;
+    return STATUS_OK;
 }
 
 enum status mf_structure_number_residues(struct structure *structure) {

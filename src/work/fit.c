@@ -104,29 +104,25 @@ static void list_state(struct run *run) {
 }
 
 static enum status create(struct run *run) {
-    enum status status = STATUS_OK;
     const struct fit_file *fit = &run->fit;
     size_t points[UNKNOWNS];
-    CHECK(mf_unknowns_init(&run->unknowns, &fit->problem));
+    TRY(mf_unknowns_init(&run->unknowns, &fit->problem));
     for (int kind = 0; kind < UNKNOWNS; kind++) {
         points[kind] = mf_unknowns_points(&run->unknowns, kind);
         if (points[kind] == 0)
             continue;
-        NEW_ARRAY(run->curve[kind], points[kind]);
-        NEW_ARRAY(run->curve_error[kind], points[kind]);
-        NEW_ARRAY(run->curve_flat[kind], INVERSE_FLAT * points[kind]);
+        TRY_ARRAY(run->curve[kind], points[kind]);
+        TRY_ARRAY(run->curve_error[kind], points[kind]);
+        TRY_ARRAY(run->curve_flat[kind], INVERSE_FLAT * points[kind]);
     }
     if (points[UNKNOWN_POTENTIAL] > 0)
-        NEW_ARRAY(run->without_ramp, points[UNKNOWN_POTENTIAL]);
+        TRY_ARRAY(run->without_ramp, points[UNKNOWN_POTENTIAL]);
     mf_history_init(&run->history, fit->method, points, &fit->problem);
-    CHECK((run->state = mf_memory_zeroed(1, fit->method->state_size)) ? STATUS_OK
-                                                                      : STATUS_NO_MEMORY);
+    TRY((run->state = mf_memory_zeroed(1, fit->method->state_size)) ? STATUS_OK : STATUS_NO_MEMORY);
     run->created = true;
-    CHECK(fit->method->create(run->state, fit->method, &fit->problem, fit->method_parameters));
+    TRY(fit->method->create(run->state, fit->method, &fit->problem, fit->method_parameters));
     list_state(run);
-    CHECK(mf_fit_checkpoint_begin(&run->checkpoint));
-done:
-    return status;
+    return mf_fit_checkpoint_begin(&run->checkpoint);
 }
 
 /// Read what the run needs, and begin its state. On a cluster all ranks read the same files.

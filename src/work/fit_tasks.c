@@ -152,9 +152,8 @@ static void print(FILE *out, const struct data_table *table, int ranks, int thre
 enum status mf_fit_tasks_explain(FILE *out, const char *file, const struct run_options *options,
                                  int ranks) {
     struct run_folder folder = {0};
-    struct data_table table = {0};
+    CLEARED_BY(mf_data_table_clear) struct data_table table = {0};
     char path[OUTPUT_PATH_SIZE];
-    enum status status = STATUS_OK;
     TRY(mf_run_folder_choose(&folder, RUN_FIT, file, options));
     mf_run_folder_file(&folder, "tasks.tsv", path);
     if (access(path, F_OK) != 0) {
@@ -165,10 +164,8 @@ enum status mf_fit_tasks_explain(FILE *out, const char *file, const struct run_o
         return STATUS_OK;
     }
     TRY(mf_data_table_read(&table, path, COLUMNS));
-    CHECK(check(&table, path));
+    TRY(check(&table, path));
     fprintf(out, "By %s, with %d threads a rank:\n", path, options->threads);
     print(out, &table, ranks, options->threads);
-done:
-    mf_data_table_clear(&table);
-    return status;
+    return STATUS_OK;
 }

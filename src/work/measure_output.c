@@ -94,8 +94,7 @@ static void write_density(const struct measure_result *result, struct json_write
     const struct series *const volume = &result->measured->volume;
     const double density = mf_measure_output_density(result), mean = mf_series_mean(volume);
     const double error = density * mf_series_error(volume) / mean;
-    mf_json_write_quantity(writer, "density", "1/lambda^3", density);
-    mf_json_write_quantity(writer, "density_error", "1/lambda^3", error);
+    mf_json_put_measured(writer, "density", "1/lambda^3", density, error);
     mf_json_write_quantity(writer, "volume", "lambda^3", mean);
 }
 
@@ -113,15 +112,14 @@ static double share_inside(const struct measured *measured) {
 /// Kirkwood and Buff's integral of what is of one type.
 static enum status write_kirkwood_buff(const struct measure_result *result,
                                        struct json_writer *writer) {
-    enum status status = STATUS_OK;
     const struct rdf *const rdf = &result->measured->rdf.counted;
     const struct box box = mf_measured_box(result->measured);
-    double *g = NULL, *error = NULL;
+    OWNED double *g = NULL, *error = NULL;
     if (composition_is_mixed(&rdf->composition))
         return STATUS_OK;
-    NEW_ARRAY(g, rdf->bins.count);
-    NEW_ARRAY(error, rdf->bins.count);
-    CHECK(mf_rdf_result(rdf, 1, g, error));
+    TRY_ARRAY(g, rdf->bins.count);
+    TRY_ARRAY(error, rdf->bins.count);
+    TRY(mf_rdf_result(rdf, 1, g, error));
     const double inside = mf_box_volume(&box) * share_inside(result->measured);
     const bool possible = result->measured->molecules.molecules != NULL;
     struct kirkwood_buff found = mf_kirkwood_buff_integrate(
@@ -132,22 +130,18 @@ static enum status write_kirkwood_buff(const struct measure_result *result,
     }
     mf_statistics_mark_unknown_errors(&found.integral_error, 1);
     mf_statistics_mark_unknown_errors(&found.compressibility_error, 1);
-    mf_json_write_quantity(writer, "kirkwood_buff", "lambda^3", found.integral);
-    mf_json_write_quantity(writer, "kirkwood_buff_error", "lambda^3", found.integral_error);
-    mf_json_write_number(writer, "compressibility", found.compressibility);
-    mf_json_write_number(writer, "compressibility_error", found.compressibility_error);
-done:
-    mf_memory_free(g);
-    mf_memory_free(error);
-    return status;
+    mf_json_put_measured(writer, "kirkwood_buff", "lambda^3", found.integral, found.integral_error);
+    mf_json_put_measured(writer, "compressibility", "1", found.compressibility,
+                         found.compressibility_error);
+    return STATUS_OK;
 }
 
 static void write_temperature(const struct measure_result *result, struct json_writer *writer) {
     const struct series *const series = &result->measured->motion.temperature;
     if (series->count == 0)
         return;
-    mf_json_write_number(writer, "temperature", mf_series_mean(series));
-    mf_json_write_number(writer, "temperature_error", mf_series_error(series));
+    mf_json_put_measured(writer, "temperature", "1", mf_series_mean(series),
+                         mf_series_error(series));
 }
 
 /// D by the MSD, and by the VACF if there is one.
@@ -157,8 +151,7 @@ static void write_diffusion(const struct measure_result *result, struct json_wri
         return;
     struct motion_summary s = mf_motion_result(&result->measured->motion.motion, NULL);
     mf_statistics_mark_unknown_errors(&s.msd_error, 1);
-    mf_json_write_quantity(writer, "diffusion", "lambda^2/tau", s.msd);
-    mf_json_write_quantity(writer, "diffusion_error", "lambda^2/tau", s.msd_error);
+    mf_json_put_measured(writer, "diffusion", "lambda^2/tau", s.msd, s.msd_error);
     mf_json_write_number(writer, "diffusion_cm2_per_s", s.msd * unit);
     mf_json_write_number(writer, "diffusion_error_cm2_per_s", s.msd_error * unit);
     mf_json_write_quantity(writer, "diffusion_fit_begin", "tau", s.fit_begin);
@@ -166,8 +159,7 @@ static void write_diffusion(const struct measure_result *result, struct json_wri
     if (!result->measured->motion.has_vacf)
         return;
     const double error = mf_motion_green_kubo_uncertainty(&s);
-    mf_json_write_quantity(writer, "diffusion_green_kubo", "lambda^2/tau", s.green_kubo);
-    mf_json_write_quantity(writer, "diffusion_green_kubo_error", "lambda^2/tau", error);
+    mf_json_put_measured(writer, "diffusion_green_kubo", "lambda^2/tau", s.green_kubo, error);
     mf_json_write_number(writer, "diffusion_green_kubo_cm2_per_s", s.green_kubo * unit);
     mf_json_write_number(writer, "diffusion_green_kubo_error_cm2_per_s", error * unit);
 }

@@ -2,7 +2,6 @@
 #include "work/measure_tables.h"
 
 #include "base/memory.h"
-#include "base/statistics.h"
 #include "io/data_table.h"
 #include "observe/measure.h"
 
@@ -32,33 +31,20 @@ static enum status write_curve(const struct measure_result *result, const char *
 
 /// msd.tsv and vacf.tsv: time, value, standard error.
 static enum status write_motion(const struct measure_result *result) {
-    enum status status = STATUS_OK;
     const struct measured_motion *const measured = &result->measured->motion;
-    const struct motion *const motion = &measured->motion;
-    const size_t rows = (size_t)motion->plan.lags + 1;
-    double *time = NULL, *values = NULL;
-    NEW_ARRAY(time, rows);
-    NEW_ARRAY(values, 4 * rows);
-    const struct motion_curves curves = {values, values + rows, values + 2 * rows,
-                                         values + 3 * rows};
-    mf_motion_result(motion, &curves);
-    mf_statistics_mark_unknown_errors(curves.msd_error, rows);
-    mf_statistics_mark_unknown_errors(curves.vacf_error, rows);
-    for (size_t k = 0; k < rows; k++)
-        time[k] = (double)k * measured->interval;
-    const struct data_column msd[] = {{"time[tau]", time, NULL},
-                                      {"msd[lambda^2]", curves.msd, "%.8g"},
-                                      {"msd_error[lambda^2]", curves.msd_error, "%.3g"}};
-    const struct data_column vacf[] = {{"time[tau]", time, NULL},
-                                       {"vacf[lambda^2/tau^2]", curves.vacf, "%.8g"},
-                                       {"vacf_error[lambda^2/tau^2]", curves.vacf_error, "%.3g"}};
-    CHECK(write_curve(result, "msd.tsv", msd, rows));
+    const size_t rows = (size_t)measured->motion.plan.lags + 1;
+    OWNED double *values = NULL;
+    TRY(mf_motion_table(&measured->motion, &values));
+    const struct data_column msd[] = {{"time[tau]", values, NULL},
+                                      {"msd[lambda^2]", values + rows, "%.8g"},
+                                      {"msd_error[lambda^2]", values + 2 * rows, "%.3g"}};
+    const struct data_column vacf[] = {{"time[tau]", values, NULL},
+                                       {"vacf[lambda^2/tau^2]", values + 3 * rows, "%.8g"},
+                                       {"vacf_error[lambda^2/tau^2]", values + 4 * rows, "%.3g"}};
+    TRY(write_curve(result, "msd.tsv", msd, rows));
     if (measured->has_vacf)
-        CHECK(write_curve(result, "vacf.tsv", vacf, rows));
-done:
-    mf_memory_free(time);
-    mf_memory_free(values);
-    return status;
+        TRY(write_curve(result, "vacf.tsv", vacf, rows));
+    return STATUS_OK;
 }
 
 /// g(r) between molecules, and what observables have of them.

@@ -6,8 +6,9 @@
 #include "curves/sampled.h"
 #include "dynamics/hybrid.h"
 #include "dynamics/metropolis.h"
-#include "forces/reference_forces.h"
 #include "observe/rdf.h"
+#include "forces/reference_forces.h"
+#include "shared/all_pairs.h"
 #include "shared/fluids.h"
 #include "shared/hotelling.h"
 #include "shared/is_close.h"
@@ -106,7 +107,7 @@ static void measure_monte_carlo(const struct simulation_setup *setup, const stru
             struct pair_sums sums, fast;
             assert_ok(mf_metropolis_run(&metropolis, (uint32_t)schedule->every));
             assert_ok(mf_rdf_sample(&rdf, &metropolis.particles, &metropolis.neighbours));
-            mf_reference_forces(&law, &metropolis.particles, 0, &sums);
+            all_pairs_forces(&law, &metropolis.particles, 0, &sums);
             energy += sums.energy;
             // Distances are rounded to single precision before the table is read, so that a pair
             // may be on the other side of the cutoff, where the force ends abruptly.

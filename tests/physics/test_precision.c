@@ -2,10 +2,10 @@
 //
 // What mixed precision costs in accuracy, and that it does not show in results: the same fluids in
 // mixed and in double precision.
-#include "forces/reference_forces.h"
 
 #include "base/comoments.h"
 #include "base/memory.h"
+#include "shared/all_pairs.h"
 #include "shared/fluids.h"
 #include "shared/is_close.h"
 #include "shared/length.h"
@@ -38,7 +38,7 @@ static double *first_forces(const struct simulation_setup *setup, const struct s
     fluid_continue(&simulation, setup, from);
     if (from_all_pairs) {
         // The forces at the start saw the velocities as they are.
-        mf_reference_forces(&simulation.law, &simulation.particles, 0, NULL);
+        all_pairs_forces(&simulation.law, &simulation.particles, 0, NULL);
     }
     for (int d = 0; d < 3; d++)
         for (size_t k = 0; k < count; k++)

@@ -7,7 +7,7 @@
 #include "base/memory.h"
 #include "base/rng.h"
 #include "curves/formula.h"
-#include "forces/reference_forces.h"
+#include "shared/all_pairs.h"
 #include "shared/is_close.h"
 #include "shared/kept_pairs.h"
 #include "shared/pair_scales.h"
@@ -62,7 +62,7 @@ static void check_law(const struct box *box, size_t count, const struct pair_law
     struct particles *particles = &kept.particles;
     kept_pairs_use(&kept, &mf_dpd_vv);
     kept.law.friction = &kept.friction;
-    mf_reference_forces(&kept.law, particles, step, NULL);
+    all_pairs_forces(&kept.law, particles, step, NULL);
     double *expected[3] = {NULL};
     for (int d = 0; d < box->dimensions; d++) {
         expected[d] = mf_memory_zeroed(count, sizeof *expected[d]);

@@ -5,7 +5,7 @@
 #include "forces/pair.h"
 
 #include "base/memory.h"
-#include "forces/reference_forces.h"
+#include "shared/all_pairs.h"
 #include "shared/is_close.h"
 #include "shared/pair_scales.h"
 #include "shared/pairs.h"
@@ -84,7 +84,7 @@ static void check_law(const struct pairs_system *system, const struct pair_law *
     struct pair_sums expected, sums;
     const uint64_t step = 0x100000007;
     pairs_make(&particles, &neighbours, system, &law);
-    mf_reference_forces(&law, &particles, step, &expected);
+    all_pairs_forces(&law, &particles, step, &expected);
     double *reference = copy_forces(&particles);
     struct pair_scales scales = pair_scales_find(&law, &particles);
     for (int v = 0; v < variant_count; v++) {

@@ -3,7 +3,7 @@
 // What mf_rdf_force_sample adds up is the same as a double loop over all particles in double
 // precision, with the field A of each bin written down as it stands in rdf_force.h.
 #include "observe/rdf_force.h"
-#include "forces/reference_forces.h"
+#include "shared/all_pairs.h"
 #include "shared/fluids.h"
 #include "shared/is_close.h"
 #include "shared/testing.h"
@@ -80,7 +80,7 @@ static void assert_sample(const struct rdf_bins *bins, struct simulation *simula
     assert_ok(mf_particles_init(&brute, &particles->box, particles->count));
     for (int d = 0; d < particles->box.dimensions; d++)
         memcpy(brute.position[d], particles->position[d], bytes);
-    mf_reference_forces(&(struct pair_law){.potential = setup->potential}, &brute, 0, NULL);
+    all_pairs_forces(&(struct pair_law){.potential = setup->potential}, &brute, 0, NULL);
     count_all(bins, &brute, 0.7, &answer);
     for (int d = 0; d < particles->box.dimensions; d++)
         memcpy(brute.force[d], particles->force[d], bytes);

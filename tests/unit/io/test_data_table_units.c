@@ -111,6 +111,34 @@ static void test_data_table_write_in_converts_columns_and_names(void **state) {
     mf_data_table_clear(&table);
 }
 
+static void test_data_table_write_beside_repeats_columns_of_reduced_files(void **state) {
+    const char *file = temporary_folder_file(*state, "t.tsv");
+    const double r[] = {1, 2}, u[] = {0.5, 0.25};
+    const struct data_column columns[] = {
+        {"r[lambda]", r, "%.17g"}, {"u[k_B.T_0]", u, NULL}, {"n[1]", r, NULL}};
+    const char *const beside[] = {"%.10g", "%.10g", NULL};
+    struct units units = argon;
+    struct data_table table;
+    units.system = UNITS_REDUCED;
+    assert_ok(mf_data_table_write_beside(file, &units, columns, beside, 3, 2));
+    assert_ok(mf_data_table_read(&table, file, 5));
+    assert_string_equal(table.header, "r[lambda]\tu[k_B.T_0]\tn[1]\tr[nm]\tu[kJ/mol]");
+    // 120 K · 0.0083144626 kJ/mol/K
+    const double expected[] = {1, 0.5, 1, 0.34, 0.498867756, 2, 0.25, 2, 0.68, 0.249433878};
+    for (size_t k = 0; k < 10; k++)
+        assert_close_relative(table.values[k], expected[k], 1e-8);
+    mf_data_table_clear(&table);
+    // What speaks nm and ps, or has no scale, repeats nothing.
+    assert_ok(mf_data_table_write_beside(file, &argon, columns, beside, 3, 2));
+    assert_ok(mf_data_table_read(&table, file, 3));
+    assert_string_equal(table.header, "r[nm]\tu[kJ/mol]\tn[1]");
+    mf_data_table_clear(&table);
+    assert_ok(mf_data_table_write_beside(file, &(const struct units){0}, columns, beside, 3, 2));
+    assert_ok(mf_data_table_read(&table, file, 3));
+    assert_string_equal(table.header, "r[lambda]\tu[k_B.T_0]\tn[1]");
+    mf_data_table_clear(&table);
+}
+
 #define TEST(name)                                                                                 \
     cmocka_unit_test_setup_teardown(name, temporary_folder_create, temporary_folder_remove)
 
@@ -120,6 +148,7 @@ int main(void) {
         TEST(test_data_table_convert_leaves_reduced_files_alone),
         TEST(test_data_table_convert_refuses_units_of_something_else),
         TEST(test_data_table_write_in_converts_columns_and_names),
+        TEST(test_data_table_write_beside_repeats_columns_of_reduced_files),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

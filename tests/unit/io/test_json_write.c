@@ -93,12 +93,12 @@ static void test_json_write_prints_the_tree_when_objects_are_nested(void **state
     mf_json_write_text(writer, "name", "x");
     mf_json_begin(writer, "scene");
     mf_json_begin(writer, "box");
-    mf_json_write_numbers(writer, "sides", (double[]){1, 0.1, 1e300}, 3);
+    mf_json_write_quantities(writer, "sides", "", (double[]){1, 0.1, 1e300}, 3);
     mf_json_end(writer);
     mf_json_write_integer(writer, "steps", INT64_MIN);
     mf_json_end(writer);
     mf_json_write_number(writer, "score", 0.1);
-    mf_json_write_numbers(writer, "none", NULL, 0);
+    mf_json_write_quantities(writer, "none", "", NULL, 0);
     const char *file = temporary_folder_file(*state, "out.json");
     assert_ok(mf_json_write(writer, file));
     mf_json_writer_free(writer);
@@ -149,7 +149,7 @@ static void test_json_write_writes_null_when_a_number_is_not_finite(void **state
     assert_non_null(writer);
     mf_json_write_number(writer, "a", NAN);
     mf_json_write_number(writer, "b", -INFINITY);
-    mf_json_write_numbers(writer, "c", (double[]){1, INFINITY, 0.5}, 3);
+    mf_json_write_quantities(writer, "c", "", (double[]){1, INFINITY, 0.5}, 3);
     mf_json_write_number(writer, "d", 2);
     assert_ok(mf_json_write(writer, file));
     mf_json_writer_free(writer);

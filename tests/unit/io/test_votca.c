@@ -66,7 +66,7 @@ static void test_votca_write_is_read_again_without_what_it_continued(void **stat
     const double x[] = {0.1, 0.2, 0.3}, y[] = {1e3, -0.123456789, 0};
     const char *file = put(state, "");
     struct votca_table table;
-    assert_ok(mf_votca_write(file, x, y, 3, 1));
+    assert_ok(mf_votca_write(file, x, y, (struct votca_scale){1, 1}, 3, 1));
     assert_ok(mf_votca_read(&table, file));
     assert_int_equal(table.rows, 2);
     assert_identical(table.x[0], 0.2);

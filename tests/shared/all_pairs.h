@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file The pair forces the slow way, an oracle of the pair kernels.
+#pragma once
+
+#include "forces/pair.h"
+
+/// Forces from all pairs, nearest image by division, double precision, library random numbers.
+/// Reads `velocity` (not kernel_motion) and writes `force` [k_B T_0 / λ].
+/// @param[out] sums  energy and virial, or NULL
+void all_pairs_forces(const struct pair_law *law, struct particles *particles, uint64_t step,
+                      struct pair_sums *sums);
