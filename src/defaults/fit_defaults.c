@@ -40,9 +40,17 @@ static bool lacks_friction(const struct json_object *root) {
            mf_fit_choice_lacks(root, "scene", "memory");
 }
 
+/// Whether it follows from a density how many beads there are.
+static bool lacks_count(const struct json_object *root) {
+    return !mf_fit_choice_lacks(root, "scene", "density") &&
+           mf_fit_choice_lacks(root, "scene.particles", "count") &&
+           mf_fit_choice_lacks(root, "scene.particles", "types") &&
+           mf_fit_choice_lacks(root, "scene", "molecules");
+}
+
 bool mf_fit_defaults_wanted(const struct json_object *root) {
     return root->item &&
-           (lacks_method(root) || lacks_friction(root) ||
+           (lacks_method(root) || lacks_count(root) || lacks_friction(root) ||
             mf_fit_choice_lacks(root, "scene", "time_step") || lacks_verification(root));
 }
 
@@ -154,10 +162,7 @@ static enum status choose_cutoff(struct fit_choice *c) {
 /// A box that is somewhat wider than twice what is looked at, with a thousand beads at least.
 static enum status choose_count(struct fit_choice *c) {
     static const double min = 1000, margin = 2.2;
-    if (mf_fit_choice_lacks(c->root, "scene", "density") ||
-        !mf_fit_choice_lacks(c->root, "scene.particles", "count") ||
-        !mf_fit_choice_lacks(c->root, "scene.particles", "types") ||
-        !mf_fit_choice_lacks(c->root, "scene", "molecules"))
+    if (!lacks_count(c->root))
         return STATUS_OK;
     const double range = fmax(c->range, target_files_etd(&c->read->files)->grid.r_maximum);
     const double needed = c->density * pow(margin * range, c->dimensions);
@@ -358,6 +363,7 @@ static enum status choose_simulation(struct fit_choice *c) {
         c->finds[kind] = c->read->unknown[kind].wanted;
     if (joined)
         TRY(choose_cutoff(c));
+    TRY(choose_count(c));
     TRY(choose_time_step(c));
     TRY(choose_friction(c));
     return joined ? mf_fit_defaults_verification(c) : STATUS_OK;

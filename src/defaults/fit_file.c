@@ -129,8 +129,7 @@ static enum status read_scene(struct fit_file *fit, struct json_object *root, bo
     struct scene_fitted fitted;
     const int unknown = mf_fit_unknowns_left_out(root);
     mf_fit_unknowns_groups(root, &scene, &fitted);
-    fitted.count_follows =
-        !chosen && !mf_json_is_member(root, "method") && mf_json_is_member(&scene, "density");
+    fitted.count_follows = !chosen && mf_json_is_member(&scene, "density");
     TRY(mf_scene_read(&fit->scene, &scene, unknown, &fitted));
     refuse_foreign(&scene, unknown);
     mf_json_finish(&scene);

@@ -190,6 +190,21 @@ static void test_fit_defaults_choose_friction_and_time_step_beside_a_method(void
     }
 }
 
+/// All else is there: twice the range is narrower than a box of a thousand beads.
+static void test_fit_defaults_choose_how_many_beads_beside_a_method(void **state) {
+    struct fit_file fit;
+    write_target(state, 0.002);
+    assert_ok(read_run(state, &fit, "run.json",
+                       TARGET
+                       "\"scene\": {\"density\": 0.3, \"time_step\": 0.01, \"dissipative\": "
+                       "{\"law\": \"power\", \"sigma\": 3}}, \"method\": {\"name\": \"ibi\"}, "
+                       "\"verification\": {\"replicas\": 2, \"equilibration\": 10, \"every\": 2, "
+                       "\"samples\": 10}}"));
+    assert_int_equal(fit.choices.count, 1);
+    assert_int_equal(fit.scene.setup.placement.count, 1000);
+    mf_fit_file_clear(&fit);
+}
+
 /// A bead without velocities relaxes in γ/2Φ'', which a step of Euler's must stay far below, and
 /// diffuses: twice the friction makes all of that twice as slow.
 static void test_fit_defaults_choose_time_steps_by_the_friction_without_velocities(void **state) {
@@ -358,6 +373,7 @@ int main(void) {
         IN_FOLDER(test_fit_defaults_choose_samples_for_the_simulations_that_the_file_says),
         IN_FOLDER(test_fit_defaults_choose_no_more_samples_than_needed_where_they_are_dear),
         IN_FOLDER(test_fit_defaults_choose_friction_and_time_step_beside_a_method),
+        IN_FOLDER(test_fit_defaults_choose_how_many_beads_beside_a_method),
         IN_FOLDER(test_fit_defaults_choose_time_steps_by_the_friction_without_velocities),
         IN_FOLDER(test_fit_defaults_choose_no_friction_where_that_across_pairs_is_found),
         IN_FOLDER(test_fit_defaults_cut_g_at_half_of_a_box_that_is_given),
