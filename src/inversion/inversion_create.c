@@ -18,11 +18,11 @@ const struct field mf_inversion_fields[] = {
              "molecules"},
     {"replicas", FIELD_INTEGER, MEMBER(replicas), .initial = 8, .minimum = 2,
      .maximum = REPLICAS_MAX, .unit = "", .help = "independent samplers"},
-    {"equilibration", FIELD_INTEGER, MEMBER(equilibration), .initial = 200, .minimum = 0,
+    {"equilibration", FIELD_INTEGER, MEMBER(equilibration), .initial = 64, .minimum = 0,
      .maximum = 8e8, .unit = "sweeps",
      .help = "least equilibration, five times as long from a random start; prolonged until the "
              "samples are stationary"},
-    {"samples", FIELD_INTEGER, MEMBER(samples), .initial = 200, .minimum = 2 * REPLICAS_BLOCKS,
+    {"samples", FIELD_INTEGER, MEMBER(samples), .initial = 64, .minimum = 2 * REPLICAS_BLOCKS,
      .maximum = 1e9, .unit = "",
      .help = "least samples of each replica; doubled until the noise is \"precision\" or a third "
              "of the error"},
