@@ -16,14 +16,14 @@ static const double noise_share = 1.0 / 3;
 static const double gradient_of_noise = 2;
 
 /// Samples of an iteration double at most so often.
-enum { MAX_DOUBLINGS = 7 };
+enum { MAX_DOUBLINGS = 9 };
 
 /// Replicas that begin from disorder are equilibrated so many times as long.
 enum { DISORDER_EQUILIBRATION = 5 };
 
 /// Sweeps of one potential, over those of its first samples, after which it is given up if it has
 /// not settled.
-enum { MAX_TIMES = 200 };
+enum { MAX_TIMES = 600 };
 
 /// The sweeps and least samples of an iteration, with so many times the least equilibration and
 /// spacing.

@@ -45,7 +45,7 @@ static double observe(double target, double precision, struct told *told) {
         .threads = 1};
     const struct inversion_parameters settings = {.replicas = REPLICAS,
                                                   .equilibration = 10,
-                                                  .samples = 16,
+                                                  .samples = 8,
                                                   .every = 8,
                                                   .iterations = 2,
                                                   .precision = precision,
