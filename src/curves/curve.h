@@ -12,15 +12,17 @@
 struct curve_family {
     const char *name;           ///< value of "law" in a scene
     const char *summary;        ///< the formula, one line
-    const struct field *fields; ///< parameters; must contain "cutoff" unless `cutoff` knows better
+    const struct field *fields; ///< parameters, as members of their struct
     size_t size;                ///< bytes of the parameter struct
     double (*value)(const void *parameters, double r);
     double (*cutoff)(const void *parameters);
-    /// Refuse what is in range each and not together, and make what `value` needs besides, as of a
-    /// formula that is text; NULL: neither.
+    /// Called once the parameters are set: refuses those that are each in range but do not go
+    /// together, and prepares what `value` needs besides, as the parsed text of a formula. NULL:
+    /// nothing to do.
     enum status (*check)(void *parameters);
-    /// Told before `check` in which units a formula is written: its r is r times `length`, its
-    /// value that of the curve times `unit`; NULL: the parameters are all there is.
+    /// Called before `check` of a family whose parameters the field table cannot convert, as a
+    /// formula given as text, whose r is `length` times that of the curve and whose value is `unit`
+    /// times that of the curve. NULL: the field table converts all.
     void (*scale)(void *parameters, double length, double unit);
     void (*clear)(void *parameters); ///< frees what the parameters own; NULL if nothing
 };
@@ -43,12 +45,12 @@ const struct curve_family *mf_curve_find(const struct curve_family *const *list,
 /// Start a curve with the family's default parameters.
 enum status mf_curve_create(struct curve *curve, const struct curve_family *family) MUST_USE;
 
-/// Say in which units what the family's fields cannot convert is written: lengths and values of it
-/// are `length` λ^-1 and `unit` times those of the curve. Tested: test_units_files.
+/// Call `scale` of the family, if it has one, with the units of the file: lengths and values in the
+/// file are `length` and `unit` times those of the curve. Tested: test_units_files.
 void mf_curve_scale(const struct curve *curve, double length, double unit);
 
-/// Whether the parameters go together: to be asked after they were set, and before any value.
-/// Fails: BAD_INPUT. Tested: test_curves.
+/// Call `check` of the family, if it has one: once the parameters are set, before any value.
+/// Fails: BAD_INPUT if they do not go together. Tested: test_curves.
 enum status mf_curve_check(const struct curve *curve) MUST_USE;
 
 /// Free the parameters; a zeroed curve is fine.

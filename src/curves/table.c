@@ -18,9 +18,10 @@ static enum status allocate(struct table *table, double cutoff, int terms, int c
     return STATUS_OK;
 }
 
-/// Rows for the kernels from the coefficients.
+/// Rows for the kernels from the coefficients: of Φ the value, then the coefficients of the force
+/// −dΦ/dr. 0 − x, since −x of a flat piece would be −0.
 static void fill_rows(struct table *table) {
-    const double h = table->inverse_spacing;
+    const double inverse = table->inverse_spacing;
     for (int k = 0; k <= TABLE_INTERVALS; k++) {
         const double *c = table->coefficient + k * table->terms;
         double *row = table->precise[k];
@@ -28,9 +29,9 @@ static void fill_rows(struct table *table) {
         if (table->terms == 2) {
             row[1] = c[1];
         } else {
-            row[1] = 0 - h * c[1];
-            row[2] = 0 - 2 * h * c[2];
-            row[3] = 0 - 3 * h * c[3];
+            row[1] = 0 - inverse * c[1];
+            row[2] = 0 - 2 * inverse * c[2];
+            row[3] = 0 - 3 * inverse * c[3];
         }
         for (int n = 0; n < 4; n++)
             table->single[k][n] = (float)row[n];
@@ -161,16 +162,16 @@ void mf_table_evaluate(const struct table *table, double r, double *value, doubl
 
 void mf_table_evaluate_pair(const struct table *table, int pair, double r, double *value,
                             double *slope, double *curvature) {
-    const double h = mf_table_inverse_spacing(table, pair);
-    const int k = (int)fmin(r * h, TABLE_INTERVALS); // the row of zeros beyond the cutoff
-    const double f = r * h - k;
+    const double inverse = mf_table_inverse_spacing(table, pair);
+    const int k = (int)fmin(r * inverse, TABLE_INTERVALS); // the row of zeros beyond the cutoff
+    const double f = r * inverse - k;                      // fraction of the interval
     const ptrdiff_t row = (ptrdiff_t)pair * table_stride(table) + k;
     const double *c = table->coefficient + (ptrdiff_t)table->terms * row;
     const double c2 = table->terms == 4 ? c[2] : 0, c3 = table->terms == 4 ? c[3] : 0;
     if (value)
         *value = c[0] + f * (c[1] + f * (c2 + f * c3));
     if (slope)
-        *slope = h * (c[1] + f * (2 * c2 + f * 3 * c3));
+        *slope = inverse * (c[1] + f * (2 * c2 + f * 3 * c3));
     if (curvature)
-        *curvature = h * h * (2 * c2 + 6 * f * c3);
+        *curvature = inverse * inverse * (2 * c2 + 6 * f * c3);
 }

@@ -254,7 +254,7 @@ static enum status fail_unstable(const struct simulation *simulation, double squ
 
 /// Before a list is built: particles flung beyond the reach of box_fraction would meet on a few
 /// spots, where the list is one of all pairs and takes minutes.
-static enum status watch_flight(const struct simulation *simulation) {
+static enum status check_flight(const struct simulation *simulation) {
     const struct particles *particles = &simulation->particles;
     const double flight = simulation->setup.time_step *
                           sqrt(mf_particles_square_velocities(particles)) /
@@ -281,7 +281,7 @@ static enum status refresh_list(struct simulation *simulation) {
         mf_particles_update_fractions(particles);
         return STATUS_OK;
     }
-    TRY(watch_flight(simulation));
+    TRY(check_flight(simulation));
     const enum status status = mf_neighbours_sort_and_build(&simulation->neighbours, particles);
     // What no velocity has told: where they begin, particles are moved by forces alone.
     TRY(status == STATUS_UNSTABLE ? mf_unstable_fail(simulation, mf_status_message()) : status);
@@ -289,23 +289,24 @@ static enum status refresh_list(struct simulation *simulation) {
     return STATUS_OK;
 }
 
-static enum status act(const struct interaction_use *use, const struct interaction_pass *pass) {
+static enum status apply(const struct interaction_use *use, const struct interaction_pass *pass) {
     return use->choice.kind->add(use->choice.parameters, use->state, pass);
 }
 
-/// A pass over all interactions, which replaces forces and sums.
-static enum status pass_over(const struct simulation *simulation,
-                             const struct interaction_pass *pass) {
+/// One pass: forces and sums are replaced by those of all interactions, the pairs (forces/pairs.c)
+/// among them.
+static enum status apply_interactions(const struct simulation *simulation,
+                                      const struct interaction_pass *pass) {
     struct interaction_pass before = *pass;
     before.before_pairs = true;
     *pass->sums = (struct pair_sums){0};
     mf_pair_clear(pass->particles);
     for (int k = 0; k < simulation->interactions; k++)
         if (simulation->interaction[k].choice.kind->before_pairs)
-            TRY(act(&simulation->interaction[k], &before));
+            TRY(apply(&simulation->interaction[k], &before));
     for (int k = 0; k < simulation->interactions; k++)
         if (!simulation->interaction[k].choice.kind->before_pairs)
-            TRY(act(&simulation->interaction[k], pass));
+            TRY(apply(&simulation->interaction[k], pass));
     return STATUS_OK;
 }
 
@@ -326,12 +327,12 @@ enum status mf_simulation_compute_forces(struct simulation *simulation, double a
     begin = count_ticks(simulation, SIMULATION_LIST, begin);
     mf_orientation_clear_torques(particles);
     const enum status status =
-        pass_over(simulation, &(struct interaction_pass){.law = &law,
-                                                         .particles = particles,
-                                                         .neighbours = neighbours,
-                                                         .step = simulation->step,
-                                                         .wants = simulation->wants,
-                                                         .sums = &simulation->sums});
+        apply_interactions(simulation, &(struct interaction_pass){.law = &law,
+                                                                  .particles = particles,
+                                                                  .neighbours = neighbours,
+                                                                  .step = simulation->step,
+                                                                  .wants = simulation->wants,
+                                                                  .sums = &simulation->sums});
     mf_transfer_collect(law.transfer, neighbours->parts, simulation->setup.time_step);
     count_ticks(simulation, SIMULATION_FORCES, begin);
     return status;
@@ -339,13 +340,14 @@ enum status mf_simulation_compute_forces(struct simulation *simulation, double a
 
 enum status mf_simulation_compute_potential(struct simulation *simulation) {
     TRY(refresh_list(simulation));
-    return pass_over(simulation, &(struct interaction_pass){.law = &simulation->law,
-                                                            .particles = &simulation->particles,
-                                                            .neighbours = &simulation->neighbours,
-                                                            .step = simulation->step,
-                                                            .conservative = true,
-                                                            .wants = PAIR_FORCES_AND_SUMS,
-                                                            .sums = &simulation->sums});
+    return apply_interactions(simulation,
+                              &(struct interaction_pass){.law = &simulation->law,
+                                                         .particles = &simulation->particles,
+                                                         .neighbours = &simulation->neighbours,
+                                                         .step = simulation->step,
+                                                         .conservative = true,
+                                                         .wants = PAIR_FORCES_AND_SUMS,
+                                                         .sums = &simulation->sums});
 }
 
 enum status mf_simulation_interaction_forces(const struct simulation *simulation,
@@ -360,13 +362,13 @@ enum status mf_simulation_interaction_forces(const struct simulation *simulation
                                           .conservative = true,
                                           .wants = PAIR_FORCES};
     for (int k = 1; k < simulation->interactions; k++)
-        TRY(act(&simulation->interaction[k], &pass));
+        TRY(apply(&simulation->interaction[k], &pass));
     return STATUS_OK;
 }
 
 /// Σ m v² tells at once of NaN, overflow and a runaway temperature; what drifts as a whole is asked
 /// for its velocities relative to the mean.
-static enum status watch(const struct simulation *simulation) {
+static enum status check_stable(const struct simulation *simulation) {
     const struct particles *particles = &simulation->particles;
     const double degrees = particles->box.dimensions * fmax(1, (double)particles->count - 1);
     const double max = largest_square(&simulation->setup);
@@ -389,7 +391,7 @@ enum status mf_simulation_run(struct simulation *simulation, uint64_t steps) {
         TRY(simulation->setup.integrator->step(simulation));
         mf_transfer_carry(simulation->transfer, &simulation->particles,
                           simulation->setup.time_step);
-        TRY(watch(simulation));
+        TRY(check_stable(simulation));
         mf_thread_count_update(&simulation->threads,
                                count_ticks(simulation, SIMULATION_MOTION, begin) - begin);
         simulation->ticks[SIMULATION_MOTION] -=

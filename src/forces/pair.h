@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file The forces between pairs of particles, and one pass over all of them.
+/// @file The forces between pairs of particles, and one pass over all of them (pair_kernels.c).
 ///
 /// With r_ij = r_i − r_j, r̂ = r_ij / r, v_ij = v_i − v_j, the force on i is
 ///   F_C = −Φ'(r) r̂,  F_D = −ω(r)² (r̂·v_ij) r̂,  F_R = sqrt(2 k_B T / Δt) ω(r) ζ_ij r̂

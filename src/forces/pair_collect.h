@@ -23,7 +23,8 @@ struct pair_batch {
     REAL dx[PAIR_ROOM], dy[PAIR_ROOM], dz[PAIR_ROOM];
 };
 
-/// What stays the same from pair to pair.
+/// What stays the same from pair to pair, in a pass over one part of the list. (Not the scene of a
+/// run file.)
 struct pair_scene {
     const struct pair_law *law;
     struct particles *particles;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The only switch between the instances of the pair loop.
+// What pair.h declares: finds the instance of the pair loop that suits a law, the only switch
+// between them, and shares the parts of the neighbour list among threads.
 #include "pair_kernels.h"
 
 #include "base/parallel.h"
@@ -11,7 +12,7 @@ double mf_pair_cutoff(const struct pair_law *law) {
 }
 
 /// Kernels for the instruction set in use.
-static pair_kernels *choose_set(bool is_double) {
+static pair_kernels *choose_instruction_set(bool is_double) {
     switch (mf_simd_used()) {
 #if SIMD_X86
     case SIMD_AVX512:
@@ -24,12 +25,13 @@ static pair_kernels *choose_set(bool is_double) {
     }
 }
 
-static pair_kernel choose(const struct pair_law *law, int dimensions) {
+/// The kernel of a law; NULL if nothing acts between pairs.
+static pair_kernel choose_kernel(const struct pair_law *law, int dimensions) {
     const int conservative = law->potential != NULL;
     const enum pair_friction friction = law->omega == NULL ? PAIR_NO_FRICTION
                                         : law->friction    ? PAIR_KEEPS_FRICTION
                                                            : PAIR_ADDS_FRICTION;
-    pair_kernels *kernels = choose_set(law->precision == PAIR_DOUBLE);
+    pair_kernels *kernels = choose_instruction_set(law->precision == PAIR_DOUBLE);
     return (
         *kernels)[dimensions - 2][conservative][friction][composition_is_mixed(&law->composition)];
 }
@@ -53,7 +55,7 @@ void mf_pair_clear(struct particles *particles) {
 void mf_pair_add(const struct pair_law *law, struct particles *particles,
                  const struct neighbours *neighbours, uint64_t step, enum pair_wants wants,
                  struct pair_sums *sums) {
-    const pair_kernel kernel = choose(law, particles->box.dimensions);
+    const pair_kernel kernel = choose_kernel(law, particles->box.dimensions);
     const int parts = kernel ? neighbours->parts : 0, threads = particles->threads;
     struct pair_sums part_sums[NEIGHBOURS_MAX_PARTS] = {{0}};
     // A part adds to its own particles and to those of the next one: even parts never meet.

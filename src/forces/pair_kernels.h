@@ -19,7 +19,8 @@ enum pair_friction {
 typedef void (*pair_kernel)(PAIR_KERNEL_ARGUMENTS);
 
 /// Adds the forces of the pairs of one part of the list to kernel_force, and their sums to `sums`
-/// if it is not NULL. [dimensions − 2][potential][friction][mixed]
+/// if it is not NULL. [dimensions − 2][has a potential][enum pair_friction][is a mixture]; a
+/// law without potential and friction has none.
 typedef const pair_kernel pair_kernels[2][2][PAIR_FRICTIONS][2];
 
 extern pair_kernels mf_pair_portable, mf_pair_avx2, mf_pair_avx512;

@@ -15,7 +15,7 @@
 #include "pair_kernels.h"
 #include "pair_steps.h"
 
-/// The forces of the first `count` pairs of a batch, and their sums if the scene wants them.
+/// The forces of the first `count` pairs of a batch, and their sums if they are wanted.
 INLINE void pair_evaluate(struct pair_batch *batch, int count, const struct pair_scene *scene,
                           const int dim, const bool conservative, const enum pair_friction friction,
                           const bool mixed) {
@@ -57,8 +57,8 @@ INLINE void pair_evaluate(struct pair_batch *batch, int count, const struct pair
     }
 }
 
-/// One out-of-line function an instance: inlined at each of its up to four callers, it took three
-/// times as long to compile, and ran no faster.
+/// pair_evaluate of an instance, out of line: inlined at each of its up to four callers, it took
+/// three times as long to compile, and ran no faster.
 typedef void pair_evaluator(struct pair_batch *batch, int count, const struct pair_scene *scene);
 
 /// Evaluate a full batch, and move what is beyond to the front.
@@ -90,8 +90,10 @@ INLINE void pair_evaluate_rest(struct pair_batch *batch, const struct pair_scene
     evaluate(batch, batch->count, scene);
 }
 
-/// @param[in] evaluate_near  of pairs that feel the whole law
-/// @param[in] evaluate_far   of those beyond the friction, which feel the potential alone
+/// Collects the pairs in range of one part of the list in a batch, those beyond the cutoff of ω in
+/// one of their own, and evaluates a batch whenever it is full.
+/// @param[in] evaluate_near  for pairs within the cutoff of ω, or for all if there is no friction
+/// @param[in] evaluate_far   for pairs beyond the cutoff of ω, which feel Φ alone
 INLINE void pair_loop(const struct pair_law *law, struct particles *particles,
                       const struct neighbours *neighbours, int part_number, uint64_t step,
                       struct pair_sums *sums, pair_evaluator *evaluate_near,
@@ -152,23 +154,25 @@ INLINE void pair_loop(const struct pair_law *law, struct particles *particles,
 #define PAIR_BOTH(name)                                                                            \
     { name, name##_mixed }
 
-/// All instances of a number of dimensions.
+/// All instances of a number of dimensions: friction added to the forces or kept, each without and
+/// (_c) with a potential. Without friction pairs have a potential.
 #define PAIR_INSTANCES_OF(set, dim)                                                                \
     PAIR_INSTANCE(set, set, dim, true, PAIR_NO_FRICTION)                                           \
     PAIR_INSTANCE(set##_added, set, dim, false, PAIR_ADDS_FRICTION)                                \
     PAIR_INSTANCE(set##_added_c, set, dim, true, PAIR_ADDS_FRICTION)                               \
     PAIR_INSTANCE(set##_kept, set, dim, false, PAIR_KEEPS_FRICTION)                                \
     PAIR_INSTANCE(set##_kept_c, set, dim, true, PAIR_KEEPS_FRICTION)
-#define PAIR_TABLE_OF(set)                                                                         \
+/// The same, in the order of pair_kernels: [potential][friction][mixed].
+#define PAIR_KERNELS_OF(set)                                                                       \
     {                                                                                              \
         {{NULL}, PAIR_BOTH(set##_added), PAIR_BOTH(set##_kept)}, {                                 \
             PAIR_BOTH(set), PAIR_BOTH(set##_added_c), PAIR_BOTH(set##_kept_c)                      \
         }                                                                                          \
     }
 
-/// All instances for one instruction set and precision, and the table from which pair_kernels.c
+/// All instances for one instruction set and precision, and the array from which pair_kernels.c
 /// chooses.
 #define PAIR_INSTANCES(set)                                                                        \
     PAIR_INSTANCES_OF(set##_2d, 2)                                                                 \
     PAIR_INSTANCES_OF(set##_3d, 3)                                                                 \
-    pair_kernels set = {PAIR_TABLE_OF(set##_2d), PAIR_TABLE_OF(set##_3d)};
+    pair_kernels set = {PAIR_KERNELS_OF(set##_2d), PAIR_KERNELS_OF(set##_3d)};

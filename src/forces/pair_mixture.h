@@ -44,7 +44,7 @@ LANES_INLINE lanes_int pair_type(const struct pair_mixture *mixture, lanes_int i
     return type;
 }
 
-/// Types of pairs of particles, numbered as by mf_composition_pair.
+/// Pair types of pairs of particles, numbered as by mf_composition_pair.
 LANES_INLINE lanes_int pair_kind(const struct pair_mixture *mixture, lanes_int id_i,
                                  lanes_int id_j) {
     const int32_t twice = 2 * mixture->types - 1;

@@ -4,7 +4,8 @@
 
 #include "pair_collect.h"
 
-/// Where distances lie in a table.
+/// Where the distances of a batch lie in a table: its row, and the fraction of the interval behind
+/// it.
 struct pair_places {
     int32_t interval[PAIR_BATCH];
     REAL fraction[PAIR_BATCH];
@@ -14,7 +15,7 @@ struct pair_places {
 struct pair_columns {
     REAL r[PAIR_BATCH], inverse_r[PAIR_BATCH];
     struct pair_places potential, omega;
-    int32_t kind[PAIR_BATCH]; ///< of a mixture: mf_composition_pair
+    int32_t kind[PAIR_BATCH]; ///< pair type in a mixture: mf_composition_pair
     REAL force_over_r[PAIR_BATCH];
     REAL r_dot_v[PAIR_BATCH];
     int32_t low_id[PAIR_BATCH], high_id[PAIR_BATCH], noise[PAIR_BATCH];
@@ -22,7 +23,7 @@ struct pair_columns {
     REAL force[PAIR_BATCH][4];
 };
 
-/// Types of the pairs.
+/// Pair types.
 INLINE void pair_kinds(int32_t *kind, const struct pair_batch *batch, int count,
                        const struct pair_mixture *mixture) {
     for (int k = 0; k < count; k += LANES)
@@ -30,13 +31,13 @@ INLINE void pair_kinds(int32_t *kind, const struct pair_batch *batch, int count,
                                             lanes_load_int(batch->id_j + k)));
 }
 
-/// Where distances lie in a table: rows, and how far behind them.
+/// The same of one vector of pairs.
 struct pair_rows {
     lanes_int interval;
     lanes_real fraction;
 };
 
-/// Of a table whose curves for these pairs begin at `first`.
+/// Rows of a table for the distances r, where the curves of these pairs begin at row `first`.
 INLINE struct pair_rows pair_rows_of(lanes_real inverse_spacing, lanes_int first, lanes_real r) {
     // Beyond the cutoff is the last row, of zeros.
     const lanes_real place = lanes_min(r * inverse_spacing, lanes_all(TABLE_INTERVALS));
@@ -96,7 +97,7 @@ INLINE void pair_distances(struct pair_columns *columns, const struct pair_batch
     }
 }
 
-/// F_C / r = −Φ'(r) / r, and the sums.
+/// F_C / r = −Φ'(r) / r, and the sums, of the rows of the potential's table (curves/table.h).
 INLINE void pair_conservative(struct pair_columns *columns, int count,
                               const struct pair_scene *scene, const bool wants_sums,
                               const bool mixed) {
@@ -205,10 +206,11 @@ INLINE void pair_scatter(const struct pair_columns *columns, struct pair_batch *
 }
 
 /// The same where particles have few pairs each: the branch at the end of each, which no processor
-/// foresees, costs more than its pairs. So sums from the first pair of all are kept at the ends,
-/// and their differences belong to the particles. Measured on Zen 5: 6 % more steps/s with 6 pairs
-/// a particle, 8 % less with 28, 19 % less with 68. Not for forces in double precision, of which
-/// the differences would lose the last digits: sums of floats have room for that.
+/// foresees, costs more than its pairs. So a running sum over all pairs is noted where the pairs of
+/// each particle end, and the force of a particle is the difference of two of these. Measured on
+/// Zen 5: 6 % more steps/s with 6 pairs a particle, 8 % less with 28, 19 % less with 68. Not for
+/// forces in double precision, of which the differences would lose the last digits: sums of floats
+/// have room for that.
 INLINE void pair_scatter_few(const struct pair_columns *columns, struct pair_batch *batch,
                              int count, lanes_double4 *force) {
     lanes_double4 sum = {0}, sums[PAIR_BATCH];

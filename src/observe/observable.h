@@ -3,8 +3,8 @@
 ///
 /// Scene files, restarts, tables, summaries, `--explain`, `mesofit describe` and figures know an
 /// observable by its record alone. What a record does not need is left out (NULL): the least is a
-/// name, a summary, fields, `begin`, `clear`, `sample`, `spans` and `stage`; structure_factor.c is
-/// an example of one file. Tested: test_observable, test_structure_factor.
+/// name, a summary, fields, `begin`, `clear`, `sample`, `spans` and `stage`; clusters.c is an
+/// example of one file. Tested: test_observable, test_structure_factor.
 #pragma once
 
 #include "base/fields.h"
@@ -95,7 +95,8 @@ struct observable {
 
     /// What goes with a checkpoint, at most OBSERVABLE_MAX_SPANS; returns their number.
     size_t (*spans)(void *state, struct memory_span *spans);
-    /// If lengths of the spans depend on the state: the first span, alone, is restored before.
+    /// If lengths of the spans depend on the state, as those of a sample_series: makes room, after
+    /// the first span alone was restored and before the others are.
     enum status (*reserve)(void *state);
 
     /// Write its tables. Fails: IO, NO_MEMORY.

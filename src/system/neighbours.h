@@ -100,7 +100,7 @@ enum status mf_neighbours_rebuild(struct neighbours *neighbours,
 bool mf_neighbours_are_stale(const struct neighbours *neighbours,
                              const struct particles *particles);
 
-/// Pairs in range, for a mixture, whose types follow from the ids.
+/// Pairs in range with the ids of their particles, from which the types in a mixture follow.
 struct neighbours_batch {
     size_t count;
     float squared[NEIGHBOURS_BATCH]; ///< distances [λ²]

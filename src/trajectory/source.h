@@ -2,8 +2,9 @@
 /// @file The bytes of a trajectory, taken one after the other.
 ///
 /// Nothing is trusted that a file says of itself: memory grows with what has really been read, so
-/// that a header which promises 2^60 atoms costs nothing. Pipes will do. Threads: one source
-/// belongs to one thread. Tested: test_trajectory_damage.
+/// that a header which promises 2^60 atoms costs nothing. Never backwards, so that pipes will do: a
+/// format with an index opens the file itself (format_h5md.c). Threads: one source belongs to one
+/// thread. Tested: test_trajectory_damage.
 #pragma once
 
 #include "base/status.h"

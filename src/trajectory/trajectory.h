@@ -31,7 +31,7 @@ struct trajectory_format {
     /// Give back what its state holds besides its own memory; NULL: nothing.
     void (*close)(struct trajectory *trajectory);
     /// Take the bytes of the next frame into frame->raw; `*more` is true, and becomes false if
-    /// there is no further frame.
+    /// there is no further frame. Not called once the source has no byte left.
     enum status (*fetch)(struct trajectory *trajectory, struct trajectory_frame *frame, bool *more);
     /// The time of a frame that was fetched [ps], without decoding it; NULL: it costs as much.
     double (*peek)(const struct trajectory_frame *frame);
