@@ -416,13 +416,14 @@ static enum status run(const struct command_line *line) {
     const char *nearest = find_of_command(topics, count, line->files[0]);
     if (nearest == NULL)
         nearest = mf_nearest_name(line->files[0], names, count);
-    return nearest ? mf_status_fail(STATUS_BAD_INPUT,
-                                    "describe: \"%s\" is not known; did you mean \"%s\"?",
-                                    line->files[0], nearest)
-                   : mf_status_fail(STATUS_BAD_INPUT,
-                                    "describe: \"%s\" is not known; `mesofit describe` without a "
-                                    "name lists what is",
-                                    line->files[0]);
+    return nearest
+               ? mf_status_fail(STATUS_BAD_INPUT,
+                                "describe: \"%s\" is not known; did you mean \"%s\"?",
+                                line->files[0], nearest)
+               : mf_status_fail(
+                     STATUS_BAD_INPUT,
+                     "describe: \"%s\" is not known; `mesofit describe` without a name lists all",
+                     line->files[0]);
 }
 
 const struct command cmd_describe = {

@@ -79,7 +79,7 @@ void mf_nearest_hint(const char *given, const char *const *known, size_t count, 
         snprintf(text, size, "did you mean \"%s\"?", nearest);
         return;
     }
-    size_t used = (size_t)snprintf(text, size, count ? "known: " : "none is known here");
+    size_t used = (size_t)snprintf(text, size, count ? "known: " : "no name is known here");
     for (size_t k = 0; k < count && used < size; k++)
         used += (size_t)snprintf(text + used, size - used, "%s%s", k ? ", " : "", known[k]);
 }

@@ -160,8 +160,9 @@ enum status mf_task_log_begin(struct parallel_call *call) {
     call->number = used->calls++;
     NEW_ARRAY(call->done, call->tasks->count);
     if (!mf_task_log_replay(call))
-        CHECK(mf_status_fail(STATUS_BAD_INPUT, "the checkpoint has tasks of another fit; begin "
-                                               "anew with --force instead of --resume"));
+        CHECK(mf_status_fail(
+            STATUS_BAD_INPUT,
+            "the checkpoint belongs to another fit; start again with --force instead of --resume"));
     for (size_t task = 0; task < call->tasks->count; task++)
         call->left -= call->done[task];
     call->begin = used->size;

@@ -317,12 +317,12 @@ static enum status carry_out(struct run *run, const char *file) {
     TRY(mf_bench_scene_read(&run->scene, file, run->options->output, run->common));
     if (composition_is_mixed(&run->scene.scene.setup.composition))
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "%s: particles.types: bench accuracy wants one component", file);
+                              "%s: particles.types: bench accuracy needs a single component", file);
     if (!simulation_has_velocities(&run->scene.scene.setup))
-        return mf_status_fail(STATUS_BAD_INPUT,
-                              "%s: dynamics.integrator: bench accuracy wants velocities, which "
-                              "\"%s\" has not",
-                              file, run->scene.scene.setup.integrator->name);
+        return mf_status_fail(
+            STATUS_BAD_INPUT,
+            "%s: dynamics.integrator: bench accuracy needs velocities, which \"%s\" does not have",
+            file, run->scene.scene.setup.integrator->name);
     TRY(choose(run));
     if (run->options->output) { // two minutes are not to be lost
         if (!run->common->force)

@@ -57,7 +57,7 @@ const char *mf_bench_lammps_unsupported(const struct scene *scene) {
     if (scene->setup.integrator != &mf_velocity_verlet)
         return "its integrator is not velocity-verlet";
     if (scene->setup.interactions > 0)
-        return "it has interactions beside the pairs";
+        return "it has interactions other than pair potentials";
     if (scene->setup.attribute[ATTRIBUTES_MASS].ranges > 0)
         return "its particles have masses of their own";
     if (family != &mf_sampled_family && family != &mf_formula_lennard_jones)

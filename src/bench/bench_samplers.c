@@ -125,9 +125,10 @@ enum status mf_bench_samplers(const char *file, const struct run_options *common
     enum status status = mf_bench_scene_read(&scene, file, NULL, common);
     for (int k = 0; k < scene.scene.setup.interactions && status == STATUS_OK; k++)
         if (scene.scene.setup.interaction[k].kind != &mf_molecules)
-            status = mf_status_fail(STATUS_BAD_INPUT,
-                                    "%s: samplers know pairs and molecules alone, not \"%s\"", file,
-                                    scene.scene.setup.interaction[k].kind->name);
+            status = mf_status_fail(
+                STATUS_BAD_INPUT,
+                "%s: samplers support only pair potentials and molecules, not \"%s\"", file,
+                scene.scene.setup.interaction[k].kind->name);
     if (status == STATUS_OK)
         status = time_all(&scene.scene.setup, common->has_threads ? common->threads : 1);
     mf_scene_clear(&scene.scene);

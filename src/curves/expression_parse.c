@@ -70,7 +70,7 @@ static enum status read_name(struct reader *reader) {
         return push(reader, EXPRESSION_DISTANCE, 0);
     }
     if (length != 3 || strncmp(reader->at, "exp", 3) != 0)
-        return fault(reader, "this name is not known: there are r and exp(...)");
+        return fault(reader, "unknown name: only r and exp(...) are allowed");
     reader->at += length;
     if (!take(reader, "("))
         return fault(reader, "expected \"(\" after exp");

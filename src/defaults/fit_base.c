@@ -23,7 +23,7 @@ void mf_fit_base_check(struct fit_unknown *unknown, struct json_object *object) 
     if (isnan(p->minimum))
         p->minimum = base == BASE_NONE ? 0 : -p->maximum;
     if (base != BASE_NONE && p->shape == INVERSE_CURVE_POWER)
-        mf_json_fault(object, "base", "the curve \"power\" stands for itself");
+        mf_json_fault(object, "base", "the curve \"power\" takes no base");
     else if (base != BASE_NONE && p->minimum >= 0)
         mf_json_fault(object, "minimum",
                       "%g: coefficients are added to the base and must be free to fall below 0; "

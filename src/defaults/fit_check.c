@@ -108,8 +108,8 @@ static enum status check_intermolecular(const struct fit_file *fit, const char *
     return mf_status_fail(
         STATUS_BAD_INPUT,
         "%s: target.intermolecular_rdf.fitted: \"%s\" does not fit it; where molecules exclude all "
-        "their own pairs it is the same count as rdf: name the file under \"rdf\"; "
-        "\"gauss-newton\" and the optimisers fit it, and \"no\" compares it with the result",
+        "intramolecular pairs it is the same as rdf: give the file as \"rdf\"; \"gauss-newton\" "
+        "and the optimisers fit it, and \"no\" compares it with the result",
         file, fit->method->name);
 }
 
@@ -286,10 +286,11 @@ enum status mf_fit_check(const struct fit_file *fit, const char *file) {
     if (files->given[TARGET_ETD])
         TRY(check_range(fit, file, "etd", target_files_etd(files)->grid.r_maximum));
     if (mf_targets_count(&fit->problem.targets) == 0)
-        return mf_status_fail(STATUS_BAD_INPUT, "%s: target: nothing to fit%s", file,
-                              fit->constraints.count > 0
-                                  ? ": what has a target is a constraint, whose law is known"
-                                  : "");
+        return mf_status_fail(
+            STATUS_BAD_INPUT, "%s: target: nothing to fit%s", file,
+            fit->constraints.count > 0
+                ? ": its target is that of a constraint, whose potential is not fitted"
+                : "");
     TRY(check_bins(fit, file));
     TRY(check_single_beads(fit, file));
     TRY(check_interactions(fit, file));

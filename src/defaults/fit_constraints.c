@@ -75,13 +75,13 @@ void mf_fit_constraints_print(const struct fit_constraints *constraints,
         char k[FIT_CHOICE_TEXT_SIZE];
         mf_fit_choice_text(&choice, bond ? "k_B T_0/lambda^2" : "k_B T_0", own->k, k);
         if (mf_bonded_distribution_is_constrained(own->order, &own->moments))
-            mf_fit_choice_note(
-                &choice,
-                "%s \"%s\": a constraint, of a standard deviation of %.2g for a mean "
-                "of %.4g: a harmonic law of k = %s, which makes it %.2g, as narrow as "
-                "time steps can follow",
-                mf_bonded_kinds[own->order]->name, own->name, factor * own->moments.deviation,
-                factor * own->moments.mean, k, factor * own->deviation);
+            mf_fit_choice_note(&choice,
+                               "%s \"%s\": a constraint (standard deviation %.2g, mean %.4g): "
+                               "replaced by a harmonic potential with k = %s and standard "
+                               "deviation %.2g, as narrow as the time step allows",
+                               mf_bonded_kinds[own->order]->name, own->name,
+                               factor * own->moments.deviation, factor * own->moments.mean, k,
+                               factor * own->deviation);
         else
             mf_fit_choice_note(&choice,
                                "%s \"%s\": its target has only %zu bins with a p above %g of its "

@@ -377,8 +377,8 @@ static enum status choose_without_pairs(struct fit_choice *c) {
     TRY(mf_fit_choice_give_text(c->root, "method", "name", mf_automatic.name));
     if (lacks_friction(c->root)) {
         mf_fit_choice_note(c,
-                           "dynamics \"%s\" of the verification: nothing else holds the "
-                           "temperature of molecules alone",
+                           "dynamics \"%s\" of the verification: nothing else thermostats "
+                           "molecules without pair friction",
                            mf_monte_carlo.name);
         TRY(mf_fit_choice_give_text(c->root, "scene.dynamics", "integrator", mf_monte_carlo.name));
     }

@@ -36,7 +36,7 @@ static void check_estimator(const struct fit_file *fit, struct json_object *meth
                       "\"force\" is not for mixtures; \"histogram\" counts their partial g(r)");
     if (fit->scene.setup.interactions > 0)
         mf_json_fault(method, "estimator",
-                      "\"force\" knows the forces of pairs alone, not \"interactions\"");
+                      "\"force\" supports only pair forces, not \"interactions\"");
 }
 
 static bool knows(const struct inverse_method *method, const char *key) {
@@ -59,7 +59,7 @@ static void refuse_removed(const struct inverse_method *method, struct json_obje
         {"strength", "0", "it is chosen from the noise; leave it out"},
         {"islands", "1", "the population is not divided any more; leave it out"},
         {"migration", "5", "the population is not divided any more; leave it out"},
-        {"common_noise", "no", "each candidate has random numbers of its own; leave it out"},
+        {"common_noise", "no", "each candidate gets its own random numbers; leave it out"},
         {"restarts", "0", "leave it out, and begin again with another \"seed\""},
         {"remeasurements", "2", usual},
         {"mutated_genes", "0.1", usual},

@@ -30,8 +30,8 @@ static const char *warning(const struct simulation_setup *setup) {
     const bool held = parameters->walls == COLLISION_PLATES || parameters->obstacle_radius > 0;
     const bool flows = parameters->wave_acceleration != 0 || (pushed && held);
     if (parameters->particles_per_cell < 3)
-        return "dynamics.particles_per_cell: below 3 many cells have no collisions, and theory "
-               "does not hold";
+        return "dynamics.particles_per_cell: below 3 many cells have no collisions, and the theory "
+               "is not valid";
     if (!parameters->hydrodynamics && (flows || has_drift(parameters)))
         return "dynamics.hydrodynamics: without it the flow of the solvent does not act on beads";
     if (parameters->walls == COLLISION_PLATES && setup->potential)

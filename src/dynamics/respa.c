@@ -12,7 +12,7 @@ enum status mf_respa_init(struct respa *respa, const struct simulation *simulati
     if (simulation->setup.interactions == 0)
         return mf_status_fail(STATUS_BAD_INPUT,
                               "dynamics.inner_steps: only bonds, angles, dihedrals and "
-                              "interactions take them, and there are none; leave it out");
+                              "interactions use them, and the scene has none; leave it out");
     for (int d = 0; d < simulation->setup.box.dimensions; d++)
         TRY_ARRAY(respa->fast[d], simulation->particles.count);
     return STATUS_OK;

@@ -49,8 +49,8 @@ static enum status check_capacity(const struct solvent *solvent) {
     const bool plates = parameters->walls == COLLISION_PLATES;
     if (plates && flight > 2 * box->length[1])
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "dynamics.interval: between two collisions, %g apart in time, a "
-                              "particle flies up to %.3g, and crosses the channel of %g twice",
+                              "dynamics.interval: between two collisions, a time of %g, a particle "
+                              "moves up to %.3g and crosses the channel of width %g twice",
                               solvent->time, flight, box->length[1]);
     for (int d = 0; d < box->dimensions && radius > 0; d++) {
         const double centre = parameters->obstacle_centre[d];

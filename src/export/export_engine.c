@@ -64,8 +64,8 @@ static enum status check_pair_names(const struct export_job *job) {
         for (int other = 0; other < pair; other++)
             if (strcmp(called[other], called[pair]) == 0)
                 return mf_status_fail(STATUS_BAD_INPUT,
-                                      "%s: cannot be exported: %s would know the pairs %s and %s "
-                                      "by one name, \"%s\"; call a type differently",
+                                      "%s: cannot be exported: in %s the pairs %s and %s would "
+                                      "have the same name, \"%s\"; rename a type",
                                       model->folder, job->engine->title, name[other], name[pair],
                                       called[pair]);
     }
@@ -80,16 +80,18 @@ static enum status open_folder(struct tracked_files *own, const struct export_jo
     struct stat found;
     snprintf(path, sizeof path, "%.4000s/used.json", job->folder);
     if (stat(path, &found) == 0)
-        return mf_status_fail(STATUS_BAD_INPUT, "%s: holds a result; give another folder with -o",
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: the folder holds a result; give another folder with -o",
                               job->folder);
     TRY(mf_tracked_files_make(own, job->folder, TRACKED_FILES_OF_EXPORT));
     own->force = force;
     if (!own->list.there && !force && mf_tracked_files_has_others(own))
-        return mf_status_fail(STATUS_BAD_INPUT,
-                              "%s: holds files, and no list of an export (" TRACKED_FILES_OF_EXPORT
-                              "): give another folder with -o; --force replaces those of the "
-                              "same names",
-                              job->folder);
+        return mf_status_fail(
+            STATUS_BAD_INPUT,
+            "%s: the folder holds files that are not of an export (" TRACKED_FILES_OF_EXPORT
+            "): give another folder with -o; --force replaces those of the "
+            "same names",
+            job->folder);
     TRY(mf_tracked_files_lock(own));
     return mf_tracked_files_check(own, NULL);
 }

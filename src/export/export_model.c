@@ -45,7 +45,7 @@ static enum status check_folder(const struct export_model *model) {
     file_of(model, "target.json", path);
     if (exists(path))
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "%s: holds a target that was measured, no result: fit it first "
+                              "%s: the folder holds a measured target, not a result: fit it first "
                               "(mesofit fit --target %s -o fit) and export the fit",
                               model->folder, model->folder);
     for (int k = 0; k < 2; k++) {

@@ -7,8 +7,8 @@ static enum status begin(const void *parameters, void *state, const struct parti
     (void)parameters, (void)state;
     return particles->box.dimensions == 3
                ? STATUS_OK
-               : mf_status_fail(STATUS_BAD_INPUT, "interactions.shear-wave: the wave goes along z, "
-                                                  "and the box has no such edge");
+               : mf_status_fail(STATUS_BAD_INPUT, "interactions.shear-wave: the wave is along z, "
+                                                  "and the box is two-dimensional");
 }
 
 static enum status add(const void *parameters, void *state, const struct interaction_pass *pass) {

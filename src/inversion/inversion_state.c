@@ -52,9 +52,8 @@ static enum status refuse_holes(const struct inversion_state *state) {
         mf_composition_pair_name(&problem->scene.composition, (int)(bin / grid->bins), kind);
         return mf_status_fail(
             STATUS_BAD_INPUT,
-            "%s%sthe target is empty at r = %g, where the bin before it has g = %.3g: no "
-            "potential of pairs makes such a hole; mend the target there, or end "
-            "it before by \"cutoff\"",
+            "%s%sthe target is empty at r = %g, where the bin before it has g = %.3g: no pair "
+            "potential gives such a gap; correct the target there, or end it before by \"cutoff\"",
             kind, kind[0] ? ": " : "", r, problem->targets.target[TARGET_RDF].value[bin]);
     }
     return STATUS_OK;
@@ -100,8 +99,8 @@ enum status mf_inversion_state_init(struct inversion_state *state,
     mf_inversion_count_targets(state);
     if (state->grid.pairs == 0 && targets_ask(&problem->targets, TARGET_PRESSURE))
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "target.pressure: no potential of pairs is to be found that could "
-                              "meet it; with \"fitted\": \"no\" it is compared with");
+                              "target.pressure: no pair potential is fitted that could meet it; "
+                              "with \"fitted\": \"no\" it is only compared");
     if (coefficients)
         return mf_inversion_basis_init(&state->basis, &state->grid, coefficients);
     return state->grid.blocks > 1 ? mf_inversion_low_rank_init(state) : STATUS_OK;

@@ -27,10 +27,10 @@ void mf_inversion_states_end(struct inversion *inversion, struct inverse_step *s
         return;
     if (!step->finished && still->iterations >= patience) {
         step->finished = true;
-        report_worst(inversion, &worst,
-                     "no step makes all states better together; they seem to have no potential in "
-                     "common: ",
-                     step->reason);
+        report_worst(
+            inversion, &worst,
+            "no step improves all states together; they seem to have no common potential: ",
+            step->reason);
     } else if (step->finished) {
         report_worst(inversion, &worst, "", step->reason);
     }

@@ -63,8 +63,8 @@ static enum status create(void *inversion, const struct inverse_method *method,
                           const struct inverse_problem *problem, const void *parameters) {
     if (targets_ask(&problem->targets, TARGET_PRESSURE))
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "target.pressure: \"relative-entropy\" goes by structure alone; with "
-                              "\"fitted\": \"no\" it is compared with");
+                              "target.pressure: \"relative-entropy\" fits the structure alone; "
+                              "with \"fitted\": \"no\" it is only compared");
     return mf_inversion_create(inversion, method, problem, parameters);
 }
 

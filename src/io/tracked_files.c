@@ -47,7 +47,7 @@ static enum status check_link(const char *folder) {
     if (lstat(path, &about) != 0 || !S_ISLNK(about.st_mode))
         return STATUS_OK;
     return mf_status_fail(STATUS_BAD_INPUT,
-                          "%s is a link: give -o the folder that it leads to, or another", path);
+                          "%s is a link: give -o the folder that it points to, or another", path);
 }
 
 enum status mf_tracked_files_open(struct tracked_files *own, const char *folder, const char *list) {

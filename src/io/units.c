@@ -50,8 +50,8 @@ static bool can_be_held(const struct units *units) {
 
 static void fault_unrepresentable(struct json_object *object) {
     mf_json_fault(object, "units",
-                  "no numbers can hold the units of time, energy, pressure and diffusion that "
-                  "these make");
+                  "the resulting units of time, energy, pressure or diffusion are out of the range "
+                  "of floating-point numbers");
 }
 
 // The scale that follows from a scene -------------------------------------------------------------
@@ -92,10 +92,11 @@ static void complete(struct system *system, struct json_object *scene) {
         mf_json_numbers(scene, "temperature", &system->temperature, 1) == 1 && scene->item;
     if (!is_number || !(system->temperature > 0)) {
         if (scene->item)
-            mf_json_fault(scene, "temperature",
-                          is_number ? "0 K makes no unit of energy; \"temperature\" of \"units\" "
-                                      "gives another"
-                                    : "missing: expected a number (K)");
+            mf_json_fault(
+                scene, "temperature",
+                is_number
+                    ? "0 K gives no unit of energy; \"temperature\" of \"units\" gives another"
+                    : "missing: expected a number (K)");
         system->temperature = 300;
     }
 }

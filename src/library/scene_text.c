@@ -93,7 +93,7 @@ enum status mf_scene_text_add_own(const struct mesofit_scene *from, struct scene
     TRY(add_law(&from->dissipative, "dissipative", mf_table_init_omega, &scene->omega,
                 &scene->setup.omega));
     if (scene->setup.omega && !scene->setup.integrator->dissipative)
-        return mf_status_fail(STATUS_BAD_INPUT, "the integrator \"%s\" knows no friction",
+        return mf_status_fail(STATUS_BAD_INPUT, "the integrator \"%s\" has no friction",
                               scene->setup.integrator->name);
     return STATUS_OK;
 }

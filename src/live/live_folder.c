@@ -84,7 +84,7 @@ enum status mf_live_folder_check_new(int root, const char *path) {
     const int folder = go_down(root, path, strlen(path));
     if (folder < 0 && errno != ENOENT)
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "\"%.200s\" leads through a file or a link; links are not followed",
+                              "\"%.200s\" passes through a file or a link; links are not followed",
                               path);
     if (folder >= 0)
         close(folder);

@@ -190,7 +190,7 @@ static const char *find_fault(const struct live_server *server, struct MHD_Conne
     *code = MHD_HTTP_METHOD_NOT_ALLOWED;
     if (!request->post && strcmp(method, MHD_HTTP_METHOD_GET) != 0 &&
         strcmp(method, MHD_HTTP_METHOD_HEAD) != 0)
-        return "This server knows GET, HEAD and POST.";
+        return "This server supports GET, HEAD and POST.";
     *code = MHD_HTTP_CONTENT_TOO_LARGE;
     if (length && strtoull(length, NULL, 10) > LIVE_SERVER_LARGEST)
         return "The request is too large.";

@@ -64,7 +64,7 @@ static enum status refuse(const struct inverse_method *method,
     else if (composition_is_mixed(&problem->scene.composition))
         why = "finds the formula of beads that are all alike";
     else if (potential && problem->scene.interactions > 0)
-        why = "finds a potential where pairs alone act: \"interactions\" must be none";
+        why = "fits only systems of pair potentials: leave out \"interactions\"";
     else if (omega->wanted && omega->start[0] == NULL)
         why = "needs the curve of which it finds a formula: unknowns.omega.start";
     return why == NULL

@@ -260,8 +260,8 @@ static void report_reason(const struct state *state, char reason[INVERSE_REASON_
     char why[128];
     if (progress->known) {
         snprintf(reason, INVERSE_REASON_SIZE,
-                 "stopped at the limit of %lld iterations: the error is %.2g (%.2g by statistics), "
-                 "and the region %.2g wide, where \"tolerance\" asks for %.2g",
+                 "stopped at the limit of %lld iterations: the error is %.2g (statistical error "
+                 "%.2g), and the trust region %.2g wide, but \"tolerance\" is %.2g",
                  (long long)state->own.iterations, progress->error, progress->noise,
                  progress->reach, state->own.tolerance * state->own.reach);
         return;
@@ -314,12 +314,11 @@ static void settle(const struct state *state, struct inverse_step *step) {
         return;
     if (!has_narrowed(state))
         snprintf(why, sizeof why, "its error has not fallen in %u iterations", progress->idle);
-    snprintf(
-        step->reason, sizeof step->reason,
-        "%s, but %s %.2g, %.2g by statistics: more \"coefficients\", a wider range of the curve or "
-        "another start may lead on%s",
-        why, what, progress->error, progress->noise,
-        step->exhausted ? ", if the target can be met at all" : "");
+    snprintf(step->reason, sizeof step->reason,
+             "%s, but %s %.2g (statistical error %.2g): try more \"coefficients\", a wider range "
+             "of the curve or another start%s",
+             why, what, progress->error, progress->noise,
+             step->exhausted ? ", if the target can be met at all" : "");
 }
 
 static void describe(struct state *state, struct inverse_step *step) {

@@ -107,7 +107,7 @@ static enum status refuse(const struct inverse_method *method,
     else if (of_omega == 0)
         why = "finds omega from a target of motion, as \"etd\", that is fitted";
     else if (problem->scene.interactions > 0)
-        why = "finds a potential where pairs alone act: \"interactions\" must be none";
+        why = "fits only systems of pair potentials: leave out \"interactions\"";
     return why == NULL
                ? STATUS_OK
                : mf_status_fail(STATUS_BAD_INPUT, "method.name: \"%s\" %s", method->name, why);

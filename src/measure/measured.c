@@ -100,7 +100,7 @@ static enum status find_bins(struct measured *measured, const struct frame_box *
     if (!(plan->range > 0))
         return mf_status_fail(STATUS_BAD_INPUT,
                               "%s: frame %zu: the box is too small for a g(r): its shortest height "
-                              "is %g nm; --range and --bins say what is wanted",
+                              "is %g nm; choose --range and --bins accordingly",
                               first->file, first->number, mf_frame_box_min_height(box));
     if (plan->bins == 0)
         plan->bins = (int64_t)fmax(1, rint(plan->range / usual_width));

@@ -163,14 +163,14 @@ static enum status check_frame(const struct measured_motion *motion,
     if (motion->frames > 0 && !(fabs(gone - motion->interval) <= tolerance))
         return mf_status_fail(STATUS_BAD_INPUT,
                               "%s: frame %zu, at %.7g ps, comes %.6g ps after the one before, not "
-                              "%.6g: motion needs equal intervals; --every takes frames so far "
-                              "apart, --static measures what needs no times",
+                              "%.6g: motion needs equal intervals; choose them by --every, or "
+                              "measure only static quantities by --static",
                               beads->file, beads->number, beads->time, gone, motion->interval);
     if (motion->has_vacf && !motion->path.differences && !beads->has_velocities)
-        return mf_status_fail(STATUS_BAD_INPUT,
-                              "%s: frame %zu has no velocities, those before have; --velocities "
-                              "none does without",
-                              beads->file, beads->number);
+        return mf_status_fail(
+            STATUS_BAD_INPUT,
+            "%s: frame %zu has no velocities, but those before have; use --velocities none",
+            beads->file, beads->number);
     return STATUS_OK;
 }
 

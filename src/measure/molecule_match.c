@@ -157,8 +157,8 @@ static enum status match_in_order(struct work *work) {
         const int64_t wanted = kind->count;
         if (wanted == 0 && topology->kinds > 1)
             return mf_status_fail(STATUS_BAD_INPUT,
-                                  "%s: molecules.%s: residues of the trajectory are no such "
-                                  "molecules; \"count\" says how many follow each other",
+                                  "%s: molecules.%s: residues of the trajectory do not match; "
+                                  "\"count\" is the number of consecutive molecules",
                                   work->file, kind->name);
         for (; wanted == 0 ? at < beads : work->count[k] < wanted; work->count[k]++) {
             for (int bead = 0; bead < kind->beads; bead++)

@@ -48,9 +48,8 @@ static enum status begin(void *state, const void *settings, const struct simulat
                               "for which pairs are known",
                               s->settings.distance, range);
     if (simulation->particles.topology && simulation->particles.topology->excludes)
-        return mf_status_fail(STATUS_BAD_INPUT,
-                              "clusters: pairs that molecules exclude would join none; "
-                              "\"exclude\": 0 leaves none out");
+        return mf_status_fail(STATUS_BAD_INPUT, "clusters: excluded pairs of molecules are not "
+                                                "counted as bonds of clusters; set \"exclude\": 0");
     TRY_ARRAY(s->root, s->count);
     TRY_ARRAY(s->size, s->count);
     TRY_ARRAY(s->members, s->count + 1);

@@ -39,10 +39,11 @@ static enum status assess_halves(const char *name, const double *block, size_t b
     }
     if (fabs(mean[0] - mean[1]) <= deviations * hypot(error[0], error[1]))
         return STATUS_OK;
-    return mf_status_fail(STATUS_UNCONVERGED,
-                          "the %s is %.6g +- %.1g in the first half of the samples and %.6g +- "
-                          "%.1g in the second: the run had not settled; equilibrate for longer",
-                          name, mean[0], error[0], mean[1], error[1]);
+    return mf_status_fail(
+        STATUS_UNCONVERGED,
+        "the %s is %.6g +- %.1g in the first half of the samples and %.6g +- %.1g in the second: "
+        "the run was not in equilibrium; equilibrate for longer",
+        name, mean[0], error[0], mean[1], error[1]);
 }
 
 static enum status assess_correlation(const char *name, const double *block, size_t blocks,
@@ -52,9 +53,8 @@ static enum status assess_correlation(const char *name, const double *block, siz
         return STATUS_OK;
     return mf_status_fail(
         STATUS_UNCONVERGED,
-        "the %zu samples of the %s, %.6g, are so correlated that they count as "
-        "%.0f: its error is not well known, and the run may not have settled; let "
-        "it run for longer",
+        "the %zu samples of the %s, %.6g, are so correlated that only %.0f are independent: its "
+        "error is not well known, and the run may not be in equilibrium; run for longer",
         samples, name, mean_of(block, blocks), fmax(1, independent));
 }
 

@@ -350,8 +350,8 @@ static enum status assess(const void *state, const struct simulation_setup *setu
         return STATUS_OK;
     return mf_status_fail(
         STATUS_UNSTABLE,
-        "the viscosity is %.2g with an error of %.2g: the flow has not settled, or "
-        "is lost in its noise; take a longer \"equilibration\" or more \"samples\"",
+        "the viscosity is %.2g with an error of %.2g: the flow is not stationary, or hidden by "
+        "noise; take a longer \"equilibration\" or more \"samples\"",
         found.viscosity, found.viscosity_error);
 }
 

@@ -23,9 +23,8 @@ static enum status begin(void *state, const void *settings, const struct simulat
     struct polarity *polarity = state;
     const int64_t steps = plan->samples * plan->every;
     if (mf_orientation_of(&simulation->particles).angle == NULL)
-        return mf_status_fail(STATUS_BAD_INPUT,
-                              "polarity: particles have no orientations; \"self-propulsion\" of "
-                              "\"interactions\" gives them some");
+        return mf_status_fail(STATUS_BAD_INPUT, "polarity: particles have no orientations; add "
+                                                "\"self-propulsion\" to \"interactions\"");
     TRY(mf_motion_init(&polarity->motion, settings, simulation, plan->equilibration, steps));
     polarity->motion.polar = true;
     polarity->order.columns = 1;

@@ -48,8 +48,9 @@ static enum status check(const struct rdf_settings *settings,
                               "rdf: \"estimator\": \"force\" is not for mixtures; "
                               "\"histogram\" counts their partial g(r)");
     if (setup->interactions > 0)
-        return mf_status_fail(STATUS_BAD_INPUT, "rdf: \"estimator\": \"force\" knows the forces of "
-                                                "pairs alone, not \"interactions\"");
+        return mf_status_fail(
+            STATUS_BAD_INPUT,
+            "rdf: \"estimator\": \"force\" supports only pair forces, not \"interactions\"");
     if (!mf_rdf_force_applies(setup->potential, setup->temperature))
         return mf_status_fail(
             STATUS_BAD_INPUT,

@@ -262,8 +262,8 @@ static enum status assess_wave(const struct viscosity *v, const struct shear_vis
     return rest >= settled * s->settling
                ? STATUS_OK
                : mf_status_fail(STATUS_UNCONVERGED,
-                                "the flow takes %.3g to settle, and the measurement began after "
-                                "%.3g; raise \"equilibration\" to three times as long",
+                                "the flow relaxes within %.3g, and the measurement began after "
+                                "%.3g; make \"equilibration\" three times as long",
                                 s->settling, rest);
 }
 

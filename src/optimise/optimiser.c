@@ -30,7 +30,7 @@ enum status mf_optimiser_check_round(const struct optimiser_space *space, size_t
     if (space->max == 0 || count <= space->max)
         return STATUS_OK;
     return mf_status_fail(STATUS_BAD_INPUT,
-                          "\"population\" makes rounds of %zu candidates, and %zu are the most",
+                          "\"population\" gives rounds of %zu candidates; the maximum is %zu",
                           count, space->max);
 }
 

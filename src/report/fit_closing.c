@@ -66,25 +66,25 @@ static double find_farthest(const struct fit_file *fit, const struct fit_result 
     return farthest;
 }
 
-/// Whether it worked.
+/// Whether the fit succeeded.
 static void print_verdict(struct progress *to, const struct fit_file *fit,
                           const struct fit_result *result) {
     static const double within = 1.7; // as inversions end
     const char *name = "";
     const double farthest = find_farthest(fit, result, &name);
     if (result->status != STATUS_OK)
-        mf_progress_print(to, "so: it has not worked as it is: the reason follows");
+        mf_progress_print(to, "result: the fit did not succeed; the reason follows");
     else if (isnan(farthest))
-        mf_progress_print(to, "so: whether it worked is not known: the verification has no errors");
+        mf_progress_print(to, "result: unknown: the verification has no errors");
     else if (farthest <= within)
-        mf_progress_print(to,
-                          "so: it worked: independent simulations meet the targets as exactly as "
-                          "these are known");
+        mf_progress_print(
+            to,
+            "result: success: independent simulations agree with the targets within their errors");
     else
         mf_progress_print(to,
-                          "so: it %s: independent simulations meet the targets within %.2g times "
-                          "what statistics alone explain (%s)",
-                          result->settled ? "worked" : "ended", farthest, name);
+                          "result: %s: independent simulations differ from the targets by up to "
+                          "%.2g times the statistical error (%s)",
+                          result->settled ? "success" : "finished", farthest, name);
 }
 
 /// "1350 +- 180": rounded to two digits of the error.
@@ -109,8 +109,8 @@ static void print_pressure(struct progress *to, const struct fit_file *fit,
         return;
     print_open(bar * found->pressure, bar * hypot(open, found->pressure_error), range);
     mf_progress_print(to,
-                      "not known: g alone does not fix the pressure: %s%s; give \"pressure\" as a "
-                      "second target to fix it",
+                      "undetermined: g(r) alone does not determine the pressure: %s%s; give "
+                      "\"pressure\" as a second target to fix it",
                       range, mf_units_suffix(units, "k_B T_0/lambda^d", unit));
 }
 
@@ -127,7 +127,7 @@ static void print_friction(struct progress *to, const struct fit_file *fit,
         const double factor = mf_units_factor(units, mf_unknowns_unit(kind));
         mf_unknowns_kind_name(unknowns, kind, name);
         if (isfinite(known.seen) && known.error > well * known.rms)
-            mf_progress_print(to, "not known: %s better than within %.2g%s rms, %.0f %% of it",
+            mf_progress_print(to, "undetermined: %s has an error of %.2g%s rms, %.0f %% of it",
                               name, factor * known.error,
                               mf_units_suffix(units, mf_unknowns_unit(kind), unit),
                               100 * known.error / known.rms);

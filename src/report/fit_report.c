@@ -106,8 +106,8 @@ static void print_changes(struct progress *to, const struct units *units,
                 const struct fit_knowledge known = mf_fit_closing_knowledge(
                     unknowns, kind, result->curve[kind], result->curve_error[kind]);
                 if (isfinite(known.seen))
-                    snprintf(well, sizeof well, " %.2g%.16s rms, known within %.2g,",
-                             factor * known.rms, unit, factor * known.error);
+                    snprintf(well, sizeof well, " %.2g%.16s rms, error %.2g,", factor * known.rms,
+                             unit, factor * known.error);
             }
             mf_progress_print(to, "%s:%s changed by %.2g%s rms", name, well, factor * change.rms,
                               unit);

@@ -59,9 +59,8 @@ void mf_fit_step_cause(const struct verification *verification, const struct uni
     if (step->result == VERIFY_STEP_NOT_THE_CAUSE)
         snprintf(
             text, FIT_STEP_TEXT_SIZE,
-            "%s, and was so with twice the time step: that is not the cause, but friction that "
-            "does not hold the temperature, a force that ends abruptly, or too short an "
-            "\"equilibration\"",
+            "%s, and was so with twice the time step: the cause is not the time step but too "
+            "little friction, a force with a jump at its cutoff, or too short an \"equilibration\"",
             off);
     else if (step->result == VERIFY_STEP_LONG && step->shortens)
         snprintf(text, FIT_STEP_TEXT_SIZE,
@@ -70,9 +69,8 @@ void mf_fit_step_cause(const struct verification *verification, const struct uni
                  off, used, part_text(step->halvings));
     else if (step->result == VERIFY_STEP_LONG)
         snprintf(text, FIT_STEP_TEXT_SIZE,
-                 "%s: the time step, %s, is too long for this potential; about %s "
-                 "would hold",
-                 off, used, time_text(units, round_down(step->would_hold), holds));
+                 "%s: the time step, %s, is too long for this potential; use about %s", off, used,
+                 time_text(units, round_down(step->would_hold), holds));
 }
 
 void mf_fit_step_text(const struct verification *verification, const struct units *units,

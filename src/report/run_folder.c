@@ -260,7 +260,7 @@ enum status mf_run_folder_check_state(struct run_folder *folder, const char *nam
     snprintf(inside, sizeof inside, STATES_FOLDER "/%.3800s/", name);
     TRY(mf_run_folder_reserve(folder, inside));
     if (exists(&state, "used.json"))
-        return mf_status_fail(STATUS_BAD_INPUT, "%s holds a run of its own: -o OTHER keeps it",
+        return mf_status_fail(STATUS_BAD_INPUT, "%s holds another run: give another folder with -o",
                               state.path);
     return access(state.path, F_OK) == 0 ? check_writable(&state) : STATUS_OK;
 }

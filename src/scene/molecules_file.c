@@ -58,7 +58,7 @@ enum status mf_molecules_file_read(struct scene_molecules *molecules, struct com
     const enum status status =
         mf_json_close(document, mf_scene_kinds_read(molecules, &root, types));
     if (status == STATUS_OK && !scene_has_molecules(molecules))
-        return mf_status_fail(STATUS_BAD_INPUT, "%s: molecules: there are none", file);
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: \"molecules\" is missing or empty", file);
     if (status != STATUS_OK)
         mf_scene_molecules_clear(molecules);
     return status;

@@ -241,7 +241,7 @@ static void check_mass_given_twice(const struct scene *scene, struct json_object
     const double unit = scene->units.mass / UNITS_ATOMIC_MASS;
     if (masses.maximum > light && fabs(masses.maximum / unit - 1) < alike)
         mf_json_fault(object, "particles.mass",
-                      "%g is in units of mu, and \"mass\" of \"units\" makes mu %.6g u: a bead "
+                      "%g is in units of mu, and \"mass\" of \"units\" sets mu to %.6g u: a bead "
                       "would have %.6g u; leave one of them out, or choose another mu",
                       masses.maximum, unit, masses.maximum * unit);
 }

@@ -110,8 +110,8 @@ static enum status check_range(const struct target_rows *rows, int order, const 
     const double low = kind->periodic ? -360 : kind->low, high = kind->periodic ? 360 : kind->high;
     if (rows->x[0] >= low - 0.01 * width && last <= high + width)
         return STATUS_OK;
-    return mf_status_fail(STATUS_BAD_INPUT, "%s: it goes from %g to %g, and %s from %g to %g", file,
-                          rows->x[0], last, kind->is_length ? "lengths are" : "angles are", low,
+    return mf_status_fail(STATUS_BAD_INPUT, "%s: the range is %g to %g; expected %s from %g to %g",
+                          file, rows->x[0], last, kind->is_length ? "lengths" : "angles", low,
                           high);
 }
 

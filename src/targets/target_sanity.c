@@ -225,12 +225,11 @@ static enum status check_compressibility(const struct view *view, const char *fi
     print_density(view, density, sizeof density);
     print_compressibility(view, value, sizeof value);
     print_demixing(view, demixing, sizeof demixing);
-    return mf_status_fail(
-        STATUS_BAD_INPUT,
-        "%s: target.%s: at the density of the scene, %s, it asks for a negative "
-        "compressibility, %s: the density (scene.box, the number of particles, the "
-        "unit of length) or the normalisation of g is wrong%s",
-        file, view->name, density, value, demixing);
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "%s: target.%s: at the density of the scene, %s, its integral gives a "
+                          "negative compressibility, %s: the density (scene.box, the number of "
+                          "particles, the unit of length) or the normalisation of g is wrong%s",
+                          file, view->name, density, value, demixing);
 }
 
 /// As of a wrong column, or of pairs that a program did not count.
@@ -308,12 +307,11 @@ static void report_origin(const struct view *view, const struct target_sanity_li
     double length;
     const char *unit = unit_of(view, &length);
     if (view->ends > mf_rdf_bins_edge(view->bins, view->bins->count) * (1 + 1e-9))
-        mf_target_sanity_warn(
-            listener,
-            "target %s: it goes on to %.4g %s and is cut at %.4g %s, where the shortest ends: "
-            "all g(r) of a mixture end together",
-            view->name, view->ends * length, unit,
-            mf_rdf_bins_edge(view->bins, view->bins->count) * length, unit);
+        mf_target_sanity_warn(listener,
+                              "target %s: it extends to %.4g %s and is cut at %.4g %s, the end of "
+                              "the shortest: all g(r) of a mixture need the same range",
+                              view->name, view->ends * length, unit,
+                              mf_rdf_bins_edge(view->bins, view->bins->count) * length, unit);
     mf_target_sanity_report_reading(target, view->name, view->scene, listener);
     if (target->joined > 1)
         mf_target_sanity_warn(listener, "target %s: %zu rows of the file make a bin of %.4g %s",
@@ -364,9 +362,8 @@ static enum status warn_of_normalisation(const struct view *view,
     print_compressibility(view, value, sizeof value);
     mf_target_sanity_warn(
         listener,
-        "mesofit: warning: target.%s: it asks for a negative compressibility, %s; a normalisation "
-        "or "
-        "density that is off by up to 3 %% would explain it",
+        "mesofit: warning: target.%s: its integral gives a negative compressibility, %s; a "
+        "normalisation or density that is off by up to 3 %% would explain it",
         view->name, value);
     return STATUS_OK;
 }
@@ -414,9 +411,8 @@ static void report_normalisation(const struct normalisation *n,
     if (n->found)
         mf_target_sanity_warn(
             listener,
-            "target.rdf: g is too %s as a whole, by a factor of %.4f(%.0f), by which it is "
-            "divided; "
-            "\"normalisation\" of the target sets another, 1 for none",
+            "target.rdf: g(r) is too %s at all distances: it is divided by %.4f(%.0f); "
+            "\"normalisation\" of the target sets another factor, 1 for none",
             n->factor > 1 ? "large" : "small", n->factor, ceil(n->error * 1e4));
 }
 

@@ -70,7 +70,7 @@ static enum status read_function(const struct gromacs_line *line, int order, con
     if (*function)
         return STATUS_OK;
     list_functions(order, known, sizeof known);
-    return mf_gromacs_fail(line, "function %.40s of %s %s is not known, but %s8 (table)", word,
+    return mf_gromacs_fail(line, "function %.40s of %s %s is not supported; use %s8 (table)", word,
                            mf_bonded_kinds[order]->article, mf_bonded_kinds[order]->name, known);
 }
 
@@ -147,8 +147,7 @@ static enum status find_values(const struct gromacs_reading *reading,
                                found, mf_bonded_kinds[function->order]->name);
     if (found == 1)
         return STATUS_OK;
-    return mf_gromacs_fail(line,
-                           "the %s has no parameters, and there are none of its types and function",
+    return mf_gromacs_fail(line, "the %s has no parameters, and no type has them for this function",
                            mf_bonded_kinds[function->order]->name);
 }
 

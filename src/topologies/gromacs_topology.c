@@ -77,7 +77,7 @@ static enum status begin_kind(struct gromacs_reading *reading, const struct grom
             TOPOLOGY_NAME_SIZE - 1);
     if (mf_names_is_reserved(name))
         return mf_gromacs_fail(
-            line, "\"%.40s\": a moleculetype needs a name of its own, " NAMES_RESERVED, name);
+            line, "\"%.40s\": a moleculetype needs a unique name, " NAMES_RESERVED, name);
     if (!mf_gromacs_is_integer(words->word[1], 0, TOPOLOGY_MAX_EXCLUDE, &exclude))
         return mf_gromacs_fail(line, "nrexcl is 0 to %d, not %.40s", TOPOLOGY_MAX_EXCLUDE,
                                words->word[1]);
@@ -275,7 +275,7 @@ static enum status finish(struct gromacs_reading *reading, int known, const char
         drop_groups(reading->molecules, order);
     return reading->molecules->topology.kinds > 0
                ? STATUS_OK
-               : mf_status_fail(STATUS_BAD_INPUT, "%s: [ molecules ] has none", file);
+               : mf_status_fail(STATUS_BAD_INPUT, "%s: [ molecules ] is empty", file);
 }
 
 enum status mf_gromacs_topology_read(struct molecules *molecules, struct composition *composition,

@@ -128,7 +128,7 @@ enum status mf_lammps_style_create(struct bonded_curve *curve, int order, const 
     char known[160];
     const struct style *found = find_style(order, style, known);
     if (found == NULL)
-        return mf_status_fail(STATUS_BAD_INPUT, "style \"%.40s\" is not known, but %s", style,
+        return mf_status_fail(STATUS_BAD_INPUT, "style \"%.40s\" is not supported; use %s", style,
                               known);
     if (count < found->min || count > found->max)
         return mf_status_fail(STATUS_BAD_INPUT, "%d numbers, and %s has %d", count, style,

@@ -167,7 +167,7 @@ static enum status find_sizes(struct h5md_element *element, uint64_t bytes) {
         all *= (double)element->size[k];
     }
     if (all > MAX_COMPRESSION * (double)bytes)
-        return fail(element, "claims more numbers in a frame than the file can hold");
+        return fail(element, "has more numbers in a frame than fit into the file");
     return STATUS_OK;
 }
 

@@ -46,8 +46,8 @@ static enum status take_atoms(struct mapping *mapping, const struct structure *s
         if (type == mapping->types)
             return mf_status_fail(
                 STATUS_BAD_INPUT,
-                "%s: no type has the name of atom %zu, \"%s\"; a map (--map) makes beads of atoms",
-                file, k + 1, atom->name);
+                "%s: no type has the name of atom %zu, \"%s\"; map atoms to beads by --map", file,
+                k + 1, atom->name);
         mapping->atom[k] = k;
         mapping->weight[k] = 1;
         mapping->bead[mapping->beads++] =

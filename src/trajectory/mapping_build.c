@@ -86,9 +86,9 @@ static void end_bead(struct work *work, const struct mapping_entry *entry) {
 
 static enum status take_range(struct work *work, const struct mapping_entry *entry) {
     if ((uint64_t)entry->last > work->structure->atoms)
-        return mf_status_fail(STATUS_BAD_INPUT, "%s: \"%s\" goes to atom %lld, there are %zu",
-                              work->plan->file, entry->key, (long long)entry->last,
-                              work->structure->atoms);
+        return mf_status_fail(
+            STATUS_BAD_INPUT, "%s: \"%s\" includes atom %lld, but there are %zu atoms",
+            work->plan->file, entry->key, (long long)entry->last, work->structure->atoms);
     for (int64_t k = entry->first - 1; k < entry->last; k++) {
         if ((k - entry->first + 1) % entry->size == 0)
             TRY(begin_bead(work, entry, (size_t)k));

@@ -40,7 +40,7 @@ static const char *find_hint(const char *file, const unsigned char *begin, size_
         return "compressed: decompress it with gunzip";
     if (size >= 4 && memcmp(begin, "\x28\xB5\x2F\xFD", 4) == 0)
         return "compressed: decompress it with unzstd";
-    return "neither its first bytes nor its extension are those of a known format";
+    return "neither its first bytes nor its extension belong to a known format";
 }
 
 static enum status find_format(struct trajectory *trajectory) {

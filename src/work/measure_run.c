@@ -99,11 +99,10 @@ static void print_interval(struct run *run, size_t count) {
     const struct trajectory_frame *const frame = run->frames.frame;
     const double interval = count > 1 ? frame[1].time - frame[0].time : every;
     if (every > 0 && fabs(interval / every - 1) > share)
-        mf_progress_print(
-            &run->progress,
-            "mesofit: warning: --every %g: frames are used that are %.6g ps apart, since "
-            "there are none between",
-            every, interval);
+        mf_progress_print(&run->progress,
+                          "mesofit: warning: --every %g: frames %.6g ps apart are used, since "
+                          "there are none between",
+                          every, interval);
 }
 
 static enum status begin_measuring(struct run *run) {
@@ -201,8 +200,8 @@ static void print_diffusion(struct run *run, const struct units *units) {
     char diffusion[NUMBER_TEXT_SIZE];
     mf_number_text(cm2 * s.msd, cm2 * s.msd_error, diffusion);
     mf_progress_print(&run->progress,
-                      "D = %s 1e-5 cm^2/s by the MSD from %.4g to %.4g ps, as it is in this box: a "
-                      "larger one has more, by 2.84 k_B T/(6 pi eta L) of a cube",
+                      "D = %s 1e-5 cm^2/s by the MSD from %.4g to %.4g ps, for this box: a larger "
+                      "one has a larger D, by 2.84 k_B T/(6 pi eta L) of a cube",
                       diffusion, s.fit_begin, s.fit_end);
     if (motion->path.differences)
         mf_progress_print(&run->progress,
@@ -298,12 +297,12 @@ static enum status print_constraints(struct run *run) {
             if (!mf_bonded_distribution_is_constrained(order, &found))
                 continue;
             const char *const unit = mf_bonded_kinds[order]->is_length ? "nm" : "degrees";
-            mf_progress_print(&run->progress,
-                              "%s \"%s\": a constraint, of a standard deviation of %.2g for a mean "
-                              "of %.4g %s: fit takes a harmonic law for it, of %.2g %s",
-                              mf_bonded_kinds[order]->name, molecules->group[order][g].name,
-                              found.deviation, found.mean, unit,
-                              mf_bonded_distribution_narrow(order, found.mean), unit);
+            mf_progress_print(
+                &run->progress,
+                "%s \"%s\": a constraint (standard deviation %.2g, mean %.4g %s): a fit replaces "
+                "it by a harmonic potential with a standard deviation of %.2g %s",
+                mf_bonded_kinds[order]->name, molecules->group[order][g].name, found.deviation,
+                found.mean, unit, mf_bonded_distribution_narrow(order, found.mean), unit);
         }
     return STATUS_OK;
 }
@@ -329,7 +328,7 @@ static void print_results(struct run *run, const struct measure_result *result) 
         mf_progress_print(&run->progress,
                           measured->in_vacuum
                               ? "there is no box: molecules alone are measured, no g(r), no motion"
-                              : "a single molecule: g(r) is that of its own beads, and no target; "
+                              : "a single molecule: its g(r) is intramolecular and no target; "
                                 "bonds, angles and dihedrals are");
     if (!measured->in_vacuum)
         print_pairs(run);
@@ -383,7 +382,7 @@ static enum status check_units(const struct run *run) {
         trajectory->format->unit_source != TRAJECTORY_OWN_UNITS)
         return STATUS_OK;
     return mf_status_fail(STATUS_BAD_INPUT,
-                          "%s: the format \"%s\" has units of its own: leave --file-units out",
+                          "%s: the format \"%s\" defines its units: leave out --file-units",
                           trajectory->file, trajectory->format->name);
 }
 

@@ -24,7 +24,7 @@ static void check_time(const struct observable *observable, const struct integra
                        struct json_object *root) {
     if (observable->of_time && integrator && integrator->samples)
         mf_json_fault(root, observable->name,
-                      "\"%s\" knows neither time nor velocities; leave it out, or take dynamics",
+                      "\"%s\" has neither time nor velocities; leave it out, or use dynamics",
                       integrator->name);
 }
 

@@ -116,11 +116,12 @@ static void test_pairs_that_an_engine_would_take_for_one_are_refused(void **stat
     write_types(*state, "\"A\": 20, \"B_C\": 20, \"A_B\": 20, \"C\": 20");
     assert_int_equal(mkdir("empty", 0777), 0);
     small_scenes_simulate(&result, "out");
-    assert_refused("out", "gromacs", NULL, "pairs A-B_C and A_B-C by one name, \"A_B_C\"");
+    assert_refused("out", "gromacs", NULL,
+                   "pairs A-B_C and A_B-C would have the same name, \"A_B_C\"");
     run_export(&result, "dl_poly", "dl_poly");
     write_types(*state, "\"LongNameAlpha1\": 40, \"LongNameAlpha2\": 40");
     small_scenes_simulate(&result, "out");
-    assert_refused("out", "dl_poly", NULL, "by one name, \"LongName LongName\"");
+    assert_refused("out", "dl_poly", NULL, "the same name, \"LongName LongName\"");
     run_export(&result, "gromacs", "gromacs");
     write_types(*state, "\"LongNameAlpha\": 40, \"Short\": 40");
     small_scenes_simulate(&result, "out");
@@ -161,7 +162,7 @@ static void test_folders_of_others_are_spared(void **state) {
     temporary_folder_write(*state, "gromacs/topol.top", "mine", 4);
     RUN_PROGRAM(&result, "export", "out", "--engine", "gromacs");
     assert_int_equal(result.code, 2);
-    assert_contains(result.err, "gromacs: holds files, and no list of an export");
+    assert_contains(result.err, "gromacs: the folder holds files that are not of an export");
     temporary_folder_write(*state, "gromacs/README", "of mine", 7);
     RUN_PROGRAM(&result, "export", "out", "--engine", "gromacs");
     assert_int_equal(result.code, 2);

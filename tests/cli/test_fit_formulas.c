@@ -151,7 +151,7 @@ static void test_formulas_of_a_scene_are_refused_with_their_place(void **state) 
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out", "--quiet");
     run_program_assert_code(&result, 2);
     assert_contains(result.err, "scene.json");
-    assert_contains(result.err, "character 11: this name is not known");
+    assert_contains(result.err, "character 11: unknown name");
     small_inputs_write(*state, "scene.json", soft_fluid, "12.5*(1 - r)^2", "1/r - 1");
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out", "--quiet");
     run_program_assert_code(&result, 2);

@@ -165,7 +165,7 @@ static void test_inversions_refuse_to_fit_the_structure_between_molecules(void *
         assert_refused(*state,
                        (const char *const[]){APART, RDF ", " APART, UNKNOWN, POTENTIAL,
                                              ", " REPULSION("40"), "", METHOD, methods[k], NULL},
-                       "it is the same count as rdf: name the file under \"rdf\"");
+                       "it is the same as rdf: give the file as \"rdf\"");
 }
 
 static void test_fit_refuses_structure_between_molecules_where_there_are_none(void **state) {

@@ -300,7 +300,7 @@ static void test_fit_refuses_numbers_that_cannot_be_found(void **state) {
         {"5}},\n\"method\": {",
          "5},\n\"interactions\": {\"uniform-force\": {\"force\": [1, 0, 0]}}},\n"
          "\"method\": {\"estimator\": \"force\", ",
-         {"run.json: method.estimator: \"force\" knows the forces of pairs alone"}},
+         {"run.json: method.estimator: \"force\" supports only pair forces"}},
     };
     write_target(*state);
     assert_int_equal(mkdir("out", 0777), 0);

@@ -69,7 +69,7 @@ static void test_fit_finds_a_known_sigma_within_its_error(void **state) {
     run_program_assert_code(&result, 0);
     assert_null(strstr(result.err, "(at its"));
     assert_contains(result.err, "error of the fit: ");
-    assert_contains(result.err, " rms, known within ");
+    assert_contains(result.err, " rms, error ");
     assert_contains(result.err, ", changed by ");
     assert_contains(result.err, "omega: sigma = ");
     assert_says_thermodynamics_with_errors();

@@ -174,7 +174,7 @@ static void test_states_that_contradict_each_other_do_not_converge(void **state)
     small_inputs_write(*state, "run.json", run, "dilute/rdf.tsv", "other/rdf.tsv");
     RUN_PROGRAM(&result, "fit", "run.json", "-o", "out", "--force");
     run_program_assert_code(&result, 1);
-    assert_non_null(strstr(result.err, "no step makes all states better together"));
+    assert_non_null(strstr(result.err, "no step improves all states together"));
     results_assert_text("out/summary.json", "status", "unconverged");
 }
 
@@ -226,7 +226,7 @@ static void test_folders_of_states_are_the_fits_own(void **state) {
     run_program_assert_code(&result, 0);
     RUN_PROGRAM(&result, "fit", "run.json", "-o", "taken");
     run_program_assert_code(&result, 2);
-    assert_non_null(strstr(result.err, "taken/states/dense holds a run of its own"));
+    assert_non_null(strstr(result.err, "taken/states/dense holds another run"));
     RUN_PROGRAM(&result, "simulate", "dilute.json", "-o", "taken");
     RUN_PROGRAM(&result, "simulate", "dilute.json", "-o", "taken");
     run_program_assert_code(&result, 0);

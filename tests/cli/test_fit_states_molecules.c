@@ -175,7 +175,7 @@ static void test_chains_that_contradict_each_other_do_not_converge(void **state)
     RUN_PROGRAM(&result, "fit", "run.json", "-o", "out", "--force");
     run_program_assert_code(&result, 1);
     print_message("%s", result.err);
-    assert_contains(result.err, "no step makes all states better together");
+    assert_contains(result.err, "no step improves all states together");
     assert_contains(result.err, "bond_angles of \"");
     results_assert_text("out/summary.json", "status", "unconverged");
 }

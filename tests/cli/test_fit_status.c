@@ -156,7 +156,7 @@ static void test_cmaes_has_not_converged_when_its_verification_is_worse(void **s
     free(text);
     RUN_PROGRAM(&result, "fit", "run.json", "-o", "out", "--force");
     run_program_assert_code(&result, 1);
-    assert_contains(result.err, "the fit has not converged: the fit's own error is ");
+    assert_contains(result.err, "the fit has not converged: the error measured by the fit is ");
     assert_summary("unconverged", "that of its verification ");
 }
 

@@ -83,7 +83,8 @@ static void test_step_that_the_file_gives_is_kept_and_what_would_hold_is_told(vo
     RUN_PROGRAM(&result, "fit", "run.json", "-o", "out", "--threads", "1");
     print_message("%s", result.err);
     run_program_assert_code(&result, 1);
-    assert_contains(result.err, "time step, 0.018 tau, is too long for this potential; about 0.0");
+    assert_contains(result.err,
+                    "time step, 0.018 tau, is too long for this potential; use about 0.0");
     assert_true(results_number("out/summary.json", "verification_time_step") == 0.018);
     // The wall is 7 % too cold by the positions, and its pressure too low: the sign is known.
     assert_contains(result.err, "(at this time step; about +0.0");

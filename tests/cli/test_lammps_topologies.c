@@ -228,7 +228,7 @@ static void test_files_that_cannot_be_are_refused(void **state) {
         {"\nAngles\n", "\nImpropers\n", "chains.data:", "\"Impropers\" is not known"},
         {"Bond Coeffs # harmonic", "Bond Coeffs", "chains.data:24:", "unknown style: name it"},
         {"Bond Coeffs # harmonic", "Bond Coeffs # class2",
-         "chains.data:24:", "style \"class2\" is not known, but harmonic, fene"},
+         "chains.data:24:", "style \"class2\" is not supported; use harmonic, fene"},
         {"1 1.43079 3.5", "1 1.43079", "chains.data:24:", "1 numbers, and harmonic has 2"},
         {"1 1.43079 3.5", "1 1.43079 x", "chains.data:24:", "expected a number, found \"x\""},
         {"1 1.43079 3.5", "1 1.43079 -3.5", "chains.data:24:", "cannot have these numbers"},

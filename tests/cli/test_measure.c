@@ -134,7 +134,7 @@ static void test_measure_has_motion_of_the_frames_that_are_used(void **state) {
     assert_close(results_number("end/summary.json", "window"), 2, 1e-9);
     assert_true(temporary_folder_exists("end/msd.tsv"));
     MEASURE("long.xyz", "--every", "2.5", "-o", "five"); // of 1 ps
-    assert_contains(result.err, "--every 2.5: frames are used that are 5 ps apart");
+    assert_contains(result.err, "--every 2.5: frames 5 ps apart are used");
     MEASURE("long.xyz", "--every", "2", "-o", "two");
     assert_null(strstr(result.err, "--every"));
 }
@@ -308,7 +308,7 @@ static const struct {
     {{"XTC", "-s", "GRO", "--units", "mile"}, {"--units takes nm-ps|angstrom-fs"}},
     {{"XTC", "-s", "GRO", "--window", "0.02"}, {"--window 0.02", "0.02 ps apart"}},
     {{"DUMP", "-s", "GRO"}, {"lammps-plain.dump"}},
-    {{"XTC", "-s", "GRO", "--file-units", "real"}, {"\"xtc\" has units of its own"}},
+    {{"XTC", "-s", "GRO", "--file-units", "real"}, {"\"xtc\" defines its units"}},
 };
 
 static void write_bad_files(struct temporary_folder *folder) {

@@ -133,10 +133,10 @@ static void test_constrained_bonds_are_a_known_law(void **state) {
         "\"bond\": \"AB\", \"angle\": \"ABA\"}}}}\n",
         NULL, NULL);
     measure("gas.xyz", "kinds.json");
-    assert_contains(result.err, "bond \"AB\": a constraint, of a standard deviation of 0.0003 for");
+    assert_contains(result.err, "bond \"AB\": a constraint (standard deviation 0.0003, mean");
     explain();
     assert_contains(result.out, "chosen: bond \"AB\": a constraint");
-    assert_close_relative(number_after(result.out, "a harmonic law of k = "),
+    assert_close_relative(number_after(result.out, "a harmonic potential with k = "),
                           8.314462618e-3 * 300 / (0.0015 * 0.0015), 1e-3);
     assert_null(strstr(result.out, "target bond_lengths"));
     assert_contains(result.out, "target bond_angles.ABA");
@@ -295,7 +295,7 @@ static void test_a_molecule_in_vacuum_is_fitted_by_its_bonds(void **state) {
     free(target);
     RUN_PROGRAM(&result, "fit", "target/run.json", "--explain");
     run_program_assert_code(&result, 2);
-    assert_contains(result.err, "nothing to fit: what has a target is a constraint");
+    assert_contains(result.err, "nothing to fit: its target is that of a constraint");
 }
 
 /// Trimers A-B-A, all A before all B, which in the first frames are in an eighth of the box.

@@ -254,7 +254,7 @@ static void test_simulate_warns_when_it_has_not_settled(void **state) {
     small_scenes_simulate(&result, "out");
     assert_contains(result.err, "mesofit: warning: the 100 samples of the potential energy, ");
     char *summary = temporary_folder_read("out/summary.json");
-    assert_contains(summary, "the run may not have settled");
+    assert_contains(summary, "the run may not be in equilibrium");
     free(summary);
     small_scenes_write(*state, trimers, plan,
                        "\"equilibration\": 2000, \"samples\": 100, \"every\": 50");

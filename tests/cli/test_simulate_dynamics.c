@@ -88,7 +88,7 @@ static void test_bench_accuracy_is_refused_without_velocities(void **state) {
     write(*state, NULL, NULL);
     RUN_PROGRAM(&result, "bench", "accuracy", "scene.json", "--time", "1");
     run_program_assert_code(&result, 2);
-    assert_contains(result.err, "scene.json: dynamics.integrator: bench accuracy wants velocities");
+    assert_contains(result.err, "scene.json: dynamics.integrator: bench accuracy needs velocities");
     assert_int_equal(run_program_lines(result.err), 1);
 }
 
@@ -183,7 +183,7 @@ static void test_scenes_are_refused_when_interactions_do_not_suit(void **state) 
         {"\"interactions\"", "\"dissipative\": {\"law\": \"power\"}, \"interactions\"",
          "brownian has no friction"},
         {"\"measure\"", "\"rdf\": {\"estimator\": \"force\"}, \"measure\"",
-         "knows the forces of pairs alone"},
+         "supports only pair forces"},
     };
     static struct run_program_result result;
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {

@@ -72,14 +72,14 @@ static void test_a_flow_tells_its_viscosity_and_whether_it_has_settled(void **st
     assert_true(results_number("out/summary.json", "viscosity") > 0);
     assert_true(results_number("out/summary.json", "viscosity_theory") > 1.2);
     assert_true(results_number("out/summary.json", "viscosity_theory") < 1.3);
-    assert_null(strstr(result.err, "has not settled"));
+    assert_null(strstr(result.err, "is not stationary"));
     write(*state,
           "0.03, 0], \"obstacle_centre\": [8, 6], \"obstacle_radius\": 2},\n"
           "\"measure\": {\"equilibration\": 200, \"samples\": 100, \"every\": 5}",
           "0.3, 0]}, \"measure\": {\"equilibration\": 10, \"samples\": 40, \"every\": 1}");
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "early");
     run_program_assert_code(&result, 0);
-    assert_contains(result.err, "has not settled");
+    assert_contains(result.err, "is not stationary");
 }
 
 /// Beads in a solvent do not keep their momentum: what they do together is their motion, too.
@@ -163,7 +163,7 @@ static void test_simulate_refuses_bad_solvents_by_file_and_key(void **state) {
     assert_refused(state, "\"angle\": 130", "\"cell\": 0.7",
                    "scene.json: dynamics.cell: cells of 0.7 do not divide box[0] = 24");
     assert_refused(state, "\"time_step\": 0.1", "\"time_step\": 5",
-                   "scene.json: dynamics.interval: between two collisions, 5 apart in time");
+                   "scene.json: dynamics.interval: between two collisions, a time of 5");
     assert_refused(state, "[8, 6]", "[8, 1]",
                    "scene.json: dynamics.obstacle_centre[1]: with 1 an obstacle of radius 2");
     assert_refused(state, "\"obstacle_radius\": 2", "\"obstacle_radius\": -2",

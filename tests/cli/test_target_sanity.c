@@ -98,7 +98,7 @@ static const struct mistake doubted[] = {
             "9.428, 9.428, 9.428", "mesofit: warning: target.rdf: it has the layers",
             "the unit of length"),
     MISTAKE("twice the beads", BEADS, "5488",
-            "mesofit: warning: target.rdf: it asks for a negative", "1 + rho G = -0.87(", "3 %"),
+            "mesofit: warning: target.rdf: its integral gives a negative", "1 + rho G = -0.87(", "3 %"),
     MISTAKE("a temperature in K without units",
             "\"temperature\": 1, \"dissipative\": {\"law\": \"power\", \"cutoff\": 0.5},\n"
             "\"units\": {" LENGTH ", \"temperature\": 298, " MASS "}",
@@ -136,7 +136,7 @@ static void test_simulate_refuses_units_that_cannot_be(void **state) {
     small_inputs_write(*state, "scene.json", twice, NULL, NULL);
     RUN_PROGRAM(&result, "simulate", "scene.json");
     run_program_assert_refused(&result, ".", "a mass told twice", 1,
-                               (const char *[]){"scene.json: particles.mass: ", "makes mu 18.01",
+                               (const char *[]){"scene.json: particles.mass: ", "sets mu to 18.01",
                                                 "a bead would have 324.", NULL});
 }
 

@@ -167,7 +167,7 @@ static void test_topologies_that_cannot_be_are_refused(void **state) {
         {"hexane 20", "hexane 100000000", "molecules", "the most are 1e+08"},
         {"4 C1 1 HEX A 4", "5 C1 1 HEX A 4", "topol.top:16:", "expected atom number 4"},
         {"2 C2 1 HEX B 2", "2 C* 1 HEX B 2", "topol.top:14:", "expected a type name"},
-        {"hexane 20\nW 5\nhexane 10", "hexane 0", "topol.top", "[ molecules ] has none"},
+        {"hexane 20\nW 5\nhexane 10", "hexane 0", "topol.top", "[ molecules ] is empty"},
         {"; a comment", "[ bondtypes ]\nC1 C2 1 0.4 900", "topol.top:", "2 lines have parameters"},
         {"; a comment", "word", "topol.top:1:", "expected a section"},
     };

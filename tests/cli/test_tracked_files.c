@@ -373,7 +373,7 @@ static void test_export_replaces_its_own_files(void **state) {
     // An export of version 0.2.0 kept no list.
     assert_int_equal(unlink("hoomd/.mesofit-export"), 0);
     run_export("out", NULL, 2);
-    assert_refused("hoomd: holds files, and no list of an export (.mesofit-export): ",
+    assert_refused("hoomd: the folder holds files that are not of an export (.mesofit-export): ",
                    "--force replaces those of the same names");
     put(state, "hoomd/run.py");
     run_export("out", "--force", 0);

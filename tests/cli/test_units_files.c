@@ -282,7 +282,7 @@ static void test_bad_units_are_one_line_with_file_and_key(void **state) {
         {"{\"units\": \"nm-ps\", " BOX "}", "scene.json: temperature: missing"},
         {"{\"units\": \"nm-ps\", \"temperature\": 0, \"dynamics\": {\"integrator\": "
          "\"brownian\"}, " BOX "}",
-         "scene.json: temperature: 0 K makes no unit of energy"},
+         "scene.json: temperature: 0 K gives no unit of energy"},
         {"{" PHYSICAL "\"temperature\": 300, \"box\": [3, 3, 3], \"particles\": {\"count\": 81, "
          "\"mass\": -5}}",
          "scene.json: particles.mass: -5 is out of range; allowed: above 0 u"},

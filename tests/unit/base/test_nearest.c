@@ -72,7 +72,7 @@ static void test_nearest_hint_lists_the_known_when_nothing_is_near(void **state)
     mf_nearest_hint("pressure", known, 4, small, sizeof small);
     assert_string_equal(small, "known: seed");
     mf_nearest_hint("pressure", known, 0, text, sizeof text);
-    assert_string_equal(text, "none is known here");
+    assert_string_equal(text, "no name is known here");
 }
 
 int main(void) {

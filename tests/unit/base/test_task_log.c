@@ -118,7 +118,7 @@ static void test_records_of_other_tasks_are_refused(void **state) {
     mf_task_log_use(&log);
     const struct parallel_tasks few = {
         .count = 3, .threads = 1, .run = run, .context = &work, .result_size = 8, .spans = spans};
-    assert_fails(mf_parallel_try(&few), STATUS_BAD_INPUT, "tasks of another fit");
+    assert_fails(mf_parallel_try(&few), STATUS_BAD_INPUT, "belongs to another fit");
     mf_task_log_use(NULL);
     mf_task_log_clear(&log);
 }

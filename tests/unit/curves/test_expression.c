@@ -77,7 +77,7 @@ static void test_expression_parse_names_the_place_when_a_formula_is_wrong(void *
         {"", "character 1: it ends where a number"},
         {"1 +", "character 4: it ends where a number"},
         {"4*(1 - r", "character 9: a \")\" is missing"},
-        {"4*x", "character 3: this name is not known"},
+        {"4*x", "character 3: unknown name"},
         {"2 r", "character 3: expected an operator"},
         {"2^r", "character 3: an exponent must be a number"},
         {"exp r", "character 5: expected \"(\" after exp"},

@@ -73,7 +73,7 @@ static void test_inner_steps_are_refused_where_they_have_no_meaning(void **state
     fluid.setup.integrator_parameters = &inner;
     assert_true(mf_respa_acts(&fluid.setup));
     assert_fails(mf_simulation_init(&simulation, &fluid.setup, NULL), STATUS_BAD_INPUT,
-                 "dynamics.inner_steps: only bonds, angles, dihedrals and interactions take them");
+                 "dynamics.inner_steps: only bonds, angles, dihedrals and interactions use them");
     fluid.setup.integrator = &mf_dpd_verlet;
     fluid.setup.integrator_parameters = &ahead;
     assert_true(mf_respa_acts(&fluid.setup));

@@ -96,7 +96,7 @@ static void test_states_end_when_no_step_makes_them_better_together(void **state
         mf_inversion_states_end(&fit.inversion, &step);
         assert_int_equal(step.finished, k == 5);
     }
-    assert_contains(step.reason, "no potential in common: rdf of \"dense\" is off by 4.0 times");
+    assert_contains(step.reason, "no common potential: rdf of \"dense\" is off by 4.0 times");
     // A tenth nearer is better.
     fit.state[1].assessment.section[0].rms *= 0.9;
     fit.state[1].assessment.distance[TARGET_RDF].rms *= 0.9;

@@ -279,7 +279,7 @@ static void test_json_child_reports_paths_when_objects_are_nested(void **state) 
              "%s: a.d: missing: expected an object\n"
              "%s: a.b.x: must be below 1\n"
              "%s: a.b: is odd\n"
-             "%s: a.b.x: unknown key; none is known here",
+             "%s: a.b.x: unknown key; no name is known here",
              file, file, file, file, file);
     assert_int_equal(mf_json_close(document, STATUS_OK), STATUS_BAD_INPUT);
     assert_string_equal(mf_status_message(), expected);

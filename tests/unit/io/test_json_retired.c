@@ -46,7 +46,7 @@ static void test_json_retired_names_all_keys_of_a_document_in_a_line(void **stat
     assert_fails(mf_json_close(document, STATUS_OK), STATUS_BAD_INPUT,
                  "run.json: no longer keys: a, in.b, c; leave them out\n");
     assert_contains(mf_status_message(), "run.json: odd: is odd\n");
-    assert_contains(mf_status_message(), "run.json: in.new: unknown key; none is known here");
+    assert_contains(mf_status_message(), "run.json: in.new: unknown key; no name is known here");
     assert_null(strstr(mf_status_message(), "no longer a key"));
 }
 

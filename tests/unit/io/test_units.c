@@ -86,7 +86,7 @@ static void test_units_read_refuses_when_no_number_can_hold_what_follows(void **
     struct units units;
     for (size_t k = 0; k < sizeof bad / sizeof *bad; k++)
         assert_fails(read_text(state, bad[k], &units), STATUS_BAD_INPUT,
-                     "a.json: units: no numbers can hold");
+                     "a.json: units: the resulting units");
     assert_ok(read_text(state, UNITS("0.465", "298", "2.992e-26"), &units));
     assert_close(mf_units_time_ps(&units), 1.2540, 0.00005);
     assert_ok(read_text(state, "{}", &units));
@@ -280,7 +280,7 @@ static void test_units_follow_from_the_scene_when_the_file_does_not_say_them(voi
                             "{\"units\": \"nm-ps\", \"box\": [1e200, 1e200, 1e200], "
                             "\"particles\": {\"count\": 3}, \"temperature\": 300}",
                             &units),
-                 STATUS_BAD_INPUT, "units: no numbers can hold");
+                 STATUS_BAD_INPUT, "units: the resulting units");
     assert_ok(read_scene(state, "{\"units\": \"reduced\"}", &units));
     assert_false(mf_units_are_physical(&units));
 }

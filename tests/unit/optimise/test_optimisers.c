@@ -330,7 +330,7 @@ static void test_populations_larger_than_a_round_are_refused(void **state) {
             landscape_set(optimiser, parameters, "population", 60);
             if (less)
                 assert_fails(optimiser->create(memory, &space, parameters), STATUS_BAD_INPUT,
-                             "\"population\" makes rounds of");
+                             "\"population\" gives rounds of");
             else
                 assert_ok(optimiser->create(memory, &space, parameters));
             optimiser->destroy(memory);

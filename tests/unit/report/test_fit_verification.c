@@ -73,7 +73,7 @@ static void test_fit_verification_names_the_cause_when_g_is_off(void **state) {
                                        .off = {true, false, -0.0133, 0.002, 0},
                                        .result = VERIFY_STEP_LONG};
     assert_says(&coarse, "the configurational temperature is 1.3 % too low: the time step, 0.02 "
-                         "tau, is too long for this potential; about 0.015 tau");
+                         "tau, is too long for this potential; use about 0.015 tau");
     rough.step = (struct verify_step){.used = 0.001,
                                       .shortens = true,
                                       .halvings = 4,
@@ -83,7 +83,7 @@ static void test_fit_verification_names_the_cause_when_g_is_off(void **state) {
                         "sixteenth of the time step chosen");
     blameless.step = (struct verify_step){.off = {true, false, 0.05, 0.002, 0},
                                           .result = VERIFY_STEP_NOT_THE_CAUSE};
-    assert_says(&blameless, "was so with twice the time step: that is not the cause");
+    assert_says(&blameless, "was so with twice the time step: the cause is not the time step");
     smaller.sampled = 700;
     smaller.particles = 1000;
     assert_says(&smaller, "the fit simulates 700 particles and the verification 1000");

@@ -182,9 +182,9 @@ static void test_target_bonded_refuses_nonsense(void **state) {
     assert_refused(state, normal(0, 1, 181, 110, 5, 1, " i"), VOTCA, BONDED_ANGLE,
                    "as if in degrees");
     assert_refused(state, normal(0, 2, 181, 110, 5, 1, ""), "", BONDED_ANGLE,
-                   "it goes from 0 to 360, and angles are from 0 to 180");
+                   "the range is 0 to 360; expected angles from 0 to 180");
     assert_refused(state, normal(-1, 0.01, 300, 0.5, 0.05, 1, ""), "", BONDED_BOND,
-                   "lengths are from 0");
+                   "expected lengths from 0");
     assert_refused(state, normal(-90, 1, 181, 0, 20, 1, ""), "", BONDED_DIHEDRAL,
                    "expected dihedrals from -180 to 180 degrees");
     assert_refused(state, normal(1, 0.1, 5, 1.2, 0.1, 1, ""), "", BONDED_BOND, "only 5 bins");

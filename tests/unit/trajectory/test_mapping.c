@@ -175,7 +175,7 @@ static void test_map_is_refused_when_it_does_not_fit_the_atoms(void **state) {
     assert_refused(state, "{\"beads\": {\"A\": {\"residue\": \"MET\", \"atoms\": \"C N\"}}}",
                    "residue 1 \"MET\" (atom 1) has 0 atoms \"N\"");
     assert_refused(state, "{\"beads\": {\"A\": {\"first\": 1, \"last\": 12}}}",
-                   "\"A\" goes to atom 12, there are 11");
+                   "\"A\" includes atom 12, but there are 11 atoms");
     snprintf(structure.atom[5].residue_name, STRUCTURE_NAME, "SOL");
     assert_ok(mf_structure_number_residues(&structure));
     assert_refused(state, "{\"beads\": {\"A\": {\"residue\": \"MET\"}}, \"rest\": \"ignore\"}",

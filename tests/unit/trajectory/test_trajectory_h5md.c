@@ -458,7 +458,7 @@ static void test_h5md_is_refused_when_it_promises_more_than_it_holds(void **stat
     H5Gclose(position);
     H5Gclose(group);
     end_file();
-    assert_fails(try(&nothing), STATUS_BAD_INPUT, "more numbers in a frame than the file can hold");
+    assert_fails(try(&nothing), STATUS_BAD_INPUT, "more numbers in a frame than fit into the file");
 }
 
 /// Cut at many places: always a line, never a crash; and a packed frame that is damaged.
