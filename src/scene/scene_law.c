@@ -73,7 +73,7 @@ static enum status load_points(struct curve *curve, const char *unit, struct jso
     return status == STATUS_NO_MEMORY ? status : STATUS_OK;
 }
 
-/// A table that could not be loaded has no points, and parameters may not go together: forget the
+/// A table that could not be loaded has no points, and parameters may not go together: clear the
 /// curve, the fault is recorded.
 static bool is_usable(const struct curve *curve) {
     if (curve_is_sampled(curve->family))
