@@ -84,7 +84,7 @@ static enum status read_count(const struct command_line *line, int option, int64
     return STATUS_OK;
 }
 
-/// One of the names of a list, the first of which is what is not told.
+/// One of the names of a list, the first of which is the default.
 static enum status read_choice(const struct command_line *line, int option,
                                const char *const *names, int *choice) {
     const char *const text = line->own[option];

@@ -20,7 +20,7 @@ double mf_statistics_standard_error(const struct running_mean *running);
 /// How many times the variance of the mean of a stationary series, whose neighbours are correlated,
 /// is Γ(0)/n: of several independent series (chains) of the same length, and of several numbers
 /// that are measured together and taken to be correlated alike, as the bins of a g(r) are, whose
-/// errors then do not scatter as much as if each told its own correlation. 1 for fewer than two
+/// errors then do not scatter as much as if each had its own correlation. 1 for fewer than two
 /// values.
 ///
 ///   C n/(n − 2W − 1),   C = 1 + 2 Σ_{t=1…W} ρ(t),
@@ -60,7 +60,7 @@ void mf_statistics_correlated_errors(const double *values, size_t length, size_t
 /// mean of the squares' ratio: `others`, or those that are there. Tested: test_statistics.
 void mf_statistics_take_larger(double *error, const double *others, size_t count);
 
-/// What a person is told of standard errors of one curve: if none is above 0, they are those of a
+/// What is printed as standard errors of one curve: if none is above 0, they are those of a
 /// single value, and all become NaN, not known. Tested: test_statistics.
 void mf_statistics_mark_unknown_errors(double *error, size_t count);
 

@@ -9,7 +9,7 @@
 #include <string.h>
 
 enum {
-    EQUILIBRATION = 300, ///< steps: the lattice is forgotten, as far as speed goes
+    EQUILIBRATION = 300, ///< steps: the lattice has melted, as far as speed is concerned
     SCALE_EVERY = 10,    ///< steps between scalings of the velocities
     FIRST_TRIAL = 16,    ///< steps of the first trial of the speed
 };

@@ -59,7 +59,7 @@ struct bench_point {
     const struct bench_method *method;
     double time_step, time;  ///< Δt, length of the run after equilibration [τ]
     uint64_t seed, steps;    ///< of the noise; of the run
-    uint64_t reported;       ///< steps that bench_common.tell was told of
+    uint64_t reported;       ///< steps that were reported to bench_common.report
     enum status status;      ///< OK or UNSTABLE
     struct bench_number cpu; ///< seconds of one processor per τ, without what is measured
     struct bench_number quantity[BENCH_QUANTITIES];

@@ -21,7 +21,7 @@ struct bonded_law {
     /// The slopes alone, of the same bits; NULL: energies cost little beside them.
     void (*slopes)(const void *parameters, size_t count, const double *q, double *slope);
     double (*rest)(const void *parameters); ///< q at which a molecule begins
-    /// Length at which a bond tears [λ]; NULL: it never does.
+    /// Length at which a bond breaks [λ]; NULL: never.
     double (*longest)(const void *parameters);
     void (*clear)(void *parameters); ///< frees what the parameters own; NULL: nothing
 };
@@ -46,7 +46,7 @@ void mf_bonded_value(const struct bonded_curve *curve, double q, double *energy,
 /// Where a molecule begins: a length [λ] or an angle [rad].
 double mf_bonded_rest(const struct bonded_curve *curve);
 
-/// Length at which a bond tears [λ], or infinite.
+/// Length at which a bond breaks [λ], or infinite.
 double mf_bonded_longest(const struct bonded_curve *curve);
 
 /// How long a bond may be before it is stretched by more than an energy, within a factor of two of

@@ -86,7 +86,7 @@ static bool says_bins(const struct fit_choice *c) {
     return says;
 }
 
-/// Rows finer than what g tells apart are joined: to those of the first state, if there are more.
+/// Rows finer than what g distinguishes are joined: to those of the first state, if there are more.
 static enum status choose_bins(struct fit_choice *c, struct fit_scales_rdf *rdf) {
     static const double finest = 0.001, coarsest = 0.004;
     const struct target_files *files = &c->read->files;

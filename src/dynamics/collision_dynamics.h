@@ -18,7 +18,7 @@ struct collision_dynamics_parameters {
     int64_t interval;          ///< time steps from collision to collision
     int thermostat;            ///< 0 or 1: of every cell
     int grid_shift;            ///< 0 or 1
-    int hydrodynamics;         ///< 0: beads meet a solvent whose velocities are drawn anew
+    int hydrodynamics;         ///< 0: beads meet a solvent whose velocities are redrawn
     int walls;                 ///< enum collision_walls
     double wall_filling;       ///< cells that a wall cuts are filled up to so many times M
     double acceleration[3];    ///< g, of all particles                                   [λ/τ²]
@@ -34,7 +34,7 @@ const struct solvent *mf_collision_dynamics_solvent(const struct simulation *sim
 /// @name Theory
 /// Transport coefficients in the bulk by molecular chaos, without hydrodynamic memory. Relative
 /// velocities keep in a collision, on the average, the share ρ_1 of themselves and ρ_2 of the
-/// products v_x v_y, of which a thermostat takes off what its noise forgets:
+/// products v_x v_y, less the part that the noise of a thermostat decorrelates:
 ///   ρ_1 = cos α, ρ_2 = cos 2α in two dimensions,
 ///   ρ_1 = (1 + 2 cos α)/3, ρ_2 = (1 + 2 cos α + 2 cos 2α)/5 in three;
 ///   with a thermostat, k = d(N − 1)/2:  ρ_1 Γ(k + ½)²/(Γ(k) Γ(k + 1)),  ρ_2 k/(k + 1).

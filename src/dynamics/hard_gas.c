@@ -7,9 +7,9 @@
 
 #include <math.h>
 
-/// Events of each body in an epoch, after which all are made synchronous, sorted and foreseen anew:
-/// a few per cent of the work for neighbours that are neighbours in memory, too, and for times that
-/// stay small, whose rounding would be an error of places.
+/// Events of each body in an epoch, after which all are made synchronous, sorted and predicted
+/// again: a few per cent of the work for neighbours that are neighbours in memory, too, and for
+/// times that stay small, whose rounding would be an error of places.
 static const uint64_t events_an_epoch = 32;
 
 /// Events between two looks at who may want to stop.

@@ -5,7 +5,7 @@
 /// centres. B. J. Alder and T. E. Wainwright, J. Chem. Phys. 31, 459 (1959). What is next is
 /// computed, so that there is no time step: of each body its next collision and when it leaves its
 /// cell are foreseen, and the events of all wait in a calendar. A forecast is not taken back when
-/// the partner turns earlier; it is found void when its time comes, and made anew
+/// the partner turns earlier; it is found void when its time comes, and rebuilt
 /// (B. D. Lubachevsky, J. Comput. Phys. 94, 255 (1991)). A body stays where its last turn was, with
 /// the time of that; only results are synchronous.
 ///
@@ -93,7 +93,7 @@ struct hard_gas {
     struct hard_gas_event *event;               ///< shape [count]
     struct cells_link *link;                    ///< shape [count]
     int32_t *first;                             ///< body of each cell, shape [cells], −1: none
-    /// Not saved, but filled anew: it then holds events after `calendar_events` of them.
+    /// Not saved, but filled again: it then holds events after `calendar_events` of them.
     struct hard_gas_calendar calendar;
     uint64_t calendar_events;
     uint32_t *place; ///< shape [count], for writing

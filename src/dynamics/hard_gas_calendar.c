@@ -2,7 +2,7 @@
 #include "dynamics/hard_gas_calendar.h"
 
 /// Buckets and entries a body, at least. With fewer entries, which void ones fill up, the calendar
-/// must be filled anew more often.
+/// must be filled again more often.
 enum { BUCKETS_A_BODY = 2, ENTRIES_A_BODY = 3 };
 
 /// Bodies beyond which memory is not in the caches of a core: fetching costs a fifth before, and

@@ -42,7 +42,7 @@ enum status mf_hybrid_init(struct hybrid *hybrid, const struct box *box,
                            double temperature, uint64_t seed) MUST_USE;
 void mf_hybrid_clear(struct hybrid *hybrid);
 
-/// Place the particles anew, without order; molecules as a scene does. Fails: NO_MEMORY,
+/// Place the particles again, without order; molecules as a scene does. Fails: NO_MEMORY,
 /// INTERRUPTED.
 enum status mf_hybrid_scatter(struct hybrid *hybrid) MUST_USE;
 

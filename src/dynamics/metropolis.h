@@ -68,12 +68,12 @@ void mf_metropolis_clear(struct metropolis *metropolis);
 enum status mf_metropolis_join(struct metropolis *metropolis,
                                const struct molecules *molecules) MUST_USE;
 
-/// Place the particles anew, without order; molecules as a scene does. Fails: NO_MEMORY,
+/// Place the particles again, without order; molecules as a scene does. Fails: NO_MEMORY,
 /// INTERRUPTED.
 enum status mf_metropolis_scatter(struct metropolis *metropolis) MUST_USE;
 
 /// One sweep, after which the step sizes of its moves are changed towards 40 % accepted. The tally
-/// begins anew. Fails: NO_MEMORY, INTERRUPTED.
+/// starts again. Fails: NO_MEMORY, INTERRUPTED.
 enum status mf_metropolis_tune(struct metropolis *metropolis) MUST_USE;
 
 /// Sweeps of mf_metropolis_tune. They and all after them move the
@@ -98,6 +98,6 @@ enum status mf_metropolis_count(struct metropolis *metropolis,
 /// Moves of all kinds that were tried since mf_metropolis_equilibrate, and how many were accepted.
 void mf_metropolis_tally(const struct metropolis *metropolis, uint64_t *accepted, uint64_t *tried);
 
-/// Sort the particles and build the list anew from the positions alone, so that a run that
+/// Sort the particles and build the list again from the positions alone, so that a run that
 /// continues and one that was reloaded here go on with the same bits. Fails: NO_MEMORY.
 enum status mf_metropolis_refresh(struct metropolis *metropolis) MUST_USE;

@@ -59,7 +59,7 @@ double mf_molecule_moves_bead_energy(const struct molecule_moves *moves, int k, 
                                      int bead, const struct particles *particles);
 
 /// Change of U of the terms of particle number k when it goes to `to` [k_B T_0]. Infinite where a
-/// bond would tear.
+/// bond would break.
 double mf_molecule_moves_bead_change(const struct molecule_moves *moves,
                                      struct particles *particles, size_t k, const double to[3]);
 

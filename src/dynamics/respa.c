@@ -98,7 +98,7 @@ enum status mf_respa_compute_forces(struct respa *respa, struct simulation *simu
 }
 
 /// Forces of others than the last step's may stand at its beginning, where it was refused, and what
-/// was fast is found anew.
+/// was fast is found again.
 enum status mf_respa_step(struct respa *respa, struct simulation *simulation, int64_t inner_steps) {
     const double time_step = simulation->setup.time_step;
     TRY(mf_respa_find(respa, simulation));

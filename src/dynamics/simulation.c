@@ -30,7 +30,7 @@ static double lightest(const struct simulation_setup *setup) {
     return mass->ranges > 0 ? mf_attributes_span(mass).minimum : 1;
 }
 
-/// Speed of particles without velocities: of what drives them, or of nobody knows what forces if
+/// Speed of particles without velocities: of what drives them, or of unknown forces if
 /// not even noise moves them.
 static double drift_of(const struct simulation_setup *setup) {
     static const double slowest = 1e-3; // of the range in a step
@@ -283,7 +283,7 @@ static enum status refresh_list(struct simulation *simulation) {
     }
     TRY(check_flight(simulation));
     const enum status status = mf_neighbours_sort_and_build(&simulation->neighbours, particles);
-    // What no velocity has told: where they begin, particles are moved by forces alone.
+    // At the start positions are moved by forces alone, whatever the velocities.
     TRY(status == STATUS_UNSTABLE ? mf_unstable_fail(simulation, mf_status_message()) : status);
     simulation->list_builds++;
     return STATUS_OK;

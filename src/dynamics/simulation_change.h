@@ -16,7 +16,7 @@ struct simulation_change {
 enum status mf_simulation_check_change(const struct simulation *simulation,
                                        const struct simulation_change *change) MUST_USE;
 
-/// Go on so from the next step on. Friction, noise and memory are made anew; velocities, and what
+/// Go on so from the next step on. Friction, noise and memory are rebuilt; velocities, and what
 /// pairs remember, are scaled by sqrt(T'/T), which turns one stationary law into the other. The
 /// skin of the neighbour list stays, and so does the order of sums that follows from it.
 /// Fails: as mf_simulation_check_change; NO_MEMORY. Tested: test_simulation_change.

@@ -112,7 +112,7 @@ done:
     return status;
 }
 
-/// Uniform places, drawn anew where the obstacle is.
+/// Uniform places, redrawn where the obstacle is.
 static void place(struct solvent *solvent) {
     const int dimensions = solvent->box.dimensions;
     for (size_t k = 0; k < solvent->count; k++) {

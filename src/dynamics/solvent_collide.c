@@ -5,7 +5,8 @@
 // A. Malevanets and R. Kapral, J. Chem. Phys. 110, 8605 (1999). Cells that a wall cuts are filled
 // up to M with virtual particles of the wall's temperature, which count as one body (A. Lamura et
 // al., Europhys. Lett. 56, 319 (2001)). The thermostat draws the energy of relative motion of the
-// cell anew from the canonical distribution (C. C. Huang et al., J. Comput. Phys. 229, 168 (2010)).
+// cell from the canonical distribution (C. C. Huang et al., J. Comput. Phys. 229, 168
+// (2010)).
 #include "base/parallel.h"
 #include "base/simd.h"
 #include "dynamics/solvent.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file What a person is told of a simulation that blows up.
+/// @file The message about a simulation that blows up.
 #pragma once
 
 #include "dynamics/simulation.h"

@@ -318,7 +318,7 @@ static enum status apply_numbers(struct reading *reading) {
     return STATUS_OK;
 }
 
-/// No engine is told of memory, or of what acts across pairs. What is left of such friction would
+/// No engine gets memory, or friction perpendicular to pairs. What is left of such friction would
 /// be another one.
 static void leave_out_friction(struct export_model *model) {
     const int found = model->scene.unknown & (SCENE_FITS_MEMORY | SCENE_FITS_TRANSVERSE);

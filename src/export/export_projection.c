@@ -14,10 +14,10 @@ struct plan {
     struct motion_plan motion;
     struct measure_plan measure;
     int threads;
-    struct measure_listener half; ///< who is told of one simulation of two
+    struct measure_listener half; ///< listener of one simulation of two
 };
 
-/// Who is told of two simulations as of one.
+/// Listener of two simulations as one.
 struct halves {
     const struct measure_listener *listener; ///< NULL: nobody
     int done;                                ///< simulations that are over

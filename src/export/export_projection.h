@@ -31,7 +31,7 @@ struct export_projection {
 /// sqrt(μ/k_B T), in which pairs of neighbours part. The noise is the sqrt of the likewise weighted
 /// mean of both squared standard errors.
 /// @param[in] power     shape [pairs]
-/// @param[in] listener  told of both simulations as one; NULL: none
+/// @param[in] listener  gets both simulations as one; NULL: none
 /// Fails: as mf_simulation_run; BAD_INPUT for a box too small for E; NO_MEMORY. Same bits for any
 /// number of threads. Tested: cli/test_export_fits.
 enum status mf_export_project(const struct export_model *model, const struct export_power *power,

@@ -61,7 +61,7 @@ enum status mf_friction_init(struct friction *friction, const struct table *omeg
                              double temperature, const struct friction_method *method) MUST_USE;
 void mf_friction_clear(struct friction *friction);
 
-/// Make room for all pairs of a list, and forget those kept. Fails: NO_MEMORY.
+/// Make room for all pairs of a list, and clear those kept. Fails: NO_MEMORY.
 enum status mf_friction_reserve(struct friction *friction,
                                 const struct neighbours *neighbours) MUST_USE;
 

@@ -74,7 +74,7 @@ extern const struct interaction *const mf_interaction_list[];
 /// pair kernels: the first of every simulation's list. Its numbers are those of the pass.
 extern const struct interaction mf_pairs;
 
-/// Bonds, angles and dihedrals of molecules (forces/molecules.h), of which a scene speaks by
+/// Bonds, angles and dihedrals of molecules (forces/molecules.h), which a scene gives by
 /// itself.
 extern const struct interaction mf_molecules;
 

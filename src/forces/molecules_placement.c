@@ -50,7 +50,7 @@ static int find_before(const struct molecules *molecules, const struct topology_
 }
 
 /// The joints of a kind in the order in which its beads are placed, shape [beads]. What no bond
-/// joins to the rest begins anew at the first bead.
+/// joins to the rest starts again at the first bead.
 static enum status plan_growth(const struct molecules *molecules, const struct topology_kind *kind,
                                struct joint *joints) {
     OWNED bool *placed = NULL;

@@ -131,7 +131,7 @@ double mf_pair_memory_energy(const struct pair_memory *memory, size_t *variables
 
 /// @name Restart
 /// The first span is `pairs.count`: read it before the others and call mf_pair_memory_reserve,
-/// since their lengths depend on it. Afterwards the pairs follow the list anew.
+/// since their lengths depend on it. Afterwards the pairs follow the list again.
 enum { PAIR_MEMORY_SPANS = 3 + PAIR_MEMORY_MAX_VARIABLES };
 size_t mf_pair_memory_spans(struct pair_memory *memory, struct memory_span *spans);
 enum status mf_pair_memory_reserve(struct pair_memory *memory) MUST_USE;

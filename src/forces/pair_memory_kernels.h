@@ -6,7 +6,7 @@
 
 struct pair_memory_kernels {
     /// Append the pairs of a part of the list that may come into their range before the list is
-    /// built anew, of the particles as they were when it was built; returns how many there are
+    /// built again, of the particles as they were when it was built; returns how many there are
     /// then, also beyond the room for them.
     size_t (*collect)(struct pair_memory *memory, const struct particles *built,
                       const struct neighbours *neighbours, int part, size_t count);

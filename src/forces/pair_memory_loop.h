@@ -113,7 +113,7 @@ INLINE void memory_measure(struct memory_columns *columns, const struct memory_s
     pair_fill_up(&columns->near, 2 * (float)mf_pair_memory_range(&scene->memory->law));
 }
 
-/// Pairs out of range forget.
+/// Clear the memory of pairs out of range.
 INLINE void memory_clear(const struct memory_columns *columns, double *value, int count) {
     for (int n = 0; n < count; n++)
         value[n] = columns->excess[n] < 0 ? value[n] : (double)NAN;

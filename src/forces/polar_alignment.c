@@ -25,7 +25,7 @@ struct sweep {
     int first;             ///< part
 };
 
-/// Σ_j n_j over the neighbours of i; each of them is told of i at once.
+/// Σ_j n_j over the neighbours of i; each of them is updated with i at once.
 static void turn_around(const struct sweep *sweep, size_t i) {
     const struct particle_place *place = sweep->pass->particles->kernel_place;
     const struct neighbours *neighbours = sweep->pass->neighbours;

@@ -32,7 +32,7 @@ static inline void transfer_add(double sum[3][3], double distance, const float e
             sum[a][b] += distance * e[a] * impulse[b];
 }
 
-/// Add what the parts have found, times `scale`, in their order, and forget it. NULL: nothing.
+/// Add what the parts have found, times `scale`, in their order, and clear it. NULL: nothing.
 void mf_transfer_collect(struct transfer *transfer, int parts, double scale);
 
 /// Add what particles carry in a time: Σ m v v relative to the centre of mass. NULL: nothing.

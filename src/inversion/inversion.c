@@ -13,7 +13,7 @@ bool mf_inversion_is_near(const struct inversion *inversion) {
 
 // Samples -----------------------------------------------------------------------------------------
 
-/// Progress of one state, told as a part of that of all.
+/// Progress of one state, reported as a part of that of all.
 struct sharing {
     const struct inversion *inversion;
     size_t state;
@@ -45,7 +45,7 @@ enum status mf_inversion_observe(struct inversion *inversion,
     return STATUS_OK;
 }
 
-// What is told ------------------------------------------------------------------------------------
+// Reports ----------------------------------------------------------------------------------------
 
 /// The curves of groups follow those of pairs, of which there may be none.
 static void show_groups(const struct inversion *inversion, struct inverse_step *step) {

@@ -3,7 +3,7 @@
 ///
 ///   samples → equations → course.
 /// Each iteration samples the present potential in every state (inversion/inversion_state.h), makes
-/// of what all say one verdict and one set of linear equations (inversion/inversion_equations.h),
+/// of all of them one assessment and one set of linear equations (inversion/inversion_equations.h),
 /// and asks the method for a step towards the targets (inversion_rule.update): g(r) and, if they
 /// are asked for, pressures and integrals. The course (inversion/inversion_course.h) keeps the
 /// potential or goes back, and steps on.
@@ -12,7 +12,7 @@
 /// then a quarter of that of −k_B T ln g. Where that is far off and puts the liquid under tension,
 /// or the first step from there makes it worse, as with targets that end before their oscillations
 /// do, it starts again from −k_B T ln g. Replicas begin from disorder, and again after a potential
-/// that made it worse: a poor one freezes a liquid, or tears it apart, and what is left of that
+/// that made it worse: a poor one freezes a liquid or makes it cavitate, and what is left of that
 /// would be taken for the next potential's structure.
 ///
 /// Several states, at other temperatures, densities, compositions, share one set of potentials.
@@ -99,7 +99,7 @@ enum status mf_inversion_write(const void *inversion, const struct inverse_folde
         "acceptance[1]", "potential_energy", "potential_energy_error"
 enum { INVERSION_SHARED_COLUMNS = 9, INVERSION_OWN_COLUMNS = INVERSE_EXTRA - 9 };
 
-/// Sample the present potential in all states, and find what that says: the verdict. Fails: as
+/// Sample the present potential in all states, and assess the samples. Fails: as
 /// inverse_method.iterate.
 enum status mf_inversion_observe(struct inversion *inversion,
                                  const struct inverse_listener *listener) MUST_USE;
@@ -114,11 +114,11 @@ enum status mf_inversion_sample(struct inversion *inversion, struct inversion_st
 
 /// Whether samples that have not settled do for a step: all that is asked for is so far off that
 /// what has not settled is a third of it at most. A potential that is far off may freeze a liquid
-/// or tear it, which takes for ever and tells no more of the way to the target. Tested:
+/// or make it cavitate, which takes very long and gives no better direction to the target. Tested:
 /// test_inversion_equilibrium.
 bool mf_inversion_gives_direction(const struct inversion_state *state);
 
-/// Whether the verdict is near, as mf_inversion_state_is_near.
+/// Whether the assessment is near, as mf_inversion_state_is_near.
 bool mf_inversion_is_near(const struct inversion *inversion);
 
 /// Fill phi with the start of the fit: the problem's own, the hypernetted chain's, or −k_B T ln g;
@@ -146,8 +146,8 @@ bool mf_inversion_start_has_other(const struct inversion *inversion,
                                   const struct inversion_state *state);
 
 /// Whether samples of the hypernetted chain's start are far off under tension, so that it freezes,
-/// or tears.
-/// @param[in] verdict  the state's, or that of all
+/// or cavitates.
+/// @param[in] assessment  the state's, or that of all
 bool mf_inversion_start_is_under_tension(const struct inversion_state *state,
                                          const struct inversion_assessment *assessment);
 

@@ -177,7 +177,8 @@ static void add_drift(struct inversion *inversion, const double *weight, double 
         add_square(inversion, pow(inversion->course.band.drifts.ramp.drift / variance, 2), scratch);
 }
 
-/// A fit that ends while it walks on has gone where its targets hardly see: the way is an error.
+/// A fit that ends before it is stationary has drifted along what its targets hardly determine: the
+/// drift is an error.
 static void add_walk(struct inversion *inversion, double *scratch) {
     const struct potential_grid *grid = inversion_grid(inversion);
     for (size_t a = 0; a < grid->known; a++) {

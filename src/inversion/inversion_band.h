@@ -20,8 +20,8 @@
 /// C of groups is that of inversion_response. Off over stated, U of bonds and angles: 0.98(4) and
 /// 1.04(3) over 32 twins (lab/molecules.md).
 ///
-/// A fit that ends though it would walk on (mf_inversion_has_converged) has an error more, the way
-/// it has walked: Σ + w wᵀ.
+/// A fit that ends though it is not stationary (mf_inversion_has_converged) has one more error, the
+/// distance w that it has drifted: Σ + w wᵀ.
 ///
 /// Errors of bins count as independent. Those by sampling are correlated as S is, and with that
 /// F = n C/(k_B T)² (n independent configurations; the canonical ensemble is an exponential family)
@@ -46,9 +46,9 @@
 struct inversion;
 struct inversion_assessment;
 
-/// What the target still asks for of a number that it hardly sees, and the standard error by g(r)
-/// alone: that of the present samples, in which no way counts, neither this one nor that of a fit
-/// that has walked.
+/// The change of a number that the target hardly determines and still requires, and the standard
+/// error by g(r) alone: that of the present samples, without any drift, neither this one nor that
+/// of a fit that is not stationary.
 struct inversion_band_drift {
     double drift, open;
 };
@@ -86,7 +86,7 @@ double mf_inversion_band_min_error(const struct inversion *inversion, size_t a);
 enum status mf_inversion_band_covariance(const struct imc_system *system, double birge,
                                          double *covariance, double *directions) MUST_USE;
 
-/// Of the pressures of all states the one whose way is the most of its error. Tested:
+/// Of the pressures of all states that with the largest drift over its error. Tested:
 /// test_inversion_start.
 struct inversion_band_drift mf_inversion_band_farthest(const struct inversion *inversion);
 

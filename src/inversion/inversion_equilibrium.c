@@ -10,7 +10,7 @@
 /// Chance with which one of all tests of one look complains of samples in equilibrium.
 static const double false_alarm = 1e-3;
 
-/// Room for what is told apart: sections, and the sums of a sample.
+/// Numbers that are tested: sections, and the sums of a sample.
 enum { TESTS = 2, MAX_QUANTITIES = INVERSION_MAX_SECTIONS + SAMPLER_SUMS };
 
 /// Σ t² of the middles of the blocks, in parts of the samples from their middle.
@@ -26,7 +26,7 @@ static const char *const sums[SAMPLER_SUMS] = {[SAMPLER_VIRIAL] = "the pressure"
                                                [SAMPLER_GYRATION] = "R_g^2 of the molecules",
                                                [SAMPLER_ENDS] = "R_e^2 of the molecules"};
 
-/// Numbers of a sample that are judged together.
+/// Numbers of a sample that are tested together.
 struct quantity {
     size_t count, first;  ///< in a row of numbers, if there is no list of them
     const size_t *number; ///< or NULL

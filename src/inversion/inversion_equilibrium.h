@@ -33,13 +33,13 @@ struct inversion_unequilibrated {
 /// in equilibrium. Tested: test_inversion_equilibrium.
 double mf_inversion_equilibrium_shift(const struct replicas *replicas, size_t number);
 
-/// Judge the present samples. Of samples in equilibrium a thousandth is found not to be. Fails:
+/// Test the present samples. One in a thousand samples in equilibrium fails. Fails:
 /// NO_MEMORY. Tested: test_inversion_equilibrium.
 enum status
 mf_inversion_equilibrium_check(const struct inversion_state *state,
                                struct inversion_unequilibrated *unequilibrated) MUST_USE;
 
-/// What the replicas remember is noise once they have been told apart by no more than that since
+/// What the replicas remember counts as noise if they have differed by nothing else since
 /// they were placed: each goes on from a state of its own of the potential before, and
 /// mf_inversion_assess has taken the scatter of their means for the error. What drifts is none.
 /// Tested: test_inversion_equilibrium.

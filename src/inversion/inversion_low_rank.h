@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file The step of an inversion with groups far from its targets.
+/// @file The low-rank step of an inversion with groups far from its targets.
 ///
 /// Several pair types and groups have as many bins as an iteration has independent samples, n. Then
 /// C has no inverse; and as its elements have the variances (C_aa C_bb + C_ab²)/n of normal S, C x

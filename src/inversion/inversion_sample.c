@@ -7,7 +7,7 @@
 #include <string.h>
 
 /// Samples are doubled until their noise is this share of what is off, each bin in units of its
-/// error, or as small as was asked for: pairs that are rare, of which nobody knows much, then do
+/// error, or as small as was asked for: pairs that are rare, of which little is known, then do
 /// not decide how many samples the others need.
 static const double noise_share = 1.0 / 3;
 
@@ -61,7 +61,7 @@ static struct inverse_doubling find_noisiest(const struct inversion_state *state
     return noisiest;
 }
 
-/// Whether more samples help. Replicas that are stuck would never be told apart from noise.
+/// Whether more samples help. Replicas that are stuck would never be distinguished from noise.
 static bool needs_samples(const struct inversion_state *state, struct inverse_doubling *doubling) {
     const int before = doubling->number;
     *doubling = find_noisiest(state);

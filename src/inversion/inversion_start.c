@@ -6,7 +6,7 @@
 #include <math.h>
 
 /// A start from the hypernetted chain is poor if its error of g is above this share of g* − 1 and
-/// it is under tension, so that it freezes, or tears. Measured: 0.05 for water and 0.005 for a
+/// it is under tension, so that it freezes or cavitates. Measured: 0.05 for water and 0.005 for a
 /// Lennard-Jones gas, 0.28 to 0.39, and pressures of −3.4 to −8, for Lennard-Jones liquids, the
 /// targets of which end at the cutoff, before their oscillations do. The error alone does not tell:
 /// that of a soft fluid was 0.17, of −k_B T ln g 0.12, but from there ibi had not converged after

@@ -12,8 +12,8 @@
 #include "observe/rdf.h"
 
 struct normalisation {
-    double factor, error;   ///< ν, 1 where nothing speaks against it, and its standard error
-    bool found;             ///< the target speaks against 1
+    double factor, error;   ///< ν, 1 where nothing contradicts it, and its standard error
+    bool found;             ///< the target excludes 1
     double compressibility; ///< S(0) of g/ν; NaN: not known
 };
 

@@ -38,7 +38,7 @@ enum status mf_replicas_init(struct replicas *replicas, size_t count, enum sampl
 void mf_replicas_clear(struct replicas *replicas);
 
 /// Equilibrate, then sample; the samplers in parallel, merged in order: the same bits for any
-/// number of threads. `progress` is told after each, with `done` and `total` filled in. Fails:
+/// number of threads. `progress` is reported after each, with `done` and `total` filled in. Fails:
 /// NO_MEMORY, INTERRUPTED. Tested: test_inversion, test_fit.
 enum status mf_replicas_run(struct replicas *replicas, const struct replicas_plan *plan,
                             int threads, const struct inverse_progress *progress,

@@ -71,13 +71,13 @@ enum status mf_data_table_write(const char *file, const char *comment,
 void mf_data_table_name(const struct units *units, const char *name, const char *unit,
                         char *heading, size_t size);
 
-/// What a heading, "r[lambda]", is called in the units that are spoken, "r[nm]"; returns the factor
+/// What a heading, "r[lambda]", is called in the units of the file, "r[nm]"; returns the factor
 /// of its numbers.
 double mf_data_table_translate(const struct units *units, const char *heading, char *name,
                                size_t size);
 
-/// Write columns of reduced units in spoken ones: by the unit in brackets behind its name each is
-/// converted and called anew, "r[lambda]" as "r[nm]"; columns of other units stay. Tested:
+/// Write columns of reduced units in those of the file: by the unit in brackets behind its name
+/// each is converted and renamed, "r[lambda]" as "r[nm]"; columns of other units stay. Tested:
 /// test_data_table_units.
 enum status mf_data_table_write_in(const char *file, const struct units *units, const char *comment,
                                    const struct data_column *columns, size_t column_count,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file Faults of one input, collected in the order found and told together.
+/// @file Faults of one input, collected in the order found and reported together.
 #pragma once
 
 #include "base/status.h"
@@ -17,11 +17,11 @@ struct faults {
     size_t count, reported;
     bool full;
     size_t length;
-    char text[FAULTS_SIZE]; ///< one told fault a line
+    char text[FAULTS_SIZE]; ///< a line for each reported fault
 };
 
-/// Add one line, unless it is told already. After FAULTS_REPORTED lines, or when the text is full,
-/// faults are only counted.
+/// Add one line, unless it was reported already. After FAULTS_REPORTED lines, or when the text is
+/// full, faults are only counted.
 void mf_faults_add(struct faults *faults, const char *line);
 
 /// Take back the line that begins with these words, if there is one: another explains it.

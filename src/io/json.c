@@ -265,7 +265,7 @@ static bool is_printed(const cJSON *item, const char *fixed) {
     return text && strcmp(text, fixed) == 0;
 }
 
-/// The first retired key is told with its reason; with another one all are told by their names.
+/// The first removed key is reported with its reason; if there are several, all by their names.
 static void fault_retired(struct json_object *object, const char *key, const char *reason) {
     struct json_document *document = object->document;
     struct json_object root = view(document, NULL);

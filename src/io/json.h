@@ -107,8 +107,8 @@ int mf_json_numbers(const struct json_object *object, const char *key, double *v
 
 /// Read the members described by `fields` into `parameters`, defaults where absent. Numbers of the
 /// document's units become numbers of the fields' (mf_units_factor); defaults and ranges are those
-/// of the fields, and messages speak as the document does. FIELD_FILE values are joined to the
-/// folder of the document's file unless absolute. An absent object gives the defaults and no
+/// of the fields, and messages are in the units of the document. FIELD_FILE values are joined to
+/// the folder of the document's file unless absolute. An absent object gives the defaults and no
 /// faults: that it is missing was mf_json_child's to say. null, as mf_json_write_number writes what
 /// is not known, is allowed for numbers whose default is NAN.
 void mf_json_fields(struct json_object *object, const struct field *fields, void *parameters);

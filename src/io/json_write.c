@@ -20,7 +20,7 @@ enum { DEEPEST_OBJECT = 16 };
 struct json_writer {
     cJSON *object[DEEPEST_OBJECT]; ///< the root and the objects entered; NULL where that failed
     int depth;
-    struct units units; ///< in which its numbers are told
+    struct units units; ///< of the numbers that it writes
     char problem[256];  ///< the first one; "" while all is well
 };
 

@@ -59,6 +59,6 @@ enum status mf_manifest_keep(struct manifest *list) MUST_USE;
 enum status mf_manifest_enter(struct manifest *list, struct manifest_entry *const *entry,
                               size_t count) MUST_USE;
 
-/// Write the file anew, without what is gone or of an earlier run. If that fails, the old one says
+/// Write the file again, without what is gone or of an earlier run. If that fails, the old one says
 /// the same.
 void mf_manifest_compact(struct manifest *list);

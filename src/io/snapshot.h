@@ -18,7 +18,7 @@ struct snapshot_column {
     int components;
     bool vector;          ///< components belong to the axes
     bool whole;           ///< integers
-    bool shared;          ///< companions have it, too
+    bool shared;          ///< solvent particles have it, too
     const double *values; ///< shape [components, count], by particle id
 };
 
@@ -51,8 +51,8 @@ struct snapshot {
 };
 
 /// Copy the present state of the particles, in the order of their ids, and behind them that of
-/// companions, as they stand: only places, velocities and masses are not 0 there.
-/// @param[in] companions  or NULL
+/// solvent particles as they are: only positions, velocities and masses are not 0 there.
+/// @param[in] solvent_particles  or NULL
 /// Fails: NO_MEMORY. Tested: test_snapshot, cli/test_snapshots.
 enum status mf_snapshot_take(struct snapshot *snapshot, const struct particles *particles,
                              const struct composition *composition,
@@ -63,7 +63,7 @@ void mf_snapshot_clear(struct snapshot *snapshot);
 /// The reduced unit of a column: "lambda" of positions; "" of what the scene does not scale.
 const char *mf_snapshot_unit(const struct snapshot_column *column);
 
-/// A copy of what `from` holds, in the units that are spoken.
+/// A copy of what `from` holds, in the units of the file.
 /// @param[in,out] told  zero or an earlier copy, to be cleared
 /// Fails: NO_MEMORY. Tested: cli/test_units.
 enum status mf_snapshot_translate(struct snapshot *converted, const struct snapshot *from,
@@ -75,8 +75,8 @@ enum { SNAPSHOT_NAME_SIZE = 64 };
 void mf_snapshot_component_name(const struct snapshot_column *column, int component,
                                 char name[SNAPSHOT_NAME_SIZE]);
 
-/// Number of a particle's type, companions' being the last, and what it is called: "A" where the
-/// scene's particles are of one type.
+/// Number of a particle's type, solvent particles' being the last, and what it is called: "A" where
+/// the scene's particles are of one type.
 int mf_snapshot_type(const struct snapshot *snapshot, size_t particle);
 const char *mf_snapshot_type_name(const struct snapshot *snapshot, size_t particle);
 

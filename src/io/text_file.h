@@ -17,7 +17,7 @@
 /// NUL byte, so that the text ends where the file ends. Tested: test_data_table, test_json.
 enum status mf_text_file_read(const char *file, char **text, size_t *length) MUST_USE;
 
-/// A text in memory that stands for a file.
+/// An in-memory file.
 struct memory_file {
     const char *name; ///< of the file, exactly as the reader will ask for it
     const char *text;

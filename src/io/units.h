@@ -15,7 +15,8 @@
 /// The scale of a reduced scene, in nm, K and kg; and that of a file in physical units.
 extern const struct field mf_units_fields[], mf_units_system_fields[];
 
-/// Let the document speak in the "units" at the top of its file, before anything else is read.
+/// Set the units of the document to the "units" at the top of its file, before anything else is
+/// read.
 /// @param[in] scene  the file's scene, or the root itself in a scene file
 ///
 /// What the file does not say of the scale follows from the scene: T_0 is its temperature, μ the
@@ -24,13 +25,13 @@ extern const struct field mf_units_fields[], mf_units_system_fields[];
 /// diffusion no number can hold. Tested: test_units.
 void mf_units_read_document(struct json_object *root, struct json_object *scene);
 
-/// The units of a scene: those in which its document speaks, as mf_units_read_document finds them
+/// The units of a scene: those of its document, as mf_units_read_document finds them
 /// if the scene is all of the file, or "units" of a reduced one. Units whose time, energy, pressure
 /// or diffusion no number can hold are a fault. Tested: test_units.
 void mf_units_read(struct units *units, struct json_object *scene);
 
-/// Write "units" at the top of a file in physical units, and let the writer speak in them from now
-/// on; nothing in a reduced file. Reading it gives the same bits.
+/// Write "units" at the top of a file in physical units, and set the units of the writer to them
+/// from now on; nothing in a reduced file. Reading it gives the same bits.
 void mf_units_write(const struct units *units, struct json_writer *writer);
 
 /// The same for a summary, with the other units that follow.

@@ -42,14 +42,14 @@ double mf_units_diffusion_cm2_per_s(const struct units *units) {
     return centimetres * centimetres / (mf_units_time_ps(units) * 1e-12);
 }
 
-// Reduced units in those that are spoken ----------------------------------------------------------
+// Reduced units in those of a file ----------------------------------------------------------------
 
-/// What the spoken names are made of, in the order in which they stand in a name.
+/// The parts of unit names, in their order in a name.
 enum quantity { ENERGY, MASS, LENGTH, TIME, TEMPERATURE, QUANTITIES };
 
 struct physical {
     const char *name[QUANTITIES], *pressure;
-    double nanometre, picosecond, kilojoule, bar; ///< in the spoken units
+    double nanometre, picosecond, kilojoule, bar; ///< in the physical units
 };
 
 static const struct physical physical[] = {
@@ -64,7 +64,7 @@ struct dimension {
     bool is_pressure; ///< energy over a volume, which has a name of its own
 };
 
-/// Whether there is something to convert: the unit is one that the scene sets, and is spoken of in
+/// Whether there is something to convert: the unit is one that the scene sets, and is written in
 /// others.
 static bool find_dimension(const struct units *units, const char *text,
                            struct dimension *dimension) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// @file Physical units of a scene: what λ, k_B T_0 and μ are, and in which units its files and
-/// results speak.
+/// results are.
 ///
 /// Inside, everything is in reduced units. Conversions stand where files are read and written, by
 /// the units of field tables and of columns' headings: a number of the unit "k_B T_0/lambda" is
@@ -19,7 +19,7 @@
 /// 1 g/mol [kg], by which 1 u nm²/ps² is 1 kJ/mol; CODATA's u differs by 4e-10.
 #define UNITS_ATOMIC_MASS (1e-3 / UNITS_AVOGADRO)
 
-/// In what files and results speak.
+/// Units of files and results.
 enum units_system {
     UNITS_REDUCED,     ///< λ, τ, μ, k_B T_0
     UNITS_NM_PS,       ///< nm, ps, u, kJ/mol, K, bar
@@ -36,7 +36,7 @@ struct units {
     bool chosen;        ///< λ by the program: no other file can know it
 };
 
-/// Whether files and results speak other units than the reduced ones. NULL: they do not.
+/// Whether files and results are in other units than reduced ones. NULL: they are not.
 bool mf_units_are_physical(const struct units *units);
 
 /// Names of the systems as files have them: "reduced", "nm-ps", "angstrom-fs"; NULL-terminated.
@@ -52,12 +52,12 @@ double mf_units_diffusion_cm2_per_s(const struct units *units); ///< λ²/τ [cm
 
 enum { UNITS_NAME_SIZE = 128, UNITS_LINE_SIZE = 256, UNITS_MEASURED_SIZE = 192 };
 
-/// How many of the spoken units one reduced `unit` of a field table or heading is: with "lambda"
+/// How many units of the file one reduced `unit` of a field table or heading is: with "lambda"
 /// and nm-ps, λ in nm. 1 for reduced files, units that the scene does not set, and what is no unit.
 /// @param[in] units  NULL: reduced
 double mf_units_factor(const struct units *units, const char *unit);
 
-/// The spoken name of the same unit: "nm", "kJ/mol/nm^2", "bar", "sqrt(u/ps)".
+/// The name of the same unit in the file: "nm", "kJ/mol/nm^2", "bar", "sqrt(u/ps)".
 /// @param[out] name  shape [UNITS_NAME_SIZE]
 /// Returns `name`.
 const char *mf_units_name(const struct units *units, const char *unit, char *name);
@@ -70,8 +70,8 @@ const char *mf_units_suffix(const struct units *units, const char *unit, char *n
 const char *mf_units_measured(const struct units *units, const char *unit, double value,
                               double error, char text[UNITS_MEASURED_SIZE]);
 
-/// The engine speaks in reduced units: add the scale to the message of the calling thread if the
-/// file does not, and return `status` unchanged.
+/// The engine's messages are in reduced units: add the scale to the message of the calling thread
+/// if the file does not, and return `status` unchanged.
 enum status mf_units_add_to_message(const struct units *units, enum status status);
 
 /// The number that a file says for `reduced`: factor · reduced, or, where rounding allows it, the

@@ -44,7 +44,7 @@ static enum status add_own_laws(struct mesofit_fit *fit, const struct mesofit_sc
     return STATUS_OK;
 }
 
-/// Make a fit of a run file, or of what is lent in its place.
+/// Make a fit of a run file, or of an in-memory file.
 static enum status open_run(struct mesofit_fit **made, const char *file,
                             const struct mesofit_scene *own, int threads,
                             mesofit_fit_progress *progress, void *context) {

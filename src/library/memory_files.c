@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/// All digits, so that what is read is what was lent.
+/// All digits, so that the same numbers are read.
 static char *write_table(const struct mesofit_table *table) {
     char *text = NULL;
     size_t length;

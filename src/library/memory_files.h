@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file Texts and tables of the caller's memory, lent to the readers of files.
+/// @file Texts and tables in the caller's memory, read as if they were files.
 #pragma once
 
 #include "base/status.h"

@@ -46,7 +46,7 @@ static enum status begin(struct mesofit_simulation *simulation) {
                               &simulation->scene.start);
 }
 
-/// Make a simulation of a file, or of what is lent in its place.
+/// Make a simulation of a file, or of an in-memory file.
 static enum status open_scene(struct mesofit_simulation **simulation, const char *file,
                               const struct mesofit_scene *own) {
     enum status status = STATUS_OK;

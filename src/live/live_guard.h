@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file Who may speak to the server: whoever knows the token, from a page of the server's own.
+/// @file Who may use the server: whoever knows the token, from a page of the server's own.
 ///
 /// A page of another site can make a browser send requests to this machine. It does not know the
 /// token; its Origin is its own; and if it has made its name point here (DNS rebinding), the Host

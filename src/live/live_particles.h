@@ -5,11 +5,11 @@
 #include "dynamics/simulation.h"
 #include "live/live_feed.h"
 
-/// What is told of each particle beside its place.
+/// What is sent of each particle besides its position.
 enum live_particles_parts {
     LIVE_PARTICLES_POLARITY = 1,
     LIVE_PARTICLES_ENERGY = 2,
-    LIVE_PARTICLES_POTENTIAL = 4, ///< not told, but there are energies for who asks
+    LIVE_PARTICLES_POTENTIAL = 4, ///< not sent, but energies are available on request
 };
 
 enum { LIVE_PARTICLES_HEAD = 64 };

@@ -58,7 +58,7 @@ static enum status give_topics(struct live_view *view, const struct live_request
     return STATUS_OK;
 }
 
-/// An open stream and what it has told.
+/// An open stream and what it has sent.
 struct listening {
     struct live_feed *feed;
     uint64_t seen;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// @file The server: HTTP on 127.0.0.1 for one page, by libmicrohttpd.
 ///
-/// It checks who speaks (live_guard.h), how much he says, and hands requests to an answerer, which
-/// several threads call at once. Without libmicrohttpd at build time there is none, and starting
-/// it says how to get it. Tested: test_live_server.
+/// It checks the client (live_guard.h) and the size of its request, and passes requests to an
+/// answerer, which several threads call at once. Without libmicrohttpd at build time there is none,
+/// and starting it says how to get it. Tested: test_live_server.
 #pragma once
 
 #include "base/status.h"

@@ -33,6 +33,6 @@ struct live_watch {
 
 void mf_live_watch_init(struct live_watch *watch, struct live_view *view);
 
-/// The run has ended, or has failed to begin: what it lent is forgotten.
+/// The run has ended, or has failed to begin: its borrowed pointers are cleared.
 void mf_live_watch_end(struct live_watch *watch);
 void mf_live_watch_clear(struct live_watch *watch);

@@ -267,13 +267,13 @@ static void conclude(const struct formulas_state *state, struct inverse_step *st
     if (step->exhausted)
         snprintf(step->reason, sizeof step->reason,
                  "the shortest formula within %d standard errors of the best one of at most %lld "
-                 "nodes; its error is %.2g (%.2g by statistics)",
+                 "nodes; its error is %.2g (statistical error %.2g)",
                  FORMULAS_CHANCE, (long long)state->own.programming.nodes, step->error,
                  step->noise);
     else
         snprintf(step->reason, sizeof step->reason,
-                 "no formula of at most %lld nodes was near enough to the curve to be simulated, "
-                 "or every simulation failed, as it does where \"equilibration\" is too short",
+                 "no formula of at most %lld nodes was close enough to the curve to be simulated, "
+                 "or every simulation failed, for example because \"equilibration\" is too short",
                  (long long)state->own.programming.nodes);
 }
 

@@ -52,7 +52,7 @@ struct state {
     struct progress {
         uint32_t iteration;
         int stage;            ///< of `check`
-        uint64_t checked;     ///< evaluations when a incumbent was last measured
+        uint64_t checked;     ///< evaluations when the best candidate was last measured
         uint32_t last_better; ///< iteration in which the error fell last
         bool known;           ///< whether there is a best
         double error, noise;  ///< of the best: the mean of its fresh measurements
@@ -89,7 +89,7 @@ static const size_t min_evaluations = 10;
 /// How far the linear model may go from what was measured, as a part of a variable's range.
 static const double reach = 0.3;
 
-/// Rounds, of which an iteration takes at least one, and a last iteration for the incumbent.
+/// Rounds, of which an iteration takes at least one, and a last iteration for the best candidate.
 static uint32_t max_iterations(const struct inverse_method *method,
                                const struct inverse_problem *problem, const void *parameters) {
     const struct driven *driven = method->own;
@@ -193,8 +193,8 @@ static bool wants_check(const struct state *state, bool last) {
     return last || !state->progress.known || since >= 10 * (uint64_t)state->parameters.checks;
 }
 
-/// Measure the incumbent afresh and keep it if it is better than the best so far, or as good within
-/// `slack` standard errors.
+/// Measure the best candidate afresh and keep it if it is better than the best so far, or as good
+/// within `slack` standard errors.
 static enum status check_best_candidate(struct state *state, double slack) {
     struct population_check check;
     TRY(mf_population_check(&state->population, state->best_candidate,

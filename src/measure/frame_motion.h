@@ -13,7 +13,7 @@
 /// Velocities may be those of the frames, or differences of places around a frame,
 ///   v_n = (r_{n+1} − r_{n−1}) / (2 Δt),
 /// a mean of v over [−Δt, Δt]: their VACF is the true one averaged with a triangle of half-width
-/// 2 Δt, lower at short times, with the same integral. States are then told one frame later.
+/// 2 Δt, lower at short times, with the same integral. States are then reported one frame later.
 #pragma once
 
 #include "measure/frame_box.h"

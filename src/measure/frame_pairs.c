@@ -67,7 +67,7 @@ static void find_cells(struct cells *cells, int32_t *const place[3]) {
     }
 }
 
-/// Sort the beads, and what is told of them.
+/// Sort the beads and their attributes.
 static enum status sort(struct frame_pairs *pairs, const struct frame_pairs_plan *plan,
                         double range, const struct frame_box *box, int32_t *const place[3]) {
     const size_t beads = find_beads(plan);

@@ -8,11 +8,11 @@
 #include <math.h>
 #include <string.h>
 
-/// Width of the bins of g(r), and the part of the least height to which it goes, unless told [nm].
+/// Width of the bins of g(r), and the part of the least height to which it goes, unless given [nm].
 static const double usual_width = 0.01, usual_part = 0.45;
 
 /// S(q) goes to twice the wave number 2π ρ^(1/3), near which a liquid has its peak, in so many bins
-/// of at most so many waves unless told: their cost grows with beads times waves.
+/// of at most so many waves unless given: their cost grows with beads times waves.
 enum { WAVE_BINS = 100, USUAL_WAVES = 10 };
 
 static struct box cube_of(double volume) {
@@ -91,7 +91,7 @@ static enum status find_shares(struct measured *measured) {
     return STATUS_OK;
 }
 
-/// What is not told: equal bins of the usual width up to most of what the box allows.
+/// What is not given: equal bins of the usual width up to most of what the box allows.
 static enum status find_bins(struct measured *measured, const struct frame_box *box,
                              const struct trajectory_frame *first) {
     struct measured_plan *const plan = &measured->plan;
@@ -288,7 +288,7 @@ static enum status begin_motion(struct measured *measured, const struct trajecto
                                     first, &box);
 }
 
-/// Times are told of what is equally far apart in time.
+/// Times are printed for frames at equal intervals.
 static enum status begin_molecules(struct measured *measured, const struct trajectory_frame *frames,
                                    size_t count) {
     const bool timed = count > 1 && !measured->plan.motion.leave_out;

@@ -12,10 +12,10 @@
 
 const char *const mf_measured_velocities[] = {"usual", "file", "differences", "none", NULL};
 
-/// Unless told: frames of a window, and which part of the trajectory a window is at most.
+/// Unless given: frames of a window, and which part of the trajectory a window is at most.
 enum { USUAL_LAGS = 100, USUAL_PART = 10, WINDOWS_BETWEEN = 10, ESCAPE_BINS = 50 };
 
-/// Unless told, where pairs begin and where they have escaped, in units of ρ^(−1/3): around the
+/// Unless given, where pairs begin and where they have escaped, in units of ρ^(−1/3): around the
 /// first shell of a liquid.
 static const double usual_near = 0.8, usual_far = 1.6;
 

@@ -9,7 +9,7 @@
 /// Longer series are averaged in blocks first, so that their autocovariances stay cheap.
 enum { MAX_BLOCKS = 4096 };
 
-/// What halves, and independent samples, are judged by.
+/// Thresholds for halves and for independent samples.
 static const size_t min_of_halves = 20, min_of_all = 50;
 static const double deviations = 4, enough = 10;
 

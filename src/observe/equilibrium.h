@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file Whether the samples of a simulation are those of equilibrium, and enough to tell their own
-/// error.
+/// @file Whether the samples of a simulation are those of equilibrium, and enough to estimate their
+/// own error.
 #pragma once
 
 #include "base/status.h"
 
 #include <stddef.h>
 
-/// Judge a series by two looks.
+/// Check a series by two tests.
 ///
 /// - Its halves agree: their means differ by at most four standard errors, each half's own.
 /// - It has ten independent samples, by mf_statistics_inefficiency, where it has 50 samples to

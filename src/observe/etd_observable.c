@@ -81,7 +81,7 @@ static enum status write_bins(const struct etd *etd, const struct observable_res
     return mf_observable_table(results, "etd_bins.tsv", columns, 2, bins);
 }
 
-/// Tables without a number are not written, and that is told.
+/// Tables without a number are not written, and a warning says so.
 static enum status assess(const void *state, const struct simulation_setup *setup) {
     const struct etd *etd = state;
     (void)setup;

@@ -9,7 +9,7 @@
 enum status mf_etd_records_find(struct etd *etd, uint32_t low, uint32_t high,
                                 size_t *record) MUST_USE;
 
-/// Drop the records of escaped pairs, and make the buckets anew.
+/// Drop the records of escaped pairs, and make the buckets again.
 void mf_etd_records_compact(struct etd *etd);
 
 void mf_etd_records_clear(struct etd *etd);

@@ -219,7 +219,7 @@ struct flow_field_summary mf_flow_field_result(const void *state) {
     found.velocity = average(velocity, samples, &found.velocity_error);
     found.drag = average(samples > 0 ? drag + 1 : NULL, intervals, &found.drag_error);
     found.driving_force = f->mass * f->parameters.acceleration[0];
-    // What is not told from 0 is no flow, and what it would be divided by is noise.
+    // What does not differ from 0 is no flow, and what it would be divided by is noise.
     const bool flows = fabs(found.velocity) > 3 * found.velocity_error;
     found.coefficient =
         flows ? found.drag / (0.5 * density * found.velocity * found.velocity * area) : NAN;

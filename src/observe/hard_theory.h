@@ -31,7 +31,7 @@ struct hard_theory_species {
     double radius, mass, count;
 };
 
-/// At most so many are told apart; the rates of more are not known.
+/// At most so many are distinguished; the rates of more are not known.
 enum { HARD_THEORY_MAX_SPECIES = 16 };
 
 struct hard_theory {

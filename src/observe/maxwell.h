@@ -46,7 +46,7 @@ struct maxwell_summary {
     double probability; ///< of a larger D by chance
 };
 
-/// Configurations that are too close for velocities to forget each other count for fewer: by how
+/// Configurations that are too close for velocities to decorrelate count for fewer: by how
 /// much F_n scatters from block to block of time, where that of `independent` numbers would have
 /// the variance F (1 − F)/n, if that is no chance. Without a thermostat the total energy is
 /// remembered for ever.

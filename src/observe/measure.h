@@ -23,7 +23,7 @@ struct measure_listener {
                    uint64_t total);
     void *context;
     /// Steps until the next word at most, asked for after each; 0, or NULL: every second or so.
-    /// With 1 it is told after every step, of some twice.
+    /// With 1 it is called after every step, of some twice.
     int64_t (*steps)(void *context);
 };
 
@@ -39,7 +39,7 @@ enum status mf_measure_sample(struct simulation *simulation, const struct measur
 /// without pairs in range.
 struct measure_temperature {
     double mean;
-    double error; ///< 0 with velocities: their mean is judged as it is
+    double error; ///< 0 with velocities: their mean is assessed as it is
 };
 
 /// Run an equilibration of plan->equilibration steps and take the temperature of its last tenth:

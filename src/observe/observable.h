@@ -36,7 +36,7 @@ struct observable_results {
         *use; ///< all that was measured, as mf_measure_sample has it, or NULL
 };
 
-/// How a target is told in a run file.
+/// How a target is given in a run file.
 enum observable_form {
     OBSERVABLE_NUMBER,        ///< by a value and its error
     OBSERVABLE_CURVE,         ///< by a table of x, values, errors
@@ -55,8 +55,8 @@ struct observable_target {
 
 /// The values of one target over replicas, and their standard errors.
 struct observable_values {
-    size_t count;          ///< 0: not asked for
-    const double *x;       ///< shape [count]: where a curve is to be told, as the target has it
+    size_t count;    ///< 0: not asked for
+    const double *x; ///< shape [count]: where a curve is to be evaluated, as the target has it
     double *value, *error; ///< shape [count], zeroed; NaN: not measured
 };
 

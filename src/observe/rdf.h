@@ -48,7 +48,7 @@ struct rdf {
     struct rdf_bins bins;
     struct box box;
     size_t particle_count;
-    struct composition composition; ///< of what is told apart
+    struct composition composition; ///< of what is distinguished
     size_t pairs;                   ///< pair types
     size_t planned, samples;
     size_t blocks;

@@ -107,7 +107,7 @@ enum status mf_rdf_force_sample(struct rdf_force *force, struct particles *parti
                                 const struct neighbours *neighbours) MUST_USE;
 
 /// g and its standard error by leaving out blocks of all replicas (jackknife), the combination's
-/// weights each time anew, so that what they cost is in the error.
+/// weights each time, so that what they cost is in the error.
 /// @param[in]  replicas  shape [count], same bins, box and particle number
 /// @param[out] g, error  shape [bins.count]; error may be NULL
 /// Fails: NO_MEMORY. Tested: test_rdf_force (physics).

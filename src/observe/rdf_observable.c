@@ -187,7 +187,7 @@ static enum status write(const void *state, const struct observable_results *res
     return STATUS_OK;
 }
 
-/// A table without a number is not written, and that is told.
+/// A table without a number is not written, and a warning says so.
 static enum status assess(const void *state, const struct simulation_setup *setup) {
     const struct rdf *rdf = &((const struct rdf_observed *)state)->counted;
     char name[COMPOSITION_PAIR_NAME_SIZE];

@@ -24,7 +24,7 @@ struct stage {
 };
 
 struct stages {
-    const struct units *units; ///< in which they speak of lengths
+    const struct units *units; ///< of their lengths
     struct stage stage[STAGES_MAX];
     int count;
 };

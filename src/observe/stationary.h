@@ -26,7 +26,7 @@
 /// Parts of the samples of a simulation.
 enum { STATIONARY_PARTS = 4, STATIONARY_MAX_CHAINS = 1024 };
 
-/// Numbers that are judged together.
+/// Numbers that are tested together.
 struct stationary_numbers {
     size_t chains;              ///< simulations, 2 at least
     const double *const *chain; ///< shape [chains] of [STATIONARY_PARTS, row]: means of the parts

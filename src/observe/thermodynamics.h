@@ -57,7 +57,7 @@ struct thermodynamics_summary mf_thermodynamics_result(const struct thermodynami
 /// Whether the temperatures of a summary agree with the set one of a simulation: kinetic and
 /// configurational within 10 % and four standard errors, where there are five blocks to know them
 /// by. Without friction nothing is set, and the configurational one is held to the kinetic one;
-/// without velocities there is no kinetic one to judge.
+/// without velocities there is no kinetic one to check.
 ///
 /// A time step that is too large, or friction that is, may leave the kinetic temperature right and
 /// the structure wrong: velocity Verlet (λ = ½) of the standard fluid with γ = 200 and Δt = 0.01

@@ -165,7 +165,7 @@ static enum status tell(void *memory, const double *errors, const double *varian
         assess_challenger(genetic, state->errors);
         genetic->measured += (uint64_t)count;
         genetic->rows = genetic->parameters.population;
-        // If it has won, patience begins anew, with it in the place of the elite.
+        // If it has won, patience starts again, with it in the place of the elite.
         if (!is_over(genetic))
             begin_with_challenger(genetic);
     }

@@ -64,7 +64,7 @@ struct optimiser_round mf_nsga2_ask(struct nsga2 *nsga2);
 /// Fails: NO_MEMORY. Tested: test_nsga2.
 enum status mf_nsga2_tell(struct nsga2 *nsga2, const double *value) MUST_USE;
 
-/// Add a measurement to the means of a parent, and sort the parents anew. Fails: NO_MEMORY.
+/// Add a measurement to the means of a parent, and sort the parents again. Fails: NO_MEMORY.
 enum status mf_nsga2_add_measurement(struct nsga2 *nsga2, size_t parent,
                                      const double *value) MUST_USE;
 

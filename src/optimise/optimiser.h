@@ -109,7 +109,7 @@ enum status mf_optimiser_check_space(const struct optimiser_space *space) MUST_U
 /// Fails with BAD_INPUT if a round of `count` candidates is more than there may be.
 enum status mf_optimiser_check_round(const struct optimiser_space *space, size_t count) MUST_USE;
 
-/// An error as it was told, or OPTIMISER_FAILED if it is not finite or beyond that.
+/// An error as given, or OPTIMISER_FAILED if it is not finite or beyond that.
 static inline double optimiser_error(double told) {
     return told < OPTIMISER_FAILED && told > -HUGE_VAL ? told : OPTIMISER_FAILED;
 }

@@ -115,11 +115,10 @@ static const double recent = 0.25;
 
 void mf_inverse_give_up(struct inverse_step *step) {
     step->exhausted = true;
-    snprintf(
-        step->reason, sizeof step->reason,
-        "the algorithm found no next step before its steps were small, as the noise of errors may "
-        "do; its error is %.2g (%.2g by statistics)",
-        step->error, step->noise);
+    snprintf(step->reason, sizeof step->reason,
+             "the algorithm found no better step, perhaps because the errors are noisy; its error "
+             "is %.2g (statistical error %.2g)",
+             step->error, step->noise);
 }
 
 void mf_inverse_exhaust(struct inverse_step *step, const char *parameter, uint32_t last_better) {
@@ -127,11 +126,12 @@ void mf_inverse_exhaust(struct inverse_step *step, const char *parameter, uint32
     step->exhausted = true;
     if (since <= recent * iterations)
         snprintf(step->reason, sizeof step->reason,
-                 "its \"%s\" are used up; the error still fell, to %.2g (%.2g by statistics)",
+                 "its \"%s\" are used up; the error was still decreasing, to %.2g (statistical "
+                 "error %.2g)",
                  parameter, step->error, step->noise);
     else
         snprintf(step->reason, sizeof step->reason,
-                 "its \"%s\" are used up; the error, %.2g (%.2g by statistics), has not fallen in "
-                 "the last %u of %u iterations",
+                 "its \"%s\" are used up; the error, %.2g (statistical error %.2g), has not "
+                 "decreased in the last %u of %u iterations",
                  parameter, step->error, step->noise, since, iterations);
 }

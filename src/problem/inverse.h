@@ -264,7 +264,7 @@ struct inverse_folder {
     /// Path of a file in it, into OUTPUT_PATH_SIZE bytes (io/output.h).
     void (*file)(void *context, const char *name, char *path);
     void *context;
-    const struct units *units; ///< in which they speak
+    const struct units *units; ///< of its files
 };
 
 enum { INVERSE_MAX_SPANS = 10240 };

@@ -24,7 +24,7 @@ struct numbers_own {
 };
 
 /// The problem whose scene has these values: settings are replaced, and the table of a law with a
-/// changed parameter is made anew. Laws that are unknown curves stay as they are.
+/// changed parameter is rebuilt. Laws that are unknown curves stay as they are.
 /// @param[in]  value    shape [problem->numbers]
 /// @param[out] changed  borrows what `problem` does, and `own`
 /// @param[in,out] own   zero; what was made, to be cleared, also after a failure

@@ -31,7 +31,7 @@ struct target {
     size_t columns;             ///< of a matrix, else 0
     const double *factor_error; ///< of g(r): relative error that all values of a pair type have in
                                 ///< common, shape [pair types]; NULL: none
-    const double *x;     ///< shape [count]: of a curve that is told at its own points, else NULL
+    const double *x;     ///< shape [count]: of a curve that is given at its own points, else NULL
     const size_t *block; ///< of distributions: first values of the blocks that are its features,
                          ///< shape [blocks + 1]; NULL: none
     size_t blocks;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// @file Whether distributions of a verification are those of their targets, but for noise.
 ///
-/// As an inversion judges its samples (inversion/inversion_assess): each section, g(r) of a pair
+/// As an inversion assesses its samples (inversion/inversion_assess): each section, g(r) of a pair
 /// type or p of a group, by its χ² by bin, and by how many independent bins it has, as bins next to
 /// each other are off together.
 ///
@@ -33,7 +33,7 @@ struct verify_sections {
 struct verify_agreement {
     struct target_distance distance;
     double misfit;   ///< χ² by bin
-    double probable; ///< what noise alone exceeds in one of a thousand; 0: nothing was judged
+    double probable; ///< what noise alone exceeds in one of a thousand; 0: nothing was assessed
 };
 
 static inline bool verify_agreement_holds(const struct verify_agreement *agreement) {

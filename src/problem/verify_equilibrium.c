@@ -26,7 +26,7 @@ static double *part_of(const struct parts *parts, size_t replica, size_t part) {
     return parts->values + (replica * STATIONARY_PARTS + part) * parts->row;
 }
 
-/// Look at numbers of all parts; the least likely so far is what is told.
+/// Look at numbers of all parts; the least likely so far is reported.
 static enum status look(const struct parts *parts, const char *name, const double *weight,
                         double *min, char text[VERIFY_EQUILIBRIUM_SIZE]) {
     const double *chain[STATIONARY_MAX_CHAINS];

@@ -8,6 +8,6 @@
 enum { VERIFY_EQUILIBRIUM_SIZE = 160 };
 
 /// Say what is not, into `text`; "" if all is, or if there is one replica. Of samples in
-/// equilibrium one of a thousand is told of. Fails: NO_MEMORY. Tested: test_verify_equilibrium.
+/// equilibrium one of a thousand is reported. Fails: NO_MEMORY. Tested: test_verify_equilibrium.
 enum status mf_verify_equilibrium(const struct measurement *replicas, size_t count,
                                   char text[VERIFY_EQUILIBRIUM_SIZE]) MUST_USE;

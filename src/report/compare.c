@@ -103,7 +103,7 @@ static const struct block blocks[] = {
      offsetof(struct result, course)},
 };
 
-/// The names of the columns, with the units that the folder speaks.
+/// The names of the columns, with the units of the folder.
 static void write_header(FILE *stream, const struct block *block,
                          const struct result_summary *summary) {
     const char *name = block->header;

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file Whether the verification bears out a fit that took itself for converged.
+/// @file Whether the verification confirms a fit that has converged by its own measure.
 ///
 /// The samples of an inversion are of another size, and by moves that know no time step: they can
 /// agree with g(r) where a simulation does not. A liquid under tension holds in a small box and
-/// tears in a large one; a rough potential heats a simulation of too long a step.
+/// cavitates in a large one; a rough potential heats a simulation of too long a step.
 #pragma once
 
 #include "problem/verify.h"
 
 /// Why the verified g(r), or the pressure or an integral of Kirkwood and Buff if it was fitted, is
-/// not what the fit says it is, or the temperature more than 5 % off, into `reason`.
+/// not that of the fit, or the temperature more than 5 % off, into `reason`.
 /// @param[in] agreement     of distributions, shape [TARGETS]
 /// @param[in] fitted        the targets that were fitted
 /// @param[in] noise_margin  a pressure or an integral may be off by this many times its
 ///                          statistical error
-/// Returns whether there is something to say. Tested: test_fit_verification.
+/// Returns whether there is a reason. Tested: test_fit_verification.
 bool mf_fit_verification_contradicts(const struct verification *verification,
                                      const struct verify_agreement *agreement,
                                      const struct targets *fitted, double temperature,
@@ -26,7 +26,7 @@ bool mf_fit_verification_contradicts(const struct verification *verification,
 /// lucky draw of one to two standard errors, and a finer time step of the verification makes some
 /// per cent.
 /// @param[in] error, variance  mf_targets_error by the method, and its variance
-/// Returns whether there is something to say. Tested: test_fit_verification.
+/// Returns whether there is a reason. Tested: test_fit_verification.
 bool mf_fit_verification_is_worse(const struct verification *verification,
                                   const struct targets *targets, double error, double variance,
                                   char reason[INVERSE_REASON_SIZE]);
@@ -40,6 +40,6 @@ bool mf_fit_verification_is_worse_than_samples(const struct verification *verifi
                                                const struct units *units,
                                                char reason[INVERSE_REASON_SIZE]);
 
-/// Simulations warn in reduced units: add the scale to a warning if the file speaks in others. What
-/// other time steps have told of temperatures takes its place.
+/// Simulations warn in reduced units: add the scale to a warning if the file has others. What
+/// is known of the time step replaces it.
 void mf_fit_verification_add_units(const struct units *units, struct verification *verification);

@@ -99,7 +99,7 @@ static void write_line(struct progress *progress, const struct watcher_progress 
     progress->open_line = progress->terminal;
 }
 
-/// Tell everybody, with rate and time left, unless what is left is of a size that nobody knows.
+/// Report to all listeners, with rate and time left unless the total is unknown.
 static void report_all(struct progress *progress, struct watcher_progress reported) {
     const double now = clock_seconds();
     const struct watcher *watcher = progress->watcher;

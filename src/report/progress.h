@@ -21,10 +21,10 @@ struct progress {
     double next;                   ///< clock of the next one [s]
     uint64_t done_before;          ///< parts that a run before a restart had done
     struct progress_pace pace;     ///< from the first word on
-    uint64_t round, reported;      ///< of a fit: parts of an iteration, and the most that were told
+    uint64_t round, reported;      ///< of a fit: parts of an iteration, and the most reported
     bool open_line;                ///< the terminal's line has no end yet
     bool may_end_early;            ///< the time left is the most that it may take
-    const struct watcher *watcher; ///< told of the same, or NULL; borrowed
+    const struct watcher *watcher; ///< gets the same, or NULL; borrowed
 };
 
 /// @param[in] watcher  NULL: nobody watches
@@ -40,7 +40,7 @@ void mf_progress_report(struct progress *progress, uint64_t done, uint64_t total
 
 /// The same of a fit inside an iteration, whose passes or rounds may be of any size: an iteration
 /// counts as many simulations as its first one, and what is done never becomes less. While samples
-/// are doubled no time left is told: what is done stands still, for nobody knows how long.
+/// are doubled no remaining time is reported, as it is unknown.
 /// Tested: test_progress.
 void mf_progress_report_iteration(struct progress *progress, const struct inverse_progress *now,
                                   const char *text);

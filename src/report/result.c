@@ -210,7 +210,7 @@ static void read_scale_beside(struct json_object *root, struct units *units) {
     units->mass = scale.energy * pow(scale.time / scale.length, 2) * UNITS_ATOMIC_MASS;
 }
 
-/// In which units the folder speaks stands in an object of its own.
+/// The units of the folder are an object of its own.
 static void read_units(struct json_object *root, struct units *units) {
     static const struct field fields[] = {SCALE("length", length),
                                           SCALE("temperature", temperature), SCALE("mass", mass),

@@ -17,7 +17,7 @@
 struct watcher_run {
     enum run_kind kind;
     const char *folder;            ///< of its results
-    const struct units *units;     ///< in which its files speak
+    const struct units *units;     ///< of its files
     struct simulation *simulation; ///< and what follows: NULL of a fit
     const struct measure_plan *plan;
     const struct observable_use *observables; ///< ended by one without an observable
@@ -28,7 +28,7 @@ struct watcher_progress {
     uint64_t done, total;
     const char *unit, *text; ///< of what `done` counts; what else there is to say
     double rate;             ///< parts a second
-    bool open;               ///< nobody knows how much there is still to be done
+    bool open;               ///< the total is unknown
 };
 
 struct watcher {
@@ -41,6 +41,6 @@ struct watcher {
     /// Steps of a simulation until the next word at most; 0: as many as it likes.
     int64_t (*steps)(void *context);
     /// Whether a simulation is to go on with another temperature or time step, asked for after each
-    /// word: one that mf_simulation_check_change allows, told once.
+    /// word: one that mf_simulation_check_change allows, given once.
     bool (*change)(void *context, struct simulation_change *change);
 };

@@ -139,7 +139,7 @@ static void check_moves(const struct scene *scene, struct json_object *object) {
                       setup->integrator->name);
 }
 
-/// Masses of 1 are the unit; particles are not told of them where these would not be read, or cost
+/// Masses of 1 are the unit; particles do not have them where these would not be read, or cost
 /// time in a sweep of the friction.
 static void check_masses(struct scene *scene, struct json_object *object, bool remembers) {
     const struct integrator *integrator = scene->setup.integrator;
@@ -232,7 +232,7 @@ bool mf_scene_is_hot(const struct scene *scene, char line[SCENE_LINE_SIZE]) {
            scene->setup.attribute[ATTRIBUTES_MASS].ranges == 0;
 }
 
-/// In a reduced file masses of beads are in μ: one that is μ in u was told twice, and a bead would
+/// In a reduced file masses of beads are in μ: one that is μ in u was given twice, and a bead would
 /// have its square.
 static void check_mass_given_twice(const struct scene *scene, struct json_object *object) {
     static const double alike = 0.01, light = 1.1;

@@ -178,7 +178,7 @@ enum status mf_scene_groups_clear_tables(struct molecules *molecules) {
     return STATUS_OK;
 }
 
-/// Whether a group of a topology takes the law that is told; else a fault if it must not be told.
+/// Whether a group of a topology takes the law that is given; else a fault if it must not be given.
 static bool takes(const struct molecules_group *group, const struct molecules_group *given,
                   const struct scene_fitted *fitted, int order, struct json_object *scene) {
     const bool looked_for = mf_scene_groups_are_fitted(given);

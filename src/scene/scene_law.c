@@ -73,8 +73,8 @@ static enum status load_points(struct curve *curve, const char *unit, struct jso
     return status == STATUS_NO_MEMORY ? status : STATUS_OK;
 }
 
-/// Whether a curve can be evaluated: one that cannot, since its table could not be loaded or its
-/// parameters do not go together, has been reported as a fault and is dropped.
+/// A table that could not be loaded has no points, and parameters may not go together: clear the
+/// curve, the fault is recorded.
 static bool is_usable(const struct curve *curve) {
     if (curve_is_sampled(curve->family))
         return ((const struct sampled_parameters *)curve->parameters)->spline != NULL;

@@ -257,7 +257,7 @@ static int reach_of(const struct topology_kind *kind) {
     return reach;
 }
 
-/// Check a kind and hand it over to the topology, or forget it if there was a fault.
+/// Check a kind and hand it over to the topology, or clear it if there was a fault.
 static enum status enter_kind(struct reading *reading, size_t faults) {
     struct topology *topology = &reading->molecules->molecules.topology;
     struct topology_kind *kind = &reading->kind;

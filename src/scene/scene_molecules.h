@@ -114,7 +114,7 @@ enum status mf_scene_groups_clear_tables(struct molecules *molecules) MUST_USE;
 /// Give the groups of a topology the laws that the scene or a fit has for them, which are taken out
 /// of `given`: for a table a law of the scene, or none where a fit looks for it; the law of a
 /// topology stays, unless "unknowns" names the group. Faults, of groups that are not in the
-/// topology, whose law is told twice, and of tables that nobody knows, go to the document.
+/// topology, whose law is given twice, and of unknown tables, go to the document.
 /// Tested: cli/test_topologies.
 void mf_scene_groups_join(struct molecules *molecules, struct molecules *given,
                           const struct scene_fitted *fitted, struct json_object *scene);

@@ -46,7 +46,7 @@ static enum status read_file(struct data_table *table, const struct scene *scene
 }
 
 /// Rows or columns that are too many or too few. If the last column that is not an attribute's is
-/// not a velocity's either, it has a name that nobody knows.
+/// not a velocity's either, it has a name that is unknown.
 static void fault_shape(const struct scene *scene, struct json_object *particles,
                         const struct data_table *table, size_t motion) {
     const struct placement *placement = &scene->setup.placement;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// @file What a scene gives to each particle: a mass, a radius, a stiffness.
 ///
-/// The particles have an attribute of that name (mf_particles_numbers) if the scene speaks of it,
+/// The particles have an attribute of that name (mf_particles_numbers) if the scene has it,
 /// and nothing otherwise.
 #pragma once
 

@@ -45,7 +45,7 @@ struct particles_attribute {
     enum particles_type type;
     int components;
     /// Shape [components][count]: double, float or uint32_t. Sorting exchanges the arrays, so take
-    /// them anew from here in every step.
+    /// them again from here in every step.
     void *value[PARTICLES_MAX_COMPONENTS];
 };
 

@@ -164,7 +164,7 @@ static void clear_curve(void *own) {
     mf_memory_free(curve->error);
 }
 
-/// A function of time is told at its own times, which are equal; any other at its x.
+/// A function of time is given at its own times, which are equal; any other at its x.
 static struct target curve_values(const struct target_files *files, int kind) {
     const struct target_curve *curve = files->own[kind];
     return (struct target){.count = curve->points,

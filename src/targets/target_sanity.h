@@ -59,5 +59,5 @@ void mf_target_sanity_report_reading(const struct target_rdf *target, const char
 void mf_target_sanity_warn(const struct target_sanity_listener *listener, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
-/// The unit of length in which a person is told of targets, and λ in it.
+/// The unit of length of printed targets, and λ in it.
 const char *mf_target_sanity_length(const struct scene *scene, double *length);

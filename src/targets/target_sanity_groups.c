@@ -16,7 +16,7 @@ void mf_target_sanity_warn(const struct target_sanity_listener *listener, const 
     listener->warn(listener->context, line);
 }
 
-/// What lengths are told in.
+/// Unit of printed lengths.
 const char *mf_target_sanity_length(const struct scene *scene, double *length) {
     const struct units *units = &scene->units;
     static const char *const names[] = {"nm", "nm", "angstrom"};

@@ -15,7 +15,7 @@ struct target_state {
 
 enum { TARGET_STATE_LINE = 320 };
 
-/// Print what speaks against a homogeneous liquid, and what to do; whether there is something.
+/// Print what contradicts a homogeneous liquid, and what to do; whether there is something.
 ///
 /// - Two phases, or nearly: 1 + ρG, the variance of the number of beads in a large volume over its
 ///   mean, is above 3 by three standard errors. It is 0.05 of liquids, 1 of an ideal gas, and grows

@@ -177,7 +177,7 @@ static void name_group(const struct gromacs_reading *reading, int order,
         snprintf(name, TOPOLOGY_NAME_SIZE, "%s_%d", plain, number);
 }
 
-/// The law of a function with these numbers. Tables are told apart by their numbers alone.
+/// The law of a function with these numbers. Tables are distinguished by their numbers alone.
 static enum status make_law(const struct gromacs_reading *reading, const struct gromacs_line *line,
                             const struct gromacs_function *function, const double *values,
                             struct bonded_curve *curve) {

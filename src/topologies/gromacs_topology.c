@@ -15,7 +15,7 @@ enum section { TERMS, TERM_TYPES, MOLECULETYPE, ATOMS, MOLECULES, IGNORED, PAIRS
 #define SECTIONS(NAME, kind, ...)                                                                  \
     {#kind "s", TERMS, BONDED_##NAME}, {#kind "types", TERM_TYPES, BONDED_##NAME},
 
-/// The sections that are known. PAIRS are not taken, which is told.
+/// The sections that are known. PAIRS are not read, and a line says so.
 static const struct known {
     const char *name;
     enum section section;

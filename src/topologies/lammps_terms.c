@@ -36,7 +36,7 @@ struct reading {
     const char *file;
     size_t line;
     const struct known *section;    ///< NULL: the header
-    char style[TOPOLOGY_NAME_SIZE]; ///< of the section of coefficients, "" if it is not told
+    char style[TOPOLOGY_NAME_SIZE]; ///< of the section of coefficients, "" if it is not given
     int64_t promised[BONDED_KINDS];
     size_t capacity[BONDED_KINDS];
 };

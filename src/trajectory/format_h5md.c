@@ -98,7 +98,7 @@ static enum status fetch(struct trajectory *trajectory, struct trajectory_frame 
                 &header.has_velocities));
     TRY(take_if(frame, &h5md->image, header.step, at, H5T_NATIVE_DOUBLE, &header.has_images));
     TRY(take_if(frame, &h5md->id, header.step, at, H5T_NATIVE_INT64, &header.has_ids));
-    if (h5md->id.there && !header.has_ids) // nobody knows then which particle is which
+    if (h5md->id.there && !header.has_ids) // then it is unknown which particle is which
         return fail_of_step(&h5md->id, header.step, at, "");
     memcpy(frame->raw.data, &header, sizeof header);
     source->byte =

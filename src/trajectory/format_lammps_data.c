@@ -41,7 +41,7 @@ static enum status check(const struct lammps_data *data, const struct trajectory
     return STATUS_OK;
 }
 
-/// Masses by type; NAN: not told.
+/// Masses by type; NAN: not given.
 static enum status read_masses(const struct lammps_data *data, const struct trajectory_frame *first,
                                double unit, double *mass) {
     struct word word[LAMMPS_DATA_WORDS];

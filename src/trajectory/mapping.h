@@ -29,7 +29,7 @@ struct mapping {
 /// elements that the names make likely, which `notes` tell.
 /// Fails: BAD_INPUT, naming the plan and the atom or residue: an atom that no entry names, or two;
 /// a residue without an atom of the plan, or with other atoms than the first of its name; a mass
-/// that nobody knows; NO_MEMORY. Tested: test_mapping.
+/// that is unknown; NO_MEMORY. Tested: test_mapping.
 enum status mf_mapping_init(struct mapping *mapping, const struct mapping_plan *plan,
                             const struct structure *structure) MUST_USE;
 

@@ -51,7 +51,7 @@ static enum origin find_mass(const struct mapping_plan *plan, const struct struc
     return element ? FROM_ELEMENT : FROM_NOBODY;
 }
 
-/// What has been guessed once need not be told again: few names make up a liquid.
+/// What has been guessed once need not be reported again: few names make up a liquid.
 enum { MAX_REPORTED = 64 };
 struct reported {
     const struct structure_atom *atom[MAX_REPORTED];

@@ -62,8 +62,8 @@ static enum status find_format(struct trajectory *trajectory) {
                           find_hint(trajectory->file, begin, size));
 }
 
-/// What is told, unless the format has units of its own; else Å, fs and u, unless only the file can
-/// know.
+/// What is given, unless the format has units of its own; else Å, fs and u, unless only the file
+/// can know.
 static enum status find_units(struct trajectory *trajectory, const char *units) {
     const struct trajectory_format *const format = trajectory->format;
     if (format->unit_source == TRAJECTORY_OWN_UNITS)

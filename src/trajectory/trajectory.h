@@ -84,7 +84,7 @@ struct trajectory {
 
 /// Open a trajectory, or a file with one configuration. The format is found by what the file begins
 /// with, and only if that says nothing by the extension of its name.
-/// Fails: BAD_INPUT for an unknown format, units that must be told, a damaged header or first
+/// Fails: BAD_INPUT for an unknown format, units that must be given, a damaged header or first
 /// frame; IO; NO_MEMORY. What has failed is closed. Tested: test_trajectory_gromacs and the
 /// others of tests/unit/trajectory.
 enum status mf_trajectory_open(struct trajectory *trajectory, const char *file,
@@ -116,7 +116,7 @@ bool mf_trajectory_peek(const struct trajectory *trajectory, struct trajectory_f
 enum status mf_trajectory_sort(struct trajectory *trajectory,
                                const struct trajectory_frame *first) MUST_USE;
 
-/// For decode, before its atoms: forget which of them have been found. Fails: NO_MEMORY.
+/// For decode, before its atoms: clear which of them have been found. Fails: NO_MEMORY.
 enum status mf_trajectory_begin_atoms(const struct trajectory *trajectory,
                                       struct trajectory_frame *frame) MUST_USE;
 
@@ -131,6 +131,6 @@ enum status mf_trajectory_find_atom(const struct trajectory *trajectory,
 enum status mf_trajectory_read_count(const struct trajectory *trajectory, const char *line,
                                      uint64_t *atoms) MUST_USE;
 
-/// For a format's describe: the file itself says its units. Fails: BAD_INPUT if the user has told
+/// For a format's describe: the file itself says its units. Fails: BAD_INPUT if the user has given
 /// others.
 enum status mf_trajectory_found_units(struct trajectory *trajectory, const char *name) MUST_USE;

@@ -89,7 +89,7 @@ static void add_motion(struct stages *stages, const struct simulation_setup *set
                   has_velocities ? "velocities" : "steps");
 }
 
-/// λ in the units that are spoken, and what stands behind a length.
+/// λ in the units of the file, and the unit of a length.
 static double length_of(const struct stages *stages, char unit[UNITS_NAME_SIZE]) {
     mf_units_suffix(stages->units, "lambda", unit);
     return mf_units_factor(stages->units, "lambda");

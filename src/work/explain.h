@@ -6,7 +6,7 @@
 
 #include <stdio.h>
 
-/// Print the scale of a scene whose file speaks physical units.
+/// Print the scale of a scene whose file has physical units.
 void mf_explain_scale(FILE *out, const struct units *units);
 
 /// Print the stages of a step with the share of the time that each is expected to take, from costs

@@ -307,7 +307,7 @@ static void report_unconverged(const struct run *run) {
                        "not one simulation of the fit succeeded; the failures are counted in "
                        "%s/history.tsv",
                        folder);
-    // What the verification says of it speaks as the file does, and most reasons of no units.
+    // The reason of the verification is in the units of the file; most reasons have no units.
     if (!run->doubted && (strstr(reason, "pressure") || strstr(reason, "k_B T_0")))
         mf_units_add_to_message(&run->fit.scene.units, STATUS_UNCONVERGED);
 }

@@ -13,5 +13,6 @@
 enum status mf_fit_run(const char *file, const struct run_options *options) MUST_USE;
 
 /// Print what the simulations of the fit in `file` will pay for, and run nothing. Fails: BAD_INPUT.
-/// @param[in] ranks  how much faster so many will be (work/fit_tasks.h) is told, too; 0: it is not
+/// @param[in] ranks  how much faster so many will be (work/fit_tasks.h) is printed, too; 0: it is
+/// not
 enum status mf_fit_explain(const char *file, const struct run_options *options, int ranks) MUST_USE;

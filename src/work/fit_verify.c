@@ -21,7 +21,7 @@ enum status mf_fit_verify_folders(const struct fit_file *fit, struct run_folder 
     return STATUS_OK;
 }
 
-/// Simulations of a state, told among those of all: more are done with a shorter time step.
+/// Simulations of a state, reported among those of all: more are done with a shorter time step.
 struct sharing {
     uint64_t before, after; ///< of other states
     uint64_t here;          ///< of this one, so far

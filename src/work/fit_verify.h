@@ -10,7 +10,7 @@
 /// verifications. Fails: as mf_run_folder_check_state and mf_run_folder_reserve.
 enum status mf_fit_verify_folders(const struct fit_file *fit, struct run_folder *folder) MUST_USE;
 
-/// Simulate all states with what was found; the listener is told of the simulations of all.
+/// Simulate all states with what was found; the listener gets the simulations of all.
 /// @param[in]  curve         shape [UNKNOWNS][points]
 /// @param[in]  number        shape [INVERSE_MAX_NUMBERS]
 /// @param[out] verification  shape [states], zeros; to be cleared

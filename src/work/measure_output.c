@@ -54,7 +54,7 @@ double mf_measure_output_density(const struct measure_result *result) {
     return (double)result->mapping->beads / mf_box_volume(&box);
 }
 
-/// [K]: as told, or the kinetic one; NAN if neither is known.
+/// [K]: as given, or the kinetic one; NAN if neither is known.
 double mf_measure_output_temperature(const struct measure_result *result) {
     const double given = result->request->temperature;
     return isnan(given) ? mf_series_mean(&result->measured->motion.temperature) : given;

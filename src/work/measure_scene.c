@@ -83,7 +83,7 @@ static void write_molecules_of_scene(const struct measure_result *result,
     mf_json_end(writer);
 }
 
-/// A mixture is told by the numbers of its beads, of no more of them than a fit simulates well.
+/// A mixture is given by the numbers of its beads, of no more of them than a fit simulates well.
 static void write_particles(const struct measure_result *result, struct json_writer *writer) {
     const struct composition *const all = &result->measured->pairs.composition;
     const int64_t beads = mf_composition_particles(all);

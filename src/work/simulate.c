@@ -110,7 +110,7 @@ static enum status save(struct run *run) {
 }
 
 /// What was measured before a change is not of what comes after it: the simulation equilibrates
-/// once more, and all samples are taken anew.
+/// once more, and all samples are taken again.
 static enum status change(struct run *run) {
     const struct simulation_change *last = mf_simulate_changes_last(&run->kept.changes);
     TRY(mf_simulation_change(&run->simulation, last));

@@ -11,7 +11,7 @@
 
 static struct run_program_result result;
 
-/// A file with one key that nobody knows at `path`: the reader then lists those that it knows.
+/// A file with one key that is unknown at `path`: the reader then lists those that it knows.
 static const struct {
     const char *command, *text, *topic;
 } readers[] = {

@@ -145,7 +145,7 @@ static void test_frames_before_equilibrium_are_left_out(void **state) {
     "at once t= 0.0\n2\n    1AR     AR    1   0.500   0.500   0.500\n    2AR     AR    2   " x     \
     "   0.500   0.500\n   2.00000   2.00000   2.00000\n"
 
-/// Configurations that are independent have no order in time; those of a run that was begun anew
+/// Configurations that are independent have no order in time; those of a run that was begun again
 /// have.
 static void test_frames_of_one_time_are_used_when_they_are_independent(void **state) {
     small_inputs_write(*state, "one.gro", AT("0.900") AT("0.950"), NULL, NULL);

@@ -19,8 +19,8 @@ static bool has(const char *path, const char *key) {
     return strstr(text, key) != NULL;
 }
 
-/// Seconds before they are told of: methods of molecules simulate, each as propane-imc, and tables
-/// of many bins are looked at for their normalisation.
+/// Seconds before they are notified of: methods of molecules simulate, each as propane-imc, and
+/// tables of many bins are looked at for their normalisation.
 static bool is_slow(const char *path) {
     static const char *const slow[] = {"runs/propane-ibi/",
                                        "runs/propane-relative-entropy/",

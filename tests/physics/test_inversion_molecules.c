@@ -207,7 +207,7 @@ static double find_deviation(const struct inversion *inversion, size_t g) {
     return squares / count;
 }
 
-/// What a fit is judged by; returns a mean square over both groups.
+/// What a fit is assessed by; returns a mean square over both groups.
 typedef double judgement(const struct inversion *inversion);
 
 /// The deviations from a parabola, as large as the bands say within what smoothing takes off and

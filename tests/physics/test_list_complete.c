@@ -221,7 +221,7 @@ static void check_scene(struct fluid *fluid, const char *what, const struct begi
             if (s == SKINS - 1)
                 print_message("; T = %.2f, %.1f pairs\n", outcome.temperature, outcome.pairs);
             assert_close(outcome.temperature, temperature, temperature_band * temperature + 1e-9);
-            // The list was made anew, and a list with a wide skin was kept for some steps.
+            // The list was rebuilt, and a list with a wide skin was kept for some steps.
             assert_true(outcome.builds > 0 && (skins[s] < 0.3 || outcome.builds < 0.7));
         }
     }

@@ -32,9 +32,10 @@ struct landscape_drive {
 /// What came of it.
 struct landscape_result {
     uint64_t rounds, evaluations;
-    double min;            ///< error of the best candidate, without noise
-    double best_candidate; ///< error of the incumbent, without noise; HUGE_VAL if there was none
-    bool finished;         ///< by itself
+    double min; ///< error of the best candidate, without noise
+    double
+        best_candidate; ///< error of the best candidate, without noise; HUGE_VAL if there was none
+    bool finished;      ///< by itself
 };
 
 /// An optimiser with its parameters and state.

@@ -159,7 +159,7 @@ static double soft_core(double t) {
     return 5 * (1 - t) * (1 - t) * exp(-t) + 0.3 * sin(2 * M_PI * t);
 }
 
-/// More coefficients than can be told apart, or than points: small coefficients whose curve is
+/// More coefficients than can be distinguished, or than points: small coefficients whose curve is
 /// right.
 static void test_shape_fit_stays_small_when_coefficients_are_too_many(void **state) {
     double distance, largest;

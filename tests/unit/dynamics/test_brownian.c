@@ -101,7 +101,7 @@ static void test_brownian_begins_well_when_particles_overlap_at_random(void **st
     fluid_clear(&fluid);
 }
 
-/// Without a kinetic temperature the positions are judged, and a step that heats them is told.
+/// Without a kinetic temperature the positions are assessed, and a step that heats them is told.
 static void test_brownian_is_judged_by_the_configurational_temperature(void **state) {
     (void)state;
     static const struct {

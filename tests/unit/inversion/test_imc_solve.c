@@ -85,7 +85,7 @@ static void test_imc_solve_is_exact_when_there_is_no_noise(void **state) {
     }
 }
 
-/// What mf_imc_solve minimises, written down anew.
+/// What mf_imc_solve minimises, written down again.
 static double objective(const struct imc_system *system, double strength, const double *x) {
     const double bend = pow(0.1 / spacing, 2);
     double penalty = 0;

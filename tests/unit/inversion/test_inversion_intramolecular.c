@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The structure of free molecules: dimers of one type, whose bonds are as long as Boltzmann's
-// factor makes them, and dimers of two types, which g of the types cannot tell apart at small q.
+// factor makes them, and dimers of two types, which g of the types cannot distinguish at small q.
 #include "inversion/inversion.h"
 #include "inversion/inversion_intramolecular.h"
 #include "shared/fluids.h"

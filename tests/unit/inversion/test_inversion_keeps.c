@@ -65,7 +65,7 @@ static void test_inversion_keeps_no_slow_divergence(void **state) {
     assert_true(inversion->course.progress.min[TARGET_RDF].rms == 0.01);
 }
 
-/// Several targets count in units of their noise; a new start begins anew.
+/// Several targets count in units of their noise; a new start starts again.
 static void test_inversion_keeps_by_all_targets_since_its_start(void **state) {
     (void)state;
     struct fit fit;
@@ -247,7 +247,7 @@ static void test_inversion_pool_steps_with_a_fifth_of_the_noise(void **state) {
     assert_close(sum, 0.2, 0.02);
     assert_close(one.variance, 0.2, 1e-6);
     assert_close(worth, 5, 1e-6);
-    // What is far off begins anew.
+    // What is far off starts again.
     made->assessment.section[0].misfit = 9.1;
     mf_inversion_pool(made);
     assert_true(made->pool.samples == 0);

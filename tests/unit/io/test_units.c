@@ -115,7 +115,7 @@ static void test_units_are_those_of_molecules(void **state) {
         assert_close(units.length, 1, 1e-12);
         assert_close(units.mass / UNITS_ATOMIC_MASS, 15, 1e-12);
     }
-    // In a file that is not read yet nobody knows how many there are.
+    // In a file that is not read yet it is unknown how many there are.
     assert_fails(
         read_text(state,
                   MOLECULES("angstrom-fs", "[40, 40, 40]", "\"mass\": 15", "{\"file\": \"a.top\"}"),

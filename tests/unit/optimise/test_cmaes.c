@@ -48,7 +48,7 @@ static void test_cmaes_is_as_fast_as_others_on_rosenbrock(void **state) {
     assert_true(evaluations(&landscape_rosenbrock, 0.1, 3) < 6235);
 }
 
-/// Geometric mean of the incumbent's error on a noisy sphere.
+/// Geometric mean of the best candidate's error on a noisy sphere.
 static double noisy_sphere(double noise, uint64_t evaluations) {
     double sum = 0;
     void *parameters = landscape_parameters(&mf_cmaes_optimiser);

@@ -174,7 +174,7 @@ static void test_first_walks_are_about_the_start(void **state) {
 }
 
 /// Once an elite has stood its ground for the generations of its patience; a better one begins
-/// anew.
+/// again.
 static void test_it_settles_when_its_patience_is_over(void **state) {
     (void)state;
     struct run run = {.state = mf_memory_zeroed(1, mf_genetic_optimiser.state_size)};

@@ -202,7 +202,7 @@ static void test_nsga2_has_no_failed_member_on_its_front(void **state) {
     mf_nsga2_clear(&nsga2);
 }
 
-/// Stopped after any generation and begun anew with its spans alone, it ends with the same bits.
+/// Stopped after any generation and begun again with its spans alone, it ends with the same bits.
 static void test_nsga2_goes_on_with_the_same_bits(void **state) {
     const struct problem noisy = {zdt1, zdt1_front, 6, 0.05, 0.1};
     enum { GENERATIONS = 8, POPULATION = 11 };

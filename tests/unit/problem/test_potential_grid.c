@@ -82,7 +82,7 @@ static void test_potential_grid_core_takes_in_single_pairs_when_errors_tell(void
 }
 
 /// Pairs that were seen inside by chance, with an empty bin between them and the others, do not end
-/// the core; nor does a hole beyond what is well known begin it anew.
+/// the core; nor does a hole beyond what is well known begin it again.
 static void test_potential_grid_takes_stray_pairs_for_the_core(void **state) {
     (void)state;
     double target[BINS];

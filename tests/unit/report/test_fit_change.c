@@ -22,7 +22,7 @@ static void begin(struct unknowns *unknowns, struct inverse_problem *problem, do
     assert_ok(mf_unknowns_init(unknowns, problem));
 }
 
-/// A well that goes from −1 at r = 2.05 to −0.5 at r = 2.55; what changes in the core is not told.
+/// A well that goes from −1 at r = 2.05 to −0.5 at r = 2.55; what changes in the core is not given.
 static void test_change_of_a_potential_is_that_beyond_its_core(void **state) {
     (void)state;
     struct unknowns unknowns;
