@@ -5,7 +5,7 @@
 /// To add one, write its record (angle.c is an example) and a line in BONDED_LIST. Topologies,
 /// scenes, observables, targets, inversions, figures and summaries know it by these two. What joins
 /// molecules are bonds alone: exclusions, pieces and placement follow them. The number of a kind in
-/// the list is its order.
+/// the list is its `order` in all of the code, and "terms of an order" are those of one kind.
 #pragma once
 
 #include "curves/bonded_law.h"
@@ -36,7 +36,8 @@ struct bonded_batch;
 
 struct bonded_kind {
     const char *name;    ///< "angle"
-    const char *plural;  ///< "angles": the key of its groups in a scene
+    const char *plural;  ///< "angles": the key of its groups in a scene; the name and s,
+                         ///< as tables and figures are called
     const char *article; ///< "an"
     int beads;
     int reach; ///< the most bonds between two of its beads: as far as VOTCA excludes pairs

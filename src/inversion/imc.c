@@ -11,8 +11,8 @@
 static const char *const columns[] = {INVERSION_COLUMNS, "regularisation[1]", "misfit[1]",
                                       "directions", NULL};
 
-/// What Newton's step leaves of what is off, by the noise of C: of n independent samples and a step
-/// in so many directions it is the root of their ratio.
+/// C is known well enough if a Newton step leaves at most this share of the excess by the noise of
+/// C: sqrt(directions/n) of a step in so many directions, by n independent samples.
 static const double well_known = 1.0 / 3;
 
 bool mf_imc_is_known(const struct inversion *inversion, double directions) {
@@ -22,12 +22,13 @@ bool mf_imc_is_known(const struct inversion *inversion, double directions) {
     return mf_inversion_is_near(inversion) || directions < well_known * well_known * independent;
 }
 
-/// Near the noise a step that is as smooth as the noise allows is none at all, though g still asks
-/// for one along the ramp. There the step is the most probable one, with the prior of the band. Of
-/// a mixture it leaves the concentrations far outside their own noise, few directions among many
-/// bins, and the most probable one is taken wherever C is known in all bins. Far from the target of
-/// one type of beads that one takes what is not linear for the ramp, and g hardly calls it back:
-/// soft beads ended four errors off.
+/// The strength of the regularisation: 0, by the noise (mf_imc_solve), or that of the band's prior,
+/// which makes the step the most probable one. Near the targets the smoothest step within the noise
+/// is none at all, though g still asks for one along the ramp: the most probable one is taken. Far
+/// from them, with one type of beads, it would take what is not linear for the ramp, and g hardly
+/// calls that back: soft beads ended four errors off. In a mixture the smoothest step leaves the
+/// concentrations, few directions among many bins, far outside their own noise: there the most
+/// probable one is taken wherever C is known in all bins.
 static double choose_strength(struct inversion *inversion) {
     const struct potential_grid *grid = inversion_grid(inversion);
     if (grid->pairs > 1 ? !mf_imc_is_known(inversion, (double)grid->known)
@@ -57,7 +58,7 @@ done:
     return status;
 }
 
-/// The step far from the targets of groups.
+/// The step of a fit with groups as long as C is not known well enough for Newton's.
 static enum status step_low_rank(struct inversion *inversion, double *step) {
     struct inversion_state *first = inversion->state;
     if (inversion->states > 1)

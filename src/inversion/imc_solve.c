@@ -141,7 +141,7 @@ static double misfit(const struct workspace *w, const double *x) {
 
 /// Meet the constraint: x ← x + u (wanted − p·x)/(p·u), which is the constrained minimum if x is
 /// the free one and u = H⁻¹ p, H the matrix of the normal equations.
-static void meet(const struct imc_system *s, const double *u, double *x) {
+static void meet_constraint(const struct imc_system *s, const double *u, double *x) {
     double missing = s->wanted, response = 0;
     for (size_t k = 0; k < s->size; k++) {
         missing -= s->constraint[k] * x[k];
@@ -161,8 +161,8 @@ static double discrepancy(double min) {
     return fmax(1, min + noise_share);
 }
 
-/// H⁻¹ p, with H = RᵀR.
-static void find_meet(struct workspace *w) {
+/// How x responds to the constraint, u = H⁻¹ p with H = RᵀR, into `meet`.
+static void find_constraint_response(struct workspace *w) {
     gsl_matrix_const_view factor = gsl_matrix_const_submatrix(w->factor, 0, 0, w->size, w->size);
     for (size_t k = 0; k < w->size; k++)
         gsl_vector_set(w->meet, k, w->system->constraint[k]);
@@ -179,8 +179,8 @@ static double solve_at(struct workspace *w, double strength) {
     gsl_linalg_QR_decomp(w->factor, w->reflect);
     gsl_linalg_QR_lssolve(w->factor, w->reflect, w->rhs, w->x, w->residual);
     if (w->system->constraint) {
-        find_meet(w);
-        meet(w->system, w->meet->data, w->x->data);
+        find_constraint_response(w);
+        meet_constraint(w->system, w->meet->data, w->x->data);
     }
     return misfit(w, w->x->data);
 }

@@ -3,7 +3,7 @@
 ///
 ///   samples → equations → course.
 /// Each iteration samples the present potential in every state (inversion/inversion_state.h), makes
-/// of all of them one assessment and one set of linear equations (inversion/inversion_equations.h),
+/// of all of them one assessment and one set of equations (inversion/inversion_equations.h),
 /// and asks the method for a step towards the targets (inversion_rule.update): g(r) and, if they
 /// are asked for, pressures and integrals. The course (inversion/inversion_course.h) keeps the
 /// potential or goes back, and steps on.
@@ -34,9 +34,9 @@ struct inversion;
 /// What an inversion has of its own (inverse_method.own): the step from its samples, for the known
 /// bins, into `course.step`; perhaps another into `course.other_step`, with `has_other` set, to be
 /// taken from here if that one makes it worse; and up to INVERSION_OWN_COLUMNS columns. A method
-/// that `memoryless` goes by the present samples alone: each of its potentials has their noise. One
-/// whose potentials are made of few coefficients, which measures their gradient and goes by that,
-/// says by its parameters how many.
+/// that is `memoryless` goes by the present samples alone, so that each of its potentials has their
+/// whole noise. One whose potentials are made of few coefficients, of which it measures the
+/// gradient, has `coefficients`: how many, by its parameters.
 struct inversion_rule {
     enum status (*update)(struct inversion *inversion, double *extra);
     const struct inversion_basis_size *(*coefficients)(const void *parameters); ///< or NULL
@@ -99,8 +99,8 @@ enum status mf_inversion_write(const void *inversion, const struct inverse_folde
         "acceptance[1]", "potential_energy", "potential_energy_error"
 enum { INVERSION_SHARED_COLUMNS = 9, INVERSION_OWN_COLUMNS = INVERSE_EXTRA - 9 };
 
-/// Sample the present potential in all states, and assess the samples. Fails: as
-/// inverse_method.iterate.
+/// Sample the present potential in all states, and assess them, and make `assessment` of all.
+/// Fails: as inverse_method.iterate.
 enum status mf_inversion_observe(struct inversion *inversion,
                                  const struct inverse_listener *listener) MUST_USE;
 
@@ -118,7 +118,7 @@ enum status mf_inversion_sample(struct inversion *inversion, struct inversion_st
 /// test_inversion_equilibrium.
 bool mf_inversion_gives_direction(const struct inversion_state *state);
 
-/// Whether the assessment is near, as mf_inversion_state_is_near.
+/// Whether the assessment of all is near, as mf_inversion_state_is_near.
 bool mf_inversion_is_near(const struct inversion *inversion);
 
 /// Fill phi with the start of the fit: the problem's own, the hypernetted chain's, or −k_B T ln g;
@@ -146,7 +146,7 @@ bool mf_inversion_start_has_other(const struct inversion *inversion,
                                   const struct inversion_state *state);
 
 /// Whether samples of the hypernetted chain's start are far off under tension, so that it freezes,
-/// or cavitates.
+/// or tears.
 /// @param[in] assessment  the state's, or that of all
 bool mf_inversion_start_is_under_tension(const struct inversion_state *state,
                                          const struct inversion_assessment *assessment);

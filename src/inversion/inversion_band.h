@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// @file How well the data of an inversion determine its potential.
 ///
-/// The excess of S, with the variances σ_a² by target and samples, determines the potential by
-///   F = Bᵀ B,   B_ab = C_ab/(σ_a k_B T),
+/// The excess of S, with its covariance V = L Lᵀ by target and samples, determines the potential by
+///   F = Bᵀ B,   B = L⁻¹ C/k_B T,
 /// as in mf_imc_solve, whatever step led there. What the data leave open is held by the smoothness
 /// prior there with the weight 1/(k_B T)²: a bend by k_B T within a tenth of λ, or ten k_B T in
 /// all, counts as one standard error. The covariance of Φ is (F + prior)⁻¹. U of groups may bend
 /// more where its target does, and the result is made as smooth as that (inversion_smooth.h).
 ///
-/// Where more of the excess is left than these say, χ² by bin above 1, the σ_a² are that much
-/// larger, and so is the square of what the bins of a pair type have in common: a fit stops
-/// within 1.7 times the noise, and what it leaves is an error of Φ too.
+/// Where more of the excess is left than V says, χ² by bin above 1, V is that much larger: a fit
+/// stops within 1.7 times the noise, and what it leaves is an error of Φ too.
 ///
 /// What the most probable step from there would still change of the ramp is an error too. `imc` and
 /// `auto` take this step near the noise, and end when it is below half of the errors of A and of
@@ -23,12 +22,8 @@
 /// A fit that ends though it is not stationary (mf_inversion_has_converged) has one more error, the
 /// distance w that it has drifted: Σ + w wᵀ.
 ///
-/// Errors of bins count as independent. Those by sampling are correlated as S is, and with that
-/// F = n C/(k_B T)² (n independent configurations; the canonical ensemble is an exponential family)
-/// would determine water's ramp within 0.008 k_B T; but then every systematic error of the target
-/// must be smaller than its noise in the sum of all bins, and fits of the same target differ by
-/// 0.1. Targets of 28 twins have sums of pairs along the ramp that scatter by half of what
-/// independent bins give, and so A is off by 0.6 to 0.7 of its stated error.
+/// In V the samples' part is correlated as S is; the errors of a target are each bin's own, but for
+/// what the bins of a pair type have in common (inversion_noise.h).
 ///
 /// Φ follows the target bin by bin, beginning with −ln g, and what noise a bin has there stays in
 /// it, however smooth the prior, and so does that of the samples: where these have few counts, as

@@ -105,7 +105,7 @@ void mf_inversion_relax(struct inversion *inversion);
 /// bin elsewhere; as a whole everywhere if it is made of coefficients.
 void mf_inversion_take_step(struct inversion *inversion);
 
-/// Whether the result of a method that forgets is the mean of the potentials near the target, and
+/// Whether the result of a memoryless method is the mean of the potentials near the target, and
 /// no longer the present one (B. T. Polyak and A. B. Juditsky, SIAM J. Control Optim. 30, 838
 /// (1992)): there are three or more, and their mean g is nearer. A fit with a pressure, which may
 /// have come nearer meanwhile, ends with its last potential. Tested: test_inversion_keeps,

@@ -101,8 +101,8 @@ enum status mf_inversion_create(void *memory, const struct inverse_method *metho
     inversion->parameters = *(const struct inversion_parameters *)parameters;
     inversion->method = method;
     TRY(prepare(inversion, problem, rule->coefficients ? rule->coefficients(parameters) : NULL));
-    // The samplers of each state are made for its own start: how stiff its bonds are says its
-    // target.
+    // The samplers of each state are made with the start of its own target, which says how stiff
+    // its bonds are. The first state's is left as the start of all.
     for (size_t s = inversion->states; s-- > 0;) {
         struct inversion_state *state = &inversion->state[s];
         TRY(mf_inversion_start(state, inversion->course.phi));

@@ -133,7 +133,7 @@ static size_t count_rows(const struct inversion_equations *equations) {
     return count;
 }
 
-/// R x = Qᵀ b as a system, whose variances are 1 and have what is common in them.
+/// R x = Qᵀ b as a system. Its variances are 1, and it needs no `noise`: the rows are whitened.
 static void take_triangle(const gsl_matrix *rows, const gsl_vector *rhs, struct inversion_rows *to,
                           struct imc_system *system) {
     const size_t known = rows->size2;
@@ -150,9 +150,9 @@ static void take_triangle(const gsl_matrix *rows, const gsl_vector *rhs, struct 
     system->noise = NULL;
 }
 
-/// @param[in] response_variance  scratch, to fill the rows with the variances of the response;
-/// NULL:
-///                               with those of the excess
+/// All rows, reduced to as many as one state has.
+/// @param[in] response_variance  scratch: the variances of the response are added to those of the
+///                               excess; NULL: they are not
 static enum status reduce(const struct inversion_equations *equations, double birge,
                           double *response_variance, struct inversion_rows *to,
                           struct imc_system *system) {

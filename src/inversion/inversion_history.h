@@ -18,7 +18,7 @@ enum status mf_inversion_history_init(struct inversion_history *history, size_t 
                                       size_t bins) MUST_USE;
 void mf_inversion_history_clear(struct inversion_history *history);
 
-/// End the present iteration, which has counted S: both of shape [bins].
+/// Add an iteration: ⟨S⟩ of its samples and S*, both of shape [bins].
 void mf_inversion_history_add(struct inversion_history *history, const double *counts,
                               const double *target_counts);
 

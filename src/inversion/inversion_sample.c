@@ -37,8 +37,9 @@ static struct replicas_plan plan(const struct inversion *inversion, int64_t stre
                                   .every = p->every * stretch};
 }
 
-/// What of a section is off is known well enough for a step if this part of it is uncertain.
-/// What is out of reach, or noise itself, is no error that hides the noise.
+/// Noise up to this share of the error of a section does for a step. 0, so that the samples must be
+/// as exact as was asked for, where there is no error left to step against: it is noise itself, or
+/// out of reach of the coefficients.
 static double find_share(const struct inversion_state *state,
                          const struct inversion_section *section) {
     const bool reached = state->gradient < gradient_of_noise;
@@ -108,10 +109,10 @@ bool mf_inversion_gives_direction(const struct inversion_state *state) {
                noise_share * fabs(state->pressure.value - *targets->target[TARGET_PRESSURE].value);
 }
 
-/// Whether samples that have not settled are to be left: they have cost enough, are those of a
-/// start that is left anyway, or get farther from the targets though they are too far off to be
-/// kept, or those of a start beside which there is another. Of several states only all together are
-/// kept or not.
+/// Whether samples that have not settled are given up: they have cost enough; they are those of a
+/// first start under tension, with another start to be tried; or each more takes them farther from
+/// the targets, and they could not be kept, or there is another start. Of several states only all
+/// together are kept or not.
 static bool is_hopeless(struct sampling *sampling) {
     const struct inversion *inversion = sampling->inversion;
     const struct targets *targets = &sampling->state->problem->targets;
@@ -154,7 +155,8 @@ static enum status take(struct sampling *sampling, bool again) {
     return STATUS_OK;
 }
 
-/// What drifts was equilibration; what only remembers its begin is too short.
+/// Samples that drift were equilibration, and are taken again; those that only still
+/// remember their first configurations are too few, and doubled.
 static enum status settle(struct sampling *sampling) {
     struct inversion_assessment *assessment = &sampling->state->assessment;
     struct replicas_plan *now = &sampling->plan;

@@ -6,7 +6,7 @@
 /// prior holds U there. So the result of a fit becomes the most probable curve y of that prior,
 ///   minimise  Σ_a F_a (y_a − U_a − u_a)² + s |D(y − law)|²/(k_B T)²,   F_a = S_a²/(σ_a k_B T)²,
 /// with S counts of the samples, σ² the variance of their excess, and u = k_B T ln(S/S*) of a
-/// method that uses the present samples alone (inversion_rule.memoryless), which has not stepped
+/// method that goes by the present samples alone (inversion_rule.memoryless), which has not stepped
 /// where its counts are within their errors; else 0. Terms count as independent of each other, as
 /// in Boltzmann inversion: C of fewer samples than bins would say that well-known bins are not.
 /// The law is the parabola, or of a dihedral the Fourier series to cos 3φ and sin 3φ, that is

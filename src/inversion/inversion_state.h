@@ -33,7 +33,8 @@ struct inversion_parameters {
 
 enum { INVERSION_FROM_HNC, INVERSION_FROM_MEAN_FORCE };
 
-/// What its targets ask of S, shape [bins] each.
+/// What its targets ask of S: the number of pairs in a bin of g(r), or of terms in a bin of a
+/// group, in one sample; S* is what it should be. Shape [bins] each.
 struct inversion_target {
     double *ideal;           ///< S if g were 1, or p its mean over the known bins
     double *unit;            ///< S for a value of 1 of the target
@@ -113,7 +114,7 @@ double mf_inversion_target_g(const struct inversion_state *state, size_t bin);
 /// then. It is that of the counts that the samples expect, if these are more.
 double mf_inversion_target_variance(const struct inversion_state *state, size_t a);
 
-/// Fill the sections, the shapes and all that the targets say of the bins.
+/// Fill `target` and the sections from the targets of the problem.
 void mf_inversion_count_targets(struct inversion_state *state);
 
 /// Make the tables of the present potentials, which the samplers read. Fails: NO_MEMORY.

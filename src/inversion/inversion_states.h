@@ -7,8 +7,8 @@
 struct inversion;
 struct inversion_state;
 
-/// The assessment of one state is its own. A section of several is that of the state that is
-/// farthest off by its noise, with the noise of the least exact; the distance of g, and of each
+/// The assessment of one state alone is that of all. A section of several is that of the state that
+/// is farthest off by its noise, with the noise of the least exact; the distance of g, and of each
 /// kind of groups, the rms over the states; and those of the pressure and of integrals as many
 /// times the first state's noise as that of the worst state. They have settled if all have.
 void mf_inversion_states_assess(const struct inversion_state *state, size_t states,

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What an inversion counts, and how much of it its targets ask for.
+// What the targets of a state ask of its samples: S* and its error in each bin.
 #include "inversion/inversion_state.h"
 
 #include "observe/finite_size.h"
 
 #include <math.h>
 
-/// S of the pairs if g were 1, and of their target.
-static void count_pairs(struct inversion_state *state) {
+/// S if g were 1, and S* with its error, of each pair type: in the sampled system, which may have
+/// other numbers of particles than the scene.
+static void set_pairs(struct inversion_state *state) {
     const struct inverse_problem *problem = state->problem;
     const struct simulation_setup *scene = &problem->scene;
     const struct rdf_bins *bins = &problem->targets.bins;
@@ -37,8 +38,9 @@ static void count_pairs(struct inversion_state *state) {
     }
 }
 
-/// What the error of a pair type's factor makes of its target.
-static void count_common(struct inversion_state *state) {
+/// The error of S* that the bins of a pair type have in common: by their normalisation, which is
+/// known within `factor_error`.
+static void set_common_errors(struct inversion_state *state) {
     const struct potential_grid *grid = &state->grid;
     const struct targets *targets = &state->problem->targets;
     const double *factor_error = targets->target[TARGET_RDF].factor_error;
@@ -57,8 +59,8 @@ static double peak_of(const struct bonded_grid *group) {
     return peak;
 }
 
-/// The same of a group; `ideal` is S where p is its mean over the known bins.
-static void count_group(struct inversion_state *state, const struct potential_group *group) {
+/// S* and its error of a group; `ideal` is S where p is its mean over the known bins.
+static void set_group(struct inversion_state *state, const struct potential_group *group) {
     const struct inverse_problem *problem = state->problem;
     const struct simulation_setup *scene = &problem->scene;
     const struct bonded_unknown *unknown = group->own.unknown;
@@ -78,7 +80,7 @@ static void count_group(struct inversion_state *state, const struct potential_gr
     }
 }
 
-/// Another section.
+/// The next section, whose bins follow those of the section before.
 static struct inversion_section *add_section(struct inversion_state *state, int kind) {
     struct inversion_section *section = &state->assessment.section[state->assessment.sections];
     if (state->assessment.sections > 0) {
@@ -116,10 +118,10 @@ void mf_inversion_count_targets(struct inversion_state *state) {
         section->known_count = grid->pairs_known;
         section->peak = 1;
     }
-    count_pairs(state);
-    count_common(state);
+    set_pairs(state);
+    set_common_errors(state);
     for (size_t g = 0; g < grid->groups; g++) {
-        count_group(state, &grid->group[g]);
+        set_group(state, &grid->group[g]);
         enter_group(state, g);
     }
 }

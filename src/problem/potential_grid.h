@@ -5,8 +5,8 @@
 /// In each block of pairs the bin centres of the target, in three parts: the core, where the target
 /// has no more pairs than two of its standard errors and the potential is continued, as a straight
 /// line where there are some pairs and as a parabola where there are none (mf_core_fill); the known
-/// bins; and the cutoff, the upper
-/// edge of the last bin, where the potential is 0. It has one point more than bins.
+/// bins; and the cutoff, the upper edge of the last bin, where the potential is 0. It has one point
+/// more than bins.
 #pragma once
 
 #include "problem/bonded_grid.h"

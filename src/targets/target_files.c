@@ -24,7 +24,7 @@ const struct field mf_target_files_use_fields[] = {
     FIELD_END,
 };
 
-/// Of which nothing else knows.
+/// The records; each file defines its own, and only the list below names them.
 extern const struct target_record mf_target_pairs, mf_target_etd, mf_target_groups;
 extern const struct target_record mf_target_curve_of_time, mf_target_curve, mf_target_number;
 extern const struct target_record mf_target_kirkwood_buff, mf_target_diffusion;
@@ -36,8 +36,8 @@ const struct target_record *const mf_target_records[] = {
     &mf_target_kirkwood_buff, &mf_target_diffusion, NULL,
 };
 
-/// Whether a record names a kind.
-static bool names(const struct target_record *record, const char *kind) {
+/// Whether a record has a kind among those that it names, as "rdf".
+static bool lists_kind(const struct target_record *record, const char *kind) {
     size_t k = 0;
     while (record->kinds[k] && strcmp(record->kinds[k], kind) != 0)
         k++;
@@ -48,7 +48,7 @@ const struct target_record *mf_target_record(int kind) {
     const struct observable_target *about = mf_observable_kind(kind).target;
     const struct target_record *of_form = NULL;
     for (size_t k = 0; mf_target_records[k]; k++) {
-        if (names(mf_target_records[k], about->name))
+        if (lists_kind(mf_target_records[k], about->name))
             return mf_target_records[k];
         if (mf_target_records[k]->form == about->form && mf_target_records[k]->kinds[0] == NULL)
             of_form = mf_target_records[k];

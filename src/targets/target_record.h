@@ -34,7 +34,7 @@ struct target_table {
 
 struct target_record {
     const char *topic, *summary;   ///< of `mesofit describe`
-    const char *chief;             ///< the key that may be all that somebody writes
+    const char *chief;             ///< key that is proposed where a value is written for the object
     const struct field *fields[4]; ///< of its object, for `describe`; NULL-terminated
     enum observable_form form;     ///< of the kinds that it reads
     const char *kinds[8];          ///< which of these by their names; none: all that no other names
