@@ -98,7 +98,8 @@ static const struct mistake doubted[] = {
             "9.428, 9.428, 9.428", "mesofit: warning: target.rdf: it has the layers",
             "the unit of length"),
     MISTAKE("twice the beads", BEADS, "5488",
-            "mesofit: warning: target.rdf: its integral gives a negative", "1 + rho G = -0.87(", "3 %"),
+            "mesofit: warning: target.rdf: its integral gives a negative", "1 + rho G = -0.87(",
+            "3 %"),
     MISTAKE("a temperature in K without units",
             "\"temperature\": 1, \"dissipative\": {\"law\": \"power\", \"cutoff\": 0.5},\n"
             "\"units\": {" LENGTH ", \"temperature\": 298, " MASS "}",
