@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/cmd_describe.h"
 
-#include "app/command.h"
+#include "app/commands.h"
 #include "app/completion.h"
 #include "app/reference.h"
 #include "base/nearest.h"

@@ -230,7 +230,7 @@ static enum status fetch(struct batch *batch) {
     struct frames *const frames = batch->frames;
     struct frames_source *const source = &frames->source[frames->at];
     while (batch->fetched < frames->slots && !batch->over && !frames->ended &&
-           !mf_interrupt_requested()) {
+           !mf_interrupt_wanted(frames->plan.cancel)) {
         struct trajectory_frame *const frame = &frames->frame[batch->fetched];
         bool more = true;
         const enum status status = mf_trajectory_fetch(&frames->trajectory, frame, &more);
@@ -317,7 +317,7 @@ enum status mf_frames_next(struct frames *frames, size_t *count) {
     *count = 0;
     NEW_ARRAY(batch.decoded, frames->slots);
     while (*count < frames->slots / 2 && !frames->ended) {
-        if (mf_interrupt_requested()) {
+        if (mf_interrupt_wanted(frames->plan.cancel)) {
             status = mf_status_fail(STATUS_INTERRUPTED, "interrupted");
             goto done;
         }
