@@ -5,6 +5,7 @@
 #include "base/interrupt.h"
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "trajectory/trajectory_lent.h"
 
 #include <float.h>
 #include <math.h>
@@ -76,9 +77,12 @@ enum status mf_frames_open(struct frames *frames, const struct frames_plan *plan
     NEW_ARRAY(frames->source, plan->files);
     NEW_ARRAY(frames->frame, frames->slots);
     for (size_t k = 0; k < plan->files; k++) {
+        const struct trajectory_lent *const memory_files = mf_trajectory_lent_find(plan->file[k]);
         struct stat is;
         frames->source[k].digest = DIGEST_OF_NOTHING;
-        if (stat(plan->file[k], &is) == 0 && S_ISREG(is.st_mode))
+        if (memory_files)
+            frames->source[k].bytes = mf_trajectory_lent_bytes(memory_files);
+        else if (stat(plan->file[k], &is) == 0 && S_ISREG(is.st_mode))
             frames->source[k].bytes = (uint64_t)is.st_size;
     }
     CHECK(open_file(frames));
