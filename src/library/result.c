@@ -139,13 +139,16 @@ const char *mesofit_result_name(const struct mesofit_result *result, size_t numb
 
 // Tables ------------------------------------------------------------------------------------------
 
-/// "r[nm]" is a name and a unit. False without memory.
+/// "phi[k_B.T_0]" is a name and a unit, whose blanks the reader has made points. False without
+/// memory.
 static bool split(const char *word, size_t length, char **name, char **unit) {
     const char *const open = memchr(word, '[', length);
     const size_t named = open ? (size_t)(open - word) : length;
     const bool closed = open && word[length - 1] == ']';
     *name = strndup(word, named);
     *unit = closed ? strndup(open + 1, length - named - 2) : strdup("");
+    for (char *point = *unit; point && (point = strchr(point, '.'));)
+        *point = ' ';
     return *name && *unit;
 }
 

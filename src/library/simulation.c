@@ -263,7 +263,7 @@ static enum status measure_rdf(struct mesofit_simulation *simulation,
     struct rdf_observed rdf = {0};
     const struct observable_use uses[] = {{&mf_rdf_observable, &rdf, NULL}, {NULL, NULL, NULL}};
     TRY(check_plan(simulation, plan->samples, plan->every));
-    if (!(range > 0) || plan->bins == 0)
+    if (!(plan->range >= 0) || !(range > 0) || plan->bins == 0)
         return mf_status_fail(STATUS_BAD_INPUT, "g(r) needs bins and, without forces, a range");
     const struct rdf_bins bins = {.width = range / (double)plan->bins, .count = plan->bins};
     const struct measure_plan when = plan_from_now(simulation, plan->samples, plan->every);
