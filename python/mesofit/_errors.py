@@ -34,7 +34,7 @@ class InterruptedWarning(MesofitWarning):
     """Work was interrupted; the result is what there was until then."""
 
 
-def fail(status: int, text: str) -> Exception:
+def fail(status: int, text: str) -> BaseException:
     """The exception of a status of the library, other than OK."""
     if status == _library.NO_MEMORY:
         return MemoryError(text)

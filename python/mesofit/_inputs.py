@@ -14,6 +14,7 @@ import numpy as np
 
 from . import _library as c
 from ._errors import InputError
+from ._library import Array
 
 PathLike = Union[str, "os.PathLike[str]"]
 
@@ -45,7 +46,7 @@ def merge(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]
     return result
 
 
-def numbers(values: Any, what: str, shape: tuple[int | None, ...]) -> np.ndarray:
+def numbers(values: Any, what: str, shape: tuple[int | None, ...]) -> Array:
     """A contiguous array of doubles of that shape, None being any length."""
     try:
         array = np.ascontiguousarray(values, dtype=np.float64)
@@ -59,7 +60,7 @@ def numbers(values: Any, what: str, shape: tuple[int | None, ...]) -> np.ndarray
     return array
 
 
-def pointer(array: np.ndarray) -> Any:
+def pointer(array: Array) -> Any:
     return array.ctypes.data_as(c.NUMBERS)
 
 
@@ -68,7 +69,7 @@ class Memory:
 
     def __init__(self) -> None:
         self.texts: dict[str, str] = {}
-        self.tables: list[tuple[str, np.ndarray]] = []
+        self.tables: list[tuple[str, Array]] = []
         self.frames: Frames | None = None
 
     def add_json(self, name: str, content: Any) -> str:
@@ -127,7 +128,7 @@ _LENGTHS = {"nm": 1.0, "angstrom": 0.1}
 _TIMES = {"ps": 1.0, "fs": 1e-3, "ns": 1e3}
 
 
-def _box(box: Any) -> np.ndarray:
+def _box(box: Any) -> Array:
     """Vectors of a box, one a row, of three edges, of edges and angles in degrees, or of vectors."""
     if box is None:
         return np.zeros((3, 3))
@@ -188,6 +189,7 @@ class Frames:
                  length: str | float = "nm", time: str | float = "ps",
                  count: int | None = None, particles: int | None = None) -> None:
         self.fault: BaseException | None = None
+        self._first: Any = None
         self.length, self.time = _unit(length, _LENGTHS), _unit(time, _TIMES)
         if callable(positions):
             self._get: Callable[[int], Any] = positions
@@ -215,12 +217,11 @@ class Frames:
         self.count, self.particles = at.shape[0], at.shape[1]
         speed = None if velocities is None else numbers(velocities, "velocities", at.shape)
         when = None if times is None else numbers(times, "times", (self.count,))
-        boxes = None if box is None else np.asarray(box, dtype=np.float64)
-        each = boxes is not None and boxes.ndim > 1 and boxes.shape != (3, 3)
-        if each and len(boxes) != self.count:
-            raise InputError(f"box: {len(boxes)} boxes of {self.count} frames")
-        if not each:
-            boxes = _box(boxes)
+        given = np.zeros((3, 3)) if box is None else np.asarray(box, dtype=np.float64)
+        each = given.ndim > 1 and given.shape != (3, 3)
+        if each and len(given) != self.count:
+            raise InputError(f"box: {len(given)} boxes of {self.count} frames")
+        boxes = given if each else _box(given)
 
         def get(number: int) -> dict[str, Any]:
             return {"positions": at[number], "box": boxes[number] if each else boxes,

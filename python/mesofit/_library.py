@@ -16,6 +16,12 @@ from ctypes import (
     c_uint64, c_void_p,
 )
 from pathlib import Path
+from typing import Any
+
+from numpy.typing import NDArray
+
+#: Of numbers, as numpy has them.
+Array = NDArray[Any]
 
 NUMBERS = POINTER(c_double)
 TEXTS = POINTER(c_char_p)
@@ -219,4 +225,4 @@ version: str = library.mesofit_version().decode()
 
 def message() -> str:
     """Why the last call of this thread failed."""
-    return library.mesofit_message().decode(errors="replace")
+    return str(library.mesofit_message().decode(errors="replace"))

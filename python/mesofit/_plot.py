@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ._errors import InputError
+from ._library import Array
 from ._table import Curves, Table
 
 if TYPE_CHECKING:
@@ -51,7 +52,7 @@ def _style(ax: Any, table: Table, y: str) -> None:
     ax.set_ylabel(y)
 
 
-def _band(ax: Any, x: np.ndarray, y: np.ndarray, error: np.ndarray, colour: str) -> None:
+def _band(ax: Any, x: Array, y: Array, error: Array, colour: str) -> None:
     ax.fill_between(x, y - error, y + error, color=colour, alpha=0.22, linewidth=0)
 
 

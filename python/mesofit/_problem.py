@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import json
 import threading
 from typing import Any, NamedTuple
@@ -11,6 +12,7 @@ import numpy as np
 
 from . import _library as c
 from ._errors import InputError, check, fail
+from ._library import Array
 from ._inputs import Memory, numbers, pointer
 from ._simulation import _count
 from ._work import Content, _lend
@@ -39,9 +41,9 @@ class State(NamedTuple):
 class Curve(NamedTuple):
     """A curve that was found, in reduced units; NaN: its error is not known."""
 
-    r: np.ndarray
-    value: np.ndarray
-    error: np.ndarray
+    r: Array
+    value: Array
+    error: Array
 
 
 class Problem:
@@ -155,7 +157,7 @@ class Problem:
         """(0, 1) for each coefficient, as scipy.optimize wants it."""
         return [(0.0, 1.0)] * len(self)
 
-    def start(self) -> np.ndarray:
+    def start(self) -> Array:
         """Coefficients that the fit begins with, shape (coefficients,)."""
         coefficients = np.zeros(len(self))
         with self._lock:
@@ -222,9 +224,9 @@ class Optimiser:
     def __reduce__(self) -> Any:
         raise TypeError("an optimiser cannot be pickled")
 
-    def ask(self) -> np.ndarray:
+    def ask(self) -> Array:
         """Candidates to be measured next, shape (count, dimensions); count is 0 at the end."""
-        population, count = c.NUMBERS(), c.c_size_t()
+        population, count = c.NUMBERS(), ctypes.c_size_t()
         check(c.library.mesofit_optimiser_ask(self._pointer, population, count))
         self._asked = count.value
         if count.value == 0:
@@ -244,7 +246,7 @@ class Optimiser:
                                                None if noise is None else pointer(noise)))
         self._asked = None
 
-    def best(self) -> np.ndarray | None:
+    def best(self) -> Array | None:
         """What it believes best, shape (dimensions,); None before the first tell."""
         best = np.empty(self.dimensions)
         return best if c.library.mesofit_optimiser_best(self._pointer, pointer(best)) else None

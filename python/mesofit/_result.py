@@ -77,7 +77,8 @@ class Result:
     @property
     def tables(self) -> tuple[str, ...]:
         """Names of all tables."""
-        handle, names = self._open(), []
+        handle = self._open()
+        names: list[str] = []
         while (name := c.library.mesofit_result_name(handle.pointer, len(names))) is not None:
             names.append(name.decode(errors="replace"))
         return tuple(names)

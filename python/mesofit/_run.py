@@ -67,7 +67,7 @@ def _level() -> int:
     here, level, frame = str(Path(__file__).parent), 1, sys._getframe(1)
     while frame.f_back is not None and frame.f_code.co_filename.startswith(here):
         frame, level = frame.f_back, level + 1
-    return level - 1 if level > 1 else 1
+    return level
 
 
 class _Run:

@@ -12,6 +12,7 @@ import numpy as np
 
 from . import _library as c
 from ._errors import InputError, fail
+from ._library import Array
 from ._inputs import Memory, pointer
 from ._work import Content, Scene, _read
 
@@ -21,9 +22,9 @@ _PIECE = 0.2  # seconds between looks at what else there is to be done, such as 
 class Rdf(NamedTuple):
     """g(r): centres of the bins, values, standard errors."""
 
-    r: np.ndarray
-    g: np.ndarray
-    error: np.ndarray
+    r: Array
+    g: Array
+    error: Array
 
 
 class Means(NamedTuple):
@@ -80,7 +81,7 @@ class Simulation:
         return dict(json.loads(text))
 
     @property
-    def box(self) -> np.ndarray:
+    def box(self) -> Array:
         """Edges of the box, shape (dimensions,) [lambda]."""
         return np.array(self.scene["edges"], dtype=np.float64)
 
@@ -105,7 +106,7 @@ class Simulation:
         """Kinetic temperature now [T_0]; NaN without velocities."""
         return float(c.library.mesofit_simulation_temperature(self._pointer))
 
-    def _by_id(self, axis_of: Callable[[Any, int], Any]) -> np.ndarray:
+    def _by_id(self, axis_of: Callable[[Any, int], Any]) -> Array:
         self._check_idle()
         count = len(self)
         ids = np.ctypeslib.as_array(c.library.mesofit_simulation_ids(self._pointer), (count,))
@@ -115,12 +116,12 @@ class Simulation:
         return result
 
     @property
-    def positions(self) -> np.ndarray:
+    def positions(self) -> Array:
         """Shape (particles, dimensions), by the number of the particle; a copy [lambda]."""
         return self._by_id(c.library.mesofit_simulation_positions)
 
     @property
-    def velocities(self) -> np.ndarray:
+    def velocities(self) -> Array:
         """The same [lambda/tau]."""
         return self._by_id(c.library.mesofit_simulation_velocities)
 

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from ._errors import InputError
+from ._library import Array
 
 
 class Table:
@@ -30,7 +31,7 @@ class Table:
     """
 
     def __init__(self, name: str, columns: tuple[str, ...], units: tuple[str, ...],
-                 values: np.ndarray, comment: str = "") -> None:
+                 values: Array, comment: str = "") -> None:
         self.name, self.columns, self.units = name, columns, units
         self.values, self.comment = values, comment
 
@@ -44,7 +45,7 @@ class Table:
                              f"{', '.join(self.columns)}")
         return self.columns.index(column)
 
-    def __getitem__(self, column: str | int) -> np.ndarray:
+    def __getitem__(self, column: str | int) -> Array:
         """A column, by its name or its number from 0 on: shape (rows,)."""
         return self.values[:, self._number(column)]
 
@@ -54,7 +55,7 @@ class Table:
     def __len__(self) -> int:
         return len(self.values)
 
-    def __array__(self, dtype: Any = None, copy: Any = None) -> np.ndarray:
+    def __array__(self, dtype: Any = None, copy: Any = None) -> Array:
         return np.array(self.values, dtype=dtype) if copy else np.asarray(self.values, dtype=dtype)
 
     def unit(self, column: str | int) -> str:
@@ -67,7 +68,7 @@ class Table:
         unit = self.units[number]
         return self.columns[number] + (f" [{unit}]" if unit not in ("", "1") else "")
 
-    def to_dict(self) -> dict[str, np.ndarray]:
+    def to_dict(self) -> dict[str, Array]:
         """Columns by their names."""
         return {name: self.values[:, k] for k, name in enumerate(self.columns)}
 

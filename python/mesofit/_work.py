@@ -14,6 +14,7 @@ import numpy as np
 
 from . import _library as c
 from ._errors import InputError
+from ._library import Array
 from ._inputs import Frames, Memory, PathLike, from_universe, merge
 from ._result import Result, _path
 from ._run import Folder, carry_out
@@ -21,7 +22,7 @@ from ._run import Folder, carry_out
 Content = Union[Mapping[str, Any], PathLike]
 
 
-def law(function: Callable[[np.ndarray], Any], cutoff: float, *, begin: float = 0.0,
+def law(function: Callable[[Any], Any], cutoff: float, *, begin: float = 0.0,
         points: int = 2000) -> dict[str, Any]:
     """A pair law of one's own, Φ(r) or ω(r), for "conservative", "dissipative" or "start".
 

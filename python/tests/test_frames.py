@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Frames in memory: arrays, functions, and what looks like a Universe of MDAnalysis."""
 
+import json
 import math
+import shutil
 import warnings
 
 import numpy as np
@@ -197,3 +199,23 @@ def test_fault_of_a_function_is_the_callers():
 def test_wrong_frames_are_refused(about, text):
     with pytest.raises(mesofit.InputError, match=text):
         mesofit.measure(mesofit.Frames(**about), static=True)
+
+
+@pytest.mark.parametrize("name", ["water.xtc", "water.trr"])
+def test_real_universe_is_measured_as_its_file(name, tmp_path):
+    shutil.copy(WATER / name, tmp_path)  # an index is written beside it
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        mda = pytest.importorskip("MDAnalysis")
+        universe = mda.Universe(str(WATER / "water.gro"), str(tmp_path / name))
+        of_file = mesofit.measure(WATER / name, WATER / "water.gro", threads=1)
+        of_universe = mesofit.measure(universe, threads=1)
+    # Positions are of single precision in angstrom: pairs at the edge of a bin.
+    assert np.abs(of_universe["rdf"]["g"] - of_file["rdf"]["g"]).max() < 2e-3
+    assert of_universe.tables == of_file.tables
+    if "msd" in of_file.tables:
+        assert np.allclose(of_universe["msd"].values, of_file["msd"].values, rtol=1e-3, atol=1e-9)
+    scenes = [json.loads(target.text("target.json"))["scene"] for target in (of_file, of_universe)]
+    assert scenes[0].keys() == scenes[1].keys()
+    assert ("temperature" in scenes[0]) == (name == "water.trr")
+    assert scenes[0].get("temperature", 0) == pytest.approx(scenes[1].get("temperature", 0))

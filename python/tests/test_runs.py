@@ -97,8 +97,9 @@ def test_steps_are_samples_and_keys_are_put_in():
 
 def test_warnings_are_pythons():
     hot = {**SCENE, "temperature": 300, "time_step": 0.0005}
-    with pytest.warns(mesofit.MesofitWarning):
+    with pytest.warns(mesofit.MesofitWarning) as warned:
         run = mesofit.simulate(hot, steps=50)
+    assert {warning.filename for warning in warned} == {__file__}
     assert any(line.startswith("mesofit: warning: ") for line in run.messages)
 
 
