@@ -2,7 +2,7 @@
 """Builds wheels and source archives, by make and the standard library alone: what pip calls (PEP 517).
 
 A wheel holds the shared library and what it needs beside the C library (GSL, NLopt, cJSON, libgomp),
-found by the run path $ORIGIN. An archive has the sources of the library in `source`.
+found by the run path $ORIGIN. An archive has the sources of the library in `source`; tests are in the repository's clones alone.
 """
 
 from __future__ import annotations
@@ -124,8 +124,7 @@ def build_editable(wheel_directory, config_settings=None, metadata_directory=Non
 # Source archives ----------------------------------------------------------------------------------
 
 #: What the library is built of, beside the package.
-SOURCES = ("Makefile", "LICENSE", "README.md", "mesofit.pc.in", "include", "src", "plots",
-           "share", "tests/trajectories", "examples/potential.json", "targets/gaussian-core")
+SOURCES = ("Makefile", "LICENSE", "README.md", "mesofit.pc.in", "include", "src", "plots", "share")
 
 
 def build_sdist(sdist_directory, config_settings=None):
@@ -138,7 +137,7 @@ def build_sdist(sdist_directory, config_settings=None):
         kept = not re.search(r"__pycache__|\.o$|\.d$|/build(/|$)", about.name)
         return about if kept else None
     with tarfile.open(path, "w:gz", format=tarfile.PAX_FORMAT) as archive:
-        for own in ("pyproject.toml", "README.md", "backend.py", "mesofit", "tests"):
+        for own in ("pyproject.toml", "README.md", "backend.py", "mesofit"):
             archive.add(HERE / own, f"{name}/{own}", filter=clean)
         for source in SOURCES:
             archive.add(SOURCE / source, f"{name}/source/{source}", filter=clean)
