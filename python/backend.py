@@ -2,7 +2,8 @@
 """Builds wheels and source archives, by make and the standard library alone: what pip calls (PEP 517).
 
 A wheel holds the shared library and what it needs beside the C library (GSL, NLopt, cJSON, libgomp),
-found by the run path $ORIGIN. An archive has the sources of the library in `source`; tests are in the repository's clones alone.
+found by the run path $ORIGIN. An archive has the sources of the library in `source`; the tests are in
+clones alone.
 """
 
 from __future__ import annotations
