@@ -154,14 +154,23 @@ def simulate(scene: Content, steps: int | None = None, *, folder: PathLike | Non
     if isinstance(scene, Mapping):
         content = Scene(scene)
     if steps is not None:
-        every = merge(_read(content), keys).get("measure", {}).get("every", 25)
-        if not isinstance(steps, (int, np.integer)) or steps < every:
-            raise InputError(f"steps: expected {every} or more, since a sample is taken every "
-                             f"{every} of them")
-        keys = merge(keys, {"measure": {"samples": int(steps) // every}})
+        measure = merge(_read(content), keys).get("measure", {})
+        if isinstance(measure, Mapping):  # or else it is refused as it is
+            keys = merge(keys, {"measure": {"samples": _samples(measure, steps)}})
     words = ["simulate", _lend(content, keys, "scene", memory)]
     words += _options(threads=threads, seed=seed)
     return _carry_out(words, memory, folder, resume, force, progress)
+
+
+def _samples(measure: Mapping[str, Any], steps: int) -> int:
+    """How many samples so many steps are; a wrong interval is left to the program."""
+    every = measure.get("every", 25)
+    if isinstance(every, bool) or not isinstance(every, (int, np.integer)) or every < 1:
+        return 1
+    if isinstance(steps, bool) or not isinstance(steps, (int, np.integer)) or steps < every:
+        raise InputError(f"steps: expected {every} or more, since a sample is taken every {every} "
+                         f"of them")
+    return int(steps) // int(every)
 
 
 def fit(target: Any, *, density: float | None = None, temperature: float | None = None,

@@ -64,6 +64,8 @@ CALLS = {
     "fit that goes on and begins": lambda: mesofit.fit({}, resume=True, force=True),
     "simulate no steps": lambda: mesofit.simulate(SCENE, steps=-5),
     "simulate half a step": lambda: mesofit.simulate(SCENE, steps=0.5),
+    "steps of a wrong measure": lambda: mesofit.simulate(SCENE, steps=50, measure=3),
+    "steps of no interval": lambda: mesofit.simulate(SCENE, steps=50, measure={"every": 0}),
     "simulate with a wrong key": lambda: mesofit.simulate(SCENE, stepps=5),
     "simulate in no folder": lambda: mesofit.simulate(SCENE, folder=3),
     "go on with nothing": lambda: mesofit.simulate(SCENE, resume=True),
