@@ -13,6 +13,7 @@
 # make check-live     the live view, also in a browser (minutes)
 # make check-stress   time steps, friction, tables, sizes and lengths beyond the ordinary; kills, a clock set
 #                     back, a German locale (minutes)
+# make check-python   the Python package, with pytest (Debian: python3-numpy, python3-pytest)
 # make asan           unit and cli tests under address and undefined-behaviour sanitizers
 # make fuzz           damaged files, SECONDS=600 of them: every reader (libFuzzer, needs clang), whole runs
 # make tsan           tests of threads and a threaded simulation under the thread sanitizer
@@ -96,6 +97,16 @@ $(SHARED_LIBRARY): $(SHARED_OBJECTS) src/library/exports.map
 	    -Wl,--version-script=src/library/exports.map $(LDFLAGS) -o $@ $(filter %.o,$^) $(LDLIBS)
 	@ln -sf $(@F) $(BUILD)/$(SONAME)
 	@ln -sf $(SONAME) $(BUILD)/libmesofit.so
+
+# The same for a wheel: what it needs lies beside it.
+WHEEL_LIBRARY = $(BUILD)/wheel/$(SONAME)
+$(WHEEL_LIBRARY): $(SHARED_OBJECTS) src/library/exports.map
+	@mkdir -p $(@D)
+	@echo "ld $@"
+	$(AT)$(CC) -shared -Wl,-soname,$(SONAME) -Wl,--no-undefined -Wl,-rpath,'$$ORIGIN' -Wl,--disable-new-dtags \
+	    -Wl,--strip-debug -Wl,--version-script=src/library/exports.map $(LDFLAGS) -o $@ $(filter %.o,$^) $(LDLIBS)
+.PHONY: wheel-library
+wheel-library: $(WHEEL_LIBRARY)
 
 OF_PROGRAM = $(filter $(BUILD)/src/app/%,$(OBJECTS)) $(LIVE) $(LIBRARY)
 WITH_MPI   = $(BUILD)/mpi/mesofit
@@ -184,6 +195,14 @@ check-live: all
 KILLS ?= 3
 check-mpi: all $(if $(shell command -v $(MPICC)),$(WITH_MPI))
 	tests/tools/check_mpi.sh $(PROGRAM) $(WITH_MPI) $(KILLS)
+
+# The Python package over the shared library, beside the program.
+.PHONY: check-python python-check
+PYTHON ?= /usr/bin/python3
+check-python: all
+	MESOFIT=$(abspath $(PROGRAM)) MESOFIT_LIBRARY=$(abspath $(BUILD)/$(SONAME)) PYTHONDONTWRITEBYTECODE=1 \
+	    $(PYTHON) -m pytest -q -p no:cacheprovider python/tests
+python-check: check-python
 
 # Faults that are preloaded: a process is killed at one of its steps on the disk (tests/stress/test_kill.c), its
 # clock is set back (test_clock.c).

@@ -5,6 +5,8 @@
 
 #include "mesofit/fit.h"
 #include "mesofit/optimiser.h"
+#include "mesofit/result.h"
+#include "mesofit/run.h"
 #include "mesofit/simulation.h"
 
 #define MESOFIT_VERSION "0.2.0"

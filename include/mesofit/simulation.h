@@ -74,6 +74,13 @@ MESOFIT_API void mesofit_simulation_set_force(struct mesofit_simulation *simulat
 MESOFIT_API enum mesofit_status mesofit_simulation_run(struct mesofit_simulation *simulation,
                                                        uint64_t steps);
 
+/** The scene as it was read, defaults filled in, a JSON text as of a scene file, with two members
+ *  more: "edges" of the box [lambda] and, if the scene has units, "physical": what 1 of length, time,
+ *  energy, mass and temperature is, "length_unit_nm", "time_unit_ps", "energy_unit_kJ_per_mol",
+ *  "mass_unit_u", "temperature_unit_K". NULL without memory. It stays until the simulation is freed.
+ */
+MESOFIT_API const char *mesofit_simulation_text(struct mesofit_simulation *simulation);
+
 MESOFIT_API uint64_t mesofit_simulation_step(const struct mesofit_simulation *simulation);
 MESOFIT_API size_t mesofit_simulation_count(const struct mesofit_simulation *simulation);
 MESOFIT_API int mesofit_simulation_dimensions(const struct mesofit_simulation *simulation);

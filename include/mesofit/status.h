@@ -10,6 +10,8 @@
 
 #include "mesofit/export.h"
 
+#include <stddef.h>
+
 enum mesofit_status {
     MESOFIT_OK = 0,
     MESOFIT_BAD_INPUT,   /**< a number, a text or a file is wrong */
@@ -26,5 +28,10 @@ MESOFIT_API const char *mesofit_message(void);
 
 /** The version of the library that is linked, such as "0.2.0". */
 MESOFIT_API const char *mesofit_version(void);
+
+/** Bytes of a public struct, such as "mesofit_scene", in the library that is linked; 0: it has none
+ *  of this name. Who was built with other headers, or speaks through declarations of its own, finds
+ *  out by this that the library is older or newer, before it reads beyond an end. */
+MESOFIT_API size_t mesofit_size_of(const char *name);
 
 #endif

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "app/command.h"
+#include "app/commands.h"
 #include "base/nearest.h"
 #include "bench/bench.h"
 #include "bench/bench_accuracy.h"

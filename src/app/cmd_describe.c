@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/cmd_describe.h"
 
-#include "app/command.h"
+#include "app/commands.h"
 #include "app/completion.h"
 #include "app/reference.h"
+#include "app/schema.h"
 #include "base/nearest.h"
 #include "defaults/fit_file.h"
 #include "observe/kirkwood_buff_observable.h"
@@ -16,99 +17,104 @@
 enum { FORMAT };
 
 static const struct command_option options[] = {
-    [FORMAT] = {"--format", "man|markdown|bash",
-                "the whole reference: a man page, Markdown, or the completions of bash"},
+    [FORMAT] = {"--format", "man|markdown|bash|schema",
+                "the whole reference: a man page, Markdown, the completions of bash, JSON Schema"},
     {NULL, NULL, NULL},
 };
 
 /// An object inside another, and the topic or group that says what stands in it.
 struct inner {
     const char *key, *help, *topic;
+    enum topic_form form;
 };
 
 static const struct inner run_objects[] = {
-    {"scene", "the simulated system, without the unknowns", "scene"},
-    {"target", "measured quantities, at least one", "target"},
-    {"unknowns", "the unknowns; default: the potential", "unknowns"},
-    {"method", "\"name\" and settings of the method", "method"},
-    {"units", "units of the file and its results, \"nm-ps\" or \"angstrom-fs\"", "units"},
-    {"core", "region where the target is 0", "core"},
-    {"verification", "independent simulations of the result", "verification"},
+    {"scene", "the simulated system, without the unknowns", "scene", TOPIC_ONE},
+    {"target", "measured quantities, at least one", "target", TOPIC_ONE},
+    {"unknowns", "the unknowns; default: the potential", "unknowns", TOPIC_ONE},
+    {"method", "\"name\" and settings of the method", "method", TOPIC_ONE},
+    {"units", "units of the file and its results, \"nm-ps\" or \"angstrom-fs\"", "units",
+     TOPIC_ONE},
+    {"core", "region where the target is 0", "core", TOPIC_ONE},
+    {"verification", "independent simulations of the result", "verification", TOPIC_ONE},
     {"states",
      "systems that share a potential, {\"dilute\": {\"scene\": {…}, …}, …}, with this file's keys "
      "unless they have their own",
-     "run"},
-    {NULL, NULL, NULL},
+     "run", TOPIC_NAMED},
+    {NULL, NULL, NULL, TOPIC_ONE},
 };
 
 /// "the same of angles" behind what is said of bonds.
-#define SAME_UNKNOWNS(NAME, kind, ...) {#kind "s", "the same of " #kind "s", "group"},
-#define SAME_GROUPS(NAME, kind, ...) {#kind "s", "the same of " #kind "s", #kind "s"},
+#define SAME_UNKNOWNS(NAME, kind, ...) {#kind "s", "the same of " #kind "s", "group", TOPIC_NAMED},
+#define SAME_GROUPS(NAME, kind, ...) {#kind "s", "the same of " #kind "s", #kind "s", TOPIC_NAMED},
 #define SAME_TERMS(NAME, kind, beads, ...)                                                         \
-    {#kind "s", "the same of " #kind "s, of " #beads " beads each", #kind "s"},
+    {#kind "s", "the same of " #kind "s, of " #beads " beads each", #kind "s", TOPIC_BEADS},
 
 static const struct inner unknowns_objects[] = {
-    {"potential", "Phi(r)", "potential"},
-    {"bonds", "U(r) of named groups, {\"backbone\": {}, …}", "group"},
-    BONDED_LIST_BEYOND_BONDS(SAME_UNKNOWNS){"omega", "omega(r)", "omega"},
-    {"omega_transverse", "omega(r) perpendicular to the pair", "omega"},
+    {"potential", "Phi(r)", "potential", TOPIC_ONE},
+    {"bonds", "U(r) of named groups, {\"backbone\": {}, …}", "group", TOPIC_NAMED},
+    BONDED_LIST_BEYOND_BONDS(SAME_UNKNOWNS){"omega", "omega(r)", "omega", TOPIC_ONE},
+    {"omega_transverse", "omega(r) perpendicular to the pair", "omega", TOPIC_ONE},
     {"memory", "omega(r) of modes of the scene's \"memory\" without \"omega\", {\"slow\": {…}, …}",
-     "omega"},
+     "omega", TOPIC_NAMED},
     {"numbers",
      "numbers of the scene by path, for methods that search: {\"dissipative.sigma\": {…}, …}",
-     "numbers"},
-    {NULL, NULL, NULL},
+     "numbers", TOPIC_NAMED},
+    {NULL, NULL, NULL, TOPIC_ONE},
 };
 
 static const struct inner potential_objects[] = {
-    {"start", "initial law, in a mixture one for each pair type", "conservative"},
-    {"truth", "known law, for comparison", "conservative"},
-    {NULL, NULL, NULL},
+    {"start", "initial law, in a mixture one for each pair type", "conservative", TOPIC_PARTS},
+    {"truth", "known law, for comparison", "conservative", TOPIC_PARTS},
+    {NULL, NULL, NULL, TOPIC_ONE},
 };
 
 static const struct inner omega_objects[] = {
-    {"fixed", "fixed parameters of the curve \"power\"", "fixed"},
-    {"start", "initial law", "dissipative"},
-    {"truth", "known law, for comparison", "dissipative"},
-    {NULL, NULL, NULL},
+    {"fixed", "fixed parameters of the curve \"power\"", "fixed", TOPIC_ONE},
+    {"start", "initial law", "dissipative", TOPIC_ONE},
+    {"truth", "known law, for comparison", "dissipative", TOPIC_ONE},
+    {NULL, NULL, NULL, TOPIC_ONE},
 };
 
 static const struct inner scene_objects[] = {
-    {"particles", "number and placement of particles", "particles"},
-    {"conservative", "potential, {\"law\": …}; in a mixture one for each pair type",
-     "conservative"},
-    {"dissipative", "friction weight, likewise", "dissipative"},
-    {"dissipative_transverse", "friction weight perpendicular to the pair, likewise",
-     "dissipative"},
-    {"memory", "friction with memory: named modes, {\"slow\": {…}, …}", "memory"},
-    {"molecules", "named kinds of molecules, {\"hexane\": {…}, …}", "molecule"},
-    {"bonds", "named groups of bonds, {\"backbone\": {\"law\": …}, …}", "bonds"},
-    BONDED_LIST_BEYOND_BONDS(SAME_GROUPS){
-        "interactions", "other interactions, {\"harmonic-trap\": {…}, …}", "interactions"},
+    {"particles", "number and placement of particles", "particles", TOPIC_ONE},
+    {"conservative", "potential, {\"law\": …}; in a mixture one for each pair type", "conservative",
+     TOPIC_PARTS},
+    {"dissipative", "friction weight, likewise", "dissipative", TOPIC_PARTS},
+    {"dissipative_transverse", "friction weight perpendicular to the pair, likewise", "dissipative",
+     TOPIC_PARTS},
+    {"memory", "friction with memory: named modes, {\"slow\": {…}, …}", "memory", TOPIC_NAMED},
+    {"molecules", "named kinds of molecules, {\"hexane\": {…}, …}", "molecule", TOPIC_MOLECULES},
+    {"bonds", "named groups of bonds, {\"backbone\": {\"law\": …}, …}", "bonds", TOPIC_NAMED},
+    BONDED_LIST_BEYOND_BONDS(SAME_GROUPS){"interactions",
+                                          "other interactions, {\"harmonic-trap\": {…}, …}",
+                                          "interactions", TOPIC_ONE},
     {"dynamics",
      "{\"integrator\": …} and its settings; default \"aboba\" with friction, else "
      "\"velocity-verlet\"",
-     "dynamics"},
-    {"units", "physical units for the results of a scene in reduced units", "scale"},
+     "dynamics", TOPIC_ONE},
+    {"units", "physical units for the results of a scene in reduced units", "scale", TOPIC_ONE},
     {"measure", "sampling; like the observables below (measured if given) in scene files only",
-     "measure"},
-    {NULL, NULL, NULL},
+     "measure", TOPIC_ONE},
+    {NULL, NULL, NULL, TOPIC_ONE},
 };
 
 static const struct inner molecule_objects[] = {
-    {"chain", "linear chain; instead \"beads\": [\"A\", \"B\", …] and", "chain"},
-    {"bonds", "beads of each bond, counted from 1: {\"backbone\": [[1, 2], …], …}", "bonds"},
-    BONDED_LIST_BEYOND_BONDS(SAME_TERMS){NULL, NULL, NULL},
+    {"chain", "linear chain; instead \"beads\": [\"A\", \"B\", …] and", "chain", TOPIC_ONE},
+    {"bonds", "beads of each bond, counted from 1: {\"backbone\": [[1, 2], …], …}", "bonds",
+     TOPIC_BEADS},
+    BONDED_LIST_BEYOND_BONDS(SAME_TERMS){NULL, NULL, NULL, TOPIC_ONE},
 };
 
 static const struct inner memory_objects[] = {
-    {"omega", "amplitude, {\"law\": …}: friction omega^2/[1 + (time frequency)^2]", "dissipative"},
-    {NULL, NULL, NULL},
+    {"omega", "amplitude, {\"law\": …}: friction omega^2/[1 + (time frequency)^2]", "dissipative",
+     TOPIC_ONE},
+    {NULL, NULL, NULL, TOPIC_ONE},
 };
 
 static const struct inner map_objects[] = {
-    {"beads", "named kinds of beads, {\"CH3\": {…}, \"OH\": {…}}", "bead"},
-    {NULL, NULL, NULL},
+    {"beads", "named kinds of beads, {\"CH3\": {…}, \"OH\": {…}}", "bead", TOPIC_NAMED},
+    {NULL, NULL, NULL, TOPIC_ONE},
 };
 
 /// The objects in what a topic is about.
@@ -271,10 +277,11 @@ size_t mf_describe_topics(struct topic topics[DESCRIBE_MAX_TOPICS]) {
 }
 
 static size_t add_object(struct topic_object *objects, size_t n, const char *key, const char *help,
-                         const char *topic) {
+                         const char *topic, enum topic_form form) {
     snprintf(objects[n].key, sizeof objects[n].key, "%s", key);
     snprintf(objects[n].help, sizeof objects[n].help, "%s", help);
     snprintf(objects[n].topic, sizeof objects[n].topic, "%s", topic);
+    objects[n].form = form;
     return n + 1;
 }
 
@@ -286,7 +293,7 @@ static size_t add_observables(struct topic_object *objects, size_t n) {
         snprintf(help, sizeof help, "%s%s", observable->summary,
                  observable->always ? "; always measured" : "");
         if (observable->fields)
-            n = add_object(objects, n, observable->name, help, observable->name);
+            n = add_object(objects, n, observable->name, help, observable->name, TOPIC_ONE);
     }
     return n;
 }
@@ -296,7 +303,7 @@ static size_t add_targets(struct topic_object *objects, size_t n) {
     struct observable_kind found;
     for (int kind = 0; (found = mf_observable_kind(kind)).observable; kind++) {
         n = add_object(objects, n, found.target->name, found.target->summary,
-                       mf_target_record(kind)->topic);
+                       mf_target_record(kind)->topic, TOPIC_PARTS);
     }
     return n;
 }
@@ -306,7 +313,7 @@ size_t mf_describe_objects(const char *topic, struct topic_object objects[DESCRI
     for (size_t k = 0; k < sizeof contents / sizeof *contents; k++)
         if (strcmp(contents[k].topic, topic) == 0)
             for (const struct inner *inner = contents[k].objects; inner->key; inner++)
-                n = add_object(objects, n, inner->key, inner->help, inner->topic);
+                n = add_object(objects, n, inner->key, inner->help, inner->topic, inner->form);
     if (strcmp(topic, "scene") == 0)
         n = add_observables(objects, n);
     if (strcmp(topic, "target") == 0)
@@ -371,7 +378,7 @@ static bool print_named(const struct topic *topics, size_t count, const char *na
 
 /// The whole reference, as `format` wants it.
 static enum status print_all(const char *format, const struct topic *topics, size_t count) {
-    static const char *const formats[] = {"man", "markdown", "bash"};
+    static const char *const formats[] = {"man", "markdown", "bash", "schema"};
     char hint[128];
     if (strcmp(format, formats[0]) == 0)
         mf_reference_print_man(stdout, topics, count);
@@ -379,8 +386,10 @@ static enum status print_all(const char *format, const struct topic *topics, siz
         mf_reference_print_markdown(stdout, topics, count);
     else if (strcmp(format, formats[2]) == 0)
         mf_completion_print(stdout, topics, count);
+    else if (strcmp(format, formats[3]) == 0)
+        return mf_schema_print(stdout, topics, count);
     else {
-        mf_nearest_hint(format, formats, 3, hint, sizeof hint);
+        mf_nearest_hint(format, formats, 4, hint, sizeof hint);
         return mf_status_fail(STATUS_BAD_INPUT, "describe: unknown format \"%s\"; %s", format,
                               hint);
     }

@@ -15,9 +15,14 @@ struct topic {
     const struct field *tables[DESCRIBE_MAX_TABLES]; ///< NULL-terminated
 };
 
+/// How an object inside another is written: itself, {"A": …, "B": …}, either, the second or a
+/// topology, or lists of beads.
+enum topic_form { TOPIC_ONE, TOPIC_NAMED, TOPIC_PARTS, TOPIC_MOLECULES, TOPIC_BEADS };
+
 /// An object inside another, and the topic or group that says what stands in it.
 struct topic_object {
     char key[64], help[256], topic[64];
+    enum topic_form form;
 };
 
 /// All topics, those of a group together: fixed ones, one for each record in the lists, and one for

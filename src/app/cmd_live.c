@@ -35,7 +35,7 @@ static enum status serve(struct live_options *live) {
     return status;
 }
 
-static const struct command_option live_option = CMD_LIVE_OPTION;
+static const struct command_option live_option = COMMAND_LIVE_OPTION;
 
 enum status mf_cmd_live_run(const char *file, const struct run_options *run_options,
                             const char *port) {

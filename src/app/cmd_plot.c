@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "app/command.h"
+#include "app/commands.h"
 #include "report/figures.h"
 
 static enum status run(const struct command_line *line) {

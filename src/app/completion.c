@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/completion.h"
 
-#include "app/command.h"
+#include "app/commands.h"
 
 #include <string.h>
 

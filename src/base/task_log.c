@@ -6,8 +6,9 @@
 #include <stdio.h>
 #include <string.h>
 
-/// The log in use. Set between tasks alone.
-static struct task_log *used;
+/// The log in use, of the thread that hands out tasks: fits may run side by side. Set between tasks
+/// alone.
+static _Thread_local struct task_log *used;
 
 // Records -----------------------------------------------------------------------------------------
 

@@ -205,6 +205,7 @@ static void state_problem(struct fit_file *fit, const struct run_options *option
         .seed = fit->heading.seed,
         .threads = options->threads,
     };
+    problem->scene.cancel = options->stop;
     problem->numbers = fit->numbers;
     memcpy(problem->number, fit->number, sizeof problem->number);
     for (int place = 0; place < UNKNOWN_BONDED; place++) {

@@ -261,24 +261,38 @@ static void print_readme(const struct export_job *job, FILE *stream) {
                                 : "that of the scene, which must be equilibrated first");
 }
 
-static void print_result(const struct export_job *job) {
+/// Lines of a text, one at a time.
+static void say_cost(const struct export_job *job, struct progress *to) {
+    char *text = NULL;
+    size_t size;
+    FILE *stream = open_memstream(&text, &size);
+    if (stream == NULL)
+        return;
+    print_cost(job, stream);
+    fclose(stream);
+    for (char *line = strtok(text, "\n"); line; line = strtok(NULL, "\n"))
+        mf_progress_print(to, "%s", line);
+    free(text);
+}
+
+static void print_result(const struct export_job *job, struct progress *to) {
     const struct export_error *error = &job->grids.error;
     if (job->model->warning[0])
-        fprintf(stderr, "mesofit: warning: %s\n", job->model->warning);
-    fprintf(stderr,
-            "%zu rows; as %s reads them within %.2g k_B T and %.2g of the largest force from r = "
-            "%.4g %s on\n",
-            job->grids.grid[0][0].rows, job->engine->title, error->phi, error->force,
-            job->units.length * error->from, job->units.length_name);
+        mf_progress_print(to, "mesofit: warning: %s", job->model->warning);
+    mf_progress_print(to,
+                      "%zu rows; as %s reads them within %.2g k_B T and %.2g of the largest force "
+                      "from r = %.4g %s on",
+                      job->grids.grid[0][0].rows, job->engine->title, error->phi, error->force,
+                      job->units.length * error->from, job->units.length_name);
     if (job->model->remembers)
-        fprintf(stderr, "mesofit: warning: %.160s: %s\n", job->model->folder, left_out);
+        mf_progress_print(to, "mesofit: warning: %.160s: %s", job->model->folder, left_out);
     if (job->projected) {
-        fprintf(stderr, "omega is replaced by a power law: misfit %.2g\n", job->worst_misfit);
-        print_cost(job, stderr);
+        mf_progress_print(to, "omega is replaced by a power law: misfit %.2g", job->worst_misfit);
+        say_cost(job, to);
     } else if (job->model->setup.omega)
-        fprintf(stderr, "omega is %sa power law: misfit %.2g\n",
-                mf_export_is_power(job) ? "" : "not ", job->worst_misfit);
-    fprintf(stderr, "%s: see README\n", job->folder);
+        mf_progress_print(to, "omega is %sa power law: misfit %.2g",
+                          mf_export_is_power(job) ? "" : "not ", job->worst_misfit);
+    mf_progress_print(to, "%s: see README", job->folder);
 }
 
 static enum status write_files(struct export_job *job) {
@@ -335,8 +349,7 @@ static enum status run(struct export_job *job, const struct export_request *requ
         CHECK(mf_export_project(model, job->power, request->threads, request->listener,
                                 &job->projection));
     CHECK(write_folder(job, &own));
-    if (!request->quiet)
-        print_result(job);
+    print_result(job, request->progress);
 done:
     mf_tracked_files_close(&own);
     mf_export_grids_clear(&job->grids);
@@ -359,6 +372,7 @@ enum status mf_export_run(const struct export_request *request) {
     NEW_ARRAY(model, 1);
     NEW_ARRAY(job, 1);
     CHECK(mf_export_model_read(model, request->from));
+    model->setup.cancel = request->stop;
     join_lines(model->title);
     *job = (struct export_job){.engine = engine,
                                .model = model,

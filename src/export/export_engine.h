@@ -10,6 +10,7 @@
 #include "export/export_power.h"
 #include "export/export_projection.h"
 #include "export/export_units.h"
+#include "report/progress.h"
 
 #include <stdio.h>
 
@@ -84,13 +85,14 @@ struct export_request {
     const char *to; ///< folder; NULL: called as the engine
     bool bands;     ///< Φ less and plus one standard error, too
     bool project;   ///< the nearest power law of the engine stands for ω, and its cost is measured
-    bool quiet;
-    bool force;  ///< replace also files of an earlier export that were changed since
-    int threads; ///< of that measurement
+    bool force;     ///< replace also files of an earlier export that were changed since
+    int threads;    ///< of that measurement
     const struct measure_listener *listener; ///< of its progress; NULL: none
+    const atomic_bool *stop;                 ///< ends it, or NULL
+    struct progress *progress;               ///< to which is said what was written
 };
 
-/// Write the folder for an engine of a result, and say what was written on stderr unless `quiet`.
+/// Write the folder for an engine of a result, and say what was written.
 /// Fails: BAD_INPUT for an engine or a result that is none, interactions that the engine does not
 /// express, no friction to project, and a folder `to` that holds a result, files of others alone,
 /// or an export that was changed since; IO; NO_MEMORY; with `project` as mf_export_project. Nothing

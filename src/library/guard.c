@@ -6,6 +6,7 @@
 #include <assert.h>
 #include <gsl/gsl_errno.h>
 #include <pthread.h>
+#include <string.h>
 
 static_assert((int)MESOFIT_BAD_INPUT == (int)STATUS_BAD_INPUT &&
                   (int)MESOFIT_INTERRUPTED == (int)STATUS_INTERRUPTED,
@@ -40,4 +41,22 @@ const char *mesofit_message(void) {
 
 const char *mesofit_version(void) {
     return MESOFIT_VERSION;
+}
+
+size_t mesofit_size_of(const char *name) {
+#define SIZE(type)                                                                                 \
+    { #type, sizeof(struct type) }
+    static const struct {
+        const char *name;
+        size_t size;
+    } sizes[] = {SIZE(mesofit_columns),      SIZE(mesofit_curve),      SIZE(mesofit_fit_options),
+                 SIZE(mesofit_fit_state),    SIZE(mesofit_frame),      SIZE(mesofit_inputs),
+                 SIZE(mesofit_law),          SIZE(mesofit_means),      SIZE(mesofit_rdf_plan),
+                 SIZE(mesofit_run_progress), SIZE(mesofit_scene),      SIZE(mesofit_table),
+                 SIZE(mesofit_text),         SIZE(mesofit_trajectory), SIZE(mesofit_verification)};
+#undef SIZE
+    for (size_t k = 0; name && k < sizeof sizes / sizeof *sizes; k++)
+        if (strcmp(sizes[k].name, name) == 0)
+            return sizes[k].size;
+    return 0;
 }

@@ -4,16 +4,21 @@
 
 #include "base/status.h"
 #include "io/text_file.h"
+#include "mesofit/run.h"
 #include "mesofit/table.h"
 
-/// A text under the name of the file that it stands for, and tables beside it, as texts.
+/// Texts under the names of the files that they stand for, and tables beside them, as texts.
 struct memory_files {
     struct memory_file *text; ///< shape [count]
-    size_t count;
+    size_t count, borrowed;   ///< the first ones are the caller's own
 };
 
-/// Fails: BAD_INPUT for a table without name or numbers; NO_MEMORY.
-enum status mf_memory_files_begin(struct memory_files *memory_files, const char *name,
-                                  const char *text, const struct mesofit_table *tables,
-                                  size_t tables_count) MUST_USE;
+/// Fails: BAD_INPUT for a text or table without name or content; NO_MEMORY.
+enum status mf_memory_files_begin(struct memory_files *memory_files,
+                                  const struct mesofit_text *texts, size_t text_count,
+                                  const struct mesofit_table *tables, size_t table_count) MUST_USE;
+
+/// The same with one text.
+enum status mf_lend_begin_one(struct memory_files *memory_files, const char *name, const char *text,
+                              const struct mesofit_table *tables, size_t table_count) MUST_USE;
 void mf_memory_files_end(struct memory_files *memory_files);

@@ -3,6 +3,8 @@
 
 #include "base/memory.h"
 #include "dynamics/user_force.h"
+#include "io/json_write.h"
+#include "io/units.h"
 #include "scene/heading.h"
 #include "scene/scene.h"
 #include "library/guard.h"
@@ -19,6 +21,7 @@ struct mesofit_simulation {
     struct scene scene;
     struct simulation engine;
     struct user_force force;
+    char *text; ///< of the scene, once it was asked for
 };
 
 /// Name of a text that is no file, in messages.
@@ -80,7 +83,7 @@ mesofit_simulation_parse(const char *text, const struct mesofit_table *tables, s
     struct mesofit_simulation *simulation = NULL;
     struct memory_files memory_files;
     mf_guard_enter();
-    if (mf_memory_files_begin(&memory_files, in_memory, text, tables, table_count) == STATUS_OK) {
+    if (mf_lend_begin_one(&memory_files, in_memory, text, tables, table_count) == STATUS_OK) {
         if (open_scene(&simulation, in_memory, NULL) != STATUS_OK)
             simulation = NULL;
         mf_memory_files_end(&memory_files);
@@ -107,7 +110,7 @@ struct mesofit_simulation *mesofit_simulation_create(const struct mesofit_scene 
     struct memory_files memory_files;
     mf_guard_enter();
     char *text = write_text(scene);
-    if (mf_memory_files_begin(&memory_files, in_memory, text, NULL, 0) == STATUS_OK) {
+    if (mf_lend_begin_one(&memory_files, in_memory, text, NULL, 0) == STATUS_OK) {
         if (open_scene(&simulation, in_memory, scene) != STATUS_OK)
             simulation = NULL;
         mf_memory_files_end(&memory_files);
@@ -122,6 +125,7 @@ void mesofit_simulation_free(struct mesofit_simulation *simulation) {
         return;
     mf_simulation_clear(&simulation->engine);
     mf_scene_clear(&simulation->scene);
+    free(simulation->text);
     mf_memory_free(simulation);
 }
 
@@ -129,6 +133,49 @@ void mesofit_simulation_set_force(struct mesofit_simulation *simulation, mesofit
                                   void *context) {
     simulation->force = (struct user_force){force, context};
 }
+
+// What it is --------------------------------------------------------------------------------------
+
+static void write_scale(const struct units *units, struct json_writer *writer) {
+    mf_json_begin(writer, "physical");
+    mf_json_write_number(writer, "length_unit_nm", units->length);
+    mf_json_write_number(writer, "time_unit_ps", mf_units_time_ps(units));
+    mf_json_write_number(writer, "energy_unit_kJ_per_mol", mf_units_energy_kj_per_mol(units));
+    mf_json_write_number(writer, "mass_unit_u", units->mass / UNITS_ATOMIC_MASS);
+    mf_json_write_number(writer, "temperature_unit_K", units->temperature);
+    mf_json_end(writer);
+}
+
+static enum status write_scene(const struct scene *scene, FILE *stream) {
+    const struct box *box = &scene->setup.box;
+    struct json_writer *writer = mf_json_writer_create();
+    if (writer == NULL)
+        return mf_status_fail(STATUS_NO_MEMORY, "out of memory");
+    if (mf_units_known(&scene->units))
+        write_scale(&scene->units, writer);
+    mf_json_write_quantities(writer, "edges", "", box->length, (size_t)box->dimensions);
+    mf_units_write(&scene->units, writer);
+    mf_scene_write(scene, writer);
+    const enum status status = mf_json_write_stream(writer, stream, in_memory);
+    mf_json_writer_free(writer);
+    return status;
+}
+
+const char *mesofit_simulation_text(struct mesofit_simulation *simulation) {
+    size_t size;
+    FILE *stream = simulation->text ? NULL : open_memstream(&simulation->text, &size);
+    if (stream == NULL)
+        return simulation->text;
+    mf_guard_enter();
+    const enum status status = write_scene(&simulation->scene, stream);
+    mf_guard_leave();
+    if (fclose(stream) == 0 && status == STATUS_OK)
+        return simulation->text;
+    free(simulation->text);
+    return simulation->text = NULL;
+}
+
+// Steps -------------------------------------------------------------------------------------------
 
 static enum status check_force(const struct mesofit_simulation *simulation) {
     const struct integrator *integrator = simulation->engine.setup.integrator;
@@ -216,7 +263,7 @@ static enum status measure_rdf(struct mesofit_simulation *simulation,
     struct rdf_observed rdf = {0};
     const struct observable_use uses[] = {{&mf_rdf_observable, &rdf, NULL}, {NULL, NULL, NULL}};
     TRY(check_plan(simulation, plan->samples, plan->every));
-    if (!(range > 0) || plan->bins == 0)
+    if (!(plan->range >= 0) || !(range > 0) || plan->bins == 0)
         return mf_status_fail(STATUS_BAD_INPUT, "g(r) needs bins and, without forces, a range");
     const struct rdf_bins bins = {.width = range / (double)plan->bins, .count = plan->bins};
     const struct measure_plan when = plan_from_now(simulation, plan->samples, plan->every);

@@ -5,6 +5,7 @@
 #include "base/interrupt.h"
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "trajectory/trajectory_memory.h"
 
 #include <float.h>
 #include <math.h>
@@ -70,9 +71,12 @@ enum status mf_frames_open(struct frames *frames, const struct frames_plan *plan
     NEW_ARRAY(frames->source, plan->files);
     NEW_ARRAY(frames->frame, frames->slots);
     for (size_t k = 0; k < plan->files; k++) {
+        const struct trajectory_memory *const memory_files = mf_trajectory_memory_find(plan->file[k]);
         struct stat is;
         frames->source[k].digest = DIGEST_OF_NOTHING;
-        if (stat(plan->file[k], &is) == 0 && S_ISREG(is.st_mode))
+        if (memory_files)
+            frames->source[k].bytes = mf_trajectory_memory_bytes(memory_files);
+        else if (stat(plan->file[k], &is) == 0 && S_ISREG(is.st_mode))
             frames->source[k].bytes = (uint64_t)is.st_size;
     }
     CHECK(open_file(frames));
@@ -224,7 +228,7 @@ static enum status fetch(struct batch *batch) {
     struct frames *const frames = batch->frames;
     struct frames_source *const source = &frames->source[frames->at];
     while (batch->fetched < frames->slots && !batch->over && !frames->ended &&
-           !mf_interrupt_requested()) {
+           !mf_interrupt_wanted(frames->plan.cancel)) {
         struct trajectory_frame *const frame = &frames->frame[batch->fetched];
         bool more = true;
         const enum status status = mf_trajectory_fetch(&frames->trajectory, frame, &more);
@@ -311,7 +315,7 @@ enum status mf_frames_next(struct frames *frames, size_t *count) {
     *count = 0;
     NEW_ARRAY(batch.decoded, frames->slots);
     while (*count < frames->slots / 2 && !frames->ended) {
-        if (mf_interrupt_requested()) {
+        if (mf_interrupt_wanted(frames->plan.cancel)) {
             status = mf_status_fail(STATUS_INTERRUPTED, "interrupted");
             goto done;
         }

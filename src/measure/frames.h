@@ -10,15 +10,18 @@
 #include "measure/series.h"
 #include "trajectory/trajectory.h"
 
+#include <stdatomic.h>
+
 struct frames_plan {
     const char *const *file; ///< shape [files], in the order of time
     size_t files;
     struct trajectory_options options;
-    double begin, end;    ///< what is before or after is left out [ps]; NAN: nothing is
-    double every;         ///< frames are taken this far apart, from the first on [ps]; 0: all
-    size_t skip;          ///< of those to be used so many are left out at the beginning
-    bool allow_truncated; ///< a file that breaks off is used up to there
-    bool in_any_order;    ///< frames of any times, also of the same: their order says nothing
+    double begin, end;         ///< what is before or after is left out [ps]; NAN: nothing is
+    double every;              ///< frames are taken this far apart, from the first on [ps]; 0: all
+    size_t skip;               ///< of those to be used so many are left out at the beginning
+    bool allow_truncated;      ///< a file that breaks off is used up to there
+    bool in_any_order;         ///< frames of any times, also of the same: their order says nothing
+    const atomic_bool *cancel; ///< ends the reading once it is set, or NULL; borrowed
     int threads;
 };
 

@@ -151,6 +151,7 @@ enum status mf_run_folder_open(struct run_folder *folder, enum run_kind kind, co
                                const struct run_options *options) {
     static const char *const read[] = {"used.json", checkpoint, NULL};
     TRY(mf_run_folder_choose(folder, kind, input, options));
+    folder->no_figures = options->no_figures;
     if (!ranks_lead())
         return STATUS_OK;
     if (options->resume)
@@ -268,10 +269,11 @@ enum status mf_run_folder_check_state(struct run_folder *folder, const char *nam
 enum status mf_run_folder_state(const struct run_folder *folder, const char *name,
                                 struct run_folder *state) {
     TRY(choose_state(folder, name, state));
+    state->no_figures = folder->no_figures;
     return mf_output_make_folder(state->path);
 }
 
 void mf_run_folder_draw(const struct run_folder *folder) {
-    if (ranks_lead() && mf_figures_draw(folder->path) != STATUS_OK)
+    if (ranks_lead() && !folder->no_figures && mf_figures_draw(folder->path) != STATUS_OK)
         fprintf(stderr, "mesofit: warning: %s\n", mf_status_message());
 }

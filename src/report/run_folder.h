@@ -30,6 +30,7 @@ struct run_folder {
     struct output used; ///< used.json, until the run has begun
     char *settings;     ///< what stands in it
     size_t settings_size;
+    bool no_figures; ///< as the options say
 };
 
 /// Set the path of the folder of a run of `input`, and nothing else. Fails: BAD_INPUT if it is too
@@ -83,5 +84,6 @@ enum status mf_run_folder_state(const struct run_folder *folder, const char *nam
 /// Refuse now what would be refused then, and a folder that holds a run of its own.
 enum status mf_run_folder_check_state(struct run_folder *folder, const char *name) MUST_USE;
 
-/// Draw the figures of the folder; what fails is a warning on stderr.
+/// Draw the figures of the folder, unless the options say that there are to be none; what fails is
+/// a warning on stderr.
 void mf_run_folder_draw(const struct run_folder *folder);

@@ -2,6 +2,7 @@
 /// @file What the command line says to every run.
 #pragma once
 
+#include <stdatomic.h>
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -16,5 +17,7 @@ struct run_options {
     uint64_t seed; ///< --seed, instead of the input file's
     bool quiet, resume;
     bool force;                    ///< replace the results that are in the folder
+    bool no_figures;               ///< none are drawn in the folder
+    const atomic_bool *stop;       ///< ends the run as Ctrl-C does, or NULL; borrowed
     const struct watcher *watcher; ///< who watches the run (report/watcher.h), or NULL; borrowed
 };

@@ -43,6 +43,9 @@ struct source {
 /// Fails: IO, NO_MEMORY. A failed source is closed, too.
 enum status mf_source_open(struct source *source, const char *file) MUST_USE;
 
+/// A source of no bytes, of which there is always more: who reads knows when it ends.
+void mf_source_stand_in(struct source *source, const char *file);
+
 void mf_source_close(struct source *source);
 
 /// The first bytes, which stay to be taken: the whole file if it is short.

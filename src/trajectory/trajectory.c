@@ -3,6 +3,7 @@
 
 #include "base/memory.h"
 #include "base/names.h"
+#include "trajectory/trajectory_memory.h"
 #include "trajectory/words.h"
 
 #include <math.h>
@@ -117,8 +118,13 @@ enum status mf_trajectory_open(struct trajectory *trajectory, const char *file,
     enum status status;
     *trajectory =
         (struct trajectory){.file = file, .time_step = options->time_step, .group = options->group};
-    CHECK(mf_source_open(&trajectory->source, file));
-    CHECK(find_format(trajectory));
+    if (mf_trajectory_memory_find(file)) {
+        trajectory->format = &mf_trajectory_memory;
+        mf_source_stand_in(&trajectory->source, file);
+    } else {
+        CHECK(mf_source_open(&trajectory->source, file));
+        CHECK(find_format(trajectory));
+    }
     CHECK(find_units(trajectory, options->units));
     CHECK(begin(trajectory));
 done:

@@ -84,7 +84,7 @@ static void report(struct run *run) {
     uint64_t done, total;
     char text[96];
     mf_frames_bytes(frames, &done, &total);
-    if (!run->progress.terminal || total == 0 || done == 0)
+    if ((!run->progress.terminal && !run->progress.watcher) || total == 0 || done == 0)
         return;
     const double all = (double)frames->used * (double)total / (double)done;
     snprintf(text, sizeof text, "%zu frames", frames->used);
@@ -414,7 +414,8 @@ static enum status carry_out(struct run *run, const struct run_options *options)
 
 enum status mf_measure_run(const struct measure_request *request,
                            const struct run_options *options) {
-    struct run run = {.request = request, .progress = mf_progress_begin(options->quiet, NULL)};
+    struct run run = {.request = request,
+                      .progress = mf_progress_begin(options->quiet, options->watcher)};
     const enum status status = carry_out(&run, options);
     mf_measured_clear(&run.measured);
     mf_scene_molecules_clear(&run.molecules);

@@ -32,7 +32,7 @@ struct run {
         struct simulate_changes changes;
     } kept;                ///< in the checkpoint, before the simulation
     double seconds_before; ///< of the pieces before a restart
-    atomic_bool cancel;    ///< set for a change
+    atomic_bool cancel;    ///< set for a change, of a run that no option stops
 };
 
 /// Threads meet a dozen times in a step: with fewer particles than this each, and a busy machine,
@@ -67,7 +67,7 @@ static enum status read_file(struct run *run, const char *file, const struct run
     if (options->has_seed)
         run->heading.seed = options->seed;
     run->scene.setup.seed = run->heading.seed;
-    run->scene.setup.cancel = &run->cancel;
+    run->scene.setup.cancel = options->stop ? options->stop : &run->cancel;
     run->scene.setup.threads = find_threads(&run->scene.setup, options->threads);
     return STATUS_OK;
 }

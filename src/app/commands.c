@@ -1,33 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "app/command.h"
+#include "app/commands.h"
 
 #include "mesofit.h"
 
 #include <string.h>
 
 const struct command *const mf_command_list[] = {
-    &cmd_measure, &cmd_fit,     &cmd_export,   &cmd_simulate, &cmd_live,
-    &cmd_plot,    &cmd_compare, &cmd_describe, &cmd_bench,    NULL,
+    &mf_command_measure, &mf_command_fit, &mf_command_export, &mf_command_simulate, &cmd_live,
+    &cmd_plot,           &cmd_compare,    &cmd_describe,      &cmd_bench,           NULL,
 };
 
 _Static_assert(sizeof mf_command_list / sizeof *mf_command_list <= COMMAND_MAX_COMMANDS + 1,
                "more commands than COMMAND_MAX_COMMANDS");
-
-const struct command_option mf_command_common[] = {
-    {"-o", "DIR",
-     "folder for the results (default: \"out\" beside the input file; \"target\" here for measure, "
-     "\"compare\" for compare)"},
-    {"--threads", "N",
-     "threads (default: all processors; bench engine: 1); results do not depend on it"},
-    {"--seed", "N", "seed, instead of the file's"},
-    {"--resume", NULL, "continue an interrupted run in its folder"},
-    {"--force", NULL,
-     "replace the contents of the folder: a fit, an unfinished run, changed files"},
-    {"--quiet", NULL, "no progress"},
-    {"--help", NULL, "summary of all commands and options, after a command of that one"},
-    {"--version", NULL, "version"},
-    {NULL, NULL, NULL},
-};
 
 const char mf_command_purpose[] = "fit the pair interactions of a coarse liquid to measurements";
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "app/command.h"
+#include "commands/command.h"
 #include "work/measure_run.h"
 
 #include <math.h>
@@ -128,6 +128,7 @@ static enum status run(const struct command_line *line) {
                    .end = NAN,
                    .allow_truncated = line->own[ALLOW_TRUNCATED] != NULL,
                    .in_any_order = line->own[STATIC] != NULL,
+                   .cancel = line->options.stop,
                    .threads = line->options.threads},
         .measured = {.motion = {.leave_out = line->own[STATIC] != NULL,
                                 .threads = line->options.threads},
@@ -140,7 +141,7 @@ static enum status run(const struct command_line *line) {
     return mf_measure_run(&request, &line->options);
 }
 
-const struct command cmd_measure = {
+const struct command mf_command_measure = {
     .name = "measure",
     .usage = "TRAJECTORY...",
     .summary = "make a target of a simulation of atoms: beads, g(r), motion",

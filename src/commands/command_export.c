@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "app/command.h"
+#include "commands/command.h"
 #include "export/export_engine.h"
 #include "report/progress.h"
 
@@ -20,7 +20,7 @@ static void report(void *context, const struct simulation *simulation, uint64_t 
                    uint64_t total) {
     struct progress *const progress = context;
     (void)simulation;
-    if (!progress->terminal)
+    if (!progress->terminal && !progress->watcher)
         return;
     mf_progress_report(progress, done, total, "steps", "with both frictions");
     if (done == total)
@@ -29,7 +29,7 @@ static void report(void *context, const struct simulation *simulation, uint64_t 
 }
 
 static enum status run(const struct command_line *line) {
-    struct progress progress = mf_progress_begin(line->options.quiet, NULL);
+    struct progress progress = mf_progress_begin(line->options.quiet, line->options.watcher);
     if (line->own[ENGINE] == NULL)
         return mf_status_fail(STATUS_BAD_INPUT, "--engine: expected one of %s",
                               options[ENGINE].value);
@@ -39,13 +39,14 @@ static enum status run(const struct command_line *line) {
         .to = line->own[TO],
         .bands = line->own[BANDS] != NULL,
         .project = line->own[PROJECT] != NULL,
-        .quiet = line->options.quiet,
         .force = line->options.force,
         .threads = line->options.threads,
-        .listener = &(struct measure_listener){.report = report, .context = &progress}});
+        .listener = &(struct measure_listener){.report = report, .context = &progress},
+        .stop = line->options.stop,
+        .progress = &progress});
 }
 
-const struct command cmd_export = {
+const struct command mf_command_export = {
     .name = "export",
     .usage = "DIR --engine NAME",
     .summary = "write a result as files that another engine runs",

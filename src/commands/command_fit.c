@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "app/cmd_live.h"
-#include "app/command.h"
+#include "commands/command.h"
 #include "base/memory.h"
 #include "base/ranks.h"
 #include "io/json_fill.h"
@@ -25,7 +24,7 @@ static const struct command_option options[] = {
     [DENSITY] = {"--density", "NUMBER", "number density of the beads, without target.json"},
     [TEMPERATURE] = {"--temperature", "NUMBER",
                      "temperature of the target, without target.json; else 1"},
-    [LIVE] = CMD_LIVE_OPTION,
+    [LIVE] = COMMAND_LIVE_OPTION,
     {NULL, NULL, NULL},
 };
 
@@ -38,7 +37,7 @@ static enum status run_shared(const char *file, const struct command_line *line)
         line->own[LIVE] && mf_ranks_count() > 1
             ? mf_status_fail(STATUS_BAD_INPUT, "--live is for a fit in one process; progress.json "
                                                "in the folder shows the progress of any")
-        : line->own[LIVE] ? mf_cmd_live_run(file, &own, line->own[LIVE])
+        : line->own[LIVE] ? line->live(file, &own, line->own[LIVE])
                           : mf_fit_run(file, &own);
     mf_ranks_end();
     return status;
@@ -151,6 +150,10 @@ static enum status check_no_folder(const char *file) {
 
 static enum status run(const struct command_line *line) {
     const char *folder = line->own[TARGET];
+    if (line->own[EXPLAIN])
+        TRY(mf_command_check_live(line, "--explain"));
+    if (line->own[LIVE])
+        TRY(mf_command_check_live(line, "--live"));
     if ((folder != NULL) == (line->file_count > 0))
         return mf_status_fail(STATUS_BAD_INPUT,
                               "usage: mesofit fit RUN.json, or mesofit fit --target DIR");
@@ -162,7 +165,7 @@ static enum status run(const struct command_line *line) {
     return run_file(line->files[0], line);
 }
 
-const struct command cmd_fit = {
+const struct command mf_command_fit = {
     .name = "fit",
     .usage = "RUN.json",
     .summary = "find the potential that reproduces a target",

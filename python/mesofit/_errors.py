@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What is raised, and what is warned of."""
+
+from __future__ import annotations
+
+from . import _library
+
+
+class Error(Exception):
+    """Anything that the program would end with; the text is the line that it would print."""
+
+
+class InputError(Error, ValueError):
+    """An argument, a text or a file is wrong."""
+
+
+class FileError(Error, OSError):
+    """A file or folder cannot be read or written."""
+
+
+class UnstableError(Error, ArithmeticError):
+    """A simulation blew up."""
+
+
+class MesofitWarning(UserWarning):
+    """What the program would warn of."""
+
+
+class UnconvergedWarning(MesofitWarning):
+    """A fit has ended before its criterion was met. The text says why, and what helps."""
+
+
+class InterruptedWarning(MesofitWarning):
+    """Work was interrupted; the result is what there was until then."""
+
+
+def fail(status: int, text: str) -> BaseException:
+    """The exception of a status of the library, other than OK."""
+    if status == _library.NO_MEMORY:
+        return MemoryError(text)
+    if status == _library.INTERRUPTED:
+        return KeyboardInterrupt(text)
+    kinds = {_library.BAD_INPUT: InputError, _library.IO: FileError,
+             _library.UNSTABLE: UnstableError}
+    return kinds.get(status, Error)(text)
+
+
+def check(status: int) -> None:
+    """Raise what the last call of this thread failed by."""
+    if status != _library.OK:
+        raise fail(status, _library.message())

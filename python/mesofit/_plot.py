@@ -1,0 +1,178 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Figures by matplotlib, with the colours of the program's (plots/style.gp), and what notebooks
+show."""
+
+from __future__ import annotations
+
+import base64
+import html
+import io
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ._errors import InputError
+from ._library import Array
+from ._table import Curves, Table
+
+if TYPE_CHECKING:
+    from ._result import Result
+
+INK, FAINT, GRID = "#222222", "#8a8a8a", "#e4e4e4"
+COLOURS = ("#0072b2", "#d55e00", "#009e73", "#aa4499", "#e69f00", "#56b4e9", "#882255", "#7a7a1f")
+
+#: Columns that follow the first one and are worth a line, before all others.
+_SYMBOLS = {"r": "r", "phi": "Φ(r)", "omega": "ω(r)", "g": "g(r)", "time": "t", "q": "q",
+            "S": "S(q)", "msd": "MSD", "vacf": "VACF"}
+_MOST_LINES = 8
+
+
+def _pyplot() -> Any:
+    try:
+        from matplotlib import pyplot
+    except ImportError:
+        raise ImportError("figures need matplotlib: pip install matplotlib") from None
+    return pyplot
+
+
+def _axes(ax: Any, size: tuple[float, float] = (5.0, 3.4)) -> Any:
+    if ax is not None:
+        return ax
+    return _pyplot().subplots(figsize=size, layout="constrained")[1]
+
+
+def _style(ax: Any, table: Table, y: str) -> None:
+    for side in ("top", "right"):
+        ax.spines[side].set_visible(False)
+    ax.grid(color=GRID, linewidth=0.5)
+    ax.set_axisbelow(True)
+    unit = table.unit(0)
+    ax.set_xlabel(_SYMBOLS.get(table.columns[0], table.columns[0]) + (f" / {unit}" if unit else ""))
+    ax.set_ylabel(y)
+
+
+def _band(ax: Any, x: Array, y: Array, error: Array, colour: str) -> None:
+    ax.fill_between(x, y - error, y + error, color=colour, alpha=0.22, linewidth=0)
+
+
+def _draw_compared(table: Table, ax: Any, part: str) -> None:
+    """A target and the result, each with its band."""
+    x = table[0]
+    for name, colour, style in (("target", INK, "-"), ("result", COLOURS[0], "-")):
+        label = f"{name} {part}".strip()
+        ax.plot(x, table[name], style, color=colour, linewidth=1.4, label=label)
+        if name + "_error" in table:
+            _band(ax, x, table[name], table[name + "_error"], colour)
+    ax.legend(frameon=False)
+
+
+def _window(table: Table, column: str) -> tuple[float, float] | None:
+    """Heights that show the well of a potential, not its core."""
+    y = table[column][np.isfinite(table[column])]
+    depth = -float(y.min()) if len(y) else 0.0
+    if column != "phi" or depth < 1e-4 * float(np.abs(y).max(initial=0.0)):
+        return None
+    return -1.5 * depth, 6 * depth
+
+
+def draw_table(table: Table, ax: Any = None, part: str = "") -> Any:
+    """Lines of a table over its first column; a column "x_error" is the band of "x"."""
+    if len(table.columns) < 2:
+        raise InputError(f"{table.name}: a table of one column is no figure")
+    ax = _axes(ax)
+    x = table[0]
+    values = [name for name in table.columns[1:] if "error" not in name and name != "force"]
+    if "target" in table and "result" in table:
+        _draw_compared(table, ax, part)
+    else:
+        if "phi" in values or "omega" in values:
+            values = values[:1]
+        first = len(ax.lines)
+        for k, name in enumerate(values[:_MOST_LINES]):
+            colour = COLOURS[(first + k) % len(COLOURS)]
+            ax.plot(x, table[name], color=colour, linewidth=1.6,
+                    label=part or _SYMBOLS.get(name, name))
+            if name + "_error" in table:
+                _band(ax, x, table[name], table[name + "_error"], colour)
+        if len(values) > 1 or part:
+            ax.legend(frameon=False)
+        window = _window(table, values[0]) if values else None
+        if window is not None:
+            ax.set_ylim(*window)
+    name = values[0] if values else table.columns[1]
+    unit = table.unit(name)
+    label = _SYMBOLS.get(name, name)
+    if name == "target":
+        label = _SYMBOLS["g"] if table.name.startswith("rdf") else table.name
+    _style(ax, table, label + (f" / {unit}" if unit else ""))
+    return ax
+
+
+#: What a person looks at first.
+_FIRST = ("rdf", "potential", "omega", "history", "bond_lengths", "msd", "structure_factor")
+
+
+def _panels(result: "Result") -> list[str]:
+    """Names of tables that make a figure of the result, at most four."""
+    names = [name for first in _FIRST for name in Curves.parts(first, result.tables).values()]
+    return names[:4]
+
+
+def draw_result(result: "Result") -> Any:
+    """A figure of what there is: g with its target, Φ, ω, errors by iteration."""
+    names = _panels(result)
+    if not names:
+        raise InputError(f"{result.folder}: no table that makes a figure")
+    pyplot = _pyplot()
+    rows, columns = math.ceil(len(names) / 2), min(2, len(names))
+    figure, axes = pyplot.subplots(rows, columns, figsize=(4.6 * columns, 3.2 * rows),
+                                   squeeze=False, layout="constrained")
+    for ax in axes.flat[len(names):]:
+        ax.set_visible(False)
+    for ax, name in zip(axes.flat, names):
+        table = result.table(name)
+        if name == "history":
+            for k, column in enumerate(column for column in ("error", "noise") if column in table):
+                ax.semilogy(table[0], table[column], "o-", color=COLOURS[k], label=column,
+                            markersize=3)
+            ax.legend(frameon=False)
+            _style(ax, table, "error")
+        else:
+            draw_table(table, ax)
+        ax.set_title(name, fontsize="medium")
+    return figure
+
+
+def _number(value: float, error: float | None) -> str:
+    if error is None or not math.isfinite(error) or error <= 0:
+        return f"{value:.5g}"
+    digits = max(0, 1 - math.floor(math.log10(error)))
+    return f"{value:.{digits}f} ± {error:.{digits}f}" if digits < 12 else f"{value:.5g} ± {error:.2g}"
+
+
+def _figure_html(result: "Result") -> str:
+    """The figure as an image, or nothing where there is no matplotlib."""
+    try:
+        figure = draw_result(result)
+    except (ImportError, InputError):
+        return ""
+    image = io.BytesIO()
+    figure.savefig(image, format="png", dpi=110)
+    _pyplot().close(figure)
+    return f'<img src="data:image/png;base64,{base64.b64encode(image.getvalue()).decode()}">'
+
+
+def show_result(result: "Result") -> str:
+    """Verdict, numbers with their errors, and the figure."""
+    summary = result.summary
+    reason = f": {html.escape(result.reason)}" if result.reason else ""
+    rows = []
+    for key, value in summary.items():
+        if isinstance(value, (int, float)) and not isinstance(value, bool) and not (
+                "error" in key or key in ("threads", "seed")):
+            rows.append(f"<tr><td>{html.escape(key)}</td>"
+                        f"<td>{_number(value, summary.get(key + '_error'))}</td></tr>")
+    return (f"<div><b>{html.escape(result.kind)}: {html.escape(result.status)}</b>{reason}"
+            f"<br><small>{html.escape(str(result.folder))}</small></div>{_figure_html(result)}"
+            f"<details><summary>numbers</summary><table>{''.join(rows)}</table></details>")

@@ -1,0 +1,233 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A simulation that is stepped by the caller."""
+
+from __future__ import annotations
+
+import json
+import threading
+import time
+from typing import Any, Callable, NamedTuple
+
+import numpy as np
+
+from . import _library as c
+from ._errors import InputError, fail
+from ._library import Array
+from ._inputs import Memory, pointer
+from ._work import Content, Scene, _read
+
+_PIECE = 0.2  # seconds between looks at what else there is to be done, such as Ctrl-C
+
+
+class Rdf(NamedTuple):
+    """g(r): centres of the bins, values, standard errors."""
+
+    r: Array
+    g: Array
+    error: Array
+
+
+class Means(NamedTuple):
+    """Means over samples with their standard errors; NaN: not known."""
+
+    temperature: float
+    temperature_error: float
+    energy: float
+    energy_error: float
+    pressure: float
+    pressure_error: float
+
+
+class Simulation:
+    """A simulation that is stepped, looked at, and pushed by forces of one's own.
+
+    All numbers are in reduced units; `units` says what 1 is of a scene that has units.
+
+    Parameters
+    ----------
+    scene : Scene, dict or path
+    **keys
+        Put into the scene at its top.
+    """
+
+    def __init__(self, scene: Content, **keys: Any) -> None:
+        memory = Memory()
+        memory.add_json("scene", Scene(_read(scene), **keys))
+        inputs = memory.lend()
+        self._fault: BaseException | None = None
+        self._lock = threading.Lock()  # held while the library works with it
+        self._force = c.FORCE(0)
+        self._pointer = c.library.mesofit_simulation_parse(
+            memory.texts["scene"].encode(), inputs.tables, inputs.table_count)
+        if not self._pointer:
+            raise fail(c.BAD_INPUT, c.message())
+
+    def __del__(self) -> None:
+        if getattr(self, "_pointer", None):
+            c.library.mesofit_simulation_free(self._pointer)
+            self._pointer = None
+
+    def __reduce__(self) -> Any:
+        raise TypeError("a simulation that is stepped cannot be pickled")
+
+    # What it is -----------------------------------------------------------------------------------
+
+    @property
+    def scene(self) -> dict[str, Any]:
+        """The scene as it was read, defaults filled in."""
+        text = c.library.mesofit_simulation_text(self._pointer)
+        if text is None:
+            raise MemoryError("out of memory")
+        return dict(json.loads(text))
+
+    @property
+    def box(self) -> Array:
+        """Edges of the box, shape (dimensions,) [lambda]."""
+        return np.array(self.scene["edges"], dtype=np.float64)
+
+    @property
+    def units(self) -> dict[str, float]:
+        """What 1 is, as "length_unit_nm"; empty of a scene without units."""
+        return dict(self.scene.get("physical", {}))
+
+    @property
+    def step(self) -> int:
+        return int(c.library.mesofit_simulation_step(self._pointer))
+
+    @property
+    def dimensions(self) -> int:
+        return int(c.library.mesofit_simulation_dimensions(self._pointer))
+
+    def __len__(self) -> int:
+        return int(c.library.mesofit_simulation_count(self._pointer))
+
+    @property
+    def temperature(self) -> float:
+        """Kinetic temperature now [T_0]; NaN without velocities."""
+        return float(c.library.mesofit_simulation_temperature(self._pointer))
+
+    def _by_id(self, axis_of: Callable[[Any, int], Any]) -> Array:
+        self._check_idle()
+        count = len(self)
+        ids = np.ctypeslib.as_array(c.library.mesofit_simulation_ids(self._pointer), (count,))
+        result = np.empty((count, self.dimensions))
+        for axis in range(self.dimensions):
+            result[ids, axis] = np.ctypeslib.as_array(axis_of(self._pointer, axis), (count,))
+        return result
+
+    @property
+    def positions(self) -> Array:
+        """Shape (particles, dimensions), by the number of the particle; a copy [lambda]."""
+        return self._by_id(c.library.mesofit_simulation_positions)
+
+    @property
+    def velocities(self) -> Array:
+        """The same [lambda/tau]."""
+        return self._by_id(c.library.mesofit_simulation_velocities)
+
+    # What it does ---------------------------------------------------------------------------------
+
+    def set_force(self, force: Any) -> None:
+        """Add forces of one's own from the next step on; None ends it.
+
+        Parameters
+        ----------
+        force : callable, or a compiled function of the type `FORCE`
+            ``force(positions, forces, ids)``, once or more often in each step: arrays of shape
+            (dimensions, particles), in the order of `ids`. It adds to `forces` and returns the
+            potential energy of all, or None. A Python function costs some 10 µs a call beside what
+            it does; a function of numba (``@cfunc(…)``) or C costs nothing.
+        """
+        self._check_idle()
+        if force is None:
+            self._force = c.FORCE(0)
+        elif isinstance(force, c.FORCE):
+            self._force = force
+        elif hasattr(force, "address"):  # of numba
+            self._force = c.FORCE(force.address)
+        elif callable(force):
+            self._force = self._wrap(force)
+        else:
+            raise InputError(f"force: expected a function, found {type(force).__name__}")
+        c.library.mesofit_simulation_set_force(self._pointer, self._force, None)
+
+    def _wrap(self, force: Callable[..., Any]) -> Any:
+        dimensions = self.dimensions
+
+        def call(context: Any, count: int, ids: Any, positions: Any, forces: Any) -> float:
+            if self._fault is not None:
+                return 0.0
+            try:
+                shape = (count,)
+                at = np.stack([np.ctypeslib.as_array(positions[d], shape)
+                               for d in range(dimensions)])
+                added = np.zeros_like(at)
+                energy = force(at, added, np.ctypeslib.as_array(ids, shape).copy())
+                if added.shape != at.shape or not np.isfinite(added).all():
+                    raise InputError("force: a force is not finite")
+                for d in range(dimensions):
+                    np.ctypeslib.as_array(forces[d], shape)[:] += added[d]
+                return 0.0 if energy is None else float(energy)
+            except BaseException as fault:  # noqa: B902 - raised again by run
+                self._fault = fault
+                return 0.0
+        return c.FORCE(call)
+
+    def _check_idle(self) -> None:
+        if self._lock.locked():
+            raise InputError("the simulation is running; a force is given its positions")
+
+    def _call(self, function: Any, *arguments: Any) -> None:
+        if not self._lock.acquire(blocking=False):
+            raise InputError("the simulation is running")
+        self._fault = None
+        try:
+            status = function(self._pointer, *arguments)
+            text = c.message() if status != c.OK else ""
+        finally:
+            self._lock.release()
+        if self._fault is not None:
+            raise self._fault
+        if status != c.OK:
+            raise fail(status, text)
+
+    def run(self, steps: int) -> "Simulation":
+        """Advance by so many steps. Ctrl-C is seen between steps, after which it can go on."""
+        left, piece = _count(steps, "steps", 0), 1
+        while left > 0:
+            now = min(piece, left)
+            begin = time.perf_counter()
+            self._call(c.library.mesofit_simulation_run, now)
+            left -= now
+            if time.perf_counter() - begin < _PIECE / 2:
+                piece = 2 * piece
+        return self
+
+    def rdf(self, *, range: float = 0.0, bins: int = 100, samples: int = 200,
+            every: int = 25) -> Rdf:
+        """Run samples · every steps and measure g(r); range 0: to the cutoff of the forces."""
+        bins = _count(bins, "bins", 1)
+        plan = c.RdfPlan(float(range), bins, _count(samples, "samples", 1),
+                         _count(every, "every", 1))
+        r, g, error = (np.empty(bins) for _ in "rge")
+        self._call(c.library.mesofit_simulation_rdf, plan, pointer(r), pointer(g),
+                   pointer(error))
+        return Rdf(r, g, error)
+
+    def means(self, *, samples: int = 200, every: int = 25) -> Means:
+        """Run samples · every steps and take means of temperature, energy and pressure."""
+        means = c.Means()
+        self._call(c.library.mesofit_simulation_means, _count(samples, "samples", 1),
+                   _count(every, "every", 1), means)
+        return Means(*(getattr(means, name) for name in Means._fields))
+
+    def __repr__(self) -> str:
+        return f"<Simulation of {len(self)} particles at step {self.step}>"
+
+
+def _count(value: Any, what: str, least: int) -> int:
+    """A whole number that the library can count to."""
+    if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or not (
+            least <= value < 2**53):
+        raise InputError(f"{what}: expected a whole number from {least} on, found {value!r}")
+    return int(value)

@@ -1,0 +1,308 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""measure, fit, simulate: the program's own, from files or from memory."""
+
+from __future__ import annotations
+
+import inspect
+import json
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Callable, Union
+
+import numpy as np
+
+from . import _library as c
+from ._errors import InputError
+from ._library import Array
+from ._inputs import Frames, Memory, PathLike, from_universe, merge
+from ._result import Result, _path
+from ._run import Folder, carry_out
+
+Content = Union[Mapping[str, Any], PathLike]
+
+
+def law(function: Callable[[Any], Any], cutoff: float, *, begin: float = 0.0,
+        points: int = 2000) -> dict[str, Any]:
+    """A pair law of one's own, Φ(r) or ω(r), for "conservative", "dissipative" or "start".
+
+    It is sampled once and becomes a law "table", so that a Python function is as fast as any other.
+
+    Parameters
+    ----------
+    function : callable
+        Its value at an array of distances, or at one.
+    cutoff : float
+        Beyond it the law is 0.
+    begin : float
+        First distance that is sampled, above 0 where the law has no finite value there.
+    points : int
+    """
+    if not cutoff > begin >= 0 or points < 2:
+        raise InputError(f"law: expected 0 <= begin < cutoff and 2 points; found {begin}, {cutoff}, "
+                         f"{points}")
+    r = np.linspace(begin, cutoff, int(points))
+    try:
+        values = np.asarray(function(r), dtype=np.float64)
+    except Exception:  # a function of numbers
+        values = np.array([])
+    if values.shape != r.shape:
+        values = np.array([float(function(float(at))) for at in r])
+    if not np.isfinite(values).all():
+        at = r[~np.isfinite(values)][0]
+        raise InputError(f"law: its value at r = {at:g} is not finite; let it begin further out")
+    return {"law": "table", "file": np.column_stack([r, values])}
+
+
+class Scene(dict):  # type: ignore[type-arg]
+    """What a scene file says, as a dict: ``Scene(box=[10, 10, 10], particles=3000, …)``.
+
+    Keys are those of a scene file (`mesofit describe scene`); a number of particles stands for
+    ``{"count": number}``, an array of rows for a table where a file is named.
+    """
+
+    def __init__(self, base: Content | None = None, /, **keys: Any) -> None:
+        super().__init__(merge(_read(base) if base is not None else {}, keys))
+        particles = self.get("particles")
+        if isinstance(particles, (int, np.integer)) and not isinstance(particles, bool):
+            self["particles"] = {"count": int(particles)}
+
+    def __repr__(self) -> str:
+        return f"Scene({', '.join(f'{key}={value!r}' for key, value in self.items())})"
+
+
+def _read(content: Content) -> dict[str, Any]:
+    """A dict, or that of a JSON file."""
+    if isinstance(content, Mapping):
+        return dict(content)
+    path = os.fspath(content)
+    try:
+        read = json.loads(Path(path).read_text(encoding="utf-8-sig"))
+    except OSError as fault:
+        raise InputError(f"{path}: {fault.strerror}") from None
+    except ValueError as fault:
+        raise InputError(f"{path}: {fault}") from None
+    if not isinstance(read, dict):
+        raise InputError(f"{path}: expected an object")
+    return read
+
+
+def _lend(content: Content, keys: Mapping[str, Any], name: str, memory: Memory) -> str:
+    """The word for a file, which is lent with the keys in it if there are some."""
+    if isinstance(content, Mapping):
+        return memory.add_json(name, merge(content, keys))
+    path = _path(content)
+    # A text under the file's own name: what it names beside it is found there.
+    return memory.add_json(path, merge(_read(content), keys)) if keys else path
+
+
+def _options(**options: Any) -> list[str]:
+    """Words of options: None and False say nothing, True is a word alone."""
+    words: list[str] = []
+    for name, value in options.items():
+        word = {"structure": "-s"}.get(name, "--" + name.replace("_", "-"))
+        if value is None or value is False:
+            continue
+        words.append(word)
+        if isinstance(value, (float, np.floating)):
+            words.append(repr(float(value)))
+        elif value is not True:
+            words.append(_path(value) if isinstance(value, os.PathLike) else str(value))
+    return words
+
+
+def _carry_out(words: list[str], memory: Memory, folder: PathLike | None, resume: bool,
+               force: bool, progress: bool | None) -> Result:
+    """Results of words, in a folder of the user's or in a temporary one."""
+    place = Folder(folder)
+    words += ["-o", _path(place.path)]
+    words += [word for word, wanted in (("--resume", resume), ("--force", force)) if wanted]
+    outcome = carry_out(words, memory, progress)
+    result = Result(place, outcome)
+    if outcome.status == c.INTERRUPTED and not (place.path / "summary.json").exists():
+        raise KeyboardInterrupt(outcome.message)
+    outcome.warn()
+    return result
+
+
+def simulate(scene: Content, steps: int | None = None, *, folder: PathLike | None = None,
+             threads: int | None = None, seed: int | None = None, resume: bool = False,
+             force: bool = False, progress: bool | None = None, **keys: Any) -> Result:
+    """Run a scene and measure it, as `mesofit simulate` does.
+
+    Parameters
+    ----------
+    scene : Scene, dict or path
+        What a scene file says, or its path.
+    steps : int, optional
+        Steps that are measured, in place of "samples" of "measure".
+    folder : path, optional
+        Of the results; else they go with what is returned.
+    threads, seed, resume, force
+        As the program's options.
+    progress : bool, optional
+        Show how far it is; None: where a person looks.
+    **keys
+        Put into the scene at its top, as ``rdf={"range": 2}``.
+
+    Returns
+    -------
+    Result
+    """
+    memory = Memory()
+    content: Content = scene
+    if isinstance(scene, Mapping):
+        content = Scene(scene)
+    if steps is not None:
+        measure = merge(_read(content), keys).get("measure", {})
+        if isinstance(measure, Mapping):  # or else it is refused as it is
+            keys = merge(keys, {"measure": {"samples": _samples(measure, steps)}})
+    words = ["simulate", _lend(content, keys, "scene", memory)]
+    words += _options(threads=threads, seed=seed)
+    return _carry_out(words, memory, folder, resume, force, progress)
+
+
+def _samples(measure: Mapping[str, Any], steps: int) -> int:
+    """How many samples so many steps are; a wrong interval is left to the program."""
+    every = measure.get("every", 25)
+    if isinstance(every, bool) or not isinstance(every, (int, np.integer)) or every < 1:
+        return 1
+    if isinstance(steps, bool) or not isinstance(steps, (int, np.integer)) or steps < every:
+        raise InputError(f"steps: expected {every} or more, since a sample is taken every {every} "
+                         f"of them")
+    return int(steps) // int(every)
+
+
+def fit(target: Any, *, density: float | None = None, temperature: float | None = None,
+        folder: PathLike | None = None, threads: int | None = None, seed: int | None = None,
+        resume: bool = False, force: bool = False, progress: bool | None = None,
+        **keys: Any) -> Result:
+    """Find the potential, and the friction, that reproduce a target, as `mesofit fit` does.
+
+    Parameters
+    ----------
+    target : Result, dict or path
+        What `measure` has returned, what a run file says, its path, or the folder of a target.
+    density, temperature : float, optional
+        Of a target in a folder that does not say them.
+    folder, threads, seed, resume, force, progress
+        As of `simulate`.
+    **keys
+        Put into the run file, as ``method={"name": "ibi"}`` or ``method="ibi"``.
+
+    Returns
+    -------
+    Result
+        Also of a fit that has not converged, with an UnconvergedWarning.
+    """
+    memory = Memory()
+    if isinstance(keys.get("method"), str):
+        keys["method"] = {"name": keys["method"]}
+    if isinstance(target, Result):
+        target = target.folder
+    if not isinstance(target, (Mapping, str, os.PathLike)):
+        raise InputError(f"target: expected a result of measure, a dict or a path, found "
+                         f"{type(target).__name__}")
+    if not isinstance(target, Mapping) and os.path.isdir(target):
+        if keys:
+            target = Path(target) / "target.json"
+            words = ["fit", _lend(target, _filled(keys, density, temperature), "run", memory)]
+        else:
+            words = ["fit", *_options(target=Path(target), density=density,
+                                      temperature=temperature)]
+    else:
+        words = ["fit", _lend(target, _filled(keys, density, temperature), "run", memory)]
+    words += _options(threads=threads, seed=seed)
+    return _carry_out(words, memory, folder, resume, force, progress)
+
+
+def _filled(keys: Mapping[str, Any], density: float | None,
+            temperature: float | None) -> Mapping[str, Any]:
+    scene = {key: value for key, value in (("density", density), ("temperature", temperature))
+             if value is not None}
+    return merge(keys, {"scene": scene}) if scene else keys
+
+
+def measure(trajectory: Any, structure: PathLike | None = None, *,
+            map: Content | None = None, molecules: Content | None = None,
+            begin: float | None = None, end: float | None = None, every: float | None = None,
+            range: float | None = None, bins: int | None = None, q_range: float | None = None,
+            waves: int | None = None, window: float | None = None, escape: float | None = None,
+            velocities: str | None = None, static: bool = False,
+            temperature: float | None = None, units: str | None = None,
+            allow_truncated: bool = False, file_units: str | None = None,
+            file_time_step: float | None = None, file_group: str | None = None,
+            folder: PathLike | None = None, threads: int | None = None, force: bool = False,
+            progress: bool | None = None) -> Result:
+    """Make a target of a simulation of atoms, as `mesofit measure` does.
+
+    Parameters
+    ----------
+    trajectory : path, list of paths, Frames, or a Universe or AtomGroup of MDAnalysis
+    structure : path, optional
+        Names, residues and masses of the atoms of files.
+    map : dict or path, optional
+        Atoms to beads; else a residue is a bead.
+    molecules : dict or path, optional
+        Bonds of beads, as of a scene.
+    begin, end, every, window : float, optional [ps]
+    range, escape : float, optional [nm]
+    q_range : float, optional [1/nm]
+    bins, waves : int, optional
+    velocities : "file", "differences" or "none", optional
+    static : bool
+        No motion: frames of any times.
+    temperature : float, optional [K]
+    units : "nm-ps" or "angstrom-fs", optional
+        Of the results.
+    allow_truncated, file_units, file_time_step, file_group
+        As the program's options.
+    folder, threads, force, progress
+        As of `simulate`.
+
+    Returns
+    -------
+    Result
+        A target for `fit`.
+    """
+    memory = Memory()
+    files, back = _frames(trajectory, memory)
+    words = ["measure", *files]
+    words += _options(
+        structure=None if structure is None else Path(structure),
+        map=None if map is None else Path(_lend(map, {}, "map", memory)),
+        molecules=None if molecules is None else Path(_lend(molecules, {}, "molecules", memory)),
+        begin=begin, end=end, every=every, range=range, bins=bins, q_range=q_range, waves=waves,
+        window=window, escape=escape, velocities=velocities, static=static,
+        temperature=temperature, units=units, allow_truncated=allow_truncated,
+        file_units=file_units, file_time_step=file_time_step, file_group=file_group,
+        threads=threads)
+    try:
+        return _carry_out(words, memory, folder, False, force, progress)
+    finally:
+        back()
+
+
+#: Options of `measure` for a test that compares them with the program's.
+MEASURE_OPTIONS = tuple(name for name in inspect.signature(measure).parameters
+                        if name not in ("trajectory", "folder", "threads", "force", "progress"))
+
+
+def _frames(trajectory: Any, memory: Memory) -> tuple[list[str], Callable[[], Any]]:
+    """Words for the trajectory, and what puts it back where it was."""
+    if isinstance(trajectory, (str, os.PathLike)):
+        return [_path(trajectory)], lambda: None
+    if isinstance(trajectory, Frames):
+        memory.frames = trajectory
+        return [Frames.name], lambda: None
+    if hasattr(trajectory, "atoms") and hasattr(getattr(trajectory, "universe", trajectory),
+                                                "trajectory"):
+        memory.frames = from_universe(trajectory)
+        played = getattr(trajectory, "universe", trajectory).trajectory
+        at = getattr(played, "frame", 0)
+        return [Frames.name], lambda: played[at]
+    if isinstance(trajectory, (list, tuple)) and trajectory and all(
+            isinstance(file, (str, os.PathLike)) for file in trajectory):
+        return [_path(file) for file in trajectory], lambda: None
+    raise InputError(f"trajectory: expected paths, Frames, or a Universe or AtomGroup; found "
+                     f"{type(trajectory).__name__}")

@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`mesofit describe --format schema`: editors that know it accept what the program accepts."""
+
+import copy
+import json
+import re
+import subprocess
+
+import pytest
+from conftest import PROGRAM, ROOT, SCENE
+
+import mesofit
+
+jsonschema = pytest.importorskip("jsonschema")
+
+
+@pytest.fixture(scope="module")
+def schema():
+    text = subprocess.run([PROGRAM, "describe", "--format", "schema"], capture_output=True,
+                          text=True, check=True).stdout
+    read = json.loads(text)
+    jsonschema.Draft7Validator.check_schema(read)
+    return jsonschema.Draft7Validator(read)
+
+
+def fault(schema, content):
+    """The first fault, in words, or ""."""
+    found = next(iter(schema.iter_errors(content)), None)
+    return "" if found is None else f"{list(found.absolute_path)}: {found.message[:200]}"
+
+
+FILES = sorted(path for folder in ("runs", "examples", "tests/bench", "tests/fuzz/corpus")
+               for path in (ROOT / folder).rglob("*.json") if "out" not in path.parts)
+
+
+def test_files_of_the_repository_are_valid(schema):
+    read = []
+    for path in FILES:
+        try:
+            read.append((path, json.loads(path.read_text())))
+        except ValueError:  # some of the corpus are broken on purpose
+            continue
+    assert len(read) > 60
+    for path, content in read:
+        assert fault(schema, content) == "", path
+
+
+def test_blocks_of_the_pages_are_valid(schema):
+    count = 0
+    for page in (ROOT / "docs").glob("*.md"):
+        for block in re.findall(r"^```json\n(.*?)^```", page.read_text(), re.M | re.S):
+            try:
+                content = json.loads(block)
+            except ValueError:  # a part of a file
+                continue
+            if {"target", "box", "particles"} & set(content):
+                count += 1
+                assert fault(schema, content) == "", f"{page.name}: {block}"
+    assert count >= 5
+
+
+def test_what_was_used_is_valid(schema, simulated, fitted):
+    assert fault(schema, simulated.used) == "" and fault(schema, fitted.used) == ""
+
+
+def objects(content, path=()):
+    """Paths of all objects of a file."""
+    yield path
+    for key, value in content.items():
+        if isinstance(value, dict):
+            yield from objects(value, (*path, key))
+
+
+def bad_scenes():
+    """A word too much in each object, and values of wrong types and ranges."""
+    full = {**copy.deepcopy(SCENE), "dynamics": {"integrator": "aboba"}, "motion": {},
+            "interactions": {"uniform-force": {"force": [1, 0, 0]}}}
+    for path in objects(full):
+        if path not in (("interactions", "uniform-force"),):
+            bad = copy.deepcopy(full)
+            inside = bad
+            for key in path:
+                inside = inside[key]
+            inside["nonsense"] = 1
+            yield "/".join((*path, "nonsense")), bad
+    wrong = {
+        "box": ["4", 4, [4], [4, 4, 4, 4], ["a", 4, 4], None],
+        "particles": [190, "190", [], {"count": "190"}, {"count": 1.5}, {"count": -3},
+                      {"count": None}, {"count": 190, "placement": "heap"}],
+        "temperature": ["hot", -1, True, {}, [1]],
+        "conservative": ["soft", {"law": "lava"}, {}, {"law": "soft-repulsion", "a": "25"},
+                         {"law": "soft-repulsion", "b": 1}, {"law": 3}],
+        "dissipative": [{"law": "power", "sigma": []}, {"law": "lennard-jones"}, {"sigma": 3}],
+        "measure": [3, {"samples": 0}, {"samples": "many"}, {"every": 0}, {"every": 2.5}],
+        "dynamics": ["aboba", {"integrator": "leapfrog"}, {"integrator": 1}],
+        "rdf": [{"bins": 0}, {"bins": "32"}, {"range": -1}, []],
+        "seed": [-1, "one", 1.5], "title": [3, {}], "skin": ["thick"],
+        "units": ["metric", 3], "time_step": [0, -0.1, "short"], "precision": ["triple"],
+    }
+    for key, values in wrong.items():
+        for value in values:
+            yield f"{key}: {json.dumps(value)}", {**full, key: value}
+
+
+BAD = dict(bad_scenes())
+
+
+def test_there_are_fifty_bad_files():
+    assert len(BAD) >= 50
+
+
+@pytest.mark.parametrize("bad", BAD.values(), ids=BAD.keys())
+def test_bad_files_are_refused_by_both(schema, bad):
+    with pytest.raises(mesofit.Error):
+        mesofit.simulate(bad)
+    assert fault(schema, bad) != ""

@@ -1,0 +1,423 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/schema.h"
+
+#include "curves/bonded_kind.h"
+#include "io/json_write.h"
+#include "io/units_scale.h"
+#include "observe/observable.h"
+#include "system/attributes.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+/// Where the topic or group of this name is defined.
+static void write_reference(struct json_writer *writer, const char *name) {
+    char place[96];
+    snprintf(place, sizeof place, "#/definitions/%s", name);
+    mf_json_write_text(writer, "$ref", place);
+}
+
+/// No key but those that are named.
+static void close_keys(struct json_writer *writer) {
+    mf_json_begin(writer, "additionalProperties");
+    mf_json_begin(writer, "not");
+    mf_json_end(writer);
+    mf_json_end(writer);
+}
+
+// Fields ------------------------------------------------------------------------------------------
+
+/// Limits are of reduced numbers, of which 0 is the same in all units.
+static void write_range(struct json_writer *writer, const struct field *field) {
+    const bool pure = field->unit == NULL || field->unit[0] == '\0' || field->type != FIELD_NUMBER;
+    if (field->type == FIELD_NUMBER && field->minimum == FIELD_ABOVE_ZERO)
+        mf_json_write_number(writer, "exclusiveMinimum", 0);
+    else if (field->minimum > -DBL_MAX && (pure || field->minimum == 0))
+        mf_json_write_number(writer, "minimum", field->minimum);
+    if (field->maximum < DBL_MAX && pure && field->type != FIELD_SEED)
+        mf_json_write_number(writer, "maximum", field->maximum);
+}
+
+static void write_list(struct json_writer *writer, const char *const *choices) {
+    size_t count = 0;
+    while (choices[count])
+        count++;
+    mf_json_write_texts(writer, "enum", choices, count);
+}
+
+/// A choice between yes and no may also be true or false.
+static void write_choice(struct json_writer *writer, const struct field *field) {
+    bool flag = false;
+    for (size_t k = 0; field->choices[k]; k++)
+        flag = flag || strcmp(field->choices[k], "yes") == 0;
+    if (!flag) {
+        write_list(writer, field->choices);
+        return;
+    }
+    mf_json_begin_list(writer, "anyOf");
+    mf_json_begin(writer, NULL);
+    write_list(writer, field->choices);
+    mf_json_end(writer);
+    mf_json_begin(writer, NULL);
+    mf_json_write_text(writer, "type", "boolean");
+    mf_json_end(writer);
+    mf_json_end(writer);
+}
+
+static void write_value(struct json_writer *writer, const struct field *field) {
+    switch (field->type) {
+    case FIELD_NUMBER:
+    case FIELD_INTEGER:
+    case FIELD_SEED:
+        mf_json_write_text(writer, "type", field->type == FIELD_NUMBER ? "number" : "integer");
+        write_range(writer, field);
+        break;
+    case FIELD_LENGTHS:
+        mf_json_write_text(writer, "type", "array");
+        mf_json_begin(writer, "items");
+        mf_json_write_text(writer, "type", "number");
+        mf_json_end(writer);
+        mf_json_write_integer(writer, "minItems", 2);
+        mf_json_write_integer(writer, "maxItems", 3);
+        break;
+    case FIELD_TEXT:
+    case FIELD_FILE:
+        mf_json_write_text(writer, "type", "string");
+        mf_json_write_integer(writer, "minLength", 1);
+        break;
+    case FIELD_CHOICE:
+        write_choice(writer, field);
+        break;
+    case FIELD_CHOICES:
+        mf_json_write_text(writer, "type", "array");
+        mf_json_begin(writer, "items");
+        write_list(writer, field->choices);
+        mf_json_end(writer);
+        break;
+    }
+}
+
+static void write_field(struct json_writer *writer, const struct field *field) {
+    char help[512], fallback[64];
+    const bool has_unit = field->unit && field->unit[0];
+    mf_fields_default_text(field, fallback, sizeof fallback);
+    snprintf(help, sizeof help, "%s%s%s%s; default: %s", field->help ? field->help : "",
+             has_unit ? " [" : "", has_unit ? field->unit : "", has_unit ? "]" : "", fallback);
+    mf_json_begin(writer, field->name);
+    mf_json_write_text(writer, "description", help);
+    // What is not known is null, as used.json says it.
+    if (field->type == FIELD_NUMBER && isnan(field->initial)) {
+        mf_json_begin_list(writer, "anyOf");
+        mf_json_begin(writer, NULL);
+        mf_json_write_text(writer, "type", "null");
+        mf_json_end(writer);
+        mf_json_begin(writer, NULL);
+        write_value(writer, field);
+        mf_json_end(writer);
+        mf_json_end(writer);
+    } else
+        write_value(writer, field);
+    mf_json_end(writer);
+}
+
+/// An attribute of beads: a number, {"minimum": …, "maximum": …}, or either by the names of types.
+static void write_attribute(struct json_writer *writer, const struct field *field) {
+    static const char *const types[] = {"number", "object", "null"};
+    mf_json_begin(writer, field->name);
+    mf_json_write_text(writer, "description", field->help);
+    mf_json_write_texts(writer, "type", types, sizeof types / sizeof *types);
+    mf_json_begin(writer, "additionalProperties");
+    mf_json_write_texts(writer, "type", types, 2);
+    mf_json_begin(writer, "additionalProperties");
+    mf_json_write_text(writer, "type", "number");
+    mf_json_end(writer);
+    mf_json_end(writer);
+    mf_json_end(writer);
+}
+
+static bool has_field(const struct topic *topic, size_t table, const char *name) {
+    for (size_t t = 0; t < table; t++)
+        for (const struct field *field = topic->tables[t]; field->name; field++)
+            if (strcmp(field->name, name) == 0)
+                return true;
+    return false;
+}
+
+static void write_fields(struct json_writer *writer, const struct topic *topic) {
+    for (size_t t = 0; topic->tables[t]; t++)
+        for (const struct field *field = topic->tables[t]; field->name; field++)
+            if (has_field(topic, t, field->name))
+                continue;
+            else if (topic->tables[t] == mf_attributes_fields)
+                write_attribute(writer, field);
+            else
+                write_field(writer, field);
+}
+
+// Objects -----------------------------------------------------------------------------------------
+
+/// Which key of an object says which of a group it is; NULL: the keys themselves do.
+static const char *chief_of(const char *group) {
+    static const char *const chiefs[][2] = {{"conservative", "law"},
+                                            {"dissipative", "law"},
+                                            {"dynamics", "integrator"},
+                                            {"method", "name"}};
+    for (size_t k = 0; k < sizeof chiefs / sizeof *chiefs; k++)
+        if (strcmp(group, chiefs[k][0]) == 0)
+            return chiefs[k][1];
+    for (int order = 0; order < BONDED_KINDS; order++)
+        if (strcmp(group, mf_bonded_kinds[order]->plural) == 0)
+            return "law";
+    return NULL;
+}
+
+static void write_several(struct json_writer *writer, const char *topic) {
+    mf_json_write_text(writer, "type", "object");
+    mf_json_begin(writer, "additionalProperties");
+    write_reference(writer, topic);
+    mf_json_end(writer);
+}
+
+/// One, several by names, or either, as of the pair types of a mixture.
+static void write_form(struct json_writer *writer, const struct topic_object *object) {
+    if (object->form == TOPIC_ONE || object->form == TOPIC_NAMED) {
+        (object->form == TOPIC_ONE ? write_reference : write_several)(writer, object->topic);
+        return;
+    }
+    mf_json_begin_list(writer, "anyOf");
+    mf_json_begin(writer, NULL);
+    write_reference(writer, object->form == TOPIC_MOLECULES ? "topology" : object->topic);
+    mf_json_end(writer);
+    mf_json_begin(writer, NULL);
+    write_several(writer, object->topic);
+    mf_json_write_integer(writer, "minProperties", 1);
+    mf_json_end(writer);
+    mf_json_end(writer);
+}
+
+/// Lists of beads by the names of groups: {"backbone": [[1, 2], …]}.
+static void write_beads(struct json_writer *writer) {
+    static const char *const levels[] = {"additionalProperties", "items", "items"};
+    for (size_t k = 0; k < sizeof levels / sizeof *levels; k++) {
+        mf_json_write_text(writer, "type", k ? "array" : "object");
+        mf_json_begin(writer, levels[k]);
+    }
+    mf_json_write_text(writer, "type", "integer");
+    for (size_t k = 0; k < sizeof levels / sizeof *levels; k++)
+        mf_json_end(writer);
+}
+
+/// The target of this name if it takes the settings of its observable, too; else NULL.
+static const struct observable *observable_of(const char *target) {
+    struct observable_kind found;
+    for (int kind = 0; (found = mf_observable_kind(kind)).observable; kind++)
+        if (found.target->has_settings && strcmp(found.target->name, target) == 0)
+            return found.observable;
+    return NULL;
+}
+
+/// Such a target has a definition of its own.
+static void find_settings(struct topic_object *object) {
+    if (observable_of(object->key))
+        snprintf(object->topic, sizeof object->topic, "%.40s-and-settings", object->key);
+}
+
+/// "units" of a file: the name of a system, its scale, or that of a reduced one.
+static void write_units(struct json_writer *writer) {
+    static const char *const topics[] = {"units", "scale"};
+    mf_json_begin_list(writer, "anyOf");
+    mf_json_begin(writer, NULL);
+    write_list(writer, mf_units_systems);
+    mf_json_end(writer);
+    for (size_t k = 0; k < sizeof topics / sizeof *topics; k++) {
+        mf_json_begin(writer, NULL);
+        write_reference(writer, topics[k]);
+        mf_json_end(writer);
+    }
+    mf_json_end(writer);
+}
+
+static void write_objects(struct json_writer *writer, const char *topic) {
+    struct topic_object objects[DESCRIBE_MAX_OBJECTS];
+    const size_t count = mf_describe_objects(topic, objects);
+    for (size_t k = 0; k < count; k++) {
+        mf_json_begin(writer, objects[k].key);
+        mf_json_write_text(writer, "description", objects[k].help);
+        if (strcmp(topic, "target") == 0)
+            find_settings(&objects[k]);
+        if (strcmp(objects[k].key, "units") == 0)
+            write_units(writer);
+        else if (objects[k].form == TOPIC_BEADS)
+            write_beads(writer);
+        else
+            write_form(writer, &objects[k]);
+        mf_json_end(writer);
+    }
+}
+
+/// Keys that no field table has: values by names of the file's own.
+static void write_by_name(struct json_writer *writer, const char *key, const char *type) {
+    mf_json_begin(writer, key);
+    mf_json_write_text(writer, "type", "object");
+    mf_json_begin(writer, "additionalProperties");
+    mf_json_write_text(writer, "type", type);
+    mf_json_end(writer);
+    mf_json_end(writer);
+}
+
+static void write_texts(struct json_writer *writer, const char *key) {
+    mf_json_begin(writer, key);
+    mf_json_write_text(writer, "type", "array");
+    mf_json_begin(writer, "items");
+    mf_json_write_text(writer, "type", "string");
+    mf_json_end(writer);
+    mf_json_end(writer);
+}
+
+static void write_own_keys(struct json_writer *writer, const char *topic) {
+    if (strcmp(topic, "particles") == 0)
+        write_by_name(writer, "types", "integer");
+    if (strcmp(topic, "map") == 0)
+        write_by_name(writer, "masses", "number");
+    if (strcmp(topic, "molecule") == 0 || strcmp(topic, "chain") == 0)
+        write_texts(writer, "beads");
+}
+
+static void write_topic(struct json_writer *writer, const struct topic *topic) {
+    mf_json_begin(writer, topic->name);
+    mf_json_write_text(writer, "description", topic->summary);
+    mf_json_write_text(writer, "type", "object");
+    mf_json_begin(writer, "properties");
+    write_fields(writer, topic);
+    write_objects(writer, topic->name);
+    write_own_keys(writer, topic->name);
+    mf_json_end(writer);
+    close_keys(writer);
+    mf_json_end(writer);
+}
+
+// Groups ------------------------------------------------------------------------------------------
+
+/// One of a group, of which the key `chief` says which it is.
+static void write_member(struct json_writer *writer, const char *chief, const struct topic *topic) {
+    mf_json_begin(writer, NULL);
+    mf_json_write_text(writer, "description", topic->summary);
+    mf_json_write_text(writer, "type", "object");
+    mf_json_write_texts(writer, "required", &chief, 1);
+    mf_json_begin(writer, "properties");
+    mf_json_begin(writer, chief);
+    mf_json_write_text(writer, "const", topic->name);
+    mf_json_end(writer);
+    write_fields(writer, topic);
+    mf_json_end(writer);
+    close_keys(writer);
+    mf_json_end(writer);
+}
+
+static bool is_of(const struct topic *topic, const char *group) {
+    return strcmp(topic->group, group) == 0;
+}
+
+static void write_chosen(struct json_writer *writer, const char *group, const char *chief,
+                         const struct topic *topics, size_t count) {
+    static const struct topic none = {.name = "none", .summary = "none"};
+    mf_json_begin(writer, group);
+    mf_json_begin_list(writer, "anyOf");
+    if (strcmp(chief, "law") == 0)
+        write_member(writer, chief, &none);
+    for (size_t k = 0; k < count; k++)
+        if (is_of(&topics[k], group))
+            write_member(writer, chief, &topics[k]);
+    mf_json_end(writer);
+    mf_json_end(writer);
+}
+
+/// Interactions, by their own names.
+static void write_named(struct json_writer *writer, const char *group, const struct topic *topics,
+                        size_t count) {
+    mf_json_begin(writer, group);
+    mf_json_write_text(writer, "type", "object");
+    mf_json_begin(writer, "properties");
+    for (size_t k = 0; k < count; k++)
+        if (is_of(&topics[k], group))
+            write_topic(writer, &topics[k]);
+    mf_json_end(writer);
+    close_keys(writer);
+    mf_json_end(writer);
+}
+
+static bool is_group(const char *group) {
+    return chief_of(group) || strcmp(group, "interactions") == 0;
+}
+
+/// Targets with the settings of their observables.
+static void write_targets(struct json_writer *writer, const struct topic *topics, size_t count) {
+    struct topic_object objects[DESCRIBE_MAX_OBJECTS];
+    const size_t targets = mf_describe_objects("target", objects);
+    for (size_t n = 0; n < targets; n++) {
+        const struct observable *observable = observable_of(objects[n].key);
+        for (size_t k = 0; observable && k < count; k++) {
+            struct topic topic = topics[k];
+            size_t t = 0;
+            if (strcmp(topic.name, objects[n].topic) != 0)
+                continue;
+            while (topic.tables[t])
+                t++;
+            topic.tables[t] = observable->fields;
+            find_settings(&objects[n]);
+            topic.name = objects[n].topic;
+            write_topic(writer, &topic);
+            break;
+        }
+    }
+}
+
+static void write_definitions(struct json_writer *writer, const struct topic *topics,
+                              size_t count) {
+    for (size_t k = 0; k < count; k++) {
+        const char *const group = topics[k].group, *const chief = chief_of(group);
+        if (!is_group(group))
+            write_topic(writer, &topics[k]);
+        else if (k > 0 && is_of(&topics[k - 1], group))
+            continue;
+        else if (chief)
+            write_chosen(writer, group, chief, topics, count);
+        else
+            write_named(writer, group, topics, count);
+    }
+}
+
+/// A file with a target is a run file, one with beads a map.
+static void write_root(struct json_writer *writer) {
+    static const char *const files[][2] = {{"target", "run"}, {"beads", "map"}};
+    const size_t count = sizeof files / sizeof *files;
+    for (size_t k = 0; k < count; k++) {
+        mf_json_begin(writer, "if");
+        mf_json_write_texts(writer, "required", files[k], 1);
+        mf_json_end(writer);
+        mf_json_begin(writer, "then");
+        write_reference(writer, files[k][1]);
+        mf_json_end(writer);
+        mf_json_begin(writer, "else");
+    }
+    write_reference(writer, "scene");
+    for (size_t k = 0; k < count; k++)
+        mf_json_end(writer);
+}
+
+enum status mf_schema_print(FILE *stream, const struct topic *topics, size_t count) {
+    struct json_writer *writer = mf_json_writer_create();
+    if (writer == NULL)
+        return mf_status_fail(STATUS_NO_MEMORY, "out of memory");
+    mf_json_write_text(writer, "$schema", "http://json-schema.org/draft-07/schema#");
+    mf_json_write_text(writer, "title", "run files, scene files and maps of mesofit");
+    write_root(writer);
+    mf_json_begin(writer, "definitions");
+    write_definitions(writer, topics, count);
+    write_targets(writer, topics, count);
+    mf_json_end(writer);
+    const enum status status = mf_json_write_stream(writer, stream, "schema");
+    mf_json_writer_free(writer);
+    return status;
+}
