@@ -197,12 +197,11 @@ check-mpi: all $(if $(shell command -v $(MPICC)),$(WITH_MPI))
 	tests/tools/check_mpi.sh $(PROGRAM) $(WITH_MPI) $(KILLS)
 
 # The Python package over the shared library, beside the program.
-.PHONY: check-python python-check
+.PHONY: check-python
 PYTHON ?= /usr/bin/python3
 check-python: all
 	MESOFIT=$(abspath $(PROGRAM)) MESOFIT_LIBRARY=$(abspath $(BUILD)/$(SONAME)) PYTHONDONTWRITEBYTECODE=1 \
 	    $(PYTHON) -m pytest -q -p no:cacheprovider python/tests
-python-check: check-python
 
 # Faults that are preloaded: a process is killed at one of its steps on the disk (tests/stress/test_kill.c), its
 # clock is set back (test_clock.c).

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file Frames of the caller's memory, lent to the reader of trajectories.
+/// @file Frames in the caller's memory, for the reader of trajectories.
 #pragma once
 
 #include "mesofit/run.h"

@@ -28,7 +28,7 @@ struct trajectory_memory {
 /// their name. Borrowed; NULL ends it. Tested: test_run.
 void mf_trajectory_lend(const struct trajectory_memory *memory_files);
 
-/// The frames that are lent by this name, or NULL.
+/// The frames of memory of this name, or NULL.
 const struct trajectory_memory *mf_trajectory_memory_find(const char *name);
 
 /// Bytes of all frames, in place of a file's size; 0: not known.
