@@ -93,7 +93,7 @@ struct mesofit_curve {
 };
 
 /** The best so far; its arrays belong to the fit and change with the next iteration. Of a mixture
- *  the potentials of all pair types stand one behind the other. */
+ *  the potentials of all pair types follow each other. */
 MESOFIT_API struct mesofit_curve mesofit_fit_curve(const struct mesofit_fit *fit,
                                                    enum mesofit_law_kind kind);
 
@@ -115,7 +115,7 @@ MESOFIT_API enum mesofit_status mesofit_fit_verify(struct mesofit_fit *fit,
  *  laws by coefficients from 0 to 1. The caller asks for the error of any of them.
  */
 
-/** Coefficients of the laws and of the numbers of the scene that are to be found, one behind the
+/** Coefficients of the laws and of the numbers of the scene that are to be found, one after the
  *  other; 0 of a method that does not search. */
 MESOFIT_API size_t mesofit_fit_coefficients(const struct mesofit_fit *fit);
 

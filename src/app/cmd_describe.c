@@ -44,7 +44,7 @@ static const struct inner run_objects[] = {
     {NULL, NULL, NULL, TOPIC_ONE},
 };
 
-/// "the same of angles" behind what is said of bonds.
+/// "the same of angles" after what is said of bonds.
 #define SAME_UNKNOWNS(NAME, kind, ...) {#kind "s", "the same of " #kind "s", "group", TOPIC_NAMED},
 #define SAME_GROUPS(NAME, kind, ...) {#kind "s", "the same of " #kind "s", #kind "s", TOPIC_NAMED},
 #define SAME_TERMS(NAME, kind, beads, ...)                                                         \
@@ -172,7 +172,7 @@ static const struct topic fixed_topics[] = {
     {"target", "target", "\"target\" of a run file", {NULL}},
 };
 
-/// Behind those of the readers of targets.
+/// After those of the readers of targets.
 static const struct topic unknown_topics[] = {
     {"unknowns", "unknowns", "\"unknowns\" of a run file", {NULL}},
     {"unknowns",

@@ -122,7 +122,7 @@ static void man_titles(FILE *stream, const char *const *titles) {
     (void)titles;
 }
 
-/// What stands behind the second cell follows it with its titles: "type number; default 0".
+/// What stands after the second cell follows it with its titles: "type number; default 0".
 static void man_row(FILE *stream, const char *const *titles, const char *const *cells) {
     const char *between = "";
     fprintf(stream, ".TP\n\\fB");

@@ -26,7 +26,7 @@ const void *mf_names_find(const void *list, const char *name);
 enum status mf_names_collect(const void *list, const char *before, const char ***names) MUST_USE;
 
 /// @name Reserved names
-/// Tables, columns and numbers of a result have words before and behind the names of types, kinds,
+/// Tables, columns and numbers of a result have words before and after the names of types, kinds,
 /// groups and modes: potential_A-B_history.tsv, rdf_now_A-B.tsv, "backbone_error". A name that has
 /// one itself is refused wherever names are read, so that what differs in its names differs in its
 /// files: with a type "B_history" the history of A-B would be the potential of A with it.

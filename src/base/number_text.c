@@ -25,7 +25,7 @@ void mf_number_text(double value, double error, char text[NUMBER_TEXT_SIZE]) {
     }
     const int power = size >= largest || size < smallest ? first_digit(size) : 0;
     const double unit = pow(10, power);
-    const int last = first_digit(error / unit) - 1; // digit of both, behind the point if below 0
+    const int last = first_digit(error / unit) - 1; // digit of both, after the point if below 0
     const int decimals = last < 0 ? -last : 0;
     // An error of one and more is written out: 23.6(1.3).
     const bool written_out = last >= -1;

@@ -21,7 +21,7 @@ struct parallel_call {
     struct running_mean seconds; ///< of processor time of a task
 };
 
-/// Whether a task may begin: one behind a failure need not.
+/// Whether a task may begin: one after a failure need not.
 static inline bool parallel_call_wants(const struct parallel_call *call, size_t task) {
     return call->status != STATUS_INTERRUPTED && task < call->failed &&
            !(call->done && call->done[task]);

@@ -12,7 +12,7 @@ static _Thread_local struct task_log *used;
 
 // Records -----------------------------------------------------------------------------------------
 
-/// The bytes behind a head: a message, or the result and each span behind its length.
+/// The bytes after a head: a message, or the result and each span after its length.
 static void write_bytes(FILE *stream, const struct task_record *head,
                         const struct parallel_tasks *tasks, const void *result) {
     struct memory_span span[PARALLEL_MAX_SPANS];

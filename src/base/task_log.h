@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file What finished tasks have left: records one behind another, for who did not do them.
+/// @file What finished tasks have left: records one after another, for who did not do them.
 ///
 /// Other ranks replay the log of rank 0 (base/ranks.h). So does a fit that goes on after an
 /// interruption: work that begins from the same state comes to the same tasks, and those that are
@@ -11,12 +11,12 @@
 
 #include <stdbool.h>
 
-/// A head with the bytes of a task's result and of its part of the context behind it, or with the
+/// A head with the bytes of a task's result and of its part of the context after it, or with the
 /// message of its failure.
 struct task_record {
     uint64_t call;  ///< of mf_parallel_try since the log began
     uint64_t task;  ///< its number
-    uint64_t bytes; ///< behind this head
+    uint64_t bytes; ///< after this head
     double seconds; ///< of processor time
     int64_t status;
 };

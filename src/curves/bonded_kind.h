@@ -41,7 +41,7 @@ struct bonded_kind {
     const char *article; ///< "an"
     int beads;
     int reach; ///< the most bonds between two of its beads: as far as VOTCA excludes pairs
-    /// In a chain the place of each bead behind the first, and no more than `reach`; all 0: chains
+    /// In a chain the place of each bead after the first, and no more than `reach`; all 0: chains
     /// have no such terms.
     int chain[BONDED_MAX_TERM_BEADS];
     bool spatial; ///< it means nothing in a plane

@@ -63,7 +63,7 @@ static bool are_equal(struct part a, struct part b) {
     return true;
 }
 
-/// Whether a stands behind b where the order does not matter: what is longer does, and of the same
+/// Whether a stands after b where the order does not matter: what is longer does, and of the same
 /// length what differs first in its nodes.
 static bool is_after(struct part a, struct part b) {
     if (a.end - a.begin != b.end - b.begin)

@@ -9,7 +9,7 @@ enum { EXPRESSION_TEXT_SIZE = 4096 };
 
 /// Read a formula such as "4*(1/r^12 - 1/r^6)" or "12.5*(1 - r/0.99)^2": numbers, r, + - * / ^,
 /// exp(…), parentheses. "**" is "^" as well; − binds less than ^, and ^ to the right. What stands
-/// behind ^ must be a number.
+/// after ^ must be a number.
 /// Fails: BAD_INPUT, with the place, counted from 1, of what is wrong. Tested: test_expression.
 enum status mf_expression_parse(struct expression *expression, const char *text) MUST_USE;
 

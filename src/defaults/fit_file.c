@@ -294,7 +294,7 @@ static enum status parse_state(struct fit_file *fit, struct reading *reading) {
     return mf_json_close(reading->document, read_state(fit, reading));
 }
 
-/// The states behind the first. What they read is read by the run.
+/// The states after the first. What they read is read by the run.
 static enum status parse_others(struct fit_file *fit, const struct reading *first) {
     if (first->states < 2)
         return STATUS_OK;

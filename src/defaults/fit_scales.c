@@ -42,7 +42,7 @@ static double find_neighbour(const struct view *view, double spacing) {
                : spacing;
 }
 
-/// The first minimum behind the neighbours; without one, half as far again as they are.
+/// The first minimum after the neighbours; without one, half as far again as they are.
 static double find_shell(const struct view *view, double neighbour) {
     static const double without = 1.5, min = 1.2, max = 2;
     const struct rdf_bins *bins = view->bins;

@@ -17,7 +17,7 @@ struct fit_scales {
     double range; ///< upper edge of the last bin [λ]
 };
 
-/// g(r) of all pair types, one behind the other. Borrowed, but `own`.
+/// g(r) of all pair types, one after the other. Borrowed, but `own`.
 struct fit_scales_rdf {
     struct rdf_bins bins;
     const struct composition *composition;

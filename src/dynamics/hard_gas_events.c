@@ -65,7 +65,7 @@ struct meeting {
 /// rounding of the last collision.
 static const double grazing = 1e-14;
 
-/// Of r² + 2 b t + v² t² = s²; written behind the meetings that there are, and counted if the two
+/// Of r² + 2 b t + v² t² = s²; written after the meetings that there are, and counted if the two
 /// approach each other and touch.
 static inline int add_meeting(const struct hard_gas *gas, const struct prediction *prediction,
                               const struct reach reach[3], const uint8_t from[3], int32_t k,

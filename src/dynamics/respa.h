@@ -21,7 +21,7 @@ struct respa_parameters {
     int64_t inner_steps;
 };
 
-/// The field of this, at its place in the parameters, with `more` behind its help.
+/// The field of this, at its place in the parameters, with `more` after its help.
 #define RESPA_FIELD(place, more)                                                                   \
     {                                                                                              \
         "inner_steps", FIELD_INTEGER,                                                              \

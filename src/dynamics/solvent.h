@@ -2,7 +2,7 @@
 /// @file The solvent of collision dynamics: point particles in cells, sorted by cell.
 ///
 /// Streaming, sorting and collisions are three passes over arrays (solvent_stream.c,
-/// solvent_sort.c, solvent_collide.c). Particles of a cell stand one after the other, in an order
+/// solvent_sort.c, solvent_collide.c). Particles of a cell follow each other, in an order
 /// that does not depend on threads; so do all sums.
 #pragma once
 

@@ -34,7 +34,7 @@ double mf_export_bonded_longest(const struct export_model *model) {
 
 // Tables ------------------------------------------------------------------------------------------
 
-/// Where the rows of a table begin and end. A bond's go on behind its own table, where the energy
+/// Where the rows of a table begin and end. A bond's go on after its own table, where the energy
 /// is a straight line, by as much as that is wide, and have room for all bonds that there are.
 static void find_range(const struct export_model *model, int order,
                        const struct bonded_curve *curve, double *low, double *high) {

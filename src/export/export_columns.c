@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/// The place of the column called `name` in a heading, and the unit behind it; −1: none.
+/// The place of the column called `name` in a heading, and the unit after it; −1: none.
 static long find_column(const char *header, const char *name, char *unit, size_t size) {
     const size_t length = strlen(name);
     const char *word = header + strspn(header, " \t");

@@ -54,7 +54,7 @@ static double open_place(const struct export_grid *grid, size_t row) {
     return grid->first + (grid->last - grid->first) * (double)row / (double)grid->rows;
 }
 
-/// The row behind the last is 0.
+/// The row after the last is 0.
 static void open_value(const struct export_grid *grid, double r, double *phi, double *force) {
     const double place =
         fmin((r - grid->first) / (grid->last - grid->first), 1) * (double)grid->rows;
@@ -105,7 +105,7 @@ static void hermite_value(const struct export_grid *grid, double r, double *phi,
     *force = -(slope + f * (2 * c2 + 3 * f * c3)) / h;
 }
 
-/// Rows from one spacing on, the last four behind the cutoff.
+/// Rows from one spacing on, the last four after the cutoff.
 static double quadratic_place(const struct export_grid *grid, size_t row) {
     return grid->last * (double)(row + 1) / (double)(grid->rows - 4);
 }
@@ -145,7 +145,7 @@ static double cutoff_of(const struct table *table, int pair) {
     return cutoff > 0 ? cutoff : table->cutoff;
 }
 
-/// Φ and F of a row. Where the grid ends at the cutoff, rows there and behind it go on straight, as
+/// Φ and F of a row. Where the grid ends at the cutoff, rows there and after it go on straight, as
 /// the force may end with a jump.
 static void read_row(struct export_grid *grid, const struct table *table, int pair, size_t row) {
     static const double rounding = 1e-9;
@@ -215,7 +215,7 @@ static double find_accessible(const struct table *table, int pair, double cutoff
 struct export_error mf_export_grid_error(const struct export_grid *grid,
                                          const struct export_interpolation *interpolation,
                                          const struct table *table, int pair, double temperature) {
-    // Where a longer table goes on behind the cutoff, a jump of the force there takes two rows.
+    // Where a longer table goes on after the cutoff, a jump of the force there takes two rows.
     const double end = cutoff_of(table, pair),
                  row = grid->r[grid->rows - 1] - grid->r[grid->rows - 2];
     const double cutoff = grid->last > end * (1 + 1e-6) ? end - 2 * row : end;

@@ -53,7 +53,7 @@ enum status mf_export_grid_make(struct export_grid *grid,
                                 size_t rows) MUST_USE;
 void mf_export_grid_clear(struct export_grid *grid);
 
-/// Compare what an engine reads with the potential, at 200,000 distances; behind the last row only
+/// Compare what an engine reads with the potential, at 200,000 distances; after the last row only
 /// Φ. Tested: test_export_model.
 struct export_error mf_export_grid_error(const struct export_grid *grid,
                                          const struct export_interpolation *interpolation,

@@ -4,7 +4,7 @@
 // −derivative. The potential stands in the column of the repulsion, whose C12 is 1 for all pairs.
 #include "export/export_gromacs_molecules.h"
 
-enum { EXTENSION_NM = 1 }; ///< that GROMACS wants behind the cutoff
+enum { EXTENSION_NM = 1 }; ///< that GROMACS wants after the cutoff
 
 /// What one table is of.
 static enum status write_table(const struct export_job *job, const struct export_grid *grid,

@@ -24,7 +24,7 @@ bool mf_export_gromacs_has_law(const struct bonded_curve *curve) {
 static void print_law(const struct export_job *job, int order, int group, FILE *stream) {
     const struct bonded_curve *curve = &job->model->molecules->group[order][group].curve;
     const struct gromacs_function *function = find_function(curve);
-    if (function == NULL) { // its factor behind the number of the table
+    if (function == NULL) { // its factor after the number of the table
         fprintf(stream, " 8 %d 1", job->bonded.table[order][group].number);
         return;
     }

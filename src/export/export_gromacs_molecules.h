@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// @file The molecules of a result in the files for GROMACS, whose atoms stand molecule after
-/// molecule, kind after kind, and single beads behind them.
+/// molecule, kind after kind, and single beads after them.
 #pragma once
 
 #include "export/export_engine.h"

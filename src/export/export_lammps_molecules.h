@@ -24,7 +24,7 @@ void mf_export_lammps_terms(const struct export_job *job, FILE *stream);
 /// The sections of the table file.
 void mf_export_lammps_tables(const struct export_job *job, FILE *stream);
 
-/// Styles of the terms, which stand before the data is read, and their coefficients, behind.
+/// Styles of the terms, which stand before the data is read, and their coefficients, after.
 void mf_export_lammps_styles(const struct export_job *job, FILE *stream);
 void mf_export_lammps_coefficients(const struct export_job *job, FILE *stream);
 

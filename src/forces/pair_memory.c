@@ -192,7 +192,7 @@ static void index_pairs(struct pair_memory_index *index, const struct pair_memor
     }
 }
 
-/// The pair of two ids, the first one's first, or the place behind the last.
+/// The pair of two ids, the first one's first, or the place after the last.
 static uint32_t find(const struct pair_memory *memory, uint32_t first_id, uint32_t second_id) {
     for (uint32_t p = memory->index.begin[first_id]; p < memory->index.end[first_id]; p++)
         if (memory->before.second_id[p] == second_id)

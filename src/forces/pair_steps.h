@@ -4,7 +4,7 @@
 
 #include "pair_collect.h"
 
-/// Where the distances of a batch lie in a table: its row, and the fraction of the interval behind
+/// Where the distances of a batch lie in a table: its row, and the fraction of the interval after
 /// it.
 struct pair_places {
     int32_t interval[PAIR_BATCH];

@@ -37,7 +37,7 @@ struct soft_discs_cells {
     struct soft_discs_class of[SOFT_DISCS_MAX_CLASSES]; ///< from small to large
     size_t blocks;
     struct soft_discs_block *block; ///< shape [blocks], of all classes
-    struct cells sorted;            ///< the cells of all classes, one behind the other
+    struct cells sorted;            ///< the cells of all classes, one after the other
     int32_t *fraction[2];           ///< box_fraction
     float *radius;                  ///< [λ]
     float *stiffness;               ///< k

@@ -99,7 +99,7 @@ static enum status fail_shape(const char *file) {
     return mf_status_fail(STATUS_BAD_INPUT, "%s: the checkpoint is of another shape", file);
 }
 
-/// Open a checkpoint of these settings whose bytes are those that were written, behind its head.
+/// Open a checkpoint of these settings whose bytes are those that were written, after its head.
 /// @param[out] bytes  of what follows, without the checksum
 static enum status open_checked(FILE **stream, const char *file, uint64_t digest, uint64_t *bytes) {
     enum status status = STATUS_OK;

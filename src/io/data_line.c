@@ -41,7 +41,7 @@ size_t mf_data_line_copy(const struct data_line *line, const char *begin, char *
     return length;
 }
 
-/// Behind a word in quotes, which may have any separator; `at` if none begins there.
+/// After a word in quotes, which may have any separator; `at` if none begins there.
 static const char *after_quotes(const struct data_line *line, const char *at) {
     const char *close =
         at < line->end && *at == '"' ? memchr(at + 1, '"', (size_t)(line->end - at - 1)) : NULL;

@@ -47,7 +47,7 @@ enum status mf_data_table_check_increasing(const struct data_table *table, const
 /// test_data_table.
 size_t mf_data_table_find(const struct data_table *table, const char *name);
 
-/// Make numbers of the reduced `unit` of a column: they are in the unit in brackets behind its
+/// Make numbers of the reduced `unit` of a column: they are in the unit in brackets after its
 /// name, or, of the first column, in that of the x axis of xmgrace's "@" lines, or else in those of
 /// the file that names the table. Nothing changes for a reduced file. Fails: BAD_INPUT if the name
 /// has no such unit, or, of a reduced file with a scale, one whose 1 is not that of the scale.
@@ -76,7 +76,7 @@ void mf_data_table_name(const struct units *units, const char *name, const char 
 double mf_data_table_translate(const struct units *units, const char *heading, char *name,
                                size_t size);
 
-/// Write columns of reduced units in those of the file: by the unit in brackets behind its name
+/// Write columns of reduced units in those of the file: by the unit in brackets after its name
 /// each is converted and renamed, "r[lambda]" as "r[nm]"; columns of other units stay. Tested:
 /// test_data_table_units.
 enum status mf_data_table_write_in(const char *file, const struct units *units, const char *comment,
@@ -84,7 +84,7 @@ enum status mf_data_table_write_in(const char *file, const struct units *units, 
                                    size_t rows) MUST_USE;
 
 /// The same for columns of which some stand twice in a reduced file whose units have a scale:
-/// behind all columns again in nm, ps and kJ/mol, "r[nm]".
+/// after all columns again in nm, ps and kJ/mol, "r[nm]".
 /// @param[in] beside  shape [columns]: format of each there; NULL: it does not stand again
 enum status mf_data_table_write_beside(const char *file, const struct units *units,
                                        const struct data_column *columns, const char *const *beside,

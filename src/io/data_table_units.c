@@ -10,13 +10,13 @@
 enum { NAME_SIZE = 256 };
 static const char gaps[] = " \t,;";
 
-/// Behind a "[…]", whatever stands in it.
+/// After a "[…]", whatever stands in it.
 static const char *after_brackets(const char *open) {
     const char *close = strchr(open, ']');
     return close ? close + 1 : open + strlen(open);
 }
 
-/// Step over a word of the line of names, and over "[nm]" in it or behind it.
+/// Step over a word of the line of names, and over "[nm]" in it or after it.
 static const char *after_word(const char *word) {
     for (word += strcspn(word, " \t,;["); *word == '['; word += strcspn(word, " \t,;["))
         word = after_brackets(word);

@@ -19,7 +19,7 @@ static const char *find_before(const char *text, const char *at) {
     return at > text ? at - 1 : NULL;
 }
 
-/// Where cJSON says that a text begins which does not end: one character behind its quote.
+/// Where cJSON says that a text begins which does not end: one character after its quote.
 static bool is_open_text(const char *text, const char *end) {
     if (end == text || end[-1] != '"' || strchr(end, '"'))
         return false;
@@ -28,7 +28,7 @@ static bool is_open_text(const char *text, const char *end) {
 }
 
 /// Whether cJSON found something else where it looked for a key: it then stops one character
-/// behind that.
+/// after that.
 static bool is_after_key(const char *text, const char *end) {
     if (end == text || strchr(" \t\r\n[{\"0123456789", end[-1]))
         return false;

@@ -6,7 +6,7 @@
 
 struct cJSON;
 
-/// Parse one JSON value with nothing behind it. What cJSON reads beyond RFC 8259 (01, 1., -.5, line
+/// Parse one JSON value with nothing after it. What cJSON reads beyond RFC 8259 (01, 1., -.5, line
 /// breaks in texts) keeps its value and is let through; what it would cut without a word, a text at
 /// an escaped NUL, is refused.
 /// @param[out] root  to be freed with cJSON_Delete; NULL on failure

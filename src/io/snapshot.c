@@ -86,7 +86,7 @@ static void copy_molecules(struct snapshot *snapshot, const struct topology *top
         to[id] = (double)topology->molecule[id] + 1;
 }
 
-/// Behind the others, into the columns that are about them.
+/// After the others, into the columns that are about them.
 static void copy_solvent_particles(struct snapshot *snapshot,
                                    const struct snapshot_solvent_particles *solvent_particles) {
     for (int n = 0; n < snapshot->columns; n++) {
@@ -186,7 +186,7 @@ static enum status write_whole(const struct snapshot *snapshot,
     return mf_output_commit(&output);
 }
 
-/// Print behind the first *size bytes of a file, all of which is on the disk at the end.
+/// Print after the first *size bytes of a file, all of which is on the disk at the end.
 static int append(const struct snapshot *snapshot, const struct snapshot_format *format, int file,
                   int64_t *size) {
     if (ftruncate(file, *size) != 0)

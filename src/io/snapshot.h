@@ -50,7 +50,7 @@ struct snapshot {
     size_t numbers;
 };
 
-/// Copy the present state of the particles, in the order of their ids, and behind them that of
+/// Copy the present state of the particles, in the order of their ids, and after them that of
 /// solvent particles as they are: only positions, velocities and masses are not 0 there.
 /// @param[in] solvent_particles  or NULL
 /// Fails: NO_MEMORY. Tested: test_snapshot, cli/test_snapshots.
@@ -96,7 +96,7 @@ extern const struct snapshot_format *const mf_snapshot_formats[];
 extern const char *const mf_snapshot_format_names[];
 
 /// Write a snapshot into `folder`: step_000001000.vtp, which appears whole or not at all, or a
-/// frame behind the first `size` bytes of trajectory.extxyz. Those are all that is kept of it, so
+/// frame after the first `size` bytes of trajectory.extxyz. Those are all that is kept of it, so
 /// that a run that goes on from an earlier step leaves the file of one that was not interrupted.
 /// @param[in,out] size  of the format's file of all snapshots [bytes]; others leave it alone
 /// Fails: IO; the file is then as it was. Tested: test_snapshot, cli/test_snapshots.

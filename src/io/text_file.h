@@ -10,7 +10,7 @@
 #define TEXT_FILE_LARGEST ((size_t)1 << 30)
 
 /// Read `file` into a new NUL-terminated text; a byte order mark at its start is dropped, and a CR
-/// without an LF behind it becomes one: lines end with LF, or CR and LF.
+/// without an LF after it becomes one: lines end with LF, or CR and LF.
 /// @param[out] text    to be freed with mf_memory_free; NULL on failure
 /// @param[out] length  bytes without the terminating NUL
 /// Fails: IO as mf_input_open; BAD_INPUT if it is larger than TEXT_FILE_LARGEST, empty or holds a

@@ -15,7 +15,7 @@ bool mf_tracked_file_is_folder(const char *name) {
 }
 
 /// The folder that a file is in, opened one step at a time; −1 with errno.
-/// @param[out] last  what is behind the last step, without a / at its end
+/// @param[out] last  what is after the last step, without a / at its end
 static int enter(int place, const char *name, char last[256]) {
     int folder = openat(place, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     for (;;) {

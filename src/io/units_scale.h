@@ -62,7 +62,7 @@ double mf_units_factor(const struct units *units, const char *unit);
 /// Returns `name`.
 const char *mf_units_name(const struct units *units, const char *unit, char *name);
 
-/// " nm", the name of a unit behind a number of a message, or "" in reduced units, which are left
+/// " nm", the name of a unit after a number of a message, or "" in reduced units, which are left
 /// out.
 const char *mf_units_suffix(const struct units *units, const char *unit, char *name);
 

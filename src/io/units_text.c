@@ -84,7 +84,7 @@ static void skip_blanks(struct reader *reader) {
     reader->at += strspn(reader->at, " ");
 }
 
-/// The longest stretch of what names are made of: letters, and "_0" behind one.
+/// The longest stretch of what names are made of: letters, and "_0" after one.
 static size_t name_length(const char *text) {
     size_t length = 0;
     while ((text[length] >= 'a' && text[length] <= 'z') ||

@@ -2,7 +2,7 @@
 /// @file Units as texts: products, quotients, powers and square roots of named units.
 ///
 /// "k_B T_0/lambda^d", "sqrt(mu/tau)" and "kJ/mol/nm^3" are units; "k_B.T_0" has a dot where a
-/// heading may have no blank. A quotient divides by the one factor behind it, so that a/b/c is
+/// heading may have no blank. A quotient divides by the one factor after it, so that a/b/c is
 /// a/(b c). What is counted or is an angle, as "steps" and "degrees", is a pure number. Tested:
 /// test_units_text.
 #pragma once

@@ -2,7 +2,7 @@
 /// @file Tables of VOTCA: rows "x y flag" or "x y error flag", in nm and kJ/mol.
 ///
 /// The flag is i (in the range of the data), o (outside: continued) or u (undefined). What stands
-/// before the first i and behind the last is left out, since what VOTCA continued there is not
+/// before the first i and after the last is left out, since what VOTCA continued there is not
 /// measured; an o or u between them is a fault. Rows "x y" without any flag are all in range.
 #pragma once
 

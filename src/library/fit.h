@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file What stands behind a fit of the library.
+/// @file The state of a fit of the library.
 #pragma once
 
 #include "defaults/fit_file.h"

@@ -146,7 +146,7 @@ static enum MHD_Result refuse(struct MHD_Connection *connection, unsigned code, 
 
 // Requests ----------------------------------------------------------------------------------------
 
-/// The token in the head or, of the address that was printed, behind the "?".
+/// The token in the head or, of the address that was printed, after the "?".
 static bool has_token(const struct live_server *server, struct MHD_Connection *connection,
                       const struct live_request *request) {
     const char *given = find_head(connection, "X-Mesofit-Token");
@@ -197,7 +197,7 @@ static const char *find_fault(const struct live_server *server, struct MHD_Conne
     return NULL;
 }
 
-/// Keep a part of the body, with room for a NUL behind it.
+/// Keep a part of the body, with room for a NUL after it.
 static void keep(struct exchange *exchange, const char *bytes, size_t size) {
     if (exchange->too_large || size > LIVE_SERVER_LARGEST - exchange->size) {
         exchange->too_large = true;

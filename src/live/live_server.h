@@ -26,7 +26,7 @@ struct live_request {
     void *connection;
 };
 
-/// The value of an argument behind the "?", decoded, or NULL.
+/// The value of an argument after the "?", decoded, or NULL.
 const char *mf_live_server_argument(const struct live_request *request, const char *name);
 
 /// Pieces of a stream without an end: the next one, to be freed with free(), or NULL at the end. It

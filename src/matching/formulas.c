@@ -185,7 +185,7 @@ static enum status create(void *memory, const struct inverse_method *method,
 static const double curve_penalty = 0.004;
 
 /// The residuals of a potential become those of g(r): δg_a = −Σ_b C_ab δΦ_b/(k_B T S_ideal,a);
-/// behind them stand the differences from the curve. Both count half of the rows.
+/// after them stand the differences from the curve. Both count half of the rows.
 static void take_response(struct formulas_state *state, const struct inverse_response *from) {
     const double temperature = state->problem->scene.temperature;
     for (size_t a = 0; a < state->count; a++)

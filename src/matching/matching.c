@@ -23,7 +23,7 @@ struct parameters {
     int surrogate;
 };
 
-/// The same with the parameters of each optimiser behind it: struct genetic_settings and so on.
+/// The same with the parameters of each optimiser after it: struct genetic_settings and so on.
 #define SETTINGS(record, name, summary)                                                            \
     struct record##_settings {                                                                     \
         struct parameters common;                                                                  \

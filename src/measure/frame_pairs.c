@@ -109,7 +109,7 @@ static inline __attribute__((always_inline)) double square(const struct probe *p
     return x * x + y * y + z * z;
 }
 
-/// Bins of the distances; what is beyond the range is in the bin behind the last.
+/// Bins of the distances; what is beyond the range is in the bin after the last.
 SIMD_CLONES static void find_bins(const struct probe *probe, size_t count, int32_t *restrict bin) {
     const struct probe p = *probe;
     for (size_t k = 0; k < count; k++) {

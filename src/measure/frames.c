@@ -257,7 +257,7 @@ static enum status decode_one(void *context, size_t task, void *result) {
     return STATUS_OK;
 }
 
-/// Decode all that was fetched; what is behind a damaged frame is lost.
+/// Decode all that was fetched; what is after a damaged frame is lost.
 static enum status decode(struct batch *batch) {
     const struct parallel_tasks tasks = {.count = batch->fetched - batch->first,
                                          .threads = batch->frames->plan.threads,

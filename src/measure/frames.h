@@ -55,7 +55,7 @@ struct frames {
 enum status mf_frames_open(struct frames *frames, const struct frames_plan *plan,
                            const struct structure *structure, const char *structure_file) MUST_USE;
 
-/// Read the next frames to be used into frames->frame[0 … *count − 1], in order; *count is 0 behind
+/// Read the next frames to be used into frames->frame[0 … *count − 1], in order; *count is 0 after
 /// the last, and at least 2 before. They are the same however many threads there are, but for how
 /// many come at a time. Fails: BAD_INPUT for a damaged frame, unless that is allowed, for frames
 /// out of order or without a time that is asked for; IO; NO_MEMORY; INTERRUPTED.

@@ -58,7 +58,7 @@ enum status mf_measured_motion_begin(struct measured_motion *motion,
 double mf_measured_motion_pairs_range(const struct measured_motion *motion, size_t frame);
 
 /// Add the next frame; `pairs` has those near if they were looked for. Fails: BAD_INPUT, naming the
-/// frame, if it is not an interval behind the one before, or has no velocities where others have;
+/// frame, if it is not an interval after the one before, or has no velocities where others have;
 /// NO_MEMORY.
 enum status mf_measured_motion_add(struct measured_motion *motion,
                                    const struct trajectory_frame *beads,

@@ -185,7 +185,7 @@ static void keep_counts(struct work *work) {
         work->topology->kind[k].count = work->count[k];
 }
 
-/// The ids of molecules' beads, and of single ones behind them.
+/// The ids of molecules' beads, and of single ones after them.
 static enum status number_beads(const struct work *work, const struct composition *composition,
                                 struct molecule_match *match) {
     int64_t found[TOPOLOGY_MAX_KINDS] = {0};

@@ -280,7 +280,7 @@ static enum status find_columns(const struct bonded_state *s, int group, double 
     return STATUS_OK;
 }
 
-/// p of the groups that are measured, one behind the other.
+/// p of the groups that are measured, one after the other.
 static enum status result_of_all(const void *const *states, size_t count,
                                  const struct observable_values *values) {
     const struct bonded_state *const *all = (const struct bonded_state *const *)states;

@@ -24,7 +24,7 @@ static inline double bonded_bins_centre(const struct bonded_bins *bins, size_t k
 struct bonded_settings {
     int64_t bins; ///< of all groups; 0: those of `target`
     /// Of each group of a target; a count of 0: not measured. The values of the target are those of
-    /// these groups, one behind the other.
+    /// these groups, one after the other.
     struct bonded_bins target[MOLECULES_MAX_GROUPS];
 };
 

@@ -125,7 +125,7 @@ struct motion_summary {
 struct motion_summary mf_motion_result(const struct motion *motion,
                                        const struct motion_curves *curves);
 
-/// Columns of a table, each of lags + 1 numbers behind the one before, which the caller frees:
+/// Columns of a table, each of lags + 1 numbers after the one before, which the caller frees:
 /// time, MSD, its error, VACF, its error; errors that are not known are NaN. Fails: NO_MEMORY.
 enum { MOTION_COLUMNS = 5 };
 enum status mf_motion_table(const struct motion *motion, double **columns) MUST_USE;

@@ -198,7 +198,7 @@ static void find_spread(struct genetic *genetic, const double *errors) {
     }
 }
 
-/// As individual 0, which it was already, or the challenger behind the generation that was
+/// As individual 0, which it was already, or the challenger after the generation that was
 /// measured.
 static void place_elite(struct genetic *genetic) {
     const struct genetic_parameters *p = &genetic->parameters;

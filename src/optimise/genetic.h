@@ -47,7 +47,7 @@ struct genetic {
     uint64_t seed;
     uint32_t generation; ///< of `population`, from 0
     int64_t rows; ///< individuals of `population`: more than its number when a challenger follows
-    /// shape [rows, genes], room for a challenger's behind the population; individual 0 is the
+    /// shape [rows, genes], room for a challenger's after the population; individual 0 is the
     /// elite once there is one
     double *population;
     /// shape [room, 2]: whose child each is, as numbers of individuals in the order in which they

@@ -114,7 +114,7 @@ static int64_t find_challenger(const struct genetic *genetic, const double *erro
     return best;
 }
 
-/// Rows of a challenger behind the next generation.
+/// Rows of a challenger after the next generation.
 /// @param[in] number  of the individual that it is
 static void add_challenger(struct state *state, uint64_t number) {
     struct genetic *genetic = &state->genetic;

@@ -20,7 +20,7 @@ enum unknown_kind {
     UNKNOWN_OMEGA,
     UNKNOWN_MEMORY, ///< of the first mode; those of the others follow
     UNKNOWN_TRANSVERSE = UNKNOWN_MEMORY + PAIR_MEMORY_MAX_MODES,
-    UNKNOWN_BONDED, ///< of all groups that are to be found, one behind the other
+    UNKNOWN_BONDED, ///< of all groups that are to be found, one after the other
     UNKNOWNS,
 };
 
@@ -220,7 +220,7 @@ struct inverse_step {
     struct inverse_parameter
         parameter[INVERSE_PARAMETERS]; ///< of a friction weight that is a formula
     struct inverse_parameter number[INVERSE_MAX_NUMBERS]; ///< of the problem, the best so far
-    const char *begins; ///< another part of the fit that begins behind this step, in words; or NULL
+    const char *begins; ///< another part of the fit that begins after this step, in words; or NULL
     bool finished;
     bool converged; ///< it has settled: by its own measure it can do no better
     bool exhausted; ///< it finished since all was used that it was to use, as populations do, or at

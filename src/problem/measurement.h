@@ -34,7 +34,7 @@ enum status mf_measurement_list(const struct measurement_setup *setup, double ti
 void mf_measurement_list_clear(struct observable_use *uses);
 
 /// Steps of the longest window of what is asked for, and the target that it belongs to: a plan must
-/// have as many behind its equilibration. 0 if nothing has a window.
+/// have as many after its equilibration. 0 if nothing has a window.
 int64_t mf_measurement_window(const struct targets *targets, double time_step,
                               enum target_kind *longest);
 
@@ -54,7 +54,7 @@ size_t mf_measurement_spans(struct measurement *measurement, struct memory_span 
 const void *mf_measurement_state(const struct measurement *measurement,
                                  const struct observable *observable);
 
-/// Values and errors of all targets, one behind the other: shape [targets_values]. Their spans are
+/// Values and errors of all targets, one after the other: shape [targets_values]. Their spans are
 /// at most 2 × TARGETS.
 struct observed {
     double *value[TARGETS], *error[TARGETS]; ///< shape [target.count], NaN: not measured

@@ -10,7 +10,7 @@
 struct parametrisation {
     struct unknowns unknowns;
     size_t variables;        ///< of all unknowns
-    size_t first_number;     ///< variable of the first number, behind those of the curves
+    size_t first_number;     ///< variable of the first number, after those of the curves
     size_t first[UNKNOWNS];  ///< variable of each
     double *basis[UNKNOWNS]; ///< shape [points, variables of it]: curve = base + basis · c, with
                              ///< the base of the problem; NULL: a formula

@@ -107,7 +107,7 @@ static void index_known(struct potential_grid *grid, const struct inverse_proble
     }
 }
 
-/// Blocks of the groups, behind those of pairs.
+/// Blocks of the groups, after those of pairs.
 static enum status init_groups(struct potential_grid *grid, const struct inverse_problem *problem) {
     for (size_t g = 0; g < grid->groups; g++) {
         struct potential_group *group = &grid->group[g];

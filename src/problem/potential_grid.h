@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// @file The points at which the fitted potentials are known: a block for each pair of types, and
-/// behind them one for each group of bonds, angles or dihedrals (problem/bonded_grid.h).
+/// after them one for each group of bonds, angles or dihedrals (problem/bonded_grid.h).
 ///
 /// In each block of pairs the bin centres of the target, in three parts: the core, where the target
 /// has no more pairs than two of its standard errors and the potential is continued, as a straight

@@ -23,7 +23,7 @@ void mf_unknowns_clear(struct unknowns *unknowns);
 size_t mf_unknowns_points(const struct unknowns *unknowns, enum unknown_kind kind);
 const double *mf_unknowns_r(const struct unknowns *unknowns, enum unknown_kind kind);
 
-/// The curves that an unknown is made of, one behind the other: potentials are one for each pair
+/// The curves that an unknown is made of, one after the other: potentials are one for each pair
 /// type, and one for each group of bonds, angles and dihedrals.
 size_t mf_unknowns_curve_count(const struct unknowns *unknowns, enum unknown_kind kind);
 

@@ -34,7 +34,7 @@ struct verification {
     size_t particles;
     size_t sampled; ///< particles of the samples that the fit ended with; 0: it has none of its own
     /// Where the first replica ended: positions, then velocities, by id, shape [6, particles];
-    /// behind the dimensions of the scene 0 [λ], [λ/τ].
+    /// after the dimensions of the scene 0 [λ], [λ/τ].
     double *configuration;
 };
 

@@ -48,7 +48,7 @@ static void find_temporary(const char *folder, const char *name, int kind, const
     snprintf(path, PATH_SIZE + OUTPUT_PARTIAL_SIZE, "%s%s", figure, ending);
 }
 
-/// Whether a file ends as it must, a blank or two behind not counted: gnuplot says nothing of a
+/// Whether a file ends as it must, a blank or two after not counted: gnuplot says nothing of a
 /// full disk.
 static bool ends_with(const char *path, const char *end, size_t length) {
     char tail[64];

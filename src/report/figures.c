@@ -24,7 +24,7 @@ enum {
     MESSAGE_SIZE = 2048,
 };
 
-/// What may stand behind the name of a figure's table, as "_A-B" of "rdf_A-B.tsv".
+/// What may stand after the name of a figure's table, as "_A-B" of "rdf_A-B.tsv".
 enum parts {
     NO_PARTS,
     PAIRS,          ///< in a mixture a pair type: a figure each

@@ -87,7 +87,7 @@ static bool read_tail(int file, double end, char *text, size_t size) {
     }
 }
 
-/// Cut `text` behind its last line that is not empty, and return that line.
+/// Cut `text` after its last line that is not empty, and return that line.
 static const char *last_line(char *text) {
     size_t length = strlen(text);
     while (length > 0 && strchr(" \t\n", text[length - 1]))

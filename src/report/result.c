@@ -31,7 +31,7 @@ enum { PATH_SIZE = OUTPUT_PATH_SIZE + 64 };
 
 #define MEAN(member, its_unit) NUMBER(member, its_unit), NUMBER(member##_error, its_unit)
 
-/// Distances from targets stand behind the first nine.
+/// Distances from targets stand after the first nine.
 static const struct field own_fields[] = {
     TEXT(status),
     TEXT(method),
@@ -236,7 +236,7 @@ static enum status read_summary(struct result_summary *summary, const char *file
     return mf_json_close(document, STATUS_OK);
 }
 
-/// Cut `*text` behind its first line and step over it; NULL at the end.
+/// Cut `*text` after its first line and step over it; NULL at the end.
 static char *take_line(char **text) {
     char *line = *text;
     if (*line == '\0')

@@ -14,7 +14,7 @@
 #include <string.h>
 #include <unistd.h>
 
-/// Room for the name of any file behind the path of the folder.
+/// Room for the name of any file after the path of the folder.
 enum { NAME_ROOM = 320, LONGEST_FOLDER = OUTPUT_PATH_SIZE - NAME_ROOM };
 
 static bool exists(const struct run_folder *folder, const char *name) {

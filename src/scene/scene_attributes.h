@@ -9,7 +9,7 @@
 /// document.
 void mf_scene_attributes_read(struct scene *scene, struct json_object *particles);
 
-/// The first column of a placement file behind those of positions and velocities: the last ones
+/// The first column of a placement file after those of positions and velocities: the last ones
 /// that are called by an attribute in the line of names.
 size_t mf_scene_attributes_first_column(const struct data_table *table);
 

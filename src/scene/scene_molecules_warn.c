@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/// Add to the warning, behind what it says already; what has no room is cut.
+/// Add to the warning, after what it says already; what has no room is cut.
 static void warn(struct scene_molecules *molecules, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 static void warn(struct scene_molecules *molecules, const char *format, ...) {

@@ -8,7 +8,7 @@
 /// or a data file of LAMMPS. The topology is not completed. Faults go to the document. Fails:
 /// NO_MEMORY.
 /// @param[in,out] molecules  with the groups that the scene or a fit has; those of a data file come
-///                           behind them
+///                           after them
 /// @param[in]     scene      the object with the laws of groups
 enum status mf_scene_topology_read(struct scene_molecules *molecules, struct json_object *object,
                                    struct json_object *scene, const struct scene_fitted *fitted,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// @file The cells of a box, and who is in which: sorted, or in chains.
 ///
-/// Sorted particles stand one behind the other in memory, cell by cell, so that a search reads rows
+/// Sorted particles follow each other in memory, cell by cell, so that a search reads rows
 /// of cells; chains are for those that enter and leave one by one. What a step of a simulation
 /// waits for sorts here, too, but searches with vectors of its own: system/neighbours.h and
 /// forces/soft_discs_cells.h.

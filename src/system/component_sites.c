@@ -3,7 +3,7 @@
 
 #include "base/memory.h"
 
-/// Ids of a type's single beads are behind those that are in molecules.
+/// Ids of a type's single beads are after those that are in molecules.
 static void find_single(struct component_sites *sites, const struct composition *beads,
                         const struct topology *topology) {
     int64_t end = 0;

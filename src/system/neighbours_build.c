@@ -86,7 +86,7 @@ static int find_depth(const struct neighbours *neighbours, const struct box *box
 /// Whether the pairs between two planes stand in the list of the one at `plane`.
 ///
 /// With planes enough, those from it up to the range ahead, across the boundary of the box too: so
-/// a part of the system reaches only into the next. Else those behind it in the order of memory.
+/// a part of the system reaches only into the next. Else those after it in the order of memory.
 static bool owns_pairs(const struct neighbours *neighbours, int plane, int other) {
     const int n = neighbours->cells.count[0], range = neighbours->range_cells[0];
     if (n <= 2 * range)

@@ -87,7 +87,7 @@ LANES_INLINE void search_find_runs(struct pair_search_runs *runs,
         runs->begin[0] = rows->row[0].start[cell];
 }
 
-/// The neighbours of the particle at a place: in a half list those behind it in the first run, and
+/// The neighbours of the particle at a place: in a half list those after it in the first run, and
 /// in the others; in a full list all but itself.
 LANES_INLINE int32_t *search_around(const struct pair_search search,
                                     const struct pair_search_rows *rows,

@@ -145,7 +145,7 @@ static void search_end(struct search *search) {
     mf_memory_free(search->bonds.to);
 }
 
-/// The beads at most kind->exclude bonds from one, by growing number, behind it in `reached`.
+/// The beads at most kind->exclude bonds from one, by growing number, after it in `reached`.
 static int reach(const struct topology_kind *kind, struct search *search, int bead) {
     const struct topology_bonds *bonds = &search->bonds;
     int *distance = search->distance, *reached = search->reached, count = 1;

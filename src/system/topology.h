@@ -3,7 +3,7 @@
 /// bonds alone.
 ///
 /// Kinds of molecules are repeated. The ids of their beads follow from the composition: the beads
-/// of a type stand molecule after molecule, kind after kind, single beads behind them, so that
+/// of a type stand molecule after molecule, kind after kind, single beads after them, so that
 /// nothing is stored, sorted or saved. A term is a bond, an angle or a dihedral (the list of
 /// curves/bonded_kind.h), and belongs to a group, which has a law (forces/molecules.h).
 #pragma once

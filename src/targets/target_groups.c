@@ -28,7 +28,7 @@ static void fault_unknown(const struct target_groups *groups, struct json_object
     mf_json_has(object, key);
 }
 
-/// Values of all members, one behind the other.
+/// Values of all members, one after the other.
 static enum status collect(struct target_groups *groups) {
     mf_memory_free(groups->value);
     mf_memory_free(groups->error);

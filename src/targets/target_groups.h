@@ -12,7 +12,7 @@ struct target_groups {
     char name[MOLECULES_MAX_GROUPS][TOPOLOGY_NAME_SIZE];
     struct target_bonded *member;           ///< shape [groups]
     size_t first[MOLECULES_MAX_GROUPS + 1]; ///< value of each among those of all
-    double *value, *error;                  ///< of all members, one behind the other
+    double *value, *error;                  ///< of all members, one after the other
     size_t *block, blocks;                  ///< their blocks (mf_targets_blocks), and the end
 };
 

@@ -50,7 +50,7 @@ static void check_bins(const struct target_pairs *target, const struct compositi
     }
 }
 
-/// g and errors of all pair types in the numbers of the scene, one behind the other, if all
+/// g and errors of all pair types in the numbers of the scene, one after the other, if all
 /// could be read.
 static enum status collect(struct target_pairs *target, const struct finite_size_fluid *fluid) {
     const size_t bins = target_pairs_bins(target)->count;

@@ -10,7 +10,7 @@
 struct target_pairs {
     size_t pairs;                                    ///< pair types of the scene; 0: not given
     struct target_rdf member[COMPOSITION_MAX_PAIRS]; ///< of each pair type, in the same bins
-    /// Of all, one behind the other, in the numbers of the scene: shape [pairs, bins].
+    /// Of all, one after the other, in the numbers of the scene: shape [pairs, bins].
     double *g, *error;
     double ends[COMPOSITION_MAX_PAIRS]; ///< where the file of each would end [λ]
     double *given;                      ///< g before it was divided by its normalisation

@@ -15,7 +15,7 @@ bool mf_gromacs_is_integer(const char *word, int64_t min, int64_t max, int64_t *
     return *end == '\0' && end != word && *value >= min && *value <= max;
 }
 
-/// Room for one more item of `size` bytes behind `count`.
+/// Room for one more item of `size` bytes after `count`.
 enum status mf_gromacs_reserve(void **array, size_t count, size_t *capacity, size_t size) {
     if (count < *capacity)
         return STATUS_OK;
@@ -74,7 +74,7 @@ static enum status read_function(const struct gromacs_line *line, int order, con
                            mf_bonded_kinds[order]->article, mf_bonded_kinds[order]->name, known);
 }
 
-/// Numbers behind the function: none, or those of it, perhaps twice as for free energies.
+/// Numbers after the function: none, or those of it, perhaps twice as for free energies.
 static enum status read_values(const struct gromacs_line *line, const struct gromacs_words *words,
                                int first, int wanted, double *values, int *count) {
     *count = words->count - first;

@@ -40,7 +40,7 @@ bool mf_gromacs_is_integer(const char *word, int64_t min, int64_t max, int64_t *
 /// The moleculetype that is being read, or NULL.
 struct topology_kind *mf_gromacs_last_kind(const struct gromacs_reading *reading);
 
-/// Room for one more item of `size` bytes behind `count`. Fails: NO_MEMORY.
+/// Room for one more item of `size` bytes after `count`. Fails: NO_MEMORY.
 enum status mf_gromacs_reserve(void **array, size_t count, size_t *capacity, size_t size) MUST_USE;
 
 /// A line of [ bondtypes ] and the like, and one of [ bonds ] and the like, of reading->order.

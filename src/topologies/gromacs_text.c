@@ -150,8 +150,8 @@ static enum status replace(const struct reading *reading, struct gromacs_line *l
     return STATUS_OK;
 }
 
-/// Take the next line, joined with those behind it while they end with a backslash, without
-/// comment and blanks around; false behind the last.
+/// Take the next line, joined with those after it while they end with a backslash, without
+/// comment and blanks around; false after the last.
 static enum status take_line(const char **text, struct gromacs_line *line, size_t *lines,
                              bool *there) {
     size_t at = 0;

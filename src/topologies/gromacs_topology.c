@@ -220,7 +220,7 @@ static void drop_kinds(struct topology *topology) {
     topology->kinds = left;
 }
 
-/// Count the beads of each type. Types behind the first `known` go if they have none.
+/// Count the beads of each type. Types after the first `known` go if they have none.
 static void drop_types(struct gromacs_reading *reading, int known) {
     struct composition *composition = reading->composition;
     struct topology *topology = &reading->molecules->topology;

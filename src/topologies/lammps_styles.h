@@ -7,7 +7,7 @@
 
 enum { LAMMPS_MAX_NUMBERS = 8 };
 
-/// Make the curve of a style from the numbers behind its name in a line of coefficients.
+/// Make the curve of a style from the numbers after its name in a line of coefficients.
 /// @param[in]  length, energy  the file's units in λ and k_B T_0
 /// @param[out] note  what is not taken, or NULL
 /// Fails: BAD_INPUT, without file and line, for a style that is not known, another count of

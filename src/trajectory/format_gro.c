@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // GROMACS's .gro (manual, "gro file format"): columns of fixed width, of which the numbers are as
-// wide as their decimal points are apart; any number of frames, one behind the other.
+// wide as their decimal points are apart; any number of frames, one after the other.
 #include "trajectory/trajectory.h"
 #include "trajectory/words.h"
 
@@ -36,7 +36,7 @@ static bool recognise(const unsigned char *begin, size_t size) {
            is_atom(line);
 }
 
-/// Digits behind the last point of a line.
+/// Digits after the last point of a line.
 static size_t count_decimals(const char *line) {
     const char *const point = strrchr(line, '.');
     return point ? strspn(point + 1, "0123456789") : 0;
@@ -119,7 +119,7 @@ static bool read_vector(const char *line, size_t first, size_t width, double vec
 static enum status read_atoms(struct trajectory_frame *frame, const char **line) {
     const size_t width = find_width(*line), speeds = NUMBERS + 3 * width;
     for (size_t k = 0; k < frame->atoms; k++, *line = mf_frame_next_line(frame, *line)) {
-        // A line may end early, and nothing behind its end may be read.
+        // A line may end early, and nothing after its end may be read.
         const size_t length = strnlen(*line, speeds + 3 * width);
         if (width == 0 || length <= NUMBERS ||
             !read_vector(*line, NUMBERS, width, frame->position[k]))
@@ -131,7 +131,7 @@ static enum status read_atoms(struct trajectory_frame *frame, const char **line)
     return STATUS_OK;
 }
 
-/// Numbers of `decimals` digits behind their points, which may stand so close that no blank is
+/// Numbers of `decimals` digits after their points, which may stand so close that no blank is
 /// left.
 static size_t read_tight(const char *line, size_t decimals, double *values, size_t max) {
     size_t count = 0;

@@ -33,7 +33,7 @@ static void close(struct trajectory *trajectory) {
 
 // Fetching ----------------------------------------------------------------------------------------
 
-/// Room behind what is there, for the numbers of a frame.
+/// Room after what is there, for the numbers of a frame.
 static enum status take(struct trajectory_frame *frame, const struct h5md_element *element,
                         hsize_t at, hid_t type) {
     const size_t size = mf_h5md_element_numbers(element) * sizeof(double);

@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-/// The second line or one behind it tells the number of atoms.
+/// The second line or one after it tells the number of atoms.
 static bool recognise(const unsigned char *begin, size_t size) {
     char line[256];
     struct word word[LAMMPS_DATA_WORDS];

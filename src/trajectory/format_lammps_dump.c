@@ -11,7 +11,7 @@ static bool recognise(const unsigned char *begin, size_t size) {
     return size >= 6 && memcmp(begin, "ITEM: ", 6) == 0;
 }
 
-/// Lines behind an item but the atoms.
+/// Lines after an item but the atoms.
 static uint64_t lines_after(const char *item) {
     return strncmp(item, "ITEM: BOX BOUNDS", 16) == 0 ? 3 : 1;
 }

@@ -106,7 +106,7 @@ static enum status fetch(struct trajectory *trajectory, struct trajectory_frame 
     return STATUS_OK;
 }
 
-/// The first atom at this line or behind it; NULL if there is none.
+/// The first atom at this line or after it; NULL if there is none.
 static const char *find_atom(const struct trajectory_frame *frame, const char *line) {
     while (line && !is_atom(line))
         line = mf_frame_next_line(frame, line);

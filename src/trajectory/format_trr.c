@@ -12,7 +12,7 @@ enum { MAGIC = 1993, TITLE = 24, HEADER = TITLE + 13 * 4, PARTS = 10 };
 /// The parts of a frame in the order in which they follow; all but these four are passed over.
 enum { BOX = 2, POSITIONS = 7, VELOCITIES = 8 };
 
-/// The header with numbers behind the title: sizes of the parts, atoms, step, and one that nobody
+/// The header with numbers after the title: sizes of the parts, atoms, step, and one that nobody
 /// uses; time and λ, of the precision of the rest, follow.
 struct header {
     int32_t size[PARTS];

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // XYZ, plain and extended (ASE, OVITO, QUIP, LAMMPS and our own): the number of atoms, a comment, a
-// line for each atom; one frame behind the other.
+// line for each atom; one frame after the other.
 #include "trajectory/trajectory.h"
 #include "trajectory/xyz_comment.h"
 

@@ -144,7 +144,7 @@ const char *mf_frame_next_line(const struct trajectory_frame *frame, const char 
     return next < end ? next : NULL;
 }
 
-/// The number behind "t=" or "t= ", where a word begins.
+/// The number after "t=" or "t= ", where a word begins.
 static bool find_number(const char *title, const char *key, double *value) {
     const size_t length = strlen(key);
     for (const char *at = strstr(title, key); at; at = strstr(at + 1, key)) {

@@ -63,7 +63,7 @@ enum status mf_frame_fail_line(const struct trajectory_frame *frame, const char 
 enum status mf_frame_fail_byte(const struct trajectory_frame *frame, size_t at, const char *format,
                                ...) __attribute__((format(printf, 3, 4)));
 
-/// The line after the one that `line` is in; NULL behind the frame's last.
+/// The line after the one that `line` is in; NULL after the frame's last.
 const char *mf_frame_next_line(const struct trajectory_frame *frame, const char *line);
 
 /// "… t= 0.5 step= 250" of a title [ps]: the words of GROMACS.

@@ -228,7 +228,7 @@ size_t mf_h5md_element_numbers(const struct h5md_element *element) {
     return (size_t)(element->size[0] * element->size[1]);
 }
 
-/// Read a stretch of `count` numbers along the dimensions behind the first.
+/// Read a stretch of `count` numbers along the dimensions after the first.
 static herr_t read_slab(hid_t dataset, hsize_t frame, const hsize_t *size, int rank, hid_t type,
                         void *numbers) {
     hsize_t begin[H5MD_MAX_RANK + 1] = {frame}, count[H5MD_MAX_RANK + 1] = {1}, all = 1;

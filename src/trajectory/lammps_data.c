@@ -28,7 +28,7 @@ static bool is_word(const struct word *word, size_t count, size_t k, const char 
     return k < count && mf_words_same(&word[k], text);
 }
 
-/// The word behind `key` in a title, without a comma, such as "units = real" or "timestep = 0".
+/// The word after `key` in a title, without a comma, such as "units = real" or "timestep = 0".
 static void read_title_word(const char *line, const char *key, char *text, size_t size) {
     const char *at = strstr(line, key);
     struct word word;
@@ -141,7 +141,7 @@ static bool is_third_whole(const struct lammps_data *data, const struct trajecto
     return true;
 }
 
-/// A comment behind "Atoms" is the style that LAMMPS writes there, or any words of a person.
+/// A comment after "Atoms" is the style that LAMMPS writes there, or any words of a person.
 static bool is_style(const char *word) {
     static const char *const all[] = {
         "amoeba",       "body",   "dielectric", "dipole",    "dpd",   "edpd", "electron",

@@ -8,7 +8,7 @@
 
 enum { LAMMPS_DATA_MAX_TYPES = 1 << 16, LAMMPS_DATA_WORDS = 10 };
 
-/// Where an atom's words stand: behind its id, and before its three images.
+/// Where an atom's words stand: after its id, and before its three images.
 struct lammps_style {
     const char *name;
     int molecule, type, charge, position; ///< −1: nowhere

@@ -13,7 +13,7 @@ enum lammps_column {
     LAMMPS_MOLECULE,
     LAMMPS_ELEMENT,
     LAMMPS_MASS,
-    LAMMPS_X,                   ///< and y, z behind it, as all that follow
+    LAMMPS_X,                   ///< and y, z after it, as all that follow
     LAMMPS_XS = LAMMPS_X + 3,   ///< as fractions of the box
     LAMMPS_XU = LAMMPS_XS + 3,  ///< with images
     LAMMPS_XSU = LAMMPS_XU + 3, ///< both

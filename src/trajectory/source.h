@@ -21,7 +21,7 @@ struct bytes {
     size_t size, capacity;
 };
 
-/// Make room for `more` bytes behind those that are there, which stay. Fails: NO_MEMORY.
+/// Make room for `more` bytes after those that are there, which stay. Fails: NO_MEMORY.
 enum status mf_source_capacity(struct bytes *bytes, size_t more) MUST_USE;
 
 /// Add a line to a text. Fails: NO_MEMORY.

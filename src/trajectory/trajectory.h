@@ -92,9 +92,9 @@ enum status mf_trajectory_open(struct trajectory *trajectory, const char *file,
 
 void mf_trajectory_close(struct trajectory *trajectory);
 
-/// Read the next frame: fetch and decode. `*more` is false, and the positions as they were, behind
+/// Read the next frame: fetch and decode. `*more` is false, and the positions as they were, after
 /// the last one. Fails: BAD_INPUT with frame and byte or line, all frames before having been given
-/// and none behind to be had; IO; NO_MEMORY.
+/// and none after to be had; IO; NO_MEMORY.
 enum status mf_trajectory_next(struct trajectory *trajectory, struct trajectory_frame *frame,
                                bool *more) MUST_USE;
 

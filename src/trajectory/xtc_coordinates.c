@@ -154,7 +154,7 @@ static inline void append(double position[3], const uint32_t number[3], double p
         position[d] = (double)(int32_t)number[d] / precision;
 }
 
-/// What is behind a whole atom: `run` atoms told by differences, in `level`.
+/// What is after a whole atom: `run` atoms told by differences, in `level`.
 static inline bool take_run(const struct digits *digits, const unsigned char *data, size_t *bit,
                             unsigned run, uint32_t whole[3], double precision,
                             double (*position)[3]) {

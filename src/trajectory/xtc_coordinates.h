@@ -3,7 +3,7 @@
 ///
 /// The format is that of F. van Hoesel's routine xdr3dfcoord, as the GROMACS manual names it.
 /// Coordinates are rounded to whole numbers. An atom is either three digits of a mixed
-/// radix, which count from the least coordinates of the frame, or, in a run behind such an atom,
+/// radix, which count from the least coordinates of the frame, or, in a run after such an atom,
 /// the difference from the atom before, in a radix that grows and shrinks as differences
 /// do. The first two atoms of a run are exchanged, so that of a water both hydrogens are near the
 /// oxygen. Tested: test_xtc_coordinates.
@@ -20,7 +20,7 @@ struct xtc_packing {
     int32_t level;          ///< with which the radix of differences begins
 };
 
-/// Bytes behind the bits that must be there to read, whatever they hold.
+/// Bytes after the bits that must be there to read, whatever they hold.
 enum { XTC_SLACK = 256 };
 
 /// Whether `packing` can be: its ranges are ranges, and each atom takes 9 bits at least but for

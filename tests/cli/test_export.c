@@ -179,7 +179,7 @@ static void read_columns(struct rows *rows, const char *path) {
     rows->high = rows->r[rows->count - 1];
 }
 
-/// EvaluatorPairTable.h: spacing (r_cut − r_min)/width; behind the last row all is 0.
+/// EvaluatorPairTable.h: spacing (r_cut − r_min)/width; after the last row all is 0.
 static void hoomd_value(const struct rows *rows, double r, double *phi, double *force) {
     const double place = (r - rows->low) / ((cutoff - rows->low) / (double)rows->count);
     const size_t k = (size_t)floor(place);

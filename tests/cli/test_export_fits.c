@@ -49,7 +49,7 @@ static void fit_and_export(struct temporary_folder *folder, const char *unknowns
     assert_int_equal(strstr(result.err, "warning: fit: the fit is ") == NULL, good);
 }
 
-/// The number behind `words` in a file.
+/// The number after `words` in a file.
 static double number_after(const char *path, const char *words) {
     char *text = temporary_folder_read(path);
     const char *found = strstr(text, words);

@@ -101,7 +101,7 @@ static void test_fit_finds_numbers_of_bonds_and_angles_of_a_twin(void **state) {
     }
 }
 
-/// The number that comes behind a text in a file.
+/// The number that comes after a text in a file.
 static double number_after(const char *file, const char *words) {
     char *text = temporary_folder_read(file);
     const char *found = strstr(text, words);

@@ -147,7 +147,7 @@ static void test_fit_by_relative_entropy_tells_what_its_form_does_not_meet(void 
                 10 * results_number("found/summary.json", "bond_lengths_noise"));
 }
 
-/// The numbers behind a section's name in a file of tables, up to the next name.
+/// The numbers after a section's name in a file of tables, up to the next name.
 static size_t read_section(const char *file, const char *name, double *numbers, size_t max) {
     char line[512];
     size_t count = 0;

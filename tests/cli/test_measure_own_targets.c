@@ -116,7 +116,7 @@ static void test_one_type_keeps_its_name(void **state) {
     explain();
 }
 
-/// The number behind a word in a text.
+/// The number after a word in a text.
 static double number_after(const char *text, const char *words) {
     const char *found = strstr(text, words);
     assert_non_null(found);

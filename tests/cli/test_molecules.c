@@ -183,7 +183,7 @@ static void test_configurations_carry_molecules_on(void **state) {
         ;
     assert_string_equal(line, "ITEM: ATOMS id mol type x y z ix iy iz vx vy vz\n");
     check_bonds("out/configuration.tsv", "out/configuration_bonds.tsv");
-    // Types are W, A, B: the first of 60 single beads, behind 70 molecules, is molecule 71.
+    // Types are W, A, B: the first of 60 single beads, after 70 molecules, is molecule 71.
     assert_non_null(fgets(first, sizeof first, dump));
     assert_int_equal(strncmp(first, "1 71 1 ", 7), 0);
     fclose(dump);

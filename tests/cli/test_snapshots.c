@@ -129,7 +129,7 @@ struct bead {
     double position[3], force[3];
 };
 
-/// One frame behind the others: "A x y z image velocity force id".
+/// One frame after the others: "A x y z image velocity force id".
 static bool read_frame(FILE *stream, struct bead *beads) {
     char line[512];
     if (fgets(line, sizeof line, stream) == NULL)

@@ -293,7 +293,7 @@ static void test_fit_has_nothing_against_the_targets_of_the_repository(void **st
     }
 }
 
-/// A cutoff in the middle of the first peak, behind it or in the first minimum leaves too little to
+/// A cutoff in the middle of the first peak, after it or in the first minimum leaves too little to
 /// judge what the whole file shows to be right.
 static void test_fit_has_nothing_against_short_cutoffs(void **state) {
     static const char *const cutoffs[] = {"0.28", "0.3", "0.35", "0.5", "0.7"};

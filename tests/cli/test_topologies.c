@@ -45,7 +45,7 @@ static void write_inputs(struct temporary_folder *folder, const char *from, cons
     small_inputs_write(folder, "scene.json", scene, NULL, NULL);
 }
 
-/// λ = 0.5 nm. A line goes on behind a backslash, a bond without numbers has those of its types,
+/// λ = 0.5 nm. A line goes on after a backslash, a bond without numbers has those of its types,
 /// and counts of one name add up.
 static void test_a_topology_says_what_molecules_are(void **state) {
     static struct run_program_result result;

@@ -89,7 +89,7 @@ static void write_scene(struct temporary_folder *folder, const char *name, const
     small_inputs_write(folder, table, text, NULL, NULL);
 }
 
-/// The numbers of a table, all behind each other.
+/// The numbers of a table, all after each other.
 static size_t read_numbers(const char *file, double *values, size_t max) {
     char *text = temporary_folder_read(file), *rest, *at = text;
     size_t count = 0;
@@ -159,7 +159,7 @@ static void test_used_json_of_physical_units_gives_the_same_bits(void **state) {
     results_assert_same("first", "second", same);
 }
 
-/// The numbers of a line, all behind each other.
+/// The numbers of a line, all after each other.
 static size_t numbers_of(const char *line, double *values, size_t max) {
     size_t count = 0;
     char *rest;

@@ -120,7 +120,7 @@ static void test_engines_with_one_exponent_get_the_nearest_of_it(void **state) {
     mf_table_clear(&potential);
 }
 
-/// Lennard-Jones to 1.5 ends with a force of 1.16: HOOMD's falls to 0 behind the last of its rows,
+/// Lennard-Jones to 1.5 ends with a force of 1.16: HOOMD's falls to 0 after the last of its rows,
 /// however many there are. That interval is no fault of a table, and all before it are.
 static void test_jump_of_the_force_at_the_cutoff_needs_no_rows(void **state) {
     (void)state;

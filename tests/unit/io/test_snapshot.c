@@ -71,7 +71,7 @@ static void test_json_has_all_digits_of_each_column(void **state) {
     free(text);
 }
 
-/// A solvent of two, the second beyond the edge, comes behind the particles and has no forces.
+/// A solvent of two, the second beyond the edge, comes after the particles and has no forces.
 static void test_companions_follow_as_a_type_of_their_own(void **state) {
     struct temporary_folder *folder = *state;
     double x[] = {0.5, 4.5}, y[] = {1, 2}, vx[] = {-1, 3}, vy[] = {7, 8};
@@ -155,7 +155,7 @@ static void test_lammps_dump_is_read_back(void **state) {
     mf_trajectory_close(&trajectory);
 }
 
-/// The bytes behind the first > after a text, out of base64.
+/// The bytes after the first > after a text, out of base64.
 static void decode(const char *text, const char *after, unsigned char *bytes, size_t size) {
     static const char letters[] =
         "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";

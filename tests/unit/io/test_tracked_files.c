@@ -278,7 +278,7 @@ static void test_lists_of_others_lead_nowhere(void **state) {
     assert_null(mf_manifest_find(&own.list, "mine"));
     assert_null(mf_manifest_find(&own.list, "min"));
     assert_int_equal(own.list.count, 2);
-    assert_ok(mf_tracked_files_begin(&own, 2)); // behind a line that is ended first
+    assert_ok(mf_tracked_files_begin(&own, 2)); // after a line that is ended first
     assert_ok(mf_tracked_files_remove_earlier(&own));
     assert_gone("out/good.tsv");
     assert_there("out/mine");

@@ -141,7 +141,7 @@ static void test_nothing_of_the_run_is_told_without_the_token(void **state) {
     for (size_t p = 0; p < sizeof paths / sizeof *paths; p++)
         for (size_t h = 0; h < sizeof heads / sizeof *heads; h++)
             assert_int_equal(ask(paths[p], heads[h], ""), 403);
-    // Behind the "?" it opens the page alone.
+    // After the "?" it opens the page alone.
     assert_int_equal(ask("GET /api/state?token=0123456789abcdef0123456789abcdef", HOST, ""), 403);
     assert_int_not_equal(access("new.json", F_OK), 0);
 }

@@ -252,7 +252,7 @@ static void test_bonded_grid_refuses_what_tells_nothing(void **state) {
     clear_twin(&twin);
 }
 
-/// Blocks of groups stand behind those of pairs; without an unknown Φ there are no pairs.
+/// Blocks of groups stand after those of pairs; without an unknown Φ there are no pairs.
 static void test_potential_grid_has_groups_behind_the_pairs(void **state) {
     (void)state;
     enum { PAIR_BINS = 30 };

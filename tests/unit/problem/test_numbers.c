@@ -212,7 +212,7 @@ static void test_numbers_are_variables_from_minimum_to_maximum_with_errors(void 
     finish(&mixture);
 }
 
-/// Variables of the numbers stand behind those of the curves, which stay what they were.
+/// Variables of the numbers stand after those of the curves, which stay what they were.
 static void test_numbers_stand_behind_the_curves_and_change_none(void **state) {
     (void)state;
     struct mixture mixture;

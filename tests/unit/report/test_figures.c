@@ -147,7 +147,7 @@ static void test_draws_simulation_of_a_mixture_in_its_units(void **state) {
     assert_true(figure_folders_print(folder, "simulation", ">900<"));
 }
 
-/// A barrier of 1.33 behind a core of 50, and a well of 0.3: all of it is seen.
+/// A barrier of 1.33 after a core of 50, and a well of 0.3: all of it is seen.
 static void test_potential_is_shown_up_to_its_barrier(void **state) {
     (void)state;
     figure_folders_skip_without_gnuplot();

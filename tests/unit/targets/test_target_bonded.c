@@ -31,7 +31,7 @@ static enum status read(void **state, const char *table, const char *members, in
     return mf_json_close(document, STATUS_OK);
 }
 
-/// Rows of a normal distribution with `rows` of them from `low` on, and `end` behind each.
+/// Rows of a normal distribution with `rows` of them from `low` on, and `end` after each.
 static char *normal(double low, double width, int rows, double mean, double sigma, double scale,
                     const char *end) {
     char *text = calloc(1, 64 * (size_t)rows + 1);

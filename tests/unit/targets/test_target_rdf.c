@@ -77,7 +77,7 @@ static void test_target_read_takes_the_columns_it_is_told(void **state) {
     assert_refused(state, table, ", \"r_column\": 0", "rdf.r_column: 0 is out of range");
 }
 
-/// A row that is missing is read by its neighbours; of a wider gap the line behind it is named.
+/// A row that is missing is read by its neighbours; of a wider gap the line after it is named.
 static void test_target_read_names_the_line_behind_a_gap(void **state) {
     enum { BINS = 20, WIDE = 6 };
     for (int gap = 1; gap < BINS - WIDE; gap++)
