@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/task_log.h"
 
+#include "base/growing.h"
+
 #include <stdio.h>
 #include <string.h>
 
@@ -97,29 +99,18 @@ size_t mf_task_log_spans(struct task_log *log, struct memory_span *spans) {
     return TASK_LOG_SPANS;
 }
 
-static enum status grow(struct task_log *log, uint64_t wanted) {
+static enum status reserve(struct task_log *log, size_t wanted) {
     enum { FIRST_ROOM = 1 << 16 };
-    uint64_t capacity = log->capacity > 0 ? log->capacity : FIRST_ROOM;
-    char *records = NULL;
-    while (capacity < wanted)
-        capacity *= 2;
-    TRY_ARRAY(records, capacity);
-    if (log->capacity > 0)
-        memcpy(records, log->records, log->capacity);
-    mf_memory_free(log->records);
-    log->records = records;
-    log->capacity = capacity;
-    return STATUS_OK;
+    return mf_growing_reserve(&log->records, &log->capacity, log->capacity, wanted, 1, FIRST_ROOM);
 }
 
 enum status mf_task_log_reserve(struct task_log *log) {
-    return log->size > log->capacity ? grow(log, log->size) : STATUS_OK;
+    return reserve(log, log->size);
 }
 
 enum status mf_task_log_add(struct task_log *log, const struct task_record *record) {
     const size_t size = task_record_size(record);
-    if (log->size + size > log->capacity)
-        TRY(grow(log, log->size + size));
+    TRY(reserve(log, log->size + size));
     memcpy(log->records + log->size, record, size);
     log->size += size;
     return STATUS_OK;

@@ -24,7 +24,7 @@ struct task_record {
 /// Zeroed: empty.
 struct task_log {
     uint64_t size; ///< of the records [bytes]; the first span
-    uint64_t capacity;
+    size_t capacity;
     char *records;
     uint64_t calls; ///< of mf_parallel_try since the log began
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/input.h"
 
-#include "base/memory.h"
+#include "base/growing.h"
 
 #include <errno.h>
 #include <string.h>
@@ -34,25 +34,12 @@ enum status mf_input_open(FILE **stream, const char *file) {
     return mf_status_fail(STATUS_IO, "%s: is %s, not a file", file, kind);
 }
 
-static enum status reserve(struct input_files *inputs) {
-    struct input_file *larger = NULL;
-    const size_t capacity = inputs->capacity ? 2 * inputs->capacity : 16;
-    if (inputs->count < inputs->capacity)
-        return STATUS_OK;
-    TRY_ARRAY(larger, capacity);
-    if (inputs->count > 0)
-        memcpy(larger, inputs->file, inputs->count * sizeof *larger);
-    mf_memory_free(inputs->file);
-    inputs->file = larger;
-    inputs->capacity = capacity;
-    return STATUS_OK;
-}
-
 enum status mf_input_files_add(struct input_files *inputs, const char *name) {
     struct stat about;
     if (stat(name, &about) != 0)
         return STATUS_OK;
-    TRY(reserve(inputs));
+    TRY(mf_growing_reserve(&inputs->file, &inputs->capacity, inputs->count, inputs->count + 1,
+                           sizeof *inputs->file, 16));
     char *copy = mf_memory_zeroed(strlen(name) + 1, 1);
     if (copy == NULL)
         return STATUS_NO_MEMORY;

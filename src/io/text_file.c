@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/text_file.h"
 
-#include "base/memory.h"
+#include "base/growing.h"
 #include "io/input.h"
 
 #include <errno.h>
@@ -26,31 +26,18 @@ static enum status fail_large(const char *file) {
 /// Read to the end of the stream rather than trust its size: pipes have none.
 static enum status read_all(FILE *stream, const char *file, char **text, size_t *length) {
     size_t capacity = 0, used = 0;
-    char *bytes = NULL;
+    OWNED char *bytes = NULL;
     while (!feof(stream)) {
-        if (used > TEXT_FILE_LARGEST) {
-            mf_memory_free(bytes);
+        if (used > TEXT_FILE_LARGEST)
             return fail_large(file);
-        }
-        if (used + 1 >= capacity) {
-            const size_t larger = capacity ? 2 * capacity : 65536;
-            char *grown = mf_memory_uncleared(larger, 1);
-            if (grown && used)
-                memcpy(grown, bytes, used);
-            mf_memory_free(bytes);
-            if (grown == NULL)
-                return STATUS_NO_MEMORY;
-            bytes = grown;
-            capacity = larger;
-        }
+        TRY(mf_growing_reserve(&bytes, &capacity, used, used + 2, 1, 65536));
         used += fread(bytes + used, 1, capacity - 1 - used, stream);
-        if (ferror(stream)) {
-            mf_memory_free(bytes);
+        if (ferror(stream))
             return mf_status_fail(STATUS_IO, "%s: %s", file, strerror(errno));
-        }
     }
     bytes[used] = '\0';
     *text = bytes;
+    bytes = NULL;
     *length = used;
     return STATUS_OK;
 }

@@ -26,17 +26,11 @@ static enum status note(struct frames *frames, const char *format, ...)
     __attribute__((format(printf, 2, 3), warn_unused_result));
 
 static enum status note(struct frames *frames, const char *format, ...) {
-    char line[1024];
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(line, sizeof line, format, arguments);
+    const enum status status = mf_source_note(&frames->notes, format, arguments);
     va_end(arguments);
-    const size_t length = strlen(line);
-    TRY(mf_source_capacity(&frames->notes, length + 2));
-    memcpy(frames->notes.data + frames->notes.size, line, length);
-    memcpy(frames->notes.data + frames->notes.size + length, "\n", 2);
-    frames->notes.size += length + 1;
-    return STATUS_OK;
+    return status;
 }
 
 // Files -------------------------------------------------------------------------------------------

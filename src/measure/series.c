@@ -1,24 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "measure/series.h"
 
-#include "base/memory.h"
+#include "base/growing.h"
 #include "base/statistics.h"
 
 #include <math.h>
-#include <string.h>
 
 enum status mf_series_add(struct series *series, double value) {
-    if (series->count == series->capacity) {
-        const size_t capacity = series->capacity ? 2 * series->capacity : 1024;
-        double *values = mf_memory_uncleared(capacity, sizeof *values);
-        if (values == NULL)
-            return STATUS_NO_MEMORY;
-        if (series->count > 0)
-            memcpy(values, series->value, series->count * sizeof *values);
-        mf_memory_free(series->value);
-        series->value = values;
-        series->capacity = capacity;
-    }
+    TRY(mf_growing_reserve(&series->value, &series->capacity, series->count, series->count + 1,
+                           sizeof value, 1024));
     series->value[series->count++] = value;
     return STATUS_OK;
 }

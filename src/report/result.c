@@ -21,11 +21,13 @@ enum { PATH_SIZE = OUTPUT_PATH_SIZE + 64 };
 
 #define TEXT(member)                                                                               \
     { .name = #member, .type = FIELD_TEXT, .offset = offsetof(struct result_summary, member) }
-#define NUMBER(member, its_unit)                                                                   \
+/// A number under a key of its own, in some struct.
+#define NUMBER_OF(type_, key, member, its_unit)                                                    \
     {                                                                                              \
-        .name = #member, .type = FIELD_NUMBER, .offset = offsetof(struct result_summary, member),  \
-        .initial = NAN, .minimum = -DBL_MAX, .maximum = DBL_MAX, .unit = its_unit                  \
+        .name = key, .type = FIELD_NUMBER, .offset = offsetof(type_, member), .initial = NAN,      \
+        .minimum = -DBL_MAX, .maximum = DBL_MAX, .unit = its_unit                                  \
     }
+#define NUMBER(member, its_unit) NUMBER_OF(struct result_summary, #member, member, its_unit)
 
 #define MEAN(member, its_unit) NUMBER(member, its_unit), NUMBER(member##_error, its_unit)
 
@@ -139,22 +141,8 @@ static bool is_simulation(const struct result_summary *summary) {
 /// D of a simulation stands in an object of its own.
 static void read_simulated_diffusion(struct json_object *root, struct result_summary *summary) {
     static const struct field fields[] = {
-        {.name = "diffusion_msd",
-         .type = FIELD_NUMBER,
-         .offset = offsetof(struct result_summary, diffusion),
-         .initial = NAN,
-         .minimum = -DBL_MAX,
-         .maximum = DBL_MAX,
-         .unit = ""},
-        {.name = "diffusion_msd_error",
-         .type = FIELD_NUMBER,
-         .offset = offsetof(struct result_summary, diffusion_error),
-         .initial = NAN,
-         .minimum = -DBL_MAX,
-         .maximum = DBL_MAX,
-         .unit = ""},
-        FIELD_END,
-    };
+        NUMBER_OF(struct result_summary, "diffusion_msd", diffusion, ""),
+        NUMBER_OF(struct result_summary, "diffusion_msd_error", diffusion_error, ""), FIELD_END};
     struct json_object motion = mf_json_child(root, "motion", false);
     mf_json_fields(&motion, fields, summary);
 }
@@ -162,14 +150,7 @@ static void read_simulated_diffusion(struct json_object *root, struct result_sum
 /// Version 0.1.0 had another name for it.
 static void read_old_truth(struct json_object *root, struct result_summary *summary) {
     static const struct field fields[] = {
-        {.name = "truth_error",
-         .type = FIELD_NUMBER,
-         .offset = offsetof(struct result_summary, omega_truth_rms),
-         .initial = NAN,
-         .minimum = -DBL_MAX,
-         .maximum = DBL_MAX,
-         .unit = ""},
-        FIELD_END};
+        NUMBER_OF(struct result_summary, "truth_error", omega_truth_rms, ""), FIELD_END};
     if (mf_json_has(root, fields[0].name))
         mf_json_fields(root, fields, summary);
 }
@@ -188,11 +169,7 @@ struct scale {
     double dimensions;                ///< of the scene; 3 if it does not say
 };
 
-#define SCALE(key, member)                                                                         \
-    {                                                                                              \
-        .name = key, .type = FIELD_NUMBER, .offset = offsetof(struct scale, member),               \
-        .initial = NAN, .minimum = -DBL_MAX, .maximum = DBL_MAX, .unit = ""                        \
-    }
+#define SCALE(key, member) NUMBER_OF(struct scale, key, member, "")
 
 /// "physical" of a summary in reduced units.
 static void read_scale_beside(struct json_object *root, struct units *units) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "topologies/lammps_terms.h"
 
-#include "base/memory.h"
+#include "base/growing.h"
 #include "trajectory/words.h"
 
 #include <ctype.h>
@@ -149,17 +149,8 @@ static enum status add_term(struct reading *reading, const struct words *words) 
             if (term.atom[other] == term.atom[k])
                 return FAIL(reading, "the %s has an atom twice", name);
     }
-    if (terms->terms[order] == reading->capacity[order]) {
-        const size_t capacity = 2 * reading->capacity[order] + 64;
-        struct lammps_term *grown = mf_memory_uncleared(capacity, sizeof *grown);
-        if (grown == NULL)
-            return STATUS_NO_MEMORY;
-        if (terms->terms[order] > 0)
-            memcpy(grown, terms->term[order], terms->terms[order] * sizeof *grown);
-        mf_memory_free(terms->term[order]);
-        terms->term[order] = grown;
-        reading->capacity[order] = capacity;
-    }
+    TRY(mf_growing_reserve(&terms->term[order], &reading->capacity[order], terms->terms[order],
+                           terms->terms[order] + 1, sizeof term, 64));
     terms->term[order][terms->terms[order]++] = term;
     return STATUS_OK;
 }

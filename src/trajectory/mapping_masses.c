@@ -10,18 +10,11 @@
 #include <string.h>
 
 enum status mf_mapping_note(struct mapping *mapping, const char *format, ...) {
-    struct bytes *const notes = &mapping->notes;
-    char line[256];
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(line, sizeof line, format, arguments);
+    const enum status status = mf_source_note(&mapping->notes, format, arguments);
     va_end(arguments);
-    const size_t length = strlen(line);
-    TRY(mf_source_capacity(notes, length + 2));
-    memcpy(notes->data + notes->size, line, length);
-    memcpy(notes->data + notes->size + length, "\n", 2);
-    notes->size += length + 1;
-    return STATUS_OK;
+    return status;
 }
 
 /// Mass of an atom and who says so.

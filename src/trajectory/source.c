@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "trajectory/source.h"
 
-#include "base/memory.h"
+#include "base/growing.h"
 #include "io/input.h"
 
 #include <errno.h>
@@ -11,18 +11,18 @@
 enum { BUFFER_SIZE = 1 << 18, LONGEST_LINE = 1 << 20, LARGEST_PIECE = 1 << 24 };
 
 enum status mf_source_capacity(struct bytes *bytes, size_t more) {
-    if (more <= bytes->capacity - bytes->size)
-        return STATUS_OK;
-    const size_t min = bytes->size + more, twice = 2 * bytes->capacity;
-    const size_t capacity = min > twice ? min : twice;
-    unsigned char *data = mf_memory_uncleared(capacity, 1);
-    if (data == NULL)
-        return STATUS_NO_MEMORY;
-    if (bytes->size > 0)
-        memcpy(data, bytes->data, bytes->size);
-    mf_memory_free(bytes->data);
-    bytes->data = data;
-    bytes->capacity = capacity;
+    return mf_growing_reserve(&bytes->data, &bytes->capacity, bytes->size, bytes->size + more, 1,
+                              1);
+}
+
+enum status mf_source_note(struct bytes *bytes, const char *format, va_list arguments) {
+    char line[1024];
+    vsnprintf(line, sizeof line, format, arguments);
+    const size_t length = strlen(line);
+    TRY(mf_source_capacity(bytes, length + 2));
+    memcpy(bytes->data + bytes->size, line, length);
+    memcpy(bytes->data + bytes->size + length, "\n", 2);
+    bytes->size += length + 1;
     return STATUS_OK;
 }
 

@@ -9,6 +9,7 @@
 
 #include "base/status.h"
 
+#include <stdarg.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -22,6 +23,9 @@ struct bytes {
 
 /// Make room for `more` bytes behind those that are there, which stay. Fails: NO_MEMORY.
 enum status mf_source_capacity(struct bytes *bytes, size_t more) MUST_USE;
+
+/// Add a line to a text. Fails: NO_MEMORY.
+enum status mf_source_note(struct bytes *bytes, const char *format, va_list arguments) MUST_USE;
 
 void mf_source_free(struct bytes *bytes);
 
