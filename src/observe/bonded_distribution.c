@@ -281,8 +281,8 @@ static enum status find_columns(const struct bonded_state *s, int group, double 
 }
 
 /// p of the groups that are measured, one behind the other.
-static enum status result(const void *const *states, size_t count,
-                          const struct observable_values *values) {
+static enum status result_of_all(const void *const *states, size_t count,
+                                 const struct observable_values *values) {
     const struct bonded_state *const *all = (const struct bonded_state *const *)states;
     const struct bonded_state *first = all[0];
     for (int g = 0; g < first->molecules->groups[first->order]; g++)
@@ -371,7 +371,7 @@ static void explain(const struct simulation_setup *setup, int order, const char 
         .files = term##_files,                                                                     \
         .figure = OBSERVABLE_FIGURE_OF_GROUPS,                                                     \
         .targets = term##_targets,                                                                 \
-        .result = result,                                                                          \
+        .result_of_all = result_of_all,                                                            \
     };
 
 BONDED_LIST(DISTRIBUTION)

@@ -140,8 +140,8 @@ static void explain(const void *settings, const struct simulation_setup *setup,
 }
 
 /// Values have the shape [times, bins] of the grid.
-static enum status result(const void *const *states, size_t count,
-                          const struct observable_values *values) {
+static enum status result_of_all(const void *const *states, size_t count,
+                                 const struct observable_values *values) {
     const struct etd *const *etd = (const struct etd *const *)states;
     TRY(mf_etd_result(etd, count, values->value, values->error, NULL));
     // At time 0 all are there: no measurement.
@@ -177,5 +177,5 @@ const struct observable mf_etd_observable = {
     .files = files,
     .figure = "etd",
     .targets = targets,
-    .result = result,
+    .result_of_all = result_of_all,
 };

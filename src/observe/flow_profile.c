@@ -367,8 +367,8 @@ static void explain(const void *settings, const struct simulation_setup *setup, 
                   "one step in %.0f", every);
 }
 
-static enum status result(const void *const *states, size_t count,
-                          const struct observable_values *values) {
+static enum status result_of_all(const void *const *states, size_t count,
+                                 const struct observable_values *values) {
     for (size_t k = 0; k < count; k++) {
         const struct flow_profile_summary found = mf_flow_profile_result(states[k]);
         mf_pooled_add(&values[0], &found.viscosity, &found.viscosity_error, count);
@@ -408,5 +408,5 @@ const struct observable mf_flow_profile = {
     .files = files,
     .figure = "flow_profile",
     .targets = targets,
-    .result = result,
+    .result_of_all = result_of_all,
 };

@@ -99,21 +99,12 @@ static void find(const struct state *s, size_t pair, double *value, double *erro
     *error = mf_statistics_correlated_error(means, whole, 1);
 }
 
-static enum status result(const void *const *states, size_t count,
-                          const struct observable_values *values) {
-    OWNED double *found = NULL;
-    OWNED struct pooled_curve *replicas = NULL;
-    TRY_ARRAY(found, 2 * count * values->count);
-    TRY_ARRAY(replicas, count);
-    for (size_t k = 0; k < count; k++) {
-        const struct state *s = states[k];
-        double *value = found + 2 * k * values->count, *error = value + values->count;
-        for (size_t pair = 0; pair < s->pairs; pair++)
-            find(s, pair, &value[pair], &error[pair]);
-        replicas[k] =
-            (struct pooled_curve){value, error, (double)mf_sample_blocks_whole(&s->blocks)};
-    }
-    mf_pooled_join(values, replicas, count);
+static enum status result(const void *state, const struct observable_values *values,
+                          double *blocks) {
+    const struct state *s = state;
+    for (size_t pair = 0; pair < s->pairs && values->count > 0; pair++)
+        find(s, pair, &values->value[pair], &values->error[pair]);
+    *blocks = (double)mf_sample_blocks_whole(&s->blocks);
     return STATUS_OK;
 }
 

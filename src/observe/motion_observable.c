@@ -133,29 +133,18 @@ static void explain(const void *settings, const struct simulation_setup *setup,
 }
 
 /// VACF, MSD, and D of the MSD.
-static enum status result(const void *const *states, size_t count,
-                          const struct observable_values *values) {
-    const size_t times = (size_t)((const struct motion *)states[0])->plan.lags + 1;
+static enum status result(const void *state, const struct observable_values *values,
+                          double *blocks) {
+    const size_t times = (size_t)((const struct motion *)state)->plan.lags + 1;
     OWNED double *memory = NULL;
-    OWNED struct motion_summary *summary = NULL;
-    OWNED struct pooled_curve *vacf = NULL, *msd = NULL, *diffusion = NULL;
-    TRY_ARRAY(memory, 4 * times * count);
-    TRY_ARRAY(summary, count);
-    TRY_ARRAY(vacf, count);
-    TRY_ARRAY(msd, count);
-    TRY_ARRAY(diffusion, count);
-    for (size_t k = 0; k < count; k++) {
-        double *own = memory + 4 * times * k;
-        const struct motion_curves curves = {own, own + times, own + 2 * times, own + 3 * times};
-        summary[k] = mf_motion_result(states[k], &curves);
-        const double blocks = summary[k].blocks;
-        vacf[k] = (struct pooled_curve){curves.vacf, curves.vacf_error, blocks};
-        msd[k] = (struct pooled_curve){curves.msd, curves.msd_error, blocks};
-        diffusion[k] = (struct pooled_curve){&summary[k].msd, &summary[k].msd_error, blocks};
-    }
-    mf_pooled_join(&values[0], vacf, count);
-    mf_pooled_join(&values[1], msd, count);
-    mf_pooled_join(&values[2], diffusion, count);
+    TRY_ARRAY(memory, 4 * times);
+    const struct motion_curves curves = {memory, memory + times, memory + 2 * times,
+                                         memory + 3 * times};
+    const struct motion_summary found = mf_motion_result(state, &curves);
+    mf_pooled_set(&values[0], curves.vacf, curves.vacf_error);
+    mf_pooled_set(&values[1], curves.msd, curves.msd_error);
+    mf_pooled_set(&values[2], &found.msd, &found.msd_error);
+    *blocks = found.blocks;
     return STATUS_OK;
 }
 

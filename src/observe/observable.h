@@ -119,9 +119,13 @@ struct observable {
     const char *figure;       ///< script in plots/ that draws its files, or that of any curve
 
     const struct observable_target *targets; ///< that it supplies, or NULL
-    /// Values of those, shape [targets], from `count` replicas together. Fails: NO_MEMORY.
-    enum status (*result)(const void *const *states, size_t count,
-                          const struct observable_values *values);
+    /// Values of those, shape [targets], from one replica, and on how many blocks of time their
+    /// errors rest; mf_pooled_result joins replicas. Fails: NO_MEMORY.
+    enum status (*result)(const void *state, const struct observable_values *values,
+                          double *blocks);
+    /// In its place: values from the sums of `count` replicas together. Fails: NO_MEMORY.
+    enum status (*result_of_all)(const void *const *states, size_t count,
+                                 const struct observable_values *values);
 };
 
 /// All observables, NULL-terminated.

@@ -171,34 +171,23 @@ static double read_at(const struct motion *motion, const double *curve, double t
     return (1 - part) * curve[lag] + part * curve[lag + 1];
 }
 
-static enum status result(const void *const *states, size_t count,
-                          const struct observable_values *values) {
-    const size_t times = (size_t)((const struct polarity *)states[0])->motion.plan.lags + 1;
-    OWNED double *curve = NULL, *read = NULL;
-    OWNED struct pooled_curve *replicas = NULL, *orders = NULL;
+static enum status result(const void *state, const struct observable_values *values,
+                          double *blocks) {
+    const struct polarity *polarity = state;
+    const struct motion *motion = &polarity->motion;
+    const size_t times = (size_t)motion->plan.lags + 1;
+    OWNED double *curve = NULL;
+    double error, order = mf_sample_series_mean(&polarity->order, 0, &error);
     TRY_ARRAY(curve, 4 * times);
-    TRY_ARRAY(read, 2 * count * (values->count + 1));
-    TRY_ARRAY(replicas, count);
-    TRY_ARRAY(orders, count);
     const struct motion_curves curves = {curve, curve + times, curve + 2 * times,
                                          curve + 3 * times};
-    for (size_t k = 0; k < count; k++) {
-        const struct motion *motion = &((const struct polarity *)states[k])->motion;
-        double *value = read + 2 * k * (values->count + 1), *error = value + values->count;
-        double *order = error + values->count;
-        mf_motion_result(motion, &curves);
-        for (size_t n = 0; n < values->count; n++) {
-            value[n] = read_at(motion, curves.vacf, values->x[n]);
-            error[n] = read_at(motion, curves.vacf_error, values->x[n]);
-        }
-        order[0] =
-            mf_sample_series_mean(&((const struct polarity *)states[k])->order, 0, &order[1]);
-        const double blocks = (double)mf_motion_blocks(motion);
-        replicas[k] = (struct pooled_curve){value, error, blocks};
-        orders[k] = (struct pooled_curve){&order[0], &order[1], blocks};
+    mf_motion_result(motion, &curves);
+    for (size_t n = 0; n < values->count; n++) {
+        values->value[n] = read_at(motion, curves.vacf, values->x[n]);
+        values->error[n] = read_at(motion, curves.vacf_error, values->x[n]);
     }
-    mf_pooled_join(&values[0], replicas, count);
-    mf_pooled_join(&values[1], orders, count);
+    mf_pooled_set(&values[1], &order, &error);
+    *blocks = (double)mf_motion_blocks(motion);
     return STATUS_OK;
 }
 

@@ -21,3 +21,12 @@ void mf_pooled_add(const struct observable_values *values, const double *value, 
 /// and no error of its own. Tested: test_pooled.
 void mf_pooled_join(const struct observable_values *values, const struct pooled_curve *replicas,
                     size_t count);
+
+/// What one replica says of a target, if it is asked for: its first numbers, shape [values.count].
+void mf_pooled_set(const struct observable_values *values, const double *value,
+                   const double *error);
+
+/// All targets of an observable from `count` replicas. @param[in] values  shape [targets]
+/// Fails: NO_MEMORY. Tested: test_structure_factor, test_diffusion.
+enum status mf_pooled_result(const struct observable *observable, const void *const *states,
+                             size_t count, const struct observable_values *values) MUST_USE;

@@ -241,8 +241,8 @@ static void explain(const void *settings, const struct simulation_setup *setup, 
 }
 
 /// Values have the shape [pairs, bins].
-static enum status result(const void *const *states, size_t count,
-                          const struct observable_values *values) {
+static enum status result_of_all(const void *const *states, size_t count,
+                                 const struct observable_values *values) {
     OWNED struct rdf *rdf = NULL;
     OWNED struct rdf_force *force = NULL;
     TRY_ARRAY(rdf, count);
@@ -285,7 +285,7 @@ const struct observable mf_rdf_observable = {
     .explain = explain,
     .stage = "g(r)",
     .targets = targets,
-    .result = result,
+    .result_of_all = result_of_all,
     .files = files,
 };
 
@@ -331,7 +331,7 @@ const struct observable mf_rdf_intermolecular = {
     .explain = explain_intermolecular,
     .stage = "g(r) between molecules",
     .targets = intermolecular_targets,
-    .result = result,
+    .result_of_all = result_of_all,
     .files = intermolecular_files,
 };
 

@@ -387,17 +387,11 @@ static void explain(const void *settings, const struct simulation_setup *setup, 
                       "the momentum that pairs exchange, every step");
 }
 
-static enum status result(const void *const *states, size_t count,
-                          const struct observable_values *values) {
-    OWNED struct shear_viscosity_summary *found = NULL;
-    OWNED struct pooled_curve *replicas = NULL;
-    TRY_ARRAY(found, count);
-    TRY_ARRAY(replicas, count);
-    for (size_t k = 0; k < count; k++) {
-        found[k] = mf_shear_viscosity_result(states[k]);
-        replicas[k] = (struct pooled_curve){&found[k].value, &found[k].error, found[k].blocks};
-    }
-    mf_pooled_join(values, replicas, count);
+static enum status result(const void *state, const struct observable_values *values,
+                          double *blocks) {
+    const struct shear_viscosity_summary found = mf_shear_viscosity_result(state);
+    mf_pooled_set(values, &found.value, &found.error);
+    *blocks = found.blocks;
     return STATUS_OK;
 }
 

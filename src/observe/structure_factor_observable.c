@@ -94,24 +94,14 @@ static void read_at(const struct structure_factor_curves *s, double q, double *v
     *value_error = hypot((1 - part) * s->error[k], part * s->error[next]);
 }
 
-static enum status result(const void *const *states, size_t count,
-                          const struct observable_values *values) {
-    struct structure_factor_curves curves = {0};
-    OWNED double *read = NULL;
-    OWNED struct pooled_curve *replicas = NULL;
-    TRY_ARRAY(read, 2 * count * values->count);
-    TRY_ARRAY(replicas, count);
-    for (size_t k = 0; k < count; k++) {
-        const struct structure_factor *const factor = &((const struct state *)states[k])->factor;
-        double *value = read + 2 * k * values->count, *error = value + values->count;
-        TRY(mf_structure_factor_find(factor, &curves));
-        for (size_t n = 0; n < values->count; n++)
-            read_at(&curves, values->x[n], &value[n], &error[n]);
-        mf_structure_factor_curves_clear(&curves);
-        replicas[k] =
-            (struct pooled_curve){value, error, (double)mf_structure_factor_blocks(factor)};
-    }
-    mf_pooled_join(values, replicas, count);
+static enum status result(const void *state, const struct observable_values *values,
+                          double *blocks) {
+    const struct structure_factor *const factor = &((const struct state *)state)->factor;
+    CLEARED_BY(mf_structure_factor_curves_clear) struct structure_factor_curves curves = {0};
+    TRY(mf_structure_factor_find(factor, &curves));
+    for (size_t n = 0; n < values->count; n++)
+        read_at(&curves, values->x[n], &values->value[n], &values->error[n]);
+    *blocks = (double)mf_structure_factor_blocks(factor);
     return STATUS_OK;
 }
 

@@ -117,8 +117,8 @@ static void explain(const void *settings, const struct simulation_setup *setup, 
                   "one step in %.0f, in double precision", every);
 }
 
-static enum status result(const void *const *states, size_t count,
-                          const struct observable_values *values) {
+static enum status result_of_all(const void *const *states, size_t count,
+                                 const struct observable_values *values) {
     for (size_t k = 0; k < count; k++) {
         const struct thermodynamics_summary s = mf_thermodynamics_result(states[k], 1);
         mf_pooled_add(values, &s.pressure, &s.pressure_error, count);
@@ -151,5 +151,5 @@ const struct observable mf_thermodynamics_observable = {
     .files = files,
     .figure = "simulation",
     .targets = targets,
-    .result = result,
+    .result_of_all = result_of_all,
 };

@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "base/statistics.h"
 #include "observe/motion.h"
+#include "observe/pooled.h"
 #include "observe/rdf_observable.h"
 
 #include <math.h>
@@ -224,7 +225,7 @@ static enum status find_result(const struct measurement *replicas, size_t count,
     TRY_ARRAY(states, count);
     for (size_t k = 0; k < count; k++)
         states[k] = replicas[k].use[use].state;
-    return observable->result(states, count, values);
+    return mf_pooled_result(observable, states, count, values);
 }
 
 enum status mf_measurement_result(const struct measurement *replicas, size_t count,

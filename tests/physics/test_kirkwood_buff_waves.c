@@ -5,6 +5,7 @@
 #include "curves/formula.h"
 #include "observe/kirkwood_buff_observable.h"
 #include "observe/measure.h"
+#include "observe/pooled.h"
 #include "shared/fluids.h"
 #include "shared/is_close.h"
 #include "shared/testing.h"
@@ -31,7 +32,7 @@ static void measure(const struct simulation_setup *setup, double *value, double 
     assert_ok(observable->begin(uses[0].state, &settings, &simulation, &plan));
     assert_ok(mf_measure_equilibrate(&simulation, &plan, &temperature, NULL));
     assert_ok(mf_measure_sample(&simulation, &plan, uses, NULL));
-    assert_ok(observable->result((const void *const[]){uses[0].state}, 1, &values));
+    assert_ok(mf_pooled_result(observable, (const void *const[]){uses[0].state}, 1, &values));
     observable->clear(uses[0].state);
     mf_memory_free(uses[0].state);
     mf_simulation_clear(&simulation);

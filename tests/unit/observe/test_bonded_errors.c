@@ -84,7 +84,8 @@ static void sample_jumps(struct chains *chains, const struct observable *observa
 static double deviation_of_side(const void *state) {
     double value[2], error[2];
     const struct observable_values values = {.count = 2, .value = value, .error = error};
-    assert_ok(mf_bonded_distribution_dihedral.result((const void *const[]){state}, 1, &values));
+    assert_ok(
+        mf_bonded_distribution_dihedral.result_of_all((const void *const[]){state}, 1, &values));
     assert_close(value[0] + value[1], 1.0 / 180, 1e-12);
     return (value[0] - 0.5 / 180) / error[0];
 }

@@ -26,7 +26,7 @@ static void test_records_have_what_their_callers_take_for_granted(void **state) 
         assert_true(o->always || o->fields); // else a scene could not ask for it
         assert_true((o->write == NULL) == (o->files == NULL));
         assert_true((o->histogram == NULL) == (o->counted == NULL));
-        assert_true((o->targets == NULL) == (o->result == NULL));
+        assert_true((o->targets == NULL) == (o->result == NULL && o->result_of_all == NULL));
         assert_non_null(o->stage);
         for (size_t n = 0; n < k; n++)
             assert_string_not_equal(o->name, mf_observables[n]->name);

@@ -4,6 +4,7 @@
 #include "base/rng.h"
 #include "io/json.h"
 #include "observe/measure.h"
+#include "observe/pooled.h"
 #include "shared/is_close.h"
 #include "shared/temporary_folder.h"
 #include "shared/testing.h"
@@ -75,7 +76,8 @@ static void still_clear(struct still *still) {
 static double read_at(const struct still *still, double q, double *error) {
     double value = 0, own_error = 0;
     const struct observable_values values = {1, &q, &value, &own_error};
-    assert_ok(still->use.observable->result((const void *const[]){still->use.state}, 1, &values));
+    assert_ok(mf_pooled_result(still->use.observable, (const void *const[]){still->use.state}, 1,
+                               &values));
     if (error)
         *error = own_error;
     return value;
