@@ -6,8 +6,8 @@
 #include <string.h>
 
 const struct command *const mf_command_list[] = {
-    &cmd_measure, &cmd_fit,     &cmd_export,   &cmd_simulate, &cmd_live,
-    &cmd_plot,    &cmd_compare, &cmd_describe, &cmd_bench,    NULL,
+    &cmd_measure, &cmd_fit,     &cmd_export,   &cmd_simulate, &cmd_live, &cmd_plot,
+    &cmd_film,    &cmd_compare, &cmd_describe, &cmd_bench,    NULL,
 };
 
 _Static_assert(sizeof mf_command_list / sizeof *mf_command_list <= COMMAND_MAX_COMMANDS + 1,
