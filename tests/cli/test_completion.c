@@ -37,12 +37,12 @@ static void assert_has(const char *words, const char *expected) {
 
 static void test_completion_knows_subcommands_and_options(void **state) {
     (void)state;
-    assert_completes("\"\"", "bench compare describe export fit live measure plot simulate ");
+    assert_completes("\"\"", "bench compare describe export film fit live measure plot simulate ");
     assert_completes("co", "compare ");
     assert_completes("fit --e", "--explain ");
     assert_completes("fit --re", "--resume ");
     assert_completes("fit --l", "--live ");
-    assert_completes("bench \"\"", "accuracy engine samplers ");
+    assert_completes("bench \"\"", "accuracy engine samplers stability ");
     assert_completes("describe --format \"\"", "bash man markdown schema ");
     assert_completes("fit --seed \"\"", " ");
 }
