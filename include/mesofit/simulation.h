@@ -75,9 +75,10 @@ MESOFIT_API enum mesofit_status mesofit_simulation_run(struct mesofit_simulation
                                                        uint64_t steps);
 
 /** The scene as it was read, defaults filled in, a JSON text as of a scene file, with two members
- *  more: "edges" of the box [lambda] and, if the scene has units, "physical": what 1 of length, time,
- *  energy, mass and temperature is, "length_unit_nm", "time_unit_ps", "energy_unit_kJ_per_mol",
- *  "mass_unit_u", "temperature_unit_K". NULL without memory. It stays until the simulation is freed.
+ *  more: "edges" of the box [lambda] and, if the scene has units, "physical": what 1 of length,
+ * time, energy, mass and temperature is, "length_unit_nm", "time_unit_ps",
+ * "energy_unit_kJ_per_mol", "mass_unit_u", "temperature_unit_K". NULL without memory. It stays
+ * until the simulation is freed.
  */
 MESOFIT_API const char *mesofit_simulation_text(struct mesofit_simulation *simulation);
 

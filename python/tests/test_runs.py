@@ -204,6 +204,22 @@ def test_runs_side_by_side_do_not_disturb_each_other(simulated):
         assert_same_tables(run.folder, simulated.folder)
 
 
+def test_fits_side_by_side_have_the_bits_of_one(run_file, fitted):
+    results = [None, None]
+
+    def work(k):
+        results[k] = mesofit.fit(run_file, threads=1)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        threads = [threading.Thread(target=work, args=(k,)) for k in range(2)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+    for fit in results:
+        assert_same_tables(fit.folder, fitted.folder)
+
+
 def test_child_of_a_fork_leaves_the_parents_results():
     run = mesofit.simulate(SCENE, steps=50, threads=2)
     child = os.fork()

@@ -85,7 +85,8 @@ struct mesofit_fit *mesofit_fit_parse(const char *text, const struct mesofit_tab
     struct mesofit_fit *fit = NULL;
     struct memory_files memory_files;
     mf_guard_enter();
-    if (mf_lend_begin_one(&memory_files, in_memory, text, tables, table_count) == STATUS_OK) {
+    if (mf_memory_files_begin_one(&memory_files, in_memory, text, tables, table_count) ==
+        STATUS_OK) {
         if (open_run(&fit, in_memory, NULL, threads, progress, context) != STATUS_OK)
             fit = NULL;
         mf_memory_files_end(&memory_files);
@@ -100,7 +101,8 @@ struct mesofit_fit *mesofit_fit_create(const struct mesofit_fit_options *options
     struct memory_files memory_files;
     mf_guard_enter();
     if (mf_fit_text_write(&run, options) == STATUS_OK &&
-        mf_lend_begin_one(&memory_files, in_memory, run.text, run.table, run.tables) == STATUS_OK) {
+        mf_memory_files_begin_one(&memory_files, in_memory, run.text, run.table, run.tables) ==
+            STATUS_OK) {
         if (open_run(&fit, in_memory, &options->scene, options->scene.threads, options->progress,
                      options->context) != STATUS_OK)
             fit = NULL;

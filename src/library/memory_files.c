@@ -63,8 +63,9 @@ done:
     return status;
 }
 
-enum status mf_lend_begin_one(struct memory_files *memory_files, const char *name, const char *text,
-                              const struct mesofit_table *tables, size_t table_count) {
+enum status mf_memory_files_begin_one(struct memory_files *memory_files, const char *name,
+                                      const char *text, const struct mesofit_table *tables,
+                                      size_t table_count) {
     return mf_memory_files_begin(memory_files, &(const struct mesofit_text){name, text}, 1, tables,
                                  table_count);
 }

@@ -19,6 +19,7 @@ enum status mf_memory_files_begin(struct memory_files *memory_files,
                                   const struct mesofit_table *tables, size_t table_count) MUST_USE;
 
 /// The same with one text.
-enum status mf_lend_begin_one(struct memory_files *memory_files, const char *name, const char *text,
-                              const struct mesofit_table *tables, size_t table_count) MUST_USE;
+enum status mf_memory_files_begin_one(struct memory_files *memory_files, const char *name,
+                                      const char *text, const struct mesofit_table *tables,
+                                      size_t table_count) MUST_USE;
 void mf_memory_files_end(struct memory_files *memory_files);

@@ -19,7 +19,7 @@ static enum status read_settings(const struct optimiser *kind, const char *text,
     static const char in_memory[] = "settings";
     struct json_document *document;
     struct memory_files memory_files;
-    TRY(mf_lend_begin_one(&memory_files, in_memory, text ? text : "{}", NULL, 0));
+    TRY(mf_memory_files_begin_one(&memory_files, in_memory, text ? text : "{}", NULL, 0));
     enum status status = mf_json_open(&document, in_memory);
     if (status == STATUS_OK) {
         struct json_object root = mf_json_root(document);

@@ -50,7 +50,7 @@ static int by_name(const void *a, const void *b) {
 static enum status list_tables(struct mesofit_result *result) {
     enum status status = STATUS_OK;
     struct dirent **entries;
-    const int files = scandir(result->folder, &entries, is_table, NULL);
+    const int files = scandir(result->folder, &entries, is_table, alphasort);
     if (files < 0)
         return mf_status_fail(STATUS_IO, "%s: %s", result->folder, strerror(errno));
     NEW_ARRAY(result->table, (size_t)files + 1);
@@ -147,8 +147,8 @@ static bool split(const char *word, size_t length, char **name, char **unit) {
     const bool closed = open && word[length - 1] == ']';
     *name = strndup(word, named);
     *unit = closed ? strndup(open + 1, length - named - 2) : strdup("");
-    for (char *point = *unit; point && (point = strchr(point, '.'));)
-        *point = ' ';
+    for (char *letter = *unit; letter && *letter; letter++)
+        *letter = *letter == '.' ? ' ' : *letter;
     return *name && *unit;
 }
 

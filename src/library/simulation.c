@@ -83,7 +83,8 @@ mesofit_simulation_parse(const char *text, const struct mesofit_table *tables, s
     struct mesofit_simulation *simulation = NULL;
     struct memory_files memory_files;
     mf_guard_enter();
-    if (mf_lend_begin_one(&memory_files, in_memory, text, tables, table_count) == STATUS_OK) {
+    if (mf_memory_files_begin_one(&memory_files, in_memory, text, tables, table_count) ==
+        STATUS_OK) {
         if (open_scene(&simulation, in_memory, NULL) != STATUS_OK)
             simulation = NULL;
         mf_memory_files_end(&memory_files);
@@ -110,7 +111,7 @@ struct mesofit_simulation *mesofit_simulation_create(const struct mesofit_scene 
     struct memory_files memory_files;
     mf_guard_enter();
     char *text = write_text(scene);
-    if (mf_lend_begin_one(&memory_files, in_memory, text, NULL, 0) == STATUS_OK) {
+    if (mf_memory_files_begin_one(&memory_files, in_memory, text, NULL, 0) == STATUS_OK) {
         if (open_scene(&simulation, in_memory, scene) != STATUS_OK)
             simulation = NULL;
         mf_memory_files_end(&memory_files);

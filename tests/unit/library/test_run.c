@@ -44,7 +44,7 @@ static void test_scene_in_memory_becomes_tables_by_name(void **state) {
     assert_int_equal(progress.done, 300);
     assert_int_equal(progress.total, 300);
     assert_string_equal(progress.unit, "steps");
-    const char *last = NULL, *line;
+    const char *last = "", *line;
     for (size_t k = 0; (line = mesofit_run_line(run, k)); k++)
         last = line;
     assert_contains(last, "300 steps in ");
@@ -268,7 +268,7 @@ static void *simulate(void *context) {
 
 static void test_runs_of_two_threads_are_the_same(void **state) {
     struct temporary_folder *const folder = *state;
-    struct job jobs[2];
+    struct job jobs[2] = {0};
     pthread_t threads[2];
     char *text[2];
     for (int k = 0; k < 2; k++) {
