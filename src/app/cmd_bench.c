@@ -14,6 +14,7 @@ enum {
     SKIPS,
     ISA,
     PRECISION,
+    SECONDS,
     OUTPUT,
     WANTED,
     TIME,
@@ -28,6 +29,7 @@ static const struct command_option options[] = {
     [SKIPS] = {"--skips", NULL, "time steps with and without each of their parts"},
     [ISA] = {"--isa", "NAME", "portable, avx2 or avx512 alone"},
     [PRECISION] = {"--precision", "NAME", "mixed or double alone"},
+    [SECONDS] = {"--seconds", "S", "engine: length of each of the five repeats (0.35)"},
     [OUTPUT] = {"-o", "FILE.tsv", "table for the results"},
     [WANTED] = {"--error", "E", "accuracy: largest |dg| wanted (0.005)"},
     [TIME] = {"--time", "T", "accuracy: length of each run [tau]"},
@@ -53,6 +55,7 @@ static enum status run_engine(const struct command_line *line) {
         .isa = line->own[ISA],
         .precision = line->own[PRECISION],
         .output = line->own[OUTPUT],
+        .seconds = line->own[SECONDS],
         .json = line->own[JSON] != NULL,
         .against_lammps = line->own[AGAINST_LAMMPS] != NULL,
         .skips = line->own[SKIPS] != NULL,
@@ -61,7 +64,7 @@ static enum status run_engine(const struct command_line *line) {
 }
 
 static enum status run_accuracy(const struct command_line *line) {
-    static const int foreign[] = {AGAINST_LAMMPS, SKIPS, ISA, PRECISION, OPTIONS};
+    static const int foreign[] = {AGAINST_LAMMPS, SKIPS, ISA, PRECISION, SECONDS, OPTIONS};
     TRY(check_options(line, "accuracy", foreign));
     if (line->file_count != 2)
         return mf_status_fail(STATUS_BAD_INPUT, "usage: mesofit bench accuracy SCENE.json");
@@ -80,9 +83,8 @@ static enum status run_accuracy(const struct command_line *line) {
 }
 
 static enum status run_samplers(const struct command_line *line) {
-    static const int foreign[] = {JSON,       AGAINST_LAMMPS, SKIPS,  ISA,
-                                  PRECISION,  OUTPUT,         WANTED, TIME,
-                                  TIME_STEPS, INTEGRATORS,    OPTIONS};
+    static const int foreign[] = {JSON,   AGAINST_LAMMPS, SKIPS, ISA,        PRECISION,   SECONDS,
+                                  OUTPUT, WANTED,         TIME,  TIME_STEPS, INTEGRATORS, OPTIONS};
     TRY(check_options(line, "samplers", foreign));
     if (line->file_count != 2)
         return mf_status_fail(STATUS_BAD_INPUT, "usage: mesofit bench samplers SCENE.json");

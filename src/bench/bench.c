@@ -11,6 +11,7 @@
 #include "report/program.h"
 #include "report/progress.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 enum {
@@ -21,7 +22,7 @@ enum {
 };
 
 /// Seconds of one repeat, alone and in turn with LAMMPS.
-static const double repeat_seconds = 0.35, turn_seconds = 1;
+static const double repeat_seconds = 0.35, turn_seconds = 1, most_seconds = 1000;
 
 static const char *const kernels[MAX_KERNELS] = {"portable", "avx2", "avx512"};
 static const char *const precisions[MAX_PRECISIONS] = {"mixed", "double"};
@@ -40,6 +41,7 @@ struct run {
     size_t scene_count;
     struct bench_how hows[MAX_CASES];
     size_t how_count;
+    double seconds;               ///< of a repeat
     struct bench_result *results; ///< shape [scene_count × how_count]
     size_t result_count;
     uint64_t parts_done;
@@ -57,7 +59,7 @@ static void add_kernel(struct run *run, const char *isa) {
             .isa = isa,
             .precision = precisions[k],
             .threads = run->common->threads,
-            .seconds = run->options->against_lammps ? turn_seconds : repeat_seconds,
+            .seconds = run->seconds,
         };
     }
 }
@@ -72,8 +74,23 @@ static enum status check_choice(const char *option, const char *given, const cha
     return mf_status_fail(STATUS_BAD_INPUT, "%s: \"%s\" is not known; %s", option, given, hint);
 }
 
+static enum status choose_seconds(struct run *run) {
+    const struct bench_options *options = run->options;
+    char *end;
+    run->seconds = options->against_lammps ? turn_seconds : repeat_seconds;
+    if (options->seconds == NULL)
+        return STATUS_OK;
+    run->seconds = strtod(options->seconds, &end);
+    if (*end == '\0' && run->seconds > 0 && run->seconds <= most_seconds)
+        return STATUS_OK;
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "--seconds: expected a number above 0, at most %g, not \"%s\"",
+                          most_seconds, options->seconds);
+}
+
 static enum status choose_cases(struct run *run) {
     const struct bench_options *options = run->options;
+    TRY(choose_seconds(run));
     TRY(check_choice("--isa", options->isa, kernels, MAX_KERNELS));
     TRY(check_choice("--precision", options->precision, precisions, MAX_PRECISIONS));
     if (options->isa && !mf_simd_select(options->isa))
@@ -173,16 +190,21 @@ static enum status time_scene(struct run *run, const struct bench_scene *scene) 
     return STATUS_OK;
 }
 
-static enum status time_skips(struct run *run) {
+static enum status time_skips(struct run *run, FILE *table) {
+    if (table)
+        mf_bench_skips_head(table);
     for (size_t s = 0; s < run->scene_count; s++)
-        for (size_t k = 0; k < run->how_count; k++)
-            TRY(mf_bench_skips(stdout, &run->scenes[s], &run->hows[k]));
+        for (size_t k = 0; k < run->how_count; k++) {
+            const enum status status =
+                mf_bench_skips(stdout, table, &run->scenes[s], &run->hows[k]);
+            if (status != STATUS_OK && status != STATUS_INTERRUPTED)
+                return mf_status_prefix(status, "%s", run->scenes[s].name);
+            TRY(status);
+        }
     return STATUS_OK;
 }
 
 static enum status time_scenes(struct run *run) {
-    if (run->options->skips)
-        return time_skips(run);
     for (size_t k = 0; k < run->scene_count; k++)
         if (!is_left_out(run, &run->scenes[k]))
             TRY(time_scene(run, &run->scenes[k]));
@@ -191,6 +213,9 @@ static enum status time_scenes(struct run *run) {
 }
 
 static enum status prepare(struct run *run, const char *const *files, size_t count) {
+    if (run->options->skips && (run->options->json || run->options->against_lammps))
+        return mf_status_fail(STATUS_BAD_INPUT, "--skips goes with neither --json nor "
+                                                "--against-lammps; -o FILE.tsv writes its table");
     TRY(choose_cases(run));
     TRY(read_scenes(run, files, count));
     if (!run->options->against_lammps)
@@ -203,15 +228,17 @@ static enum status prepare(struct run *run, const char *const *files, size_t cou
 /// Time all scenes, the file for the results being open already, so that two minutes are not lost.
 static enum status time_to_file(struct run *run) {
     struct output output;
+    const bool skips = run->options->skips;
     if (run->options->output == NULL)
-        return time_scenes(run);
+        return skips ? time_skips(run, NULL) : time_scenes(run);
     TRY(mf_output_open(&output, run->options->output));
-    const enum status status = time_scenes(run);
+    const enum status status = skips ? time_skips(run, output.stream) : time_scenes(run);
     if (status != STATUS_OK) {
         mf_output_abandon(&output);
         return status;
     }
-    mf_bench_output_tsv(output.stream, run->results, run->result_count);
+    if (!skips)
+        mf_bench_output_tsv(output.stream, run->results, run->result_count);
     return mf_output_commit(&output);
 }
 

@@ -9,6 +9,7 @@
 struct bench_options {
     const char *isa, *precision; ///< the only one to be timed; NULL: all there are
     const char *output;          ///< a TSV file, or NULL
+    const char *seconds;         ///< of a repeat, or NULL: long enough
     bool json;                   ///< instead of tables for people
     bool against_lammps;         ///< compare with LAMMPS; the best instruction set alone
     bool skips;                  ///< what each part of a step costs; the best instruction set alone

@@ -123,11 +123,12 @@ enum status mf_bench_case_repeat(struct bench_case *bench) {
     if (!mf_simd_select(bench->how.isa)) // another case may have run in between
         return mf_status_fail(STATUS_BAD_INPUT, "this processor lacks %s", bench->how.isa);
     const uint64_t begin_ticks = clock_ticks();
-    const double begin = clock_seconds();
+    const double begin = clock_seconds(), begin_busy = clock_thread_seconds();
     TRY(mf_simulation_run(simulation, bench->steps));
-    const double seconds = clock_seconds() - begin;
+    const double seconds = clock_seconds() - begin, busy = clock_thread_seconds() - begin_busy;
     bench->ticks_total += clock_ticks() - begin_ticks;
     bench->seconds += seconds;
+    bench->busy_rate[bench->repeats] = (double)bench->steps / busy;
     bench->rate[bench->repeats++] = (double)bench->steps / seconds;
     bench->list_builds += simulation->list_builds - before.simulation.list_builds;
     for (int phase = 0; phase < SIMULATION_PHASES; phase++)

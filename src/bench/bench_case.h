@@ -61,8 +61,9 @@ struct bench_case {
     uint64_t repeats;                                            ///< done
     uint64_t list_builds, ticks[SIMULATION_PHASES], ticks_total; ///< within the repeats
     double rate[BENCH_REPEATS];                                  ///< steps/s
-    double seconds;                                              ///< within the repeats
-    double in_range, listed, places, temperature;                ///< sums over samples
+    double busy_rate[BENCH_REPEATS];              ///< the same of this thread's processor time
+    double seconds;                               ///< within the repeats
+    double in_range, listed, places, temperature; ///< sums over samples
 };
 
 /// Middle of `count` values, or the mean of the two in the middle. count ≤ BENCH_REPEATS.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/bench_case.h"
+#include "observe/observable.h"
 #include "scene/heading.h"
 
 #include <stdio.h>
@@ -27,7 +28,8 @@ static enum status read_file(struct bench_scene *scene, const char *file, struct
     if (status == STATUS_OK)
         status = mf_scene_read(&scene->scene, &root, SCENE_FITS_NOTHING, NULL);
     mf_json_has(&root, "measure");
-    mf_json_has(&root, "rdf");
+    for (int k = 0; mf_observables[k]; k++)
+        mf_json_has(&root, mf_observables[k]->name);
     mf_json_finish(&root);
     return mf_json_close(document, status);
 }

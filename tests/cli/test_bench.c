@@ -35,7 +35,7 @@ static void test_bench_prints_json_and_writes_a_table(void **state) {
                                           NULL};
     small_inputs_write(*state, "small.json", small_inputs_scene, NULL, NULL);
     RUN_PROGRAM(&result, "bench", "engine", "small.json", "--json", "--isa", "portable",
-                "--precision", "double", "-o", "speed.tsv");
+                "--precision", "double", "--seconds", "0.02", "-o", "speed.tsv");
     run_program_assert_code(&result, 0);
     assert_string_equal(result.err, "");
     write_object(*state, result.out);
@@ -49,18 +49,31 @@ static void test_bench_prints_json_and_writes_a_table(void **state) {
     run_program_assert_no_partial(".");
 }
 
-/// Of a scene with friction, too: without it the step is another integrator's.
+/// Scenes of every kind, as a person types them: with friction, bonds, discs that drive themselves.
 static void test_bench_skips_tells_what_parts_of_a_step_cost(void **state) {
+    static const struct {
+        const char *put, *says;
+    } scenes[] = {
+        {"\"time_step\"", "friction and noise"},
+        {"\"dynamics\": {\"integrator\": \"dpd-verlet\"}, \"time_step\"", "friction and noise"},
+        {"\"dynamics\": {\"integrator\": \"shardlow\"}, \"time_step\"", "friction and noise"},
+        {"\"snapshots\": {\"every\": 1}, \"time_step\"", "friction and noise"},
+        {"\"interactions\": {\"harmonic-trap\": {\"stiffness\": [1, 1, 1]}}, \"time_step\"",
+         "harmonic-trap"},
+    };
     static struct run_program_result result;
-    small_inputs_write(*state, "small.json", small_inputs_scene, "\"time_step\"",
-                       "\"dynamics\": {\"integrator\": \"dpd-verlet\"}, \"time_step\"");
-    RUN_PROGRAM(&result, "bench", "engine", "small.json", "--skips", "--isa", "portable",
-                "--precision", "mixed");
-    run_program_assert_code(&result, 0);
-    assert_string_equal(result.err, "");
-    assert_contains(result.out, "small: 81 particles, portable, mixed precision");
-    assert_contains(result.out, "without friction and noise");
-    assert_contains(result.out, "with g(r) at every step");
+    for (size_t k = 0; k < sizeof scenes / sizeof *scenes; k++) {
+        small_inputs_write(*state, "small.json", small_inputs_scene, "\"time_step\"",
+                           scenes[k].put);
+        RUN_PROGRAM(&result, "bench", "engine", "small.json", "--skips", "--isa", "portable",
+                    "--precision", "mixed", "--seconds", "0.005", "-o", "skips.tsv", "--force");
+        run_program_assert_code(&result, 0);
+        assert_string_equal(result.err, "");
+        assert_contains(result.out, "small: 81 particles, portable, mixed precision");
+        assert_contains(result.out, scenes[k].says);
+        assert_contains(result.out, "g(r) at every step");
+        assert_true(temporary_folder_exists("skips.tsv"));
+    }
 }
 
 static const struct {
@@ -82,6 +95,8 @@ static const struct {
     {{"bench", "engine", "--jsn"}, {"unknown option --jsn", "did you mean \"--json\"?"}},
     {{"fit", "run.json", "--json"}, {"unknown option --json"}},
     {{"bench", "engine", "--against-lammps", "--threads", "2"}, {"compares single threads"}},
+    {{"bench", "engine", "--seconds", "0"}, {"--seconds: expected a number above 0", "\"0\""}},
+    {{"bench", "engine", "--skips", "--json"}, {"--skips goes with neither", "-o FILE.tsv"}},
 };
 
 static void test_bad_bench_lines_are_refused_before_anything_is_timed(void **state) {
