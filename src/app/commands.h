@@ -8,7 +8,7 @@
 const char *mf_command_option_text(const struct command_option *option,
                                    char text[COMMAND_OPTION_SIZE]);
 
-extern const struct command cmd_live, cmd_plot, cmd_compare, cmd_describe, cmd_bench;
+extern const struct command cmd_live, cmd_plot, cmd_film, cmd_compare, cmd_describe, cmd_bench;
 
 /// All subcommands, in the order of --help, up to NULL.
 extern const struct command *const mf_command_list[];

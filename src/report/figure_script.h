@@ -16,3 +16,8 @@ enum status mf_figure_script_find(char plots[FIGURE_SCRIPT_PATH_SIZE]) MUST_USE;
 /// all. Fails: IO with one line, NO_MEMORY; as mf_tracked_files_claim. Tested: test_figures.
 enum status mf_figure_script_draw(const char *folder, const char *plots, const char *script,
                                   const char *table, const char *figure) MUST_USE;
+
+/// Run a script that makes files of its own, in `folder`. It is stopped after so many seconds.
+/// Fails: IO with one line, NO_MEMORY. Tested: cli/test_film.
+enum status mf_figure_script_run(const char *folder, const char *plots, const char *script,
+                                 double seconds) MUST_USE;

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "report/film_paint.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    SHADES = 24, ///< of a colour bar
+    LAYERS = 6,  ///< of depth
+};
+
+/// Of the values of a quantity this share, at each end, may lie beyond the ends of its colours.
+static const double tail = 0.02;
+
+// Choosing ---------------------------------------------------------------------------------------
+
+static int compare(const void *first, const void *second) {
+    const double a = *(const double *)first, b = *(const double *)second;
+    return (a > b) - (a < b);
+}
+
+/// Widen the range to what nearly all values of a frame lie within.
+static void widen(struct film_paint *paint, struct film_frame *frame) {
+    qsort(frame->colour, frame->count, sizeof(double), compare);
+    const size_t skipped = (size_t)(tail * (double)frame->count);
+    paint->min = fmin(paint->min, frame->colour[skipped]);
+    paint->max = fmax(paint->max, frame->colour[frame->count - 1 - skipped]);
+}
+
+/// Particles as large as leaves most of the box free.
+static double size_of(const struct film_frame *frame) {
+    const int dimensions = frame->box[2] > 0 ? 3 : 2;
+    const double volume = frame->box[0] * frame->box[1] * (dimensions == 3 ? frame->box[2] : 1);
+    return 0.35 * pow(volume / (double)frame->count, 1.0 / dimensions);
+}
+
+static enum status choose_quantity(struct film_paint *paint, const char *file, const char *wanted) {
+    struct film_frame frame;
+    TRY(mf_film_frame_read(&frame, file, NULL));
+    const char *colour = wanted           ? wanted
+                         : frame.oriented ? "orientation"
+                         : frame.mixed    ? "type"
+                                          : "speed";
+    snprintf(paint->colour, sizeof paint->colour, "%s", colour);
+    paint->scale = strcmp(colour, "type") == 0          ? FILM_TYPES
+                   : strcmp(colour, "orientation") == 0 ? FILM_TURNS
+                                                        : FILM_RANGE;
+    paint->size = size_of(&frame);
+    for (size_t k = 0; k < frame.count; k++)
+        paint->types = (int)fmax(paint->types, frame.type[k] + 1);
+    mf_film_frame_clear(&frame);
+    return STATUS_OK;
+}
+
+enum status mf_film_paint_choose(struct film_paint *paint, const char *const files[3],
+                                 const char *wanted) {
+    *paint = (struct film_paint){.min = INFINITY, .max = -INFINITY};
+    TRY(choose_quantity(paint, files[0], wanted));
+    for (int k = 0; k < 3; k++) {
+        struct film_frame frame;
+        TRY(mf_film_frame_read(&frame, files[k], paint->colour));
+        widen(paint, &frame);
+        mf_film_frame_clear(&frame);
+    }
+    if (strcmp(paint->colour, "speed") == 0)
+        paint->min = 0;
+    if (!(paint->max > paint->min)) // all alike
+        paint->max = paint->min + 1;
+    return STATUS_OK;
+}
+
+// Colours ----------------------------------------------------------------------------------------
+
+static int join(double red, double green, double blue) {
+    return (int)lround(255 * red) << 16 | (int)lround(255 * green) << 8 | (int)lround(255 * blue);
+}
+
+/// Round the circle: hue of a colour of 75 % saturation and 85 % value.
+static int turn_colour(double turn) {
+    static const double saturation = 0.75, value = 0.85;
+    double part[3];
+    for (int c = 0; c < 3; c++) {
+        const double k = fmod(5 - 2 * c + 6 * turn, 6);
+        part[c] = value - value * saturation * fmax(0, fmin(fmin(k, 4 - k), 1));
+    }
+    return join(part[0], part[1], part[2]);
+}
+
+/// From dark blue over green to yellow, each lighter than the one before: viridis (S. van der Walt
+/// and N. Smith, 2015), joined by straight lines.
+static int range_colour(double share) {
+    static const double anchors[][3] = {{0.267, 0.005, 0.329}, {0.254, 0.265, 0.530},
+                                        {0.164, 0.471, 0.558}, {0.135, 0.659, 0.518},
+                                        {0.478, 0.821, 0.318}, {0.993, 0.906, 0.144}};
+    const double place = 5 * fmin(fmax(share, 0), 1);
+    const int left = (int)fmin(floor(place), 4);
+    double part[3];
+    for (int c = 0; c < 3; c++)
+        part[c] = anchors[left][c] + (place - left) * (anchors[left + 1][c] - anchors[left][c]);
+    return join(part[0], part[1], part[2]);
+}
+
+/// Those of plots/style.gp.
+static int type_colour(int type) {
+    static const int colours[] = {0x0072b2, 0xd55e00, 0x009e73, 0xaa4499,
+                                  0xe69f00, 0x56b4e9, 0x882255, 0x7a7a1f};
+    return colours[type % 8];
+}
+
+/// Number of one of the shades, the middle of which stands for all in it.
+static double in_shades(double share) {
+    return (floor(fmin(fmax(share, 0), 1 - 1e-12) * SHADES) + 0.5) / SHADES;
+}
+
+static int colour_of(const struct film_paint *paint, double value) {
+    static const double full_turn = 6.283185307179586;
+    if (paint->scale == FILM_TYPES)
+        return type_colour((int)value);
+    if (paint->scale == FILM_TURNS)
+        return turn_colour(in_shades(value / full_turn - floor(value / full_turn)));
+    return range_colour(in_shades((value - paint->min) / (paint->max - paint->min)));
+}
+
+/// Of what is behind the rest the colour is a part, the others white.
+static int faded(int colour, int layer) {
+    const double share = (layer + 1.0) / LAYERS;
+    int result = 0;
+    for (int shift = 0; shift <= 16; shift += 8)
+        result |= (int)lround(255 - share * (255 - (colour >> shift & 255))) << shift;
+    return result;
+}
+
+void mf_film_paint_palette(const struct film_paint *paint, FILE *stream) {
+    if (paint->scale == FILM_TYPES)
+        return;
+    fprintf(stream, "set palette maxcolors %d defined (", SHADES);
+    for (int k = 0; k < SHADES; k++) {
+        const double share = (k + 0.5) / SHADES;
+        const int colour = paint->scale == FILM_TURNS ? turn_colour(share) : range_colour(share);
+        fprintf(stream, "%s%d '#%06x'", k > 0 ? ", " : "", k, (unsigned)colour);
+    }
+    fprintf(stream, ")\n");
+}
+
+// Painting ---------------------------------------------------------------------------------------
+
+static int layer_of(const struct film_frame *frame, size_t k) {
+    if (!(frame->box[2] > 0))
+        return LAYERS - 1;
+    const double share = frame->position[3 * k + 2] / frame->box[2];
+    return (int)fmin(fmax(floor(share * LAYERS), 0), LAYERS - 1);
+}
+
+static void print_particle(const struct film_paint *paint, const struct film_frame *frame, size_t k,
+                           FILE *stream) {
+    const double radius = frame->radius && frame->radius[k] > 0 ? frame->radius[k] : paint->size;
+    fprintf(stream, "%.5g\t%.5g\t%.4g\t%d\n", frame->position[3 * k], frame->position[3 * k + 1],
+            radius, faded(colour_of(paint, frame->colour[k]), layer_of(frame, k)));
+}
+
+/// A solvent, which comes last, lies behind the others of its layer.
+void mf_film_paint_frame(const struct film_paint *paint, const struct film_frame *frame,
+                         FILE *stream) {
+    for (int layer = 0; layer < LAYERS; layer++)
+        for (size_t k = frame->count; k-- > 0;)
+            if (layer_of(frame, k) == layer)
+                print_particle(paint, frame, k, stream);
+}

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// `mesofit film`: frames read back from snapshots of both formats, a GIF of all of them, and what
+// ffmpeg makes of it. The ffmpeg here is a script, so that it does not matter whether there is one.
+#include "report/film_frame.h"
+#include "shared/is_close.h"
+#include "shared/run_program.h"
+#include "shared/small_inputs.h"
+#include "shared/testing.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#define SNAPSHOTS                                                                                  \
+    "\"measure\": {\"equilibration\": 0, \"samples\": 4, \"every\": 5}, \"snapshots\": "           \
+    "{\"every\": 5, \"formats\": [\"vtp\", \"json\"]"
+static const char plan[] = "\"measure\": {\"equilibration\": 2, \"samples\": 4, \"every\": 1}";
+
+static const char solvent[] =
+    "{\"seed\": 1, \"dimensions\": 2, \"box\": [20, 5], \"particles\": {\"count\": 0}, "
+    "\"temperature\": 1, \"time_step\": 0.1, \"dynamics\": {\"integrator\": "
+    "\"collision-dynamics\", \"particles_per_cell\": 4, \"angle\": 90}, " SNAPSHOTS
+    ", \"solvent\": \"yes\"}}";
+
+static void simulate(struct temporary_folder *folder, const char *text, const char *from,
+                     const char *to) {
+    static struct run_program_result result;
+    small_inputs_write(folder, "scene.json", text, from, to);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "--quiet", "--force");
+    run_program_assert_code(&result, 0);
+}
+
+/// Put a program that does so before all others; another time it is another.
+static void use_ffmpeg(const char *does) {
+    static char before[4096];
+    char path[8192], here[4096];
+    if (before[0] == '\0')
+        snprintf(before, sizeof before, "%s", getenv("PATH"));
+    FILE *script = fopen("ffmpeg", "w");
+    assert_non_null(script);
+    fprintf(script, "#!/bin/sh\n%s\n", does);
+    fclose(script);
+    assert_int_equal(chmod("ffmpeg", 0755), 0);
+    assert_non_null(realpath(".", here));
+    snprintf(path, sizeof path, "%s:%s", here, before);
+    setenv("PATH", path, 1);
+}
+
+/// How many pictures a GIF has: each has a block of its time.
+static int pictures(const char *file) {
+    int count = 0, before = 0, now;
+    FILE *stream = fopen(file, "rb");
+    assert_non_null(stream);
+    char head[7] = "";
+    assert_int_equal(fread(head, 1, 6, stream), 6);
+    assert_string_equal(head, "GIF89a");
+    for (int earlier = 0; (now = getc(stream)) != EOF; earlier = before, before = now)
+        count += earlier == 0x21 && before == 0xf9 && now == 4;
+    fclose(stream);
+    return count;
+}
+
+static void assert_same(const double *a, const double *b, size_t count) {
+    for (size_t k = 0; k < count; k++)
+        assert_close(a[k], b[k], 1e-12);
+}
+
+/// The two formats are read by two readers, and hold the same.
+static void check_formats(const char *colour, size_t count) {
+    struct film_frame vtp, json;
+    assert_ok(mf_film_frame_read(&vtp, "out/snapshots/step_000000010.vtp", colour));
+    assert_ok(mf_film_frame_read(&json, "out/snapshots/step_000000010.json", colour));
+    assert_int_equal(vtp.count, count);
+    assert_int_equal(json.count, count);
+    assert_close(vtp.time, json.time, 1e-12);
+    assert_same(vtp.box, json.box, 3);
+    assert_same(vtp.position, json.position, 3 * count);
+    assert_same(vtp.colour, json.colour, count);
+    double largest = 0;
+    for (size_t k = 0; k < count; k++)
+        largest = fmax(largest, fabs(vtp.position[3 * k]));
+    assert_true(largest > 0.8 * vtp.box[0] && largest <= vtp.box[0]);
+    mf_film_frame_clear(&vtp);
+    mf_film_frame_clear(&json);
+}
+
+static void test_frames_of_both_formats_are_the_same(void **state) {
+    simulate(*state, small_inputs_scene, plan, SNAPSHOTS "}");
+    check_formats("speed", 81);
+    simulate(*state, solvent, NULL, NULL);
+    check_formats("speed", 400);
+}
+
+/// A picture for each snapshot, and the first and the last of fewer.
+static void test_film_has_a_picture_for_each_snapshot(void **state) {
+    static struct run_program_result result;
+    small_inputs_need_gnuplot();
+    use_ffmpeg("exit 1");
+    simulate(*state, small_inputs_scene, plan, SNAPSHOTS "}");
+    RUN_PROGRAM(&result, "film", "out");
+    run_program_assert_code(&result, 0);
+    assert_string_equal(result.out, "out/figures/film.gif\n");
+    assert_string_equal(result.err, "");
+    assert_int_equal(pictures("out/figures/film.gif"), 5);
+    RUN_PROGRAM(&result, "film", "out", "--frames", "2", "--colour", "type");
+    assert_int_equal(pictures("out/figures/film.gif"), 2);
+    simulate(*state, solvent, NULL, NULL);
+    RUN_PROGRAM(&result, "film", "out", "--frames", "3");
+    run_program_assert_code(&result, 0);
+    assert_int_equal(pictures("out/figures/film.gif"), 3);
+}
+
+/// With ffmpeg there is its film alone; what a person put in its place stays.
+static void test_ffmpeg_makes_it_a_film(void **state) {
+    static struct run_program_result result;
+    small_inputs_need_gnuplot();
+    use_ffmpeg("cp film.gif film.mp4");
+    simulate(*state, small_inputs_scene, plan, SNAPSHOTS "}");
+    RUN_PROGRAM(&result, "film", "out");
+    run_program_assert_code(&result, 0);
+    assert_string_equal(result.out, "out/figures/film.mp4\n");
+    assert_false(temporary_folder_exists("out/figures/film.gif"));
+    FILE *own = fopen("out/figures/film.mp4", "w");
+    fputs("a film of mine", own);
+    fclose(own);
+    RUN_PROGRAM(&result, "film", "out");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err, "film.mp4");
+    RUN_PROGRAM(&result, "film", "out", "--force");
+    run_program_assert_code(&result, 0);
+}
+
+static const struct {
+    const char *words[6];
+    const char *says[3];
+} bad_lines[] = {
+    {{"film"}, {"usage: mesofit film DIR"}},
+    {{"film", "no/such"}, {"no/such: No such file"}},
+    {{"film", "."}, {".: no snapshots to make a film of", "\"formats\": [\"vtp\"]"}},
+    {{"film", "out", "--frames", "many"}, {"--frames: expected a number", "\"many\""}},
+    {{"film", "out", "--colour", "taste"}, {"have no \"taste\"", "speed"}},
+    {{"film", "torn"}, {"torn/snapshots/step_000000000.vtp: parts of it are missing"}},
+};
+
+static void test_bad_lines_are_refused(void **state) {
+    static struct run_program_result result;
+    simulate(*state, small_inputs_scene, plan, SNAPSHOTS "}");
+    mkdir("torn", 0777);
+    mkdir("torn/snapshots", 0777);
+    temporary_folder_write(*state, "torn/snapshots/step_000000000.vtp", "<VTKFile", 8);
+    for (size_t k = 0; k < sizeof bad_lines / sizeof *bad_lines; k++) {
+        run_program(&result, &(struct run_program_how){0}, bad_lines[k].words);
+        run_program_assert_code(&result, 2);
+        for (const char *const *says = bad_lines[k].says; *says; says++)
+            assert_contains(result.err, *says);
+        assert_int_equal(run_program_lines(result.err), 1);
+    }
+    assert_false(temporary_folder_exists("out/figures/film.gif"));
+}
+
+#define TEST(name) cmocka_unit_test_setup_teardown(name, small_inputs_enter, small_inputs_leave)
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        TEST(test_frames_of_both_formats_are_the_same),
+        TEST(test_film_has_a_picture_for_each_snapshot),
+        TEST(test_ffmpeg_makes_it_a_film),
+        TEST(test_bad_lines_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
