@@ -4,6 +4,7 @@
 #include "bench/bench.h"
 #include "bench/bench_accuracy.h"
 #include "bench/bench_samplers.h"
+#include "bench/bench_stability.h"
 
 #include <omp.h>
 #include <string.h>
@@ -25,16 +26,16 @@ enum {
 
 static const struct command_option options[] = {
     [JSON] = {"--json", NULL, "print a JSON list instead of tables"},
-    [AGAINST_LAMMPS] = {"--against-lammps", NULL, "time LAMMPS (lmp) in turn, print the ratio"},
+    [AGAINST_LAMMPS] = {"--against-lammps", NULL, "time LAMMPS in turn"},
     [SKIPS] = {"--skips", NULL, "time steps with and without each of their parts"},
     [ISA] = {"--isa", "NAME", "portable, avx2 or avx512 alone"},
     [PRECISION] = {"--precision", "NAME", "mixed or double alone"},
-    [SECONDS] = {"--seconds", "S", "engine: length of each of the five repeats (0.35)"},
+    [SECONDS] = {"--seconds", "S", "engine: length of a repeat (0.35)"},
     [OUTPUT] = {"-o", "FILE.tsv", "table for the results"},
     [WANTED] = {"--error", "E", "accuracy: largest |dg| wanted (0.005)"},
-    [TIME] = {"--time", "T", "accuracy: length of each run [tau]"},
+    [TIME] = {"--time", "T", "accuracy, stability: length of runs [tau]"},
     [TIME_STEPS] = {"--time-steps", "A,..", "accuracy: time steps [tau]"},
-    [INTEGRATORS] = {"--integrators", "A,..", "accuracy: only these"},
+    [INTEGRATORS] = {"--integrators", "A,..", "accuracy, stability: only these"},
     {NULL, NULL, NULL},
 };
 
@@ -82,6 +83,21 @@ static enum status run_accuracy(const struct command_line *line) {
     return mf_bench_accuracy(line->files[1], &common, &chosen);
 }
 
+static enum status run_stability(const struct command_line *line) {
+    static const int foreign[] = {JSON,    AGAINST_LAMMPS, SKIPS,      ISA,    PRECISION,
+                                  SECONDS, WANTED,         TIME_STEPS, OPTIONS};
+    TRY(check_options(line, "stability", foreign));
+    if (line->file_count > 2)
+        return mf_status_fail(STATUS_BAD_INPUT, "usage: mesofit bench stability [SCENE.json]");
+    const struct bench_stability_options chosen = {
+        .output = line->own[OUTPUT],
+        .time = line->own[TIME],
+        .integrators = line->own[INTEGRATORS],
+    };
+    return mf_bench_stability(line->file_count == 2 ? line->files[1] : NULL, &line->options,
+                              &chosen);
+}
+
 static enum status run_samplers(const struct command_line *line) {
     static const int foreign[] = {JSON,   AGAINST_LAMMPS, SKIPS, ISA,        PRECISION,   SECONDS,
                                   OUTPUT, WANTED,         TIME,  TIME_STEPS, INTEGRATORS, OPTIONS};
@@ -92,21 +108,23 @@ static enum status run_samplers(const struct command_line *line) {
 }
 
 static enum status run(const struct command_line *line) {
-    static const char *const subjects[] = {"engine", "accuracy", "samplers"};
+    static const char *const subjects[] = {"engine", "accuracy", "stability", "samplers"};
     char hint[128];
     if (strcmp(line->files[0], subjects[0]) == 0)
         return run_engine(line);
     if (strcmp(line->files[0], subjects[1]) == 0)
         return run_accuracy(line);
     if (strcmp(line->files[0], subjects[2]) == 0)
+        return run_stability(line);
+    if (strcmp(line->files[0], subjects[3]) == 0)
         return run_samplers(line);
-    mf_nearest_hint(line->files[0], subjects, 3, hint, sizeof hint);
+    mf_nearest_hint(line->files[0], subjects, 4, hint, sizeof hint);
     return mf_status_fail(STATUS_BAD_INPUT, "bench: \"%s\" is not known; %s", line->files[0], hint);
 }
 
 const struct command cmd_bench = {
     .name = "bench",
-    .usage = "engine|accuracy|samplers [SCENE...]",
+    .usage = "engine|accuracy|stability|samplers [SCENE...]",
     .summary = "time the engine; what time steps and samplers cost",
     .min_files = 1,
     .max_files = COMMAND_MAX_FILES,

@@ -2,7 +2,6 @@
 #include "bench/bench_accuracy.h"
 
 #include "base/memory.h"
-#include "base/nearest.h"
 #include "bench/bench_accuracy_output.h"
 #include "bench/bench_case.h"
 #include "report/figures.h"
@@ -71,52 +70,12 @@ static enum status parse_time_steps(struct run *run, const char *text) {
         "--time-steps takes growing numbers above 0, such as 0.01,0.02, %d at most", MAX_STEPS);
 }
 
-/// True if a list such as "aboba,shardlow" names a method, or its integrator.
-static bool is_listed(const char *list, const struct bench_method *method) {
-    const char *const names[] = {method->name, method->integrator->name};
-    for (const char *at = list; at; at = strchr(at, ',') ? strchr(at, ',') + 1 : NULL)
-        for (size_t k = 0; k < 2; k++)
-            if (strcspn(at, ",") == strlen(names[k]) &&
-                strncmp(at, names[k], strlen(names[k])) == 0)
-                return true;
-    return false;
-}
-
-/// Refuse a list with a name that is none of a suitable integrator.
-static enum status check_names(const struct run *run, const char *list) {
-    const char *names[BENCH_MAX_METHODS];
-    char hint[256], word[64];
-    for (size_t k = 0; k < run->suitable_count; k++)
-        names[k] = run->suitable[k].name;
-    for (const char *at = list; at; at = strchr(at, ',') ? strchr(at, ',') + 1 : NULL) {
-        bool is_known = false;
-        snprintf(word, sizeof word, "%.*s", (int)strcspn(at, ","), at);
-        for (size_t k = 0; k < run->suitable_count; k++)
-            is_known |= is_listed(word, &run->suitable[k]);
-        if (is_known)
-            continue;
-        mf_nearest_hint(word, names, run->suitable_count, hint, sizeof hint);
-        return mf_status_fail(STATUS_BAD_INPUT, "--integrators: \"%s\" does not suit the scene; %s",
-                              word, hint);
-    }
-    return STATUS_OK;
-}
-
-static enum status choose_methods(struct run *run) {
-    const char *list = run->options->integrators;
-    run->suitable_count = mf_bench_methods(&run->scene.scene.setup, run->suitable);
-    if (list)
-        TRY(check_names(run, list));
-    for (size_t k = 0; k < run->suitable_count; k++)
-        if (list == NULL || is_listed(list, &run->suitable[k]))
-            run->methods[run->method_count++] = run->suitable[k];
-    return STATUS_OK;
-}
-
 static enum status choose(struct run *run) {
     const struct bench_accuracy_options *options = run->options;
     const struct simulation_setup *setup = &run->scene.scene.setup;
-    TRY(choose_methods(run));
+    run->suitable_count = mf_bench_methods(setup, run->suitable);
+    TRY(mf_bench_methods_listed(run->suitable, run->suitable_count, options->integrators,
+                                run->methods, &run->method_count));
     run->wanted = default_error;
     run->time =
         default_steps * setup->time_step * default_particles / (double)setup->placement.count;
@@ -275,7 +234,7 @@ static enum status write_table(struct run *run, const struct bench_diagram *diag
     TRY(mf_output_open(&output, run->options->output));
     mf_bench_accuracy_tsv(output.stream, diagram);
     TRY(mf_output_commit(&output));
-    if (mf_figures_draw_accuracy(run->options->output) != STATUS_OK && !run->common->quiet)
+    if (mf_figures_draw_table(run->options->output, "accuracy") != STATUS_OK && !run->common->quiet)
         fprintf(stderr, "warning: %s\n", mf_status_message());
     return STATUS_OK;
 }
@@ -326,7 +285,7 @@ static enum status carry_out(struct run *run, const char *file) {
     TRY(choose(run));
     if (run->options->output) { // two minutes are not to be lost
         if (!run->common->force)
-            TRY(mf_figures_check_accuracy(run->options->output));
+            TRY(mf_figures_check_table(run->options->output));
         TRY(mf_output_open(&probe, run->options->output));
         mf_output_abandon(&probe);
     }

@@ -22,6 +22,13 @@ enum { BENCH_MAX_METHODS = 16, BENCH_MAX_BINS = 4096 };
 /// many. Tested: test_bench_point.
 size_t mf_bench_methods(const struct simulation_setup *setup, struct bench_method *methods);
 
+/// Those of the methods that a list such as "aboba,shardlow" names, by their own name or that of
+/// their integrator; NULL lists all. Fails: BAD_INPUT if one of its names is none of them.
+/// Tested: cli/test_bench_accuracy.
+enum status mf_bench_methods_listed(const struct bench_method *methods, size_t count,
+                                    const char *list, struct bench_method *listed,
+                                    size_t *listed_count) MUST_USE;
+
 /// The one that others are compared with: it has an error of order Δt² and an unbiased kinetic
 /// temperature. Tested: test_bench_point.
 const struct bench_method *mf_bench_reference_method(const struct bench_method *methods,

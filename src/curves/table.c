@@ -143,6 +143,25 @@ done:
     return status;
 }
 
+enum status mf_table_scale(struct table *table, const struct table *from, double factor) {
+    enum status status = STATUS_OK;
+    const size_t rows = (size_t)(TABLE_INTERVALS + 1) * (size_t)from->curves;
+    CHECK(allocate(table, from->cutoff, from->terms, from->curves));
+    memcpy(table->cutoffs, from->cutoffs, sizeof table->cutoffs);
+    table->inverse_spacing = from->inverse_spacing;
+    for (size_t k = 0; k < rows * (size_t)from->terms; k++)
+        table->coefficient[k] = factor * from->coefficient[k];
+    for (size_t k = 0; k < rows; k++)
+        for (int n = 0; n < 4; n++) {
+            table->precise[k][n] = factor * from->precise[k][n];
+            table->single[k][n] = (float)table->precise[k][n];
+        }
+done:
+    if (status != STATUS_OK)
+        mf_table_clear(table);
+    return status;
+}
+
 void mf_table_clear(struct table *table) {
     mf_memory_free(table->coefficient);
     mf_memory_free(table->precise);

@@ -48,6 +48,10 @@ enum status mf_table_init_omega(struct table *table, const struct curve *curve) 
 /// Fails: NO_MEMORY.
 enum status mf_table_stack(struct table *table, const struct table *parts, int curves) MUST_USE;
 
+/// A copy of `from`, all of whose curves are `factor` times as large. Fails: NO_MEMORY.
+/// Tested: test_curves.
+enum status mf_table_scale(struct table *table, const struct table *from, double factor) MUST_USE;
+
 void mf_table_clear(struct table *table);
 
 /// Which curve a pair type has: a table of one is for all.

@@ -24,9 +24,9 @@ struct respa_parameters {
 /// The field of this, at its place in the parameters, with `more` after its help.
 #define RESPA_FIELD(place, more)                                                                   \
     {                                                                                              \
-        "inner_steps", FIELD_INTEGER,                                                              \
-            .offset = place, .initial = 1, .minimum = 1, .maximum = 1000, .unit = "",              \
-            .help = "bonded steps in a time step (r-RESPA, Tuckerman et al. 1992)" more            \
+        "inner_steps", FIELD_INTEGER, .offset = place, .initial = 1, .minimum = 1,                 \
+                                      .maximum = 1000, .unit = "",                                 \
+                                      .help = "bonded steps in a time step (r-RESPA)" more         \
     }
 
 /// Make room, if there is more than one inner step; else nothing.

@@ -44,7 +44,7 @@ static enum status add(const void *parameters, void *state, const struct interac
 static const struct field fields[] = {
     {"stiffness", FIELD_LENGTHS, offsetof(struct parameters, stiffness), .required = true,
      .minimum = 0, .maximum = DBL_MAX, .unit = "k_B T_0/lambda^2",
-     .help = "k along each axis; 0: free along this one"},
+     .help = "k along each axis; 0: free"},
     {"centre", FIELD_LENGTHS, offsetof(struct parameters, centre), .minimum = -DBL_MAX,
      .maximum = DBL_MAX, .unit = "lambda",
      .help = "centre of the trap; default: the corner of the box"},

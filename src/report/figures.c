@@ -287,8 +287,8 @@ enum status mf_figures_draw_comparison(const char *folder) {
 }
 
 /// Folder and name of the figure of a table, and the table's name there.
-static enum status find_accuracy(const char *path, char folder[OUTPUT_PATH_SIZE], char name[256],
-                                 const char **table) {
+static enum status find_table(const char *path, char folder[OUTPUT_PATH_SIZE], char name[256],
+                              const char **table) {
     static const char ending[] = ".tsv";
     const char *slash = strrchr(path, '/');
     *table = slash ? slash + 1 : path;
@@ -302,11 +302,11 @@ static enum status find_accuracy(const char *path, char folder[OUTPUT_PATH_SIZE]
     return STATUS_OK;
 }
 
-enum status mf_figures_check_accuracy(const char *path) {
+enum status mf_figures_check_table(const char *path) {
     char folder[OUTPUT_PATH_SIZE], name[256], figure[PATH_SIZE + 256];
     const char *table;
     struct stat about;
-    TRY(find_accuracy(path, folder, name, &table));
+    TRY(find_table(path, folder, name, &table));
     for (int kind = 0; kind < 2; kind++) {
         snprintf(figure, sizeof figure, "%s/figures/%s.%s", folder, name, kind ? "png" : "svg");
         if (lstat(figure, &about) == 0)
@@ -316,10 +316,10 @@ enum status mf_figures_check_accuracy(const char *path) {
     return STATUS_OK;
 }
 
-enum status mf_figures_draw_accuracy(const char *path) {
+enum status mf_figures_draw_table(const char *path, const char *script) {
     char folder[OUTPUT_PATH_SIZE], name[256], plots[PATH_SIZE];
     const char *table;
-    TRY(find_accuracy(path, folder, name, &table));
+    TRY(find_table(path, folder, name, &table));
     TRY(mf_figure_script_find(plots));
-    return mf_figure_script_draw(folder, plots, "accuracy", table, name);
+    return mf_figure_script_draw(folder, plots, script, table, name);
 }

@@ -23,9 +23,9 @@ enum status mf_figures_draw_again(const char *folder, bool force) MUST_USE;
 /// Draw figures/compare.svg and .png from the tables that mf_compare_folders wrote to `folder`.
 enum status mf_figures_draw_comparison(const char *folder) MUST_USE;
 
-/// Draw the work-precision diagram of a table of `mesofit bench accuracy`, folder/NAME.tsv, to
-/// folder/figures/NAME.svg and .png. Tested: test_bench_accuracy.
-enum status mf_figures_draw_accuracy(const char *table);
+/// Draw the figure of a table of `mesofit bench accuracy` or `stability`, folder/NAME.tsv, with the
+/// script of that name to folder/figures/NAME.svg and .png. Tested: test_bench_accuracy.
+enum status mf_figures_draw_table(const char *table, const char *script);
 
 /// Refuse to replace one that is there. Fails: BAD_INPUT.
-enum status mf_figures_check_accuracy(const char *table) MUST_USE;
+enum status mf_figures_check_table(const char *table) MUST_USE;

@@ -80,7 +80,7 @@ static const struct {
     const char *words[6];
     const char *says[3];
 } bad_lines[] = {
-    {{"bench"}, {"usage: mesofit bench engine|accuracy|samplers [SCENE...]"}},
+    {{"bench"}, {"usage: mesofit bench engine|accuracy|stability|samplers [SCENE...]"}},
     {{"bench", "motor"}, {"bench: \"motor\" is not known", "engine"}},
     {{"bench", "samplers", "no/such.json"}, {"no/such.json: No such file"}},
     {{"bench", "samplers"}, {"usage: mesofit bench samplers SCENE.json"}},

@@ -121,6 +121,32 @@ static void test_power_omega_is_refused_when_nothing_is_between_its_cutoffs(void
     mf_curve_clear(&curve);
 }
 
+/// The table of a curve of four times the strength, and what kernels read of it.
+static void test_table_scale_is_the_table_of_the_stronger_curve(void **state) {
+    (void)state;
+    struct curve curve = make(&mf_formula_power_omega);
+    struct table table, scaled, strong;
+    assert_ok(mf_table_init_omega(&table, &curve));
+    assert_ok(mf_table_scale(&scaled, &table, 4));
+    ((struct formula_power_omega_parameters *)curve.parameters)->sigma *= 4;
+    assert_ok(mf_table_init_omega(&strong, &curve));
+    for (double r = 0.001; r < 2; r += 0.01) {
+        double a, b, slope_a, slope_b;
+        mf_table_evaluate(&scaled, r, &a, &slope_a, NULL);
+        mf_table_evaluate(&strong, r, &b, &slope_b, NULL);
+        assert_close(a, b, 1e-14);
+        assert_close(slope_a, slope_b, 1e-10);
+    }
+    for (int k = 0; k <= TABLE_INTERVALS; k++)
+        for (int n = 0; n < 2; n++)
+            assert_true(fabs(scaled.single[k][n] - strong.single[k][n]) < 1e-5F);
+    assert_identical(scaled.cutoff, strong.cutoff);
+    mf_table_clear(&table);
+    mf_table_clear(&scaled);
+    mf_table_clear(&strong);
+    mf_curve_clear(&curve);
+}
+
 /// Largest difference of a table and its curve: value and force, from `first` to the cutoff.
 struct difference {
     double value, slope;
@@ -436,6 +462,7 @@ int main(void) {
         cmocka_unit_test(test_table_follows_its_potential_when_smooth),
         cmocka_unit_test(test_table_is_zero_when_beyond_the_cutoff),
         cmocka_unit_test(test_table_stack_holds_each_curve_as_it_was_alone),
+        cmocka_unit_test(test_table_scale_is_the_table_of_the_stronger_curve),
         cmocka_unit_test(test_table_is_twice_continuous_when_a_potential),
         cmocka_unit_test(test_table_of_omega_jumps_within_one_interval_when_omega_does),
         cmocka_unit_test(test_sampled_curve_goes_through_its_points_when_evaluated),

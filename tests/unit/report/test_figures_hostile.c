@@ -125,7 +125,7 @@ static void test_names_of_a_benchmark_are_no_commands(void **state) {
         snprintf(name, sizeof name, "%s.tsv", names[k]);
         figure_folders_write(folder, name, table);
         snprintf(path, sizeof path, "%s/%s", folder, name);
-        if (mf_figures_draw_accuracy(path) != STATUS_OK)
+        if (mf_figures_draw_table(path, "accuracy") != STATUS_OK)
             fail_msg("%s", mf_status_message());
         assert_false(has_come(folder, "pwned"));
         assert_true(figure_folders_drawn(folder, names[k]));
