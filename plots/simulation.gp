@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # One simulation: its radial distribution function, and how it came to equilibrium.
 # Reads thermodynamics.tsv: step, time or sweeps, temperature, potential_energy, pressure,
-# temperature_configurational (nan where they were not measured or do not exist), perhaps the same in ps, kJ/mol, bar,
+# temperature_configurational, perhaps total_energy (nan where they were not measured or do not exist), perhaps the same in ps, kJ/mol, bar,
 # and, if they are there, rdf.tsv or, in a mixture, rdf_A-A.tsv, rdf_A-B.tsv, …: r, g, g_error.
 
 load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
@@ -30,22 +30,27 @@ has_numbers(column) = int(system(sprintf( \
 kinetic = has_numbers(3)
 configurational = has_numbers(6)
 
+total = column_of("thermodynamics.tsv", "total_energy")
+panels = total > 0 ? 4 : 3
+if (total > 0) { stats "thermodynamics.tsv" using total name "V" nooutput }
+
 # Numbers as 5.82·10⁸ want room.
 largest = high(high(abs(L_min), abs(H_max)), high(high(abs(U_min), abs(U_max)), high(abs(P_min), abs(P_max))))
 left = (with_rdf ? 0.61 : 0.16) + (largest < 1e5 ? 0 : 0.05)
 label = with_rdf ? 0.512 : 0.03
 # The legend of a mixture stands above the curves.
 rows = words(rdfs) < 2 ? 0 : words(rdfs) < 6 ? words(rdfs) : 6
-ceiling(panel) = 0.93 - 0.275 * panel
+step_of_panels = panels == 4 ? 0.2066 : 0.275
+ceiling(panel) = 0.93 - step_of_panels * panel
 begin_panel(panel) = sprintf("set tmargin at screen %g; set bmargin at screen %g", \
-    ceiling(panel), ceiling(panel) - 0.24)
+    ceiling(panel), ceiling(panel) - step_of_panels + (panels == 4 ? 0.03 : 0.035))
 # A value that never changes still gets a range.
 pad(a, b) = b > a ? 0.06 * (b - a) : 0.1 + 0.1 * abs(a)
 value_range(a, b) = sprintf("; set yrange [%.10g:%.10g]; set ytics %g", \
     a - pad(a, b), b + pad(a, b), step_of((b - a + 2 * pad(a, b)) / 2))
 
 do for [kind in kinds] {
-    eval open(kind, "simulation", with_rdf ? 980 : 560, 500)
+    eval open(kind, "simulation", with_rdf ? 980 : 560, panels == 4 ? 620 : 500)
     set multiplot
     if (with_rdf) {
         set lmargin at screen 0.085
@@ -86,7 +91,13 @@ do for [kind in kinds] {
     set key off
     plot seen("thermodynamics.tsv", 4) using (ps * $2):(kJ * $4) with lines linewidth 1.2 linecolor rgb green
 
-    eval begin_panel(2) . value_range(P_min, P_max)
+    if (total > 0) {
+        eval begin_panel(2) . value_range(V_min, V_max)
+        eval name_axis(axis_of("thermodynamics.tsv", "total_energy", "{/:Italic E}", "{/:Italic E} / {/:Italic k}_B{/:Italic T}_0"), label)
+        plot seen("thermodynamics.tsv", total) using (ps * $2):total with lines linewidth 1.2 linecolor rgb ink
+    }
+
+    eval begin_panel(panels - 1) . value_range(P_min, P_max)
     eval name_axis(in_units("thermodynamics.tsv", "pressure[bar]", \
         "{/:Italic p} / bar", sprintf("{/:Italic p λ}^%d / {/:Italic k}_B{/:Italic T}_0", dimensions)), label)
     set format x "%h"

@@ -42,6 +42,18 @@ const double *mf_thermodynamics_series(const struct thermodynamics *thermodynami
 /// Tested: test_thermodynamics.
 double mf_thermodynamics_energy_drift(const struct thermodynamics *thermodynamics);
 
+/// Heat capacity of a particle at constant volume [k_B] with its standard error, from how the
+/// energy fluctuates: at the temperature that the setup holds, of the total energy, or without
+/// velocities of the potential one and d/2; where the energy is conserved, of the kinetic one (J.
+/// L. Lebowitz, J. K. Percus and L. Verlet, Phys. Rev. 153, 250 (1967)). NaN where nothing is
+/// thermal or with fewer than five samples. Tested: cli/test_heat_capacity.
+struct thermodynamics_capacity {
+    double value, error;
+};
+struct thermodynamics_capacity
+mf_thermodynamics_heat_capacity(const struct thermodynamics *thermodynamics,
+                                const struct simulation_setup *setup);
+
 /// Means over all replicas with standard errors that see the correlation of each series, by
 /// mf_statistics_correlated_error.
 struct thermodynamics_summary {

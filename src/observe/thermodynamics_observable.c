@@ -50,7 +50,7 @@ static enum status write(const void *state, const struct observable_results *res
     }
     // bar is a force on an area.
     const bool in_space = setup->box.dimensions == 3;
-    enum { STEP, TIME, TEMPERATURE, ENERGY, PRESSURE, CONFIGURATIONAL, COLUMNS };
+    enum { STEP, TIME, TEMPERATURE, ENERGY, PRESSURE, CONFIGURATIONAL, TOTAL, COLUMNS };
     const struct data_column columns[COLUMNS] = {
         [STEP] = {"step", step, NULL},
         [TIME] = {sweeps ? "sweeps[1]" : "time[tau]", time, NULL},
@@ -60,11 +60,14 @@ static enum status write(const void *state, const struct observable_results *res
                     mf_thermodynamics_series(t, THERMODYNAMICS_POTENTIAL_ENERGY), "%.12g"},
         [PRESSURE] = {"pressure[k_B.T_0/lambda^d]",
                       mf_thermodynamics_series(t, THERMODYNAMICS_PRESSURE), "%.8g"},
-        [CONFIGURATIONAL] = {"temperature_configurational[T_0]", configurational, "%.8g"}};
+        [CONFIGURATIONAL] = {"temperature_configurational[T_0]", configurational, "%.8g"},
+        [TOTAL] = {"total_energy[k_B.T_0]",
+                   mf_thermodynamics_series(t, THERMODYNAMICS_TOTAL_ENERGY), "%.12g"}};
+    const size_t reduced = simulation_has_velocities(setup) ? COLUMNS : TOTAL;
     const char *const beside[COLUMNS] = {
         [TIME] = sweeps ? NULL : "%.10g", [ENERGY] = "%.8g", [PRESSURE] = in_space ? "%.8g" : NULL};
     mf_observable_file(results, "thermodynamics.tsv", path);
-    return mf_data_table_write_beside(path, results->units, columns, beside, COLUMNS,
+    return mf_data_table_write_beside(path, results->units, columns, beside, reduced,
                                       t->series.count);
 }
 
@@ -96,6 +99,10 @@ static void write_summary(const void *state, const struct observable_results *re
                          known * s.potential_energy_error);
     mf_json_put_measured(writer, "pressure", "k_B T_0/lambda^d", s.pressure,
                          known * s.pressure_error);
+    const struct thermodynamics_capacity capacity =
+        mf_thermodynamics_heat_capacity(state, results->setup);
+    if (isfinite(capacity.value))
+        mf_json_put_measured(writer, "heat_capacity", "1", capacity.value, known * capacity.error);
     if (!simulation_holds_temperature(results->setup) &&
         !results->setup->integrator->solvent_particles)
         mf_json_write_number(writer, "energy_drift", mf_thermodynamics_energy_drift(state));
