@@ -4,6 +4,8 @@
 #include "observe/force_covariance.h"
 #include "observe/measure.h"
 
+#include <math.h>
+
 static enum status begin(void *state, const void *settings, const struct simulation *simulation,
                          const struct measure_plan *plan) {
     return mf_force_covariance_init(state, settings, simulation, (size_t)plan->samples);
@@ -22,20 +24,41 @@ static size_t spans(void *state, struct memory_span *spans) {
     return mf_force_covariance_spans(state, spans);
 }
 
-/// force_covariance.tsv: r, κ with its standard error.
+/// What κ is without a time step, 2 k_B T ω², as its mean over the area of the bin; NaN where pair
+/// types differ.
+static double exact_of(const struct simulation_setup *setup, double begin, double width) {
+    enum { PARTS = 64 };
+    double sum = 0, weight = 0;
+    if (setup->omega->curves > 1)
+        return NAN;
+    for (int k = 0; k < PARTS; k++) {
+        const double r = begin + width * (k + 0.5) / PARTS;
+        double omega = 0;
+        if (r < setup->omega->cutoff)
+            mf_table_evaluate(setup->omega, r, &omega, NULL, NULL);
+        sum += pow(r, setup->box.dimensions - 1) * omega * omega;
+        weight += pow(r, setup->box.dimensions - 1);
+    }
+    return 2 * setup->temperature * sum / weight;
+}
+
+/// force_covariance.tsv: r, κ with its standard error, and what it is without a time step.
 static enum status write(const void *state, const struct observable_results *results) {
     const struct force_covariance *covariance = state;
     const size_t bins = covariance->bins;
     OWNED double *values = NULL;
-    TRY_ARRAY(values, 3 * bins);
-    double *r = values, *kappa = r + bins, *error = kappa + bins;
+    TRY_ARRAY(values, 4 * bins);
+    double *r = values, *kappa = r + bins, *error = kappa + bins, *exact = error + bins;
     mf_force_covariance_result(covariance, kappa, error);
-    for (size_t k = 0; k < bins; k++)
+    for (size_t k = 0; k < bins; k++) {
         r[k] = covariance->width * ((double)k + 0.5);
+        exact[k] = exact_of(results->setup, covariance->width * (double)k, covariance->width);
+    }
     const struct data_column columns[] = {{"r[lambda]", r, NULL},
                                           {"kappa[k_B.T_0.mu/tau]", kappa, "%.8g"},
-                                          {"kappa_error[k_B.T_0.mu/tau]", error, "%.3g"}};
-    return mf_observable_table(results, "force_covariance.tsv", columns, 3, bins);
+                                          {"kappa_error[k_B.T_0.mu/tau]", error, "%.3g"},
+                                          {"exact[k_B.T_0.mu/tau]", exact, "%.8g"}};
+    return mf_observable_table(results, "force_covariance.tsv", columns, 4, bins);
 }
 
 /// Nanoseconds of a pair and sample.
@@ -66,4 +89,5 @@ const struct observable mf_force_covariance_observable = {
     .explain = explain,
     .stage = "force covariance",
     .files = files,
+    .figure = "force_covariance",
 };

@@ -8,7 +8,9 @@
 #include "shared/small_inputs.h"
 #include "shared/testing.h"
 
+#include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 /// The fluid of Groot and Warren (1997), without its last members: what is measured of it.
 #define GROOT_WARREN(box, count)                                                                   \
@@ -21,6 +23,8 @@
 #define DPD_VERLET "\"dynamics\": {\"integrator\": \"dpd-verlet\"}, "
 
 static const char *const tables[] = {"rdf.tsv", "thermodynamics.tsv", NULL};
+/// Of 9 (1 - r)^2, the mean over a ball of radius 0.02.
+#define EXACT 8.7320
 static const char *const covariance[] = {"force_covariance.tsv", NULL};
 
 /// Escape times in windows of 24 steps, two or three of them open.
@@ -161,7 +165,15 @@ static void test_simulate_measures_the_force_covariance_when_asked(void **state)
     static struct run_program_result result;
     write_scene(*state, "\"force_covariance\": {}, " DPD_VERLET, MEASURE);
     simulate(&result, "with");
-    results_assert_table("with/force_covariance.tsv", 3, 50);
+    results_assert_table("with/force_covariance.tsv", 4, 50);
+    // 2 k_B T ω² of the first bin, 0 to 0.02, of sigma 3 in Groot and Warren's notation.
+    char *table = temporary_folder_read("with/force_covariance.tsv");
+    const char *row = strchr(table, '\n') + 1;
+    while (row[0] == '#')
+        row = strchr(row, '\n') + 1;
+    assert_true(fabs(strtod(strchr(strchr(strchr(row, '\t') + 1, '\t') + 1, '\t') + 1, NULL) -
+                     EXACT) < 1e-3);
+    free(table);
     write_scene(*state, DPD_VERLET, MEASURE);
     simulate(&result, "without");
     assert_false(temporary_folder_exists("without/force_covariance.tsv"));
