@@ -27,7 +27,7 @@ enum {
 static const struct command_option options[] = {
     [JSON] = {"--json", NULL, "print a JSON list instead of tables"},
     [AGAINST_LAMMPS] = {"--against-lammps", NULL, "time LAMMPS in turn"},
-    [SKIPS] = {"--skips", NULL, "time steps with and without each of their parts"},
+    [SKIPS] = {"--skips", NULL, "time steps without each part"},
     [ISA] = {"--isa", "NAME", "portable, avx2 or avx512 alone"},
     [PRECISION] = {"--precision", "NAME", "mixed or double alone"},
     [SECONDS] = {"--seconds", "S", "engine: length of a repeat (0.35)"},

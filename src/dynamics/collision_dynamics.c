@@ -140,8 +140,9 @@ const struct solvent *mf_collision_dynamics_solvent(const struct simulation *sim
 /// What N bodies keep of relative velocities (`power` 1) and of their products (2).
 static double kept(const struct simulation_setup *setup, int power, double bodies) {
     const struct collision_dynamics_parameters *parameters = parameters_of(setup);
-    const double one = cos(parameters->angle * (M_PI / 180));
-    const double two = cos(2 * parameters->angle * (M_PI / 180));
+    const bool fixed = parameters->angles == COLLISION_FIXED_ANGLES;
+    const double one = fixed ? cos(parameters->angle * (M_PI / 180)) : 0;
+    const double two = fixed ? cos(2 * parameters->angle * (M_PI / 180)) : 0;
     const int dimensions = setup->box.dimensions;
     const double k = 0.5 * dimensions * (bodies - 1);
     double share = power == 1 ? one : two;
@@ -186,7 +187,8 @@ double mf_collision_dynamics_diffusion(const struct simulation_setup *setup, dou
 // Record ------------------------------------------------------------------------------------------
 
 static const char *const yes_or_no[] = {"no", "yes", NULL};
-static const char *const walls[] = {"none", "plates", NULL}; // enum collision_walls
+static const char *const angles[] = {"fixed", "random", NULL}; // enum collision_angles
+static const char *const walls[] = {"none", "plates", NULL};   // enum collision_walls
 
 #define MEMBER(name) .offset = offsetof(struct collision_dynamics_parameters, name)
 static const struct field fields[] = {
@@ -199,6 +201,8 @@ static const struct field fields[] = {
      .maximum = DBL_MAX, .unit = "mu", .help = "m of a solvent particle"},
     {"angle", FIELD_NUMBER, MEMBER(angle), .initial = 130, .minimum = FIELD_ABOVE_ZERO,
      .maximum = 180, .unit = "degrees", .help = "alpha, rotation of relative velocities"},
+    {"angles", FIELD_CHOICE, MEMBER(angles), .choices = angles, .initial = COLLISION_FIXED_ANGLES,
+     .unit = "", .help = "random: one a cell, instead of alpha"},
     {"interval", FIELD_INTEGER, MEMBER(interval), .initial = 1, .minimum = 1, .maximum = 1e9,
      .unit = "steps", .help = "interval between collisions"},
     {"thermostat", FIELD_CHOICE, MEMBER(thermostat), .choices = yes_or_no, .initial = 0, .unit = "",

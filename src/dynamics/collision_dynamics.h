@@ -8,6 +8,10 @@ struct simulation;
 struct simulation_setup;
 struct solvent;
 
+/// The angle is α, or drawn for every cell and collision, uniform on the circle: cos α and cos 2α
+/// are then 0 on the average, and all that follows holds.
+enum collision_angles { COLLISION_FIXED_ANGLES, COLLISION_RANDOM_ANGLES };
+
 enum collision_walls { COLLISION_NO_WALLS, COLLISION_PLATES };
 
 struct collision_dynamics_parameters {
@@ -15,6 +19,7 @@ struct collision_dynamics_parameters {
     double particles_per_cell; ///< M, mean number of solvent particles
     double mass;               ///< m, of a solvent particle                                 [μ]
     double angle;              ///< α                                                  [degrees]
+    int angles;                ///< enum collision_angles
     int64_t interval;          ///< time steps from collision to collision
     int thermostat;            ///< 0 or 1: of every cell
     int grid_shift;            ///< 0 or 1

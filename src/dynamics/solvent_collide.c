@@ -144,9 +144,18 @@ static double thermal_factor(const struct pass *pass, size_t cell, const struct 
 /// Rotation by ±α in the plane: a bit of a block that serves many cells.
 enum { CELLS_A_BLOCK = 128 };
 
+/// α of a cell, in radians: the same for all, or its own, from words that nothing else takes.
+static double angle_of(const struct pass *pass, size_t cell) {
+    const struct solvent *solvent = pass->solvent;
+    if (solvent->parameters.angles == COLLISION_FIXED_ANGLES)
+        return solvent->parameters.angle * (M_PI / 180);
+    const struct rng_block block = solvent_noise(solvent, pass->step, cell, SOLVENT_ROTATION, 1);
+    return 2 * M_PI * mf_rng_uniform(block.word[0], block.word[1]);
+}
+
 static void rotate_plane(const struct pass *pass, size_t cell, struct rng_block *bits,
                          struct collision *collision) {
-    const double angle = pass->solvent->parameters.angle * (M_PI / 180);
+    const double angle = angle_of(pass, cell);
     const size_t bit = cell % CELLS_A_BLOCK;
     const double sine = bits->word[bit / 32] >> bit % 32 & 1 ? sin(angle) : -sin(angle);
     const double cosine = cos(angle);
@@ -157,7 +166,7 @@ static void rotate_plane(const struct pass *pass, size_t cell, struct rng_block 
 
 /// Rotation by α about an axis n, uniform on the sphere: cos α 1 + sin α [n]× + (1 − cos α) n nᵀ.
 static void rotate_space(const struct pass *pass, size_t cell, struct collision *collision) {
-    const double angle = pass->solvent->parameters.angle * (M_PI / 180);
+    const double angle = angle_of(pass, cell);
     const double cosine = cos(angle), sine = sin(angle);
     const struct rng_block block =
         solvent_noise(pass->solvent, pass->step, cell, SOLVENT_ROTATION, 0);

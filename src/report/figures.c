@@ -54,6 +54,7 @@ static const struct figure figures[] = {
     {"error", "error", {"history.tsv", "timing.tsv"}, NULL, NO_PARTS},
     {"generations", "generations", {"history.tsv"}, "diversity", NO_PARTS},
     {"population", "population", {"population_potential.tsv"}, NULL, PAIRS},
+    {"flow_panels", "flow_panels", {"flow_field.tsv"}, NULL, NO_PARTS},
     {"pareto", "pareto", {"pareto.tsv", "pareto_history.tsv"}, NULL, NO_PARTS},
 };
 

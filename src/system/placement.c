@@ -23,7 +23,7 @@ const struct field mf_placement_fields[] = {
     {"separation", FIELD_NUMBER, MEMBER(separation), .initial = 0.5, .minimum = 0,
      .maximum = DBL_MAX, .unit = "lambda", .help = "random: least distance of two particles"},
     {"file", FIELD_FILE, MEMBER(file), .unit = "",
-     .help = "columns x, y (, z), optional velocities, attributes by name, in the order of "
+     .help = "columns x, y (, z), velocities, attributes by name, in the order of "
              "\"types\", then molecules, single beads last; or a JSON snapshot"},
     {"velocities", FIELD_CHOICE, MEMBER(speeds), .initial = PARTICLES_MAXWELL, .choices = speeds,
      .unit = "",

@@ -30,7 +30,7 @@ const struct field mf_target_bonded_fields[] = {
     {"value_column", FIELD_INTEGER, MEMBER(value_column), .initial = 0, .minimum = 0, COLUMN,
      .help = "column of p; 0: that named as the group, or 2"},
     {"error_column", FIELD_INTEGER, MEMBER(error_column), .initial = -1, .minimum = -1, COLUMN,
-     .help = "column of the standard error; 0: estimated from the scatter of bins; -1: that named "
+     .help = "column of errors; 0: from the scatter; -1: that named "
              "as the group with \"_error\", or 3, else 0"},
     FIELD_END,
 };

@@ -29,11 +29,11 @@ const struct field mf_target_rdf_fields[] = {
     {"g_column", FIELD_INTEGER, MEMBER(g_column), .initial = 2, .minimum = 1, COLUMN,
      .help = "column of g"},
     {"error_column", FIELD_INTEGER, MEMBER(error_column), .initial = -1, .minimum = -1, COLUMN,
-     .help = "column of the standard error; 0, or nan: estimated from the scatter of bins; -1: 3 "
+     .help = "column of errors; 0, or nan: from the scatter; -1: 3 "
              "if present, else 0"},
     {"bin_width", FIELD_NUMBER, MEMBER(bin_width), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
      .unit = "lambda",
-     .help = "approximate width to which bins are merged; 0: the file's, at most 400 bins; without "
+     .help = "width to which bins are merged; 0: the file's; without "
              "\"method\" chosen by noise and structure"},
     {"particles", FIELD_INTEGER, MEMBER(particles), .initial = 0, .minimum = 0, .maximum = 1e9,
      .unit = "",
