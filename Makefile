@@ -19,6 +19,7 @@
 # make tsan           tests of threads and a threaded simulation under the thread sanitizer
 # make lint           formatting, static analysis, layers, names, licence lines, lengths
 # make standard-set   fits the standard set by defaults: one table, one figure (an hour; runs/standard-set)
+# make results RUN=runs/…   runs what the README there asks for, and writes numbers and figures into it
 # make bench          speed of the engine on this machine, to tests/bench/results
 # make WERROR=1 …     warnings are errors
 # make VERBOSE=1 …    shows the whole commands
@@ -300,6 +301,10 @@ lint: $(LIBRARY) $(LIVE)
 .PHONY: standard-set
 standard-set: $(PROGRAM)
 	PROGRAM=$(abspath $(PROGRAM)) runs/standard-set/run.sh
+
+.PHONY: results
+results: $(PROGRAM)
+	tests/tools/results.sh $(PROGRAM) $(or $(RUN),$(error RUN=runs/… says which))
 
 bench: $(PROGRAM)
 	tests/bench/run.sh $(PROGRAM)

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// `make results`: what READMEs of runs say is what the program finds, as far as a test can afford
+// it; and the script changes nothing but its own blocks.
+#include "shared/run_program.h"
+#include "shared/small_inputs.h"
+#include "shared/testing.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+static char root[4096];
+
+/// Value and error of a row "| `key` | 1.314(1) |"; NaN without it.
+static double row_of(const char *text, const char *key, double *error) {
+    char wanted[128], *end;
+    snprintf(wanted, sizeof wanted, "\n| `%s` | ", key);
+    const char *at = strstr(text, wanted);
+    if (at == NULL)
+        return NAN;
+    at += strlen(wanted);
+    const double value = strtod(at, &end);
+    const char *point = memchr(at, '.', (size_t)(end - at));
+    *error =
+        *end == '(' ? strtod(end + 1, NULL) * (point ? pow(10, (double)(point + 1 - end)) : 1) : 0;
+    return value;
+}
+
+static char *copy_and_run(struct temporary_folder *folder, const char *run) {
+    char command[3 * 4096];
+    (void)folder;
+    snprintf(command, sizeof command,
+             "cp -r '%s/runs/%s' run && '%s/tests/tools/results.sh' '%s' run", root, run, root,
+             getenv("MESOFIT"));
+    assert_int_equal(system(command), 0);
+    return temporary_folder_read("run/README.md");
+}
+
+static char *stored(const char *run) {
+    char path[2 * 4096];
+    snprintf(path, sizeof path, "%s/runs/%s/README.md", root, run);
+    return temporary_folder_read(path);
+}
+
+static void test_one_gas_is_what_its_page_says(void **state) {
+    static const char *const keys[] = {"compressibility_factor", "compressibility_factor_walls",
+                                       "collision_rate", "pressure"};
+    char *fresh = copy_and_run(*state, "kinetic-gas"), *page = stored("kinetic-gas");
+    for (size_t k = 0; k < sizeof keys / sizeof *keys; k++) {
+        double now_error, then_error;
+        const double now = row_of(fresh, keys[k], &now_error);
+        const double then = row_of(page, keys[k], &then_error);
+        assert_true(then_error > 0 && now_error > 0);
+        assert_true(fabs(now - then) <= 4 * hypot(now_error, then_error));
+    }
+    // All before the block, and what follows it, stays.
+    const size_t before = (size_t)(strstr(page, "<!-- results") - page);
+    assert_memory_equal(fresh, page, before);
+    assert_string_equal(strstr(fresh, "<!-- end -->"), strstr(page, "<!-- end -->"));
+    free(fresh);
+    free(page);
+}
+
+static void test_page_that_asks_for_nothing_is_refused(void **state) {
+    char command[3 * 4096];
+    (void)state;
+    snprintf(
+        command, sizeof command,
+        "mkdir run && echo '# A page' >run/README.md && ! '%s/tests/tools/results.sh' '%s' run "
+        "2>says",
+        root, getenv("MESOFIT"));
+    assert_int_equal(system(command), 0);
+    char *says = temporary_folder_read("says");
+    assert_contains(says, "asks for no results");
+    free(says);
+}
+
+#define TEST(name) cmocka_unit_test_setup_teardown(name, small_inputs_enter, small_inputs_leave)
+
+int main(void) {
+    if (getcwd(root, sizeof root) == NULL)
+        return 1;
+    const struct CMUnitTest tests[] = {
+        TEST(test_one_gas_is_what_its_page_says),
+        TEST(test_page_that_asks_for_nothing_is_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
