@@ -42,7 +42,7 @@ static void test_completion_knows_subcommands_and_options(void **state) {
     assert_completes("fit --e", "--explain ");
     assert_completes("fit --re", "--resume ");
     assert_completes("fit --l", "--live ");
-    assert_completes("bench \"\"", "accuracy engine samplers stability stability ");
+    assert_completes("bench \"\"", "accuracy engine samplers stability ");
     assert_completes("describe --format \"\"", "bash man markdown schema ");
     assert_completes("fit --seed \"\"", " ");
 }
