@@ -10,7 +10,7 @@ enum { COLOUR, FRAMES };
 
 static const struct command_option options[] = {
     [COLOUR] = {"--colour", "NAME", "type, speed, orientation, stiffness, …"},
-    [FRAMES] = {"--frames", "N", "at most so many (300)"},
+    [FRAMES] = {"--frames", "N", "at most (300)"},
     {NULL, NULL, NULL},
 };
 

@@ -15,6 +15,7 @@
 struct layout {
     size_t columns;   ///< at least, and strictly numbers
     bool flagged;     ///< a letter ends each row
+    bool core;        ///< the second number of a row may be infinite
     char separator;   ///< of the first row
     bool commas;      ///< may be those of decimals
     char decimal;     ///< how decimals begin: '.', ',', or 0 until one is seen
@@ -148,6 +149,15 @@ static const char *find_remedy(const struct data_word *word, const struct layout
     return is_text(word) ? ": begin lines of text with #" : "";
 }
 
+static bool is_infinite(const struct data_word *word) {
+    static const char *const names[] = {"inf", "+inf", "infinity", "+infinity"};
+    for (size_t k = 0; k < sizeof names / sizeof *names; k++)
+        if (word->length == strlen(names[k]) &&
+            strncasecmp(word->begin, names[k], word->length) == 0)
+            return true;
+    return false;
+}
+
 /// Read the number that is exactly `word`; "nan" where it is allowed.
 static enum status read_number(const char *file, size_t line, size_t column,
                                const struct data_word *word, struct layout *layout, size_t number,
@@ -155,6 +165,10 @@ static enum status read_number(const char *file, size_t line, size_t column,
     if (mf_data_word_is_number(word, layout->commas, &layout->decimal, value) ||
         (number >= layout->columns && word->length == 3 && strncasecmp(word->begin, "nan", 3) == 0))
         return STATUS_OK;
+    if (layout->core && number == 1 && is_infinite(word)) {
+        *value = INFINITY;
+        return STATUS_OK;
+    }
     return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: column %zu: \"%.*s\" is not a finite number%s",
                           file, line, column + 1, word->length > 40 ? 40 : (int)word->length,
                           word->begin, find_remedy(word, layout));
@@ -270,6 +284,25 @@ enum status mf_data_table_read(struct data_table *table, const char *file, size_
 enum status mf_data_table_read_flagged(struct data_table *table, const char *file,
                                        size_t min_columns) {
     return read_table(table, file, &(struct layout){.columns = min_columns, .flagged = true});
+}
+
+enum status mf_data_table_read_core(struct data_table *table, const char *file) {
+    TRY(read_table(table, file, &(struct layout){.columns = 2, .core = true}));
+    const size_t width = table->columns;
+    size_t core = 0;
+    while (core < table->rows && isinf(table->values[core * width + 1]))
+        core++;
+    table->rows -= core;
+    memmove(table->values, table->values + core * width,
+            table->rows * width * sizeof *table->values);
+    memmove(table->line, table->line + core, table->rows * sizeof *table->line);
+    for (size_t k = 0; k < table->rows; k++)
+        if (isinf(table->values[k * width + 1]))
+            return mf_status_fail(STATUS_BAD_INPUT,
+                                  "%s:%zu: an infinite value behind finite ones: only the core, "
+                                  "where a potential begins, may be infinite",
+                                  file, table->line[k]);
+    return STATUS_OK;
 }
 
 void mf_data_table_clear(struct data_table *table) {

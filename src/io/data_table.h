@@ -35,6 +35,10 @@ enum status mf_data_table_read(struct data_table *table, const char *file,
 enum status mf_data_table_read_flagged(struct data_table *table, const char *file,
                                        size_t min_columns) MUST_USE;
 
+/// The same of r and a potential, which may begin with "inf" or "Infinity", a hard core: those rows
+/// are left out. Fails, too: BAD_INPUT if one is behind a finite one. Tested: test_data_table.
+enum status mf_data_table_read_core(struct data_table *table, const char *file) MUST_USE;
+
 void mf_data_table_clear(struct data_table *table);
 
 /// Check that column `column` grows strictly and starts at `min` or above.

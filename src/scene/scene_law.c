@@ -13,11 +13,12 @@
 
 // One curve ---------------------------------------------------------------------------------------
 
-enum status mf_scene_read_columns(const char *file, const char *const unit[2], double min,
-                                  const struct units *units, double **x, double **value,
-                                  size_t *count) {
+/// r and Φ, E or ω of a table; only Φ may begin with a core.
+static enum status read_columns(const char *file, const char *const unit[2], double min, bool core,
+                                const struct units *units, double **x, double **value,
+                                size_t *count) {
     CLEARED_BY(mf_data_table_clear) struct data_table table = {0};
-    TRY(mf_data_table_read(&table, file, 2));
+    TRY(core ? mf_data_table_read_core(&table, file) : mf_data_table_read(&table, file, 2));
     TRY(mf_data_table_check_increasing(&table, file, 0, min));
     TRY(mf_data_table_convert(&table, file, 0, unit[0], units));
     TRY(mf_data_table_convert(&table, file, 1, unit[1], units));
@@ -29,6 +30,12 @@ enum status mf_scene_read_columns(const char *file, const char *const unit[2], d
     }
     *count = table.rows;
     return STATUS_OK;
+}
+
+enum status mf_scene_read_columns(const char *file, const char *const unit[2], double min,
+                                  const struct units *units, double **x, double **value,
+                                  size_t *count) {
+    return read_columns(file, unit, min, false, units, x, value, count);
 }
 
 /// VOTCA's points, from nm and kJ/mol.
@@ -62,8 +69,8 @@ static enum status load_points(struct curve *curve, const char *unit, struct jso
     }
     status = parameters->format == SAMPLED_VOTCA
                  ? read_votca(parameters->file, units, &r, &value, &count)
-                 : mf_scene_read_columns(parameters->file, (const char *[]){"lambda", unit}, 0,
-                                         units, &r, &value, &count);
+                 : read_columns(parameters->file, (const char *[]){"lambda", unit}, 0,
+                                curve->family == &mf_sampled_family, units, &r, &value, &count);
     if (status != STATUS_OK)
         mf_json_fault(object, "file", "%s", mf_status_message());
     else if (mf_sampled_set_points(curve, r, value, count) != STATUS_OK)

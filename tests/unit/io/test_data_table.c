@@ -114,6 +114,25 @@ static void test_data_table_read_skips_names_of_columns_and_percent_comments(voi
     assert_refused(state, "r g\n", ":2: the file ends without a row of numbers");
 }
 
+/// As Baydin's potentials begin, which no particle enters.
+static void test_data_table_read_core_leaves_out_what_is_infinite_at_the_begin(void **state) {
+    struct data_table table;
+    const double expected[] = {0.5, 5, 0.7, 2};
+    assert_ok(mf_data_table_read_core(&table,
+                                      write_text(state, "0.1 Infinity\n0.3 inf\n0.5 5\n0.7 2\n")));
+    assert_int_equal(table.rows, 2);
+    assert_memory_equal(table.values, expected, sizeof expected);
+    assert_int_equal(table.line[0], 3);
+    mf_data_table_clear(&table);
+    assert_fails(mf_data_table_read_core(&table, write_text(state, "0.5 5\n0.7 inf\n0.9 1\n")),
+                 STATUS_BAD_INPUT, ":2: an infinite value behind finite ones");
+    mf_data_table_clear(&table);
+    assert_fails(mf_data_table_read_core(&table, write_text(state, "inf 5\n0.7 1\n")),
+                 STATUS_BAD_INPUT, "\"inf\"");
+    mf_data_table_clear(&table);
+    assert_refused(state, "0.1 inf\n0.3 1\n", "\"inf\" is not a finite number");
+}
+
 static void test_data_table_read_takes_the_first_set_when_a_line_ends_it(void **state) {
     assert_same_rows(state, "@TYPE xy\n0.5 1.5 0.1\n1 2 0.2\n&\n", 2);
     assert_same_rows(state, "@TYPE xy\n0.5 1.5 0.1\n1 2 0.2\n&\n@TYPE xy\n0.5 x\n&\n", 2);
@@ -294,6 +313,7 @@ int main(void) {
         IN_FOLDER(test_data_table_read_takes_nan_when_it_stands_beyond_the_wanted_columns),
         IN_FOLDER(test_data_table_read_takes_commas_and_semicolons_when_the_first_row_has_them),
         IN_FOLDER(test_data_table_read_skips_names_of_columns_and_percent_comments),
+        IN_FOLDER(test_data_table_read_core_leaves_out_what_is_infinite_at_the_begin),
         IN_FOLDER(test_data_table_read_takes_the_first_set_when_a_line_ends_it),
         IN_FOLDER(test_data_table_read_says_so_when_decimals_have_a_comma),
         IN_FOLDER(test_data_table_read_takes_decimal_commas_that_part_no_columns),
