@@ -54,7 +54,7 @@ struct inversion_course {
     bool most_probable; ///< the step is the most probable one, near the noise
     struct inversion_best {
         double *phi, *step, *other_step;
-        double *counts; ///< ⟨S⟩ of the first state, shape [bins]
+        double *counts; ///< ⟨S⟩ of one state after the other, shape [bins of all]
     } best;
     double *met_phi;            ///< of the first iteration since then that met the targets
     bool not_stationary;        ///< the fit ends though it walks on: the way from there is an error

@@ -63,6 +63,7 @@ static enum status smooth(struct inversion_state *state, double *start) {
         for (size_t b = 0; b < known; b++)
             unit[a * known + b] = a == b ? system.temperature : 0;
     }
+    state->response.independent = 0; // C is that of no samples any more
     system.covariance = unit;
     system.excess = phi;
     system.variance = variance;

@@ -129,6 +129,53 @@ static void test_inversion_start_is_poor_when_g_is_far_off_under_tension(void **
     clear(&made);
 }
 
+/// Samples of S that scatter about the target's, and their C.
+static void sample(struct inversion_state *state, uint32_t seed) {
+    enum { SAMPLES = 40 };
+    struct comoments *counts = &state->replicas.counts;
+    double *numbers = calloc(state->replicas.numbers, sizeof *numbers);
+    assert_non_null(numbers);
+    mf_comoments_reset(counts);
+    for (uint32_t k = 0; k < SAMPLES; k++) {
+        for (size_t n = 0; n < state->bins; n++) {
+            double normal[4];
+            mf_rng_normal4(mf_rng_philox(seed, RNG_INITIAL, (uint32_t)n, k, 0), normal);
+            numbers[n] = state->target.counts[n] + sqrt(state->target.ideal[n]) * normal[0];
+        }
+        mf_comoments_add(counts, numbers);
+    }
+    state->inefficiency = 1;
+    mf_inversion_response_add(state);
+    free(numbers);
+}
+
+/// A start is smoothed in the memory of C. What stands there afterwards is of no samples, and C
+/// after the next ones is theirs alone.
+static void test_inversion_second_start_begins_with_no_response_and_no_drifts(void **unused) {
+    (void)unused;
+    struct made made;
+    make(&made, INVERSION_FROM_HNC);
+    assert_ok(mf_inversion_create(&made.inversion, &mf_imc, &made.problem, &made.settings));
+    struct inversion_state *state = made.inversion.state;
+    struct inversion_progress *progress = &made.inversion.course.progress;
+    const size_t known = state->grid.known;
+    sample(state, 1);
+    assert_float_equal(state->response.independent, 40, 1e-12);
+    progress->iteration = 1;
+    progress->drifts.near = progress->drifts.met = 1;
+    assert_ok(mf_inversion_course_go_on(&made.inversion, false));
+    assert_true(progress->second_start);
+    assert_int_equal(progress->drifts.near, 0);
+    assert_int_equal(progress->drifts.met, 0);
+    sample(state, 2);
+    for (size_t a = 0; a < known; a++) {
+        const size_t bin = state->grid.known_bin[a];
+        const double own = mf_comoments_covariance(&state->replicas.counts, bin, bin);
+        assert_float_equal(state->response.covariance[a * known + a], own, 1e-9 * own);
+    }
+    clear(&made);
+}
+
 static void test_inversion_create_refuses_a_hole_beyond_the_core(void **state) {
     (void)state;
     struct made made;
@@ -287,6 +334,7 @@ int main(void) {
         cmocka_unit_test(test_inversion_start_is_poor_when_g_is_far_off_under_tension),
         cmocka_unit_test(test_inversion_band_widens_when_more_than_noise_is_left),
         cmocka_unit_test(test_inversion_band_counts_the_ramp_that_is_asked_for),
+        cmocka_unit_test(test_inversion_second_start_begins_with_no_response_and_no_drifts),
         cmocka_unit_test(test_inversion_create_refuses_a_hole_beyond_the_core),
         cmocka_unit_test(test_inversion_create_makes_one_sampler_for_a_trial),
         cmocka_unit_test(test_inversion_band_looks_at_the_pressures_of_all_states),
