@@ -116,10 +116,11 @@ done:
     return status;
 }
 
-/// @param[in] follows  whether a count that is missing is chosen later, from what any has
+/// @param[in] follows  whether a count that is missing is chosen later, from what any has; a file
+/// of places has its own
 static void read_count(struct scene *scene, struct json_object *particles, bool follows) {
     enum { ANY_COUNT = 1000 };
-    if (follows && !mf_json_has(particles, "count"))
+    if (follows && !mf_json_has(particles, "count") && !mf_json_has(particles, "file"))
         scene->setup.placement.count = ANY_COUNT;
     else
         mf_json_fields(particles, mf_placement_count_fields, &scene->setup.placement);

@@ -340,6 +340,17 @@ static void test_fit_defaults_find_omega_where_targets_move(void **state) {
     mf_fit_file_clear(&fit);
 }
 
+static void test_fit_defaults_choose_no_count_beside_a_file_of_places(void **state) {
+    struct fit_file fit;
+    write_target(state, 0.002);
+    temporary_folder_write(*state, "places.tsv", "0 0 0\n1 1 1\n", 12);
+    assert_fails(read_run(state, &fit, "run.json",
+                          TARGET "\"scene\": {\"density\": 0.3, \"particles\": {\"placement\": "
+                                 "\"file\", \"file\": \"places.tsv\"}}}"),
+                 STATUS_BAD_INPUT, "scene.particles.count: missing");
+    mf_fit_file_clear(&fit);
+}
+
 static void test_fit_defaults_tell_faults_once_and_only_what_is_missing(void **state) {
     struct fit_file fit;
     write_target(state, 0.002);
@@ -374,6 +385,7 @@ int main(void) {
         IN_FOLDER(test_fit_defaults_choose_no_more_samples_than_needed_where_they_are_dear),
         IN_FOLDER(test_fit_defaults_choose_friction_and_time_step_beside_a_method),
         IN_FOLDER(test_fit_defaults_choose_how_many_beads_beside_a_method),
+        IN_FOLDER(test_fit_defaults_choose_no_count_beside_a_file_of_places),
         IN_FOLDER(test_fit_defaults_choose_time_steps_by_the_friction_without_velocities),
         IN_FOLDER(test_fit_defaults_choose_no_friction_where_that_across_pairs_is_found),
         IN_FOLDER(test_fit_defaults_cut_g_at_half_of_a_box_that_is_given),
