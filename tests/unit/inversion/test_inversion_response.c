@@ -192,12 +192,43 @@ static void test_inversion_response_forgets_what_has_changed_along_the_way(void 
     mf_inversion_response_clear(&state.response);
 }
 
+/// C of four bins has the relative variance 4/n as a matrix, so that one that is off by half in all
+/// directions, as where the variance has fallen to two thirds, is worth at most 4/0.5² samples.
+static void test_inversion_response_bears_what_the_noise_of_more_bins_hides(void **unused) {
+    (void)unused;
+    enum { MANY = 4 };
+    static size_t known[] = {0, 1, 2, 3};
+    static double ideal[] = {5, 5, 5, 5}, mean[] = {5, 5, 5, 5};
+    static const double phi[MANY] = {0}, gone[] = {0.1, -0.2, 0.3, 0.1};
+    static const struct inverse_problem problem = {0};
+    double comoment[MANY * MANY] = {0};
+    struct inversion_state state = {
+        .problem = &problem,
+        .phi = phi,
+        .grid = {.known = MANY, .known_bin = known, .known_point = known},
+        .target.ideal = ideal,
+        .inefficiency = 1e-6,
+        .replicas.counts = {.size = MANY, .count = 10, .mean = mean, .comoment = comoment}};
+    assert_ok(mf_inversion_response_init(&state));
+    for (size_t a = 0; a < MANY; a++)
+        comoment[a * (MANY + 1)] = 3;
+    mf_inversion_response_add(&state);
+    for (size_t a = 0; a < MANY; a++)
+        comoment[a * (MANY + 1)] = 2;
+    state.phi = gone;
+    const double now = 10 / state.inefficiency;
+    mf_inversion_response_add(&state);
+    assert_close(state.response.independent - now, MANY / (0.5 * 0.5), 0.01);
+    mf_inversion_response_clear(&state.response);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_inversion_response_tells_how_lengths_follow_their_values),
         cmocka_unit_test(test_inversion_response_forgets_what_has_changed),
         cmocka_unit_test(test_inversion_response_weighs_independent_samples),
         cmocka_unit_test(test_inversion_response_forgets_what_has_changed_along_the_way),
+        cmocka_unit_test(test_inversion_response_bears_what_the_noise_of_more_bins_hides),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
