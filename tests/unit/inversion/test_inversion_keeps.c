@@ -157,6 +157,60 @@ static void test_inversion_goes_back_from_a_step_that_was_cut(void **state) {
     }
 }
 
+/// A step of 50 that was cut to 1 went too far: from there one of 100 leads back, which is cut,
+/// too. The straight line through both is 0 at a third of what was gone.
+static void test_inversion_shortens_steps_that_were_cut(void **state) {
+    (void)state;
+    size_t point = 0;
+    bool well_known = true;
+    double best = 0, best_step = 50, phi = 0, step = -100;
+    struct inversion_state made = {
+        .grid = {.known = 1, .known_point = &point, .well_known = &well_known}};
+    struct inversion inversion = {
+        .state = &made,
+        .states = 1,
+        .assessment = {.sections = 1, .section[0] = {.misfit = 100, .probable = 2}},
+        .course = {.phi = &phi,
+                   .step = &step,
+                   .best = {.phi = &best, .step = &best_step},
+                   .progress.damping = 1}};
+    mf_inversion_take_step(&inversion);
+    assert_close(phi, 1, 1e-12);
+    mf_inversion_relax(&inversion);
+    best = phi;
+    best_step = step;
+    mf_inversion_take_step(&inversion);
+    assert_close(phi, 1.0 / 3, 1e-12);
+}
+
+/// Of two states one is to go two fifths of the way and the other a fifth, as well known.
+static void test_inversion_goes_back_for_the_part_that_all_states_tell(void **state) {
+    (void)state;
+    struct fit fit;
+    struct inversion *inversion = begin(&fit, false);
+    size_t first[] = {0}, second[] = {1};
+    bool seen[] = {true}, kept;
+    double now[] = {30, 99, 40}, best[] = {10, 5, 20}, target[] = {18, 7, 24}, variance[] = {1};
+    struct inversion_state both[] = {fit.state, fit.state};
+    for (int s = 0; s < 2; s++) {
+        both[s].bins = s == 0 ? 1 : 2;
+        both[s].grid =
+            (struct potential_grid){.known = 1, .known_bin = s == 0 ? first : second, .seen = seen};
+        both[s].replicas.counts.mean = now + s;
+        both[s].target.counts = target + s;
+        both[s].variance = variance;
+    }
+    inversion->state = both;
+    inversion->states = 2;
+    inversion->course.best.counts = best;
+    inversion->course.progress.damping = 1;
+    assert_true(keeps(inversion, 0.1, 0.01));
+    inversion->assessment.distance[TARGET_RDF].rms = 1;
+    assert_ok(mf_inversion_course_accept(inversion, &kept));
+    assert_false(kept);
+    assert_close(inversion->course.progress.damping, 0.3, 1e-12);
+}
+
 /// With 900 independent samples less than 100 directions.
 static void test_inversion_knows_directions_by_its_samples(void **state) {
     (void)state;
@@ -333,6 +387,8 @@ int main(void) {
         cmocka_unit_test(test_inversion_shortens_steps_that_go_too_far),
         cmocka_unit_test(test_inversion_goes_back_for_the_part_of_which_its_samples_tell),
         cmocka_unit_test(test_inversion_goes_back_from_a_step_that_was_cut),
+        cmocka_unit_test(test_inversion_shortens_steps_that_were_cut),
+        cmocka_unit_test(test_inversion_goes_back_for_the_part_that_all_states_tell),
         cmocka_unit_test(test_inversion_knows_directions_by_its_samples),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
