@@ -63,6 +63,12 @@ def test_what_was_used_is_valid(schema, simulated, fitted):
     assert fault(schema, simulated.used) == "" and fault(schema, fitted.used) == ""
 
 
+def test_a_wrong_key_is_named(schema):
+    assert "'bxo' was unexpected" in fault(schema, {**SCENE, "bxo": [4, 4, 4]})
+    assert "'temprature' was unexpected" in fault(
+        schema, {"target": {"rdf": {"file": "rdf.tsv"}}, "scene": {"density": 3, "temprature": 1}})
+
+
 def objects(content, path=()):
     """Paths of all objects of a file."""
     yield path

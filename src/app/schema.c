@@ -20,10 +20,7 @@ static void write_reference(struct json_writer *writer, const char *name) {
 
 /// No key but those that are named.
 static void close_keys(struct json_writer *writer) {
-    mf_json_begin(writer, "additionalProperties");
-    mf_json_begin(writer, "not");
-    mf_json_end(writer);
-    mf_json_end(writer);
+    mf_json_write_flag(writer, "additionalProperties", false);
 }
 
 // Fields ------------------------------------------------------------------------------------------

@@ -150,6 +150,10 @@ void mf_json_write_integer(struct json_writer *writer, const char *key, int64_t 
     append(writer, key, cJSON_CreateRaw(text));
 }
 
+void mf_json_write_flag(struct json_writer *writer, const char *key, bool value) {
+    append(writer, key, cJSON_CreateBool(value));
+}
+
 static void write_seed(struct json_writer *writer, const char *key, uint64_t value) {
     char text[32];
     snprintf(text, sizeof text, "%" PRIu64, value);

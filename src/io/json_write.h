@@ -11,6 +11,7 @@
 #include "base/status.h"
 #include "io/units_scale.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -41,6 +42,7 @@ void mf_json_put_measured(struct json_writer *writer, const char *key, const cha
                           double value, double error);
 /// All digits are written, but mf_json_fields refuses 2^53 and beyond.
 void mf_json_write_integer(struct json_writer *writer, const char *key, int64_t value);
+void mf_json_write_flag(struct json_writer *writer, const char *key, bool value);
 void mf_json_write_text(struct json_writer *writer, const char *key, const char *value);
 void mf_json_write_quantities(struct json_writer *writer, const char *key, const char *unit,
                               const double *values, size_t count);
