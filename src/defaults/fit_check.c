@@ -127,8 +127,8 @@ static enum status check_unknowns(const struct fit_file *fit, const char *file) 
             !is_inverted(fit, kind) && targets_ask(&fit->problem.targets, kind))
             return mf_status_fail(
                 STATUS_BAD_INPUT,
-                "%s: target.%s.fitted: \"%s\" fits g(r), pressure and what groups are found from; "
-                "\"no\" compares it with the result",
+                "%s: target.%s.fitted: \"%s\" does not fit it; \"gauss-newton\" and the optimisers "
+                "do, and \"no\" compares it with the result",
                 file, mf_targets_name(kind), fit->method->name);
     if (fit->unknown[UNKNOWN_POTENTIAL].wanted && !fit->files.given[TARGET_RDF])
         return mf_status_fail(STATUS_BAD_INPUT, "%s: target.rdf is required to find a potential",

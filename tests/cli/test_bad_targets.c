@@ -161,8 +161,10 @@ static void test_imc_refuses_to_fit_more_than_rdf_and_pressure(void **state) {
     small_inputs_write(*state, "run.json", small_inputs_run, "\"target\": {",
                        "\"target\": {\"diffusion\": {\"value\": 1}, ");
     RUN_PROGRAM(&result, "fit", "run.json");
-    run_program_assert_refused(&result, ".", "diffusion", 1,
-                               (const char *[]){"run.json: target.diffusion.fitted", "imc", NULL});
+    run_program_assert_refused(
+        &result, ".", "diffusion", 1,
+        (const char *[]){"run.json: target.diffusion.fitted: \"imc\" does not", "\"gauss-newton\"",
+                         "\"no\" compares", NULL});
     small_inputs_write(*state, "run.json", small_inputs_run, "\"target\": {",
                        "\"target\": {\"pressure\": {\"value\": 20, \"fitted\": \"no\"}, ");
     RUN_PROGRAM(&result, "fit", "run.json");
