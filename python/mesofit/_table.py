@@ -112,7 +112,7 @@ _OTHERS = re.compile(r"(^|_)(history|flat|lower|upper)$|^now(_|$)")
 
 class Curves(Mapping):  # type: ignore[type-arg]
     """Curves of one kind: a table for each pair of types, by the name "A-B"; "" of beads that are
-    alike. What a table has (columns, plot, …) is had of a single one directly."""
+    alike. A single one has its columns, their units and its plot directly."""
 
     def __init__(self, name: str, tables: dict[str, Table]) -> None:
         self.name, self._tables = name, tables
@@ -134,6 +134,16 @@ class Curves(Mapping):  # type: ignore[type-arg]
             raise InputError(f"{self.name}: there are {len(self._tables)}: "
                              f"{', '.join(self._tables)}")
         return next(iter(self._tables.values()))
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """Columns of the only table."""
+        return self.table.columns
+
+    @property
+    def units(self) -> tuple[str, ...]:
+        """Units of the columns of the only table."""
+        return self.table.units
 
     def __getitem__(self, part: str) -> Table | Any:
         if part in self._tables:

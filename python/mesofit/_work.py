@@ -173,7 +173,7 @@ def _samples(measure: Mapping[str, Any], steps: int) -> int:
     return int(steps) // int(every)
 
 
-def fit(target: Any, *, density: float | None = None, temperature: float | None = None,
+def fit(target: Any, /, *, density: float | None = None, temperature: float | None = None,
         folder: PathLike | None = None, threads: int | None = None, seed: int | None = None,
         resume: bool = False, force: bool = False, progress: bool | None = None,
         **keys: Any) -> Result:
@@ -188,7 +188,8 @@ def fit(target: Any, *, density: float | None = None, temperature: float | None 
     folder, threads, seed, resume, force, progress
         As of `simulate`.
     **keys
-        Put into the run file, as ``method={"name": "ibi"}`` or ``method="ibi"``.
+        Put into the run file, as ``method={"name": "ibi"}`` or ``method="ibi"``, and
+        ``target={"rdf": {"cutoff": 1}}``.
 
     Returns
     -------

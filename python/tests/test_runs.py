@@ -103,6 +103,11 @@ def test_warnings_are_pythons():
     assert any(line.startswith("mesofit: warning: ") for line in run.messages)
 
 
+def test_keywords_reach_into_the_target_of_a_file(run_file):
+    with pytest.raises(mesofit.InputError, match='target.rdf.cutof: .* "cutoff"'):
+        mesofit.fit(run_file, target={"rdf": {"cutof": 1}})
+
+
 def test_unconverged_fits_are_results_with_a_warning(run_file):
     short = {**run_file, "method": {"name": "ibi", "replicas": 2, "iterations": 1}}
     with pytest.warns(mesofit.UnconvergedWarning, match="has not converged"):

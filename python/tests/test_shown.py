@@ -29,6 +29,9 @@ def test_results_and_tables_show_themselves(fitted, monkeypatch):
     assert "<img" not in shown
     table = fitted["rdf"]
     assert "<th>r [lambda]</th>" in table._repr_html_() and "<table" in fitted.potential._repr_html_()
+    only = fitted.potential
+    assert only.columns == only.table.columns and only.units == only.table.units
+    assert only.columns[:2] == ("r", "phi") and only.units[0] == "lambda"
     assert repr(table).startswith("<Table rdf: ") and "fit in" in repr(fitted)
     with pytest.raises(ImportError, match="pip install matplotlib"):
         fitted.potential.plot()
