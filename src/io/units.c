@@ -21,6 +21,7 @@ const struct field mf_units_fields[] = {
 struct system {
     int kind; ///< enum units_system, less one
     double length, temperature, mass;
+    bool massless; ///< neither here nor of the beads
 };
 
 #define SYSTEM(name) .offset = offsetof(struct system, name)
@@ -84,6 +85,7 @@ static void complete(struct system *system, struct json_object *scene) {
     const double beads = mf_units_beads(scene, &mean_mass);
     if (isnan(system->length))
         system->length = find_length(scene, beads, system->kind);
+    system->massless = isnan(system->mass) && !(mean_mass > 0);
     if (isnan(system->mass))
         system->mass = mean_mass > 0 ? mean_mass : 1;
     if (!isnan(system->temperature))
@@ -135,6 +137,7 @@ void mf_units_read_document(struct json_object *root, struct json_object *scene)
                                 .mass = system.mass / masses,
                                 .system = system.kind + 1,
                                 .chosen = chosen,
+                                .massless = system.massless,
                                 .dimensions = find_dimensions(scene)};
     if (mf_json_fault_count(root->document) == faults && !can_be_held(&units))
         fault_unrepresentable(root);

@@ -249,8 +249,10 @@ void mf_units_print(const struct units *units, char line[UNITS_LINE_SIZE]) {
     int length = snprintf(line, UNITS_LINE_SIZE, "%s:", mf_units_systems[units->system]);
     for (size_t k = 0; k < sizeof symbol / sizeof *symbol; k++) {
         char name[UNITS_NAME_SIZE];
-        length += snprintf(line + length, UNITS_LINE_SIZE - (size_t)length, "%s %s = %.6g %s",
+        const bool assumed = units->massless && strcmp(symbol[k], "mu") == 0;
+        length += snprintf(line + length, UNITS_LINE_SIZE - (size_t)length, "%s %s = %.6g %s%s",
                            k ? "," : "", symbol[k], mf_units_factor(units, symbol[k]),
-                           mf_units_name(units, symbol[k], name));
+                           mf_units_name(units, symbol[k], name),
+                           assumed ? " (no mass is given: times have no meaning)" : "");
     }
 }

@@ -34,6 +34,7 @@ struct units {
     int system;         ///< enum units_system
     int dimensions;     ///< of the scene, for "lambda^d"; 0 stands for 3
     bool chosen;        ///< λ by the program: no other file can know it
+    bool massless;      ///< the file says no mass, and μ stands for it
 };
 
 /// Whether files and results are in other units than reduced ones. NULL: they are not.

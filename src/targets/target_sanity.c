@@ -75,14 +75,14 @@ static const char *unit_of(const struct view *view, double *length) {
     return mf_target_sanity_length(view->scene, length);
 }
 
-/// "14.66 nm^-3 = 0.780 g/cm^3", or in λ without units.
+/// "14.66 nm^-3 = 0.780 g/cm^3", without the second if no mass is given, or in λ without units.
 static void print_density(const struct view *view, char *text, size_t size) {
     const struct units *units = &view->scene->units;
     const int dimensions = view->scene->setup.box.dimensions;
     double length;
     const char *unit = unit_of(view, &length);
     const double density = view->density / pow(length, dimensions);
-    if (mf_units_known(units) && dimensions == 3)
+    if (mf_units_known(units) && !units->massless && dimensions == 3)
         snprintf(text, size, "%.4g %s^-3 = %.3g g/cm^3", density, unit,
                  mf_scene_mass_density(view->scene));
     else

@@ -339,6 +339,24 @@ static void test_units_of_all_field_tables_are_known(void **state) {
     free(page);
 }
 
+/// 3 beads of 18.015 u in a cubic nanometre are 0.0897 g/cm³.
+static void test_a_mass_density_needs_a_mass(void **state) {
+    static const char run[] =
+        "{\"units\": \"nm-ps\", \"target\": {\"rdf\": {\"file\": \"target.tsv\"}},\n"
+        "\"scene\": {\"density\": 3, \"temperature\": 298}}";
+    small_inputs_write(*state, "target.tsv", small_inputs_target, NULL, NULL);
+    small_inputs_write(*state, "run.json", run, NULL, NULL);
+    RUN_PROGRAM(&result, "fit", "run.json", "--explain");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.out, "mu = 1 u (no mass is given: times have no meaning), tau");
+    assert_contains(result.out, "; density 3 nm^-3, 1 + rho G");
+    small_inputs_write(*state, "run.json", run, "298", "298, \"particles\": {\"mass\": 18.015}");
+    RUN_PROGRAM(&result, "fit", "run.json", "--explain");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.out, "mu = 18.015 u, tau");
+    assert_contains(result.out, "; density 3 nm^-3 = 0.0897 g/cm^3, 1 + rho G");
+}
+
 #define TEST(name)                                                                                 \
     cmocka_unit_test_setup_teardown(name, small_inputs_enter_without_gnuplot, small_inputs_leave)
 
@@ -349,6 +367,7 @@ int main(void) {
         TEST(test_compare_tells_all_in_the_units_of_the_first),
         TEST(test_tables_of_simulations_speak_physical_units),
         TEST(test_fits_speak_physical_units),
+        TEST(test_a_mass_density_needs_a_mass),
         TEST(test_bad_units_are_one_line_with_file_and_key),
         TEST(test_units_of_all_field_tables_are_known),
     };
