@@ -171,7 +171,7 @@ static void test_chains_that_contradict_each_other_do_not_converge(void **state)
         "{" COMMON ", " SCENE
         ",\n" METHOD("imc") ",\n"
                             "\"states\": {" STATE("cold", "0.8") ",\n" STATE("bent", "0.8") "}}\n",
-        "\"iterations\": 4", "\"iterations\": 20");
+        "\"iterations\": 4", "\"iterations\": 40");
     RUN_PROGRAM(&result, "fit", "run.json", "-o", "out", "--force");
     run_program_assert_code(&result, 1);
     print_message("%s", result.err);

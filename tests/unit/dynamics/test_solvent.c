@@ -374,7 +374,7 @@ static void test_solvent_refuses_what_has_no_sense(void **state) {
     assert_refused(&parameters, 0.1, "dynamics.obstacle_radius: 4, and the");
     parameters = with_walls(0);
     parameters.obstacle_radius = 0;
-    assert_refused(&parameters, 3, "crosses the channel of 6 twice");
+    assert_refused(&parameters, 3, "crosses the channel of width 6 twice");
     parameters.acceleration[1] = 1;
     assert_refused(&parameters, 0.1, "dynamics.acceleration: 1 along y");
     parameters = with_walls(0);
