@@ -6,8 +6,16 @@
 #include <string.h>
 
 const struct command *const mf_command_list[] = {
-    &mf_command_measure, &mf_command_fit, &mf_command_export, &mf_command_simulate, &cmd_live,
-    &cmd_plot,           &cmd_film,       &cmd_compare,       &cmd_describe,        &cmd_bench,
+    &mf_command_measure,
+    &mf_command_fit,
+    &mf_command_export,
+    &mf_command_simulate,
+    &cmd_live,
+    &cmd_plot,
+    &cmd_film,
+    &cmd_compare,
+    &cmd_describe,
+    &cmd_bench,
     NULL,
 };
 

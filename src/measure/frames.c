@@ -71,7 +71,8 @@ enum status mf_frames_open(struct frames *frames, const struct frames_plan *plan
     NEW_ARRAY(frames->source, plan->files);
     NEW_ARRAY(frames->frame, frames->slots);
     for (size_t k = 0; k < plan->files; k++) {
-        const struct trajectory_memory *const memory_files = mf_trajectory_memory_find(plan->file[k]);
+        const struct trajectory_memory *const memory_files =
+            mf_trajectory_memory_find(plan->file[k]);
         struct stat is;
         frames->source[k].digest = DIGEST_OF_NOTHING;
         if (memory_files)
