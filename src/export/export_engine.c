@@ -262,7 +262,7 @@ static void print_readme(const struct export_job *job, FILE *stream) {
 }
 
 /// Lines of a text, one at a time.
-static void say_cost(const struct export_job *job, struct progress *to) {
+static void print_cost_lines(const struct export_job *job, struct progress *to) {
     char *text = NULL;
     size_t size;
     FILE *stream = open_memstream(&text, &size);
@@ -270,7 +270,7 @@ static void say_cost(const struct export_job *job, struct progress *to) {
         return;
     print_cost(job, stream);
     fclose(stream);
-    for (char *line = strtok(text, "\n"); line; line = strtok(NULL, "\n"))
+    for (char *rest, *line = strtok_r(text, "\n", &rest); line; line = strtok_r(NULL, "\n", &rest))
         mf_progress_print(to, "%s", line);
     free(text);
 }
@@ -288,7 +288,7 @@ static void print_result(const struct export_job *job, struct progress *to) {
         mf_progress_print(to, "mesofit: warning: %.160s: %s", job->model->folder, left_out);
     if (job->projected) {
         mf_progress_print(to, "omega is replaced by a power law: misfit %.2g", job->worst_misfit);
-        say_cost(job, to);
+        print_cost_lines(job, to);
     } else if (job->model->setup.omega)
         mf_progress_print(to, "omega is %sa power law: misfit %.2g",
                           mf_export_is_power(job) ? "" : "not ", job->worst_misfit);

@@ -164,6 +164,8 @@ static enum status write_scene(const struct scene *scene, FILE *stream) {
 
 const char *mesofit_simulation_text(struct mesofit_simulation *simulation) {
     size_t size;
+    if (simulation == NULL)
+        return NULL;
     FILE *stream = simulation->text ? NULL : open_memstream(&simulation->text, &size);
     if (stream == NULL)
         return simulation->text;
