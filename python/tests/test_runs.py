@@ -170,6 +170,8 @@ def interrupt_once(monkeypatch, when):
         if not sent and when(self):
             sent.append(True)
             os.kill(os.getpid(), signal.SIGINT)
+    # What is started in the background by a shell ignores Ctrl-C.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     monkeypatch.setattr(_run._Run, "look", look_and_interrupt)
 
 
