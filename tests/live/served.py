@@ -27,7 +27,7 @@ def water_fit(iterations):
     with open(os.path.join(SOURCES, "runs", "spc-water-imc", "run.json"), encoding="utf-8") as file:
         run = json.load(file)
     run["target"]["rdf"]["file"] = "target.txt"
-    run["method"].update(particles=512, replicas=4, samples=40, equilibration=40, iterations=iterations, precision=0.0001)
+    run["method"].update(particles=512, replicas=4, samples=10, equilibration=40, iterations=iterations, precision=0.0001)
     run["verification"] = {"replicas": 2, "equilibration": 100, "samples": 20, "every": 10}
     return run
 
