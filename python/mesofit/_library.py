@@ -219,10 +219,10 @@ def _load() -> ctypes.CDLL:
 if not sys.platform.startswith("linux"):
     raise ImportError("mesofit is for Linux")
 
-library = _load()
-version: str = library.mesofit_version().decode()
+lib = _load()
+version: str = lib.mesofit_version().decode()
 
 
 def message() -> str:
     """Why the last call of this thread failed."""
-    return str(library.mesofit_message().decode(errors="replace"))
+    return str(lib.mesofit_message().decode(errors="replace"))

@@ -70,18 +70,18 @@ class Problem:
         self._progress = c.FIT_PROGRESS(lambda context, iteration, done, total: int(self._stop))
         threads = _count(threads, "threads", 1)
         if word in memory.texts:
-            self._pointer = c.library.mesofit_fit_parse(
+            self._pointer = c.lib.mesofit_fit_parse(
                 memory.texts[word].encode(), inputs.tables, inputs.table_count, threads,
                 self._progress, None)
         else:
-            self._pointer = c.library.mesofit_fit_open(word.encode(), threads, self._progress,
+            self._pointer = c.lib.mesofit_fit_open(word.encode(), threads, self._progress,
                                                        None)
         if not self._pointer:
             raise fail(c.BAD_INPUT, c.message())
 
     def __del__(self) -> None:
         if getattr(self, "_pointer", None):
-            c.library.mesofit_fit_free(self._pointer)
+            c.lib.mesofit_fit_free(self._pointer)
             self._pointer = None
 
     def __reduce__(self) -> Any:
@@ -109,7 +109,7 @@ class Problem:
                     ended.wait(0.1)
                 except KeyboardInterrupt:
                     self._stop = interrupted = True
-            self._broken = function is c.library.mesofit_fit_iterate and answer[0] != c.OK
+            self._broken = function is c.lib.mesofit_fit_iterate and answer[0] != c.OK
         if interrupted:
             raise KeyboardInterrupt(answer[1])
         if answer[0] != c.OK:
@@ -121,7 +121,7 @@ class Problem:
     def iterate(self) -> State:
         """One iteration of its method; after `finished` nothing happens any more."""
         state = c.FitState()
-        self._call(c.library.mesofit_fit_iterate, state)
+        self._call(c.lib.mesofit_fit_iterate, state)
         return State(state.iteration, state.simulations, state.engine_steps, state.error,
                      state.noise, bool(state.finished), bool(state.converged),
                      (state.reason or b"").decode(errors="replace"))
@@ -132,7 +132,7 @@ class Problem:
         if name not in kinds:
             raise InputError(f"curve: expected potential or omega, found {name!r}")
         with self._lock:
-            found = c.library.mesofit_fit_curve(self._pointer, kinds[name])
+            found = c.lib.mesofit_fit_curve(self._pointer, kinds[name])
             if found.count == 0:
                 raise InputError(f"{name}: it is not looked for, or there was no iteration yet")
             unknown = np.full(found.count, np.nan)
@@ -143,14 +143,14 @@ class Problem:
     def verify(self) -> dict[str, float]:
         """Simulate the best so far with new seeds."""
         found = c.Verification()
-        self._call(c.library.mesofit_fit_verify, found)
+        self._call(c.lib.mesofit_fit_verify, found)
         return {name: getattr(found, name) for name, _ in c.Verification._fields_}
 
     # By an optimiser of the caller's --------------------------------------------------------------
 
     def __len__(self) -> int:
         """Coefficients of a candidate; 0 of a method that does not search."""
-        return int(c.library.mesofit_fit_coefficients(self._pointer))
+        return int(c.lib.mesofit_fit_coefficients(self._pointer))
 
     @property
     def bounds(self) -> list[tuple[float, float]]:
@@ -161,7 +161,7 @@ class Problem:
         """Coefficients that the fit begins with, shape (coefficients,)."""
         coefficients = np.zeros(len(self))
         with self._lock:
-            check(c.library.mesofit_fit_start(self._pointer, pointer(coefficients)))
+            check(c.lib.mesofit_fit_start(self._pointer, pointer(coefficients)))
         return coefficients
 
     def evaluate(self, coefficients: Any, seed: int = 1) -> Value:
@@ -177,7 +177,7 @@ class Problem:
         if not ((candidate >= 0) & (candidate <= 1)).all():
             raise InputError("coefficients: expected numbers from 0 to 1")
         error, variance = np.empty(1), np.empty(1)
-        self._call(c.library.mesofit_fit_evaluate, pointer(candidate), _count(seed, "seed", 0),
+        self._call(c.lib.mesofit_fit_evaluate, pointer(candidate), _count(seed, "seed", 0),
                    pointer(error), pointer(variance))
         return Value(float(error[0]), float(variance[0]))
 
@@ -210,7 +210,7 @@ class Optimiser:
         except (TypeError, ValueError) as fault:
             raise InputError(f"settings: {fault}") from None
         self._asked: int | None = None
-        self._pointer = c.library.mesofit_optimiser_create(
+        self._pointer = c.lib.mesofit_optimiser_create(
             str(name).encode(), text, self.dimensions, float(minimum), float(maximum),
             None if begin is None else pointer(begin), _count(seed, "seed", 0))
         if not self._pointer:
@@ -218,7 +218,7 @@ class Optimiser:
 
     def __del__(self) -> None:
         if getattr(self, "_pointer", None):
-            c.library.mesofit_optimiser_free(self._pointer)
+            c.lib.mesofit_optimiser_free(self._pointer)
             self._pointer = None
 
     def __reduce__(self) -> Any:
@@ -227,7 +227,7 @@ class Optimiser:
     def ask(self) -> Array:
         """Candidates to be measured next, shape (count, dimensions); count is 0 at the end."""
         population, count = c.NUMBERS(), ctypes.c_size_t()
-        check(c.library.mesofit_optimiser_ask(self._pointer, population, count))
+        check(c.lib.mesofit_optimiser_ask(self._pointer, population, count))
         self._asked = count.value
         if count.value == 0:
             return np.empty((0, self.dimensions))
@@ -242,11 +242,11 @@ class Optimiser:
         if np.isnan(found).any():
             raise InputError("errors: what could not be measured is infinite, not NaN")
         noise = None if variances is None else numbers(variances, "variances", (self._asked,))
-        check(c.library.mesofit_optimiser_tell(self._pointer, pointer(found),
+        check(c.lib.mesofit_optimiser_tell(self._pointer, pointer(found),
                                                None if noise is None else pointer(noise)))
         self._asked = None
 
     def best(self) -> Array | None:
         """What it believes best, shape (dimensions,); None before the first tell."""
         best = np.empty(self.dimensions)
-        return best if c.library.mesofit_optimiser_best(self._pointer, pointer(best)) else None
+        return best if c.lib.mesofit_optimiser_best(self._pointer, pointer(best)) else None

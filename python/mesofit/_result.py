@@ -25,13 +25,13 @@ class _Handle:
 
     def __init__(self, path: Path) -> None:
         self.lock = threading.Lock()
-        self.pointer = c.library.mesofit_result_open(encode(path))
+        self.pointer = c.lib.mesofit_result_open(encode(path))
         if not self.pointer:
             raise fail(c.BAD_INPUT if path.is_dir() else c.IO, c.message())
 
     def __del__(self) -> None:
         if getattr(self, "pointer", None):
-            c.library.mesofit_result_free(self.pointer)
+            c.lib.mesofit_result_free(self.pointer)
             self.pointer = None
 
 
@@ -79,7 +79,7 @@ class Result:
         """Names of all tables."""
         handle = self._open()
         names: list[str] = []
-        while (name := c.library.mesofit_result_name(handle.pointer, len(names))) is not None:
+        while (name := c.lib.mesofit_result_name(handle.pointer, len(names))) is not None:
             names.append(name.decode(errors="replace"))
         return tuple(names)
 
@@ -95,7 +95,7 @@ class Result:
         if name not in self.tables:
             raise InputError(f"no table {name!r}; there are {', '.join(self.tables)}")
         with handle.lock:
-            check(c.library.mesofit_result_table(handle.pointer, encode(name), columns))
+            check(c.lib.mesofit_result_table(handle.pointer, encode(name), columns))
             names, units = (tuple(texts[k].decode(errors="replace")
                                   for k in range(columns.columns))
                             for texts in (columns.names, columns.units))
@@ -109,7 +109,7 @@ class Result:
         """The text of a file of the folder."""
         handle = self._open()
         with handle.lock:
-            content = c.library.mesofit_result_text(handle.pointer, encode(file))
+            content = c.lib.mesofit_result_text(handle.pointer, encode(file))
             if content is None:
                 raise fail(c.IO, c.message())
             return str(content.decode(errors="replace"))

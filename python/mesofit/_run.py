@@ -77,14 +77,14 @@ class _Run:
         self.ended = threading.Event()
         self.memory, self.inputs = memory, memory.lend()
         self.words = (ctypes.c_char_p * len(words))(*[encode(word, "a word") for word in words])
-        self.run = c.library.mesofit_run_create()
+        self.run = c.lib.mesofit_run_create()
         if not self.run:
             raise MemoryError("out of memory")
 
     def work(self) -> None:
         outcome = self.outcome
         try:
-            outcome.status = c.library.mesofit_run_words(self.run, len(self.words), self.words,
+            outcome.status = c.lib.mesofit_run_words(self.run, len(self.words), self.words,
                                                          self.inputs)
             outcome.message = c.message() if outcome.status != c.OK else ""
         finally:
@@ -92,22 +92,22 @@ class _Run:
 
     def look(self, progress: Progress) -> None:
         lines = self.outcome.lines
-        while (line := c.library.mesofit_run_line(self.run, len(lines))) is not None:
+        while (line := c.lib.mesofit_run_line(self.run, len(lines))) is not None:
             lines.append(line.decode(errors="replace"))
             log.info("%s", lines[-1])
             progress.say(lines[-1])
         if progress.wanted:
             now = c.RunProgress()
-            c.library.mesofit_run_progress(self.run, now)
+            c.lib.mesofit_run_progress(self.run, now)
             progress.tell(now.done, now.total, now.rate, now.unit.decode(errors="replace"),
                           now.text.decode(errors="replace"), not now.open)
 
     def stop(self) -> None:
-        c.library.mesofit_run_stop(self.run)
+        c.lib.mesofit_run_stop(self.run)
 
     def __del__(self) -> None:
         if getattr(self, "run", None):
-            c.library.mesofit_run_free(self.run)
+            c.lib.mesofit_run_free(self.run)
             self.run = None
 
 

@@ -57,14 +57,14 @@ class Simulation:
         self._fault: BaseException | None = None
         self._lock = threading.Lock()  # held while the library works with it
         self._force = c.FORCE(0)
-        self._pointer = c.library.mesofit_simulation_parse(
+        self._pointer = c.lib.mesofit_simulation_parse(
             memory.texts["scene"].encode(), inputs.tables, inputs.table_count)
         if not self._pointer:
             raise fail(c.BAD_INPUT, c.message())
 
     def __del__(self) -> None:
         if getattr(self, "_pointer", None):
-            c.library.mesofit_simulation_free(self._pointer)
+            c.lib.mesofit_simulation_free(self._pointer)
             self._pointer = None
 
     def __reduce__(self) -> Any:
@@ -75,7 +75,7 @@ class Simulation:
     @property
     def scene(self) -> dict[str, Any]:
         """The scene as it was read, defaults filled in."""
-        text = c.library.mesofit_simulation_text(self._pointer)
+        text = c.lib.mesofit_simulation_text(self._pointer)
         if text is None:
             raise MemoryError("out of memory")
         return dict(json.loads(text))
@@ -92,24 +92,24 @@ class Simulation:
 
     @property
     def step(self) -> int:
-        return int(c.library.mesofit_simulation_step(self._pointer))
+        return int(c.lib.mesofit_simulation_step(self._pointer))
 
     @property
     def dimensions(self) -> int:
-        return int(c.library.mesofit_simulation_dimensions(self._pointer))
+        return int(c.lib.mesofit_simulation_dimensions(self._pointer))
 
     def __len__(self) -> int:
-        return int(c.library.mesofit_simulation_count(self._pointer))
+        return int(c.lib.mesofit_simulation_count(self._pointer))
 
     @property
     def temperature(self) -> float:
         """Kinetic temperature now [T_0]; NaN without velocities."""
-        return float(c.library.mesofit_simulation_temperature(self._pointer))
+        return float(c.lib.mesofit_simulation_temperature(self._pointer))
 
     def _by_id(self, axis_of: Callable[[Any, int], Any]) -> Array:
         self._check_idle()
         count = len(self)
-        ids = np.ctypeslib.as_array(c.library.mesofit_simulation_ids(self._pointer), (count,))
+        ids = np.ctypeslib.as_array(c.lib.mesofit_simulation_ids(self._pointer), (count,))
         result = np.empty((count, self.dimensions))
         for axis in range(self.dimensions):
             result[ids, axis] = np.ctypeslib.as_array(axis_of(self._pointer, axis), (count,))
@@ -118,12 +118,12 @@ class Simulation:
     @property
     def positions(self) -> Array:
         """Shape (particles, dimensions), by the number of the particle; a copy [lambda]."""
-        return self._by_id(c.library.mesofit_simulation_positions)
+        return self._by_id(c.lib.mesofit_simulation_positions)
 
     @property
     def velocities(self) -> Array:
         """The same [lambda/tau]."""
-        return self._by_id(c.library.mesofit_simulation_velocities)
+        return self._by_id(c.lib.mesofit_simulation_velocities)
 
     # What it does ---------------------------------------------------------------------------------
 
@@ -149,7 +149,7 @@ class Simulation:
             self._force = self._wrap(force)
         else:
             raise InputError(f"force: expected a function, found {type(force).__name__}")
-        c.library.mesofit_simulation_set_force(self._pointer, self._force, None)
+        c.lib.mesofit_simulation_set_force(self._pointer, self._force, None)
 
     def _wrap(self, force: Callable[..., Any]) -> Any:
         dimensions = self.dimensions
@@ -197,7 +197,7 @@ class Simulation:
         while left > 0:
             now = min(piece, left)
             begin = time.perf_counter()
-            self._call(c.library.mesofit_simulation_run, now)
+            self._call(c.lib.mesofit_simulation_run, now)
             left -= now
             if time.perf_counter() - begin < _PIECE / 2:
                 piece = 2 * piece
@@ -210,14 +210,14 @@ class Simulation:
         plan = c.RdfPlan(float(range), bins, _count(samples, "samples", 1),
                          _count(every, "every", 1))
         r, g, error = (np.empty(bins) for _ in "rge")
-        self._call(c.library.mesofit_simulation_rdf, plan, pointer(r), pointer(g),
+        self._call(c.lib.mesofit_simulation_rdf, plan, pointer(r), pointer(g),
                    pointer(error))
         return Rdf(r, g, error)
 
     def means(self, *, samples: int = 200, every: int = 25) -> Means:
         """Run samples · every steps and take means of temperature, energy and pressure."""
         means = c.Means()
-        self._call(c.library.mesofit_simulation_means, _count(samples, "samples", 1),
+        self._call(c.lib.mesofit_simulation_means, _count(samples, "samples", 1),
                    _count(every, "every", 1), means)
         return Means(*(getattr(means, name) for name in Means._fields))
 

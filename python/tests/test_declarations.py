@@ -98,11 +98,11 @@ def test_another_library_is_noticed(monkeypatch):
         _fields_ = [("name", ctypes.c_char_p)]
     monkeypatch.setitem(_library.STRUCTS, "mesofit_table", Short)
     with pytest.raises(ImportError, match="different versions"):
-        _library._declare(_library.library, "libmesofit.so")
+        _library._declare(_library.lib, "libmesofit.so")
     monkeypatch.undo()
     monkeypatch.setitem(_library.FUNCTIONS, "mesofit_newest", (None, []))
     with pytest.raises(ImportError, match="older mesofit"):
-        _library._declare(_library.library, "libmesofit.so")
+        _library._declare(_library.lib, "libmesofit.so")
 
 
 def test_measure_has_the_options_of_the_program():
