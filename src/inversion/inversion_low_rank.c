@@ -11,9 +11,6 @@
 #include <math.h>
 #include <string.h>
 
-/// The largest eigenvalue of the response in units of Boltzmann inversion's.
-static const double largest = 2;
-
 enum status mf_inversion_low_rank_init(struct inversion_state *state) {
     static const struct inversion_basis_size size = {.coefficients = 20, .group_coefficients = 8};
     return mf_inversion_basis_init(&state->low_rank, &state->grid, &size);
@@ -96,15 +93,29 @@ static bool decompose(const struct inversion_basis *low_rank, struct response *r
     return true;
 }
 
+/// Part x of the step along an eigenvector of the sampled response, of an eigenvalue h above 1, of
+/// which the true response leaves least, |R x v − v|²: x = v·Rv/|Rv|². γ = m/n makes eigenvalues up
+/// to (1 + √γ)² of nothing, and h = ℓ + γℓ/(ℓ − 1) of a true ℓ, whose vector has the share c² of v.
+static double find_inverse_of_large(double h, double ratio) {
+    const double sum = h + 1 - ratio;
+    if (h <= pow(1 + sqrt(ratio), 2))
+        return 1;
+    const double large = (sum + sqrt(sum * sum - 4 * h)) / 2, above = large - 1;
+    const double share = (1 - ratio / (above * above)) / (1 + ratio / above);
+    return (share * large + 1 - share) / (share * large * large + 1 - share);
+}
+
 /// step += B (H⁻¹ − T⁻¹) Bᵀ S* u.
 static void add_difference(const struct inversion_state *state, struct response *r, double *step) {
     const struct inversion_basis *low_rank = &state->low_rank;
     const struct potential_grid *grid = &state->grid;
-    const double scatter = sqrt((double)low_rank->count / low_rank->independent);
-    const double share = scatter / (1 + scatter);
+    const double ratio = (double)low_rank->count / low_rank->independent;
+    const double share = sqrt(ratio) / (1 + sqrt(ratio));
     for (size_t k = 0; k < low_rank->count; k++) {
-        const double h = fmin(gsl_vector_get(r->eigenvalue, k), largest);
-        *gsl_vector_ptr(r->along, k) *= 1 / (share + (1 - share) * h) - 1;
+        const double h = gsl_vector_get(r->eigenvalue, k);
+        const double inverse =
+            h > 1 ? find_inverse_of_large(h, ratio) : 1 / (share + (1 - share) * h);
+        *gsl_vector_ptr(r->along, k) *= inverse - 1;
     }
     gsl_blas_dgemv(CblasNoTrans, 1, r->eigenvector, r->along, 0, r->asked);
     gsl_blas_dtrsv(CblasLower, CblasTrans, CblasNonUnit, r->ideal, r->asked);

@@ -28,7 +28,10 @@ bool mf_inversion_is_low_rank(const struct inversion *inversion);
 /// of m coefficients and n independent samples scatter by sqrt(m/n) (V. A. Marchenko and L. A.
 /// Pastur, Math. USSR Sb. 1, 457 (1967)), so those of H are λ + (1 − λ) h with λ = s/(1 + s), s =
 /// sqrt(m/n), so that a step along what responds no more than an ideal gas is hardly more than
-/// twice as long as the right one. h above 2 counts as 2: samples that drift have such ones.
+/// twice as long as the right one. Along an h above 1, as that of concentrations of a mixture, the
+/// step is the one of which the true response leaves least: J. Baik and J. W. Silverstein, J.
+/// Multivar. Anal. 97, 1382 (2006); D. L. Donoho, M. Gavish and I. M. Johnstone, Ann. Stat. 46,
+/// 1742 (2018).
 /// @param[in,out] step  u in the known bins, shape [points]. Fails: NO_MEMORY. Tested:
 /// test_inversion_low_rank.
 enum status mf_inversion_low_rank_respond(struct inversion_state *state, double *step) MUST_USE;

@@ -2,11 +2,13 @@
 //
 // The coarse part of a step: of an ideal response it is Boltzmann inversion's, of many samples
 // Newton's, and what coefficients cannot make is left as it is.
+#include "base/rng.h"
 #include "inversion/inversion_low_rank.h"
 #include "inversion/inversion_state.h"
 #include "shared/is_close.h"
 #include "shared/testing.h"
 
+#include <gsl/gsl_eigen.h>
 #include <math.h>
 
 enum { BINS = 12, CORE = 2, KNOWN = BINS - CORE };
@@ -109,15 +111,76 @@ static void test_coarse_step_of_few_samples_is_short(void **state) {
     clear(&made);
 }
 
-/// What drifts has a large response, which counts as 2.
-static void test_coarse_step_is_not_shortened_by_what_drifts(void **state) {
+/// Of many samples a response of 50 is one.
+static void test_coarse_step_along_a_large_response_is_short(void **state) {
     (void)state;
     static struct made made;
     make(&made, 100, 1e16, 50, 0);
     assert_ok(mf_inversion_low_rank_respond(&made.state, made.step));
     for (size_t k = CORE; k < BINS; k++)
-        assert_close(made.step[k], 0.5 * sin(1.7 * (double)k), 1e-6);
+        assert_close(made.step[k], sin(1.7 * (double)k) / 50, 1e-6);
     clear(&made);
+}
+
+/// C of so many samples of normal numbers, one of which has the variance `large`, in units of D.
+/// @param[out] vector  its eigenvector of the largest eigenvalue
+static void sample(struct made *made, int64_t samples, double large, uint32_t trial,
+                   double vector[KNOWN]) {
+    double scaled[KNOWN * KNOWN] = {0};
+    gsl_matrix *vectors = gsl_matrix_alloc(KNOWN, KNOWN);
+    gsl_vector *values = gsl_vector_alloc(KNOWN);
+    gsl_eigen_symmv_workspace *workspace = gsl_eigen_symmv_alloc(KNOWN);
+    gsl_matrix_view matrix = gsl_matrix_view_array(scaled, KNOWN, KNOWN);
+    for (uint32_t n = 0; n < samples; n++) {
+        double x[KNOWN + 2];
+        for (uint32_t k = 0; k < KNOWN; k += 4)
+            mf_rng_normal4(mf_rng_philox(5, RNG_EVALUATION, trial, n, k), x + k);
+        x[0] *= sqrt(large);
+        for (size_t a = 0; a < KNOWN; a++)
+            for (size_t b = 0; b < KNOWN; b++)
+                scaled[a * KNOWN + b] += x[a] * x[b] / (double)samples;
+    }
+    for (size_t a = 0; a < KNOWN; a++)
+        for (size_t b = 0; b < KNOWN; b++)
+            made->covariance[a * KNOWN + b] =
+                scaled[a * KNOWN + b] * sqrt(made->counts[CORE + a] * made->counts[CORE + b]);
+    gsl_eigen_symmv(&matrix.matrix, values, vectors, workspace);
+    for (size_t a = 0; a < KNOWN; a++)
+        vector[a] = gsl_matrix_get(vectors, a, gsl_vector_max_index(values));
+    gsl_matrix_free(vectors);
+    gsl_vector_free(values);
+    gsl_eigen_symmv_free(workspace);
+}
+
+/// Along the largest eigenvector of what was sampled the step is, on average, the one of which the
+/// response that the samples came from leaves least.
+static void test_coarse_step_along_a_sampled_response_leaves_least(void **state) {
+    (void)state;
+    static struct made made;
+    static const struct {
+        int64_t samples;
+        double large, tolerance;
+    } of[] = {{10, 10, 0.05}, {20, 6, 0.05}, {80, 6, 0.015}, {1000, 1.5, 0.015}};
+    enum { TRIALS = 200 };
+    for (size_t n = 0; n < sizeof of / sizeof *of; n++) {
+        double along = 0, square = 0, step = 0;
+        make(&made, 100, (double)of[n].samples, 1, 0);
+        for (uint32_t trial = 0; trial < TRIALS; trial++) {
+            double vector[KNOWN];
+            sample(&made, of[n].samples, of[n].large, trial, vector);
+            for (size_t a = 0; a < KNOWN; a++)
+                made.step[CORE + a] = vector[a] / sqrt(made.counts[CORE + a]);
+            assert_ok(mf_inversion_low_rank_respond(&made.state, made.step));
+            for (size_t a = 0; a < KNOWN; a++) {
+                const double response = (a == 0 ? of[n].large : 1) * vector[a];
+                along += vector[a] * response;
+                square += response * response;
+                step += vector[a] * made.step[CORE + a] * sqrt(made.counts[CORE + a]) / TRIALS;
+            }
+        }
+        assert_close(step, along / square, of[n].tolerance);
+        clear(&made);
+    }
 }
 
 /// Bins that are empty in the target leave coefficients that no pair sees.
@@ -177,7 +240,8 @@ int main(void) {
         cmocka_unit_test(test_coarse_step_of_an_ideal_response_is_that_of_boltzmann_inversion),
         cmocka_unit_test(test_coarse_step_of_many_samples_is_newtons),
         cmocka_unit_test(test_coarse_step_of_few_samples_is_short),
-        cmocka_unit_test(test_coarse_step_is_not_shortened_by_what_drifts),
+        cmocka_unit_test(test_coarse_step_along_a_large_response_is_short),
+        cmocka_unit_test(test_coarse_step_along_a_sampled_response_leaves_least),
         cmocka_unit_test(test_coarse_step_of_a_target_with_a_hole_is_finite),
         cmocka_unit_test(test_coarse_step_leaves_what_the_factor_of_a_target_explains),
     };
