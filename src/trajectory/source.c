@@ -7,6 +7,7 @@
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 enum { BUFFER_SIZE = 1 << 18, LONGEST_LINE = 1 << 20, LARGEST_PIECE = 1 << 24 };
 
@@ -81,6 +82,27 @@ enum status mf_source_peek(struct source *source, const unsigned char **begin, s
 enum status mf_source_more(struct source *source, bool *more) {
     TRY(fill(source));
     *more = source->begin < source->end;
+    return STATUS_OK;
+}
+
+enum status mf_source_seek(struct source *source, uint64_t byte) {
+    struct stat about;
+    if (fstat(fileno(source->stream), &about) != 0 || !S_ISREG(about.st_mode))
+        return mf_source_fail_byte(source, "its format has an index, which needs a file, not a "
+                                           "pipe: save it as a file first");
+    if (byte > (uint64_t)about.st_size)
+        return mf_source_fail_byte(source,
+                                   "byte %llu follows, but the file has only %llu: it is damaged",
+                                   (unsigned long long)byte, (unsigned long long)about.st_size);
+    const uint64_t left = source->end - source->begin; // of the buffer
+    if (byte >= source->byte && byte - source->byte < left) {
+        source->begin += (size_t)(byte - source->byte);
+    } else {
+        source->begin = source->end = 0;
+        if (fseeko(source->stream, (off_t)byte, SEEK_SET) != 0)
+            return mf_status_fail(STATUS_IO, "%s: %s", source->file, strerror(errno));
+    }
+    source->byte = byte;
     return STATUS_OK;
 }
 

@@ -91,7 +91,7 @@ static enum status check_units(const struct trajectory *trajectory) {
         return STATUS_OK;
     return mf_status_fail(
         STATUS_BAD_INPUT,
-        "%s: the LAMMPS file has no units: give them by --file-units (real, metal, nano, lj …)",
+        "%s: the file has no units: give them by --file-units (real, metal, nano, nm-ps, lj …)",
         trajectory->file);
 }
 
@@ -159,7 +159,10 @@ enum status mf_trajectory_fetch(struct trajectory *trajectory, struct trajectory
         give_first(trajectory, frame);
         return STATUS_OK;
     }
-    TRY(mf_source_more(source, more));
+    if (trajectory->frames > 0)
+        *more = source->frame < trajectory->frames;
+    else
+        TRY(mf_source_more(source, more));
     if (!*more)
         return STATUS_OK;
     frame->file = trajectory->file;

@@ -31,7 +31,8 @@ struct trajectory_format {
     /// Give back what its state holds besides its own memory; NULL: nothing.
     void (*close)(struct trajectory *trajectory);
     /// Take the bytes of the next frame into frame->raw; `*more` is true, and becomes false if
-    /// there is no further frame. Not called once the source has no byte left.
+    /// there is no further frame. Not called once all frames have been taken that the file says it
+    /// has or, if it says nothing, once the source has no byte left.
     enum status (*fetch)(struct trajectory *trajectory, struct trajectory_frame *frame, bool *more);
     /// The time of a frame that was fetched [ps], without decoding it; NULL: it costs as much.
     double (*peek)(const struct trajectory_frame *frame);
@@ -47,6 +48,7 @@ struct trajectory_format {
     EACH(mf_format_xtc)                                                                            \
     EACH(mf_format_trr)                                                                            \
     EACH(mf_format_dcd)                                                                            \
+    EACH(mf_format_gsd)                                                                            \
     EACH(mf_format_lammps_dump)                                                                    \
     EACH(mf_format_gro)                                                                            \
     EACH(mf_format_xyz)                                                                            \
@@ -75,6 +77,7 @@ struct trajectory {
     struct trajectory_scale scale;
     double time_step;
     const char *group;    ///< borrowed
+    uint64_t frames;      ///< in the file, where it says so; 0: they end with it
     char note[320];       ///< what was assumed of the file, a line for a person; "": nothing
     struct source source; ///< what follows is the readers' own
     struct trajectory_frame first;
