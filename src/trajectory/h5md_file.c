@@ -80,7 +80,8 @@ static enum status choose_group(struct h5md_file *h5md, hid_t particles, const c
 
 static enum status open_group(struct h5md_file *h5md, const char *file, const char *wanted) {
     if (H5Lexists(h5md->file, "particles", H5P_DEFAULT) <= 0)
-        return fail(file, "HDF5, but not H5MD: there is no group \"particles\"");
+        return fail(file, "HDF5, but not H5MD: there is no group \"particles\" (NetCDF-4 becomes "
+                          "readable NetCDF-3 by nccopy -6)");
     const hid_t particles = mf_h5md_element_group(h5md->file, "particles");
     if (particles < 0)
         return fail(file, "\"particles\" is not a group of this file");

@@ -49,6 +49,7 @@ struct trajectory_format {
     EACH(mf_format_trr)                                                                            \
     EACH(mf_format_dcd)                                                                            \
     EACH(mf_format_gsd)                                                                            \
+    EACH(mf_format_netcdf)                                                                         \
     EACH(mf_format_lammps_dump)                                                                    \
     EACH(mf_format_gro)                                                                            \
     EACH(mf_format_xyz)                                                                            \
