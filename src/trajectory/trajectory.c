@@ -16,31 +16,33 @@ NAMED_RECORD(struct trajectory_format);
 const struct trajectory_format *const mf_trajectory_formats[] = {
     TRAJECTORY_FORMATS(TRAJECTORY_LISTED) NULL};
 
-static bool has_extension(const struct trajectory_format *format, const char *file) {
-    const char *point = strrchr(file, '.');
-    for (size_t k = 0; point && format->extensions[k]; k++)
-        if (strcasecmp(point + 1, format->extensions[k]) == 0)
-            return true;
-    return false;
-}
-
 static bool ends_with(const char *file, const char *extension) {
     const char *const point = strrchr(file, '.');
     return point && strcasecmp(point, extension) == 0;
 }
 
-/// What a packed file or another format begins with or is called, and what is to be done about it.
-static const char *find_hint(const char *file, const unsigned char *begin, size_t size) {
+/// Whether a file is called "name.extension", or so before it was compressed.
+static bool has_extension(const struct trajectory_format *format, const char *file) {
+    const char *end = file + strlen(file);
+    if (ends_with(file, ".gz") || ends_with(file, ".zst"))
+        end = strrchr(file, '.');
+    for (size_t k = 0; format->extensions[k]; k++) {
+        const size_t length = strlen(format->extensions[k]);
+        if ((size_t)(end - file) > length && end[-(ptrdiff_t)length - 1] == '.' &&
+            strncasecmp(end - length, format->extensions[k], length) == 0)
+            return true;
+    }
+    return false;
+}
+
+/// What another format is called, and what is to be done about it.
+static const char *find_hint(const char *file) {
     if (ends_with(file, ".tpr"))
         return "GROMACS's .tpr is not read: give names and residues by a .gro of the same atoms, "
                "masses in a map";
     if (ends_with(file, ".top") || ends_with(file, ".itp"))
         return "a topology has no coordinates: give names and residues by a .gro of the same "
                "atoms, masses in a map, bonds of the beads by --molecules";
-    if (size >= 2 && memcmp(begin, "\x1F\x8B", 2) == 0)
-        return "compressed: decompress it with gunzip";
-    if (size >= 4 && memcmp(begin, "\x28\xB5\x2F\xFD", 4) == 0)
-        return "compressed: decompress it with unzstd";
     return "neither its first bytes nor its extension belong to a known format";
 }
 
@@ -60,7 +62,7 @@ static enum status find_format(struct trajectory *trajectory) {
     if (trajectory->format)
         return STATUS_OK;
     return mf_status_fail(STATUS_BAD_INPUT, "%s: not a trajectory: %s", trajectory->file,
-                          find_hint(trajectory->file, begin, size));
+                          find_hint(trajectory->file));
 }
 
 /// What is given, unless the format has units of its own; else Å, fs and u, unless only the file

@@ -249,7 +249,7 @@ static void test_gsd_needs_a_file_when_it_comes_by_a_pipe(void **state) {
         _exit(0);
     }
     assert_fails(mf_trajectory_open(&trajectory, name, &(struct trajectory_options){.units = "lj"}),
-                 STATUS_BAD_INPUT, "needs a file, not a pipe");
+                 STATUS_BAD_INPUT, "needs a file, neither");
 }
 
 #define TEST(name)                                                                                 \
