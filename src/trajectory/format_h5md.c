@@ -24,7 +24,9 @@ static bool recognise(const unsigned char *begin, size_t size) {
 
 static enum status open(struct trajectory *trajectory) {
     struct h5md_file *const h5md = trajectory->state;
-    return mf_h5md_file_open(h5md, trajectory);
+    TRY(mf_h5md_file_open(h5md, trajectory));
+    trajectory->frames = h5md->position.frames;
+    return STATUS_OK;
 }
 
 static void close(struct trajectory *trajectory) {
@@ -81,8 +83,7 @@ static enum status read_box(struct h5md_file *h5md, double step, hsize_t at, dou
 static enum status fetch(struct trajectory *trajectory, struct trajectory_frame *frame,
                          bool *more) {
     struct h5md_file *const h5md = trajectory->state;
-    struct source *const source = &trajectory->source;
-    const hsize_t at = source->frame;
+    const hsize_t at = trajectory->source.frame;
     struct header header = {0};
     *more = at < h5md->position.frames;
     if (!*more)
@@ -101,8 +102,6 @@ static enum status fetch(struct trajectory *trajectory, struct trajectory_frame 
     if (h5md->id.there && !header.has_ids) // then it is unknown which particle is which
         return fail_of_step(&h5md->id, header.step, at, "");
     memcpy(frame->raw.data, &header, sizeof header);
-    source->byte =
-        (uint64_t)((double)h5md->bytes * (double)(at + 1) / (double)h5md->position.frames);
     return STATUS_OK;
 }
 
