@@ -117,28 +117,6 @@ static void test_measure_keeps_frames_whose_late_times_are_rounded(void **state)
     assert_close(results_number("late/summary.json", "interval"), 0.02, 1e-9);
 }
 
-/// The usual window is a tenth of the frames, however many bytes each has.
-static void test_measure_has_the_same_window_when_frames_are_of_other_lengths(void **state) {
-    enum { FRAMES = 201 };
-    static const char *const names[] = {"even.xyz", "odd.xyz"};
-    for (int odd = 0; odd < 2; odd++) {
-        char text[FRAMES * 256];
-        size_t length = 0;
-        for (int k = 0; k < FRAMES; k++)
-            length += (size_t)snprintf(
-                text + length, sizeof text - length,
-                "2\nLattice=\"30 0 0 0 30 0 0 0 30\" Properties=species:S:1:pos:R:3 Time=%d\n"
-                "Ar %.*f 0 0\nAr %05.3f 0 0\n",
-                1000 * k, odd && k == 0 ? 40 : 3, 5 + 0.005 * k, 9 - 0.005 * k);
-        temporary_folder_write(*state, names[odd], text, length);
-        MEASURE(names[odd], "-o", "of", "--quiet");
-        assert_close(results_number("of/summary.json", "window"), 20, 1e-9);
-    }
-    MEASURE("even.xyz", "odd.xyz", "--every", "4", "-o", "of",
-            "--quiet"); // 51 frames, the rest twice
-    assert_close(results_number("of/summary.json", "window"), 40, 1e-9);
-}
-
 /// The usual window is a tenth of what is used, not of the file.
 static void test_measure_has_motion_of_the_frames_that_are_used(void **state) {
     enum { FRAMES = 200 };
@@ -453,7 +431,6 @@ int main(void) {
         TEST(test_measure_counts_the_pairs_that_there_are),
         TEST(test_measure_writes_the_same_bytes_when_threads_differ),
         TEST(test_measure_keeps_frames_whose_late_times_are_rounded),
-        TEST(test_measure_has_the_same_window_when_frames_are_of_other_lengths),
         TEST(test_measure_has_motion_of_the_frames_that_are_used),
         TEST(test_measure_joins_files_when_a_run_was_restarted),
         TEST(test_measure_uses_what_is_whole_when_a_file_breaks_off),
