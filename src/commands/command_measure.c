@@ -32,7 +32,7 @@ enum {
 
 static const struct command_option options[] = {
     [STRUCTURE] = {"-s", "FILE",
-                   "names, residues and masses of the atoms (.gro, .pdb, .top, .psf, …)"},
+                   "names, residues, masses (.gro, .pdb, .top, .psf, …)"},
     [MAP] = {"--map", "FILE.json", "atoms to beads (describe map); else a bead a residue"},
     [MOLECULES] = {"--molecules", "FILE",
                    "bonds of beads (a scene's \"molecules\"); without a map a bead an atom"},
@@ -54,10 +54,10 @@ static const struct command_option options[] = {
                      "temperature of the target [K]; else that of the velocities"},
     [UNITS] = {"--units", "nm-ps|angstrom-fs", "units of the results (nm-ps)"},
     [ALLOW_TRUNCATED] = {"--allow-truncated", NULL, "use a damaged file up to the damage"},
-    [FILE_UNITS] = {"--file-units", "STYLE", "units of LAMMPS files without any: real, metal, …"},
-    [FILE_TIME_STEP] = {"--file-time-step", "T", "time step of frames that have no time [ps]"},
-    [FILE_GROUP] = {"--file-group", "NAME", "particle group of an H5MD file with several"},
-    [BOX] = {"--box", "LX,LY,LZ", "edges of a rectangular box [nm], for files that have none"},
+    [FILE_UNITS] = {"--file-units", "STYLE", "units of files without any: real, metal, …"},
+    [FILE_TIME_STEP] = {"--file-time-step", "T", "time step of frames without times [ps]"},
+    [FILE_GROUP] = {"--file-group", "NAME", "particle group of H5MD"},
+    [BOX] = {"--box", "LX,LY,LZ", "box of files without one [nm]"},
     {NULL, NULL, NULL},
 };
 
