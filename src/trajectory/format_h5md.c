@@ -6,6 +6,7 @@
 // the first frame. Built if HDF5 is there: format_h5md_without.c stands for it otherwise.
 #include "base/memory.h"
 #include "trajectory/h5md_file.h"
+#include "trajectory/h5md_topology.h"
 #include "trajectory/trajectory.h"
 
 #include <math.h>
@@ -167,6 +168,7 @@ static enum status describe(struct trajectory *trajectory, struct trajectory_fra
     TRY(mf_structure_init(structure, first->atoms));
     TRY(describe_masses(h5md, structure));
     TRY(describe_species(h5md, structure));
+    TRY(mf_h5md_topology_read(h5md, trajectory));
     structure->has_ids = header.has_ids;
     if (!header.has_ids)
         return STATUS_OK;
@@ -252,7 +254,8 @@ static const char *const extensions[] = {"h5md", "h5", "hdf5", NULL};
 const struct trajectory_format mf_format_h5md = {
     .name = "h5md",
     .extensions = extensions,
-    .summary = "H5MD 1.1: positions, velocities, images, ids, box; masses and species",
+    .summary =
+        "H5MD 1.1: positions, velocities, images, ids, box; masses, species, GROMACS's topology",
     .unit_source = TRAJECTORY_UNITS_GIVEN,
     .state_size = sizeof(struct h5md_file),
     .recognise = recognise,
