@@ -31,8 +31,7 @@ enum {
 };
 
 static const struct command_option options[] = {
-    [STRUCTURE] = {"-s", "FILE",
-                   "names, residues, masses (.gro, .pdb, .top, .psf, …)"},
+    [STRUCTURE] = {"-s", "FILE", "names, residues, masses (.gro, .pdb, .top, .psf, …)"},
     [MAP] = {"--map", "FILE.json", "atoms to beads (describe map); else a bead a residue"},
     [MOLECULES] = {"--molecules", "FILE",
                    "bonds of beads (a scene's \"molecules\"); without a map a bead an atom"},

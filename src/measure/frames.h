@@ -45,7 +45,7 @@ struct frames {
     struct trajectory_frame *frame; ///< shape [slots]: a batch, those to be used first
     struct series time;             ///< of all frames in order, so far
     size_t used, skipped;
-    struct bytes notes;   ///< lines for a person: what was left out and why; a text
+    struct bytes notes; ///< lines for a person: what was left out and why; a text
 };
 
 /// Open the first file. @param[in] structure  NULL: that of the first file
