@@ -342,6 +342,7 @@ static enum status check_ids(const struct netcdf *netcdf, const struct trajector
     return STATUS_OK;
 }
 
+/// A box is endless along a length of 0.
 static enum status read_box(const struct netcdf *netcdf, struct trajectory_frame *frame) {
     const double none[3][3] = {{0}};
     double length[3], angle[3];
@@ -353,12 +354,18 @@ static enum status read_box(const struct netcdf *netcdf, struct trajectory_frame
     }
     if (netcdf->of[LENGTHS].name[0] == '\0' || (length[0] == 0 && length[1] == 0 && length[2] == 0))
         return STATUS_OK;
+    bool periodic[3];
+    for (int k = 0; k < 3; k++) {
+        periodic[k] = length[k] != 0;
+        length[k] = periodic[k] ? length[k] : 1; // any
+    }
     if (!mf_frame_box_of_angles(frame, length, angle))
         return mf_status_fail(STATUS_BAD_INPUT,
                               "%s: frame %zu: not a valid box: lengths %g %g %g nm, angles %g %g "
                               "%g",
                               frame->file, frame->number, length[0], length[1], length[2], angle[0],
                               angle[1], angle[2]);
+    memcpy(frame->periodic, periodic, sizeof periodic);
     return STATUS_OK;
 }
 

@@ -203,6 +203,29 @@ static void test_netcdf_restart_is_one_frame(void **state) {
     close_all();
 }
 
+/// A slab has a box of two lengths.
+static void test_netcdf_has_a_box_that_is_endless_along_a_length_of_0(void **state) {
+    static const struct variable slab[] = {
+        {"coordinates", NULL, 0, {FRAME, ATOM, SPATIAL}, FLOAT, 36},
+        {"cell_lengths", NULL, 0.5, {FRAME, CELL, NONE}, DOUBLE, 24},
+    };
+    version = 2;
+    put_head(slab, 2, 2);
+    for (int number = 0; number < 2; number++) {
+        for (int k = 0; k < 9; k++)
+            put_float(k);
+        for (int k = 0; k < 3; k++)
+            put(&(double){number == 0 && k < 2 ? 40 + k : 0}, 8);
+    }
+    assert_ok(try(state));
+    next(true);
+    assert_true(frame.periodic[0] && frame.periodic[1] && !frame.periodic[2]);
+    assert_true(is(frame.box[0][0], 2) && is(frame.box[1][1], 2.05));
+    next(true);
+    assert_false(frame.has_box);
+    close_all();
+}
+
 /// Ids of LAMMPS, 1 2 3, then 1 3 2.
 static void test_netcdf_is_refused_when_atoms_change_places(void **state) {
     static const struct variable dump[] = {
@@ -252,6 +275,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(test_netcdf_is_read_in_its_three_versions),
         TEST(test_netcdf_restart_is_one_frame),
+        TEST(test_netcdf_has_a_box_that_is_endless_along_a_length_of_0),
         TEST(test_netcdf_is_refused_when_atoms_change_places),
         TEST(test_netcdf_is_refused_when_it_ends_early_or_is_of_others),
     };
