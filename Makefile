@@ -34,6 +34,14 @@ ifeq ($(origin HDF5),undefined)
 HDF5    := $(firstword $(foreach name,hdf5 hdf5-serial,$(shell pkg-config --exists $(name) && echo $(name))))
 endif
 # No psabi: all functions of vectors are inlined, so how one would be passed does not matter.
+# Read what gzip and zstd have compressed, likewise.
+ifeq ($(origin ZLIB),undefined)
+ZLIB    := $(shell pkg-config --exists zlib && echo zlib)
+endif
+ifeq ($(origin ZSTD),undefined)
+ZSTD    := $(shell pkg-config --exists libzstd && echo libzstd)
+endif
+UNPACKED = $(ZLIB) $(ZSTD)
 WARN     = -Wall -Wextra -Wshadow -Wpointer-arith -Wstrict-prototypes -Wmissing-prototypes \
            -Wvla -Wundef -Wno-psabi $(if $(WERROR),-Werror)
 # No -ffast-math: NaN must stay visible. These two only drop errno and FP exception flags, which
@@ -44,7 +52,8 @@ CFLAGS  ?= $(OPTIMISE) -g
 override CFLAGS += -std=c11 -fPIC -fvisibility=hidden -D_POSIX_C_SOURCE=200809L -D_XOPEN_SOURCE=700 -fopenmp $(WARN) \
            -Iinclude -Isrc -MMD -MP $(shell pkg-config --cflags $(PACKAGES)) $(SANITIZE)
 # As needed: HDF5 brings a dozen libraries along, and 10 ms at the start of what is linked with it.
-LDLIBS  := $(shell pkg-config --libs $(PACKAGES)) -Wl,--as-needed $(if $(HDF5),$(shell pkg-config --libs $(HDF5))) -lm
+LDLIBS  := $(shell pkg-config --libs $(PACKAGES)) -Wl,--as-needed $(if $(HDF5),$(shell pkg-config --libs $(HDF5))) \
+           $(if $(strip $(UNPACKED)),$(shell pkg-config --libs $(UNPACKED))) -lm
 override LDFLAGS += -fopenmp $(SANITIZE)
 
 H5MD     = $(wildcard src/trajectory/format_h5md.c src/trajectory/h5md_*.c)
@@ -64,8 +73,10 @@ $(RANKS): override CFLAGS += $(MPI_CFLAGS)
 
 SOURCES  = $(filter-out src/base/ranks.c $(LIVE_WITHOUT) $(if $(HDF5),src/trajectory/format_h5md_without.c,$(H5MD)),$(wildcard src/*/*.c))
 OBJECTS  = $(SOURCES:%.c=$(BUILD)/%.o)
-$(H5MD:%.c=$(BUILD)/%.o) $(BUILD)/tests/unit/trajectory/test_trajectory_h5md.o: \
+$(H5MD:%.c=$(BUILD)/%.o) $(patsubst %,$(BUILD)/tests/unit/trajectory/%_h5md.o,test_trajectory test_topology): \
     override CFLAGS += $(if $(HDF5),$(shell pkg-config --cflags $(HDF5)))
+$(BUILD)/src/trajectory/unpack.o $(BUILD)/tests/unit/trajectory/test_trajectory_packed.o: \
+    override CFLAGS += $(if $(ZLIB),-DHAS_ZLIB) $(if $(ZSTD),-DHAS_ZSTD)
 LIBRARY  = $(BUILD)/libmesofit.a
 LIVE     = $(BUILD)/live.a
 OF_LIBRARY = $(filter-out $(BUILD)/src/app/% $(BUILD)/src/live/%,$(OBJECTS))

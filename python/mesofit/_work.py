@@ -6,7 +6,7 @@ from __future__ import annotations
 import inspect
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Callable, Union
 
@@ -233,6 +233,7 @@ def measure(trajectory: Any, structure: PathLike | None = None, *,
             temperature: float | None = None, units: str | None = None,
             allow_truncated: bool = False, file_units: str | None = None,
             file_time_step: float | None = None, file_group: str | None = None,
+            box: float | Sequence[float] | None = None,
             folder: PathLike | None = None, threads: int | None = None, force: bool = False,
             progress: bool | None = None) -> Result:
     """Make a target of a simulation of atoms, as `mesofit measure` does.
@@ -258,6 +259,8 @@ def measure(trajectory: Any, structure: PathLike | None = None, *,
         Of the results.
     allow_truncated, file_units, file_time_step, file_group
         As the program's options.
+    box : float or three of them, optional [nm]
+        Edges of a box, for files that have none.
     folder, threads, force, progress
         As of `simulate`.
 
@@ -277,6 +280,7 @@ def measure(trajectory: Any, structure: PathLike | None = None, *,
         window=window, escape=escape, velocities=velocities, static=static,
         temperature=temperature, units=units, allow_truncated=allow_truncated,
         file_units=file_units, file_time_step=file_time_step, file_group=file_group,
+        box=None if box is None else ",".join(repr(float(x)) for x in np.atleast_1d(box)),
         threads=threads)
     try:
         return _carry_out(words, memory, folder, False, force, progress)

@@ -27,10 +27,11 @@ enum {
     FILE_UNITS,
     FILE_TIME_STEP,
     FILE_GROUP,
+    BOX,
 };
 
 static const struct command_option options[] = {
-    [STRUCTURE] = {"-s", "FILE", "names, residues and masses of the atoms (.gro, .pdb, .data, …)"},
+    [STRUCTURE] = {"-s", "FILE", "names, residues, masses (.gro, .pdb, .top, .psf, …)"},
     [MAP] = {"--map", "FILE.json", "atoms to beads (describe map); else a bead a residue"},
     [MOLECULES] = {"--molecules", "FILE",
                    "bonds of beads (a scene's \"molecules\"); without a map a bead an atom"},
@@ -52,9 +53,10 @@ static const struct command_option options[] = {
                      "temperature of the target [K]; else that of the velocities"},
     [UNITS] = {"--units", "nm-ps|angstrom-fs", "units of the results (nm-ps)"},
     [ALLOW_TRUNCATED] = {"--allow-truncated", NULL, "use a damaged file up to the damage"},
-    [FILE_UNITS] = {"--file-units", "STYLE", "units of LAMMPS files without any: real, metal, …"},
-    [FILE_TIME_STEP] = {"--file-time-step", "T", "time step of frames that have no time [ps]"},
-    [FILE_GROUP] = {"--file-group", "NAME", "particle group of an H5MD file with several"},
+    [FILE_UNITS] = {"--file-units", "STYLE", "units of files without any: real, metal, …"},
+    [FILE_TIME_STEP] = {"--file-time-step", "T", "time step of frames without times [ps]"},
+    [FILE_GROUP] = {"--file-group", "NAME", "particle group of H5MD"},
+    [BOX] = {"--box", "LX,LY,LZ", "box of files without one [nm]"},
     {NULL, NULL, NULL},
 };
 
@@ -97,9 +99,32 @@ static enum status read_choice(const struct command_line *line, int option,
                           options[option].value);
 }
 
+/// Three lengths, or one of a cube.
+static enum status read_box(const struct command_line *line, double box[3]) {
+    const char *text = line->own[BOX];
+    int count = 0;
+    char *end = NULL;
+    if (text == NULL)
+        return STATUS_OK;
+    for (bool more = true; more && count < 3; count++) {
+        box[count] = strtod(text, &end);
+        more = end > text && isfinite(box[count]) && box[count] > 0 && *end == ',';
+        text = more ? end + 1 : text;
+    }
+    if (end == text || *end != '\0' || !isfinite(box[count - 1]) || !(box[count - 1] > 0) ||
+        count == 2)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "--box takes one length or three, as 4,4,5, not \"%.60s\"",
+                              line->own[BOX]);
+    for (int d = count; d < 3; d++)
+        box[d] = box[0];
+    return STATUS_OK;
+}
+
 static enum status read_request(const struct command_line *line, struct measure_request *request) {
     static const double above_zero = 1e-300;
     struct frames_plan *const frames = &request->frames;
+    TRY(read_box(line, frames->options.box));
     TRY(read_number(line, BEGIN, 0, &frames->begin));
     TRY(read_number(line, END, 0, &frames->end));
     TRY(read_number(line, EVERY, above_zero, &frames->every));

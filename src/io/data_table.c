@@ -112,6 +112,19 @@ static void recognise(struct layout *layout, char *text) {
     } while (mf_data_line_next(&line));
 }
 
+/// Columns of numbers, and one of flags, of the first row, which has all labels of the last two.
+static enum status count_columns(struct data_table *table, const char *file,
+                                 const struct data_line *line, const struct layout *layout) {
+    const size_t words = mf_data_word_count(line, layout->separator);
+    for (size_t column = words; column < DATA_HEADING_MAX; column++)
+        if (is_label(layout, column))
+            return mf_status_fail(STATUS_BAD_INPUT,
+                                  "%s:%zu: %zu columns, and the last rows have text in column %zu",
+                                  file, line->number, words, column + 1);
+    table->columns = words - layout->labels;
+    return STATUS_OK;
+}
+
 /// Count the rows and take the number of columns from the first one.
 static enum status measure(struct data_table *table, const char *file, const char *text,
                            const struct layout *layout) {
@@ -121,7 +134,7 @@ static enum status measure(struct data_table *table, const char *file, const cha
         if (!is_row(layout, &line))
             continue;
         if (table->rows++ == 0)
-            table->columns = mf_data_word_count(&line, layout->separator) - layout->labels;
+            TRY(count_columns(table, file, &line, layout));
         if (table->columns < min)
             return mf_status_fail(STATUS_BAD_INPUT,
                                   "%s:%zu: %zu columns, at least %zu are needed (blanks, commas or "

@@ -25,7 +25,8 @@ enum status mf_frame_box_find(struct frame_box *box, const struct trajectory_fra
     if (!frame->has_box)
         return mf_status_fail(STATUS_BAD_INPUT,
                               "%s: frame %zu has no box: g(r) needs the volume and its images; "
-                              "with --molecules bonds and angles are measured without",
+                              "give it by --box; with --molecules bonds and angles are measured "
+                              "without",
                               frame->file, frame->number);
     for (int i = 0; i < 3; i++)
         if (!frame->periodic[i])

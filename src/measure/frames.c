@@ -81,7 +81,6 @@ enum status mf_frames_open(struct frames *frames, const struct frames_plan *plan
             frames->source[k].bytes = (uint64_t)is.st_size;
     }
     CHECK(open_file(frames));
-    frames->first_bytes = frames->trajectory.source.byte;
 done:
     if (status != STATUS_OK)
         mf_frames_close(frames);
@@ -100,8 +99,18 @@ void mf_frames_close(struct frames *frames) {
     *frames = (struct frames){0};
 }
 
+/// Bytes of the open file that its frames so far have taken, as if all had as many.
+static uint64_t bytes_done(const struct frames *frames) {
+    const struct trajectory *const trajectory = &frames->trajectory;
+    const uint64_t bytes = frames->source[frames->at].bytes;
+    if (trajectory->frames == 0)
+        return mf_source_done(&trajectory->source);
+    return (uint64_t)((double)bytes * (double)trajectory->source.frame /
+                      (double)trajectory->frames);
+}
+
 void mf_frames_bytes(const struct frames *frames, uint64_t *done, uint64_t *total) {
-    *done = frames->open ? frames->trajectory.source.byte : 0;
+    *done = frames->open ? bytes_done(frames) : 0;
     *total = 0;
     for (size_t k = 0; k < frames->plan.files; k++) {
         *total += frames->source[k].bytes;
@@ -109,22 +118,56 @@ void mf_frames_bytes(const struct frames *frames, uint64_t *done, uint64_t *tota
     }
 }
 
-size_t mf_frames_expected(const struct frames *frames) {
+/// Add the frames of a file, without decoding them, until there are `most`. A damaged one has those
+/// before the damage.
+static void count_file(const struct frames *frames, const char *file, uint64_t most,
+                       uint64_t *count) {
+    struct trajectory trajectory;
+    struct trajectory_frame frame = {0};
+    bool more = true;
+    if (mf_trajectory_open(&trajectory, file, &frames->plan.options) != STATUS_OK)
+        return;
+    if (trajectory.frames > 0)
+        *count += trajectory.frames;
+    while (trajectory.frames == 0 && more && *count < most &&
+           !mf_interrupt_wanted(frames->plan.cancel))
+        if (mf_trajectory_fetch(&trajectory, &frame, &more) != STATUS_OK)
+            more = false;
+        else
+            *count += more;
+    mf_frame_clear(&frame);
+    mf_trajectory_close(&trajectory);
+}
+
+/// How many frames the files have, or `most`; 0: not known, since one is read only once.
+static uint64_t count_frames(const struct frames *frames, uint64_t most) {
+    uint64_t count = 0;
+    for (size_t k = 0; k < frames->plan.files; k++)
+        if (frames->source[k].bytes == 0)
+            return 0;
+    for (size_t k = 0; k < frames->plan.files && count < most; k++)
+        count_file(frames, frames->plan.file[k], most, &count);
+    return count < most ? count : most;
+}
+
+size_t mf_frames_expected(const struct frames *frames, size_t most) {
     const struct frames_plan *const plan = &frames->plan;
-    uint64_t done, total;
-    mf_frames_bytes(frames, &done, &total);
-    if (frames->time.count < 2 || total == 0 || plan->in_any_order)
+    if (frames->time.count < 2 || plan->in_any_order)
         return 0;
     size_t read = 0;
     for (size_t k = 0; k <= frames->at && k < frames->plan.files; k++)
         read += frames->source[k].read;
-    const double left_out = (double)(read - frames->time.count); // before the first, or doubled
+    const size_t left_out = read - frames->time.count; // before the first, or doubled
     const double begin = frames->time.value[0], interval = frames->time.value[1] - begin;
-    const double all = (double)total / (double)frames->first_bytes - left_out;
-    double last = begin + (all - 1) * interval;
+    const double apart = fmax(interval, plan->every);
+    const double wanted = ((double)most + (double)plan->skip) * apart / interval;
+    const uint64_t count = count_frames(frames, left_out + (uint64_t)ceil(fmin(wanted, 1e15)));
+    if (count == 0)
+        return 0;
+    double last = begin + ((double)count - (double)left_out - 1) * interval;
     if (plan->end < last)
         last = plan->end;
-    return (size_t)fmax(1, (last - begin) / fmax(interval, plan->every) + 1 - (double)plan->skip);
+    return (size_t)fmax(1, floor((last - begin) / apart + 1 + 1e-6) - (double)plan->skip);
 }
 
 // Which are used ----------------------------------------------------------------------------------

@@ -45,8 +45,7 @@ struct frames {
     struct trajectory_frame *frame; ///< shape [slots]: a batch, those to be used first
     struct series time;             ///< of all frames in order, so far
     size_t used, skipped;
-    uint64_t first_bytes; ///< up to the end of the first frame
-    struct bytes notes;   ///< lines for a person: what was left out and why; a text
+    struct bytes notes; ///< lines for a person: what was left out and why; a text
 };
 
 /// Open the first file. @param[in] structure  NULL: that of the first file
@@ -61,9 +60,10 @@ enum status mf_frames_open(struct frames *frames, const struct frames_plan *plan
 /// out of order or without a time that is asked for; IO; NO_MEMORY; INTERRUPTED.
 enum status mf_frames_next(struct frames *frames, size_t *count) MUST_USE;
 
-/// How many frames there will be to be used, if all are as long as the first and as far apart as
-/// the first two that were seen; 0: not known.
-size_t mf_frames_expected(const struct frames *frames);
+/// How many frames there will be to be used, if all are as far apart as the first two that were
+/// seen; `most` if there are more. Files that do not say it are read for it. 0: not known, as of a
+/// pipe. Tested: test_measure.
+size_t mf_frames_expected(const struct frames *frames, size_t most);
 
 /// Bytes of the files, and those taken so far.
 void mf_frames_bytes(const struct frames *frames, uint64_t *done, uint64_t *total);

@@ -13,7 +13,12 @@
 const char *const mf_measured_velocities[] = {"usual", "file", "differences", "none", NULL};
 
 /// Unless given: frames of a window, and which part of the trajectory a window is at most.
-enum { USUAL_LAGS = 100, USUAL_PART = 10, WINDOWS_BETWEEN = 10, ESCAPE_BINS = 50 };
+enum {
+    USUAL_PART = 10,
+    USUAL_LAGS = MEASURED_MOTION_FRAMES / USUAL_PART,
+    WINDOWS_BETWEEN = 10,
+    ESCAPE_BINS = 50
+};
 
 /// Unless given, where pairs begin and where they have escaped, in units of ρ^(−1/3): around the
 /// first shell of a liquid.

@@ -20,6 +20,9 @@ enum measured_velocities {
 /// Names of these, NULL-terminated.
 extern const char *const mf_measured_velocities[];
 
+/// Frames from which on the usual window does not grow.
+enum { MEASURED_MOTION_FRAMES = 1000 };
+
 struct measured_motion_plan {
     bool leave_out;  ///< all of it: frames need no times
     int velocities;  ///< enum measured_velocities

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "topologies/gromacs_functions.h"
-#include "topologies/gromacs_text.h"
+#include "trajectory/gromacs_text.h"
 #include "topologies/gromacs_topology.h"
 
 enum { GROMACS_MAX_WORDS = 32, GROMACS_MAX_TYPES = 4096, GROMACS_WORD_SIZE = 32 };

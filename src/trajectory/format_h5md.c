@@ -6,6 +6,7 @@
 // the first frame. Built if HDF5 is there: format_h5md_without.c stands for it otherwise.
 #include "base/memory.h"
 #include "trajectory/h5md_file.h"
+#include "trajectory/h5md_topology.h"
 #include "trajectory/trajectory.h"
 
 #include <math.h>
@@ -24,7 +25,9 @@ static bool recognise(const unsigned char *begin, size_t size) {
 
 static enum status open(struct trajectory *trajectory) {
     struct h5md_file *const h5md = trajectory->state;
-    return mf_h5md_file_open(h5md, trajectory);
+    TRY(mf_h5md_file_open(h5md, trajectory));
+    trajectory->frames = h5md->position.frames;
+    return STATUS_OK;
 }
 
 static void close(struct trajectory *trajectory) {
@@ -81,8 +84,7 @@ static enum status read_box(struct h5md_file *h5md, double step, hsize_t at, dou
 static enum status fetch(struct trajectory *trajectory, struct trajectory_frame *frame,
                          bool *more) {
     struct h5md_file *const h5md = trajectory->state;
-    struct source *const source = &trajectory->source;
-    const hsize_t at = source->frame;
+    const hsize_t at = trajectory->source.frame;
     struct header header = {0};
     *more = at < h5md->position.frames;
     if (!*more)
@@ -101,8 +103,6 @@ static enum status fetch(struct trajectory *trajectory, struct trajectory_frame 
     if (h5md->id.there && !header.has_ids) // then it is unknown which particle is which
         return fail_of_step(&h5md->id, header.step, at, "");
     memcpy(frame->raw.data, &header, sizeof header);
-    source->byte =
-        (uint64_t)((double)h5md->bytes * (double)(at + 1) / (double)h5md->position.frames);
     return STATUS_OK;
 }
 
@@ -168,6 +168,7 @@ static enum status describe(struct trajectory *trajectory, struct trajectory_fra
     TRY(mf_structure_init(structure, first->atoms));
     TRY(describe_masses(h5md, structure));
     TRY(describe_species(h5md, structure));
+    TRY(mf_h5md_topology_read(h5md, trajectory));
     structure->has_ids = header.has_ids;
     if (!header.has_ids)
         return STATUS_OK;
@@ -253,7 +254,8 @@ static const char *const extensions[] = {"h5md", "h5", "hdf5", NULL};
 const struct trajectory_format mf_format_h5md = {
     .name = "h5md",
     .extensions = extensions,
-    .summary = "H5MD 1.1: positions, velocities, images, ids, box; masses and species",
+    .summary =
+        "H5MD 1.1: positions, velocities, images, ids, box; masses, species, GROMACS's topology",
     .unit_source = TRAJECTORY_UNITS_GIVEN,
     .state_size = sizeof(struct h5md_file),
     .recognise = recognise,

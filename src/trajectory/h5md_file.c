@@ -80,7 +80,8 @@ static enum status choose_group(struct h5md_file *h5md, hid_t particles, const c
 
 static enum status open_group(struct h5md_file *h5md, const char *file, const char *wanted) {
     if (H5Lexists(h5md->file, "particles", H5P_DEFAULT) <= 0)
-        return fail(file, "HDF5, but not H5MD: there is no group \"particles\"");
+        return fail(file, "HDF5, but not H5MD: there is no group \"particles\" (NetCDF-4 becomes "
+                          "readable NetCDF-3 by nccopy -6)");
     const hid_t particles = mf_h5md_element_group(h5md->file, "particles");
     if (particles < 0)
         return fail(file, "\"particles\" is not a group of this file");
@@ -218,8 +219,8 @@ enum status mf_h5md_file_open(struct h5md_file *h5md, struct trajectory *traject
     const char *const file = trajectory->file;
     struct stat is;
     H5Eset_auto2(H5E_DEFAULT, NULL, NULL); // what fails is told by our own lines
-    if (stat(file, &is) != 0 || !S_ISREG(is.st_mode))
-        return fail(file, "HDF5 is read from files only");
+    if (trajectory->source.unpack || stat(file, &is) != 0 || !S_ISREG(is.st_mode))
+        return fail(file, "HDF5 is read from files only, neither compressed nor a pipe");
     *h5md = (struct h5md_file){.bytes = (uint64_t)is.st_size, .periodic = {true, true, true}};
     h5md->file = H5Fopen(file, H5F_ACC_RDONLY, H5P_DEFAULT);
     if (h5md->file < 0)

@@ -128,7 +128,9 @@ enum status mf_mapping_build_masses(struct mapping *mapping, const struct mappin
         return mf_mapping_note(
             mapping,
             "mesofit: warning: \"%s\" has the mass of carbon, and there is no hydrogen: are these "
-            "united atoms? Give their masses in \"masses\" of a map",
+            "united atoms? Their masses are those of a topology (-s topol.top), or of \"masses\" "
+            "of a "
+            "map",
             reported.carbon->name);
     return STATUS_OK;
 }

@@ -7,6 +7,7 @@
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 enum { BUFFER_SIZE = 1 << 18, LONGEST_LINE = 1 << 20, LARGEST_PIECE = 1 << 24 };
 
@@ -31,15 +32,40 @@ void mf_source_free(struct bytes *bytes) {
     *bytes = (struct bytes){0};
 }
 
+/// What reading less than was wanted means, but for the end of the file.
+static enum status check_stream(const struct source *source) {
+    if (ferror(source->stream))
+        return mf_status_fail(STATUS_IO, "%s: frame %zu, byte %llu: %s", source->file,
+                              source->frame, (unsigned long long)source->byte, strerror(errno));
+    if (source->unpack && mf_unpack_fault(source->unpack))
+        return mf_source_fail_byte(source, "%s", mf_unpack_fault(source->unpack));
+    return STATUS_OK;
+}
+
+static size_t read_some(struct source *source, unsigned char *to, size_t count) {
+    return source->unpack ? mf_unpack_read(source->unpack, source->stream, to, count)
+                          : fread(to, 1, count, source->stream);
+}
+
+/// The first bytes tell whether the file is compressed.
+static enum status begin(struct source *source) {
+    source->end = read_some(source, source->buffer, BUFFER_SIZE);
+    TRY(check_stream(source));
+    TRY(mf_unpack_begin(&source->unpack, source->file, source->buffer, source->end));
+    if (source->unpack)
+        source->end = 0;
+    return STATUS_OK;
+}
+
 enum status mf_source_open(struct source *source, const char *file) {
     *source = (struct source){.file = file};
     TRY(mf_input_open(&source->stream, file));
     setvbuf(source->stream, NULL, _IONBF, 0); // the buffer is our own
     source->buffer = mf_memory_uncleared(BUFFER_SIZE, 1);
-    if (source->buffer)
-        return STATUS_OK;
-    mf_source_close(source);
-    return STATUS_NO_MEMORY;
+    const enum status status = source->buffer ? begin(source) : STATUS_NO_MEMORY;
+    if (status != STATUS_OK)
+        mf_source_close(source);
+    return status;
 }
 
 void mf_source_stand_in(struct source *source, const char *file) {
@@ -49,15 +75,9 @@ void mf_source_stand_in(struct source *source, const char *file) {
 void mf_source_close(struct source *source) {
     if (source->stream)
         fclose(source->stream);
+    mf_unpack_end(source->unpack);
     mf_memory_free(source->buffer);
     *source = (struct source){0};
-}
-
-static enum status check_stream(const struct source *source) {
-    if (ferror(source->stream))
-        return mf_status_fail(STATUS_IO, "%s: frame %zu, byte %llu: %s", source->file,
-                              source->frame, (unsigned long long)source->byte, strerror(errno));
-    return STATUS_OK;
 }
 
 /// Have something in the buffer, unless the file has ended.
@@ -65,8 +85,12 @@ static enum status fill(struct source *source) {
     if (source->begin < source->end)
         return STATUS_OK;
     source->begin = 0;
-    source->end = fread(source->buffer, 1, BUFFER_SIZE, source->stream);
-    return check_stream(source);
+    source->end = read_some(source, source->buffer, BUFFER_SIZE);
+    return source->end > 0 ? STATUS_OK : check_stream(source);
+}
+
+uint64_t mf_source_done(const struct source *source) {
+    return source->unpack ? mf_unpack_bytes(source->unpack) : source->byte;
 }
 
 enum status mf_source_peek(struct source *source, const unsigned char **begin, size_t *size) {
@@ -84,6 +108,27 @@ enum status mf_source_more(struct source *source, bool *more) {
     return STATUS_OK;
 }
 
+enum status mf_source_seek(struct source *source, uint64_t byte) {
+    struct stat about;
+    if (source->unpack || fstat(fileno(source->stream), &about) != 0 || !S_ISREG(about.st_mode))
+        return mf_source_fail_byte(source, "its format has an index, which needs a file, neither "
+                                           "compressed nor a pipe");
+    if (byte > (uint64_t)about.st_size)
+        return mf_source_fail_byte(source,
+                                   "byte %llu follows, but the file has only %llu: it is damaged",
+                                   (unsigned long long)byte, (unsigned long long)about.st_size);
+    const uint64_t left = source->end - source->begin; // of the buffer
+    if (byte >= source->byte && byte - source->byte < left) {
+        source->begin += (size_t)(byte - source->byte);
+    } else {
+        source->begin = source->end = 0;
+        if (fseeko(source->stream, (off_t)byte, SEEK_SET) != 0)
+            return mf_status_fail(STATUS_IO, "%s: %s", source->file, strerror(errno));
+    }
+    source->byte = byte;
+    return STATUS_OK;
+}
+
 /// Bytes from the buffer first, then from the file past the buffer: at most `count`.
 static size_t take_some(struct source *source, unsigned char *to, size_t count) {
     size_t taken = source->end - source->begin;
@@ -93,7 +138,7 @@ static size_t take_some(struct source *source, unsigned char *to, size_t count) 
         memcpy(to, source->buffer + source->begin, taken);
     source->begin += taken;
     if (taken < count)
-        taken += fread(to + taken, 1, count - taken, source->stream);
+        taken += read_some(source, to + taken, count - taken);
     source->byte += taken;
     return taken;
 }
@@ -103,9 +148,10 @@ enum status mf_source_take(struct source *source, struct bytes *bytes, uint64_t 
         const size_t piece = count < LARGEST_PIECE ? (size_t)count : LARGEST_PIECE;
         TRY(mf_source_capacity(bytes, piece));
         const size_t taken = take_some(source, bytes->data + bytes->size, piece);
-        TRY(check_stream(source));
         bytes->size += taken;
         count -= taken;
+        if (taken < piece)
+            TRY(check_stream(source));
         if (taken < piece)
             return mf_source_fail_byte(source,
                                        "the file ends within the frame, %llu bytes are missing",

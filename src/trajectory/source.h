@@ -2,12 +2,13 @@
 /// @file The bytes of a trajectory, taken one after the other.
 ///
 /// Nothing is trusted that a file says of itself: memory grows with what has really been read, so
-/// that a header which promises 2^60 atoms costs nothing. Never backwards, so that pipes will do: a
-/// format with an index opens the file itself (format_h5md.c). Threads: one source belongs to one
+/// that a header which promises 2^60 atoms costs nothing. Forwards, so that pipes will do; only a
+/// format with an index goes where that says (mf_source_seek). Threads: one source belongs to one
 /// thread. Tested: test_trajectory_damage.
 #pragma once
 
 #include "base/status.h"
+#include "trajectory/unpack.h"
 
 #include <stdarg.h>
 #include <stdbool.h>
@@ -33,20 +34,25 @@ struct source {
     const char *file; ///< borrowed
     FILE *stream;
     unsigned char *buffer;
-    size_t begin, end; ///< what of the buffer is not yet taken
-    uint64_t byte;     ///< taken so far
-    size_t line;       ///< lines taken so far
-    size_t frame;      ///< that is being read, for messages; the first is 0
-    bool broken_line;  ///< the last line taken had no end: the file ends there
+    size_t begin, end;     ///< what of the buffer is not yet taken
+    uint64_t byte;         ///< of the file, or of what was compressed, that would be taken next
+    size_t line;           ///< lines taken so far
+    size_t frame;          ///< that is being read, for messages; the first is 0
+    struct unpack *unpack; ///< of a compressed file, or NULL
+    bool broken_line;      ///< the last line taken had no end: the file ends there
 };
 
-/// Fails: IO, NO_MEMORY. A failed source is closed, too.
+/// A file that gzip or zstd have compressed is read as what was compressed.
+/// Fails: IO, NO_MEMORY; BAD_INPUT as mf_unpack_begin. A failed source is closed, too.
 enum status mf_source_open(struct source *source, const char *file) MUST_USE;
 
 /// A source of no bytes, of which there is always more: who reads knows when it ends.
 void mf_source_stand_in(struct source *source, const char *file);
 
 void mf_source_close(struct source *source);
+
+/// Bytes of the file that have been read, compressed or not.
+uint64_t mf_source_done(const struct source *source);
 
 /// The first bytes, which stay to be taken: the whole file if it is short.
 enum { SOURCE_PEEK = 4096 };
@@ -56,6 +62,10 @@ enum status mf_source_peek(struct source *source, const unsigned char **begin,
 /// Append the next `count` bytes to `bytes`. Fails: BAD_INPUT with frame and byte if the file ends
 /// before; IO, NO_MEMORY.
 enum status mf_source_take(struct source *source, struct bytes *bytes, uint64_t count) MUST_USE;
+
+/// Go on at this byte of the file. Fails: BAD_INPUT for a pipe, whose bytes come once, for a
+/// compressed file, and for a place beyond the end; IO.
+enum status mf_source_seek(struct source *source, uint64_t byte) MUST_USE;
 
 /// Whether there is another byte. Fails: IO.
 enum status mf_source_more(struct source *source, bool *more) MUST_USE;

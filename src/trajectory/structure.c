@@ -77,6 +77,35 @@ enum status mf_structure_number_residues(struct structure *structure) {
     return STATUS_OK;
 }
 
+/// The first atom of a molecule, which stands for it; the way there is halved for the next time.
+static size_t find_root(size_t *root, size_t k) {
+    for (; root[k] != k; k = root[k])
+        root[k] = root[root[k]];
+    return k;
+}
+
+enum status mf_structure_join(struct structure *structure, const uint32_t (*bond)[2],
+                              size_t bonds) {
+    OWNED size_t *root = NULL;
+    TRY_ARRAY(root, structure->atoms);
+    for (size_t k = 0; k < structure->atoms; k++)
+        root[k] = k;
+    for (size_t n = 0; n < bonds; n++) {
+        if (bond[n][0] >= structure->atoms || bond[n][1] >= structure->atoms)
+            return mf_status_fail(STATUS_BAD_INPUT, "bond %zu is of the atoms %lu and %lu of %zu",
+                                  n + 1, (unsigned long)bond[n][0] + 1,
+                                  (unsigned long)bond[n][1] + 1, structure->atoms);
+        const size_t a = find_root(root, bond[n][0]), b = find_root(root, bond[n][1]);
+        root[a < b ? b : a] = a < b ? a : b;
+        structure->atom[bond[n][0]].molecule = structure->atom[bond[n][1]].molecule = 1;
+    }
+    for (size_t k = 0; k < structure->atoms; k++)
+        if (structure->atom[k].molecule != 0)
+            structure->atom[k].molecule = (int64_t)find_root(root, k) + 1;
+    structure->has_molecules = true;
+    return STATUS_OK;
+}
+
 size_t mf_structure_find(const struct structure *structure, int64_t id) {
     const struct structure_atom *const atom = structure->atom;
     size_t begin = 0, end = structure->atoms;

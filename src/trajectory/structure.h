@@ -48,6 +48,12 @@ enum status mf_structure_sort(struct structure *structure) MUST_USE;
 /// on its own. Fails: NO_MEMORY. Tested: test_structure.
 enum status mf_structure_number_residues(struct structure *structure) MUST_USE;
 
+/// Make a molecule of all atoms that bonds join, by their places; an atom without a bond is on its
+/// own. Fails: BAD_INPUT, without a place, for a bond of an atom that is not there; NO_MEMORY.
+/// Tested: test_structure.
+enum status mf_structure_join(struct structure *structure, const uint32_t (*bond)[2],
+                              size_t bonds) MUST_USE;
+
 /// Index of the atom with that id; `structure->atoms` if there is none. Ids grow with the index.
 size_t mf_structure_find(const struct structure *structure, int64_t id);
 

@@ -7,6 +7,7 @@
 #include "trajectory/words.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 #include <strings.h>
 
@@ -16,32 +17,51 @@ NAMED_RECORD(struct trajectory_format);
 const struct trajectory_format *const mf_trajectory_formats[] = {
     TRAJECTORY_FORMATS(TRAJECTORY_LISTED) NULL};
 
-static bool has_extension(const struct trajectory_format *format, const char *file) {
-    const char *point = strrchr(file, '.');
-    for (size_t k = 0; point && format->extensions[k]; k++)
-        if (strcasecmp(point + 1, format->extensions[k]) == 0)
-            return true;
-    return false;
-}
-
 static bool ends_with(const char *file, const char *extension) {
     const char *const point = strrchr(file, '.');
     return point && strcasecmp(point, extension) == 0;
 }
 
-/// What a packed file or another format begins with or is called, and what is to be done about it.
-static const char *find_hint(const char *file, const unsigned char *begin, size_t size) {
-    if (ends_with(file, ".tpr"))
-        return "GROMACS's .tpr is not read: give names and residues by a .gro of the same atoms, "
-               "masses in a map";
-    if (ends_with(file, ".top") || ends_with(file, ".itp"))
-        return "a topology has no coordinates: give names and residues by a .gro of the same "
-               "atoms, masses in a map, bonds of the beads by --molecules";
-    if (size >= 2 && memcmp(begin, "\x1F\x8B", 2) == 0)
-        return "compressed: decompress it with gunzip";
-    if (size >= 4 && memcmp(begin, "\x28\xB5\x2F\xFD", 4) == 0)
-        return "compressed: decompress it with unzstd";
-    return "neither its first bytes nor its extension belong to a known format";
+/// Whether a file is called "name.extension", or so before it was compressed.
+static bool has_extension(const struct trajectory_format *format, const char *file) {
+    const char *end = file + strlen(file);
+    if (ends_with(file, ".gz") || ends_with(file, ".zst"))
+        end = strrchr(file, '.');
+    for (size_t k = 0; format->extensions[k]; k++) {
+        const size_t length = strlen(format->extensions[k]);
+        if ((size_t)(end - file) > length && end[-(ptrdiff_t)length - 1] == '.' &&
+            strncasecmp(end - length, format->extensions[k], length) == 0)
+            return true;
+    }
+    return false;
+}
+
+enum { HINT = 512 };
+
+/// All formats by their names.
+static void list_formats(char *hint) {
+    size_t length = (size_t)snprintf(hint, HINT, "read are ");
+    for (size_t k = 0; mf_trajectory_formats[k]; k++)
+        length += (size_t)snprintf(hint + length, HINT - length, "%s%s", k ? ", " : "",
+                                   mf_trajectory_formats[k]->name);
+    snprintf(hint + length, HINT - length,
+             ", also as .gz or .zst; gmx trjconv, cpptraj, VMD or MDAnalysis convert others");
+}
+
+/// What another format is called or begins with, and what is to be done about it.
+static void find_hint(const char *file, const unsigned char *begin, size_t size, char *hint) {
+    if (ends_with(file, ".tpr") || (size >= 15 && memcmp(begin + 8, "VERSION", 7) == 0))
+        snprintf(hint, HINT,
+                 "GROMACS's .tpr is not read: \"gmx editconf -f %.100s -o conf.gro\" writes names "
+                 "and residues, and topol.top has masses (-s)",
+                 file);
+    else if (ends_with(file, ".tng") || (size >= 52 && memcmp(begin + 40, "GENERAL INFO", 12) == 0))
+        snprintf(hint, HINT, "TNG is not read: \"gmx trjconv -f %.100s -o traj.xtc\" makes what is",
+                 file);
+    else if (ends_with(file, ".trz"))
+        snprintf(hint, HINT, "TRZ is not read: MDAnalysis makes .xtc or .dcd of it");
+    else
+        list_formats(hint);
 }
 
 static enum status find_format(struct trajectory *trajectory) {
@@ -59,8 +79,9 @@ static enum status find_format(struct trajectory *trajectory) {
             trajectory->format = formats[k];
     if (trajectory->format)
         return STATUS_OK;
-    return mf_status_fail(STATUS_BAD_INPUT, "%s: not a trajectory: %s", trajectory->file,
-                          find_hint(trajectory->file, begin, size));
+    char hint[HINT];
+    find_hint(trajectory->file, begin, size, hint);
+    return mf_status_fail(STATUS_BAD_INPUT, "%s: not a trajectory: %s", trajectory->file, hint);
 }
 
 /// What is given, unless the format has units of its own; else Å, fs and u, unless only the file
@@ -91,7 +112,7 @@ static enum status check_units(const struct trajectory *trajectory) {
         return STATUS_OK;
     return mf_status_fail(
         STATUS_BAD_INPUT,
-        "%s: the LAMMPS file has no units: give them by --file-units (real, metal, nano, lj …)",
+        "%s: the file has no units: give them by --file-units (real, metal, nano, nm-ps, lj …)",
         trajectory->file);
 }
 
@@ -118,6 +139,7 @@ enum status mf_trajectory_open(struct trajectory *trajectory, const char *file,
     enum status status;
     *trajectory =
         (struct trajectory){.file = file, .time_step = options->time_step, .group = options->group};
+    memcpy(trajectory->box, options->box, sizeof trajectory->box);
     if (mf_trajectory_memory_find(file)) {
         trajectory->format = &mf_trajectory_memory;
         mf_source_stand_in(&trajectory->source, file);
@@ -159,7 +181,10 @@ enum status mf_trajectory_fetch(struct trajectory *trajectory, struct trajectory
         give_first(trajectory, frame);
         return STATUS_OK;
     }
-    TRY(mf_source_more(source, more));
+    if (trajectory->frames > 0)
+        *more = source->frame < trajectory->frames;
+    else
+        TRY(mf_source_more(source, more));
     if (!*more)
         return STATUS_OK;
     frame->file = trajectory->file;
@@ -192,12 +217,31 @@ static enum status check_box(const struct trajectory_frame *frame) {
     return STATUS_OK;
 }
 
+/// The box that was told is for frames without their own.
+static enum status take_told_box(const struct trajectory *trajectory,
+                                 struct trajectory_frame *frame) {
+    const double box[3][3] = {
+        {trajectory->box[0], 0, 0}, {0, trajectory->box[1], 0}, {0, 0, trajectory->box[2]}};
+    if (frame->has_box)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: frame %zu has a box of its own: leave out --box", frame->file,
+                              frame->number);
+    mf_frame_set_box(frame, box);
+    return STATUS_OK;
+}
+
 enum status mf_trajectory_decode(const struct trajectory *trajectory,
                                  struct trajectory_frame *frame) {
     frame->step = -1;
     frame->time = NAN;
+    if (trajectory->format->decode == NULL)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: has no coordinates: give it by -s, beside a trajectory",
+                              trajectory->file);
     TRY(trajectory->format->decode(trajectory, frame));
     TRY(check_box(frame));
+    if (trajectory->box[0] > 0)
+        TRY(take_told_box(trajectory, frame));
     if (isnan(frame->time) && frame->step >= 0 && trajectory->time_step > 0)
         frame->time = (double)frame->step * trajectory->time_step;
     return STATUS_OK;

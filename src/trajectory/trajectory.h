@@ -31,14 +31,16 @@ struct trajectory_format {
     /// Give back what its state holds besides its own memory; NULL: nothing.
     void (*close)(struct trajectory *trajectory);
     /// Take the bytes of the next frame into frame->raw; `*more` is true, and becomes false if
-    /// there is no further frame. Not called once the source has no byte left.
+    /// there is no further frame. Not called once all frames have been taken that the file says it
+    /// has or, if it says nothing, once the source has no byte left.
     enum status (*fetch)(struct trajectory *trajectory, struct trajectory_frame *frame, bool *more);
     /// The time of a frame that was fetched [ps], without decoding it; NULL: it costs as much.
     double (*peek)(const struct trajectory_frame *frame);
     /// Make the structure from the first frame, which has been fetched; its atoms stand in the
     /// order of ids if there are ids.
     enum status (*describe)(struct trajectory *trajectory, struct trajectory_frame *first);
-    /// Make positions, velocities, box and time from frame->raw. Several run at once.
+    /// Make positions, velocities, box and time from frame->raw. Several run at once. NULL: it has
+    /// no coordinates, and is a structure beside a trajectory.
     enum status (*decode)(const struct trajectory *trajectory, struct trajectory_frame *frame);
 };
 
@@ -47,11 +49,15 @@ struct trajectory_format {
     EACH(mf_format_xtc)                                                                            \
     EACH(mf_format_trr)                                                                            \
     EACH(mf_format_dcd)                                                                            \
+    EACH(mf_format_gsd)                                                                            \
+    EACH(mf_format_netcdf)                                                                         \
     EACH(mf_format_lammps_dump)                                                                    \
     EACH(mf_format_gro)                                                                            \
     EACH(mf_format_xyz)                                                                            \
     EACH(mf_format_pdb)                                                                            \
     EACH(mf_format_lammps_data)                                                                    \
+    EACH(mf_format_psf)                                                                            \
+    EACH(mf_format_top)                                                                            \
     EACH(mf_format_h5md)
 
 #define TRAJECTORY_DECLARE(record) extern const struct trajectory_format record;
@@ -66,6 +72,7 @@ struct trajectory_options {
     const char *units; ///< one of mf_trajectory_unit_names, for formats without their own; or NULL
     double time_step; ///< of the simulation [ps]: gives frames a time that have but a step; 0: none
     const char *group; ///< of particles, in a file that may have several; NULL: the only one
+    double box[3];     ///< of frames that have none [nm]; 0: none
 };
 
 struct trajectory {
@@ -75,6 +82,8 @@ struct trajectory {
     struct trajectory_scale scale;
     double time_step;
     const char *group;    ///< borrowed
+    double box[3];        ///< as told [nm]
+    uint64_t frames;      ///< in the file, where it says so; 0: they end with it
     char note[320];       ///< what was assumed of the file, a line for a person; "": nothing
     struct source source; ///< what follows is the readers' own
     struct trajectory_frame first;

@@ -41,6 +41,7 @@ static bool recognise(const unsigned char *begin, size_t size) {
 static enum status open(struct trajectory *trajectory) {
     struct state *const state = trajectory->state;
     state->memory_files = mf_trajectory_memory_find(trajectory->file);
+    trajectory->frames = state->memory_files->frames;
     return STATUS_OK;
 }
 
@@ -88,7 +89,6 @@ static enum status fetch(struct trajectory *trajectory, struct trajectory_frame 
     if (from.velocities)
         TRY(take(trajectory, frame, from.velocities, memory_files->length / memory_files->time,
                  "velocity"));
-    source->byte += memory_files->frames > 0 ? frame_size(memory_files) : 0;
     return STATUS_OK;
 }
 

@@ -107,7 +107,7 @@ static void print_interval(struct run *run, size_t count) {
 
 static enum status begin_measuring(struct run *run) {
     struct measured_plan plan = run->request->measured;
-    plan.motion.expected = mf_frames_expected(&run->frames);
+    plan.motion.expected = mf_frames_expected(&run->frames, MEASURED_MOTION_FRAMES);
     if (run->request->molecules)
         plan.molecules = (struct measured_molecules_plan){&run->molecules.molecules, &run->types,
                                                           run->request->molecules};

@@ -283,8 +283,10 @@ static void test_a_molecule_in_vacuum_is_fitted_by_its_bonds(void **state) {
     }
     RUN_PROGRAM(&result, "measure", "alone.xyz", "-o", "other");
     run_program_assert_code(&result, 2);
-    assert_contains(result.err, "frame 0 has no box: g(r) needs the volume and its images; with "
-                                "--molecules bonds and angles are measured without");
+    assert_contains(
+        result.err,
+        "frame 0 has no box: g(r) needs the volume and its images; give it by --box; with "
+        "--molecules bonds and angles are measured without");
     write_gas("gas.xyz", &(struct trimer){{"A", "A", "A"}, 0.3, 0.0003, 120, 0.01});
     RUN_PROGRAM(&result, "measure", "gas.xyz", "--molecules", "kinds.json", "--temperature", "300",
                 "--static", "-o", "target", "--force");

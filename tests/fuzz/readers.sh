@@ -24,7 +24,7 @@ add v $corpus/fit-votca/target.dist.tgt tests/reference_data/votca/*/*.dpot.imc
 add s $corpus/*/scene.json
 add r $corpus/*/run.json
 add x tests/fuzz/trajectories/*
-add l tests/fuzz/trajectories/*.d*
+add l tests/fuzz/trajectories/*.d* tests/fuzz/trajectories/*.gsd
 printf 'm{"beads": {"A": {"residue": "B", "atoms": "C D"}, "E": {"first": 1, "last": 6, "size": 3}}, "masses": {"C": 1}}' >"$place/m-map"
 printf 'cmesofit state 5' >"$place/c-head"
 for kind in 1 2 3 4 5; do

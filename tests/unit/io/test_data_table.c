@@ -202,6 +202,8 @@ static void test_data_table_read_names_the_line_when_a_word_is_not_a_finite_numb
 static void test_data_table_read_names_the_line_when_a_row_has_another_length(void **state) {
     assert_refused(state, "1 2\n3 4\n5\n", "t.dat:3: 1 columns, the first row has 2");
     assert_refused(state, "1 2\n3 4 5\n", "t.dat:2: 3 columns, the first row has 2");
+    assert_refused(state, "1 2 3\n1 2 3 a\n4 5 6 b\n",
+                   "t.dat:1: 3 columns, and the last rows have text in column 4");
     assert_refused(state, "# r\n1\n2\n",
                    "t.dat:2: 1 columns, at least 2 are needed (blanks, commas or semi");
 }

@@ -36,6 +36,22 @@ static void test_residues_are_runs_and_molecules_are_not(void **state) {
     mf_structure_clear(&scattered);
 }
 
+/// A ring of 4 joined to a chain in whatever order, a pair, and one that is alone.
+static void test_molecules_are_what_bonds_join(void **state) {
+    static const uint32_t bonds[][2] = {{6, 2}, {7, 4}, {1, 2}, {5, 6}, {1, 5}, {0, 5}};
+    static const int64_t molecule[] = {1, 1, 1, 0, 5, 1, 1, 5};
+    struct structure structure = make(8, NULL, NULL);
+    (void)state;
+    assert_ok(mf_structure_join(&structure, bonds, 6));
+    assert_ok(mf_structure_number_residues(&structure));
+    for (int k = 0; k < 8; k++)
+        assert_int_equal(structure.atom[k].molecule, molecule[k]);
+    assert_int_equal(structure.residues, 3);
+    assert_fails(mf_structure_join(&structure, (const uint32_t[][2]){{3, 8}}, 1), STATUS_BAD_INPUT,
+                 "bond 1 is of the atoms 4 and 9 of 8");
+    mf_structure_clear(&structure);
+}
+
 static void test_atoms_are_found_by_ids_with_gaps(void **state) {
     struct structure structure = make(100, NULL, NULL);
     (void)state;
@@ -122,6 +138,7 @@ static void test_elements_in_capitals_are_guessed_where_they_are_no_other_names(
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_residues_are_runs_and_molecules_are_not),
+        cmocka_unit_test(test_molecules_are_what_bonds_join),
         cmocka_unit_test(test_atoms_are_found_by_ids_with_gaps),
         cmocka_unit_test(test_structures_of_other_atoms_are_not_the_same),
         cmocka_unit_test(test_elements_are_guessed_by_names),

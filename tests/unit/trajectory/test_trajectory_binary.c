@@ -69,14 +69,26 @@ static void assert_positions(int number, double scale) {
 
 // DCD ---------------------------------------------------------------------------------------------
 
-enum cell { NO_CELL, DEGREES, COSINES };
+enum cell { NO_CELL, DEGREES, COSINES, MATRIX };
 
+/// What the counts around records are, and which title there is.
+static int mark_bytes = 4;
+static int title_lines = 1, title_told = 1;
+
+static void write_mark(int32_t value) {
+    if (mark_bytes == 8)
+        write_bytes(&(int64_t){value}, 8, big);
+    else
+        write_int(value);
+}
+
+/// Atoms 1 and 3 move if one is fixed.
 static void write_dcd(bool big_endian, enum cell cell, int version, int fixed, bool fourth) {
     file_size = 0;
     big = big_endian;
     const int header[20] = {FRAMES,          500,    50, 0, 0, 0, 0, 0, fixed, 0,
                             cell != NO_CELL, fourth, 0,  0, 0, 0, 0, 0, 0,     version};
-    write_int(84);
+    write_mark(84);
     write_bytes("CORD", 4, false);
     for (int k = 0; k < 20; k++) {
         if (k == 9 && version)
@@ -86,29 +98,36 @@ static void write_dcd(bool big_endian, enum cell cell, int version, int fixed, b
         else
             write_int(header[k]);
     }
-    write_int(84);
-    write_int(84);
-    write_int(1);
-    for (int k = 0; k < 80; k++)
+    write_mark(84);
+    write_mark(4 + 80 * title_told);
+    write_int(title_lines);
+    for (int k = 0; k < 80 * title_lines; k++)
         write_bytes("x", 1, false);
-    write_int(84);
-    write_int(4), write_int(ATOMS), write_int(4);
+    write_mark(4 + 80 * title_told);
+    write_mark(4), write_int(ATOMS), write_mark(4);
+    if (fixed)
+        write_mark(8), write_int(1), write_int(3), write_mark(8);
     for (int number = 0; number < FRAMES; number++) {
         const double angle[3] = {60, 90, 120};
         double v[6] = {20 + number, angle[2], 30, angle[1], angle[0], 40};
         for (int k = 1; cell == COSINES && k < 5; k += k == 1 ? 2 : 1)
             v[k] = v[k] == 90 ? 0 : cos(v[k] * acos(-1) / 180);
+        const double matrix[6] = {20, 2, 30, -3, 4, 40};
+        if (cell == MATRIX)
+            memcpy(v, matrix, sizeof v);
         if (cell != NO_CELL) {
-            write_int(48);
+            write_mark(48);
             for (int k = 0; k < 6; k++)
                 write_double(v[k]);
-            write_int(48);
+            write_mark(48);
         }
         for (int d = 0; d < 3 + fourth; d++) {
-            write_int(4 * ATOMS);
+            const bool partly = fixed && number > 0;
+            write_mark(partly ? 8 : 4 * ATOMS);
             for (int k = 0; k < ATOMS; k++)
-                write_float(coordinate(number, k, d));
-            write_int(4 * ATOMS);
+                if (!partly || k != 1)
+                    write_float(coordinate(number, k, d));
+            write_mark(partly ? 8 : 4 * ATOMS);
         }
     }
 }
@@ -148,6 +167,83 @@ static void test_dcd_is_read_in_all_its_kinds(void **state) {
     }
 }
 
+/// 64-bit Fortran writes counts of 8 bytes.
+static void test_dcd_is_read_with_markers_of_eight_bytes(void **state) {
+    mark_bytes = 8;
+    for (int kind = 0; kind < 2; kind++) {
+        write_dcd(kind, DEGREES, 24, 0, false);
+        assert_ok(try(state, &(struct trajectory_options){0}));
+        for (int number = 0; number < FRAMES; number++) {
+            next(true);
+            assert_positions(number, 0.1);
+            assert_cell(number);
+        }
+        next(false);
+        close_all();
+    }
+    mark_bytes = 4;
+}
+
+/// The count around the title is that of two lines; there are three, as the title itself says.
+static void test_dcd_is_read_with_a_title_of_another_length_than_it_is_told(void **state) {
+    title_told = 2, title_lines = 3;
+    write_dcd(false, DEGREES, 24, 0, false);
+    assert_ok(try(state, &(struct trajectory_options){0}));
+    next(true);
+    assert_positions(0, 0.1);
+    close_all();
+    title_told = title_lines = 1;
+}
+
+/// A symmetric matrix, of the determinant 23202 Å³ by hand: 20 (30·40 − 4·4) − 2 (2·40 + 3·4) − 3
+/// (2·4 + 3·30). Before version 25 the same numbers were lengths and angles, which these are not.
+static void test_dcd_has_the_matrix_of_newer_versions_of_charmm(void **state) {
+    static const double wanted[3][3] = {{2, 0.2, -0.3}, {0.2, 3, 0.4}, {-0.3, 0.4, 4}};
+    bool more;
+    write_dcd(false, MATRIX, 36, 0, false);
+    assert_ok(try(state, &(struct trajectory_options){0}));
+    next(true);
+    for (int k = 0; k < 9; k++)
+        assert_true(fabs(frame.box[k / 3][k % 3] - wanted[k / 3][k % 3]) < 1e-12);
+    double reciprocal[3][3], det = 0;
+    mf_frame_reciprocal(&frame, reciprocal);
+    for (int d = 0; d < 3; d++)
+        det += frame.box[0][d] * (frame.box[1][(d + 1) % 3] * frame.box[2][(d + 2) % 3] -
+                                  frame.box[1][(d + 2) % 3] * frame.box[2][(d + 1) % 3]);
+    assert_true(fabs(det - 23.202) < 1e-9);
+    close_all();
+    write_dcd(false, MATRIX, 24, 0, false);
+    assert_ok(try(state, &(struct trajectory_options){0}));
+    assert_fails(mf_trajectory_next(&trajectory, &frame, &more), STATUS_BAD_INPUT,
+                 "not a valid box");
+    close_all();
+    write_dcd(false, DEGREES, 36, 0, false); // no matrix: lengths and angles after all
+    assert_ok(try(state, &(struct trajectory_options){0}));
+    next(true);
+    assert_cell(0);
+    close_all();
+}
+
+static void test_dcd_keeps_atoms_that_are_fixed(void **state) {
+    for (int kind = 0; kind < 4; kind++) {
+        mark_bytes = kind & 1 ? 8 : 4;
+        write_dcd(kind & 2, DEGREES, 24, 1, kind & 1);
+        assert_ok(try(state, &(struct trajectory_options){0}));
+        next(true);
+        assert_positions(0, 0.1);
+        next(true);
+        for (int k = 0; k < ATOMS; k++)
+            for (int d = 0; d < 3; d++)
+                assert_true(frame.position[k][d] == 0.1 * coordinate(k != 1, k, d));
+        next(false);
+        close_all();
+    }
+    mark_bytes = 4;
+    write_dcd(false, NO_CELL, 24, ATOMS, false);
+    assert_fails(try(state, &(struct trajectory_options){0}), STATUS_BAD_INPUT,
+                 "the number of atoms is not valid");
+}
+
 /// X-PLOR's time step is double; a told one comes first; "lj" leaves lengths alone.
 static void test_dcd_has_the_time_and_the_units_that_are_told(void **state) {
     write_dcd(false, NO_CELL, 0, 0, false);
@@ -163,9 +259,6 @@ static void test_dcd_has_the_time_and_the_units_that_are_told(void **state) {
 }
 
 static void test_dcd_is_refused_when_its_records_do_not_fit(void **state) {
-    write_dcd(true, DEGREES, 24, 2, false);
-    assert_int_equal(try(state, &(struct trajectory_options){0}), STATUS_BAD_INPUT);
-    assert_contains(mf_status_message(), "fixed atoms");
     write_dcd(true, DEGREES, 24, 0, false);
     file_bytes[file_size - 1] = 99;
     assert_ok(try(state, &(struct trajectory_options){0}));
@@ -280,6 +373,10 @@ static void test_xtc_has_64_bit_sizes_since_2023(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(test_dcd_is_read_in_all_its_kinds),
+        TEST(test_dcd_is_read_with_markers_of_eight_bytes),
+        TEST(test_dcd_is_read_with_a_title_of_another_length_than_it_is_told),
+        TEST(test_dcd_has_the_matrix_of_newer_versions_of_charmm),
+        TEST(test_dcd_keeps_atoms_that_are_fixed),
         TEST(test_dcd_has_the_time_and_the_units_that_are_told),
         TEST(test_dcd_is_refused_when_its_records_do_not_fit),
         TEST(test_trr_is_read_in_double_precision),

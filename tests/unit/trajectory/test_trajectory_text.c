@@ -270,11 +270,12 @@ static void test_text_is_refused_with_its_line(void **state) {
     assert_refused(state, "a.pdb", "REMARK nothing\nEND\n", "a.pdb: the file has no frame");
     assert_refused(state, "a.pdb", "CRYST1   40.000   40.000\n",
                    "a.pdb:1: frame 0: expected three lengths and three angles in CRYST1");
-    assert_refused(state, "a.odd", "who knows\n", "a.odd: not a trajectory");
-    assert_refused(state, "a.odd", "\x1F\x8B", "gunzip");
+    assert_refused(state, "a.odd", "who knows\n",
+                   "a.odd: not a trajectory: read are xtc, trr, dcd");
+    assert_refused(state, "a.odd", "who knows\n", "MDAnalysis convert others");
+    assert_refused(state, "a.tng", "any bytes", "-o traj.xtc\" makes what is");
+    assert_refused(state, "a.trz", "any bytes", "MDAnalysis makes .xtc or .dcd of it");
     assert_refused(state, "a.tpr", "any bytes", "a.tpr: not a trajectory: GROMACS's .tpr is not");
-    assert_refused(state, "a.top", "[ defaults ]\n",
-                   "a topology has no coordinates: give names and residues by a .gro");
     assert_refused(state, "a.xtc", "", "a.xtc: the file is empty");
 }
 

@@ -25,7 +25,7 @@ enum status mf_gromacs_fail(const struct gromacs_line *line, const char *format,
 typedef enum status gromacs_take(void *context, struct gromacs_line *line);
 
 /// Read a file and all that it includes, at most 16 files deep and 256 of them. Included files are
-/// looked for where the file is that includes them.
+/// looked for where the file is that includes them, then where GROMACS has its own.
 /// Fails: as `take`; BAD_INPUT with file and line for an #include that is not there or endless, an
 /// #else or #endif without its #ifdef, a line or a word that is too long; IO; NO_MEMORY.
 /// Tested: cli/test_topologies.

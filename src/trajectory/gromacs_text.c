@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "topologies/gromacs_text.h"
+#include "trajectory/gromacs_text.h"
 
 #include "base/memory.h"
 #include "io/text_file.h"
 
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
@@ -69,6 +70,24 @@ static enum status define(struct reading *reading, struct gromacs_line *line, ch
 
 static enum status read_file(struct reading *reading, const char *file);
 
+/// What GROMACS brings along, where it is or says that it is.
+static bool find_shared(const char *name, size_t length, char path[GROMACS_PATH_SIZE]) {
+    const char *const library = getenv("GMXLIB"), *const data = getenv("GMXDATA");
+    const char *const folder[] = {library ? library : "", data ? data : "", "/usr/share/gromacs",
+                                  "/usr/local/gromacs/share/gromacs"};
+    struct stat found;
+    for (size_t k = 0; k < sizeof folder / sizeof *folder; k++) {
+        char other[GROMACS_PATH_SIZE];
+        const int size = snprintf(other, sizeof other, "%s%s/%.*s", folder[k], k ? "/top" : "",
+                                  (int)length, name);
+        if (folder[k][0] == '/' && size < (int)sizeof other && stat(other, &found) == 0) {
+            memcpy(path, other, sizeof other);
+            return true;
+        }
+    }
+    return false;
+}
+
 static enum status include(struct reading *reading, struct gromacs_line *line, const char *rest) {
     char path[GROMACS_PATH_SIZE];
     struct stat found;
@@ -78,7 +97,7 @@ static enum status include(struct reading *reading, struct gromacs_line *line, c
     if (rest[0] != '"' && rest[0] != '<')
         return mf_gromacs_fail(line, "#include names a file in quotation marks");
     snprintf(path, sizeof path, "%.*s%.*s", folder, line->file, (int)length, rest + 1);
-    if (stat(path, &found) != 0)
+    if (stat(path, &found) != 0 && !find_shared(rest + 1, length, path))
         return mf_gromacs_fail(line, "#include: there is no file %.300s", path);
     if (reading->depth == MAX_DEPTH || reading->files == MAX_FILES)
         return mf_gromacs_fail(line, "#include: more than %d levels or %d files", MAX_DEPTH,

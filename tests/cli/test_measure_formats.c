@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// `mesofit measure` on what formats do not say: a box that is told, masses of a topology, how many
+// frames there are.
+#include "shared/is_close.h"
+#include "shared/results.h"
+#include "shared/run_program.h"
+#include "shared/small_inputs.h"
+#include "shared/testing.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { PATH = 1024 };
+
+static struct run_program_result result;
+static char xtc[PATH];
+
+static void find_samples(void) {
+    char folder[PATH / 2];
+    assert_non_null(getcwd(folder, sizeof folder));
+    snprintf(xtc, PATH, "%s/tests/trajectories/water.xtc", folder);
+}
+
+#define MEASURE(...)                                                                               \
+    do {                                                                                           \
+        RUN_PROGRAM(&result, "measure", "--temperature", "300", __VA_ARGS__);                      \
+        run_program_assert_code(&result, 0);                                                       \
+    } while (0)
+
+#define REFUSED(words, ...)                                                                        \
+    do {                                                                                           \
+        RUN_PROGRAM(&result, "measure", "--temperature", "300", __VA_ARGS__);                      \
+        run_program_assert_code(&result, 2);                                                       \
+        assert_contains(result.err, words);                                                        \
+    } while (0)
+
+/// The usual window is a tenth of the frames, however many bytes each has.
+static void test_measure_has_the_same_window_when_frames_are_of_other_lengths(void **state) {
+    enum { FRAMES = 201 };
+    static const char *const names[] = {"even.xyz", "odd.xyz"};
+    for (int odd = 0; odd < 2; odd++) {
+        char text[FRAMES * 256];
+        size_t length = 0;
+        for (int k = 0; k < FRAMES; k++)
+            length += (size_t)snprintf(
+                text + length, sizeof text - length,
+                "2\nLattice=\"30 0 0 0 30 0 0 0 30\" Properties=species:S:1:pos:R:3 Time=%d\n"
+                "Ar %.*f 0 0\nAr %05.3f 0 0\n",
+                1000 * k, odd && k == 0 ? 40 : 3, 5 + 0.005 * k, 9 - 0.005 * k);
+        temporary_folder_write(*state, names[odd], text, length);
+        MEASURE(names[odd], "-o", "of", "--quiet");
+        assert_close(results_number("of/summary.json", "window"), 20, 1e-9);
+    }
+    MEASURE("even.xyz", "odd.xyz", "--every", "4", "-o", "of",
+            "--quiet"); // 51 frames, the rest twice
+    assert_close(results_number("of/summary.json", "window"), 40, 1e-9);
+}
+
+/// Of 20 atoms on a line, with a box of the file and one that is told.
+static void test_measure_has_the_box_that_is_told(void **state) {
+    static const char *const names[] = {"boxed.xyz", "bare.xyz"};
+    for (int bare = 0; bare < 2; bare++) {
+        char text[1 << 12];
+        int length = snprintf(text, sizeof text, "20\n%s\n",
+                              bare ? "no box"
+                                   : "Lattice=\"30 0 0 0 30 0 0 0 40\" "
+                                     "Properties=species:S:1:pos:R:3");
+        for (int k = 0; k < 20; k++)
+            length += snprintf(text + length, sizeof text - (size_t)length, "Ar %g %g %g\n",
+                               1.3 * k, 0.7 * k * k, 11.0 * k);
+        temporary_folder_write(*state, names[bare], text, (size_t)length);
+    }
+    MEASURE("boxed.xyz", "--static", "-o", "boxed", "--quiet");
+    MEASURE("bare.xyz", "--static", "--box", "3,3,4", "-o", "bare", "--quiet");
+    results_assert_same("boxed", "bare", (const char *const[]){"rdf.tsv", NULL});
+    REFUSED("bare.xyz: frame 0 has no box: g(r) needs the volume and its images; give it by --box",
+            "bare.xyz", "-o", "none");
+    REFUSED("boxed.xyz: frame 0 has a box of its own: leave out --box", "boxed.xyz", "--box", "3",
+            "-o", "none");
+    static const char *const odd[] = {"3,4", "0", "3,3,", "3,3,3,3", "x", "3,-3,3", "inf"};
+    for (size_t k = 0; k < sizeof odd / sizeof *odd; k++)
+        REFUSED("--box takes one length or three", "bare.xyz", "--box", odd[k], "-o", "none");
+}
+
+/// Water of 20 u, which no element is.
+static void test_measure_has_masses_of_a_topology(void **state) {
+    static const char topology[] = "[ atomtypes ]\nO 8 16 0 A 0 0\nH 1 2 0 A 0 0\n"
+                                   "[ moleculetype ]\nW 2\n[ atoms ]\n"
+                                   "1 O 1 WAT O 1\n2 H 1 WAT H 1\n3 H 1 WAT H 1\n"
+                                   "[ molecules ]\nW 2744\n";
+    temporary_folder_write(*state, "topol.top", topology, strlen(topology));
+    MEASURE(xtc, "-s", "topol.top", "--static", "-o", "water");
+    assert_contains(result.err, "WAT: 2744 beads of 3 atoms, the first of 20 u");
+    assert_false(strstr(result.err, "guessed"));
+    temporary_folder_write(*state, "few.top", topology, strlen(topology) - 3);
+    REFUSED("water.xtc: has 8232 atoms", xtc, "-s", "few.top", "-o", "none");
+    REFUSED("topol.top: has no coordinates: give it by -s", "topol.top", "-o", "none");
+}
+
+#define TEST(name)                                                                                 \
+    cmocka_unit_test_setup_teardown(name, small_inputs_enter_without_gnuplot, small_inputs_leave)
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        TEST(test_measure_has_the_same_window_when_frames_are_of_other_lengths),
+        TEST(test_measure_has_the_box_that_is_told),
+        TEST(test_measure_has_masses_of_a_topology),
+    };
+    find_samples();
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
