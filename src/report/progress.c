@@ -143,6 +143,7 @@ void mf_progress_report_iteration(struct progress *progress, const struct invers
                              .total = total > progress->reported ? total : progress->reported,
                              .unit = "simulations",
                              .text = text,
+                             .candidate = now->candidate,
                              .open = now->doubling.number > 0});
 }
 
@@ -177,6 +178,11 @@ void mf_progress_report_written(const struct progress *progress) {
 bool mf_progress_ask_change(const struct progress *progress, struct simulation_change *change) {
     const struct watcher *watcher = progress->watcher;
     return watcher && watcher->change(watcher->context, change);
+}
+
+bool mf_progress_ask_damping(const struct progress *progress, double *damping) {
+    const struct watcher *watcher = progress->watcher;
+    return watcher && watcher->damp(watcher->context, damping);
 }
 
 void mf_progress_print_scale(struct progress *progress, const struct units *units) {

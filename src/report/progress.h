@@ -60,5 +60,8 @@ void mf_progress_report_written(const struct progress *progress);
 /// Whether who watches wants a simulation to go on with another temperature or time step.
 bool mf_progress_ask_change(const struct progress *progress, struct simulation_change *change);
 
+/// Whether who watches wants an inversion to go on with another damping.
+bool mf_progress_ask_damping(const struct progress *progress, double *damping);
+
 /// Say what the scale of a file in physical units is.
 void mf_progress_print_scale(struct progress *progress, const struct units *units);

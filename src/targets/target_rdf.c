@@ -41,8 +41,7 @@ const struct field mf_target_rdf_fields[] = {
              "scene's"},
     {"normalisation", FIELD_NUMBER, MEMBER(normalisation), .initial = 0, .minimum = 0,
      .maximum = 100, .unit = "",
-     .help = "factor by which the file's g is too large, as by N - 1 for N or a wrong density; 0: "
-             "estimated from g"},
+     .help = "factor by which the file's g is too large; 0: estimated from g"},
     {"normalisation_error", FIELD_NUMBER, MEMBER(normalisation_error), .initial = 0.01,
      .minimum = FIELD_ABOVE_ZERO, .maximum = 1, .unit = "",
      .help = "prior standard deviation of an estimated normalisation from 1"},
