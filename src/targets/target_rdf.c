@@ -124,8 +124,8 @@ static enum status find_bins(const struct target_rows *rows, const char *file,
                              struct rdf_bins *bins) {
     enum { FEWEST_ROWS = 4 };
     if (rows->count < FEWEST_ROWS)
-        return mf_status_fail(STATUS_BAD_INPUT, "%s: only %zu bins; a g(r) needs at least %d", file,
-                              rows->count, FEWEST_ROWS);
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: only %zu bin%s; a g(r) needs at least %d",
+                              file, rows->count, rows->count == 1 ? "" : "s", FEWEST_ROWS);
     const double first = rows->x[0];
     const double width = (rows->x[rows->count - 1] - first) / (double)(rows->count - 1);
     // First edges come out as 0 but for the file's rounding.
