@@ -12,6 +12,8 @@ names = system("awk -F '\t' '!/^#/ && NF > 1 && !seen[$2]++ { gsub(/ /, \"~\", $
 kinds_of_map = system("awk -F '\t' '!/^#/ && NF > 1 && !seen[$1]++ { print $1 }' < \"$MESOFIT_TABLE\"")
 steps = system("awk -F '\t' '!/^#/ && NF > 1 && !seen[$4]++ { print $6 }' < \"$MESOFIT_TABLE\"")
 strengths(map) = system("awk -F '\t' '$1 == \"" . map . "\" && !seen[$3]++ { printf ($5 >= 10 ? \"%.0f\\n\" : \"%.2g\\n\"), $5 }' < \"$MESOFIT_TABLE\"")
+# Of potentials "× 4".
+times(map) = system("echo '" . strengths(map) . "' | sed 's/^/×/'")
 N = words(names)
 M = words(kinds_of_map)
 rows = words(strengths(word(kinds_of_map, 1)))
@@ -53,9 +55,9 @@ do for [kind in kinds] {
             set title (m == 1 ? system("echo '" . word(names, i) . "' | tr '~' ' '") : "") font ",11" offset 0, -0.6
             unset xlabel
             if (m == M) { eval "set xtics (" . tic_text(steps, 2, 1) . ") rotate by 90 right font ',10'" } else { set xtics ("" 0) scale 0 }
-            if (i == 1) { eval "set ytics (" . tic_text(strengths(map), 1, 0) . ") font ',10'" } else { set ytics ("" 0) scale 0 }
+            if (i == 1) { eval "set ytics (" . tic_text(map eq "friction" ? strengths(map) : times(map), 1, 0) . ") font ',10'" } else { set ytics ("" 0) scale 0 }
             unset label
-            if (i == 1) { set label 1 (map eq "friction" ? "friction {/:Italic ω}^2 / ({/:Italic μ}/{/:Italic τ})" : "stiffness: {/:Italic Φ} times") at screen 16.0 / across, graph 0.5 center rotate }
+            if (i == 1) { set label 1 (map eq "friction" ? "friction {/:Italic ω}^2 / ({/:Italic μ}/{/:Italic τ})" : "potential, times its own") at screen 16.0 / across, graph 0.5 center rotate }
             if (m == M && i == 1) { set label 2 "time step / {/:Italic τ}" at screen (left + N * (pixels + 8) / 2.0) / across, screen 14.0 / tall center }
             if (m == 1 && i == N) { set colorbox user origin 1 - 96.0 / across, 0.3 size 14.0 / across, 0.5 } else { unset colorbox }
             if (m == 1 && i == N) { set label 3 "temperature\noff by" at screen 1 - 98.0 / across, screen 0.9 font ",10" }

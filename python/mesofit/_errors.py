@@ -3,11 +3,24 @@
 
 from __future__ import annotations
 
+import re
+
 from . import _library
 
 
+#: Options that are words alone.
+_FLAGS = ("force", "resume", "static", "allow-truncated", "bands", "project")
+
+
+def said(text: str) -> str:
+    """A line of the program with its options as the functions here name them."""
+    return re.sub(r"(?<![\w-])--([a-z]+(?:-[a-z]+)*)",
+                  lambda found: found[1].replace("-", "_") + ("=True" if found[1] in _FLAGS else ""), text)
+
+
 class Error(Exception):
-    """Anything that the program would end with; the text is the line that it would print."""
+    """Anything that the program would end with; the text is the line that it would print, with
+    options as the functions here name them."""
 
 
 class InputError(Error, ValueError):
@@ -36,6 +49,7 @@ class InterruptedWarning(MesofitWarning):
 
 def fail(status: int, text: str) -> BaseException:
     """The exception of a status of the library, other than OK."""
+    text = said(text)
     if status == _library.NO_MEMORY:
         return MemoryError(text)
     if status == _library.INTERRUPTED:

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from . import _library as c
-from ._errors import InterruptedWarning, MesofitWarning, UnconvergedWarning, fail
+from ._errors import InterruptedWarning, MesofitWarning, UnconvergedWarning, fail, said
 from ._inputs import Memory, encode
 from ._progress import Progress
 
@@ -57,9 +57,9 @@ class Outcome:
             if line.startswith(_WARNING):
                 warnings.warn(line[len(_WARNING):], MesofitWarning, stacklevel=level)
         if self.status == c.UNCONVERGED:
-            warnings.warn(self.message, UnconvergedWarning, stacklevel=level)
+            warnings.warn(said(self.message), UnconvergedWarning, stacklevel=level)
         elif self.status == c.INTERRUPTED:
-            warnings.warn(self.message, InterruptedWarning, stacklevel=level)
+            warnings.warn(said(self.message), InterruptedWarning, stacklevel=level)
 
 
 def _level() -> int:

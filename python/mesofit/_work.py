@@ -13,7 +13,7 @@ from typing import Any, Callable, Union
 import numpy as np
 
 from . import _library as c
-from ._errors import InputError
+from ._errors import InputError, said
 from ._library import Array
 from ._inputs import Frames, Memory, PathLike, from_universe, merge
 from ._result import Result, _path
@@ -120,7 +120,7 @@ def _carry_out(words: list[str], memory: Memory, folder: PathLike | None, resume
     outcome = carry_out(words, memory, progress)
     result = Result(place, outcome)
     if outcome.status == c.INTERRUPTED and not (place.path / "summary.json").exists():
-        raise KeyboardInterrupt(outcome.message)
+        raise KeyboardInterrupt(said(outcome.message))
     outcome.warn()
     return result
 

@@ -144,7 +144,7 @@ def test_temporary_folders_go_with_what_was_read_from_them():
 
 def test_folder_of_the_users_is_not_replaced_unasked(fitted, run_file, tmp_path):
     fitted.save(tmp_path / "out")
-    with pytest.raises(mesofit.InputError, match="--force replaces it"):
+    with pytest.raises(mesofit.InputError, match="force=True replaces it"):
         mesofit.fit(run_file, folder=tmp_path / "out")
 
 
@@ -178,7 +178,7 @@ def interrupt_once(monkeypatch, when):
 def test_interrupted_simulation_goes_on_with_the_same_bits(tmp_path, monkeypatch):
     long = {**SCENE, "measure": {"equilibration": 0, "samples": 4000, "every": 10}}
     interrupt_once(monkeypatch, lambda run: True)
-    with pytest.raises(KeyboardInterrupt, match="continue with --resume"):
+    with pytest.raises(KeyboardInterrupt, match="continue with resume=True"):
         mesofit.simulate(long, folder=tmp_path / "out", threads=1)
     assert (tmp_path / "out" / "checkpoint.bin").exists()
     run = mesofit.simulate(long, folder=tmp_path / "out", threads=1, resume=True)

@@ -103,6 +103,13 @@ def test_calls(call):
         call()
 
 
+def test_options_have_the_names_of_arguments():
+    with pytest.raises(mesofit.InputError, match="^temperature takes a number"):
+        mesofit.measure("x.xtc", temperature=-3)
+    with pytest.raises(mesofit.InputError, match="q_range takes a number"):
+        mesofit.measure("x.xtc", q_range="far")
+
+
 STEPPED = {
     "steps below 0": lambda s: s.run(-1),
     "half a step": lambda s: s.run(1.5),

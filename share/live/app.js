@@ -4,15 +4,19 @@ import { getJson, getText, listen, post } from "/server.js";
 import { Tables, parse, pretty } from "/tables.js";
 import { Curves } from "/curves.js";
 import { Population } from "/population.js";
+import { Candidate } from "/candidate.js";
+import { Film } from "/film.js";
 import { Maps } from "/maps.js";
 import { Particles } from "/particles.js";
 import { Settings } from "/settings.js";
 import { Files } from "/files.js";
 
 const at = (id) => document.getElementById(id);
-const panels = [new Curves(at("panels")), new Population(at("panels")), new Maps(at("panels"))];
+const candidate = new Candidate(at("panels"));
+const panels = [new Curves(at("panels")), candidate, new Population(at("panels")), new Maps(at("panels"))];
 const tables = new Tables();
 const particles = new Particles(at("particles"), { scene: at("scene"), frames: at("frames"), colours: at("colour") });
+const film = new Film(at("particles"), at("record"), () => (state.file.split("/").pop() || "mesofit").replace(/\.json$/, ""));
 const settings = new Settings(at("settings"));
 const files = new Files(at("files"), { fail: showMessage, settings: () => settings.text,
   open: (path) => thenView(() => post("open", { path })) });
@@ -95,8 +99,10 @@ async function takeState(next) {
     await loadSubject();
   if (state.kind === "simulation" && isActive())
     particles.follow();
-  else
+  else {
     particles.leave();
+    film.end();
+  }
   if (state.phase === "ended" && !state.stays)
     setTimeout(() => { stopListening(); showGone(state.message || "the run has ended, and mesofit with it"); }, 1500);
 }
@@ -104,6 +110,7 @@ async function takeState(next) {
 async function loadSubject() {
   panels.forEach((panel) => panel.clear());
   particles.clear();
+  numbers = {};
   at("numbers").replaceChildren();
   showEmpty();
   if (state.file)
@@ -123,8 +130,19 @@ function showControls() {
   if (focused in on && !on[focused]) // a keyboard goes on where it was
     at(Object.keys(on).find((id) => on[id]) || "tab-view").focus();
   at("start").textContent = ["ended", "stopped"].includes(state.phase) ? "Start again" : "Start";
-  at("change").hidden = idle || !simulates;
+  showChanges();
   at("step").hidden = at("speed-label").hidden = at("speed-value").hidden = !simulates;
+}
+
+// What the program tells of can be changed.
+let numbers = {};
+const changes = [...at("change").querySelectorAll("input")];
+function showChanges() {
+  for (const input of changes) {
+    input.parentElement.hidden = !(input.dataset.number in numbers);
+    input.placeholder = numbers[input.dataset.number]?.value ?? "";
+  }
+  at("change").hidden = !isActive() || changes.every((input) => input.parentElement.hidden);
 }
 
 // So many digits, and no power of ten where people write none.
@@ -156,9 +174,10 @@ function showProgress() {
   at("progress-text").textContent = `${progress.text}  ${progress.done}/${progress.total} ${progress.unit}${pace}`;
 }
 
-function takeNumbers(numbers) {
+function takeNumbers(next) {
   if (!hasRun())
     return; // of a run before this file was chosen
+  numbers = next;
   const shown = Object.entries(numbers).map(([name, { value, unit }]) => {
     const box = document.createElement("div"), number = document.createElement("b"), label = document.createElement("span");
     number.textContent = value === null ? "unknown" : Number.isInteger(value) ? String(value) : round(value, 4);
@@ -167,8 +186,7 @@ function takeNumbers(numbers) {
     return box;
   });
   at("numbers").replaceChildren(...shown);
-  at("change-temperature").placeholder = numbers["set temperature"]?.value ?? "";
-  at("change-time-step").placeholder = numbers["time step"]?.value ?? "";
+  showChanges();
   showEmpty();
 }
 
@@ -229,7 +247,8 @@ async function takeTables(listing) {
 
 // Events in their order: a new subject clears the panels before its tables come.
 let queue = Promise.resolve();
-const takers = { state: takeState, progress: takeProgress, numbers: takeNumbers, tables: takeTables };
+const takers = { state: takeState, progress: takeProgress, numbers: takeNumbers, tables: takeTables,
+  candidate: (next) => { candidate.take(hasRun() ? next : {}); showEmpty(); } };
 function take(name, text) {
   queue = queue.then(async () => {
     if (name === "log")
@@ -273,10 +292,10 @@ at("speed").addEventListener("input", () => {
 at("change").addEventListener("submit", (event) => {
   const body = { wish: "change" };
   event.preventDefault();
-  for (const [key, id] of [["temperature", "change-temperature"], ["time_step", "change-time-step"]]) {
-    const text = at(id).value.trim();
-    if (text)
-      body[key] = Number.isFinite(Number(text)) ? Number(text) : text;
+  for (const input of changes) {
+    const text = input.value.trim();
+    if (text && !input.parentElement.hidden)
+      body[input.dataset.key] = Number.isFinite(Number(text)) ? Number(text) : text;
   }
   act(async () => { await wish(body); at("change").reset(); });
 });

@@ -87,7 +87,7 @@ static enum status finish_output(enum status status) {
                           error ? strerror(error) : "not all of it has arrived");
 }
 
-/// That of a command if the first word is one, else that of all.
+/// That of a command if the word is one, else that of all.
 static enum status print_help(const char *word) {
     for (size_t k = 0; mf_command_list[k]; k++)
         if (strcmp(word, mf_command_list[k]->name) == 0) {
@@ -98,9 +98,19 @@ static enum status print_help(const char *word) {
     return STATUS_OK;
 }
 
+/// "help", or "help fit", as others have it.
+static enum status help(int count, char **words) {
+    const struct command *command = NULL;
+    if (count > 2)
+        TRY(mf_command_find(mf_command_list, words[2], &command));
+    return print_help(count > 2 ? words[2] : "");
+}
+
 static enum status act(int count, char **words) {
     if (asks_for(count, words, "--help"))
         return print_help(words[1]);
+    if (count > 1 && strcmp(words[1], "help") == 0)
+        return help(count, words);
     if (asks_for(count, words, "--version")) {
         printf("mesofit " MESOFIT_VERSION "\n");
         return STATUS_OK;

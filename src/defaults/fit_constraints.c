@@ -84,10 +84,10 @@ void mf_fit_constraints_print(const struct fit_constraints *constraints,
                                factor * own->deviation);
         else
             mf_fit_choice_note(&choice,
-                               "%s \"%s\": its target has only %zu bins with a p above %g of its "
+                               "%s \"%s\": its target has only %zu bin%s with a p above %g of its "
                                "peak: a harmonic law of its width, k = %s; narrower bins would let "
                                "its potential be found",
                                mf_bonded_kinds[own->order]->name, own->name, own->moments.seen,
-                               mf_bonded_distribution_seen, k);
+                               own->moments.seen == 1 ? "" : "s", mf_bonded_distribution_seen, k);
     }
 }

@@ -68,7 +68,8 @@ static void describe_samples(const struct inversion *inversion, const double *ow
     const double particles = (double)mf_composition_particles(&first->composition);
     const struct replicas_mean energy =
         mf_replicas_mean(&first->replicas, SAMPLER_ENERGY, first->inefficiency);
-    const double columns[INVERSION_SHARED_COLUMNS] = {inversion->course.progress.damping,
+    const double columns[INVERSION_SHARED_COLUMNS] = {inversion->course.progress.damping *
+                                                          inversion->course.progress.chosen_damping,
                                                       assessment->own_noise,
                                                       assessment->disagreement,
                                                       assessment->distance[TARGET_RDF].rms,

@@ -71,6 +71,7 @@ enum status mf_inversion_create(void *inversion, const struct inverse_method *me
 void mf_inversion_destroy(void *inversion);
 enum status mf_inversion_iterate(void *inversion, struct inverse_step *step,
                                  const struct inverse_listener *listener) MUST_USE;
+double *mf_inversion_damping(void *inversion);
 size_t mf_inversion_spans(void *inversion, struct memory_span *span);
 enum status mf_inversion_write(const void *inversion, const struct inverse_folder *folder) MUST_USE;
 
@@ -78,7 +79,7 @@ enum status mf_inversion_write(const void *inversion, const struct inverse_folde
 #define INVERSION_RECORD                                                                           \
     .kind = INVERSE_INVERSION, .state_size = sizeof(struct inversion), .finds_potential = true,    \
     .destroy = mf_inversion_destroy, .iterate = mf_inversion_iterate, .spans = mf_inversion_spans, \
-    .write = mf_inversion_write
+    .write = mf_inversion_write, .damping = mf_inversion_damping
 
 /// The parameters that all have, which stand first in those of each method and in their tables.
 #define INVERSION_TABLE                                                                            \

@@ -23,6 +23,7 @@ enum status mf_inversion_course_init(struct inversion_course *course, size_t kno
     course->progress = (struct inversion_progress){.from_disorder = true,
                                                    .stretch = 1,
                                                    .damping = 1,
+                                                   .chosen_damping = 1,
                                                    .best.distance[TARGET_RDF].rms = INFINITY,
                                                    .min_decrement = INFINITY};
 done:

@@ -32,10 +32,11 @@ struct inversion_drifts {
 /// What a checkpoint keeps besides arrays and samplers.
 struct inversion_progress {
     uint32_t iteration;
-    bool from_disorder; ///< the replicas are placed without order
-    bool has_other;     ///< the best has another step
-    double damping;     ///< part of the bounded step from the best
-    int64_t stretch;    ///< of equilibration and spacing, by which the next samples begin
+    bool from_disorder;    ///< the replicas are placed without order
+    bool has_other;        ///< the best has another step
+    double damping;        ///< part of the bounded step from the best, as the fit finds it
+    double chosen_damping; ///< the same, as a person has it: both are multiplied
+    int64_t stretch;       ///< of equilibration and spacing, by which the next samples begin
     struct inversion_best_samples best;
     struct target_distance min[TARGETS]; ///< nearest so far, of all that was kept
     double min_decrement;                ///< of what was kept, by the gradient
@@ -101,8 +102,8 @@ enum status mf_inversion_course_go_on(struct inversion *inversion, bool kept) MU
 /// test_inversion_keeps.
 void mf_inversion_relax(struct inversion *inversion);
 
-/// phi = best + damping · best step, bounded as a whole where the target is well known, and bin by
-/// bin elsewhere; as a whole everywhere if it is made of coefficients.
+/// phi = best + both dampings · best step, bounded as a whole where the target is well known, and
+/// bin by bin elsewhere; as a whole everywhere if it is made of coefficients.
 void mf_inversion_take_step(struct inversion *inversion);
 
 /// Whether the result of a memoryless method is the mean of the potentials near the target, and
@@ -112,11 +113,11 @@ void mf_inversion_take_step(struct inversion *inversion);
 /// test_inversion_converged.
 bool mf_inversion_ends_with_mean(const struct inversion *inversion);
 
-/// The same as the end of a fit that has converged, where the step is the most probable one: the
-/// potential that the samples ask for is the result, and not the one that they were taken of, which
-/// lies on the side that the fit came from. Or the mean of the potentials near the target. U of
-/// groups is then as smooth as the prior of the band has it (mf_inversion_smooth). Fails:
-/// NO_MEMORY. Tested: test_inversion_keeps.
+/// The end of a fit that has converged. Where the step is the most probable one, it is taken
+/// whatever damping a person has chosen: the potential that the samples ask for is the result, and
+/// not the one that they were taken of, which lies on the side that the fit came from. Or the mean
+/// of the potentials near the target. U of groups is then as smooth as the prior of the band has it
+/// (mf_inversion_smooth). Fails: NO_MEMORY. Tested: test_inversion_keeps.
 enum status mf_inversion_take_last_step(struct inversion *inversion) MUST_USE;
 
 /// Whether this iteration, whose potential was kept or not, ends the fit: its samples are as exact

@@ -49,17 +49,20 @@ void mf_inversion_relax(struct inversion *inversion) {
     *damping = fmin(1, 1.5 * *damping);
     if (left < -max_left * squares && !mf_inversion_is_near(inversion) &&
         course->has_other == course->progress.has_other) {
-        const double share = along / (squares - left) / find_bounded(inversion, course->step);
+        const double unit = find_bounded(inversion, course->step) * course->progress.chosen_damping;
+        const double share = along / (squares - left) / unit;
         *damping = fmin(*damping, fmax(mf_inversion_min_damping, share));
     }
 }
 
-void mf_inversion_take_step(struct inversion *inversion) {
+/// @param[in] part  of the step that the fit would take
+static void take_part(struct inversion *inversion, double part) {
     const struct inversion_state *first = inversion->state;
     const struct potential_grid *grid = &first->grid;
     struct inversion_course *course = &inversion->course;
     const bool whole = first->basis.count > 0;
-    const double share = course->progress.damping * find_bounded(inversion, course->best.step);
+    const double share =
+        part * course->progress.damping * find_bounded(inversion, course->best.step);
     for (size_t a = 0; a < grid->known; a++) {
         const size_t point = grid->known_point[a];
         double change = share * course->best.step[point];
@@ -70,6 +73,10 @@ void mf_inversion_take_step(struct inversion *inversion) {
     mf_potential_grid_complete(grid, course->phi);
 }
 
+void mf_inversion_take_step(struct inversion *inversion) {
+    take_part(inversion, inversion->course.progress.chosen_damping);
+}
+
 enum status mf_inversion_take_last_step(struct inversion *inversion) {
     const struct potential_grid *grid = inversion_grid(inversion);
     struct inversion_course *course = &inversion->course;
@@ -78,7 +85,7 @@ enum status mf_inversion_take_last_step(struct inversion *inversion) {
         memcpy(course->phi, inversion->state->pool.phi, bytes);
         mf_potential_grid_complete(grid, course->phi);
     } else if (course->most_probable) {
-        mf_inversion_take_step(inversion);
+        take_part(inversion, 1);
     } else {
         memcpy(course->phi, course->best.phi, bytes);
     }

@@ -20,8 +20,8 @@ const struct field mf_inversion_fields[] = {
      .maximum = REPLICAS_MAX, .unit = "", .help = "independent samplers"},
     {"equilibration", FIELD_INTEGER, MEMBER(equilibration), .initial = 64, .minimum = 0,
      .maximum = 8e8, .unit = "sweeps",
-     .help = "least equilibration, five times as long from a random start; prolonged until the "
-             "samples are stationary"},
+     .help = "least equilibration, five-fold from a random start; prolonged until samples are "
+             "stationary"},
     {"samples", FIELD_INTEGER, MEMBER(samples), .initial = 64, .minimum = 2 * REPLICAS_BLOCKS,
      .maximum = 1e9, .unit = "",
      .help = "least samples of each replica; doubled until the noise is \"precision\" or a third "
@@ -33,6 +33,8 @@ const struct field mf_inversion_fields[] = {
     {"precision", FIELD_NUMBER, MEMBER(precision), .initial = 0.004, .minimum = FIELD_ABOVE_ZERO,
      .maximum = 1, .unit = "",
      .help = "statistical error of g, rms over bins, needed for convergence"},
+    {"damping", FIELD_NUMBER, MEMBER(damping), .initial = 1, .minimum = FIELD_ABOVE_ZERO,
+     .maximum = 1, .unit = "", .help = "part of each step that is taken"},
     {"start", FIELD_CHOICE, MEMBER(start), .choices = starts, .initial = INVERSION_FROM_HNC,
      .unit = "", .help = "start without unknowns.potential.start; auto: as \"base\" there"},
     FIELD_END,
@@ -101,6 +103,7 @@ enum status mf_inversion_create(void *memory, const struct inverse_method *metho
     inversion->parameters = *(const struct inversion_parameters *)parameters;
     inversion->method = method;
     TRY(prepare(inversion, problem, rule->coefficients ? rule->coefficients(parameters) : NULL));
+    inversion->course.progress.chosen_damping = inversion->parameters.damping;
     // The samplers of each state are made with the start of its own target, which says how stiff
     // its bonds are. The first state's is left as the start of all.
     for (size_t s = inversion->states; s-- > 0;) {
@@ -112,6 +115,10 @@ enum status mf_inversion_create(void *memory, const struct inverse_method *metho
                 : mf_status_prefix(status, "states.%s", state->problem->name));
     }
     return STATUS_OK;
+}
+
+double *mf_inversion_damping(void *memory) {
+    return &((struct inversion *)memory)->course.progress.chosen_damping;
 }
 
 size_t mf_inversion_spans(void *memory, struct memory_span *span) {

@@ -27,8 +27,9 @@ struct inversion_parameters {
     int64_t equilibration, samples, every;
     int64_t iterations;
     double precision;
-    int start;   ///< INVERSION_FROM_…
-    int sampler; ///< enum sampler_kind
+    double damping; ///< part of each step that is taken
+    int start;      ///< INVERSION_FROM_…
+    int sampler;    ///< enum sampler_kind
 };
 
 enum { INVERSION_FROM_HNC, INVERSION_FROM_MEAN_FORCE };

@@ -112,3 +112,45 @@ bool mf_json_list_rows(struct json_object *object, const char *key, int *values,
                   width, n + 1);
     return false;
 }
+
+/// Finite numbers of a list, or one alone.
+static bool read_numbers(const cJSON *item, double *values, size_t width) {
+    const cJSON *element;
+    size_t n = 0;
+    if (width == 0) {
+        values[0] = cJSON_IsNumber(item) ? item->valuedouble : NAN;
+        return isfinite(values[0]);
+    }
+    if (!cJSON_IsArray(item) || (size_t)cJSON_GetArraySize(item) != width)
+        return false;
+    cJSON_ArrayForEach(element, item) {
+        values[n] = cJSON_IsNumber(element) ? element->valuedouble : NAN;
+        if (!isfinite(values[n++]))
+            return false;
+    }
+    return true;
+}
+
+bool mf_json_list_members(struct json_object *object, const char *key, const char *member,
+                          double *values, size_t rows, size_t width) {
+    const cJSON *list = cJSON_GetObjectItemCaseSensitive(object->item, key), *row;
+    size_t n = 0;
+    mf_json_has(object, key);
+    cJSON_ArrayForEach(row, list) {
+        const cJSON *item = cJSON_GetObjectItemCaseSensitive(row, member);
+        if (n == 0 && item == NULL)
+            return false;
+        if (n >= rows || !read_numbers(item, values + n * (width ? width : 1), width))
+            break;
+        n++;
+    }
+    if (cJSON_IsArray(list) && n == rows && (size_t)cJSON_GetArraySize(list) == rows)
+        return true;
+    if (width > 0)
+        mf_json_fault(object, key, "number %zu of the list: expected \"%s\", a list of %zu numbers",
+                      n + 1, member, width);
+    else
+        mf_json_fault(object, key, "number %zu of the list: expected \"%s\", a number", n + 1,
+                      member);
+    return false;
+}

@@ -24,6 +24,13 @@ bool mf_json_list_texts(struct json_object *object, const char *key, const char 
 bool mf_json_list_rows(struct json_object *object, const char *key, int *values, size_t rows,
                        size_t width);
 
+/// What each of the `rows` objects of the list at `key` has at `member`: a list of `width` finite
+/// numbers, or for a width of 0 a number. False without a fault if the first object has no such
+/// member, with one if another has not.
+/// @param[out] values  shape [rows, width], or [rows]
+bool mf_json_list_members(struct json_object *object, const char *key, const char *member,
+                          double *values, size_t rows, size_t width);
+
 /// Text number `n` of the list at `key`, or the text there as number 0; NULL if there is none.
 /// Counts as nothing, and faults are left to the reader. Tested: test_units.
 const char *mf_json_list_text(const struct json_object *object, const char *key, size_t n);

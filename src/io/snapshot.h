@@ -104,8 +104,9 @@ enum status mf_snapshot_write(const struct snapshot *snapshot, const struct snap
                               const char *folder, int64_t *size) MUST_USE;
 
 /// Read positions, velocities if they are there, and what attributes.h lets a scene give, from a
-/// snapshot in JSON: a table with the columns of a placement file, and their names as its header.
-/// What is mixed has its particles' types, if it tells them, in the order of the composition.
-/// Fails: BAD_INPUT with all faults, IO, NO_MEMORY. Tested: cli/test_snapshots.
-enum status mf_snapshot_read(struct data_table *table, const char *file, int dimensions,
+/// snapshot in JSON, or from a tutorial's initial file ("system"): a table with the columns of a
+/// placement file, and their names as its header. What is mixed has its particles' types, if it
+/// tells them, in the order of the composition. Fails: BAD_INPUT with all faults, IO, NO_MEMORY.
+/// Tested: cli/test_snapshots.
+enum status mf_snapshot_read(struct data_table *table, const char *file, const struct box *box,
                              const struct composition *composition) MUST_USE;

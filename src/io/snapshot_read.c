@@ -4,6 +4,9 @@
 #include "io/snapshot.h"
 #include "system/attributes.h"
 
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 /// Positions, velocities and attributes.
@@ -25,15 +28,24 @@ static size_t list_columns(struct json_object *particles, int dimensions,
     return count;
 }
 
+/// Columns of a table that is as long as a list.
+static enum status begin_table(struct data_table *table, size_t rows, size_t columns) {
+    table->rows = rows;
+    table->columns = columns;
+    TRY_ARRAY(table->values, rows * columns);
+    TRY_ARRAY(table->line, rows);
+    TRY_ARRAY(table->header, HEADER_SIZE);
+    for (size_t k = 0; k < rows; k++)
+        table->line[k] = k + 1;
+    return STATUS_OK;
+}
+
 static enum status read_columns(struct data_table *table, struct json_object *particles,
                                 int dimensions) {
     const char *names[MAX_COLUMNS];
     OWNED double *column = NULL;
-    table->columns = list_columns(particles, dimensions, names);
-    table->rows = (size_t)mf_json_count(particles, "x");
-    TRY_ARRAY(table->values, table->rows * table->columns);
-    TRY_ARRAY(table->line, table->rows);
-    TRY_ARRAY(table->header, HEADER_SIZE);
+    const size_t columns = list_columns(particles, dimensions, names);
+    TRY(begin_table(table, (size_t)mf_json_count(particles, "x"), columns));
     TRY_ARRAY(column, table->rows);
     for (size_t c = 0; c < table->columns; c++) {
         strcat(strcat(table->header, names[c]), " ");
@@ -41,8 +53,67 @@ static enum status read_columns(struct data_table *table, struct json_object *pa
         for (size_t k = 0; k < table->rows; k++)
             table->values[k * table->columns + c] = column[k];
     }
-    for (size_t k = 0; k < table->rows; k++)
-        table->line[k] = k + 1;
+    return STATUS_OK;
+}
+
+/// The box of an initial file of the tutorial must be that of the scene; it lies about 0.
+static bool has_box(struct json_object *system, const struct box *box) {
+    struct json_object read = mf_json_child(system, "box", true);
+    struct sides {
+        double length[2];
+    } sides = {{0}};
+    const struct field fields[] = {
+        {"Lx", FIELD_NUMBER, offsetof(struct sides, length[0]), .required = true, .minimum = 0,
+         .maximum = DBL_MAX, .unit = "", .help = "width of the box"},
+        {"Ly", FIELD_NUMBER, offsetof(struct sides, length[1]), .required = true, .minimum = 0,
+         .maximum = DBL_MAX, .unit = "", .help = "height of the box"},
+        FIELD_END,
+    };
+    mf_json_fields(&read, fields, &sides);
+    if (read.item == NULL || mf_json_fault_count(system->document) > 0)
+        return false;
+    const bool same = box->dimensions == 2 && sides.length[0] == box->length[0] &&
+                      sides.length[1] == box->length[1];
+    if (!same)
+        mf_json_fault(system, "box",
+                      "is [%g, %g] here: the scene needs \"dimensions\": 2 and this \"box\"",
+                      sides.length[0], sides.length[1]);
+    return same;
+}
+
+/// "system" of an initial file as the tutorial on active Brownian particles of R. Sknepnek (2020)
+/// writes it: a box about 0, and of each particle "r", its place, perhaps "n", its
+/// direction, and "radius". Velocities and forces there are of no use to dynamics without inertia.
+static enum status read_system(struct data_table *table, struct json_object *system,
+                               const struct box *box) {
+    const size_t rows = (size_t)mf_json_count(system, "particles");
+    OWNED double *places = NULL, *directions = NULL, *radii = NULL;
+    if (rows == 0)
+        mf_json_fault(system, "particles", "expected a list of particles");
+    if (rows == 0 || !has_box(system, box))
+        return STATUS_OK;
+    TRY_ARRAY(places, 2 * rows);
+    TRY_ARRAY(directions, 2 * rows);
+    TRY_ARRAY(radii, rows);
+    if (!mf_json_list_members(system, "particles", "r", places, rows, 2)) {
+        if (mf_json_fault_count(system->document) == 0)
+            mf_json_fault(system, "particles", "expected \"r\" of each particle");
+        return STATUS_OK;
+    }
+    const bool turned = mf_json_list_members(system, "particles", "n", directions, rows, 2);
+    const bool sized = mf_json_list_members(system, "particles", "radius", radii, rows, 0);
+    TRY(begin_table(table, rows, 2 + (size_t)sized + (size_t)turned));
+    snprintf(table->header, HEADER_SIZE, "x y%s%s", sized ? " radius" : "",
+             turned ? " orientation" : "");
+    for (size_t k = 0; k < rows; k++) {
+        double *row = table->values + k * table->columns;
+        for (int d = 0; d < 2; d++)
+            *row++ = places[2 * k + (size_t)d] + 0.5 * box->length[d];
+        if (sized)
+            *row++ = radii[k];
+        if (turned)
+            *row++ = atan2(directions[2 * k + 1], directions[2 * k]);
+    }
     return STATUS_OK;
 }
 
@@ -73,18 +144,25 @@ done:
     return status;
 }
 
-enum status mf_snapshot_read(struct data_table *table, const char *file, int dimensions,
+enum status mf_snapshot_read(struct data_table *table, const char *file, const struct box *box,
                              const struct composition *composition) {
     struct json_document *document;
     *table = (struct data_table){0};
     TRY(mf_json_open(&document, file));
     struct json_object root = mf_json_root(document);
+    if (mf_json_is_object(&root, "system")) {
+        struct json_object system = mf_json_child(&root, "system", true);
+        const enum status read = mf_json_close(document, read_system(table, &system, box));
+        if (read != STATUS_OK)
+            mf_data_table_clear(table);
+        return read;
+    }
     struct json_object particles = mf_json_child(&root, "particles", true);
     enum status status = STATUS_OK;
     if (particles.item && mf_json_count(&particles, "x") == 0)
         mf_json_fault(&particles, "x", "expected a list of numbers");
     else if (particles.item)
-        status = read_columns(table, &particles, dimensions);
+        status = read_columns(table, &particles, box->dimensions);
     if (particles.item && status == STATUS_OK)
         status = check_types(&particles, composition);
     status = mf_json_close(document, status);

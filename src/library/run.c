@@ -104,6 +104,11 @@ static bool change(void *context, struct simulation_change *wanted) {
     return false;
 }
 
+static bool damp(void *context, double *wanted) {
+    (void)context, (void)wanted;
+    return false;
+}
+
 // What is to be done ------------------------------------------------------------------------------
 
 static const struct command *const commands[] = {&mf_command_measure, &mf_command_fit,
@@ -116,7 +121,8 @@ static enum status carry_out(struct mesofit_run *run, size_t count, const char *
                                     .print = print,
                                     .write = written,
                                     .steps = steps,
-                                    .change = change};
+                                    .change = change,
+                                    .damp = damp};
     const struct command *command = NULL;
     struct command_line line = {0};
     TRY(mf_command_find(commands, words[0], &command));

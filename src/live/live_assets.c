@@ -30,6 +30,8 @@
     EACH(curves, "/curves.js", "curves.js", SCRIPT)                                                \
     EACH(individuals, "/individuals.js", "individuals.js", SCRIPT)                                 \
     EACH(population, "/population.js", "population.js", SCRIPT)                                    \
+    EACH(candidate, "/candidate.js", "candidate.js", SCRIPT)                                       \
+    EACH(film, "/film.js", "film.js", SCRIPT)                                                      \
     EACH(maps, "/maps.js", "maps.js", SCRIPT)                                                      \
     EACH(particles, "/particles.js", "particles.js", SCRIPT)                                       \
     EACH(settings, "/settings.js", "settings.js", SCRIPT)                                          \

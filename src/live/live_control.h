@@ -21,9 +21,10 @@ struct live_order {
     bool resume, force;
 };
 
-/// What a simulation is to go on with, in units of its file; NaN: as it is.
+/// What a run is to go on with, in units of its file; NaN: as it is.
 struct live_change {
-    double temperature, time_step;
+    double temperature, time_step; ///< of a simulation
+    double damping;                ///< of a fit
 };
 
 struct live_control {

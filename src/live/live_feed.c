@@ -7,7 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const names[LIVE_SLOTS] = {"state", "progress", "log", "tables", "numbers"};
+static const char *const names[LIVE_SLOTS] = {"state",  "progress", "log",
+                                              "tables", "numbers",  "candidate"};
 
 /// Who asked for particles so long ago has gone [s].
 static const double particles_patience = 1;

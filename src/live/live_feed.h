@@ -13,11 +13,12 @@
 #include <stdint.h>
 
 enum live_slot {
-    LIVE_STATE,    ///< what is shown and what it does, JSON
-    LIVE_PROGRESS, ///< JSON
-    LIVE_LOG,      ///< lines for the person
-    LIVE_TABLES,   ///< files of the result, JSON
-    LIVE_NUMBERS,  ///< of a simulation, JSON
+    LIVE_STATE,     ///< what is shown and what it does, JSON
+    LIVE_PROGRESS,  ///< JSON
+    LIVE_LOG,       ///< lines for the person
+    LIVE_TABLES,    ///< files of the result, JSON
+    LIVE_NUMBERS,   ///< of a run, JSON
+    LIVE_CANDIDATE, ///< of a fit: what it has measured last, JSON
     LIVE_SLOTS
 };
 

@@ -190,6 +190,8 @@ static const struct field wish_fields[] = {
     {"time_step", FIELD_NUMBER, MEMBER(change.time_step), .initial = NAN,
      .minimum = FIELD_ABOVE_ZERO, .maximum = DBL_MAX, .unit = "",
      .help = "of \"change\", likewise"},
+    {"damping", FIELD_NUMBER, MEMBER(change.damping), .initial = NAN, .minimum = FIELD_ABOVE_ZERO,
+     .maximum = 1, .unit = "", .help = "of \"change\": part of its steps that a fit takes"},
     FIELD_END,
 };
 
@@ -212,11 +214,13 @@ static enum status check_change(struct live_view *view, const struct live_change
     pthread_mutex_lock(&view->lock);
     const bool is_fit = view->is_fit;
     pthread_mutex_unlock(&view->lock);
-    if (is_fit)
-        return mf_status_fail(STATUS_BAD_INPUT, "a fit keeps its settings: stop it to change them");
-    return isnan(change->temperature) && isnan(change->time_step)
-               ? mf_status_fail(STATUS_BAD_INPUT, "change takes a temperature, a time step or both")
-               : STATUS_OK;
+    const bool simulates = !isnan(change->temperature) || !isnan(change->time_step);
+    const bool fits = !isnan(change->damping);
+    if (is_fit ? simulates || !fits : fits || !simulates)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              is_fit ? "change takes a damping; a fit keeps its other settings"
+                                     : "change takes a temperature, a time step or both");
+    return STATUS_OK;
 }
 
 static enum status wish(struct live_view *view, const struct live_request *request,

@@ -4,6 +4,7 @@
 #include "base/clock.h"
 #include "base/interrupt.h"
 #include "io/json_write.h"
+#include "live/live_candidate.h"
 #include "live/live_particles.h"
 #include "observe/thermodynamics.h"
 
@@ -16,7 +17,7 @@ enum { LONGEST_LOG = 32768 };
 
 /// Least time between news of a kind [s], and the part of the time that they may take.
 static const double progress_interval = 0.2, particles_interval = 0.02, numbers_interval = 0.2,
-                    tables_interval = 1.5, part_of_time = 1.0 / 500;
+                    tables_interval = 1.5, candidate_interval = 0.5, part_of_time = 1.0 / 500;
 
 /// Time between words of a simulation while somebody draws its particles, or looks at all [s].
 static const double drawn_interval = 0.015, looked_interval = 0.25;
@@ -168,6 +169,33 @@ static void publish_simulation(struct live_watch *watch, bool forced) {
     publish_tables(watch);
 }
 
+// A fit -------------------------------------------------------------------------------------------
+
+static void publish_candidate(struct live_watch *watch, const struct inverse_candidate *candidate) {
+    const double begun = clock_thread_seconds();
+    if (candidate == NULL || mf_live_feed_streams(&watch->view->feed) == 0 ||
+        !is_due(&watch->candidate))
+        return;
+    struct json_writer *writer = mf_live_candidate_write(&watch->run, candidate);
+    if (writer)
+        mf_live_view_publish(watch->view, LIVE_CANDIDATE, writer);
+    set_pace(&watch->candidate, begun, candidate_interval);
+}
+
+/// The page offers to change what it is told of.
+static void publish_damping(struct live_watch *watch) {
+    struct json_writer *writer = mf_json_writer_create();
+    if (writer && watch->run.damping)
+        write_number(writer, watch, "damping", "", *watch->run.damping);
+    mf_live_view_publish(watch->view, LIVE_NUMBERS, writer);
+}
+
+static void begin_fit(struct live_watch *watch) {
+    watch->damping = NAN;
+    mf_live_feed_push(&watch->view->feed, LIVE_CANDIDATE, "{}");
+    publish_damping(watch);
+}
+
 // What the page wishes ----------------------------------------------------------------------------
 
 /// Not so fast: the next word is due so long after the last one.
@@ -186,13 +214,30 @@ static void show_pause(struct live_watch *watch, bool paused) {
     watch->paused = paused;
 }
 
+static void answer_wish(struct live_watch *watch, const char *answer) {
+    mf_live_view_set_phase(watch->view, watch->paused ? LIVE_PAUSED : LIVE_RUNNING, answer);
+}
+
+/// Where the steps of a fit have no damping the wish is refused.
+static void review_damping(struct live_watch *watch, double wish) {
+    const bool changes = watch->run.damping != NULL;
+    if (changes)
+        watch->damping = wish;
+    answer_wish(watch, changes ? "it takes effect at the next iteration"
+                               : "this method has no damping to be changed");
+}
+
 /// A change that cannot be is refused at once, one that can waits for the next step.
 static void review_change(struct live_watch *watch) {
     const struct simulation *simulation = watch->run.simulation;
-    const struct simulation_setup *setup = &simulation->setup;
     struct live_change wish;
     if (!mf_live_control_take_change(&watch->view->control, &wish))
         return;
+    if (simulation == NULL) {
+        review_damping(watch, wish.damping);
+        return;
+    }
+    const struct simulation_setup *setup = &simulation->setup;
     const struct units *units = watch->run.units;
     watch->change = (struct simulation_change){
         simulation->step,
@@ -200,9 +245,8 @@ static void review_change(struct live_watch *watch) {
                                 : wish.temperature / mf_units_factor(units, "T_0"),
         isnan(wish.time_step) ? setup->time_step : wish.time_step / mf_units_factor(units, "tau")};
     watch->changes = mf_simulation_check_change(simulation, &watch->change) == STATUS_OK;
-    mf_live_view_set_phase(watch->view, watch->paused ? LIVE_PAUSED : LIVE_RUNNING,
-                           watch->changes ? "it takes effect at the next step; samples are reset"
-                                          : mf_status_message());
+    answer_wish(watch, watch->changes ? "it takes effect at the next step; samples are reset"
+                                      : mf_status_message());
 }
 
 static struct live_pause apply_control(struct live_watch *watch) {
@@ -212,16 +256,14 @@ static struct live_pause apply_control(struct live_watch *watch) {
         if (watch->run.simulation && !watch->paused)
             publish_simulation(watch, true);
         show_pause(watch, true);
-        if (watch->run.simulation) {
-            review_change(watch);
+        review_change(watch);
+        if (watch->run.simulation)
             show_held_particles(watch);
-        }
         watch->last_clock = clock_seconds();
     }
     if (!pause.stepping)
         show_pause(watch, false);
-    if (watch->run.simulation)
-        review_change(watch);
+    review_change(watch);
     return pause;
 }
 
@@ -242,6 +284,8 @@ static void begin(void *context, const struct watcher_run *run) {
     }
     if (mf_live_view_show_folder(watch->view, run->folder, LIVE_RUNNING) != STATUS_OK)
         mf_live_view_set_phase(watch->view, LIVE_RUNNING, mf_status_message());
+    if (run->unknowns)
+        begin_fit(watch);
 }
 
 static void report(void *context, const struct watcher_progress *progress) {
@@ -254,6 +298,7 @@ static void report(void *context, const struct watcher_progress *progress) {
         publish_simulation(watch, watch->paused || progress->done == progress->total);
     }
     publish_progress(watch, progress);
+    publish_candidate(watch, progress->candidate);
     const struct live_pause pause = apply_control(watch);
     if (watch->run.simulation && pause.speed > 0)
         keep_speed(watch, pause.speed, watch->last_step - before);
@@ -276,6 +321,8 @@ static void print(void *context, const char *line) {
 static void show_tables(void *context) {
     struct live_watch *watch = context;
     mf_live_view_write_tables(watch->view);
+    if (watch->run.unknowns)
+        publish_damping(watch);
 }
 
 static int64_t find_steps(void *context) {
@@ -301,10 +348,21 @@ static bool take_change(void *context, struct simulation_change *change) {
     return changes;
 }
 
+static bool take_damping(void *context, double *damping) {
+    struct live_watch *watch = context;
+    const bool changes = !isnan(watch->damping);
+    if (!changes)
+        return false;
+    *damping = watch->damping;
+    watch->damping = NAN;
+    return true;
+}
+
 void mf_live_watch_init(struct live_watch *watch, struct live_view *view) {
     *watch = (struct live_watch){
         .view = view,
-        .watcher = {watch, begin, report, print, show_tables, find_steps, take_change},
+        .watcher = {watch, begin, report, print, show_tables, find_steps, take_change,
+                    take_damping},
     };
 }
 

@@ -17,7 +17,7 @@ struct live_watch {
     struct live_view *view;
     struct watcher watcher; ///< to be given to a run
     struct watcher_run run;
-    struct live_pace progress, particles, numbers, tables;
+    struct live_pace progress, particles, numbers, tables, candidate;
     struct live_bytes bytes; ///< of particles
     uint64_t frame_step;     ///< of the particles that were published last
     bool frame_energies;     ///< with their energies
@@ -26,6 +26,7 @@ struct live_watch {
     bool paused;             ///< as the page was told
     bool changes;            ///< the page has wished for what follows, and it can be
     struct simulation_change change;
+    double damping;    ///< that the page has wished of a fit; NaN: none
     double last_clock; ///< of the last word of a simulation [s]
     uint64_t last_step;
     double rate; ///< steps a second between the last two words

@@ -164,7 +164,7 @@ static void add(struct population_survey *survey, double error) {
 
 /// Tell what this iteration knows.
 static void report(const struct population *population, size_t count,
-                   const struct inverse_listener *to) {
+                   const struct inverse_candidate *candidate, const struct inverse_listener *to) {
     struct population_survey survey = population->survey;
     for (size_t k = 0; k < count; k++)
         if (population->errors[k] != UNMEASURED)
@@ -179,6 +179,7 @@ static void report(const struct population *population, size_t count,
         .min = survey.min,
         .mean = survey.alive.count > 0 ? survey.alive.mean : NAN,
         .failures = survey.failures,
+        .candidate = candidate,
     };
     to->report(to->context, &progress);
 }
@@ -219,8 +220,12 @@ static uint64_t seed_of(const struct population *population, size_t index) {
 /// What a simulation of a candidate leaves.
 struct measured {
     struct evaluate_result result;
-    double end[]; ///< as population.position
+    double end[]; ///< as population.position, and then values of g(r) if that is a target
 };
+
+static const struct target *rdf_of(const struct population *population) {
+    return &population->parametrisation->unknowns.problem->targets.target[TARGET_RDF];
+}
 
 /// Candidates of a round that have not been measured yet, as before an interruption.
 struct work {
@@ -237,24 +242,59 @@ static enum status measure_one(void *context, size_t task, void *memory) {
     const struct population *population = work->population;
     struct measured *measured = memory;
     const size_t index = work->index[task];
+    CLEARED_BY(mf_measurement_values_clear) struct observed observed = {0};
+    TRY(mf_measurement_values_init(&observed,
+                                   &population->parametrisation->unknowns.problem->targets));
     const struct population_task one = {
         .parameters = &population->parameters.evaluate,
         .seed = seed_of(population, index),
         .discard_above = work->discard_above,
         .threads = work->threads,
         .features = population->features + index * population->surrogate.features,
+        .observed = &observed,
         .end = measured->end,
     };
-    return mf_population_simulate(
+    TRY(mf_population_simulate(
         population, work->round->variables + index * population->parametrisation->variables, &one,
-        &measured->result);
+        &measured->result));
+    if (rdf_of(population)->count > 0)
+        memcpy(measured->end + mf_population_coordinates(population), observed.value[TARGET_RDF],
+               rdf_of(population)->count * sizeof(double));
+    return STATUS_OK;
+}
+
+/// A candidate of a round, for who looks.
+struct looked_at {
+    const struct parametrisation *parametrisation;
+    const double *variables;
+};
+
+static void make_curve(const void *context, enum unknown_kind kind, double *curve) {
+    const struct looked_at *candidate = context;
+    mf_parametrisation_curve(candidate->parametrisation, kind, candidate->variables, curve);
 }
 
 static void take_one(void *context, size_t task, const void *memory) {
     const struct work *work = context;
     const struct measured *measured = memory;
-    take(work->population, work->index[task], &measured->result, measured->end);
-    report(work->population, work->round->count, work->listener);
+    const struct population *population = work->population;
+    const struct evaluate_result *result = &measured->result;
+    const size_t index = work->index[task], variables = population->parametrisation->variables;
+    const struct looked_at looked_at = {population->parametrisation,
+                                        work->round->variables + index * variables};
+    const bool failed = result->error >= OPTIMISER_FAILED;
+    const struct inverse_candidate candidate = {
+        .number = index + 1,
+        .error = failed ? NAN : result->error,
+        .temperature = result->temperature,
+        .rdf = rdf_of(population)->count > 0 && !failed
+                   ? measured->end + mf_population_coordinates(population)
+                   : NULL,
+        .curve = make_curve,
+        .context = &looked_at,
+    };
+    take(work->population, index, result, measured->end);
+    report(population, work->round->count, &candidate, work->listener);
 }
 
 /// Besides its result a simulation leaves its candidate's features.
@@ -322,7 +362,8 @@ enum status mf_population_measure(struct population *population,
         .run = measure_one,
         .take = take_one,
         .result_size =
-            sizeof(struct measured) + mf_population_coordinates(population) * sizeof(double),
+            sizeof(struct measured) +
+            (mf_population_coordinates(population) + rdf_of(population)->count) * sizeof(double),
         .context = &work,
         .spans = list_features}));
     for (size_t k = 0; k < round->count; k++) {

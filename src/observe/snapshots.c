@@ -9,6 +9,8 @@
 #include "io/snapshot.h"
 #include "observe/measure.h"
 
+#define SOLVENT_FILE "solvent.tsv"
+
 struct settings {
     int64_t every;
     int formats; ///< a bit each
@@ -100,11 +102,33 @@ static bool is_given(const struct snapshot_column *column) {
     return strcmp(column->name, "position") == 0 || strcmp(column->name, "velocity") == 0;
 }
 
+/// solvent.tsv: where the solvent's particles are in the last snapshot.
+static enum status write_solvent(const struct snapshot *snapshot,
+                                 const struct observable_results *results) {
+    struct data_column columns[3];
+    char names[3][SNAPSHOT_NAME_SIZE + 16], path[OUTPUT_PATH_SIZE];
+    const struct snapshot_column *position = snapshot->column;
+    while (strcmp(position->name, "position") != 0)
+        position++;
+    for (int c = 0; c < position->components; c++) {
+        char name[SNAPSHOT_NAME_SIZE];
+        mf_snapshot_component_name(position, c, name);
+        snprintf(names[c], sizeof names[c], "%s[%s]", name, mf_snapshot_unit(position));
+        columns[c] = (struct data_column){
+            names[c], position->values + (size_t)c * snapshot->count + snapshot->own, "%.6g"};
+    }
+    mf_observable_file(results, SOLVENT_FILE, path);
+    return mf_data_table_write_in(path, results->units, NULL, columns, (size_t)position->components,
+                                  snapshot->count - snapshot->own);
+}
+
 /// configuration.tsv: the last snapshot as a placement file, with which another scene can begin.
 static enum status write(const void *state, const struct observable_results *results) {
     enum { MAX = 3 * SNAPSHOT_MAX_COLUMNS };
     const struct state *s = state;
     const struct snapshot *snapshot = &s->last;
+    if (snapshot->count > snapshot->own)
+        TRY(write_solvent(snapshot, results));
     struct data_column columns[MAX];
     char names[MAX][SNAPSHOT_NAME_SIZE + 16], path[OUTPUT_PATH_SIZE], bonds[OUTPUT_PATH_SIZE];
     size_t n = 0;
@@ -183,7 +207,7 @@ static const struct field fields[] = {
     FIELD_END,
 };
 
-static const char *const files[] = {CONFIGURATION_FILE, NULL};
+static const char *const files[] = {CONFIGURATION_FILE, SOLVENT_FILE, NULL};
 
 const struct observable mf_snapshots = {
     .name = "snapshots",

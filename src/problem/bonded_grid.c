@@ -114,9 +114,10 @@ enum status mf_bonded_grid_init(struct bonded_grid *grid, const struct inverse_p
                               name, unknown->bins.width * (double)unknown->bins.count);
     if (grid->known < FEWEST_BINS)
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "the target of the %s \"%s\" has only %zu bins with a p above %g of "
+                              "the target of the %s \"%s\" has only %zu bin%s with a p above %g of "
                               "its peak: narrower bins are needed, or a law in \"scene.%ss\"",
-                              kind, name, grid->known, mf_bonded_distribution_seen, kind);
+                              kind, name, grid->known, grid->known == 1 ? "" : "s",
+                              mf_bonded_distribution_seen, kind);
     return STATUS_OK;
 }
 

@@ -243,6 +243,17 @@ struct inverse_doubling {
     const char *unit;     ///< of both, reduced
 };
 
+/// A candidate whose simulation has just ended, while it is told of.
+struct inverse_candidate {
+    uint64_t number;    ///< of this iteration, from 1 on
+    double error;       ///< not finite: it failed
+    double temperature; ///< over what it should be; 0: not known
+    const double *rdf;  ///< as values of that target, NaN where not measured; NULL: not asked for
+    /// Its curve of an unknown, shape [points]: made only if somebody looks.
+    void (*curve)(const void *context, enum unknown_kind kind, double *curve);
+    const void *context;
+};
+
 /// Told from time to time inside an iteration, from one thread at a time.
 struct inverse_progress {
     uint32_t iteration;
@@ -252,6 +263,7 @@ struct inverse_progress {
     double min, mean;     ///< of this iteration's candidates; not finite without
     uint64_t failures;    ///< simulations that left their temperature or blew up
     struct inverse_doubling doubling;
+    const struct inverse_candidate *candidate; ///< the last one; NULL: there is none
 };
 
 struct inverse_listener {
@@ -313,6 +325,9 @@ struct inverse_method {
     /// interruption it begins again from before, with what its tasks have left.
     enum status (*iterate)(void *state, struct inverse_step *step,
                            const struct inverse_listener *listener);
+    /// The part of its steps that it takes, which may be changed between two iterations; NULL: it
+    /// has none.
+    double *(*damping)(void *state);
     /// List the state; returns the number of spans.
     size_t (*spans)(void *state, struct memory_span *spans);
     /// Write its own tables after an iteration, or NULL. Fails: IO, NO_MEMORY.

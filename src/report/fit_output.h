@@ -23,6 +23,7 @@ struct fit_result {
     const struct inverse_parameter *number;    ///< shape [problem.numbers]
     const char *formula;                       ///< of the curve, or ""
     const char *reason;                        ///< why it has not converged, or settled, or ""
+    const struct fit_dampings *changes;        ///< by a person, while it ran
     const struct verification *verification;   ///< of each state; NULL if there was none
 };
 

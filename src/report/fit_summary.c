@@ -6,6 +6,7 @@
 #include "observe/kirkwood_buff_observable.h"
 #include "problem/parametrisation.h"
 #include "report/fit_change.h"
+#include "report/fit_damping.h"
 #include "report/fit_step.h"
 
 #include <math.h>
@@ -380,6 +381,7 @@ enum status mf_fit_output_summary(const struct fit_file *fit, const struct unkno
     write_ramp(writer, &result->ramp);
     write_parameters(writer, fit, result);
     write_start(writer, unknowns, result);
+    mf_fit_damping_write(result->changes, writer);
     if (fit->files.given[TARGET_ETD])
         mf_json_write_number(writer, "etd_cells_left_out",
                              (double)target_files_etd(&fit->files)->left_out);

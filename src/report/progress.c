@@ -41,6 +41,23 @@ static void format_duration(double seconds, char text[32]) {
         snprintf(text, 32, "%.1f h", seconds / 3600);
 }
 
+void mf_progress_rate_text(double rate, const char *unit, char text[PROGRESS_RATE_SIZE]) {
+    static const struct {
+        double seconds;
+        const char *name;
+    } times[] = {{1, "s"}, {60, "min"}, {3600, "h"}};
+    int k = 0;
+    while (k < 2 && rate * times[k].seconds < 0.1)
+        k++;
+    rate *= times[k].seconds;
+    const double step = rate >= 999.5 ? pow(10, floor(log10(rate)) - 2) : 0;
+    if (step > 0)
+        snprintf(text, PROGRESS_RATE_SIZE, "%.0f %s/%s", step * rint(rate / step), unit,
+                 times[k].name);
+    else
+        snprintf(text, PROGRESS_RATE_SIZE, "%.3g %s/%s", rate, unit, times[k].name);
+}
+
 static void find_file(const struct progress *progress, char path[OUTPUT_PATH_SIZE]) {
     snprintf(path, OUTPUT_PATH_SIZE, "%s/" PROGRESS_FILE, progress->folder);
 }
@@ -80,6 +97,7 @@ void mf_progress_end(const struct progress *progress) {
 static void write_line(struct progress *progress, const struct watcher_progress *reported,
                        const char *left) {
     const double now = clock_seconds();
+    char rate[PROGRESS_RATE_SIZE];
     const double interval = progress->terminal ? terminal_interval : pipe_interval;
     const bool ends = reported->done == reported->total && progress->written != reported->total;
     if (progress->quiet || (now - progress->last < interval && !ends))
@@ -90,8 +108,9 @@ static void write_line(struct progress *progress, const struct watcher_progress 
         mf_terminal_clear_line();
     fprintf(stderr, "%s  %3.0f %%", reported->text,
             100 * (double)reported->done / (double)reported->total);
+    mf_progress_rate_text(reported->rate, reported->unit, rate);
     if (!reported->open)
-        fprintf(stderr, "  %.3g %s/s", reported->rate, reported->unit);
+        fprintf(stderr, "  %s", rate);
     if (left[0])
         fprintf(stderr, "  %s left", left);
     if (!progress->terminal)
@@ -143,6 +162,7 @@ void mf_progress_report_iteration(struct progress *progress, const struct invers
                              .total = total > progress->reported ? total : progress->reported,
                              .unit = "simulations",
                              .text = text,
+                             .candidate = now->candidate,
                              .open = now->doubling.number > 0});
 }
 
@@ -177,6 +197,11 @@ void mf_progress_report_written(const struct progress *progress) {
 bool mf_progress_ask_change(const struct progress *progress, struct simulation_change *change) {
     const struct watcher *watcher = progress->watcher;
     return watcher && watcher->change(watcher->context, change);
+}
+
+bool mf_progress_ask_damping(const struct progress *progress, double *damping) {
+    const struct watcher *watcher = progress->watcher;
+    return watcher && watcher->damp(watcher->context, damping);
 }
 
 void mf_progress_print_scale(struct progress *progress, const struct units *units) {

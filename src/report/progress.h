@@ -45,6 +45,11 @@ void mf_progress_report(struct progress *progress, uint64_t done, uint64_t total
 void mf_progress_report_iteration(struct progress *progress, const struct inverse_progress *now,
                                   const char *text);
 
+/// A rate with three digits and no power of ten, "1.87 simulations/min": what is rare is told by
+/// the minute or the hour. Tested: test_progress.
+enum { PROGRESS_RATE_SIZE = 64 };
+void mf_progress_rate_text(double rate, const char *unit, char text[PROGRESS_RATE_SIZE]);
+
 /// Remove progress.json, if there is a folder for it: nothing works there any more.
 void mf_progress_end(const struct progress *progress);
 
@@ -59,6 +64,9 @@ void mf_progress_report_written(const struct progress *progress);
 
 /// Whether who watches wants a simulation to go on with another temperature or time step.
 bool mf_progress_ask_change(const struct progress *progress, struct simulation_change *change);
+
+/// Whether who watches wants an inversion to go on with another damping.
+bool mf_progress_ask_damping(const struct progress *progress, double *damping);
 
 /// Say what the scale of a file in physical units is.
 void mf_progress_print_scale(struct progress *progress, const struct units *units);

@@ -2,13 +2,14 @@
 /// @file Someone who watches a run while it works.
 ///
 /// A run tells of itself through the calls of a watcher, and reads nothing back but how soon the
-/// next word is wanted, and whether a person has changed its temperature or time step: without such
-/// a change its results are the same bits with a watcher and without. A call may wait; the run then
-/// waits, too.
+/// next word is wanted, and whether a person has changed its temperature, time step or damping:
+/// without such a change its results are the same bits with a watcher and without. A call may wait;
+/// the run then waits, too.
 #pragma once
 
 #include "dynamics/simulation_change.h"
 #include "observe/measure.h"
+#include "problem/unknowns.h"
 #include "report/run_folder.h"
 
 #include <stdint.h>
@@ -21,14 +22,18 @@ struct watcher_run {
     struct simulation *simulation; ///< and what follows: NULL of a fit
     const struct measure_plan *plan;
     const struct observable_use *observables; ///< ended by one without an observable
+    const struct unknowns *unknowns;          ///< and what follows: of a fit, else NULL
+    const struct targets *targets;
+    const double *damping; ///< of an inversion; NULL: there is none
 };
 
 /// How far it is.
 struct watcher_progress {
     uint64_t done, total;
-    const char *unit, *text; ///< of what `done` counts; what else there is to say
-    double rate;             ///< parts a second
-    bool open;               ///< the total is unknown
+    const char *unit, *text;                   ///< of what `done` counts; what else there is to say
+    double rate;                               ///< parts a second
+    const struct inverse_candidate *candidate; ///< of a fit that has one
+    bool open;                                 ///< the total is unknown
 };
 
 struct watcher {
@@ -43,4 +48,7 @@ struct watcher {
     /// Whether a simulation is to go on with another temperature or time step, asked for after each
     /// word: one that mf_simulation_check_change allows, given once.
     bool (*change)(void *context, struct simulation_change *change);
+    /// Whether an inversion is to go on with another damping, above 0 and at most 1, asked for
+    /// before each iteration and given once.
+    bool (*damp)(void *context, double *damping);
 };

@@ -37,7 +37,7 @@ const struct field mf_scene_fields[] = {
      .unit = "lambda", .help = "skin of the neighbour list; 0: chosen"},
     {"temperature_limit", FIELD_NUMBER, MEMBER(temperature_limit), .initial = 20, .minimum = 1,
      .maximum = DBL_MAX, .unit = "",
-     .help = "kinetic temperature, in units of the temperature, above which a run is unstable"},
+     .help = "kinetic over set temperature above which a run is unstable"},
     {"precision", FIELD_CHOICE, MEMBER(precision), .choices = precisions, .initial = PAIR_MIXED,
      .unit = "", .help = "precision of pair forces"},
     FIELD_END,

@@ -41,7 +41,7 @@ static enum status read_file(struct data_table *table, const struct scene *scene
     const char *file = scene->setup.placement.file, *dot = strrchr(file, '.');
     const int dimensions = scene->setup.box.dimensions;
     return dot && strcmp(dot, ".json") == 0
-               ? mf_snapshot_read(table, file, dimensions, &scene->setup.composition)
+               ? mf_snapshot_read(table, file, &scene->setup.box, &scene->setup.composition)
                : mf_data_table_read(table, file, (size_t)dimensions);
 }
 

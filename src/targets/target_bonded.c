@@ -86,8 +86,8 @@ static double width_of(const struct target_rows *rows) {
 
 static enum status check_rows(const struct target_rows *rows, const char *file) {
     if (rows->count < FEWEST_ROWS)
-        return mf_status_fail(STATUS_BAD_INPUT, "%s: only %zu bins; at least %d are needed", file,
-                              rows->count, FEWEST_ROWS);
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: only %zu bin%s; at least %d are needed", file,
+                              rows->count, rows->count == 1 ? "" : "s", FEWEST_ROWS);
     const double width = width_of(rows);
     for (size_t k = 0; k < rows->count; k++) {
         const double step = k > 0 ? rows->x[k] - rows->x[k - 1] : width;

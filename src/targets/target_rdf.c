@@ -41,8 +41,7 @@ const struct field mf_target_rdf_fields[] = {
              "scene's"},
     {"normalisation", FIELD_NUMBER, MEMBER(normalisation), .initial = 0, .minimum = 0,
      .maximum = 100, .unit = "",
-     .help = "factor by which the file's g is too large, as by N - 1 for N or a wrong density; 0: "
-             "estimated from g"},
+     .help = "factor by which the file's g is too large; 0: estimated from g"},
     {"normalisation_error", FIELD_NUMBER, MEMBER(normalisation_error), .initial = 0.01,
      .minimum = FIELD_ABOVE_ZERO, .maximum = 1, .unit = "",
      .help = "prior standard deviation of an estimated normalisation from 1"},
@@ -125,8 +124,8 @@ static enum status find_bins(const struct target_rows *rows, const char *file,
                              struct rdf_bins *bins) {
     enum { FEWEST_ROWS = 4 };
     if (rows->count < FEWEST_ROWS)
-        return mf_status_fail(STATUS_BAD_INPUT, "%s: only %zu bins; a g(r) needs at least %d", file,
-                              rows->count, FEWEST_ROWS);
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: only %zu bin%s; a g(r) needs at least %d",
+                              file, rows->count, rows->count == 1 ? "" : "s", FEWEST_ROWS);
     const double first = rows->x[0];
     const double width = (rows->x[rows->count - 1] - first) / (double)(rows->count - 1);
     // First edges come out as 0 but for the file's rounding.

@@ -168,7 +168,7 @@ static void add_interactions(struct stages *stages, const struct simulation_setu
     }
 }
 
-/// Every observable of the list: what it costs, or that it is off.
+/// What each observable that somebody has asked for costs.
 static void add_observables(struct stages *stages, const struct simulation_setup *setup,
                             const struct observable_use *uses, double every) {
     for (size_t k = 0; mf_observables[k]; k++) {
@@ -177,8 +177,6 @@ static void add_observables(struct stages *stages, const struct simulation_setup
             use++;
         if (use->observable && use->observable->explain)
             use->observable->explain(use->settings, setup, every, stages);
-        else if (use->observable == NULL)
-            mf_stages_add(stages, mf_observables[k]->stage, false, 0, "not asked for");
     }
 }
 

@@ -6,6 +6,7 @@
 #include "base/visible.h"
 #include "defaults/fit_states.h"
 #include "io/checkpoint_pace.h"
+#include "report/fit_damping.h"
 #include "report/fit_closing.h"
 #include "report/fit_output.h"
 #include "report/fit_report.h"
@@ -50,6 +51,7 @@ struct run {
         char reason[INVERSE_REASON_SIZE];
         char formula[FIELD_TEXT_SIZE]; ///< or ""
     } standing;
+    struct fit_dampings changes;
     bool doubted; ///< by the verification
 };
 
@@ -93,6 +95,7 @@ static void list_state(struct run *run) {
     *to = (struct fit_checkpoint){
         .method = run->fit.method, .state = run->state, .history = &run->history};
     mf_fit_checkpoint_add(to, &run->standing, sizeof run->standing);
+    mf_fit_checkpoint_add(to, &run->changes, sizeof run->changes);
     for (int kind = 0; kind < UNKNOWNS; kind++) {
         const size_t bytes = mf_unknowns_points(&run->unknowns, kind) * sizeof(double);
         mf_fit_checkpoint_add(to, run->curve[kind], bytes);
@@ -150,13 +153,20 @@ static enum status begin_folder(struct run *run, bool resume) {
     return mf_run_folder_take_over(&run->folder);
 }
 
+static double *find_damping(const struct run *run) {
+    return run->fit.method->damping ? run->fit.method->damping(run->state) : NULL;
+}
+
 static enum status prepare(struct run *run, const char *file, const struct run_options *options) {
     TRY(mf_ranks_check(read_and_create(run, file, options), mf_fit_ranks_digest(&run->fit)));
     TRY(mf_ranks_check(ranks_lead() ? begin_folder(run, options->resume) : STATUS_OK, 0));
     if (options->resume)
         TRY(mf_fit_checkpoint_share(&run->checkpoint));
-    mf_progress_report_run(&run->progress, &(struct watcher_run){RUN_FIT, run->folder.path,
-                                                                 .units = &run->fit.scene.units});
+    mf_progress_report_run(
+        &run->progress,
+        &(struct watcher_run){RUN_FIT, run->folder.path, .units = &run->fit.scene.units,
+                              .unknowns = &run->unknowns, .targets = &run->fit.problem.targets,
+                              .damping = find_damping(run)});
     return mf_fit_print_targets(&run->progress, &run->fit);
 }
 
@@ -202,6 +212,7 @@ static struct fit_result result_so_far(const struct run *run, enum status status
                                 .error = s->accuracy.error,
                                 .first_error = mf_history_first_error(&run->history),
                                 .formula = s->formula,
+                                .changes = &run->changes,
                                 .reason = s->reason};
     for (int kind = 0; kind < UNKNOWNS; kind++) {
         result.curve[kind] = run->curve[kind];
@@ -273,6 +284,15 @@ static enum status record(struct run *run, const struct inverse_step *step) {
     return save(run);
 }
 
+/// Between two iterations, so that one that was interrupted begins again with what it had.
+static enum status take_change(struct run *run) {
+    if (!mf_fit_damping_ask(&run->changes, run->standing.iterations, find_damping(run),
+                            &run->progress))
+        return STATUS_OK;
+    TRY(mf_fit_checkpoint_begin(&run->checkpoint));
+    return save(run);
+}
+
 static enum status iterate(struct run *run) {
     const struct inverse_method *method = run->fit.method;
     const struct inverse_listener listener = {report, run};
@@ -281,6 +301,7 @@ static enum status iterate(struct run *run) {
                           "the fit is finished: only its result is verified and written");
     while (!run->standing.finished) {
         struct inverse_step step;
+        TRY(take_change(run));
         mf_task_log_use(&run->checkpoint.tasks);
         const enum status status = method->iterate(run->state, &step, &listener);
         mf_task_log_use(NULL);
@@ -289,27 +310,6 @@ static enum status iterate(struct run *run) {
                            mf_fit_ranks_digest_curves(&run->unknowns, run->curve)));
     }
     return STATUS_OK;
-}
-
-/// A method without an error and without a reason has not measured anything.
-static void report_unconverged(const struct run *run) {
-    const char *folder = run->folder.path, *reason = run->standing.reason;
-    if (isfinite(run->standing.accuracy.error))
-        mf_status_fail(STATUS_UNCONVERGED,
-                       "the fit has not converged%s%s; its best curves are in %s",
-                       reason[0] ? ": " : "", reason, folder);
-    else if (reason[0])
-        mf_status_fail(STATUS_UNCONVERGED,
-                       "the fit has no result: %s; the failures are counted in %s/history.tsv",
-                       reason, folder);
-    else
-        mf_status_fail(STATUS_UNCONVERGED,
-                       "not one simulation of the fit succeeded; the failures are counted in "
-                       "%s/history.tsv",
-                       folder);
-    // The reason of the verification is in the units of the file; most reasons have no units.
-    if (!run->doubted && (strstr(reason, "pressure") || strstr(reason, "k_B T_0")))
-        mf_units_add_to_message(&run->fit.scene.units, STATUS_UNCONVERGED);
 }
 
 /// A result whose verification blows up leaves a summary that says so.
@@ -381,7 +381,8 @@ static enum status verify_and_write(struct run *run) {
     mf_fit_closing_print(&run->progress, &run->fit, &run->unknowns, &result, run->folder.path);
     status = result.status;
     if (status == STATUS_UNCONVERGED)
-        report_unconverged(run);
+        mf_fit_print_unconverged(&run->fit, run->folder.path, &run->standing.accuracy,
+                                 run->standing.reason, run->doubted);
 done:
     for (size_t s = 0; verification && s < states; s++)
         mf_verify_clear(&verification[s]);

@@ -7,7 +7,7 @@
 #include "base/task_log.h"
 #include "report/history.h"
 
-enum { FIT_CHECKPOINT_OWN = 2 + 3 * UNKNOWNS };
+enum { FIT_CHECKPOINT_OWN = 3 + 3 * UNKNOWNS };
 
 struct fit_checkpoint {
     const struct inverse_method *method; ///< with its state; borrowed

@@ -139,3 +139,24 @@ void mf_fit_print_iteration(const struct inverse_progress *now, const struct uni
                  (unsigned long long)now->failures);
     snprintf(text, FIT_TELL_SIZE, "iteration %u%s%s%s", now->iteration, error, min, mean);
 }
+
+void mf_fit_print_unconverged(const struct fit_file *fit, const char *folder,
+                              const struct fit_accuracy *accuracy, const char *reason,
+                              bool doubted) {
+    if (isfinite(accuracy->error))
+        mf_status_fail(STATUS_UNCONVERGED,
+                       "the fit has not converged%s%s; its best curves are in %s",
+                       reason[0] ? ": " : "", reason, folder);
+    else if (reason[0])
+        mf_status_fail(STATUS_UNCONVERGED,
+                       "the fit has no result: %s; the failures are counted in %s/history.tsv",
+                       reason, folder);
+    else
+        mf_status_fail(STATUS_UNCONVERGED,
+                       "not one simulation of the fit succeeded; the failures are counted in "
+                       "%s/history.tsv",
+                       folder);
+    // The reason of the verification is in the units of the file; most reasons have no units.
+    if (!doubted && (strstr(reason, "pressure") || strstr(reason, "k_B T_0")))
+        mf_units_add_to_message(&fit->scene.units, STATUS_UNCONVERGED);
+}

@@ -5,6 +5,7 @@
 #include "defaults/fit_file.h"
 #include "targets/target_sanity.h"
 #include "report/progress.h"
+#include "work/fit_verify.h"
 
 enum { FIT_TELL_SIZE = 160 };
 
@@ -21,3 +22,10 @@ enum status mf_fit_print_targets(struct progress *to, const struct fit_file *fit
 /// test_fit_print.
 enum status mf_fit_print_state(const struct fit_file *fit,
                                const struct target_sanity_listener *listener) MUST_USE;
+
+/// The message of a fit that has not converged. A method without an error and without a reason has
+/// not measured anything.
+/// @param[in] doubted  by the verification, whose reason this is
+void mf_fit_print_unconverged(const struct fit_file *fit, const char *folder,
+                              const struct fit_accuracy *accuracy, const char *reason,
+                              bool doubted);

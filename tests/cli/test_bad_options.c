@@ -10,6 +10,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -71,6 +72,17 @@ static void test_help_is_on_stdout_when_asked_for(void **state) {
     assert_contains(result.out, "--explain");
     assert_null(strstr(result.out, "mesofit measure"));
     assert_string_equal(result.err, "");
+    char *own = strdup(result.out);
+    RUN_PROGRAM(&result, "help", "fit");
+    run_program_assert_code(&result, 0);
+    assert_string_equal(result.out, own);
+    free(own);
+    RUN_PROGRAM(&result, "help", "fitt");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err, "fitt");
+    RUN_PROGRAM(&result, "help");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.out, "mesofit measure");
     RUN_PROGRAM(&result, "--help");
     run_program_assert_code(&result, 0);
     assert_contains(result.out, "mesofit measure");

@@ -9,6 +9,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 static char root[4096];
@@ -63,6 +64,75 @@ static void test_one_gas_is_what_its_page_says(void **state) {
     free(page);
 }
 
+/// One in eight samples, so that a test can afford it; fits are as they are. Figures are not drawn.
+static void shorten(const char *run) {
+    char command[4096];
+    snprintf(
+        command, sizeof command,
+        "cd '%s' && for file in *.json; do awk '/\"samples\":/ && !fit "
+        "{ match($0, /\"samples\": *[0-9]+/); text = substr($0, RSTART, RLENGTH); n = text; "
+        "gsub(/[^0-9]/, \"\", n); $0 = substr($0, 1, RSTART - 1) \"\\\"samples\\\": \" "
+        "int(n / 8 < 40 ? 40 : n / 8) substr($0, RSTART + RLENGTH) } /\"target\":/ { fit = 1 } "
+        "{ print }' \"$file\" >shorter && mv shorter \"$file\"; done",
+        run);
+    assert_int_equal(system(command), 0);
+}
+
+/// The next row "| `key` | text |" from here on; NULL if there is none.
+static const char *next_row(const char *text, char key[64], char value[64]) {
+    while (text && (text = strstr(text, "\n| `"))) {
+        if (sscanf(text, "\n| `%63[^`]` | %63[^|\n] |", key, value) == 2)
+            return text + 1;
+        text++;
+    }
+    return NULL;
+}
+
+/// Rows that say an error agree within both; those that say a word are the same.
+static void assert_rows_agree(const char *run, const char *fresh, const char *page) {
+    char key[64], then_key[64], text[64], then_text[64];
+    int compared = 0;
+    while ((fresh = next_row(fresh, key, text))) {
+        double error = 0, then_error = 0;
+        page = next_row(page, then_key, then_text);
+        assert_non_null(page);
+        assert_string_equal(key, then_key);
+        const double value = row_of(fresh - 1, key, &error);
+        const double then = row_of(page - 1, key, &then_error);
+        if (strspn(text, "-0123456789") == 0)
+            assert_string_equal(text, then_text);
+        else if (error > 0 && then_error > 0 && fabs(value - then) > 4 * hypot(error, then_error))
+            fail_msg("runs/%s/README.md: %s is %s there, and %s now", run, key, then_text, text);
+        compared++;
+    }
+    assert_null(next_row(page, then_key, then_text));
+    assert_true(compared > 0);
+}
+
+static void test_pages_say_what_shorter_runs_find(void **state) {
+    static const char *const runs[] = {"dpd-fluid",       "lennard-jones-dynamics",
+                                       "monte-carlo",     "soft-discs",
+                                       "active-brownian", "collision-dynamics"};
+    small_inputs_write(*state, "program", "#!/bin/sh\nPATH=/none exec \"$REAL\" \"$@\"\n", NULL,
+                       NULL);
+    assert_int_equal(chmod("program", 0777), 0);
+    assert_int_equal(setenv("REAL", getenv("MESOFIT"), 1), 0);
+    for (size_t k = 0; k < sizeof runs / sizeof *runs; k++) {
+        char command[3 * 4096], path[128];
+        snprintf(path, sizeof path, "%s/README.md", runs[k]);
+        snprintf(command, sizeof command, "cp -r '%s/runs/%s' .", root, runs[k]);
+        assert_int_equal(system(command), 0);
+        shorten(runs[k]);
+        snprintf(command, sizeof command, "'%s/tests/tools/results.sh' ./program %s", root,
+                 runs[k]);
+        assert_int_equal(system(command), 0);
+        char *fresh = temporary_folder_read(path), *page = stored(runs[k]);
+        assert_rows_agree(runs[k], fresh, page);
+        free(fresh);
+        free(page);
+    }
+}
+
 static void test_page_that_asks_for_nothing_is_refused(void **state) {
     char command[3 * 4096];
     (void)state;
@@ -84,6 +154,7 @@ int main(void) {
         return 1;
     const struct CMUnitTest tests[] = {
         TEST(test_one_gas_is_what_its_page_says),
+        TEST(test_pages_say_what_shorter_runs_find),
         TEST(test_page_that_asks_for_nothing_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -37,9 +37,9 @@ static bool is_slow(const char *path) {
     return false;
 }
 
-/// Maps and molecules are no scenes, and neither is what a run wrote.
+/// Maps, molecules and initial files are no scenes, and neither is what a run wrote.
 static bool is_run(const char *path) {
-    return strstr(path, "/out/") == NULL &&
+    return strstr(path, "/out/") == NULL && !has(path, "\"system\"") &&
            (has(path, "\"target\"") || has(path, "\"box\"") || has(path, "\"density\""));
 }
 

@@ -168,7 +168,8 @@ static void test_simulate_draws_all_g_of_a_mixture_when_gnuplot_is_there(void **
         fail_msg("%s", result.err);
 }
 
-/// Every stage has a line, on or off with the reason, and nothing is run or written.
+/// Every stage of the engine has a line, on or off with the reason, and every observable that is
+/// asked for; nothing is run or written.
 static void test_explain_tells_what_is_on_and_off(void **state) {
     static struct run_program_result result;
     small_scenes_write(*state, small_scenes_dpd, NULL, NULL);
@@ -178,6 +179,8 @@ static void test_explain_tells_what_is_on_and_off(void **state) {
     assert_contains(result.out, "friction and noise                 on ");
     assert_contains(result.out, "its pairs are kept for aboba");
     assert_contains(result.out, "counted in a pass at the end of one step in 10");
+    assert_null(strstr(result.out, "structure factor"));
+    assert_null(strstr(result.out, "not asked for"));
     small_scenes_write(*state, small_scenes_dpd, "\"measure\"",
                        "\"dynamics\": {\"integrator\": \"dpd-verlet\"}, \"measure\"");
     RUN_PROGRAM(&result, "simulate", "scene.json", "--explain");

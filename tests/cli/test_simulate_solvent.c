@@ -7,6 +7,7 @@
 #include "shared/small_inputs.h"
 #include "shared/testing.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -46,6 +47,28 @@ static void test_simulate_measures_a_solvent_without_beads(void **state) {
     results_assert_same("out", "again", tables);
 }
 
+/// solvent.tsv has the places of the last 2754 lines, to six digits.
+static void assert_solvent_is_that_of_the_last_frame(const char *frames) {
+    enum { COUNT = 2754 };
+    const char *line = frames + strlen(frames);
+    for (int lines = 0; lines <= COUNT; lines += *--line == '\n')
+        ;
+    char *table = temporary_folder_read("out/solvent.tsv"), *rest;
+    char *row = strtok_r(table, "\n", &rest);
+    assert_string_equal(row, "# x[lambda]\ty[lambda]");
+    for (int k = 0; k < COUNT; k++) {
+        double x, y, wanted_x, wanted_y;
+        line = strchr(line, '\n') + 1;
+        row = strtok_r(NULL, "\n", &rest);
+        assert_non_null(row);
+        assert_int_equal(sscanf(row, "%lf %lf", &x, &y), 2);
+        assert_int_equal(sscanf(line, "%*s %lf %lf", &wanted_x, &wanted_y), 2);
+        assert_true(fabs(x - wanted_x) < 1e-4 && fabs(y - wanted_y) < 1e-4);
+    }
+    assert_null(strtok_r(NULL, "\n", &rest));
+    free(table);
+}
+
 static void test_snapshots_show_the_solvent_where_it_is_wanted(void **state) {
     static struct run_program_result result;
     write(*state, "\"measure\": {\"equilibration\": 200,",
@@ -57,6 +80,7 @@ static void test_snapshots_show_the_solvent_where_it_is_wanted(void **state) {
     results_assert_same("out", "threads", snapshots);
     char *frames = temporary_folder_read("out/snapshots/trajectory.extxyz");
     assert_true(strncmp(frames, "2754\nLattice=", 13) == 0);
+    assert_solvent_is_that_of_the_last_frame(frames);
     free(frames);
     write(*state, "\"measure\"", "\"snapshots\": {\"every\": 500}, \"measure\"");
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
@@ -132,10 +156,14 @@ static void test_no_viscosity_and_no_coefficient_where_there_is_none(void **stat
 static void test_figures_of_flow_are_drawn(void **state) {
     static struct run_program_result result;
     small_inputs_need_gnuplot();
-    write(*state, NULL, NULL);
+    write(*state, "\"measure\"", SNAPSHOTS "\"measure\"");
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
     run_program_assert_code(&result, 0);
     assert_null(strstr(result.err, "no figure"));
+    char *panels = temporary_folder_read("out/figures/flow_panels.svg");
+    assert_contains(panels, "streamlines");
+    assert_contains(panels, ">particles<");
+    free(panels);
     assert_true(temporary_folder_exists("out/figures/flow_profile.svg"));
     assert_true(temporary_folder_exists("out/figures/flow_field.png"));
 }

@@ -252,6 +252,62 @@ static void test_interrupted_active_particles_go_on_with_the_same_bits(void **st
     results_assert_same("whole", "pieces", active_files);
 }
 
+/// Six particles in the box about 0, as their tutorial's initial file has them, and as a table.
+static const char tutorial[] =
+    "{\"system\": {\"box\": {\"Lx\": 12.0, \"Ly\": 12}, \"particles\": [\n"
+    "{\"id\": 0, \"r\": [-5, -3.25], \"n\": [0, 1], \"v\": [0, 0], \"f\": [0, 0], "
+    "\"radius\": 0.5},\n"
+    "{\"id\": 1, \"r\": [-4, -3.5], \"n\": [1, 0], \"radius\": 0.5},\n"
+    "{\"id\": 2, \"r\": [1, 1], \"n\": [0, -1], \"radius\": 0.5},\n"
+    "{\"id\": 3, \"r\": [2, 1.5], \"n\": [0, 1], \"radius\": 0.5},\n"
+    "{\"id\": 4, \"r\": [4, 5], \"n\": [1, 0], \"radius\": 0.5},\n"
+    "{\"id\": 5, \"r\": [5.5, 5], \"n\": [0, -1], \"radius\": 0.75}]}}\n";
+static const char same_as_table[] = "# x y orientation radius\n"
+                                    "1 2.75 1.5707963267948966 0.5\n2 2.5 0 0.5\n"
+                                    "7 7 -1.5707963267948966 0.5\n8 7.5 1.5707963267948966 0.5\n"
+                                    "10 11 0 0.5\n11.5 11 -1.5707963267948966 0.75\n";
+
+static void write_tutorial(struct temporary_folder *folder, const char *from, const char *to) {
+    small_inputs_write(folder, "init.json", tutorial, from, to);
+    small_scenes_write(folder, active, "60, \"placement\": \"random\", \"separation\": 1",
+                       "6, \"placement\": \"file\", \"file\": \"init.json\"");
+}
+
+static void test_scene_begins_with_the_tutorials_initial_file(void **state) {
+    static struct run_program_result result;
+    write_tutorial(*state, NULL, NULL);
+    small_scenes_simulate(&result, "first");
+    small_inputs_write(*state, "table.txt", same_as_table, NULL, NULL);
+    small_scenes_write(*state, active, "60, \"placement\": \"random\", \"separation\": 1",
+                       "6, \"placement\": \"file\", \"file\": \"table.txt\"");
+    small_scenes_simulate(&result, "second");
+    results_assert_same("first", "second", active_files);
+}
+
+static void test_broken_initial_file_of_the_tutorial_is_refused(void **state) {
+    static const struct {
+        const char *from, *to, *fault;
+    } cases[] = {
+        {"\"Lx\": 12.0", "\"Lx\": 13", "system.box: is [13, 12] here"},
+        {"\"Lx\": 12.0, ", "", "system.box.Lx"},
+        {"\"r\": [1, 1]", "\"r\": [1, null]",
+         "system.particles: number 3 of the list: expected \"r\""},
+        {"\"n\": [0, 1], \"radius\": 0.5},\n{\"id\": 4", "\"radius\": 0.5},\n{\"id\": 4",
+         "number 4 of the list: expected \"n\""},
+        {"0.75", "\"big\"", "number 6 of the list: expected \"radius\", a number"},
+        {"\"particles\"", "\"others\"", "system.particles: expected a list of particles"},
+    };
+    static struct run_program_result result;
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        write_tutorial(*state, cases[k].from, cases[k].to);
+        RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+        run_program_assert_code(&result, 2);
+        assert_contains(result.err, "scene.json: particles.file: init.json: ");
+        assert_contains(result.err, cases[k].fault);
+        assert_false(temporary_folder_exists("out/used.json"));
+    }
+}
+
 static void test_broken_snapshot_is_refused_as_a_start(void **state) {
     static struct run_program_result result;
     small_scenes_write(*state, active, "\"random\", \"separation\": 1",
@@ -321,6 +377,10 @@ int main(void) {
         cmocka_unit_test_setup_teardown(test_interrupted_active_particles_go_on_with_the_same_bits,
                                         small_inputs_enter_without_gnuplot, small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_snapshot_of_other_types_is_refused_as_a_start,
+                                        small_inputs_enter_without_gnuplot, small_inputs_leave),
+        cmocka_unit_test_setup_teardown(test_scene_begins_with_the_tutorials_initial_file,
+                                        small_inputs_enter_without_gnuplot, small_inputs_leave),
+        cmocka_unit_test_setup_teardown(test_broken_initial_file_of_the_tutorial_is_refused,
                                         small_inputs_enter_without_gnuplot, small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_broken_snapshot_is_refused_as_a_start,
                                         small_inputs_enter_without_gnuplot, small_inputs_leave),

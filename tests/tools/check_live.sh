@@ -22,4 +22,4 @@ case $address in
     exit 0
     ;;
 esac
-exec "$python" -W ignore::ResourceWarning -m unittest -v test_same_bits test_changes test_numbers test_progress test_particles test_panels test_views test_live
+exec "$python" -W ignore::ResourceWarning -m unittest -v test_same_bits test_changes test_damping test_steering test_numbers test_progress test_particles test_panels test_views test_live

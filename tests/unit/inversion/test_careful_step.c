@@ -48,6 +48,7 @@ static void iterate(struct inversion *inversion, const struct inverse_method *me
                                             .samples = 40,
                                             .every = 1,
                                             .iterations = 3,
+                                            .damping = 1,
                                             .precision = 1,
                                             .start = INVERSION_FROM_MEAN_FORCE,
                                             .sampler = SAMPLER_AUTO};

@@ -48,6 +48,7 @@ static double observe(double target, double precision, struct told *told) {
                                                   .samples = 8,
                                                   .every = 8,
                                                   .iterations = 2,
+                                                  .damping = 1,
                                                   .precision = precision,
                                                   .start = INVERSION_FROM_MEAN_FORCE};
     *told = (struct told){0};

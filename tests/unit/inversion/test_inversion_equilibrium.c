@@ -248,6 +248,7 @@ static double observe(double repulsion, int64_t equilibration, double *sweeps) {
                                                   .samples = FIRST,
                                                   .every = 1,
                                                   .iterations = 2,
+                                                  .damping = 1,
                                                   .precision = 1,
                                                   .start = INVERSION_FROM_MEAN_FORCE};
     assert_ok(mf_inversion_create(inversion, &mf_imc, &problem, &settings));

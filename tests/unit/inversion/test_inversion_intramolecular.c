@@ -62,6 +62,7 @@ static void make(struct made *made, const int *type, double low) {
                                                    .samples = 8,
                                                    .every = 1,
                                                    .iterations = 2,
+                                                   .damping = 1,
                                                    .precision = 1,
                                                    .sampler = SAMPLER_AUTO};
     assert_ok(

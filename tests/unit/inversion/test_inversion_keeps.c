@@ -22,6 +22,7 @@ static struct inversion *begin(struct fit *fit, bool pressure) {
         .problem.targets.target = {[TARGET_RDF].count = 10, [TARGET_PRESSURE].count = pressure},
         .inversion = {.problem = &fit->problem, .state = &fit->state, .states = 1}};
     fit->inversion.course.progress.best.distance[TARGET_RDF].rms = INFINITY;
+    fit->inversion.course.progress.chosen_damping = 1;
     return &fit->inversion;
 }
 
@@ -101,7 +102,7 @@ static void test_inversion_shortens_steps_that_go_too_far(void **state) {
             .course = {.phi = &phi,
                        .step = &step,
                        .best = {.phi = &best, .step = &best_step},
-                       .progress.damping = 1}};
+                       .progress = {.damping = 1, .chosen_damping = 1}}};
         mf_inversion_relax(&inversion);
         assert_close(inversion.course.progress.damping, k == 0 ? 1 / slope : 1, 1e-12);
         inversion.assessment.section[0].misfit = 1; // noise points anywhere
@@ -146,15 +147,20 @@ static void test_inversion_goes_back_from_a_step_that_was_cut(void **state) {
     double best = 0, best_step = 50, phi = 0;
     struct inversion_state made = {
         .grid = {.known = 1, .known_point = &point, .well_known = &well_known}};
-    struct inversion inversion = {
-        .state = &made,
-        .states = 1,
-        .course = {.phi = &phi, .best = {.phi = &best, .step = &best_step}}};
+    struct inversion inversion = {.state = &made,
+                                  .states = 1,
+                                  .course = {.phi = &phi,
+                                             .best = {.phi = &best, .step = &best_step},
+                                             .progress.chosen_damping = 1}};
     for (double damping = 1; damping > mf_inversion_min_damping; damping /= 2) {
         inversion.course.progress.damping = damping;
         mf_inversion_take_step(&inversion);
         assert_close(phi, damping, 1e-12);
     }
+    inversion.course.progress.damping = 0.5;
+    inversion.course.progress.chosen_damping = 0.2;
+    mf_inversion_take_step(&inversion);
+    assert_close(phi, 0.1, 1e-12);
 }
 
 /// A step of 50 that was cut to 1 went too far: from there one of 100 leads back, which is cut,
@@ -173,7 +179,7 @@ static void test_inversion_shortens_steps_that_were_cut(void **state) {
         .course = {.phi = &phi,
                    .step = &step,
                    .best = {.phi = &best, .step = &best_step},
-                   .progress.damping = 1}};
+                   .progress = {.damping = 1, .chosen_damping = 1}}};
     mf_inversion_take_step(&inversion);
     assert_close(phi, 1, 1e-12);
     mf_inversion_relax(&inversion);
@@ -181,6 +187,35 @@ static void test_inversion_shortens_steps_that_were_cut(void **state) {
     best_step = step;
     mf_inversion_take_step(&inversion);
     assert_close(phi, 1.0 / 3, 1e-12);
+}
+
+/// From where a step led, one twice as long leads back: both lead to a third of the way, whatever
+/// damping a person has chosen.
+static void test_inversion_relaxes_to_one_place_with_any_chosen_damping(void **state) {
+    (void)state;
+    for (double chosen = 1; chosen > 0.4; chosen /= 2) {
+        size_t point = 0;
+        bool well_known = true;
+        double best = 0, best_step = 0.5, phi = 0, step = 0;
+        struct inversion_state made = {
+            .grid = {.known = 1, .known_point = &point, .well_known = &well_known}};
+        struct inversion inversion = {
+            .state = &made,
+            .states = 1,
+            .assessment = {.sections = 1, .section[0] = {.misfit = 100, .probable = 2}},
+            .course = {.phi = &phi,
+                       .step = &step,
+                       .best = {.phi = &best, .step = &best_step},
+                       .progress = {.damping = 1, .chosen_damping = chosen}}};
+        mf_inversion_take_step(&inversion);
+        step = -1; // from 0.5 chosen back: the target is at a third of the way there
+        const double zero = phi / 3;
+        mf_inversion_relax(&inversion);
+        best = phi;
+        best_step = step;
+        mf_inversion_take_step(&inversion);
+        assert_close(phi, zero, 1e-12);
+    }
 }
 
 /// Of two states one is to go two fifths of the way and the other a fifth, as well known.
@@ -349,15 +384,17 @@ static void test_inversion_ends_with_the_step_that_is_left_or_the_mean(void **st
                                     .target.counts = target,
                                     .variance = variance,
                                     .pool = {.excess = pooled, .phi = pooled_phi, .samples = 100}};
-    struct inversion inversion = {
-        .method = &method,
-        .problem = &problem,
-        .state = &first,
-        .states = 1,
-        .course = {.phi = phi, .best = {.phi = best, .step = best_step}, .progress.damping = 1}};
+    struct inversion inversion = {.method = &method,
+                                  .problem = &problem,
+                                  .state = &first,
+                                  .states = 1,
+                                  .course = {.phi = phi,
+                                             .best = {.phi = best, .step = best_step},
+                                             .progress = {.damping = 1, .chosen_damping = 1}}};
     assert_ok(mf_inversion_take_last_step(&inversion));
     assert_true(best[0] == 2 && best[1] == 1);
     inversion.course.most_probable = true;
+    inversion.course.progress.chosen_damping = 0.1; // the end is as probable as ever
     assert_ok(mf_inversion_take_last_step(&inversion));
     assert_close(best[0], 2.3, 1e-15);
     assert_close(best[1], 0.9, 1e-15);
@@ -388,6 +425,7 @@ int main(void) {
         cmocka_unit_test(test_inversion_goes_back_for_the_part_of_which_its_samples_tell),
         cmocka_unit_test(test_inversion_goes_back_from_a_step_that_was_cut),
         cmocka_unit_test(test_inversion_shortens_steps_that_were_cut),
+        cmocka_unit_test(test_inversion_relaxes_to_one_place_with_any_chosen_damping),
         cmocka_unit_test(test_inversion_goes_back_for_the_part_that_all_states_tell),
         cmocka_unit_test(test_inversion_knows_directions_by_its_samples),
     };

@@ -53,6 +53,7 @@ static void make(struct made *made, int start) {
                                                    .samples = 8,
                                                    .every = 1,
                                                    .iterations = 2,
+                                                   .damping = 1,
                                                    .precision = 1,
                                                    .start = start};
 }

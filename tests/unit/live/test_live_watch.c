@@ -13,7 +13,12 @@ static void assert_tells(bool open, const char *words) {
     uint64_t seen = 0;
     assert_ok(mf_live_view_init(&view, "{}", false));
     mf_live_watch_init(&watch, &view);
-    watch.watcher.report(&watch, &(struct watcher_progress){2, 10, "simulations", "some", 4, open});
+    watch.watcher.report(&watch, &(struct watcher_progress){.done = 2,
+                                                            .total = 10,
+                                                            .unit = "simulations",
+                                                            .text = "some",
+                                                            .rate = 4,
+                                                            .open = open});
     char *events = mf_live_feed_wait(&view.feed, &seen, 1);
     assert_contains(events, "event: progress");
     assert_contains(events, words);

@@ -119,6 +119,21 @@ static void test_iterations_go_on_when_their_passes_begin_anew(void **state) {
     }
 }
 
+static void test_rates_are_told_as_people_write_them(void **state) {
+    (void)state;
+    static const struct {
+        double rate;
+        const char *text;
+    } rates[] = {{8.0612, "8.06 steps/s"}, {123456, "123000 steps/s"},   {999.7, "1000 steps/s"},
+                 {0.1, "0.1 steps/s"},     {1.0 / 32, "1.88 steps/min"}, {1.0 / 3600, "1 steps/h"},
+                 {0, "0 steps/h"}};
+    for (size_t k = 0; k < sizeof rates / sizeof *rates; k++) {
+        char text[PROGRESS_RATE_SIZE];
+        mf_progress_rate_text(rates[k].rate, "steps", text);
+        assert_string_equal(text, rates[k].text);
+    }
+}
+
 /// While samples are doubled nobody is told a time, in the folder neither.
 static void test_iteration_that_doubles_its_samples_has_no_time_left(void **state) {
     struct temporary_folder *folder = *state;
@@ -166,6 +181,7 @@ int main(void) {
         cmocka_unit_test(test_pace_of_even_parts_is_their_time),
         cmocka_unit_test(test_pace_runs_down_inside_a_period),
         cmocka_unit_test(test_pace_ages_while_a_period_is_overdue),
+        cmocka_unit_test(test_rates_are_told_as_people_write_them),
         cmocka_unit_test(test_pace_has_a_rate_that_agrees_with_the_time_left),
         cmocka_unit_test(test_pace_forgets_a_slow_beginning),
         cmocka_unit_test(test_iterations_go_on_when_their_passes_begin_anew),

@@ -125,6 +125,7 @@ static void test_target_read_refuses_what_is_no_g_of_r(void **state) {
                    "g.tsv:1: r = 0 is not the centre of a bin: half a bin that is not empty; leave "
                    "the row out");
     assert_refused(state, "0.1 1 0\n0.2 1 0\n0.3 1 0\n", "", "only 3 bins");
+    assert_refused(state, "0.1 1 0\n", "", "only 1 bin;");
     assert_refused(state, "0.1 1 0\n0.2 -1 0\n0.3 1 0\n0.4 1 0\n", "", "g.tsv:2: a negative");
     assert_refused(state, "0.1 1 0\n0.2 1 -1\n0.3 1 0\n0.4 1 0\n", "", "g.tsv:2: a negative");
     assert_refused(state, "0.1 1 0\n0.2 1e999 0\n0.3 1 0\n0.4 1 0\n", "", "g.tsv:2: column 2");

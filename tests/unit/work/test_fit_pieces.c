@@ -56,10 +56,21 @@ static void write(void *context) {
     (void)context;
 }
 
+/// A person who wants the same before each iteration.
+static bool damp(void *context, double *damping) {
+    (void)context;
+    *damping = 0.5;
+    return true;
+}
+
 static enum status run(const char *folder, bool resume, int patience) {
     struct impatient impatient = {.patience = patience};
-    const struct watcher watcher = {
-        .context = &impatient, .begin = begin, .report = report, .print = print, .write = write};
+    const struct watcher watcher = {.context = &impatient,
+                                    .begin = begin,
+                                    .report = report,
+                                    .print = print,
+                                    .write = write,
+                                    .damp = damp};
     const struct run_options options = {
         .folder = folder, .threads = 1, .quiet = true, .resume = resume, .watcher = &watcher};
     const enum status status = mf_fit_run("run.json", &options);
