@@ -300,9 +300,9 @@ static void test_figure_of_dynamics_has_what_there_are_data_for(void **state) {
         const char *first, *second;
         bool curves, maps;
     } cases[] = {
-        {"moving/out", "moved", true, true},      {"still/out", "moving/out", true, true},
-        {"moved", "moved", true, false},          {"weight/out", "a/out", false, false},
-        {"weight/out", "moving/out", true, true},
+        {"moving/out", "moved", true, true},
+        {"moved", "moved", true, false},
+        {"weight/out", "a/out", false, false},
     };
     for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
         assert_int_equal(compare(cases[k].first, cases[k].second, true), STATUS_OK);
@@ -527,7 +527,6 @@ static int make_all(void **state) {
     make_omega_fit("weight/out", "\tomega_error[sqrt(mu/tau)]\ttruth[sqrt(mu/tau)]", "\t0.1\t1.5");
     make_omega_fit("set/out", "", "");
     make_moving_fit("moving/out", 0.1);
-    make_moving_fit("still/out", 0);
     make_moving_simulation("moved");
     make_fit("little", "{\"rdf_rmse\": 0.5}", -0.5);
     return 0;
