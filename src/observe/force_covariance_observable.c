@@ -102,14 +102,13 @@ static void explain(const void *settings, const struct simulation_setup *setup, 
                   every);
 }
 
-static const struct observable_target targets[] = {
-    {.name = "force_covariance",
-     .summary = "kappa(r)",
-     .form = OBSERVABLE_CURVE,
-     .argument = "r[lambda]",
-     .unit = "k_B T_0 mu/tau",
-     .has_settings = true},
-    {.name = NULL}};
+static const struct observable_target targets[] = {{.name = "force_covariance",
+                                                    .summary = "kappa(r)",
+                                                    .form = OBSERVABLE_CURVE,
+                                                    .argument = "r[lambda]",
+                                                    .unit = "k_B T_0 mu/tau",
+                                                    .has_settings = true},
+                                                   {.name = NULL}};
 static const char *const files[] = {"force_covariance.tsv", NULL};
 
 const struct observable mf_force_covariance_observable = {
