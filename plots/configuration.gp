@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Where the particles are in the last snapshot, seen along z: discs of their size, in the colour of
-# their orientation or of their type, which fades with the distance in three dimensions, and bonds of
-# molecules as lines between them.
+# their orientation, stiffness or type, and bonds of molecules as lines between them. In three dimensions
+# there is a slab at the front, in which the colour fades with the distance.
 # Reads configuration.tsv, whose comment tells how many rows are of each type, perhaps
 # configuration_bonds.tsv: the rows of the two beads of each bond, and of used.json the box, an obstacle,
 # and what the size of those without radii is.
@@ -13,6 +13,12 @@ bonds = "configuration_bonds.tsv"
 with_bonds = has(bonds)
 angle = column_of(table, "orientation")
 radius = column_of(table, "radius")
+# Those that are not all alike are coloured by their stiffness, if they have no orientation.
+stiffness = angle > 0 ? 0 : column_of(table, "stiffness")
+if (stiffness > 0) {
+    stats table using stiffness name "K" nooutput
+    if (K_max == K_min) { stiffness = 0 }
+}
 rows = int(system("grep -cv '^#'" . from(table)))
 box = system("awk '/\"box\":/ { gsub(/[^0-9.eE, -]/, \"\"); gsub(/,/, \" \"); print; exit }' used.json")
 edge(n) = real(word(box, n))
@@ -45,14 +51,19 @@ fifth = !with_bonds ? 1e300 : real(system(both . "'" . places . "NR > FNR { coun
     END { print sum / count / 5 }' " . tables))
 size = low(usual, fifth)
 
+# Behind what covers the box once nothing is to be seen: so deep is the slab, if the box is not shallower.
+depth = dimensions == 3 ? edge(3) : 1
+area = real(system(sprintf("awk '!/^#/ { r = %d ? $%d : %g; sum += 3.141592653589793 * r * r } END { print sum }'", radius, radius, size) . from(table)))
+slab = dimensions == 3 ? low(depth, depth * edge(1) * edge(2) / area) : depth
+
 # Layers from the bottom up, so that bonds are behind what is in front of them. Of one that lies in
 # the part number `layer` of the depth:
 # x, y, radius, and the orientation as a part of a turn or the number of the type; the highest last;
 layers = with_bonds && dimensions == 3 ? 12 : 1
 shades = sprintf("BEGIN { n = split(\"%s\", t, \" \"); for (k = 2; k <= n; k += 2) end[k / 2] = (total += t[k]) } \
-    function here(z) { k = int(%d * z / Z); return (k < 0 ? 0 : k < %d ? k : %d) == layer } \
+    function here(z) { z -= %g; if (z < 0) return 0; k = int(%d * z / %g); return (k < %d ? k : %d) == layer } \
     NR == FNR { while (row > end[type + 1] && type + 1 < n / 2) type++; turn = %d ? $%d / 6.283185307179586 : 0; \
-    shade[row] = %d ? turn - int(turn) + (turn < int(turn)) : type + 0 } ", types, layers, layers, layers - 1, angle, angle, angle)
+    shade[row] = %d ? turn - int(turn) + (turn < int(turn)) : %d ? $%d : type + 0 } ", types, depth - slab, layers, slab, layers, layers - 1, angle, angle, angle, stiffness, stiffness)
 discs(layer) = "< " . both . sprintf("-v layer=%d '", layer) . places . shades . \
     sprintf("here(z[row]) { print $1, $2, %d ? $%d : %g, shade[row], z[row] }' ", radius, radius, size) . table . \
     (dimensions == 3 ? " | sort -s -g -k 5" : "")
@@ -65,14 +76,19 @@ halves(layer) = "< " . both . sprintf("-v layer=%d '", layer) . places . shades 
 outlined(layer) = discs(layer) . (rows <= 5000 ? " | awk '{ print $0, -1; print $0, 0 }'" : " | awk '{ print $0, 0 }'")
 rim = 0.3
 # Of what is behind the rest the colour is a sixth, of what is in front all of it.
-strength(z) = dimensions == 3 ? (1 + 5 * low(1, high(0, z / edge(3)))) / 6 : 1
+strength(z) = dimensions == 3 ? (1 + 5 * low(1, high(0, 1 - (depth - z) / slab))) / 6 : 1
 part(colour, shift, share) = int(255 - share * (255 - ((colour >> shift) & 255))) << shift
 faded(colour, share) = part(colour, 16, share) + part(colour, 8, share) + part(colour, 0, share)
-paint(shade) = angle > 0 ? hsv2rgb(shade, 0.75, 0.85) : int("0x" . substr(colour_of(int(shade)), 2, 7))
+# Viridis (S. van der Walt and N. Smith, 2015), joined by straight lines, as films have it.
+anchors = "#440154 #414487 #2a788e #22a884 #7ad151 #fde725"
+channel(k, shift) = (int("0x" . substr(word(anchors, k), 2, 7)) >> shift) & 255
+between(x, k, shift) = int(channel(k, shift) + (x - k + 1) * (channel(k + 1, shift) - channel(k, shift))) << shift
+at_place(x) = between(x, int(low(4, x)) + 1, 16) + between(x, int(low(4, x)) + 1, 8) + between(x, int(low(4, x)) + 1, 0)
+paint(shade) = angle > 0 ? hsv2rgb(shade, 0.75, 0.85) : stiffness > 0 ? at_place(5.0 * (shade - K_min) / (K_max - K_min)) : int("0x" . substr(colour_of(int(shade)), 2, 7))
 
 # Pixels of the figure, of its margins and of a length of 1; circles as polygons would be large files.
 left = 78
-right = angle > 0 ? 100 : mixed ? 120 : 24
+right = angle > 0 || stiffness > 0 ? 115 : mixed ? 120 : 24
 top = 22
 bottom = 74
 across = 640
@@ -107,14 +123,21 @@ do for [kind in kinds] {
     # The box itself, as a frame.
     set object 1 rectangle from 0, 0 to edge(1), edge(2) front fillstyle empty border rgb ink linewidth 0.8
     if (obstacle(0) > 0) { set object 2 circle at obstacle(1), obstacle(2) size obstacle(0) behind fillstyle solid 1 border rgb ink fillcolor rgb 0xd9d9d9 }
-    set xlabel axis_of(table, "x", "{/:Italic x}", "{/:Italic x} / {/:Italic λ}") . (dimensions == 3 ? "  (pale: far along {/:Italic z})" : "")
+    set xlabel axis_of(table, "x", "{/:Italic x}", "{/:Italic x} / {/:Italic λ}") . (dimensions < 3 ? "" : slab < depth ? \
+        sprintf("  (a slab of %.2g; pale: its back)", slab) : "  (pale: far along {/:Italic z})")
     set ylabel axis_of(table, "y", "{/:Italic y}", "{/:Italic y} / {/:Italic λ}")
     set palette model HSV functions gray, 0.75, 0.85
     set cbrange [0:1]
     set cbtics ("0" 0, "{/:Italic π}" 0.5, "2{/:Italic π}" 1)
     set cblabel "orientation"
+    if (stiffness > 0) {
+        set palette model RGB defined (0 word(anchors, 1), 1 word(anchors, 2), 2 word(anchors, 3), 3 word(anchors, 4), 4 word(anchors, 5), 5 word(anchors, 6))
+        set cbrange [K_min:K_max]
+        set cbtics autofreq
+        set cblabel "stiffness" offset 1.2
+    }
     set key on outside right top vertical Left reverse noautotitle
-    if (angle > 0) { set colorbox } else { unset colorbox }
+    if (angle > 0 || stiffness > 0) { set colorbox } else { unset colorbox }
     eval "plot NaN with points palette, " . \
         "for [k = 1:words(types) / 2] NaN with points pointtype 7 linecolor rgb colour_of(k - 1) title word(types, 2 * k - 1)" . \
         drawn(0)

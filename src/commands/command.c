@@ -11,7 +11,7 @@
 
 const struct command_option mf_command_common[] = {
     {"-o", "DIR",
-     "folder for the results (default: \"out\" beside the input file; \"target\" here for measure, "
+     "folder for the results (default: \"out\" beside the input file; \"target\" for measure, "
      "\"compare\" for compare)"},
     {"--threads", "N",
      "threads (default: all processors; bench engine: 1); results do not depend on it"},

@@ -215,14 +215,12 @@ static const struct field fields[] = {
      .unit = "", .help = "no-slip plates at y = 0 and the box edge"},
     {"wall_filling", FIELD_NUMBER, MEMBER(wall_filling), .initial = 1.4, .minimum = 0,
      .maximum = 10, .unit = "particles_per_cell",
-     .help = "filling of cells at walls by virtual particles: 1.4 for no slip; 1 slips by a "
-             "quarter of a cell"},
+     .help = "virtual particles in cells at walls; 1.4 for no slip"},
     {"acceleration", FIELD_LENGTHS, MEMBER(acceleration), .minimum = -DBL_MAX, .maximum = DBL_MAX,
      .unit = "lambda/tau^2", .help = "acceleration of solvent and beads, along each axis"},
     {"wave_acceleration", FIELD_NUMBER, MEMBER(wave_acceleration), .initial = 0,
      .minimum = -DBL_MAX, .maximum = DBL_MAX, .unit = "lambda/tau^2",
-     .help = "A of a force A sin(2 pi y/L_y) per mass along x, to measure the viscosity in a "
-             "periodic box"},
+     .help = "A of a force A sin(2 pi y/L_y) per mass along x, to measure the viscosity"},
     {"drift", FIELD_LENGTHS, MEMBER(drift), .minimum = -DBL_MAX, .maximum = DBL_MAX,
      .unit = "lambda/tau", .help = "initial mean velocity of the solvent"},
     {"obstacle_centre", FIELD_LENGTHS, MEMBER(obstacle_centre), .minimum = -DBL_MAX,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Discs that repel each other where they overlap, each with its own radius and stiffness:
+// Discs, or spheres in three dimensions, that repel each other where they overlap, each with its
+// own radius and stiffness:
 //   U = a k_i k_j (r² − s²)² for r ≤ s = r_i + r_j,  F on i = 4 a k_i k_j (s² − r²) (r_i − r_j).
 // Tested: test_soft_discs, physics/test_soft_discs.
 #include "base/parallel.h"
@@ -21,9 +22,6 @@ static enum status begin(const void *parameters, void *state, const struct parti
     enum status status = STATUS_OK;
     struct state *own = state;
     (void)parameters;
-    if (particles->box.dimensions != 2)
-        return mf_status_fail(STATUS_BAD_INPUT,
-                              "interactions.soft-discs: discs are in two dimensions, not three");
     if (mf_particles_numbers(particles, "radius") == NULL)
         return mf_status_fail(STATUS_BAD_INPUT,
                               "interactions.soft-discs: needs \"radius\" in \"particles\"");
@@ -69,7 +67,8 @@ static enum status add(const void *parameters, void *state, const struct interac
     struct state *own = state;
     struct particles *particles = pass->particles;
     const bool wants_sums = pass->wants == PAIR_FORCES_AND_SUMS;
-    soft_discs_kernel *kernel = (*choose_set(own->cells.precise_radius != NULL))[wants_sums];
+    soft_discs_kernel *kernel = (*choose_set(own->cells.precise_radius !=
+                                             NULL))[particles->box.dimensions == 3][wants_sums];
     mf_soft_discs_cells_sort(&own->cells, particles);
     mf_parallel_for(own->cells.blocks, particles->threads, kernel,
                     &(struct soft_discs_pass){.cells = &own->cells,
@@ -92,9 +91,9 @@ static const struct field fields[] = {
 
 const struct interaction mf_soft_discs = {
     .name = "soft-discs",
-    .summary =
-        "U = a k_i k_j (r^2 - s^2)^2 where r < s = r_i + r_j, of discs with a \"radius\" and "
-        "a \"stiffness\" k each",
+    .summary = "U = a k_i k_j (r^2 - s^2)^2 where r < s = r_i + r_j, of discs or spheres with a "
+               "\"radius\" and "
+               "\"stiffness\" k each",
     .fields = fields,
     .parameters_size = sizeof(struct parameters),
     .state_size = sizeof(struct state),

@@ -56,7 +56,8 @@ static int choose_cells(struct soft_discs_cells *cells, const struct box *box) {
     int total = 0;
     for (int c = 0; c < cells->classes; c++) {
         struct soft_discs_class *class = &cells->of[c];
-        const double spacing = sqrt(mf_box_volume(box) / (double)class->count);
+        const double area = box->length[0] * box->length[1];
+        const double spacing = sqrt(area / (double)class->count);
         class->rows = (int)fmax(
             1, fmin(floor(box->length[0] / (row_height * spacing)), (double)class->count));
         const double in_row = (double)class->count / class->rows;
@@ -80,7 +81,7 @@ enum status mf_soft_discs_cells_init(struct soft_discs_cells *cells,
     TRY_ARRAY(cells->block, count / SOFT_DISCS_BLOCK + rows);
     TRY_ARRAY(cells->radius, capacity);
     TRY_ARRAY(cells->stiffness, capacity);
-    for (int d = 0; d < 2; d++) {
+    for (int d = 0; d < particles->box.dimensions; d++) {
         TRY_ARRAY(cells->fraction[d], capacity);
         if (precise)
             TRY_ARRAY(cells->position[d], capacity);
@@ -97,7 +98,7 @@ void mf_soft_discs_cells_clear(struct soft_discs_cells *cells) {
     mf_cells_clear(&cells->sorted);
     mf_memory_free(cells->radius);
     mf_memory_free(cells->stiffness);
-    for (int d = 0; d < 2; d++) {
+    for (int d = 0; d < 3; d++) {
         mf_memory_free(cells->fraction[d]);
         mf_memory_free(cells->position[d]);
     }
@@ -140,13 +141,13 @@ void mf_soft_discs_cells_sort(struct soft_discs_cells *cells, const struct parti
     mf_cells_sort(&cells->sorted);
     for (size_t at = 0; at < cells->count; at++) {
         const size_t k = cells->sorted.order[at];
-        for (int d = 0; d < 2; d++)
+        for (int d = 0; d < particles->box.dimensions; d++)
             cells->fraction[d][at] = particles->fraction[d][k];
         cells->radius[at] = (float)radius[k];
         cells->stiffness[at] = stiffness ? (float)stiffness[k] : 1;
         if (cells->precise_radius == NULL)
             continue;
-        for (int d = 0; d < 2; d++)
+        for (int d = 0; d < particles->box.dimensions; d++)
             cells->position[d][at] = particles->position[d][k];
         cells->precise_radius[at] = radius[k];
         cells->precise_stiffness[at] = stiffness ? stiffness[k] : 1;

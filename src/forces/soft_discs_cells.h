@@ -7,7 +7,8 @@
 /// do. D. Krijgsman, V. Ogarko and S. Luding, Comput. Part. Mech. 1, 357 (2014).
 ///
 /// Cells lie in rows along the second axis, and what is sorted follows the rows: all that is around
-/// a disc in a row is contiguous, but for the ends of the box.
+/// a disc in a row is contiguous, but for the ends of the box. In three dimensions the cells are
+/// columns along z, so that a sphere also looks at those far above it.
 #pragma once
 
 #include "system/cells.h"
@@ -38,10 +39,10 @@ struct soft_discs_cells {
     size_t blocks;
     struct soft_discs_block *block; ///< shape [blocks], of all classes
     struct cells sorted;            ///< the cells of all classes, one after the other
-    int32_t *fraction[2];           ///< box_fraction
+    int32_t *fraction[3];           ///< box_fraction
     float *radius;                  ///< [λ]
     float *stiffness;               ///< k
-    double *position[2];            ///< the same in double precision, or NULL
+    double *position[3];            ///< the same in double precision, or NULL
     double *precise_radius, *precise_stiffness;
 };
 

@@ -15,7 +15,7 @@ struct soft_discs_pass {
 /// Forces on the discs of the blocks begin … end − 1.
 typedef void soft_discs_kernel(void *pass, size_t begin, size_t end);
 
-/// By whether sums are wanted.
-typedef soft_discs_kernel *const soft_discs_kernels[2];
+/// By whether they are spheres, in three dimensions, and by whether sums are wanted.
+typedef soft_discs_kernel *const soft_discs_kernels[2][2];
 extern soft_discs_kernels mf_soft_discs_portable, mf_soft_discs_avx2, mf_soft_discs_avx512,
     mf_soft_discs_portable_double, mf_soft_discs_avx2_double, mf_soft_discs_avx512_double;

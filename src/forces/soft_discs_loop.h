@@ -28,11 +28,10 @@
 /// What is there of the discs that look, each with what it sums without its own stiffness and the
 /// strength.
 struct discs_block {
-    DISCS_PLACE place[2][SOFT_DISCS_BLOCK];
+    DISCS_PLACE place[3][SOFT_DISCS_BLOCK];
     REAL radius[SOFT_DISCS_BLOCK];
-    int32_t at[SOFT_DISCS_BLOCK];   ///< its own place among the discs
-    lanes_real x[SOFT_DISCS_BLOCK]; ///< Σ k_j min(r² − s², 0) (r_j − r_i)
-    lanes_real y[SOFT_DISCS_BLOCK];
+    int32_t at[SOFT_DISCS_BLOCK];        ///< its own place among the discs
+    lanes_real sum[3][SOFT_DISCS_BLOCK]; ///< Σ k_j min(r² − s², 0) (r_j − r_i)
     lanes_real energy[SOFT_DISCS_BLOCK]; ///< Σ k_j min(r² − s², 0)²
     lanes_real virial[SOFT_DISCS_BLOCK]; ///< Σ k_j min(r² − s², 0) r²
 };
@@ -40,8 +39,8 @@ struct discs_block {
 /// What all of a pass read, in registers.
 struct discs_scene {
     const struct soft_discs_cells *cells;
-    double length[2], inverse_length[2];
-    float scale[2]; ///< fractions to lengths
+    double length[3], inverse_length[3];
+    float scale[3]; ///< fractions to lengths
 };
 
 /// From a disc of the block to those at the places from `at` on, along axis d, nearest images.
@@ -59,7 +58,7 @@ INLINE lanes_real discs_separation(const struct discs_scene *scene, DISCS_PLACE 
 
 /// The discs at the places from `at` on, with `share` of their stiffness.
 INLINE void discs_add(struct discs_block *block, const struct discs_scene *scene, size_t at,
-                      lanes_real share, const bool wants_sums) {
+                      lanes_real share, const int dimensions, const bool wants_sums) {
     const lanes_real zero = lanes_all(0);
     const lanes_real radius = lanes_load(scene->cells->DISCS_RADIUS + at);
     const lanes_real stiffness = share * lanes_load(scene->cells->DISCS_STIFFNESS + at);
@@ -67,12 +66,17 @@ INLINE void discs_add(struct discs_block *block, const struct discs_scene *scene
     for (int n = 0; n < SOFT_DISCS_BLOCK; n++) {
         const lanes_real dx = discs_separation(scene, block->place[0][n], at, 0);
         const lanes_real dy = discs_separation(scene, block->place[1][n], at, 1);
+        const lanes_real dz =
+            dimensions == 3 ? discs_separation(scene, block->place[2][n], at, 2) : zero;
         const lanes_real s = radius + block->radius[n];
-        const lanes_real r2 = dx * dx + dy * dy;
+        const lanes_real plane = dx * dx + dy * dy;
+        const lanes_real r2 = dimensions == 3 ? plane + dz * dz : plane;
         const lanes_real overlap = lanes_min(r2 - s * s, zero);
         lanes_real force = stiffness * overlap;
-        block->x[n] += force * dx;
-        block->y[n] += force * dy;
+        block->sum[0][n] += force * dx;
+        block->sum[1][n] += force * dy;
+        if (dimensions == 3)
+            block->sum[2][n] += force * dz;
         if (!wants_sums)
             continue;
         // The disc itself is at no distance: it has no force, but is no pair.
@@ -84,12 +88,12 @@ INLINE void discs_add(struct discs_block *block, const struct discs_scene *scene
 
 /// All discs at the places begin … end − 1.
 INLINE void discs_add_all(struct discs_block *block, const struct discs_scene *scene, size_t begin,
-                          size_t end, const bool wants_sums) {
+                          size_t end, const int dimensions, const bool wants_sums) {
     for (; begin + LANES <= end; begin += LANES)
-        discs_add(block, scene, begin, lanes_all(1), wants_sums);
+        discs_add(block, scene, begin, lanes_all(1), dimensions, wants_sums);
     if (begin < end)
         discs_add(block, scene, begin, lanes_to_real(-(lanes_number() < (int32_t)(end - begin))),
-                  wants_sums);
+                  dimensions, wants_sums);
 }
 
 /// Where the discs of a block stand in a grid, in cells from the lower to the higher end, and how
@@ -102,7 +106,8 @@ struct discs_view {
 /// The discs of a row of cells that is `away` [λ] from the block.
 INLINE void discs_add_row(struct discs_block *block, const struct discs_scene *scene,
                           const struct soft_discs_class *class, int row, float away,
-                          const struct discs_view *view, const bool wants_sums) {
+                          const struct discs_view *view, const int dimensions,
+                          const bool wants_sums) {
     const int n = class->columns;
     const uint32_t *start =
         scene->cells->sorted.start + class->first_cell + (size_t)row * (size_t)n;
@@ -111,21 +116,21 @@ INLINE void discs_add_row(struct discs_block *block, const struct discs_scene *s
     const int first = (int)floorf(view->low[1] - half),
               last = (int)floorf(view->high[1] + half) + 1;
     if (last - first >= n) {
-        discs_add_all(block, scene, start[0], start[n], wants_sums);
+        discs_add_all(block, scene, start[0], start[n], dimensions, wants_sums);
         return;
     }
     if (first < 0)
-        discs_add_all(block, scene, start[first + n], start[n], wants_sums);
+        discs_add_all(block, scene, start[first + n], start[n], dimensions, wants_sums);
     if (last > n)
-        discs_add_all(block, scene, start[0], start[last - n], wants_sums);
+        discs_add_all(block, scene, start[0], start[last - n], dimensions, wants_sums);
     discs_add_all(block, scene, start[first > 0 ? first : 0], start[last < n ? last : n],
-                  wants_sums);
+                  dimensions, wants_sums);
 }
 
 /// The discs of a class around a block.
 INLINE void discs_add_class(struct discs_block *block, const struct discs_scene *scene,
                             const struct soft_discs_class *class, const struct discs_view *view,
-                            const bool wants_sums) {
+                            const int dimensions, const bool wants_sums) {
     const int n = class->rows;
     const float height = view->row_height, far = view->reach / height;
     int first = (int)floorf(view->low[0] - far), last = (int)floorf(view->high[0] + far);
@@ -141,21 +146,22 @@ INLINE void discs_add_class(struct discs_block *block, const struct discs_scene 
                       row < 0   ? row + n
                       : row < n ? row
                                 : row - n,
-                      all || gap < 0 ? 0 : gap * height, view, wants_sums);
+                      all || gap < 0 ? 0 : gap * height, view, dimensions, wants_sums);
     }
 }
 
 /// Take the discs of a block; the last stands in for those that it lacks.
 INLINE void discs_begin(struct discs_block *block, const struct soft_discs_cells *cells,
-                        const struct soft_discs_block *places) {
+                        const struct soft_discs_block *places, const int dimensions) {
     for (int n = 0; n < SOFT_DISCS_BLOCK; n++) {
         const size_t at =
             places->first + (n < (int)places->count ? (uint32_t)n : places->count - 1);
-        for (int d = 0; d < 2; d++)
+        for (int d = 0; d < dimensions; d++)
             block->place[d][n] = cells->DISCS_PLACES[d][at];
         block->radius[n] = cells->DISCS_RADIUS[at];
         block->at[n] = (int32_t)at;
-        block->x[n] = block->y[n] = block->energy[n] = block->virial[n] = lanes_all(0);
+        block->sum[0][n] = block->sum[1][n] = block->sum[2][n] = block->energy[n] =
+            block->virial[n] = lanes_all(0);
     }
 }
 
@@ -186,12 +192,13 @@ INLINE struct discs_view discs_view_of(const struct soft_discs_cells *cells, con
 }
 
 INLINE void discs_end(const struct discs_block *block, const struct soft_discs_pass *pass,
-                      const struct soft_discs_block *places, const bool wants_sums) {
+                      const struct soft_discs_block *places, const int dimensions,
+                      const bool wants_sums) {
     for (uint32_t n = 0; n < places->count; n++) {
         const size_t at = places->first + n, k = pass->cells->sorted.order[at];
         const double own = pass->strength * (double)pass->cells->DISCS_STIFFNESS[at];
-        pass->particles->force[0][k] += 4 * own * (double)lanes_sum(block->x[n]);
-        pass->particles->force[1][k] += 4 * own * (double)lanes_sum(block->y[n]);
+        for (int d = 0; d < dimensions; d++)
+            pass->particles->force[d][k] += 4 * own * (double)lanes_sum(block->sum[d][n]);
         if (wants_sums) {
             pass->energy[at] = 0.5 * own * (double)lanes_sum(block->energy[n]);
             pass->virial[at] = -2 * own * (double)lanes_sum(block->virial[n]);
@@ -200,33 +207,35 @@ INLINE void discs_end(const struct discs_block *block, const struct soft_discs_p
 }
 
 INLINE void discs_loop(const struct soft_discs_pass *pass, size_t begin, size_t end,
-                       const bool wants_sums) {
+                       const int dimensions, const bool wants_sums) {
     const struct soft_discs_cells *cells = pass->cells;
     const struct box *box = &pass->particles->box;
     struct discs_scene scene = {.cells = cells};
-    for (int d = 0; d < 2; d++) {
+    for (int d = 0; d < dimensions; d++) {
         scene.length[d] = box->length[d];
         scene.inverse_length[d] = 1 / box->length[d];
         scene.scale[d] = (float)(box->length[d] * 0x1p-32);
     }
     for (size_t b = begin; b < end; b++) {
         struct discs_block block;
-        discs_begin(&block, cells, &cells->block[b]);
+        discs_begin(&block, cells, &cells->block[b], dimensions);
         for (int c = 0; c < cells->classes; c++) {
             const struct discs_view view =
                 discs_view_of(cells, box, &cells->block[b], &cells->of[c]);
-            discs_add_class(&block, &scene, &cells->of[c], &view, wants_sums);
+            discs_add_class(&block, &scene, &cells->of[c], &view, dimensions, wants_sums);
         }
-        discs_end(&block, pass, &cells->block[b], wants_sums);
+        discs_end(&block, pass, &cells->block[b], dimensions, wants_sums);
     }
 }
 
-/// Both instances for an instruction set and precision, and the table of them.
+/// The instances for an instruction set and precision, and the table of them.
+#define SOFT_DISCS_INSTANCE(name, dimensions, wants_sums)                                          \
+    static void name(void *pass, size_t begin, size_t end) {                                       \
+        discs_loop(pass, begin, end, dimensions, wants_sums);                                      \
+    }
 #define SOFT_DISCS_INSTANCES(set)                                                                  \
-    static void set##_forces(void *pass, size_t begin, size_t end) {                               \
-        discs_loop(pass, begin, end, false);                                                       \
-    }                                                                                              \
-    static void set##_sums(void *pass, size_t begin, size_t end) {                                 \
-        discs_loop(pass, begin, end, true);                                                        \
-    }                                                                                              \
-    soft_discs_kernels set = {set##_forces, set##_sums};
+    SOFT_DISCS_INSTANCE(set##_discs, 2, false)                                                     \
+    SOFT_DISCS_INSTANCE(set##_discs_sums, 2, true)                                                 \
+    SOFT_DISCS_INSTANCE(set##_spheres, 3, false)                                                   \
+    SOFT_DISCS_INSTANCE(set##_spheres_sums, 3, true)                                               \
+    soft_discs_kernels set = {{set##_discs, set##_discs_sums}, {set##_spheres, set##_spheres_sums}};

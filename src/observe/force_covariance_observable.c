@@ -61,6 +61,36 @@ static enum status write(const void *state, const struct observable_results *res
     return mf_observable_table(results, "force_covariance.tsv", columns, 4, bins);
 }
 
+/// κ at a distance, on the line between the centres of two bins; NaN beyond them.
+static double read_at(const double *values, size_t bins, double width, double r) {
+    const double place = r / width - 0.5, rounding = 1e-4; // of a table
+    if (!(place >= -rounding) || place > (double)(bins - 1) + rounding)
+        return NAN;
+    const double inside = fmin(fmax(place, 0), (double)(bins - 1));
+    const size_t k = (size_t)fmin(rint(inside), (double)(bins - 1));
+    if (fabs(inside - (double)k) <= rounding)
+        return values[k];
+    const size_t left = (size_t)inside;
+    const double part = inside - (double)left;
+    return (1 - part) * values[left] + part * values[left + 1];
+}
+
+static enum status result(const void *state, const struct observable_values *values,
+                          double *blocks) {
+    const struct force_covariance *covariance = state;
+    const size_t bins = covariance->bins;
+    OWNED double *kappa = NULL, *error = NULL;
+    TRY_ARRAY(kappa, bins);
+    TRY_ARRAY(error, bins);
+    mf_force_covariance_result(covariance, kappa, error);
+    for (size_t n = 0; n < values->count; n++) {
+        values->value[n] = read_at(kappa, bins, covariance->width, values->x[n]);
+        values->error[n] = read_at(error, bins, covariance->width, values->x[n]);
+    }
+    *blocks = fmin((double)covariance->samples, FORCE_COVARIANCE_BLOCKS);
+    return STATUS_OK;
+}
+
 /// Nanoseconds of a pair and sample.
 static const double covary_cost = 3;
 
@@ -72,6 +102,13 @@ static void explain(const void *settings, const struct simulation_setup *setup, 
                   every);
 }
 
+static const struct observable_target targets[] = {{.name = "force_covariance",
+                                                    .summary = "kappa(r)",
+                                                    .form = OBSERVABLE_CURVE,
+                                                    .argument = "r[lambda]",
+                                                    .unit = "k_B T_0 mu/tau",
+                                                    .has_settings = true},
+                                                   {.name = NULL}};
 static const char *const files[] = {"force_covariance.tsv", NULL};
 
 const struct observable mf_force_covariance_observable = {
@@ -90,4 +127,6 @@ const struct observable mf_force_covariance_observable = {
     .stage = "force covariance",
     .files = files,
     .figure = "force_covariance",
+    .targets = targets,
+    .result = result,
 };

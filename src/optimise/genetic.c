@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+static const char *const selections[] = {"tournament", "roulette", NULL};
 static const char *const crossovers[] = {"one-point", "two-point", "blend", NULL};
 static const char *const mutations[] = {"scale", "walk", NULL};
 static const char *const initials[] = {"walks", "uniform", NULL};
@@ -27,17 +28,20 @@ const struct field mf_genetic_fields[] = {
     {"mutation_kind", FIELD_CHOICE, MEMBER(mutation_kind), .choices = mutations,
      .initial = GENETIC_WALK, .unit = "",
      .help = "scale: one gene in ten by 1/2 to 2; walk: smooth random walks"},
+    {"selection", FIELD_CHOICE, MEMBER(selection), .choices = selections,
+     .initial = GENETIC_TOURNAMENT, .unit = "",
+     .help = "of parents; roulette: each with a probability like 1/error"},
     {"tournament_size", FIELD_INTEGER, MEMBER(tournament_size), .initial = 8, .minimum = 1,
      .maximum = GENETIC_LARGEST_TOURNAMENT, .unit = "",
      .help = "individuals drawn for a tournament"},
     {"tournament_probability", FIELD_NUMBER, MEMBER(tournament_probability), .initial = 0.75,
-     PROBABILITY, .help = "probability that the best wins; else the second best, and so on"},
+     PROBABILITY, .help = "probability that the best wins, then the next"},
     {"initial", FIELD_CHOICE, MEMBER(initial), .choices = initials, .initial = GENETIC_WALKS,
      .unit = "", .help = "first generation: random walks from the start, or uniform genes"},
     {"step", FIELD_NUMBER, MEMBER(step), .initial = 0.02, .minimum = FIELD_ABOVE_ZERO, .maximum = 1,
      .unit = "", .help = "rms of the first walks, as a fraction of the range"},
     {"patience", FIELD_INTEGER, MEMBER(patience), .initial = 10, .minimum = 0, .maximum = 1e6,
-     .unit = "", .help = "generations without a better elite until it has converged; 0: never"},
+     .unit = "", .help = "generations without a better elite until converged; 0: never"},
     {"generations", FIELD_INTEGER, MEMBER(generations), .initial = 21, .minimum = 1, .maximum = 1e6,
      .unit = "", .help = "number of generations"},
     FIELD_END,
@@ -112,7 +116,7 @@ enum status mf_genetic_init(struct genetic *genetic, const struct genetic_parame
     NEW_ARRAY(genetic->parent, (size_t)(2 * (p.population + GENETIC_REMEASUREMENTS + 1)));
     // Children come in pairs: one place more for the last of an odd population.
     NEW_ARRAY(genetic->offspring, total_genes(genetic) + (size_t)p.genes);
-    NEW_ARRAY(genetic->ranked, (size_t)p.population);
+    NEW_ARRAY(genetic->ranked, (size_t)(p.population + GENETIC_REMEASUREMENTS));
     NEW_ARRAY(genetic->elite, (size_t)p.genes);
     NEW_ARRAY(genetic->block, genetic->blocks);
     NEW_ARRAY(genetic->spread, genetic->blocks);
@@ -158,12 +162,15 @@ bool mf_genetic_offer(struct genetic *genetic, const double *genes, double error
     return true;
 }
 
-/// A copy of the winner of a tournament. Returns its number.
+/// A copy of an individual that is selected. Returns its number.
+/// @pre with roulette: `ranked` is its wheel
 static uint64_t copy_winner(const struct genetic *genetic, const double *errors, double *child,
                             struct rng_sequence *random) {
     const struct genetic_parameters *p = &genetic->parameters;
-    const int64_t winner = mf_genetic_tournament(errors, genetic->rows, p->tournament_size,
-                                                 p->tournament_probability, random);
+    const int64_t winner = p->selection == GENETIC_ROULETTE
+                               ? mf_genetic_roulette(genetic->ranked, genetic->rows, random)
+                               : mf_genetic_tournament(errors, genetic->rows, p->tournament_size,
+                                                       p->tournament_probability, random);
     memcpy(child, mf_genetic_individual(genetic, winner), (size_t)p->genes * sizeof *child);
     return genetic->measured + (uint64_t)winner + 1;
 }
@@ -213,6 +220,7 @@ void mf_genetic_next_generation(struct genetic *genetic, const double *errors) {
     genetic->generation++;
     genetic->median = find_median(genetic, errors);
     find_spread(genetic, errors);
+    mf_genetic_fill_wheel(genetic->ranked, errors, genetic->rows);
     for (int64_t pair = 0; pair < p->population; pair += 2) {
         struct rng_sequence random = mf_rng_sequence_begin(genetic->seed, RNG_SELECTION,
                                                            genetic->generation, (uint32_t)pair);

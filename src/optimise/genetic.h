@@ -19,6 +19,7 @@
 
 #define GENETIC_FAILED OPTIMISER_FAILED
 
+enum genetic_selection { GENETIC_TOURNAMENT, GENETIC_ROULETTE };
 enum genetic_crossover_kind { GENETIC_ONE_POINT, GENETIC_TWO_POINT, GENETIC_BLEND };
 enum genetic_mutation_kind { GENETIC_SCALE, GENETIC_WALK };
 enum genetic_initial_kind { GENETIC_WALKS, GENETIC_UNIFORM };
@@ -34,6 +35,7 @@ struct genetic_parameters {
     int crossover_kind;
     double mutation; ///< probability that a child is mutated
     int mutation_kind;
+    int selection;                 ///< enum genetic_selection: how parents are found
     int64_t tournament_size;       ///< individuals drawn for a tournament
     double tournament_probability; ///< with which the best of those left wins
     int64_t generations;
@@ -56,7 +58,7 @@ struct genetic {
     uint64_t *parent;
     uint64_t measured;     ///< individuals before this generation
     double *offspring;     ///< shape [population, genes]: scratch
-    double *ranked;        ///< shape [population]: scratch
+    double *ranked;        ///< shape [room]: scratch
     double *elite;         ///< shape [genes]
     double elite_error;    ///< mean of its measurements; GENETIC_FAILED if there is no elite yet
     double elite_measured; ///< how many they were
@@ -109,6 +111,15 @@ enum { GENETIC_LARGEST_TOURNAMENT = 64 };
 /// parameters the error of a generation's best stood still at 0.14.
 int64_t mf_genetic_tournament(const double *errors, int64_t count, int64_t size, double probability,
                               struct rng_sequence *random);
+
+/// Fill the wheel of a roulette: wheel[k] is the sum of the fitness of individuals 0 to k, fitness
+/// being 1/error and that of a failed one 0. If any error is 0 these alone have a fitness, 1; if
+/// all have failed, each has 1.
+void mf_genetic_fill_wheel(double *wheel, const double *errors, int64_t count);
+
+/// Index of an individual, each with a probability that is proportional to its fitness: the
+/// selection of J. H. Holland, Adaptation in Natural and Artificial Systems (1975).
+int64_t mf_genetic_roulette(const double *wheel, int64_t count, struct rng_sequence *random);
 
 /// Cross two individuals in place, in the way that `crossover_kind` names.
 void mf_genetic_recombine(double *a, double *b, const struct genetic_parameters *parameters,

@@ -20,6 +20,34 @@ int64_t mf_genetic_tournament(const double *errors, int64_t count, int64_t size,
     return ranked[winner];
 }
 
+void mf_genetic_fill_wheel(double *wheel, const double *errors, int64_t count) {
+    double sum = 0;
+    bool any_exact = false, any = false;
+    for (int64_t k = 0; k < count; k++) {
+        any_exact = any_exact || errors[k] <= 0;
+        any = any || errors[k] < GENETIC_FAILED;
+    }
+    for (int64_t k = 0; k < count; k++) {
+        const bool failed = any && !(errors[k] < GENETIC_FAILED);
+        const double fitness = any_exact ? errors[k] <= 0 : any ? 1 / errors[k] : 1;
+        sum += failed ? 0 : fitness;
+        wheel[k] = sum;
+    }
+}
+
+int64_t mf_genetic_roulette(const double *wheel, int64_t count, struct rng_sequence *random) {
+    const double ball = wheel[count - 1] * mf_rng_sequence_uniform(random);
+    int64_t low = 0, high = count - 1; // the first whose sum is beyond the ball
+    while (low < high) {
+        const int64_t middle = (low + high) / 2;
+        if (wheel[middle] > ball)
+            high = middle;
+        else
+            low = middle + 1;
+    }
+    return low;
+}
+
 static void exchange(double *a, double *b) {
     const double gene = *a;
     *a = *b;

@@ -8,6 +8,7 @@
 #include "optimise/genetic.h"
 #include "optimise/optimiser.h"
 
+#include <math.h>
 #include <string.h>
 
 struct state {
@@ -206,8 +207,10 @@ static void parents(const void *memory, size_t row, uint64_t parent[2]) {
     parent[1] = of_row[1];
 }
 
+/// A roulette may choose anyone.
 static double discard_above(const void *memory) {
-    return ((const struct state *)memory)->genetic.median;
+    const struct genetic *genetic = &((const struct state *)memory)->genetic;
+    return genetic->parameters.selection == GENETIC_ROULETTE ? HUGE_VAL : genetic->median;
 }
 
 static size_t spans(void *memory, struct memory_span *span) {

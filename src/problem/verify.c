@@ -22,7 +22,7 @@ const struct field mf_verify_fields[] = {
     {"shorten_time_step", FIELD_CHOICE, MEMBER(shorten), .choices = no_or_yes, .initial = 0,
      .unit = "",
      .help = "halve the time step until kinetic and configurational temperature agree within 1 %; "
-             "default yes if the file has no time step"},
+             "default yes if the file has none"},
     {"equilibration", FIELD_INTEGER, MEMBER(plan.equilibration), .initial = 1000, .minimum = 0,
      .maximum = 1e12, .unit = "steps", .help = "interval before the first sample"},
     {"samples", FIELD_INTEGER, MEMBER(plan.samples), .initial = 50, .minimum = 1, .maximum = 1e8,

@@ -93,6 +93,13 @@ struct block {
 static const struct block blocks[] = {
     {"rdf_compare.tsv", "r[lambda]\ttarget[1]\ttarget_error[1]\tresult[1]\tresult_error[1]", 5,
      offsetof(struct result, rdf)},
+    {"etd_compare.tsv",
+     "time[tau]\tr0[lambda]\ttarget[1]\ttarget_error[1]\tresult[1]\tresult_error[1]", 6,
+     offsetof(struct result, etd)},
+    {"vacf_compare.tsv",
+     "time[tau]\ttarget[lambda^2/tau^2]\ttarget_error[lambda^2/tau^2]\tresult[lambda^2/tau^2]\t"
+     "result_error[lambda^2/tau^2]",
+     5, offsetof(struct result, vacf)},
     {"potential_compare.tsv", "r[lambda]\tphi[k_B.T_0]\tphi_error[k_B.T_0]\ttruth[k_B.T_0]", 4,
      offsetof(struct result, potential)},
     {"omega_compare.tsv",
@@ -150,8 +157,11 @@ enum { BLOCKS = sizeof blocks / sizeof blocks[0] };
 /// are there all the same.
 static enum status reserve(struct tracked_files *own, const struct compared *fits, size_t count) {
     TRY(mf_tracked_files_reserve(own, "figures/"));
-    TRY(mf_tracked_files_reserve(own, "figures/compare.svg"));
-    TRY(mf_tracked_files_reserve(own, "figures/compare.png"));
+    static const char *const figures[] = {"figures/compare.svg", "figures/compare.png",
+                                          "figures/compare_dynamics.svg",
+                                          "figures/compare_dynamics.png"};
+    for (size_t k = 0; k < sizeof figures / sizeof *figures; k++)
+        TRY(mf_tracked_files_reserve(own, figures[k]));
     TRY(mf_tracked_files_reserve(own, "compare.tsv"));
     for (size_t k = 0; k < BLOCKS; k++)
         if (is_wanted(&blocks[k], fits, count))

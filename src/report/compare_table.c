@@ -84,6 +84,7 @@ static const struct column columns[] = {
     RMSE("D", "diffusion"),
     RMSE("p", "pressure"),
     RMSE("S", "structure_factor"),
+    RMSE("kappa", "force_covariance"),
     BONDED_LIST(BONDED){"D", false, AT(diffusion), NULL, AT(diffusion_error), NULL},
     {"truth(phi)", false, AT(truth_rms), "%.3g", 0, NULL},
     {"truth(omega)", false, AT(omega_truth_rms), "%.3g", 0, NULL},

@@ -280,11 +280,17 @@ enum status mf_figures_draw_again(const char *folder, bool force) {
 
 enum status mf_figures_draw_comparison(const char *folder) {
     static const char *const tables[] = {"compare.tsv", NULL};
+    static const char *const etd[] = {"etd_compare.tsv", NULL};
+    static const char *const vacf[] = {"vacf_compare.tsv", NULL};
     char plots[PATH_SIZE];
     if (!has_files(folder, tables))
         return mf_status_fail(STATUS_IO, "no figure of a comparison: no compare.tsv in %s", folder);
     TRY(mf_figure_script_find(plots));
-    return mf_figure_script_draw(folder, plots, "compare", tables[0], "compare");
+    TRY(mf_figure_script_draw(folder, plots, "compare", tables[0], "compare"));
+    return has_files(folder, etd) || has_files(folder, vacf)
+               ? mf_figure_script_draw(folder, plots, "compare_dynamics", tables[0],
+                                       "compare_dynamics")
+               : STATUS_OK;
 }
 
 /// Folder and name of the figure of a table, and the table's name there.

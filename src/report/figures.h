@@ -20,7 +20,8 @@ enum status mf_figures_draw(const char *folder) MUST_USE;
 /// to draw. Tested: test_bad_lines_are_refused_with_a_hint, test_tracked_files.
 enum status mf_figures_draw_again(const char *folder, bool force) MUST_USE;
 
-/// Draw figures/compare.svg and .png from the tables that mf_compare_folders wrote to `folder`.
+/// Draw figures/compare.svg and .png, and compare_dynamics if there are E or VACF, from the tables
+/// that mf_compare_folders wrote to `folder`.
 enum status mf_figures_draw_comparison(const char *folder) MUST_USE;
 
 /// Draw the figure of a table of `mesofit bench accuracy` or `stability`, folder/NAME.tsv, with the

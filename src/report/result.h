@@ -50,16 +50,18 @@ struct result_table {
 
 struct result {
     struct result_summary summary;
-    struct result_table rdf;       ///< r, target, target_error, result, result_error
+    struct result_table rdf; ///< r, target, target_error, result, result_error
+    struct result_table etd; ///< time, r0, target, target_error, result, result_error; a row a cell
+    struct result_table vacf;      ///< time, target, target_error, result, result_error
     struct result_table potential; ///< r, phi, phi_error, truth; only if it was fitted
     struct result_table omega;     ///< r, omega, omega_error, truth; only if it was fitted
     struct result_table course;    ///< iteration, evaluations, engine_steps, seconds, error, noise
 };
 
 /// Read summary.json, history.tsv and timing.tsv of a fit's folder, and as far as they are there
-/// rdf.tsv, potential.tsv and omega.tsv. Of a simulation's folder, summary.json and rdf.tsv, if it
-/// is there: its g(r) is a result without a target. BAD_INPUT or IO with one line that names the
-/// file; *result is then empty. Tested: test_compare.
+/// rdf.tsv, etd_cells.tsv, vacf.tsv, potential.tsv and omega.tsv. Of a simulation's folder,
+/// summary.json, and rdf.tsv, etd.tsv and motion.tsv if they are there: results without a target.
+/// BAD_INPUT or IO with one line that names the file; *result is then empty. Tested: test_compare.
 enum status mf_result_read(struct result *result, const char *folder) MUST_USE;
 
 void mf_result_clear(struct result *result);

@@ -76,17 +76,24 @@ static enum status find_interval(struct target_curve *curve, const struct target
     return STATUS_OK;
 }
 
-static enum status check_values(const struct target_rows *rows,
-                                const struct target_columns *columns) {
+/// Rows of a curve that has its own x, but not one of time, may be nan: they are left out.
+static enum status check_values(struct target_rows *rows, const struct target_columns *columns) {
+    size_t count = 0;
     for (size_t k = 0; k < rows->count; k++) {
-        const bool known = isfinite(rows->y[k]);
-        if (!known || !(rows->error[k] >= 0))
+        const bool finite = isfinite(rows->y[k]);
+        if (columns->may_be_unknown && (isnan(rows->y[k]) || isnan(rows->error[k]))) {
+            rows->y[k] = rows->error[k] = NAN;
+            continue;
+        }
+        if (!finite || !(rows->error[k] >= 0))
             return mf_status_fail(
                 STATUS_BAD_INPUT, "%s:%zu: column %lld: %g is not a %s", columns->file,
-                rows->line[k], (long long)(known ? columns->error : columns->y),
-                known ? rows->error[k] : rows->y[k], known ? "standard error" : "finite number");
+                rows->line[k], (long long)(finite ? columns->error : columns->y),
+                finite ? rows->error[k] : rows->y[k], finite ? "standard error" : "finite number");
+        count++;
     }
-    return STATUS_OK;
+    return count > 0 ? STATUS_OK
+                     : mf_status_fail(STATUS_BAD_INPUT, "%s: all values are nan", columns->file);
 }
 
 static enum status load(struct target_curve *curve, const struct observable_target *about,
@@ -104,7 +111,8 @@ static enum status load(struct target_curve *curve, const struct observable_targ
                                      .min = of_time ? 0 : -DBL_MAX,
                                      .x = p->x_column,
                                      .y = p->value_column,
-                                     .error = p->error_column};
+                                     .error = p->error_column,
+                                     .may_be_unknown = !of_time};
     TRY(mf_target_rows_read(rows, &columns, units));
     if (of_time && rows->count < 3)
         return mf_status_fail(STATUS_BAD_INPUT, "%s: only %zu times", p->file, rows->count);

@@ -14,7 +14,7 @@
 #define COLUMN .maximum = 1000, .unit = ""
 static const struct field etd_fields[] = {
     {"file", FIELD_FILE, MEMBER(file), .required = true, .unit = "",
-     .help = "E(t, r_0): a row for each time, a column for each bin of r_0, in units of the scene"},
+     .help = "E(t, r_0): rows are times, columns bins of r_0, in units of the scene"},
     {"error_file", FIELD_FILE, MEMBER(error_file), .unit = "",
      .help = "table of the standard errors of E, same shape"},
     {"time_column", FIELD_INTEGER, MEMBER(time_column), .initial = 1, .minimum = 1, COLUMN,

@@ -98,7 +98,15 @@ enum status mf_target_rows_read(struct target_rows *rows, struct target_columns 
                                 const struct units *units) {
     CLEARED_BY(mf_data_table_clear) struct data_table table = {0};
     const int64_t min = columns->y > 0 ? columns->y : 2;
-    TRY(mf_data_table_read(&table, columns->file, (size_t)(columns->x > min ? columns->x : min)));
+    const int64_t last = columns->x > min ? columns->x : min;
+    // Columns that a table must have hold no nan.
+    TRY(mf_data_table_read(&table, columns->file,
+                           (size_t)(columns->may_be_unknown ? columns->x : last)));
+    if (table.columns < (size_t)last)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s:%zu: %zu columns, at least %lld are needed (blanks, commas or "
+                              "semicolons separate columns)",
+                              columns->file, table.line[0], table.columns, (long long)last);
     TRY(find_columns(columns, &table));
     TRY(mf_data_table_check_increasing(&table, columns->file, (size_t)columns->x - 1,
                                        columns->min));

@@ -29,6 +29,7 @@ struct target_columns {
     double min;                  ///< of x
     int64_t x, y;                ///< y 0: that of the name, or 2
     int64_t error; ///< 0: none; −1: that of the name, or 3, or none; a column of nan is none
+    bool may_be_unknown;     ///< y may be nan
     const char *usual_error; ///< what programs call a column of errors
     bool is_usual_error;     ///< found: it is called so
 };

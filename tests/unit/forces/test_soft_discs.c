@@ -38,7 +38,7 @@ static void make(struct discs *discs, int64_t count, double width, double height
     discs->setup.interactions = 1;
 }
 
-/// Forces, energy and virial by the formula, shape [2][count], summed over all pairs.
+/// Forces, energy and virial by the formula, shape [3][count], summed over all pairs.
 static void double_loop(const struct simulation *simulation, double strength, double *force,
                         struct pair_sums *sums) {
     const struct particles *p = &simulation->particles;
@@ -49,13 +49,18 @@ static void double_loop(const struct simulation *simulation, double strength, do
         for (size_t j = 0; j < p->count; j++) {
             const double dx = box_nearest(p->position[0][i] - p->position[0][j], p->box.length[0]);
             const double dy = box_nearest(p->position[1][i] - p->position[1][j], p->box.length[1]);
-            const double r = hypot(dx, dy), s = radius[i] + radius[j];
+            const double dz =
+                p->box.dimensions == 3
+                    ? box_nearest(p->position[2][i] - p->position[2][j], p->box.length[2])
+                    : 0;
+            const double r = sqrt(dx * dx + dy * dy + dz * dz), s = radius[i] + radius[j];
             if (i == j || r > s)
                 continue;
             const double k = strength * stiffness[i] * stiffness[j];
             const double push = 4 * k * r * (s * s - r * r); // −dU/dr
             force[i] += push * dx / r;
             force[p->count + i] += push * dy / r;
+            force[2 * p->count + i] += push * dz / r;
             sums->energy += 0.5 * k * pow(r * r - s * s, 2);
             sums->virial += 0.5 * push * r;
         }
@@ -69,13 +74,14 @@ static void assert_agrees(const struct discs *discs, double tolerance) {
     assert_ok(mf_simulation_init(&simulation, &discs->setup, NULL));
     assert_ok(mf_simulation_compute_potential(&simulation));
     const struct particles *p = &simulation.particles;
-    double *force = mf_memory_zeroed(2 * p->count, sizeof *force), squares = 0;
+    const size_t numbers = (size_t)p->box.dimensions * p->count;
+    double *force = mf_memory_zeroed(3 * p->count, sizeof *force), squares = 0;
     assert_non_null(force);
     double_loop(&simulation, discs->parameters.strength, force, &expected);
-    for (size_t k = 0; k < 2 * p->count; k++)
-        squares += force[k] * force[k] / (2 * (double)p->count);
+    for (size_t k = 0; k < numbers; k++)
+        squares += force[k] * force[k] / (double)numbers;
     assert_true(expected.energy > 0);
-    for (int d = 0; d < 2; d++)
+    for (int d = 0; d < p->box.dimensions; d++)
         for (size_t k = 0; k < p->count; k++)
             assert_close(p->force[d][k], force[(size_t)d * p->count + k],
                          tolerance * sqrt(squares));
@@ -89,14 +95,16 @@ static void test_soft_discs_forces_are_those_of_a_double_loop(void **state) {
     (void)state;
     static const struct {
         int64_t count;
-        double width, height, smallest, largest;
+        double width, height, smallest, largest, depth; // 0: two dimensions
     } scenes[] = {
-        {600, 100, 100, 3, 3},     // all alike
-        {600, 120, 90, 1, 2.8},    // two classes
-        {1000, 60, 200, 0.3, 6},   // five
-        {300, 50, 24, 5, 6},       // hardly two cells across
-        {7, 40, 40, 2, 10},        // hardly any
-        {2000, 1000, 1000, 1, 40}, // thin, sizes differ by forty
+        {600, 100, 100, 3, 3, 0},     // all alike
+        {600, 120, 90, 1, 2.8, 0},    // two classes
+        {1000, 60, 200, 0.3, 6, 0},   // five
+        {300, 50, 24, 5, 6, 0},       // hardly two cells across
+        {7, 40, 40, 2, 10, 0},        // hardly any
+        {2000, 1000, 1000, 1, 40, 0}, // thin, sizes differ by forty
+        {600, 30, 30, 3, 3, 30},      // spheres
+        {1000, 60, 40, 0.3, 6, 25},
     };
     static const char *const sets[] = {"portable", "avx2", "avx512"};
     const char *before = mf_simd_name();
@@ -107,6 +115,9 @@ static void test_soft_discs_forces_are_those_of_a_double_loop(void **state) {
                 continue;
             make(&discs, scenes[n].count, scenes[n].width, scenes[n].height, scenes[n].smallest,
                  scenes[n].largest);
+            if (scenes[n].depth > 0)
+                discs.setup.box =
+                    (struct box){3, {scenes[n].width, scenes[n].height, scenes[n].depth}};
             assert_agrees(&discs, 3e-6);
             discs.setup.precision = PAIR_DOUBLE;
             assert_agrees(&discs, 1e-12);
@@ -178,9 +189,9 @@ static void test_soft_discs_refuse_what_they_cannot_do(void **state) {
     assert_fails(mf_simulation_init(&simulation, &discs.setup, NULL), STATUS_BAD_INPUT,
                  "interactions.soft-discs: the shortest edge 50 of the box");
     make(&discs, 100, 50, 50, 1, 2);
-    discs.setup.box = (struct box){3, {50, 50, 50}};
+    discs.setup.box = (struct box){3, {50, 50, 7}};
     assert_fails(mf_simulation_init(&simulation, &discs.setup, NULL), STATUS_BAD_INPUT,
-                 "interactions.soft-discs: discs are in two dimensions, not three");
+                 "interactions.soft-discs: the shortest edge 7 of the box");
 }
 
 int main(void) {

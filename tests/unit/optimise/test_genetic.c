@@ -101,6 +101,19 @@ static void test_genetic_reaches_the_bottom_of_a_sphere(void **state) {
     }
 }
 
+/// 50 seeds were tried: 0.099 on average and 0.205 at most; tournaments come to 0.019 and 0.029.
+static void test_genetic_descends_by_roulette_too(void **state) {
+    struct genetic_parameters parameters = usual;
+    (void)state;
+    parameters.selection = GENETIC_ROULETTE;
+    for (uint64_t seed = 1; seed <= 10; seed++) {
+        struct genetic genetic;
+        evolve(&genetic, &parameters, (struct problem){.seed = seed});
+        assert_close(sphere(genetic.elite), 0, 0.3);
+        mf_genetic_clear(&genetic);
+    }
+}
+
 static void test_genetic_never_loses_its_elite_when_there_is_no_noise(void **state) {
     (void)state;
     struct problem problem = {.seed = 4};
@@ -251,6 +264,7 @@ static void test_genetic_init_spreads_the_genes_over_their_range(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_genetic_reaches_the_bottom_of_a_sphere),
+        cmocka_unit_test(test_genetic_descends_by_roulette_too),
         cmocka_unit_test(test_genetic_never_loses_its_elite_when_there_is_no_noise),
         cmocka_unit_test(test_genetic_knows_the_error_of_its_elite_when_there_is_noise),
         cmocka_unit_test(test_genetic_gives_the_same_bits_for_a_seed),

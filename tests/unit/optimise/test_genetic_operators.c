@@ -75,6 +75,44 @@ static void test_genetic_tournament_wins_with_the_probabilities_of_its_rule(void
     check_tournament(8, 1);
 }
 
+// Roulette ----------------------------------------------------------------------------------------
+
+/// Draws of each individual, and χ² of those on what shares of the whole say.
+static double spin(const double *errors, const double *share, int draws[POPULATION]) {
+    double wheel[POPULATION], chi_squared = 0;
+    struct rng_sequence random = begin(7);
+    mf_genetic_fill_wheel(wheel, errors, POPULATION);
+    for (int k = 0; k < POPULATION; k++)
+        draws[k] = 0;
+    for (int k = 0; k < DRAWS; k++)
+        draws[mf_genetic_roulette(wheel, POPULATION, &random)]++;
+    for (int k = 0; k < POPULATION; k++)
+        if (share[k] > 0)
+            chi_squared += pow(draws[k] - DRAWS * share[k], 2) / (DRAWS * share[k]);
+        else
+            assert_int_equal(draws[k], 0);
+    return chi_squared;
+}
+
+static void test_genetic_roulette_chooses_in_proportion_to_fitness(void **state) {
+    static const double errors[POPULATION] = {0.5, 0.25, 2, 1, GENETIC_FAILED, 0.125};
+    static const double share[POPULATION] = {2 / 15.5, 4 / 15.5, 0.5 / 15.5, 1 / 15.5, 0, 8 / 15.5};
+    int draws[POPULATION];
+    (void)state;
+    assert_true(spin(errors, share, draws) < 33.4); // 4 degrees of freedom
+}
+
+static void test_genetic_roulette_without_a_finite_fitness_is_fair(void **state) {
+    static const double exact[POPULATION] = {0, 0.25, GENETIC_FAILED, 0, 1, 1};
+    static const double failed[POPULATION] = {GENETIC_FAILED, GENETIC_FAILED, GENETIC_FAILED,
+                                              GENETIC_FAILED, GENETIC_FAILED, GENETIC_FAILED};
+    int draws[POPULATION];
+    (void)state;
+    assert_true(spin(exact, (const double[]){0.5, 0, 0, 0.5, 0, 0}, draws) < 25);
+    assert_true(spin(failed, (const double[]){1 / 6.0, 1 / 6.0, 1 / 6.0, 1 / 6.0, 1 / 6.0, 1 / 6.0},
+                     draws) < 35.9);
+}
+
 // Crossover ---------------------------------------------------------------------------------------
 
 static void test_genetic_crossover_exchanges_all_genes_beyond_one_point(void **state) {
@@ -326,6 +364,8 @@ static void test_genetic_mutate_walk_steps_as_far_as_survivors_differ(void **sta
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_genetic_tournament_wins_with_the_probabilities_of_its_rule),
+        cmocka_unit_test(test_genetic_roulette_chooses_in_proportion_to_fitness),
+        cmocka_unit_test(test_genetic_roulette_without_a_finite_fitness_is_fair),
         cmocka_unit_test(test_genetic_crossover_exchanges_all_genes_beyond_one_point),
         cmocka_unit_test(test_genetic_crossover_leaves_single_genes_alone),
         cmocka_unit_test(test_genetic_crossover_two_points_exchanges_a_stretch),

@@ -77,6 +77,40 @@ static void make_omega_fit(const char *folder, const char *names, const char *co
     write_file(folder, "timing.tsv", "# iteration\tseconds[s]\n0\t1.5\n");
 }
 
+/// A fit of omega with its escape times and its VACF, all of them `shift` off.
+static void make_moving_fit(const char *folder, double shift) {
+    char cells[512], vacf[512];
+    make_omega_fit(folder, "\tomega_error[sqrt(mu/tau)]", "\t0.1");
+    snprintf(cells, sizeof cells,
+             "# time[tau]\tr0[lambda]\ttarget[1]\ttarget_error[1]\tresult[1]\tresult_error[1]\n"
+             "0\t0.5\t1\t0\t1\t0\n0\t1.5\t1\t0\t1\t0\n"
+             "0.2\t0.5\t0.9\t0.01\t%g\t0.02\n0.2\t1.5\t0.5\tnan\t%g\tnan\n",
+             0.9 + shift, 0.5 + shift);
+    snprintf(vacf, sizeof vacf,
+             "# time[tau]\ttarget[lambda^2/tau^2]\ttarget_error[lambda^2/tau^2]"
+             "\tresult[lambda^2/tau^2]\tresult_error[lambda^2/tau^2]\ttime[ps]\n"
+             "0\t3\t0.1\t3\t0.2\t0\n0.1\t1\t0.1\t%g\t0.2\t7\n",
+             1 + shift);
+    write_file(folder, "etd_cells.tsv", cells);
+    write_file(folder, "vacf.tsv", vacf);
+}
+
+/// A simulation that has a matrix of E, and motion.tsv.
+static void make_moving_simulation(const char *folder) {
+    char path[PATH];
+    snprintf(path, sizeof path, "%s/%s", root, folder);
+    assert_int_equal(mf_output_make_folder(path), STATUS_OK);
+    write_file(folder, "summary.json", "{\"status\": \"ok\", \"method\": \"simulate\"}");
+    write_file(folder, "etd_bins.tsv", "# r0[lambda]\tpairs[1]\n0.5\t20\n1.5\t0\n");
+    write_file(folder, "etd.tsv",
+               "# time[tau]\tE(r0=0.5)[1]\tE(r0=1.5)[1]\n0\t1\tnan\n0.2\t0.75\tnan\n");
+    write_file(folder, "etd_error.tsv",
+               "# time[tau]\tE_error(r0=0.5)[1]\tE_error(r0=1.5)[1]\n0\t0\tnan\n0.2\t0.03\tnan\n");
+    write_file(folder, "motion.tsv",
+               "# time[tau]\tmsd[lambda^2]\tmsd_error[lambda^2]\tvacf[lambda^2/tau^2]\t"
+               "vacf_error[lambda^2/tau^2]\n0\t0\t0\t2.5\t0.1\n0.1\t0.02\t0.001\t1.5\t0.2\n");
+}
+
 /// Text of a file, to be freed.
 static char *read_text(const char *path) {
     FILE *stream = fopen(path, "r");
@@ -215,12 +249,6 @@ static void test_blocks_hold_each_fit_once(void **state) {
     free(text);
 }
 
-static bool has_table(const char *name) {
-    char path[PATH];
-    snprintf(path, sizeof path, "%s/cmp/%s", root, name);
-    return access(path, F_OK) == 0;
-}
-
 static void test_fits_without_a_table_keep_their_block(void **state) {
     (void)state;
     assert_int_equal(compare("weight/out", "a/out", true), STATUS_OK);
@@ -238,6 +266,56 @@ static void test_fits_without_a_table_keep_their_block(void **state) {
     assert_contains(text, "\tetd_rmse[1]\tetd_noise[1]\tdiffusion[lambda^2/tau]\t");
     assert_contains(text, "\tomega_truth_rms[1]\ttemperature[T_0]\t");
     free(text);
+}
+
+static void test_dynamics_stand_side_by_side(void **state) {
+    (void)state;
+    assert_int_equal(compare("moving/out", "moved", true), STATUS_OK);
+    char *text = compare_text("etd_compare.tsv");
+    assert_string_equal(
+        text, "# 0\tmoving\n# time[tau]\tr0[lambda]\ttarget[1]\ttarget_error[1]\tresult[1]\t"
+              "result_error[1]\n0\t0.5\t1\t0\t1\t0\n0\t1.5\t1\t0\t1\t0\n"
+              "0.2\t0.5\t0.9\t0.01\t1\t0.02\n0.2\t1.5\t0.5\tnan\t0.6\tnan\n\n\n"
+              "# 1\tmoved\n# time[tau]\tr0[lambda]\ttarget[1]\ttarget_error[1]\tresult[1]\t"
+              "result_error[1]\n0\t0.5\tnan\tnan\t1\t0\n0\t1.5\tnan\tnan\tnan\tnan\n"
+              "0.2\t0.5\tnan\tnan\t0.75\t0.03\n0.2\t1.5\tnan\tnan\tnan\tnan\n");
+    free(text);
+    text = compare_text("vacf_compare.tsv");
+    assert_contains(text, "\n0.1\t1\t0.1\t1.1\t0.2\n\n\n# 1\tmoved\n");
+    assert_contains(text, "\n0.1\tnan\tnan\t1.5\t0.2\n");
+    free(text);
+}
+
+static bool has_table(const char *name) {
+    char path[PATH];
+    snprintf(path, sizeof path, "%s/cmp/%s", root, name);
+    return access(path, F_OK) == 0;
+}
+
+static void test_figure_of_dynamics_has_what_there_are_data_for(void **state) {
+    (void)state;
+    if (system("gnuplot --version >/dev/null 2>&1") != 0)
+        skip();
+    const struct {
+        const char *first, *second;
+        bool curves, maps;
+    } cases[] = {
+        {"moving/out", "moved", true, true},
+        {"moved", "moved", true, false},
+        {"weight/out", "a/out", false, false},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+        assert_int_equal(compare(cases[k].first, cases[k].second, true), STATUS_OK);
+        assert_int_equal(has_table("figures/compare_dynamics.svg"), cases[k].curves);
+        assert_int_equal(has_table("figures/compare_dynamics.png"), cases[k].curves);
+        if (!cases[k].curves)
+            continue;
+        char *text = compare_text("figures/compare_dynamics.svg");
+        assert_contains(text, "VACF(");
+        assert_int_equal(strstr(text, ">target<") != NULL, cases[k].maps);
+        assert_int_equal(strstr(text, "result − target") != NULL, cases[k].maps);
+        free(text);
+    }
 }
 
 static void test_tables_that_no_fit_has_are_not_written(void **state) {
@@ -448,6 +526,8 @@ static int make_all(void **state) {
     make_fit("it's a \"run\"/out", good_summary, -0.5);
     make_omega_fit("weight/out", "\tomega_error[sqrt(mu/tau)]\ttruth[sqrt(mu/tau)]", "\t0.1\t1.5");
     make_omega_fit("set/out", "", "");
+    make_moving_fit("moving/out", 0.1);
+    make_moving_simulation("moved");
     make_fit("little", "{\"rdf_rmse\": 0.5}", -0.5);
     return 0;
 }
@@ -467,6 +547,8 @@ int main(void) {
         cmocka_unit_test(test_missing_numbers_are_nan),
         cmocka_unit_test(test_blocks_hold_each_fit_once),
         cmocka_unit_test(test_fits_without_a_table_keep_their_block),
+        cmocka_unit_test(test_dynamics_stand_side_by_side),
+        cmocka_unit_test(test_figure_of_dynamics_has_what_there_are_data_for),
         cmocka_unit_test(test_tables_that_no_fit_has_are_not_written),
         cmocka_unit_test(test_figure_has_the_panels_that_there_are_data_for),
         cmocka_unit_test(test_figure_is_drawn),

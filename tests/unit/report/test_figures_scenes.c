@@ -72,6 +72,36 @@ static void test_particles_without_radii_are_as_large_as_their_forces_reach(void
     assert_close_relative(width[1] / width[0], 3, 0.01);
 }
 
+/// Of a box that spheres cover more than once a slab at the front is drawn: 8 of radius 2.5 cover
+/// 157 of 100, so that it is 10/1.57 deep. The stiffest are yellow, the softest, here at the back,
+/// would be violet.
+static void test_full_boxes_show_a_slab_in_the_colour_of_stiffness(void **state) {
+    (void)state;
+    figure_folders_skip_without_gnuplot();
+    static const char yellow[] = "rgb(253, 231,  37)", violet[] = "rgb( 68,   1,  84)";
+    for (int full = 0; full < 2; full++) {
+        char folder[FIGURE_PATH], text[1024];
+        size_t length = (size_t)snprintf(text, sizeof text,
+                                         "# x[lambda]\ty[lambda]\tz[lambda]\tradius\tstiffness\n");
+        for (int k = 0; k < 8; k++)
+            length +=
+                (size_t)snprintf(text + length, sizeof text - length, "%d\t5\t%s\t%s\t%d\n", k + 1,
+                                 k < 4  ? "10"
+                                 : full ? "3.5"
+                                        : "10",
+                                 full ? "2.5" : "1", k < 4 ? 30 : 10);
+        figure_folders_make(folder, full ? "full" : "empty");
+        figure_folders_write(folder, "used.json",
+                             "{\n\t\"dimensions\":\t3,\n\t\"box\":\t[10, 10, 10]\n}\n");
+        figure_folders_write(folder, "configuration.tsv", text);
+        figure_folders_draw(folder);
+        assert_true(radius_of(folder, yellow) > 0);
+        assert_int_equal(radius_of(folder, violet) > 0, !full);
+        assert_int_equal(figure_folders_print(folder, "configuration", "a slab of 6.4"), full);
+        assert_true(figure_folders_print(folder, "configuration", ">stiffness<"));
+    }
+}
+
 /// Count the halves of bonds that begin at each of two colours; returns the longest [pixels].
 static double halves_of(const char *folder, int count[2]) {
     char path[FIGURE_PATH + 64], line[16384];
@@ -223,6 +253,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_particles_are_discs_of_their_size_and_type),
         cmocka_unit_test(test_particles_without_radii_are_as_large_as_their_forces_reach),
+        cmocka_unit_test(test_full_boxes_show_a_slab_in_the_colour_of_stiffness),
         cmocka_unit_test(test_bonds_are_drawn_over_the_edges_of_the_box),
         cmocka_unit_test(test_flow_shows_its_obstacle),
         cmocka_unit_test(test_pressure_is_over_lengths_of_as_many_dimensions),
