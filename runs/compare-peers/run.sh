@@ -3,7 +3,7 @@
 #
 # run.sh [ITERATIONS]: SPC/E water, VOTCA's own target, by VOTCA (csg_inverse of Debian's package votca, its
 # tutorial's settings, LAMMPS as its engine) and by mesofit, each on one thread: out/votca-ibi, out/votca-imc,
-# out/mesofit-imc, out/mesofit-ibi. Then measure.sh. MESOFIT is the program; what is there is not run again.
+# out/mesofit-imc, out/mesofit-ibi. Then measure.sh. MESOFIT is the program; it goes on after what is there.
 set -eu
 export LC_ALL=C OMP_NUM_THREADS=1
 cd "$(dirname "$0")"
