@@ -25,6 +25,13 @@ static inline double clock_thread_seconds(void) {
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
+/// Seconds of processor time that all threads of this process have had.
+static inline double clock_process_seconds(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
 /// Ticks of the processor's time-stamp counter, a few nanoseconds to read; nanoseconds where there
 /// is none.
 static inline uint64_t clock_ticks(void) {

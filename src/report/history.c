@@ -31,6 +31,16 @@ static enum status enlarge(double **values, size_t row, size_t used, size_t capa
     return STATUS_OK;
 }
 
+static enum status enlarge_times(struct history *history, size_t used, size_t capacity) {
+    struct history_time *larger = NULL;
+    TRY_ARRAY(larger, capacity);
+    if (used > 0)
+        memcpy(larger, history->times, used * sizeof *larger);
+    mf_memory_free(history->times);
+    history->times = larger;
+    return STATUS_OK;
+}
+
 /// Twice the room, or more, so that it is made seldom.
 static enum status grow(struct history *history, size_t wanted) {
     const size_t used = history->capacity;
@@ -38,7 +48,7 @@ static enum status grow(struct history *history, size_t wanted) {
     while (capacity < wanted)
         capacity *= 2;
     TRY(enlarge(&history->rows, COMMON + history->extra, used, capacity));
-    TRY(enlarge(&history->seconds, 1, used, capacity));
+    TRY(enlarge_times(history, used, capacity));
     TRY(enlarge(&history->numbers, 2 * history->problem->numbers, used, capacity));
     for (int kind = 0; kind < UNKNOWNS; kind++)
         TRY(enlarge(&history->curve[kind], history->points[kind], used, capacity));
@@ -56,7 +66,7 @@ double mf_history_first_error(const struct history *history) {
 
 void mf_history_clear(struct history *history) {
     mf_memory_free(history->rows);
-    mf_memory_free(history->seconds);
+    mf_memory_free(history->times);
     mf_memory_free(history->numbers);
     for (int kind = 0; kind < UNKNOWNS; kind++)
         mf_memory_free(history->curve[kind]);
@@ -64,7 +74,7 @@ void mf_history_clear(struct history *history) {
 }
 
 enum status mf_history_add(struct history *history, const struct inverse_step *step,
-                           double seconds) {
+                           struct history_time time) {
     if (history->iterations == history->capacity)
         TRY(grow(history, history->iterations + 1));
     const size_t k = history->iterations++;
@@ -75,7 +85,7 @@ enum status mf_history_add(struct history *history, const struct inverse_step *s
     row[3] = step->error;
     row[4] = step->noise;
     memcpy(row + COMMON, step->extra, history->extra * sizeof *row);
-    history->seconds[k] = seconds;
+    history->times[k] = time;
     for (size_t n = 0; n < history->problem->numbers; n++) {
         double *number = history->numbers + 2 * (k * history->problem->numbers + n);
         number[0] = step->number[n].value;
@@ -136,15 +146,21 @@ static enum status write_history(const struct history *history, const struct inv
 }
 
 static enum status write_timing(const struct history *history, const struct run_folder *folder) {
-    OWNED double *iteration = NULL;
+    enum { COLUMNS = 3 };
+    const size_t rows = history->iterations;
+    OWNED double *values = NULL;
     char path[OUTPUT_PATH_SIZE];
-    TRY_ARRAY(iteration, history->iterations);
-    for (size_t k = 0; k < history->iterations; k++)
-        iteration[k] = history->rows[k * (COMMON + history->extra)];
-    const struct data_column columns[] = {{"iteration", iteration, NULL},
-                                          {"seconds[s]", history->seconds, "%.3f"}};
+    TRY_ARRAY(values, COLUMNS * rows);
+    for (size_t k = 0; k < rows; k++) {
+        values[k] = history->rows[k * (COMMON + history->extra)];
+        values[rows + k] = history->times[k].seconds;
+        values[2 * rows + k] = history->times[k].processor;
+    }
+    const struct data_column columns[] = {{"iteration", values, NULL},
+                                          {"seconds[s]", values + rows, "%.3f"},
+                                          {"processor_seconds[s]", values + 2 * rows, "%.3f"}};
     mf_run_folder_file(folder, "timing.tsv", path);
-    return mf_data_table_write(path, NULL, columns, 2, history->iterations);
+    return mf_data_table_write(path, NULL, columns, COLUMNS, rows);
 }
 
 /// A field's unit as in the heads of columns, which have no blanks.
@@ -225,7 +241,7 @@ size_t mf_history_spans(struct history *history, struct memory_span *spans) {
     size_t count = 0;
     spans[count++] = (struct memory_span){&history->iterations, sizeof history->iterations};
     spans[count++] = (struct memory_span){history->rows, n * columns * sizeof(double)};
-    spans[count++] = (struct memory_span){history->seconds, n * sizeof(double)};
+    spans[count++] = (struct memory_span){history->times, n * sizeof *history->times};
     if (history->problem->numbers > 0)
         spans[count++] = (struct memory_span){history->numbers,
                                               n * 2 * history->problem->numbers * sizeof(double)};

@@ -9,13 +9,18 @@
 #include "problem/unknowns.h"
 #include "report/run_folder.h"
 
+/// Since the fit began [s]: by the clock, and of processor time of the leading process.
+struct history_time {
+    double seconds, processor;
+};
+
 struct history {
     size_t iterations, capacity;
     size_t extra;            ///< columns of the method's own
     size_t points[UNKNOWNS]; ///< of the curves; 0: not fitted
     double *rows;            ///< shape [room, 5 + extra]: iteration, evaluations, engine_steps, …
-    double *seconds;         ///< shape [room]
-    double *curve[UNKNOWNS]; ///< shape [room, points]
+    struct history_time *times;            ///< shape [room]
+    double *curve[UNKNOWNS];               ///< shape [room, points]
     const struct inverse_problem *problem; ///< whose numbers are found; borrowed
     double *numbers;                       ///< shape [room, 2 numbers]: value and error of each
 };
@@ -29,7 +34,7 @@ void mf_history_clear(struct history *history);
 
 /// Append an iteration. Fails: NO_MEMORY.
 enum status mf_history_add(struct history *history, const struct inverse_step *step,
-                           double seconds) MUST_USE;
+                           struct history_time time) MUST_USE;
 
 /// Write the tables in these units.
 enum status mf_history_write(const struct history *history, const struct inverse_method *method,

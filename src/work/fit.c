@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "work/fit.h"
 
+#include "base/clock.h"
 #include "base/memory.h"
 #include "base/ranks.h"
 #include "base/visible.h"
@@ -37,7 +38,8 @@ struct run {
     struct fit_checkpoint checkpoint;
     uint64_t digest; ///< of used.json
     struct checkpoint_pace pace;
-    double seconds_before;                           ///< of a run before a restart
+    double seconds_before;   ///< of a run before a restart
+    double processor_origin; ///< processor time of the process, less what the fit has had
     double *curve[UNKNOWNS], *curve_error[UNKNOWNS]; ///< shape [mf_unknowns_points]
     double *curve_flat[UNKNOWNS];                    ///< shape [INVERSE_FLAT, mf_unknowns_points]
     double *without_ramp;                            ///< shape [mf_unknowns_points of Φ]
@@ -45,7 +47,7 @@ struct run {
         bool finished, converged, exhausted; ///< as in struct inverse_step
         uint64_t iterations, evaluations, engine_steps;
         struct fit_accuracy accuracy;
-        double seconds;
+        struct history_time time;
         struct inverse_ramp ramp;
         struct inverse_parameter parameter[INVERSE_PARAMETERS], number[INVERSE_MAX_NUMBERS];
         char reason[INVERSE_REASON_SIZE];
@@ -55,8 +57,9 @@ struct run {
     bool doubted; ///< by the verification
 };
 
-static double seconds(const struct run *run) {
-    return run->seconds_before + mf_progress_seconds(&run->progress);
+static struct history_time time_of(const struct run *run) {
+    return (struct history_time){run->seconds_before + mf_progress_seconds(&run->progress),
+                                 clock_process_seconds() - run->processor_origin};
 }
 
 static enum status save(struct run *run) {
@@ -65,7 +68,7 @@ static enum status save(struct run *run) {
         return STATUS_OK;
     mf_run_folder_file(&run->folder, "checkpoint.bin", path);
     const double begun = mf_progress_seconds(&run->progress);
-    run->standing.seconds = seconds(run);
+    run->standing.time = time_of(run);
     const enum status status = mf_fit_checkpoint_save(&run->checkpoint, path, run->digest);
     mf_checkpoint_pace_saved(&run->pace, begun, mf_progress_seconds(&run->progress));
     return status;
@@ -75,7 +78,8 @@ static enum status load(struct run *run) {
     char path[OUTPUT_PATH_SIZE];
     mf_run_folder_file(&run->folder, "checkpoint.bin", path);
     TRY(mf_fit_checkpoint_load(&run->checkpoint, path, run->digest));
-    run->seconds_before = run->standing.seconds;
+    run->seconds_before = run->standing.time.seconds;
+    run->processor_origin = clock_process_seconds() - run->standing.time.processor;
     return STATUS_OK;
 }
 
@@ -203,7 +207,7 @@ static struct fit_result result_so_far(const struct run *run, enum status status
                                 .iterations = s->iterations,
                                 .evaluations = s->evaluations,
                                 .engine_steps = s->engine_steps,
-                                .seconds = s->seconds,
+                                .seconds = s->time.seconds,
                                 .without_ramp = run->without_ramp,
                                 .ramp = s->ramp,
                                 .settled = s->converged,
@@ -257,14 +261,14 @@ static enum status record(struct run *run, const struct inverse_step *step) {
                           .evaluations = step->evaluations,
                           .engine_steps = step->engine_steps,
                           .accuracy = {.error = step->error, .variance = step->variance},
-                          .seconds = seconds(run),
+                          .time = time_of(run),
                           .ramp = step->ramp};
     memcpy(run->standing.accuracy.noise, step->noise_of_state, sizeof run->standing.accuracy.noise);
     memcpy(run->standing.parameter, step->parameter, sizeof run->standing.parameter);
     memcpy(run->standing.number, step->number, sizeof run->standing.number);
     memcpy(run->standing.reason, step->reason, sizeof run->standing.reason);
     mf_fit_report_formula(&run->fit, step->formula, run->standing.formula);
-    TRY(mf_history_add(&run->history, step, run->standing.seconds));
+    TRY(mf_history_add(&run->history, step, run->standing.time));
     TRY(mf_history_write(&run->history, run->fit.method, &run->unknowns, &run->fit.scene.units,
                          &run->folder));
     const struct fit_result result = result_so_far(run, STATUS_UNCONVERGED);
@@ -277,7 +281,7 @@ static enum status record(struct run *run, const struct inverse_step *step) {
     mf_progress_report_written(&run->progress);
     mf_progress_print(&run->progress, "iteration %u  error %.4f  noise %.4f  %.1f s",
                       step->iteration, mf_visible_number(step->error),
-                      mf_visible_number(step->noise), run->standing.seconds);
+                      mf_visible_number(step->noise), run->standing.time.seconds);
     if (step->begins)
         mf_progress_print(&run->progress, "%s", step->begins);
     TRY(mf_fit_checkpoint_begin(&run->checkpoint));
@@ -410,6 +414,7 @@ enum status mf_fit_run(const char *file, const struct run_options *options) {
     NEW_ARRAY(run, 1);
     run->pace.interval = run->pace.next = checkpoint_interval;
     run->progress = mf_progress_begin(options->quiet, options->watcher);
+    run->processor_origin = clock_process_seconds();
     run->progress.may_end_early = true; // it may converge before the last iteration
     CHECK(prepare(run, file, options));
     status = iterate(run);
