@@ -2,7 +2,7 @@
 #
 # make                build/mesofit (also ./mesofit), build/libmesofit.a and build/libmesofit.so
 # make install        program, library, headers, figures' scripts, man page and completions of bash, to
-#                     PREFIX=/usr/local (and DESTDIR)
+#                     PREFIX=/usr/local (or prefix, and DESTDIR)
 # make docs           docs/reference.md, which tests compare with what the program prints
 # make test           builds and passes all tests, in their short form (minutes)
 # make check          unit, reference and command-line tests (minutes)
@@ -270,7 +270,7 @@ check-all: $(PROGRAM) $(TESTS)
 check-sanitized: $(PROGRAM) $(UNIT) $(CLI)
 	MESOFIT=$(abspath $(PROGRAM)) tests/tools/run_tests.sh $(filter-out %/test_tutorial,$(UNIT) $(CLI))
 
-PREFIX ?= /usr/local
+PREFIX ?= $(or $(prefix),/usr/local)
 LIBDIR ?= $(PREFIX)/lib
 .PHONY: install check-install
 install: all
