@@ -58,15 +58,17 @@ check_commands() {
 }
 
 # Whatever names the version names that of the header, and Debian's packages build with what the README installs
-# but what only tests need.
+# but what only tests need, and so does the image.
 check_packages() {
     local version package
     version=$(sed -n 's/^#define MESOFIT_VERSION "\(.*\)"/\1/p' include/mesofit.h)
     head -n 1 debian/changelog | grep -qF "($version)" || echo "debian/changelog: not of version $version"
+    grep -qx "version: $version" CITATION.cff || echo "CITATION.cff: not of version $version"
     sed -n 's/.*apt-get install -y \([^&]*\)&&.*/\1/p' README.md | head -n 1 | tr ' ' '\n' |
         grep -vxE '|build-essential|libcmocka-dev' | while IFS= read -r package; do
         sed '/^Package:/,$d' debian/control | grep -qw -- "$package" ||
             echo "debian/control: Build-Depends lacks $package"
+        grep -qw -- "$package" Dockerfile || echo "Dockerfile: does not install $package"
     done
 }
 
