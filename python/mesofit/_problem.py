@@ -111,7 +111,7 @@ class Problem:
             raise fail(c.BAD_INPUT, c.message())
 
     def __del__(self) -> None:
-        if getattr(self, "_pointer", None):
+        if getattr(self, "_pointer", None) and c.lib is not None:  # None: Python ends
             c.lib.mesofit_fit_free(self._pointer)
             self._pointer = None
 
@@ -312,7 +312,7 @@ class Optimiser:
             raise fail(c.BAD_INPUT, c.message())
 
     def __del__(self) -> None:
-        if getattr(self, "_pointer", None):
+        if getattr(self, "_pointer", None) and c.lib is not None:  # None: Python ends
             c.lib.mesofit_optimiser_free(self._pointer)
             self._pointer = None
 

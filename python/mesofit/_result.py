@@ -30,7 +30,7 @@ class _Handle:
             raise fail(c.BAD_INPUT if path.is_dir() else c.IO, c.message())
 
     def __del__(self) -> None:
-        if getattr(self, "pointer", None):
+        if getattr(self, "pointer", None) and c.lib is not None:  # None: Python ends
             c.lib.mesofit_result_free(self.pointer)
             self.pointer = None
 

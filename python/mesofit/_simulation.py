@@ -84,7 +84,7 @@ class Simulation:
             raise fail(c.BAD_INPUT, c.message())
 
     def __del__(self) -> None:
-        if getattr(self, "_pointer", None):
+        if getattr(self, "_pointer", None) and c.lib is not None:  # None: Python ends
             c.lib.mesofit_simulation_free(self._pointer)
             self._pointer = None
 
