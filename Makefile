@@ -2,8 +2,8 @@
 #
 # make                build/mesofit (also ./mesofit), build/libmesofit.a and build/libmesofit.so
 # make install        program, library, headers, figures' scripts, man page and completions of bash, to
-#                     PREFIX=/usr/local (and DESTDIR)
-# make docs           docs/reference.md, which tests compare with what the program prints
+#                     PREFIX=/usr/local (or prefix, and DESTDIR)
+# make docs           docs/reference.md and docs/python-reference.md, which tests compare with what they are made of
 # make test           builds and passes all tests, in their short form (minutes)
 # make check          unit, reference and command-line tests (minutes)
 # make check-physics  laws and exact limits (minutes)
@@ -145,8 +145,11 @@ $(MAN_PAGE): $(PROGRAM)
 $(COMPLETION): $(PROGRAM)
 	$(AT)$(PROGRAM) describe --format bash >$@.partial && mv $@.partial $@
 
-docs: $(PROGRAM)
+PYTHON ?= /usr/bin/python3
+docs: $(PROGRAM) $(SHARED_LIBRARY)
 	$(PROGRAM) describe --format markdown >$(BUILD)/reference.md && mv $(BUILD)/reference.md docs
+	MESOFIT_LIBRARY=$(abspath $(BUILD)/$(SONAME)) PYTHONDONTWRITEBYTECODE=1 $(PYTHON) python/reference.py \
+	    >$(BUILD)/python-reference.md && mv $(BUILD)/python-reference.md docs
 
 $(BUILD)/%.o: %.c Makefile
 	@mkdir -p $(@D)
@@ -210,7 +213,6 @@ check-mpi: all $(if $(shell command -v $(MPICC)),$(WITH_MPI))
 
 # The Python package over the shared library, beside the program.
 .PHONY: check-python
-PYTHON ?= /usr/bin/python3
 check-python: all
 	MESOFIT=$(abspath $(PROGRAM)) MESOFIT_LIBRARY=$(abspath $(BUILD)/$(SONAME)) PYTHONDONTWRITEBYTECODE=1 \
 	    $(PYTHON) -m pytest -q -p no:cacheprovider python/tests
@@ -281,7 +283,7 @@ check-all: $(PROGRAM) $(TESTS)
 check-sanitized: $(PROGRAM) $(UNIT) $(CLI)
 	MESOFIT=$(abspath $(PROGRAM)) tests/tools/run_tests.sh $(filter-out %/test_tutorial,$(UNIT) $(CLI))
 
-PREFIX ?= /usr/local
+PREFIX ?= $(or $(prefix),/usr/local)
 LIBDIR ?= $(PREFIX)/lib
 .PHONY: install check-install
 install: all

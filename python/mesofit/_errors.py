@@ -24,15 +24,15 @@ class Error(Exception):
 
 
 class InputError(Error, ValueError):
-    """An argument, a text or a file is wrong."""
+    """An argument, a text or what a file says is wrong; also a ValueError."""
 
 
 class FileError(Error, OSError):
-    """A file or folder cannot be read or written."""
+    """A file or folder cannot be read or written; also an OSError."""
 
 
 class UnstableError(Error, ArithmeticError):
-    """A simulation blew up."""
+    """A simulation blew up: the text says when, and what helps; also an ArithmeticError."""
 
 
 class MesofitWarning(UserWarning):

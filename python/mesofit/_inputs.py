@@ -179,6 +179,13 @@ class Frames:
         Units of all that is given.
     count : int, optional
         Of a function: how many frames there are. Any may then be asked for again.
+    particles : int, optional
+        Of a function, where no types are given.
+
+    Raises
+    ------
+    InputError
+        Shapes do not fit each other, or a unit is not known.
     """
 
     name = "<frames>"

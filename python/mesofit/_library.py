@@ -32,6 +32,9 @@ OK, BAD_INPUT, IO, NO_MEMORY, UNSTABLE, UNCONVERGED, INTERRUPTED = range(7)
 LAW = CFUNCTYPE(c_double, c_void_p, c_double)
 FORCE = CFUNCTYPE(c_double, c_void_p, c_size_t, POINTER(c_uint32), POINTER(NUMBERS),
                   POINTER(NUMBERS))
+FORCE.__doc__ = """Type of a compiled force for `Simulation.set_force`, as in mesofit/simulation.h:
+``double force(void *context, size_t count, const uint32_t *ids, const double *const *positions,
+double *const *forces)``."""
 FIT_PROGRESS = CFUNCTYPE(c_int, c_void_p, c_uint32, c_uint64, c_uint64)
 
 

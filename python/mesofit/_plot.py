@@ -115,7 +115,7 @@ _FIRST = ("rdf", "potential", "omega", "history", "bond_lengths", "msd", "struct
 
 def _panels(result: "Result") -> list[str]:
     """Names of tables that make a figure of the result, at most four."""
-    names = [name for first in _FIRST for name in Curves.parts(first, result.tables).values()]
+    names = [name for first in _FIRST for name in Curves._parts(first, result.tables).values()]
     return names[:4]
 
 

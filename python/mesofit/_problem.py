@@ -19,14 +19,33 @@ from ._work import Content, _lend
 
 
 class Value(NamedTuple):
-    """Error of a candidate, infinite where its simulation failed, and its variance by noise."""
+    """What a candidate is worth.
+
+    Attributes
+    ----------
+    error : float
+        Infinite where its simulation failed.
+    variance : float
+        Of the error, by noise.
+    """
 
     error: float
     variance: float
 
 
 class State(NamedTuple):
-    """Where a fit is; `error` and `noise` are rms distances from the target."""
+    """Where a fit is.
+
+    Attributes
+    ----------
+    iteration, simulations, engine_steps : int
+        How many there were.
+    error, noise : float
+        Rms distance from the target, and what of it is noise.
+    finished, converged : bool
+    reason : str
+        Why it has ended without having converged.
+    """
 
     iteration: int
     simulations: int
@@ -39,7 +58,14 @@ class State(NamedTuple):
 
 
 class Curve(NamedTuple):
-    """A curve that was found, in reduced units; NaN: its error is not known."""
+    """A curve that was found, in reduced units.
+
+    Attributes
+    ----------
+    r : array, shape (points,) [lambda]
+    value, error : array, shape (points,) [k_B T_0], of ω [sqrt(mu/tau)]
+        And its standard error; NaN: not known.
+    """
 
     r: Array
     value: Array
@@ -56,6 +82,11 @@ class Problem:
     threads : int
     **keys
         Put into it, as of `fit`.
+
+    Raises
+    ------
+    InputError
+        With the line that the program would print.
     """
 
     def __init__(self, run: Content, *, threads: int = 1, **keys: Any) -> None:
@@ -80,7 +111,7 @@ class Problem:
             raise fail(c.BAD_INPUT, c.message())
 
     def __del__(self) -> None:
-        if getattr(self, "_pointer", None):
+        if getattr(self, "_pointer", None) and c.lib is not None:  # None: Python ends
             c.lib.mesofit_fit_free(self._pointer)
             self._pointer = None
 
@@ -119,7 +150,19 @@ class Problem:
     # By the method of the run file ----------------------------------------------------------------
 
     def iterate(self) -> State:
-        """One iteration of its method; after `finished` nothing happens any more."""
+        """One iteration of its method; after `finished` nothing happens any more.
+
+        Returns
+        -------
+        State
+
+        Raises
+        ------
+        UnstableError
+            A simulation blew up.
+        KeyboardInterrupt
+            By Ctrl-C; the fit is then over.
+        """
         state = c.FitState()
         self._call(c.lib.mesofit_fit_iterate, state)
         return State(state.iteration, state.simulations, state.engine_steps, state.error,
@@ -127,7 +170,21 @@ class Problem:
                      (state.reason or b"").decode(errors="replace"))
 
     def curve(self, name: str = "potential") -> Curve:
-        """The best "potential" or "omega" so far; of a mixture all pairs, one behind the other."""
+        """The best curve so far; of a mixture those of all pairs, one behind the other.
+
+        Parameters
+        ----------
+        name : "potential" or "omega"
+
+        Returns
+        -------
+        Curve
+
+        Raises
+        ------
+        InputError
+            It is not looked for, or there was no iteration yet.
+        """
         kinds = {"potential": 0, "omega": 1}
         if name not in kinds:
             raise InputError(f"curve: expected potential or omega, found {name!r}")
@@ -141,7 +198,20 @@ class Problem:
                            for array in (found.r, found.value, found.error)))
 
     def verify(self) -> dict[str, float]:
-        """Simulate the best so far with new seeds."""
+        """Simulate the best so far with new seeds.
+
+        Returns
+        -------
+        dict of str to float
+            Distances from the targets and means, with their errors.
+
+        Raises
+        ------
+        InputError
+            There was no iteration yet.
+        UnstableError
+            A simulation blew up.
+        """
         found = c.Verification()
         self._call(c.lib.mesofit_fit_verify, found)
         return {name: getattr(found, name) for name, _ in c.Verification._fields_}
@@ -158,7 +228,18 @@ class Problem:
         return [(0.0, 1.0)] * len(self)
 
     def start(self) -> Array:
-        """Coefficients that the fit begins with, shape (coefficients,)."""
+        """Coefficients that the fit begins with.
+
+        Returns
+        -------
+        array, shape (coefficients,)
+            From 0 to 1.
+
+        Raises
+        ------
+        InputError
+            The method does not search.
+        """
         coefficients = np.zeros(len(self))
         with self._lock:
             check(c.lib.mesofit_fit_start(self._pointer, pointer(coefficients)))
@@ -172,6 +253,15 @@ class Problem:
         coefficients : array, shape (coefficients,), from 0 to 1
         seed : int
             The same gives the same noise.
+
+        Returns
+        -------
+        Value
+
+        Raises
+        ------
+        InputError
+            A coefficient is not from 0 to 1, or the method does not search.
         """
         candidate = numbers(coefficients, "coefficients", (len(self),))
         if not ((candidate >= 0) & (candidate <= 1)).all():
@@ -199,6 +289,11 @@ class Optimiser:
     seed : int
     **settings
         As in "method" of a run file.
+
+    Raises
+    ------
+    InputError
+        With the line that the program would print.
     """
 
     def __init__(self, name: str, dimensions: int, *, minimum: float = 0.0, maximum: float = 1.0,
@@ -217,7 +312,7 @@ class Optimiser:
             raise fail(c.BAD_INPUT, c.message())
 
     def __del__(self) -> None:
-        if getattr(self, "_pointer", None):
+        if getattr(self, "_pointer", None) and c.lib is not None:  # None: Python ends
             c.lib.mesofit_optimiser_free(self._pointer)
             self._pointer = None
 
@@ -225,7 +320,13 @@ class Optimiser:
         raise TypeError("an optimiser cannot be pickled")
 
     def ask(self) -> Array:
-        """Candidates to be measured next, shape (count, dimensions); count is 0 at the end."""
+        """Candidates to be measured next.
+
+        Returns
+        -------
+        array, shape (count, dimensions)
+            The count is 0 at the end.
+        """
         population, count = c.NUMBERS(), ctypes.c_size_t()
         check(c.lib.mesofit_optimiser_ask(self._pointer, population, count))
         self._asked = count.value
@@ -234,8 +335,20 @@ class Optimiser:
         return np.ctypeslib.as_array(population, (count.value, self.dimensions)).copy()
 
     def tell(self, errors: Any, variances: Any = None) -> None:
-        """Errors of what was asked last, shape (count,), infinite where there is none, and their
-        variances by noise."""
+        """Errors of what was asked last.
+
+        Parameters
+        ----------
+        errors : array, shape (count,)
+            Infinite where there is none.
+        variances : array, shape (count,), optional
+            Of the errors, by noise.
+
+        Raises
+        ------
+        InputError
+            There is nothing that was asked for, or an error is NaN.
+        """
         if not self._asked:
             raise InputError("tell: there is nothing that was asked for")
         found = numbers(errors, "errors", (self._asked,))
@@ -247,6 +360,12 @@ class Optimiser:
         self._asked = None
 
     def best(self) -> Array | None:
-        """What it believes best, shape (dimensions,); None before the first tell."""
+        """What it believes best.
+
+        Returns
+        -------
+        array, shape (dimensions,), or None
+            None before the first `tell`.
+        """
         best = np.empty(self.dimensions)
         return best if c.lib.mesofit_optimiser_best(self._pointer, pointer(best)) else None

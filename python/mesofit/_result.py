@@ -30,7 +30,7 @@ class _Handle:
             raise fail(c.BAD_INPUT if path.is_dir() else c.IO, c.message())
 
     def __del__(self) -> None:
-        if getattr(self, "pointer", None):
+        if getattr(self, "pointer", None) and c.lib is not None:  # None: Python ends
             c.lib.mesofit_result_free(self.pointer)
             self.pointer = None
 
@@ -53,9 +53,12 @@ class Result:
 
     Attributes
     ----------
-    folder : pathlib.Path
     messages : tuple of str
         What the program would have said.
+
+    Notes
+    -----
+    ``result["rdf"]`` is ``result.table("rdf")``.
     """
 
     def __init__(self, folder: Folder, outcome: Outcome | None = None) -> None:
@@ -67,6 +70,7 @@ class Result:
 
     @property
     def folder(self) -> Path:
+        """Where its files are, a pathlib.Path."""
         return self._folder.path
 
     def _open(self) -> _Handle:
@@ -76,7 +80,7 @@ class Result:
 
     @property
     def tables(self) -> tuple[str, ...]:
-        """Names of all tables."""
+        """Names of all tables, a tuple of str."""
         handle = self._open()
         names: list[str] = []
         while (name := c.lib.mesofit_result_name(handle.pointer, len(names))) is not None:
@@ -84,7 +88,16 @@ class Result:
         return tuple(names)
 
     def table(self, name: str) -> Table:
-        """The table of this name: "rdf", "rdf_A-B", "potential", …
+        """The table of this name.
+
+        Parameters
+        ----------
+        name : str
+            "rdf", "rdf_A-B", "potential", …: one of `tables`.
+
+        Returns
+        -------
+        Table
 
         Raises
         ------
@@ -106,7 +119,22 @@ class Result:
     __getitem__ = table
 
     def text(self, file: str) -> str:
-        """The text of a file of the folder."""
+        """The text of a file of the folder.
+
+        Parameters
+        ----------
+        file : str
+            Its name, as "summary.json".
+
+        Returns
+        -------
+        str
+
+        Raises
+        ------
+        FileError
+            There is none.
+        """
         handle = self._open()
         with handle.lock:
             content = c.lib.mesofit_result_text(handle.pointer, encode(file))
@@ -119,12 +147,12 @@ class Result:
 
     @property
     def summary(self) -> dict[str, Any]:
-        """What summary.json says: numbers with their errors, units, status."""
+        """What summary.json says, a dict: numbers with their errors, units, status."""
         return self._json("summary.json")
 
     @property
     def used(self) -> dict[str, Any]:
-        """All settings that the run had; they can be run again."""
+        """All settings that the run had, a dict; they can be run again."""
         return self._json("used.json")
 
     @property
@@ -142,32 +170,33 @@ class Result:
 
     @property
     def reason(self) -> str:
-        """Why a fit has not converged, or "" """
+        """Why a fit has not converged, else an empty text."""
         return str(self.summary.get("reason", ""))
 
     @property
     def converged(self) -> bool:
+        """Whether `status` is "converged"."""
         return self.status == "converged"
 
     def _curves(self, name: str) -> Curves:
-        parts = Curves.parts(name, self.tables)
+        parts = Curves._parts(name, self.tables)
         if not parts:
             raise InputError(f"no {name}; there are the tables {', '.join(self.tables)}")
         return Curves(name, {part: self.table(table) for part, table in parts.items()})
 
     @property
     def potential(self) -> Curves:
-        """Φ(r) that was found, with its standard errors."""
+        """`Curves` of Φ(r), with standard errors; InputError where none was looked for."""
         return self._curves("potential")
 
     @property
     def omega(self) -> Curves:
-        """ω(r) that was found, with its standard errors."""
+        """`Curves` of ω(r), with standard errors; InputError where none was looked for."""
         return self._curves("omega")
 
     @property
     def states(self) -> dict[str, "Result"]:
-        """Results of each state of a fit of several but the first, by their names."""
+        """Results of each state of a fit of several but the first, a dict by their names."""
         folders = sorted(path for path in (self.folder / "states").glob("*") if path.is_dir())
         return {path.name: _State(self, path) for path in folders}
 
@@ -176,7 +205,7 @@ class Result:
     def export(self, engine: str, folder: PathLike | None = None, *, bands: bool = False,
                project: bool = False, force: bool = False, threads: int | None = None,
                progress: bool | None = None) -> Path:
-        """Write the result as files that another engine runs; returns their folder.
+        """Write the result as files that another engine runs.
 
         Parameters
         ----------
@@ -190,6 +219,20 @@ class Result:
             The nearest friction that the engine has.
         force : bool
             Replace files that were changed since.
+        threads, progress
+            As of `simulate`.
+
+        Returns
+        -------
+        pathlib.Path
+            Their folder.
+
+        Raises
+        ------
+        InputError
+            The engine is not known, or cannot have this model.
+        FileError
+            The folder cannot be written.
         """
         target = Path(engine if folder is None else folder)
         words = ["export", _path(self.folder), "--engine", engine, "-o", _path(target)]
@@ -201,11 +244,39 @@ class Result:
         return target
 
     def save(self, folder: PathLike) -> Path:
-        """Copy all files into a new folder, which the program knows as one of its own."""
+        """Copy all files into a new folder, which the program knows as one of its own.
+
+        Parameters
+        ----------
+        folder : path
+            It must not be there yet.
+
+        Returns
+        -------
+        pathlib.Path
+            The folder.
+
+        Raises
+        ------
+        OSError
+            It cannot be written, or is there already.
+        """
         return Path(shutil.copytree(self.folder, folder))
 
     def plot(self) -> Any:
-        """Draw what there is with matplotlib; returns the figure."""
+        """Draw what there is with matplotlib: g with its target, Φ, ω, errors by iteration.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+
+        Raises
+        ------
+        ImportError
+            There is no matplotlib.
+        InputError
+            There is nothing to draw.
+        """
         from . import _plot
 
         return _plot.draw_result(self)
@@ -258,6 +329,14 @@ def _path(path: Any) -> str:
 
 def open(folder: PathLike) -> Result:  # noqa: A001 - as the program says it
     """Open a folder of results, whoever wrote it.
+
+    Parameters
+    ----------
+    folder : path
+
+    Returns
+    -------
+    Result
 
     Raises
     ------

@@ -106,7 +106,7 @@ class _Run:
         c.lib.mesofit_run_stop(self.run)
 
     def __del__(self) -> None:
-        if getattr(self, "run", None):
+        if getattr(self, "run", None) and c.lib is not None:  # None: Python ends
             c.lib.mesofit_run_free(self.run)
             self.run = None
 

@@ -20,7 +20,15 @@ _PIECE = 0.2  # seconds between looks at what else there is to be done, such as 
 
 
 class Rdf(NamedTuple):
-    """g(r): centres of the bins, values, standard errors."""
+    """g(r).
+
+    Attributes
+    ----------
+    r : array, shape (bins,) [lambda]
+        Centres of the bins.
+    g, error : array, shape (bins,)
+        Values, and their standard errors.
+    """
 
     r: Array
     g: Array
@@ -28,7 +36,15 @@ class Rdf(NamedTuple):
 
 
 class Means(NamedTuple):
-    """Means over samples with their standard errors; NaN: not known."""
+    """Means over samples with their standard errors; NaN: not known.
+
+    Attributes
+    ----------
+    temperature, temperature_error : float [T_0]
+    energy, energy_error : float [k_B T_0]
+        Potential energy of a particle.
+    pressure, pressure_error : float [k_B T_0/lambda^d]
+    """
 
     temperature: float
     temperature_error: float
@@ -48,6 +64,11 @@ class Simulation:
     scene : Scene, dict or path
     **keys
         Put into the scene at its top.
+
+    Raises
+    ------
+    InputError
+        With the line that the program would print; also by what is asked of it while it runs.
     """
 
     def __init__(self, scene: Content, **keys: Any) -> None:
@@ -63,7 +84,7 @@ class Simulation:
             raise fail(c.BAD_INPUT, c.message())
 
     def __del__(self) -> None:
-        if getattr(self, "_pointer", None):
+        if getattr(self, "_pointer", None) and c.lib is not None:  # None: Python ends
             c.lib.mesofit_simulation_free(self._pointer)
             self._pointer = None
 
@@ -92,10 +113,12 @@ class Simulation:
 
     @property
     def step(self) -> int:
+        """Steps that were made."""
         return int(c.lib.mesofit_simulation_step(self._pointer))
 
     @property
     def dimensions(self) -> int:
+        """2 or 3."""
         return int(c.lib.mesofit_simulation_dimensions(self._pointer))
 
     def __len__(self) -> int:
@@ -117,12 +140,12 @@ class Simulation:
 
     @property
     def positions(self) -> Array:
-        """Shape (particles, dimensions), by the number of the particle; a copy [lambda]."""
+        """A copy, shape (particles, dimensions), by the number of the particle [lambda]."""
         return self._by_id(c.lib.mesofit_simulation_positions)
 
     @property
     def velocities(self) -> Array:
-        """The same [lambda/tau]."""
+        """A copy, shape (particles, dimensions), by the number of the particle [lambda/tau]."""
         return self._by_id(c.lib.mesofit_simulation_velocities)
 
     # What it does ---------------------------------------------------------------------------------
@@ -137,6 +160,11 @@ class Simulation:
             (dimensions, particles), in the order of `ids`. It adds to `forces` and returns the
             potential energy of all, or None. A Python function costs some 10 µs a call beside what
             it does; a function of numba (``@cfunc(…)``) or C costs nothing.
+
+        Raises
+        ------
+        InputError
+            It is no function. What it raises, or a force that is not finite, is raised by `run`.
         """
         self._check_idle()
         if force is None:
@@ -192,7 +220,22 @@ class Simulation:
             raise fail(status, text)
 
     def run(self, steps: int) -> "Simulation":
-        """Advance by so many steps. Ctrl-C is seen between steps, after which it can go on."""
+        """Advance. Ctrl-C is seen between steps, after which it can go on.
+
+        Parameters
+        ----------
+        steps : int
+
+        Returns
+        -------
+        Simulation
+            Itself.
+
+        Raises
+        ------
+        UnstableError
+            It blew up.
+        """
         left, piece = _count(steps, "steps", 0), 1
         while left > 0:
             now = min(piece, left)
@@ -205,7 +248,28 @@ class Simulation:
 
     def rdf(self, *, range: float = 0.0, bins: int = 100, samples: int = 200,
             every: int = 25) -> Rdf:
-        """Run samples · every steps and measure g(r); range 0: to the cutoff of the forces."""
+        """Run samples · every steps and measure g(r).
+
+        Parameters
+        ----------
+        range : float [lambda]
+            0: to the cutoff of the forces.
+        bins : int
+        samples : int
+        every : int
+            Steps between samples.
+
+        Returns
+        -------
+        Rdf
+
+        Raises
+        ------
+        InputError
+            The range is more than half of the box.
+        UnstableError
+            It blew up.
+        """
         bins = _count(bins, "bins", 1)
         plan = c.RdfPlan(float(range), bins, _count(samples, "samples", 1),
                          _count(every, "every", 1))
@@ -215,7 +279,23 @@ class Simulation:
         return Rdf(r, g, error)
 
     def means(self, *, samples: int = 200, every: int = 25) -> Means:
-        """Run samples · every steps and take means of temperature, energy and pressure."""
+        """Run samples · every steps and take means of temperature, energy and pressure.
+
+        Parameters
+        ----------
+        samples : int
+        every : int
+            Steps between samples.
+
+        Returns
+        -------
+        Means
+
+        Raises
+        ------
+        UnstableError
+            It blew up.
+        """
         means = c.Means()
         self._call(c.lib.mesofit_simulation_means, _count(samples, "samples", 1),
                    _count(every, "every", 1), means)

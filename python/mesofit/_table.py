@@ -28,6 +28,11 @@ class Table:
         Read-only, without a copy of what the library has read.
     comment : str
         What stands above the heading of the file.
+
+    Notes
+    -----
+    ``table["g"]`` or ``table[1]`` is a column, shape (rows,); InputError where there is none.
+    ``len(table)`` is its rows, ``numpy.asarray(table)`` its values.
     """
 
     def __init__(self, name: str, columns: tuple[str, ...], units: tuple[str, ...],
@@ -59,21 +64,66 @@ class Table:
         return np.array(self.values, dtype=dtype) if copy else np.asarray(self.values, dtype=dtype)
 
     def unit(self, column: str | int) -> str:
-        """Unit of a column, "" of pure numbers."""
+        """Unit of a column.
+
+        Parameters
+        ----------
+        column : str or int
+
+        Returns
+        -------
+        str
+            "" of pure numbers.
+
+        Raises
+        ------
+        InputError
+            There is no such column.
+        """
         return self.units[self._number(column)]
 
     def label(self, column: str | int) -> str:
-        """A column with its unit: "r [nm]"."""
+        """A column with its unit, as "r [nm]".
+
+        Parameters
+        ----------
+        column : str or int
+
+        Returns
+        -------
+        str
+
+        Raises
+        ------
+        InputError
+            There is no such column.
+        """
         number = self._number(column)
         unit = self.units[number]
         return self.columns[number] + (f" [{unit}]" if unit not in ("", "1") else "")
 
     def to_dict(self) -> dict[str, Array]:
-        """Columns by their names."""
+        """Columns by their names.
+
+        Returns
+        -------
+        dict of str to array, shape (rows,)
+        """
         return {name: self.values[:, k] for k, name in enumerate(self.columns)}
 
     def to_pandas(self) -> Any:
-        """A DataFrame of pandas, units in its ``attrs["units"]``."""
+        """A DataFrame of pandas, units in its ``attrs["units"]``.
+
+        Returns
+        -------
+        pandas.DataFrame
+            A copy.
+
+        Raises
+        ------
+        ImportError
+            There is no pandas.
+        """
         import pandas
 
         frame = pandas.DataFrame(np.array(self.values), columns=list(self.columns))
@@ -81,7 +131,24 @@ class Table:
         return frame
 
     def plot(self, ax: Any = None) -> Any:
-        """Draw it with matplotlib; returns the axes."""
+        """Draw it with matplotlib.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where; else in a figure of its own.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+
+        Raises
+        ------
+        ImportError
+            There is no matplotlib.
+        InputError
+            It has one column alone.
+        """
         from . import _plot
 
         return _plot.draw_table(self, ax)
@@ -112,13 +179,19 @@ _OTHERS = re.compile(r"(^|_)(history|flat|lower|upper)$|^now(_|$)")
 
 class Curves(Mapping):  # type: ignore[type-arg]
     """Curves of one kind: a table for each pair of types, by the name "A-B"; "" of beads that are
-    alike. A single one has its columns, their units and its plot directly."""
+    alike. A single one has its columns, their units and its plot directly.
+
+    Notes
+    -----
+    A mapping: ``curves["A-B"]`` is a `Table`. Of a single one ``curves["phi"]`` is a column, shape
+    (rows,).
+    """
 
     def __init__(self, name: str, tables: dict[str, Table]) -> None:
         self.name, self._tables = name, tables
 
     @staticmethod
-    def parts(name: str, tables: tuple[str, ...]) -> dict[str, str]:
+    def _parts(name: str, tables: tuple[str, ...]) -> dict[str, str]:
         """Parts by the names of the tables of a curve."""
         found = {}
         for table in tables:
@@ -129,7 +202,7 @@ class Curves(Mapping):  # type: ignore[type-arg]
 
     @property
     def table(self) -> Table:
-        """The only table."""
+        """The only table; InputError where there are several."""
         if len(self._tables) != 1:
             raise InputError(f"{self.name}: there are {len(self._tables)}: "
                              f"{', '.join(self._tables)}")
@@ -137,12 +210,12 @@ class Curves(Mapping):  # type: ignore[type-arg]
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """Columns of the only table."""
+        """Names of the columns of the only table, a tuple of str."""
         return self.table.columns
 
     @property
     def units(self) -> tuple[str, ...]:
-        """Units of the columns of the only table."""
+        """Units of the columns of the only table, a tuple of str."""
         return self.table.units
 
     def __getitem__(self, part: str) -> Table | Any:
@@ -159,7 +232,22 @@ class Curves(Mapping):  # type: ignore[type-arg]
         return len(self._tables)
 
     def plot(self, ax: Any = None) -> Any:
-        """Draw all of them with matplotlib; returns the axes."""
+        """Draw all of them with matplotlib.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where; else in a figure of its own.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+
+        Raises
+        ------
+        ImportError
+            There is no matplotlib.
+        """
         from . import _plot
 
         for part, table in self._tables.items():

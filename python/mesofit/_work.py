@@ -37,6 +37,17 @@ def law(function: Callable[[Any], Any], cutoff: float, *, begin: float = 0.0,
     begin : float
         First distance that is sampled, above 0 where the law has no finite value there.
     points : int
+        How many distances are sampled, evenly.
+
+    Returns
+    -------
+    dict
+        A law that a scene or a run file takes.
+
+    Raises
+    ------
+    InputError
+        The distances are in no order, or a value is not finite.
     """
     if not cutoff > begin >= 0 or points < 2:
         raise InputError(f"law: expected 0 <= begin < cutoff and 2 points; found {begin}, {cutoff}, "
@@ -58,7 +69,20 @@ class Scene(dict):  # type: ignore[type-arg]
     """What a scene file says, as a dict: ``Scene(box=[10, 10, 10], particles=3000, …)``.
 
     Keys are those of a scene file (`mesofit describe scene`); a number of particles stands for
-    ``{"count": number}``, an array of rows for a table where a file is named.
+    ``{"count": number}``, an array of rows for a table where a file is named. Nothing is checked
+    before it is used.
+
+    Parameters
+    ----------
+    base : dict or path, optional
+        A scene, or its file, that the keys are put into.
+    **keys
+        What stands at its top; in a dict of a dict single keys are replaced.
+
+    Raises
+    ------
+    InputError
+        `base` is a file that cannot be read, or no object.
     """
 
     def __init__(self, base: Content | None = None, /, **keys: Any) -> None:
@@ -148,6 +172,18 @@ def simulate(scene: Content, steps: int | None = None, *, folder: PathLike | Non
     Returns
     -------
     Result
+        Its tables are in the units of the scene.
+
+    Raises
+    ------
+    InputError
+        With the line that the program would print.
+    FileError
+        A file cannot be read, or the folder not be written.
+    UnstableError
+        It blew up.
+    KeyboardInterrupt
+        By Ctrl-C before there was anything to return.
     """
     memory = Memory()
     content: Content = scene
@@ -184,7 +220,7 @@ def fit(target: Any, /, *, density: float | None = None, temperature: float | No
     target : Result, dict or path
         What `measure` has returned, what a run file says, its path, or the folder of a target.
     density, temperature : float, optional
-        Of a target in a folder that does not say them.
+        Of a target that does not say them, in its units: 1/nm³ and K of one that `measure` made.
     folder, threads, seed, resume, force, progress
         As of `simulate`.
     **keys
@@ -195,6 +231,13 @@ def fit(target: Any, /, *, density: float | None = None, temperature: float | No
     -------
     Result
         Also of a fit that has not converged, with an UnconvergedWarning.
+
+    Raises
+    ------
+    InputError
+        With the line that the program would print.
+    FileError, UnstableError, KeyboardInterrupt
+        As of `simulate`.
     """
     memory = Memory()
     if isinstance(keys.get("method"), str):
@@ -241,20 +284,33 @@ def measure(trajectory: Any, structure: PathLike | None = None, *,
     Parameters
     ----------
     trajectory : path, list of paths, Frames, or a Universe or AtomGroup of MDAnalysis
+        Files follow each other in time.
     structure : path, optional
         Names, residues and masses of the atoms of files.
     map : dict or path, optional
         Atoms to beads; else a residue is a bead.
     molecules : dict or path, optional
         Bonds of beads, as of a scene.
-    begin, end, every, window : float, optional [ps]
-    range, escape : float, optional [nm]
+    begin, end, every : float, optional [ps]
+        First time that is used, else the begin of equilibrium; last one; time between frames.
+    range : float, optional [nm]
+        Of g(r); else most of half the box.
+    bins : int, optional
+        Of g(r); else they are 0.01 nm wide.
     q_range : float, optional [1/nm]
-    bins, waves : int, optional
+        Of S(q), else 4 π density^(1/3); 0: no S(q).
+    waves : int, optional
+        Most wave vectors in a bin of S(q), else 10.
+    window : float, optional [ps]
+        Of MSD, VACF and escape times; else a tenth of the time, 100 frames at most.
+    escape : float, optional [nm]
+        Distance at which a pair has escaped; else 1.6 density^(-1/3).
     velocities : "file", "differences" or "none", optional
+        Where those of the VACF come from.
     static : bool
         No motion: frames of any times.
     temperature : float, optional [K]
+        Of the target; else that of the velocities.
     units : "nm-ps" or "angstrom-fs", optional
         Of the results.
     allow_truncated, file_units, file_time_step, file_group
@@ -268,6 +324,15 @@ def measure(trajectory: Any, structure: PathLike | None = None, *,
     -------
     Result
         A target for `fit`.
+
+    Raises
+    ------
+    InputError
+        With the line that the program would print.
+    FileError
+        A file cannot be read, or the folder not be written.
+    Exception
+        Whatever a function of `Frames` or MDAnalysis has raised.
     """
     memory = Memory()
     files, back = _frames(trajectory, memory)

@@ -55,7 +55,7 @@ def test_figures_are_drawn(fitted, simulated, matplotlib):
 def test_curves_of_a_mixture_have_names(matplotlib):
     tables = ("potential_A-A", "potential_A-B", "potential_A-A_history", "potential_flat",
               "potential_now_A-A", "potential_history")
-    assert mesofit.Curves.parts("potential", tables) == {"A-A": "potential_A-A",
+    assert mesofit.Curves._parts("potential", tables) == {"A-A": "potential_A-A",
                                                          "A-B": "potential_A-B"}
     table = mesofit.Table("potential_A-A", ("r", "phi"), ("nm", "kJ/mol"),
                           np.array([[0.1, 5.0], [0.2, -1], [0.3, 0]]))

@@ -3,7 +3,11 @@
 
 import ctypes
 import gc
+import os
+import subprocess
+import sys
 import threading
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -187,3 +191,12 @@ def test_optimiser_finds_the_bottom_of_a_bowl():
             break
         optimiser.tell(((candidates - 0.3) ** 2).sum(axis=1))
     assert np.allclose(optimiser.best(), 0.3, atol=0.01)
+
+
+def test_objects_that_outlive_the_library_end_in_silence():
+    code = ("import numpy, mesofit; from conftest import SCENE\n"
+            "numpy.kept = mesofit.Simulation(SCENE), mesofit.Optimiser('cma-es', 2)\n")
+    done = subprocess.run([sys.executable, "-c", code], cwd=Path(__file__).parent,
+                          env={**os.environ, "PYTHONPATH": str(ROOT / "python")},
+                          capture_output=True, text=True, check=True)
+    assert done.stderr == ""

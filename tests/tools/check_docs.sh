@@ -4,7 +4,7 @@
 # check_docs.sh: what pages name is there. Links between files lead somewhere, also those to a section; the
 # files that ARCHITECTURE.md names are there; the headers and citations of docs/theory.md are those of the
 # sources; docs/fit.md quotes reasons that the program gives; user pages need no laboratory record; .ci/run
-# does what the README's two commands do; pages stay short. Run at the root of the source tree.
+# does what the README's two commands do; packages are of this version; pages stay short. Run at the root of the source tree.
 set -u
 export LC_ALL=C.UTF-8
 
@@ -57,6 +57,21 @@ check_commands() {
     grep -qx 'make test' README.md && grep -q '^run test ' .ci/run || echo "README.md, .ci/run: no make test"
 }
 
+# Whatever names the version names that of the header, and Debian's packages build with what the README installs
+# but what only tests need, and so does the image.
+check_packages() {
+    local version package
+    version=$(sed -n 's/^#define MESOFIT_VERSION "\(.*\)"/\1/p' include/mesofit.h)
+    head -n 1 debian/changelog | grep -qF "($version)" || echo "debian/changelog: not of version $version"
+    grep -qx "version: $version" CITATION.cff || echo "CITATION.cff: not of version $version"
+    sed -n 's/.*apt-get install -y \([^&]*\)&&.*/\1/p' README.md | head -n 1 | tr ' ' '\n' |
+        grep -vxE '|build-essential|libcmocka-dev' | while IFS= read -r package; do
+        sed '/^Package:/,$d' debian/control | grep -qw -- "$package" ||
+            echo "debian/control: Build-Depends lacks $package"
+        grep -qw -- "$package" Dockerfile || echo "Dockerfile: does not install $package"
+    done
+}
+
 # check_length FILE MOST -w|-l: no more words or lines than that, as wc counts them.
 check_length() {
     local length
@@ -94,6 +109,7 @@ faults=$(
     list_reasons | check_quotes docs/fit.md
     list_citations | check_quotes docs/theory.md
     check_commands
+    check_packages
     grep -nE '\]\(\.\./lab/' docs/*.md | sed 's/$/: a user needs no laboratory record/'
     check_length README.md 700 -w
     check_length docs/reference.md 10000 -w

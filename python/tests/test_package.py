@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What pip makes of the package: a wheel that needs nothing beside it, an archive that can be built."""
+
+import os
+import re
+import subprocess
+import sys
+import tarfile
+import zipfile
+
+import pytest
+from conftest import ROOT
+
+sys.path.insert(0, str(ROOT / "python"))
+
+import backend  # noqa: E402
+
+BARE = {key: os.environ[key] for key in ("PATH", "HOME") if key in os.environ}
+
+
+@pytest.fixture(scope="module")
+def wheel(tmp_path_factory):
+    """A wheel, unpacked as pip would do it."""
+    place = tmp_path_factory.mktemp("wheel")
+    name = backend.build_wheel(str(place))
+    with zipfile.ZipFile(place / name) as archive:
+        archive.extractall(place / "installed")
+    return place / "installed"
+
+
+def test_wheel_works_on_its_own(wheel):
+    code = "import mesofit; print(mesofit.__file__, mesofit.__version__)"
+    done = subprocess.run([sys.executable, "-c", code], cwd=wheel, capture_output=True, text=True,
+                          env=BARE, check=True)
+    assert done.stdout.split() == [str(wheel / "mesofit" / "__init__.py"), backend.version()]
+
+
+def test_wheel_brings_what_the_library_needs(wheel):
+    library = next((wheel / "mesofit" / "lib").glob("libmesofit.so.*"))
+    listed = subprocess.run(["ldd", str(library)], capture_output=True, text=True, check=True,
+                            env=BARE).stdout
+    for name, path in re.findall(r"^\s*(\S+) => (\S+)", listed, re.M):
+        assert path.startswith(str(wheel)) or backend.SYSTEM.match(name), (name, path)
+
+
+def test_wheel_has_all_modules(wheel):
+    for path in (ROOT / "python" / "mesofit").glob("*.py"):
+        assert (wheel / "mesofit" / path.name).read_bytes() == path.read_bytes()
+    assert (wheel / "mesofit" / "py.typed").exists()
+
+
+def test_archive_has_all_sources(tmp_path):
+    name = backend.build_sdist(str(tmp_path))
+    with tarfile.open(tmp_path / name) as archive:
+        archive.extractall(tmp_path)
+    inside = tmp_path / name.removesuffix(".tar.gz")
+    subprocess.run(["make", "-n", "-C", str(inside / "source"), "wheel-library"], check=True,
+                   capture_output=True, env=BARE)
+    for folder in ("include", "src", "share"):
+        for path in (ROOT / folder).rglob("*.[ch]"):
+            assert (inside / "source" / path.relative_to(ROOT)).exists(), path
+    code = "import backend; print(backend.version())"
+    done = subprocess.run([sys.executable, "-c", code], cwd=inside, capture_output=True, text=True,
+                          check=True)
+    assert done.stdout.strip() == backend.version()
