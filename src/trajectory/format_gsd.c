@@ -2,7 +2,9 @@
 //
 // GSD of HOOMD-blue (gsd.readthedocs.io: file layer 1 and 2, schema hoomd): chunks of numbers by
 // frame and name, found by an index; little-endian. What a frame does not have is as in frame 0,
-// or else as the schema says. Its units are those of the simulation, which nothing tells.
+// or else as the schema says; but velocities of frame 0 alone are no velocities of the others:
+// HOOMD writes those of all frames only if "momentum" is dynamic. Its units are those of the
+// simulation, which nothing tells.
 #include "base/memory.h"
 #include "trajectory/binary.h"
 #include "trajectory/trajectory.h"
@@ -55,6 +57,7 @@ struct gsd {
     struct bytes index; ///< as in the file
     size_t entries;     ///< that are used
     int64_t id[CHUNKS]; ///< of their names; −1: no frame has it
+    bool moves;         ///< velocities are those of each frame
     uint32_t atoms;
     struct bytes types; ///< of the atoms in the first frame, as in the file; empty: all of type 0
 };
@@ -113,6 +116,9 @@ static enum status check_index(struct trajectory *trajectory) {
     if (gsd->entries == 0)
         return mf_status_fail(STATUS_BAD_INPUT, "%s: the file has no frame", trajectory->file);
     trajectory->frames = frame_of(gsd, gsd->entries - 1) + 1;
+    gsd->moves = trajectory->frames == 1;
+    for (size_t k = 0; k < gsd->entries; k++)
+        gsd->moves = gsd->moves || (frame_of(gsd, k) > 0 && id_of(gsd, k) == gsd->id[VELOCITY]);
     return STATUS_OK;
 }
 
@@ -304,7 +310,8 @@ static enum status fetch(struct trajectory *trajectory, struct trajectory_frame 
     TRY(take_if(trajectory, number, POSITION, gsd->atoms, raw, &there));
     if (!there)
         return mf_source_fail_byte(&trajectory->source, "there are no positions");
-    TRY(take_if(trajectory, number, VELOCITY, gsd->atoms, raw, &header.has_velocities));
+    if (gsd->moves && find(gsd, number, VELOCITY))
+        TRY(take_if(trajectory, number, VELOCITY, gsd->atoms, raw, &header.has_velocities));
     TRY(take_if(trajectory, number, IMAGE, gsd->atoms, raw, &header.has_images));
     memcpy(raw->data, &header, sizeof header);
     return STATUS_OK;

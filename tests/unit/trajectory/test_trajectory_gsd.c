@@ -105,8 +105,9 @@ static void add_vectors(int frame, const char *name, float factor) {
     add_chunk((uint64_t)frame, name, FLOAT, ATOMS, 3, numbers, sizeof numbers);
 }
 
-/// Frame 0 has all but a step, frame 1 positions, frame 2 a box.
-static void add_frames(void) {
+/// Frame 0 has all but a step, frame 1 positions, frame 2 a box, and all velocities if `moves`, or
+/// else frame 0 alone.
+static void add_frames(bool moves) {
     add_chunk(0, "configuration/box", FLOAT, 6, 1, box, sizeof box);
     add_chunk(0, "particles/N", UINT32, 1, 1, &(uint32_t){ATOMS}, 4);
     add_chunk(0, "particles/types", INT8, 2, 5, "Pol\0\0Water", 10);
@@ -119,8 +120,12 @@ static void add_frames(void) {
     add_chunk(0, "bonds/group", version == 2 ? UINT32 : INT32, 1, 2, (uint32_t[]){2, 1}, 8);
     add_chunk(1, "configuration/step", UINT64, 1, 1, &(uint64_t){500}, 8);
     add_vectors(1, "particles/position", 1);
+    if (moves)
+        add_vectors(1, "particles/velocity", -2);
     add_chunk(2, "configuration/step", UINT64, 1, 1, &(uint64_t){1000}, 8);
     add_chunk(2, "configuration/box", FLOAT, 6, 1, (float[]){9, 9, 9, 0, 0, 0}, 24);
+    if (moves)
+        add_vectors(2, "particles/velocity", -2);
 }
 
 static struct trajectory trajectory;
@@ -156,7 +161,7 @@ static void assert_frame(int number, const double vectors[3][3]) {
             for (int i = 0; i < 3; i++)
                 x += image[k][i] * vectors[i][d];
             assert_true(fabs(frame.position[k][d] - 0.1 * x) < 1e-12);
-            assert_true(fabs(frame.velocity[k][d] + 200 * (double)coordinate(0, k, d)) < 1e-9);
+            assert_true(fabs(frame.velocity[k][d] + 200 * (double)coordinate(number, k, d)) < 1e-9);
         }
     assert_int_equal(frame.step, 500 * number);
     assert_true(fabs(frame.time - 5 * number) < 1e-12);
@@ -167,7 +172,7 @@ static void test_gsd_is_read_where_frames_lean_on_the_first(void **state) {
                         cube[3][3] = {{9, 0, 0}, {0, 9, 0}, {0, 0, 9}};
     for (int layer = 1; layer <= 2; layer++) {
         begin_file(layer);
-        add_frames();
+        add_frames(true);
         end_file("hoomd");
         assert_ok(try(state, "real"));
         assert_string_equal(trajectory.format->name, "gsd");
@@ -181,9 +186,33 @@ static void test_gsd_is_read_where_frames_lean_on_the_first(void **state) {
     }
 }
 
+/// HOOMD writes velocities of frame 0 always, and of the others only if asked: they do not stand
+/// still in between.
+static void test_gsd_has_no_velocities_but_those_of_each_frame(void **state) {
+    begin_file(2);
+    add_frames(false);
+    end_file("hoomd");
+    assert_ok(try(state, "real"));
+    for (int number = 0; number < 3; number++) {
+        next(true);
+        assert_false(frame.has_velocities);
+    }
+    close_all();
+
+    begin_file(2);
+    add_chunk(0, "particles/N", UINT32, 1, 1, &(uint32_t){ATOMS}, 4);
+    add_vectors(0, "particles/position", 1);
+    add_vectors(0, "particles/velocity", -2);
+    end_file("hoomd");
+    assert_ok(try(state, "real"));
+    next(true);
+    assert_true(frame.has_velocities); // a start for a simulation
+    close_all();
+}
+
 static void test_gsd_has_types_masses_and_molecules_by_bonds(void **state) {
     begin_file(2);
-    add_frames();
+    add_frames(true);
     end_file("hoomd");
     assert_ok(try(state, "lj"));
     const struct structure_atom *const atom = trajectory.structure.atom;
@@ -200,17 +229,17 @@ static void test_gsd_has_types_masses_and_molecules_by_bonds(void **state) {
 
 static void test_gsd_is_refused_when_it_cannot_be_what_it_says(void **state) {
     begin_file(2);
-    add_frames();
+    add_frames(true);
     end_file("hoomd");
     assert_fails(try(state, NULL), STATUS_BAD_INPUT, "the file has no units");
     file_bytes[8 + 3] = 1; // its index is 16 MiB on
     assert_fails(try(state, "lj"), STATUS_BAD_INPUT, "it is damaged");
     begin_file(2);
-    add_frames();
+    add_frames(true);
     end_file("other");
     assert_fails(try(state, "lj"), STATUS_BAD_INPUT, "the schema \"other\"; hoomd is read");
     begin_file(2);
-    add_frames();
+    add_frames(true);
     add_chunk(3, "particles/N", UINT32, 1, 1, &(uint32_t){5}, 4);
     add_chunk(4, "configuration/dimensions", UINT8, 1, 1, &(uint8_t){2}, 1);
     end_file("hoomd");
@@ -222,7 +251,7 @@ static void test_gsd_is_refused_when_it_cannot_be_what_it_says(void **state) {
                  "it has 5 particles, the first frame 4");
     close_all();
     begin_file(2);
-    add_frames();
+    add_frames(true);
     add_chunk(3, "particles/typeid", UINT32, ATOMS, 1, (uint32_t[]){1, 0, 1, 1}, 16);
     end_file("hoomd");
     assert_ok(try(state, "lj"));
@@ -236,7 +265,7 @@ static void test_gsd_is_refused_when_it_cannot_be_what_it_says(void **state) {
 static void test_gsd_needs_a_file_when_it_comes_by_a_pipe(void **state) {
     char name[1024];
     begin_file(2);
-    add_frames();
+    add_frames(true);
     end_file("hoomd");
     snprintf(name, sizeof name, "%s", temporary_folder_file(*state, "pipe"));
     assert_int_equal(mkfifo(name, 0600), 0);
@@ -258,6 +287,7 @@ static void test_gsd_needs_a_file_when_it_comes_by_a_pipe(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(test_gsd_is_read_where_frames_lean_on_the_first),
+        TEST(test_gsd_has_no_velocities_but_those_of_each_frame),
         TEST(test_gsd_has_types_masses_and_molecules_by_bonds),
         TEST(test_gsd_is_refused_when_it_cannot_be_what_it_says),
         TEST(test_gsd_needs_a_file_when_it_comes_by_a_pipe),
