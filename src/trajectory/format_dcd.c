@@ -6,6 +6,7 @@
 #include "trajectory/trajectory.h"
 
 #include <math.h>
+#include <string.h>
 
 enum { HEADER = 84, CELL = 48, LONGEST_MARK = 8, TITLE_LINE = 80, LARGEST_TITLE = 1 << 20 };
 
@@ -20,7 +21,7 @@ struct dcd {
     size_t mark;          ///< bytes of the counts around records
     bool has_cell, has_w; ///< each frame has a box; a fourth coordinate
     int32_t atoms, fixed, start, every, version;
-    double time_step;   ///< [ps]
+    double time_step;   ///< [ps]; by the units of the file if it is LAMMPS's
     struct bytes place; ///< of the atoms that move, from 1 on, if some do not
     struct bytes first; ///< positions in the first frame, x, y and z, if some do not move
 };
@@ -70,8 +71,8 @@ static void read_header(const unsigned char *header, struct dcd *dcd) {
     dcd->fixed = binary_int(number + 4 * 8, dcd->big);
     dcd->has_cell = charmm && binary_int(number + 4 * 10, dcd->big) != 0;
     dcd->has_w = charmm && binary_int(number + 4 * 11, dcd->big) != 0;
-    dcd->time_step = akma * (charmm ? binary_float(number + 4 * 9, dcd->big)
-                                    : binary_double(number + 4 * 9, dcd->big));
+    dcd->time_step =
+        charmm ? binary_float(number + 4 * 9, dcd->big) : binary_double(number + 4 * 9, dcd->big);
 }
 
 /// Whether what follows a title of `size` bytes is the number of atoms.
@@ -84,9 +85,13 @@ static bool title_ends(const unsigned char *begin, size_t there, uint64_t size,
     return read_mark(next, mark, dcd->big) == 4 && read_mark(next + mark + 4, mark, dcd->big) == 4;
 }
 
+/// The unit of the time step is CHARMM's, but LAMMPS, which says so in its title, writes its own.
 /// The count around a title may be that of other lines than the title says and has: it then ends
 /// where the number of atoms begins.
-static enum status skip_title(struct source *source, struct bytes *raw, const struct dcd *dcd) {
+/// @param[in] unit  of LAMMPS's time [ps]
+static enum status read_title(struct source *source, struct bytes *raw, double unit,
+                              struct dcd *dcd) {
+    static const char lammps[] = "Written by LAMMPS";
     const unsigned char *next;
     size_t there;
     raw->size = 0;
@@ -104,6 +109,8 @@ static enum status skip_title(struct source *source, struct bytes *raw, const st
     TRY(mf_source_take(source, raw, size + dcd->mark));
     if (!odd && read_mark(raw->data + size, dcd->mark, dcd->big) != size)
         return mf_source_fail_byte(source, "the title has the wrong length");
+    const bool own = size >= 4 + TITLE_LINE && memcmp(raw->data + 4, lammps, strlen(lammps)) == 0;
+    dcd->time_step *= own ? unit : akma;
     return STATUS_OK;
 }
 
@@ -135,7 +142,7 @@ static enum status open_file(struct trajectory *trajectory) {
     }
     CHECK(take_record(source, &raw, HEADER, dcd));
     read_header(raw.data, dcd);
-    CHECK(skip_title(source, &raw, dcd));
+    CHECK(read_title(source, &raw, trajectory->scale.time, dcd));
     raw.size = 0;
     CHECK(take_record(source, &raw, 4, dcd));
     dcd->atoms = binary_int(raw.data + dcd->mark, dcd->big);

@@ -82,6 +82,8 @@ static void write_mark(int32_t value) {
         write_int(value);
 }
 
+static const char *title = "";
+
 /// Atoms 1 and 3 move if one is fixed.
 static void write_dcd(bool big_endian, enum cell cell, int version, int fixed, bool fourth) {
     file_size = 0;
@@ -101,8 +103,8 @@ static void write_dcd(bool big_endian, enum cell cell, int version, int fixed, b
     write_mark(84);
     write_mark(4 + 80 * title_told);
     write_int(title_lines);
-    for (int k = 0; k < 80 * title_lines; k++)
-        write_bytes("x", 1, false);
+    for (size_t k = 0; k < 80 * (size_t)title_lines; k++)
+        write_bytes(k < strlen(title) ? title + k : "x", 1, false);
     write_mark(4 + 80 * title_told);
     write_mark(4), write_int(ATOMS), write_mark(4);
     if (fixed)
@@ -258,6 +260,23 @@ static void test_dcd_has_the_time_and_the_units_that_are_told(void **state) {
     close_all();
 }
 
+/// LAMMPS writes the time step as it has it: in fs, in ps, or as a number.
+static void test_dcd_of_lammps_has_the_time_step_of_its_units(void **state) {
+    static const struct {
+        const char *units;
+        double unit;
+    } of[] = {{NULL, 1e-3}, {"real", 1e-3}, {"metal", 1}, {"lj", 1}};
+    title = "Written by LAMMPS";
+    for (size_t k = 0; k < sizeof of / sizeof *of; k++) {
+        write_dcd(false, COSINES, 24, 0, false);
+        assert_ok(try(state, &(struct trajectory_options){.units = of[k].units}));
+        next(true);
+        assert_true(fabs(frame.time - 500 * 0.5 * of[k].unit) < 1e-9);
+        close_all();
+    }
+    title = "";
+}
+
 static void test_dcd_is_refused_when_its_records_do_not_fit(void **state) {
     write_dcd(true, DEGREES, 24, 0, false);
     file_bytes[file_size - 1] = 99;
@@ -378,6 +397,7 @@ int main(void) {
         TEST(test_dcd_has_the_matrix_of_newer_versions_of_charmm),
         TEST(test_dcd_keeps_atoms_that_are_fixed),
         TEST(test_dcd_has_the_time_and_the_units_that_are_told),
+        TEST(test_dcd_of_lammps_has_the_time_step_of_its_units),
         TEST(test_dcd_is_refused_when_its_records_do_not_fit),
         TEST(test_trr_is_read_in_double_precision),
         TEST(test_xtc_has_few_atoms_unpacked),
