@@ -170,12 +170,12 @@ static enum status describe(struct trajectory *trajectory, struct trajectory_fra
     TRY(describe_species(h5md, structure));
     TRY(mf_h5md_topology_read(h5md, trajectory));
     structure->has_ids = header.has_ids;
-    if (!header.has_ids)
-        return STATUS_OK;
-    for (size_t k = 0; k < structure->atoms; k++)
+    for (size_t k = 0; header.has_ids && k < structure->atoms; k++)
         structure->atom[k].id = read_id(first, k);
-    const enum status status = mf_structure_sort(structure);
-    return status == STATUS_OK ? status : mf_status_prefix(status, "%s: frame 0", trajectory->file);
+    const enum status status = header.has_ids ? mf_structure_sort(structure) : STATUS_OK;
+    if (status != STATUS_OK)
+        return mf_status_prefix(status, "%s: frame 0", trajectory->file);
+    return mf_h5md_topology_bonds(h5md, trajectory);
 }
 
 // Decoding ----------------------------------------------------------------------------------------

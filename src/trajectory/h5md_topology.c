@@ -242,12 +242,19 @@ done:
     return status;
 }
 
-/// Molecules are what bonds join, where no topology tells them.
+/// Where the particle stands that a bond is of, which has its id where there are ids.
+static uint32_t find_place(const struct structure *structure, int64_t particle) {
+    const size_t place = structure->has_ids ? mf_structure_find(structure, particle)
+                         : particle >= 0    ? (size_t)particle
+                                            : structure->atoms;
+    return place < structure->atoms ? (uint32_t)place : UINT32_MAX;
+}
+
 static enum status read_bonds(const struct h5md_file *h5md, struct trajectory *trajectory,
                               hid_t connectivity) {
     enum status status;
     struct h5md_element bonds;
-    int64_t *place = NULL;
+    int64_t *particle = NULL;
     uint32_t(*bond)[2] = NULL;
     TRY(mf_h5md_element_open(&bonds, trajectory->file, connectivity, "bonds", h5md->bytes));
     const size_t count = bonds.there ? (size_t)bonds.size[0] : 0;
@@ -255,17 +262,21 @@ static enum status read_bonds(const struct h5md_file *h5md, struct trajectory *t
         mf_h5md_element_close(&bonds);
         return STATUS_OK;
     }
-    NEW_ARRAY(place, 2 * count);
+    NEW_ARRAY(particle, 2 * count);
     NEW_ARRAY(bond, count);
-    CHECK(mf_h5md_element_read(&bonds, 0, H5T_NATIVE_INT64, place));
+    CHECK(mf_h5md_element_read(&bonds, 0, H5T_NATIVE_INT64, particle));
     for (size_t k = 0; k < 2 * count; k++)
-        bond[k / 2][k % 2] =
-            place[k] >= 0 && place[k] < UINT32_MAX ? (uint32_t)place[k] : UINT32_MAX;
+        if ((bond[k / 2][k % 2] = find_place(&trajectory->structure, particle[k])) == UINT32_MAX) {
+            status = mf_status_fail(STATUS_BAD_INPUT,
+                                    "%s: bond %zu is of a particle %lld, which is not there",
+                                    trajectory->file, k / 2 + 1, (long long)particle[k]);
+            goto done;
+        }
     status = mf_structure_join(&trajectory->structure, (const uint32_t(*)[2])bond, count);
     if (status == STATUS_BAD_INPUT)
         status = mf_status_prefix(status, "%s", trajectory->file);
 done:
-    mf_memory_free(place);
+    mf_memory_free(particle);
     mf_memory_free(bond);
     mf_h5md_element_close(&bonds);
     return status;
@@ -285,8 +296,7 @@ static hid_t open_path(hid_t place, const char *const *names) {
 }
 
 enum status mf_h5md_topology_read(const struct h5md_file *h5md, struct trajectory *trajectory) {
-    static const char *const topology[] = {"h5md", "modules", "gromacs_topology", NULL},
-                             *const connectivity[] = {"connectivity", NULL};
+    static const char *const topology[] = {"h5md", "modules", "gromacs_topology", NULL};
     struct texts blocks = {0};
     enum status status = STATUS_OK;
     const hid_t group = open_path(h5md->file, topology);
@@ -298,12 +308,16 @@ enum status mf_h5md_topology_read(const struct h5md_file *h5md, struct trajector
     }
     if (group >= 0)
         H5Gclose(group);
-    TRY(status);
+    return status;
+}
+
+enum status mf_h5md_topology_bonds(const struct h5md_file *h5md, struct trajectory *trajectory) {
+    static const char *const connectivity[] = {"connectivity", NULL};
     const hid_t bonds =
         trajectory->structure.has_molecules ? -1 : open_path(h5md->file, connectivity);
     if (bonds < 0)
         return STATUS_OK;
-    status = read_bonds(h5md, trajectory, bonds);
+    const enum status status = read_bonds(h5md, trajectory, bonds);
     H5Gclose(bonds);
     return status;
 }

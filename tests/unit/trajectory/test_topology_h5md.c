@@ -152,7 +152,7 @@ static void test_h5md_has_molecules_of_bonds(void **state) {
         put(connectivity, "bonds", H5T_NATIVE_INT64, 2, (const hsize_t[]){3, 2}, bonds);
         H5Gclose(connectivity);
         if (odd) {
-            assert_fails(try(), STATUS_BAD_INPUT, "bond 3 is of the atoms 7 and 9 of 8");
+            assert_fails(try(), STATUS_BAD_INPUT, "bond 3 is of a particle 8, which is not there");
             continue;
         }
         assert_ok(try());
@@ -163,6 +163,23 @@ static void test_h5md_has_molecules_of_bonds(void **state) {
     }
 }
 
+/// Where particles have ids, which are those of bonds: 1 and 2 are the last but one and the first.
+static void test_h5md_has_bonds_of_ids(void **state) {
+    static const int64_t ids[ATOMS] = {2, 3, 4, 5, 6, 7, 1, 8}, bonds[1][2] = {{1, 2}};
+    begin_file(state);
+    const hid_t group = H5Gopen(file, "particles/system", H5P_DEFAULT),
+                connectivity = make_group(file, "connectivity");
+    put_one(group, "id", H5T_NATIVE_INT64, ATOMS, ids);
+    put(connectivity, "bonds", H5T_NATIVE_INT64, 2, (const hsize_t[]){1, 2}, bonds);
+    H5Gclose(group);
+    H5Gclose(connectivity);
+    assert_ok(try());
+    const struct structure_atom *const atom = trajectory.structure.atom; // by their ids
+    assert_int_equal(trajectory.structure.residues, ATOMS - 1);
+    assert_true(atom[0].id == 1 && atom[1].id == 2 && atom[0].residue == atom[1].residue);
+    mf_trajectory_close(&trajectory);
+}
+
 #define TEST(name)                                                                                 \
     cmocka_unit_test_setup_teardown(name, temporary_folder_create, temporary_folder_remove)
 
@@ -171,6 +188,7 @@ int main(void) {
         TEST(test_h5md_has_the_topology_of_gromacs),
         TEST(test_h5md_says_so_when_its_topology_is_of_others),
         TEST(test_h5md_has_molecules_of_bonds),
+        TEST(test_h5md_has_bonds_of_ids),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
