@@ -327,7 +327,7 @@ static enum status describe_types(struct trajectory *trajectory, struct bytes *r
     uint32_t width = 0;
     raw->size = 0;
     TRY(take(trajectory, 0, TYPES, 0, raw, &types, &width));
-    structure->has_names = structure->has_types = true;
+    structure->has_names = true; // whose numbers are the file's own
     for (size_t k = 0; k < structure->atoms; k++) {
         struct structure_atom *const atom = &structure->atom[k];
         const uint32_t type = gsd->types.size ? binary_word(gsd->types.data + 4 * k, false) : 0;
@@ -337,7 +337,6 @@ static enum status describe_types(struct trajectory *trajectory, struct bytes *r
         const char *const name = types ? (const char *)raw->data + (size_t)type * width : "A";
         const size_t length = types ? strnlen(name, width) : 1;
         memcpy(atom->name, name, length < STRUCTURE_NAME ? length : STRUCTURE_NAME - 1);
-        atom->type = type;
     }
     return STATUS_OK;
 }

@@ -5,6 +5,7 @@
 // box, molecules by bonds; what is refused.
 #include "shared/temporary_folder.h"
 #include "shared/testing.h"
+#include "trajectory/mapping.h"
 #include "trajectory/trajectory.h"
 
 #include <math.h>
@@ -227,6 +228,22 @@ static void test_gsd_has_types_masses_and_molecules_by_bonds(void **state) {
     close_all();
 }
 
+/// Types are told apart by their names: "Water", number 1 from 0 on, is not the first of others.
+static void test_gsd_has_no_other_types_than_those_of_its_names(void **state) {
+    struct mapping mapping;
+    begin_file(2);
+    add_frames(true);
+    end_file("hoomd");
+    assert_ok(try(state, "lj"));
+    assert_fails(mf_mapping_init_atoms(&mapping, &trajectory.structure,
+                                       (const char *const[]){"Pol"}, 1, "a.gsd"),
+                 STATUS_BAD_INPUT, "no type has the name of atom 1, \"Water\"");
+    assert_ok(mf_mapping_init_atoms(&mapping, &trajectory.structure,
+                                    (const char *const[]){"Pol", "Water"}, 2, "a.gsd"));
+    mf_mapping_clear(&mapping);
+    close_all();
+}
+
 static void test_gsd_is_refused_when_it_cannot_be_what_it_says(void **state) {
     begin_file(2);
     add_frames(true);
@@ -289,6 +306,7 @@ int main(void) {
         TEST(test_gsd_is_read_where_frames_lean_on_the_first),
         TEST(test_gsd_has_no_velocities_but_those_of_each_frame),
         TEST(test_gsd_has_types_masses_and_molecules_by_bonds),
+        TEST(test_gsd_has_no_other_types_than_those_of_its_names),
         TEST(test_gsd_is_refused_when_it_cannot_be_what_it_says),
         TEST(test_gsd_needs_a_file_when_it_comes_by_a_pipe),
     };
